@@ -8,30 +8,38 @@ from boatsim.control.base import Sense, Steered
 
 @dataclass
 class CrashStop(Steered):
-    """Commands the engines astern until the ship has lost her way."""
+    """Commands the engines astern until the ship has stopped."""
 
-    words: ClassVar[str] = "standard manoeuvre: engines astern until the ship has lost her way"
+    words: ClassVar[str] = "standard manoeuvre: engines astern until the ship has stopped"
 
     astern: dict[str, float] = field(default_factory=dict)
     _stopped: bool = field(default=False, init=False)
     _begun: bool = field(default=False, init=False)
 
     def reset(self) -> None:
-        """Ahead again."""
+        """Reset the manoeuvre to its approach ahead."""
         super().reset()
         self._stopped = self._begun = False
 
     def helm(self, sense: Sense) -> float:
-        """Midships."""
+        """Keep the helm midships and detect the end of the manoeuvre, u <= 0.
+
+        Args:
+            sense: Sensor readings.
+        """
         self._begun = True
         self._stopped = self._stopped or sense.u <= 0.0
         return 0.0
 
     def commanded(self, helm: float) -> dict[str, float]:
-        """Astern once begun."""
+        """Return the commands of the approach, or astern once the manoeuvre has begun.
+
+        Args:
+            helm: Helm angle [rad].
+        """
         return {**super().commanded(helm), **(self.astern if self._begun else {})}
 
     @property
     def done(self) -> bool:
-        """No way on any more."""
+        """Whether the ship has stopped."""
         return self._stopped

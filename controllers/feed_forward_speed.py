@@ -1,4 +1,7 @@
-"""The plain rival of the L1 cruise control: throttle for the drag that is assumed, and a little for the speed error."""
+"""Speed control by feed-forward of an assumed drag and proportional feedback.
+
+It is the reference against which the L1 cruise control is compared.
+"""
 
 from dataclasses import dataclass
 from math import exp, nan
@@ -12,7 +15,16 @@ from boatsim.physics.base import param
 
 @unlocked
 def law(boats: Any, settings: Any, memory: Any, sense: Any, goal: Any, sent: Any) -> None:
-    """Throttle for the next period; the speed asked for starts where the craft is."""
+    """Set the throttle for the next period; the reference speed starts at the present speed.
+
+    Args:
+        boats: Rows to process.
+        settings: Parameters of each boat.
+        memory: State of each controller.
+        sense: Sensor readings of each boat.
+        goal: Set points of each boat.
+        sent: Commands of each boat, filled in.
+    """
     for b in boats:
         q, m, s, wanted = settings[b], memory[b], sense[b], goal[b].u_mps
         if m.started == 0.0:
@@ -27,7 +39,10 @@ def law(boats: Any, settings: Any, memory: Any, sense: Any, goal: Any, sent: Any
 
 @dataclass
 class FeedForwardSpeed(CompiledController):
-    """Thrust per mass = drag of the speed wanted + gain (speed wanted - speed). Goals: `u_mps`, and `jet_rad`."""
+    """Thrust per mass = drag at the wanted speed + gain (wanted speed - speed).
+
+    Goals: `u_mps`, and `jet_rad`, which is passed on.
+    """
 
     words: ClassVar[str] = "speed of a water-jet craft on its throttle: known drag and a fixed gain"
     commands: ClassVar[tuple[str, ...]] = ("throttle", "jet_rad")
@@ -42,11 +57,11 @@ class FeedForwardSpeed(CompiledController):
     gain: float = param(
         1.4, low=0.0, high=100.0, unit="1/s", words="thrust per mass and speed error"
     )
-    linear: float = param(0.1926, low=0.0, high=10.0, unit="1/s", words="drag assumed, Table 3")
-    quadratic: float = param(0.0035, low=0.0, high=10.0, unit="1/m", words="drag assumed, Table 3")
+    linear: float = param(0.1926, low=0.0, high=10.0, unit="1/s", words="assumed drag, Table 3")
+    quadratic: float = param(0.0035, low=0.0, high=10.0, unit="1/m", words="assumed drag, Table 3")
 
     def estimates(self) -> dict[str, Estimate]:
-        """The speed asked for."""
+        """Return the set point and the reference speed."""
         return {
             "reference_goal_mps": Estimate(float(self.remembered["goal"]), nan, nan),
             "reference_u_mps": Estimate(float(self.remembered["model"]), nan, nan),

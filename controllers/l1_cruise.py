@@ -1,4 +1,7 @@
-"""L1 adaptive cruise control of a water-jet craft: the throttle that holds a speed, whatever slows the craft."""
+"""L1 adaptive speed control of a water-jet craft by its throttle.
+
+C. Svendsen et al., L1 adaptive manoeuvring control, IFAC MCMC 2012, section 4.1.
+"""
 
 from dataclasses import dataclass
 from math import exp, nan
@@ -13,7 +16,7 @@ from boatsim.control.jet import power_of, throttle_of
 from boatsim.physics.base import param
 
 THETA, SIGMA, OMEGA = (0.2025, 1.7716), (-23.17, 23.17), (0.1, 2.0)  # section 4.1; 1/s, m/s^2, 1
-SLOWEST = 0.5  # [m/s] thrust is power / speed down to here
+SLOWEST = 0.5  # [m/s] lowest speed in thrust = power / speed
 IDLE, FULL = 1.0, 7.0  # throttle
 # [1/s], [1/m] drag per mass, Table 3: only where the filter starts
 LINEAR = 0.1926
@@ -23,7 +26,16 @@ NO_LIMIT = 1e9  # [m/s^3] of the thrust's rate
 
 @unlocked
 def law(boats: Any, settings: Any, memory: Any, sense: Any, goal: Any, sent: Any) -> None:
-    """Throttle for the next period."""
+    """Set the throttle for the next period.
+
+    Args:
+        boats: Rows to process.
+        settings: Parameters of each boat.
+        memory: State of each controller.
+        sense: Sensor readings of each boat.
+        goal: Set points of each boat.
+        sent: Commands of each boat, filled in.
+    """
     for b in boats:
         q, m, s, wanted = settings[b], memory[b], sense[b], goal[b].u_mps
         u = max(s.u, SLOWEST)
@@ -46,10 +58,12 @@ def law(boats: Any, settings: Any, memory: Any, sense: Any, goal: Any, sent: Any
 
 @dataclass
 class L1Cruise(CompiledController):
-    """Speed u' = -pole u + omega tau + theta u + sigma with the thrust tau per mass found by adaptation; eqs. 17-24.
+    """L1 adaptive control of the speed by the thrust per mass tau, equations 17 to 24.
 
-    The thrust is limited to what the throttle can give at this speed, and the predictor gets the limited one. Goals:
-    `u_mps`, and `jet_rad`, which is passed on.
+    u' = -pole u + omega tau + theta u + sigma
+
+    The thrust is limited to what the throttle gives at the present speed, and the predictor
+    receives the limited thrust. Goals: `u_mps`, and `jet_rad`, which is passed on.
     """
 
     words: ClassVar[str] = "L1 adaptive speed of a water-jet craft on its throttle"
@@ -65,24 +79,32 @@ class L1Cruise(CompiledController):
         0.002, low=0.0001, high=0.1, unit="s", words="time between two control steps"
     )
     substep: float = param(
-        1e-4, low=1e-6, high=0.1, unit="s", words="of predictor, adaptation and filter"
+        1e-4, low=1e-6, high=0.1, unit="s", words="step of predictor, adaptation and filter"
     )
     pole: float = param(
-        1.4, low=0.1, high=20.0, unit="1/s", words="-alpha_des: of the motion asked for"
+        1.4, low=0.1, high=20.0, unit="1/s", words="-alpha_des, pole of the reference motion"
     )
     bandwidth: float = param(
         35.0, low=0.1, high=1e3, unit="1/s", words="k_u; the L1-norm condition needs 12.1"
     )
     adaptation: float = param(1e4, low=1.0, high=1e7, unit="", words="Gamma_u")
     q2: float = param(
-        154.9, low=0.0, high=1e3, unit="m^2/s^3", words="of the power curve; printed 164.5"
+        154.9,
+        low=0.0,
+        high=1e3,
+        unit="m^2/s^3",
+        words="constant of the power curve; the source prints 164.5",
     )
     gain_as_published: float = param(
         0.0, low=0.0, high=1.0, unit="", words="1: k_g = 1/pole, which is wrong"
     )
 
     def settings(self, count: int = 1) -> Records:
-        """Its parameters, and how its loop is laid out."""
+        """Return the parameters and the design of the adaptive loop as records.
+
+        Args:
+            count: Number of equal controllers.
+        """
         low, high = zip(THETA, SIGMA, OMEGA, strict=True)
         loop = designed(
             [[-self.pole]],
@@ -97,7 +119,7 @@ class L1Cruise(CompiledController):
         return with_parts(super().settings(count), loop=loop)
 
     def estimates(self) -> dict[str, Estimate]:
-        """Theta, sigma and omega with their bounds, and the speed asked for."""
+        """Return theta, sigma and omega with their bounds, and the reference speed."""
         m = self.remembered
         theta, sigma, omega = m["loop"]["estimates"].tolist()
         return {
@@ -109,9 +131,17 @@ class L1Cruise(CompiledController):
         }
 
     def filtered_uncertainty(self) -> LinearSystem:
-        """What the low-pass leaves of an uncertainty, at the lowest input gain: its L1 norm is that of the design."""
+        """Return the response to an uncertainty, less the part that the low-pass cancels.
+
+        The input gain is the lowest one.
+
+        Its L1 norm is that of the published design.
+        """
         return unfiltered([[-self.pole]], [1.0], OMEGA[0] * self.bandwidth)
 
     def l1_condition(self) -> float:
-        """L1 norm times the largest slope of the uncertainty: below 1 the loop stays bounded (Fig. 8)."""
+        """Return the L1 norm times the largest slope of the uncertainty.
+
+        Below 1 the loop is bounded (Fig. 8).
+        """
         return l1_norm(self.filtered_uncertainty()) * THETA[1]

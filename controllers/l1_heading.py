@@ -1,4 +1,7 @@
-"""L1 adaptive heading control of a water-jet craft: its jet turns it as a second-order model would turn."""
+"""L1 adaptive heading control of a water-jet craft with a second-order reference model.
+
+C. Svendsen et al., L1 adaptive manoeuvring control, IFAC MCMC 2012, section 4.2.
+"""
 
 from dataclasses import dataclass
 from math import nan, radians
@@ -24,19 +27,28 @@ from boatsim.control.compiled import (
 )
 from boatsim.physics.base import param
 
-# chosen: none are published
+# chosen, because no bounds are published
 THETA_1 = (-3.0, 3.0)
 THETA_2 = (-5.0, 5.0)
 SIGMA = (-5.0, 5.0)
 OMEGA = (0.1, 10.0)
-JUMP = 1.0  # [rad/s] a reference that changes faster jumps
-STIFFNESS = 1.0  # [1/s^2] of the motion asked for, A_m = [[0, -1], [1, -1.4]]
+JUMP = 1.0  # [rad/s] a faster change of the reference counts as a jump
+STIFFNESS = 1.0  # [1/s^2] stiffness of the reference motion, A_m = [[0, -1], [1, -1.4]]
 wrapped = lean(wrap)
 
 
 @merged
 def observe(q: Any, m: Any, s: Any, change: float) -> None:
-    """One period back: the reference changed steadily, or it jumps now."""
+    """Adapt over the last period, in which the reference changed steadily or jumps at its end.
+
+    The reference model is advanced by the midpoint rule.
+
+    Args:
+        q: Parameters.
+        m: State of the controller.
+        s: Sensor readings.
+        change: Change of the reference heading [rad].
+    """
     jump = change if abs(change) > JUMP * q.period else 0.0
     rate = (change - jump) / q.period
     m.loop.drift[0] = rate * q.knows_rate
@@ -54,7 +66,16 @@ def observe(q: Any, m: Any, s: Any, change: float) -> None:
 
 @unlocked
 def law(boats: Any, settings: Any, memory: Any, sense: Any, goal: Any, sent: Any) -> None:
-    """Jet deflection for the next period."""
+    """Set the jet deflection for the next period.
+
+    Args:
+        boats: Rows to process.
+        settings: Parameters of each boat.
+        memory: State of each controller.
+        sense: Sensor readings of each boat.
+        goal: Set points of each boat.
+        sent: Commands of each boat, filled in.
+    """
     for b in boats:
         q, m, s, g = settings[b], memory[b], sense[b], goal[b]
         if m.started == 0.0:
@@ -70,10 +91,13 @@ def law(boats: Any, settings: Any, memory: Any, sense: Any, goal: Any, sent: Any
 
 @dataclass
 class L1Heading(CompiledController):
-    """Heading error e and yaw rate r, r' = e - damping r + omega delta + theta'(e, r) + sigma; section 4.2.
+    """L1 adaptive control of heading error e and yaw rate r by the jet angle delta.
 
-    At bandwidth 80 and an input gain of 3 the input's filter is as quick as 240 rad/s: a delay of 10 ms makes the jet
-    swing from stop to stop, and the control must run at 500 Hz or more. Goals: `psi_rad`, and `throttle`, passed on.
+    r' = e - damping r + omega delta + theta'(e, r) + sigma
+
+    At bandwidth 80 and an input gain of 3 the input filter has a bandwidth of 240 rad/s: with a
+    delay of 10 ms the jet oscillates between its limits, so that the controller must run at 500 Hz
+    or faster. Goals: `psi_rad`, and `throttle`, which is passed on.
     """
 
     words: ClassVar[str] = "L1 adaptive heading of a water-jet craft on its jet"
@@ -87,10 +111,10 @@ class L1Heading(CompiledController):
         0.002, low=0.0001, high=0.1, unit="s", words="time between two control steps"
     )
     substep: float = param(
-        2e-4, low=1e-6, high=0.1, unit="s", words="of predictor, adaptation and filter"
+        2e-4, low=1e-6, high=0.1, unit="s", words="step of predictor, adaptation and filter"
     )
     damping: float = param(
-        1.4, low=0.1, high=20.0, unit="1/s", words="of the motion asked for, A_m"
+        1.4, low=0.1, high=20.0, unit="1/s", words="damping of the reference motion, A_m"
     )
     bandwidth: float = param(
         80.0, low=0.1, high=1e3, unit="1/s", words="k_h; published condition 60"
@@ -100,23 +124,35 @@ class L1Heading(CompiledController):
         3.0, low=0.1, high=10.0, unit="1/s^2", words="input gain assumed at the start"
     )
     largest: float = param(
-        radians(15.0), low=0.0, high=1.5, unit="rad", words="jet deflection either way"
+        radians(15.0), low=0.0, high=1.5, unit="rad", words="largest jet deflection to either side"
     )
     rate: float = param(
-        radians(30.0), low=0.001, high=1e3, unit="rad/s", words="fastest turning of the jet"
+        radians(30.0), low=0.001, high=1e3, unit="rad/s", words="largest rate of the jet"
     )
     jumps_shift: float = param(
-        1.0, low=0.0, high=1.0, unit="", words="0: a step of the reference surprises, as printed"
+        1.0,
+        low=0.0,
+        high=1.0,
+        unit="",
+        words="1: a step of the reference shifts the predictor; 0: not, as printed",
     )
     knows_rate: float = param(
-        1.0, low=0.0, high=1.0, unit="", words="0: the reference's rate is left out, as printed"
+        1.0,
+        low=0.0,
+        high=1.0,
+        unit="",
+        words="1: the rate of the reference is used; 0: omitted, as printed",
     )
     regressor_as_published: float = param(
         0.0, low=0.0, high=1.0, unit="", words="1: sigma is adapted by delta, eq. 32"
     )
 
     def settings(self, count: int = 1) -> Records:
-        """Its parameters, and how its loop is laid out."""
+        """Return the parameters and the design of the adaptive loop as records.
+
+        Args:
+            count: Number of equal controllers.
+        """
         am = [[0.0, -1.0], [STIFFNESS, -self.damping]]
         low, high = zip(THETA_1, THETA_2, SIGMA, OMEGA, strict=True)
         loop = designed(
@@ -134,7 +170,7 @@ class L1Heading(CompiledController):
         return with_parts(super().settings(count), loop=loop)
 
     def estimates(self) -> dict[str, Estimate]:
-        """Theta, sigma and omega with their bounds, heading asked for and the one of the model."""
+        """Return theta, sigma, omega with bounds, the set point and the reference heading."""
         m = self.remembered
         theta_1, theta_2, sigma, omega = m["loop"]["estimates"].tolist()
         return {

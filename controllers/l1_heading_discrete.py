@@ -1,4 +1,7 @@
-"""Heading control of a water-jet craft at low speed and astern: PD behind a wave filter, discrete L1 beside it."""
+"""Heading control of a water-jet craft at low speed: PD, wave filter and discrete L1.
+
+L. R. S. Theisen, R. Galeazzi, M. Blanke, IFAC CAMS 2013.
+"""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -17,12 +20,13 @@ PRINTED_LEAD = 0.2754  # k_H, Table B.1
 
 @dataclass
 class L1HeadingDiscrete(Controller):
-    """Theisen, Galeazzi, Blanke 2013, once every 0.1 s, with its printing errors mended and selectable.
+    """Controller of Theisen, Galeazzi and Blanke (2013) at 10 Hz; its misprints are switches.
 
-    Control input is the yaw acceleration u; the nozzle angle is u / (N_delta / (I_z - N_r')), N_delta with cos 2 beta.
-    Near beta = 45 deg, where the jet has no moment, the nozzle is left straight. The predictor is driven by what the
-    limits leave of u. Its adaptation gain is as printed: the estimate of a constant disturbance is f22 of it, so
-    1 - f22 = 5.8 % of the disturbance stays. Goals: `psi_rad`, `elevator_rad`.
+    The control input is the yaw acceleration u; the nozzle angle is u / (N_delta / (I_z - N_r')),
+    where N_delta contains cos 2 beta. Near beta = 45 deg, where the jet has no moment, the nozzle
+    stays straight. The predictor uses u after saturation. The adaptation gain is as printed: the
+    estimate of a constant disturbance is f22 times its value, so that 1 - f22 = 5.8 % of the
+    disturbance remains. Goals: `psi_rad`, `elevator_rad`.
     """
 
     words: ClassVar[str] = (
@@ -46,13 +50,13 @@ class L1HeadingDiscrete(Controller):
         radians(15.0), low=0.0, high=1.6, unit="rad", words="largest nozzle angle"
     )
     elevator_rate: float = param(
-        radians(30.0), low=1e-3, high=1e3, unit="rad/s", words="fastest bucket command"
+        radians(30.0), low=1e-3, high=1e3, unit="rad/s", words="largest rate of the bucket command"
     )
     elevator_start: float = param(
         0.0, low=0.0, high=1.6, unit="rad", words="bucket before the first step"
     )
     least_share: float = param(
-        0.1, low=1e-3, high=1.0, unit="", words="|cos 2 beta| below which the nozzle rests"
+        0.1, low=1e-3, high=1.0, unit="", words="|cos 2 beta| below which the nozzle stays straight"
     )
     wave_filter: float = param(
         1.0, low=0.0, high=1.0, unit="", words="1: PD behind the wave filter; 0: PD alone"
@@ -80,7 +84,7 @@ class L1HeadingDiscrete(Controller):
         self.reset()
 
     def reset(self) -> None:
-        """Nothing learnt."""
+        """Reset filters and estimates."""
         self._filter, self._low_pass = self.filter(), self.low_pass()
         self._decay = exp(-self.period / self.time_constant)  # f22
         self._gain = self.time_constant * (1.0 - self._decay)  # g2
@@ -88,11 +92,11 @@ class L1HeadingDiscrete(Controller):
         self._sigma, self._elevator = 0.0, self.elevator_start
 
     def initial_commands(self) -> dict[str, float]:
-        """Idling, nozzle straight."""
+        """Return idle throttle and a straight nozzle."""
         return {"throttle": IDLE, "jet_rad": 0.0, "elevator_rad": self.elevator_start}
 
     def filter(self) -> DiscreteFilter:
-        """H_f: a notch at omega_1 and a roll-off at omega_2, DC gain 1."""
+        """Return the wave filter H_f: notch at omega_1, roll-off at omega_2, static gain 1."""
         w1, w2 = self.omega_1, self.omega_2
         notch = [1.0, 2.0 * self.zeta * w1, w1 * w1]
         poles = np.poly([-self.alpha * w1, -w1 / self.alpha, -w2])
@@ -102,12 +106,19 @@ class L1HeadingDiscrete(Controller):
         return held([w2 * b for b in notch], poles.tolist(), self.period)
 
     def low_pass(self) -> DiscreteFilter:
-        """C = k D / (1 + k D), D = k_1 (z + z_1) / ((z - 1)(z - p_1)), eq. 22 to 24."""
+        """Return C = k D / (1 + k D), D = k_1 (z + z_1) / ((z - 1)(z - p_1)); eqs 22 to 24."""
         g = self.k * self.k_1
         return DiscreteFilter([g, g * self.z_1], [1.0, g - self.p_1 - 1.0, self.p_1 + g * self.z_1])
 
     def step(self, sense: Sense, goal: Mapping[str, float]) -> dict[str, float]:
-        """Commands for the next period: bucket on its way, nozzle from heading and gyro."""
+        """Return the commands for the next period.
+
+        The bucket is rate-limited; the nozzle follows from heading and gyro.
+
+        Args:
+            sense: Sensor readings.
+            goal: `psi_rad` and `elevator_rad`.
+        """
         wanted, reach = goal.get("elevator_rad", 0.0), self.elevator_rate * self.period
         before = self._elevator
         self._elevator = clip(wanted, self._elevator - reach, self._elevator + reach)
@@ -121,36 +132,39 @@ class L1HeadingDiscrete(Controller):
         return {"throttle": IDLE, "jet_rad": jet, "elevator_rad": self._elevator}
 
     def estimates(self) -> dict[str, Estimate]:
-        """Yaw acceleration that the predictor does not know of."""
+        """Return the estimated disturbance, a yaw acceleration."""
         return {"sigma_radps2": Estimate(self._sigma, nan, nan)}
 
     def loop_channels(self) -> tuple[SampledChannel, ...]:
-        """The feedback loop, broken at the yaw acceleration."""
+        """Return the feedback loop, broken at the yaw acceleration."""
         pole = 1.0 / self.time_constant
         return (SampledChannel("yaw", self._law, pole, self.period, (0.5, 1.0, 2.0), pole),)
 
     def _baseline(self, error: float, r: float) -> float:
-        """Yaw acceleration of the PD [rad/s^2]."""
+        """Return the yaw acceleration of the PD [rad/s^2]."""
         sign = -1.0 if self.pd_as_published else 1.0
         u = sign * self.k_p * error - self.k_d * r
         return self._filter.step(u) if self.wave_filter else u
 
     def _disturbance(self, r: float) -> float:
-        """Yaw acceleration against what the predictor does not know [rad/s^2]; it starts from what is measured."""
+        """Return the yaw acceleration that cancels the disturbance [rad/s^2]."""
         if self._predicted is None:
             self._predicted = r
         self._sigma = -self._decay / self._gain * (self._predicted - r)
         return -self._low_pass.step(self._sigma)
 
     def _per_angle(self, before: float) -> float:
-        """Yaw acceleration per nozzle angle over the period to come [1/s^2]; 0 where it passes through zero."""
+        """Return the yaw acceleration per nozzle angle [1/s^2]; 0 if it passes zero."""
         share = [
             cos(2.0 * beta) for beta in (before, 0.5 * (before + self._elevator), self._elevator)
         ]
         return self.jet_gain * share[1] if min(map(abs, share)) >= self.least_share else 0.0
 
     def _law(self, z: Complex) -> tuple[Complex, Complex]:
-        """What the controller answers to heading and yaw rate; eq. 18, 19 give r_hat = (f22 r + g2 u) / z."""
+        """Return the response to heading and yaw rate.
+
+        By equations 18 and 19 r_hat = (f22 r + g2 u) / z.
+        """
         h = self.filter().at(z) if self.wave_filter else 1.0
         c = self.low_pass().at(z) if self.adaptive else 0.0
         inner = 1.0 - c * self._decay / z

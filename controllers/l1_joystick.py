@@ -1,4 +1,4 @@
-"""The corrected L1 joystick controller: one program for surge, sway and yaw commands at once."""
+"""L1 joystick controller for surge, sway and yaw demands at the same time."""
 
 from dataclasses import dataclass
 from typing import ClassVar
@@ -8,6 +8,8 @@ from boatsim.control.joystick import AdaptiveJoystick
 
 @dataclass
 class L1Joystick(AdaptiveJoystick):
-    """Yaw by the gyro, surge by the speed sensor if there is one, sway in open loop."""
+    """L1 control of yaw (gyro) and surge (speed sensor, if present); sway in open loop."""
 
-    words: ClassVar[str] = "L1 adaptive joystick, corrected: surge, sway and yaw commands at once"
+    words: ClassVar[str] = (
+        "L1 adaptive joystick, corrected: surge, sway and yaw commands at the same time"
+    )

@@ -1,4 +1,7 @@
-"""The Arduino program of the thesis, statement for statement, each of its defects under a switch of its own."""
+"""Arduino program of the thesis (Bayless 2017, Appendix H), statement by statement.
+
+Each of its defects can be switched off.
+"""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -9,7 +12,7 @@ from boatsim.control.base import Controller, Estimate, Sense, clip
 from boatsim.physics.base import param
 
 # Constants of the listing (Bayless 2017, Appendix H)
-T_S = 0.08  # [s] sample time the code believes in, whatever the true period is
+T_S = 0.08  # [s] sample time assumed in the code, independent of the true period
 GAMMA = 10000.0  # adaptation gain; omega_1 has twice as much
 BOUNDS = {
     "theta_1": (0.9, 1.1),
@@ -35,22 +38,36 @@ LONG_PERIOD = 0.1  # [s] our estimate: 70 ms of serial text at 9600 baud, five r
 
 
 def push(history: list[float], value: float) -> None:
-    """Shift a history [now, one ago, two ago] by one sample."""
+    """Shift a history [now, one ago, two ago] by one sample.
+
+    Args:
+        history: Samples, newest first; changed in place.
+        value: New sample.
+    """
     history[2], history[1], history[0] = history[1], history[0], value
 
 
 def filtered(u: list[float], r: list[float], pole: float) -> float:
-    """Control law D(s) = 1.07 (s + 17.7)/(s (s + 50)) as the listing has it sampled, u[0] being the last output."""
+    """Return the output of the sampled control law D(s) of the listing.
+
+    D(s) = 1.07 (s + 17.7) / (s (s + 50)).
+
+    Args:
+        u: Past outputs, u[0] the last one.
+        r: Past inputs.
+        pole: Coefficient of the last output.
+    """
     return pole * u[1] - 0.08208 * u[2] + 0.03164 * r[1] - 0.01425 * r[2]
 
 
 @dataclass
 class L1JoystickAsPublished(Controller):
-    """The listing of Appendix H in float64. A switch set to False mends that defect; numbers are items of our review.
+    """Listing of Appendix H in float64; a switch set to False corrects one defect.
 
-    It ignores its goal: as in the thesis each manoeuvre is a program of its own, told by r_1, r_2 and r_3. The yaw
-    program is not published; ours is this one with r_2 = 0, r_3 = -0.56 and the seeded heading.
-    `sense.psi` counts from the start heading; the five readings of a loop lie within one 10 ms sample of the sensor.
+    Item numbers are those of the review of the thesis. The goal is ignored: as in the thesis each
+    manoeuvre is a separate program, set by r_1, r_2 and r_3. The yaw program is not published; here
+    it is this one with r_2 = 0, r_3 = -0.56 and the seeded heading. `sense.psi` counts from the
+    start heading; the five readings of a loop lie within one 10 ms sample of the sensor.
     """
 
     words: ClassVar[str] = "the thesis' Arduino program, defects included"
@@ -72,7 +89,7 @@ class L1JoystickAsPublished(Controller):
     # item 17: U_1[0] = U_1[1]; U_1[1] = U_1[0]; mended: shifted like U_2 and U_3
     surge_history: bool = True
     sigma_sign: bool = True  # item 18: sigma adapts along +error; mended: along -error
-    # item 18: theta x + sigma beside the sampled input; mended: inside it
+    # item 18: theta x + sigma outside the sampled input; mended: inside it
     unscaled_disturbance: bool = True
     # item 19: sigma 0.9, theta_1, omega_1, sigma_1 0 at the start; mended: clipped
     start_values: bool = True
@@ -103,7 +120,7 @@ class L1JoystickAsPublished(Controller):
         self.reset()
 
     def reset(self) -> None:
-        """As after `setup()`: global arrays are zero, the servos parked."""
+        """Reset to the state after `setup()`: global arrays are zero, the servos parked."""
         self.estimate = (
             dict(FIRST) if self.start_values else {n: clip(v, *BOUNDS[n]) for n, v in FIRST.items()}
         )
@@ -115,11 +132,16 @@ class L1JoystickAsPublished(Controller):
         self._eta = [[0.0] * 3 for _ in range(3)]
 
     def initial_commands(self) -> dict[str, float]:
-        """Where servos and motors wait for the first step."""
+        """Return the commands of servos and motors before the first step."""
         return self._commands(0.0, 0.0, *((PARKED, PARKED) if self.parked_inward else (0.0, 0.0)))
 
     def step(self, sense: Sense, goal: Mapping[str, float]) -> dict[str, float]:
-        """One pass of `loop()`."""
+        """Execute one pass of `loop()` and return the commands.
+
+        Args:
+            sense: Sensor readings.
+            goal: Not used.
+        """
         self._read(sense)
         self._predict()
         self._adapt()
@@ -127,13 +149,13 @@ class L1JoystickAsPublished(Controller):
         return self._actuate()
 
     def estimates(self) -> dict[str, Estimate]:
-        """The seven adaptive estimates with their bounds, and the listing's model states, which are no velocities."""
+        """Return the seven estimates with their bounds, and the model states (no velocities)."""
         logged = {name: Estimate(self.estimate[name], *BOUNDS[name]) for name in BOUNDS}
         model = {"m_surge": self._m_surge[0], "m_sway": self._m_sway[0], "m_yaw": self._m_yaw[0]}
         return logged | {name: Estimate(state, nan, nan) for name, state in model.items()}
 
     def _read(self, sense: Sense) -> None:
-        """Means of the five readings, then surge, sway and yaw as the code takes them."""
+        """Average the five readings and compute surge, sway and yaw as the listing does."""
         scale = 5.0 / 4.0 if self.divide_by_four else 1.0
         bearing = self.h0 + sense.psi
         heading = scale * (bearing % (2.0 * pi) if self.heading_wrap else bearing)
@@ -148,7 +170,7 @@ class L1JoystickAsPublished(Controller):
         self._heading = heading
 
     def _predict(self) -> None:
-        """Reference model states one sample on, with last sample's estimates and the older control outputs."""
+        """Advance the reference model by one sample with previous estimates and older outputs."""
         e = self.estimate
         add_1 = e["sigma_1"] + e["theta_1"] * self._surge
         if self.unscaled_disturbance:
@@ -179,7 +201,7 @@ class L1JoystickAsPublished(Controller):
         push(m3, 1.93 * m3[0] - 0.9324 * m3[1] + add[3] + into_yaw + add[4] - 0.3529)
 
     def _adapt(self) -> None:
-        """Euler step of the seven adaptation laws, then `constrain`."""
+        """Advance the seven adaptation laws by one Euler step, then apply `constrain`."""
         surge, sway, yaw, (u1, u2, u3) = self._surge, self._sway, self._yaw, (u[0] for u in self._u)
         surge_e = self._m_surge[0] - surge
         sway_e = self._m_sway[0] - sway
@@ -194,7 +216,10 @@ class L1JoystickAsPublished(Controller):
         self._move("sigma_3", sign * yaw_e)
 
     def _product(self, yaw: float, sway: float, sway_e: float, yaw_e: float) -> float:
-        """The gradient of theta_23 or omega_23, meant to be -(xt' P b) x with P of xt' P xt."""
+        """Return the gradient of theta_23 or omega_23.
+
+        It should be -(xt' P b) x with P of xt' P xt.
+        """
         five_sevenths, ninety_nine = (
             (0.0, 1.0) if self.integer_division else (5.0 / 7.0, 99.0 / 70.0)
         )
@@ -207,7 +232,7 @@ class L1JoystickAsPublished(Controller):
         self.estimate[name] = clip(self.estimate[name] + T_S * (GAMMA * slope), *BOUNDS[name])
 
     def _control(self) -> None:
-        """The control law: what the estimates say is there is subtracted, then filtered."""
+        """Apply the control law: subtract the estimated dynamics, then filter."""
         e, u = self.estimate, self._u
         push(self._eta[0], e["omega_1"] * u[0][0] + e["theta_1"] * self._surge + e["sigma_1"])
         push(self._eta[1], e["omega_23"] * u[1][0] + e["theta_23"] * self._sway + e["sigma_2"])
@@ -226,7 +251,7 @@ class L1JoystickAsPublished(Controller):
             u[channel][0] = filtered(u[channel], self._r[channel], pole)
 
     def _actuate(self) -> dict[str, float]:
-        """Servo positions and PWM values, cut to integers as `write` and `analogWrite` do."""
+        """Return servo positions and PWM values, truncated as by `write` and `analogWrite`."""
         rudder = 3.3952 * (115.0 * self._u[2][0]) - 5.49
         port = int(clip(86.0 + rudder, 86.0, 128.0)) - 86
         starboard = 92 - int(clip(92.0 - rudder, 50.0, 92.0))
@@ -236,6 +261,6 @@ class L1JoystickAsPublished(Controller):
     def _commands(
         self, pwm_port: float, pwm_starboard: float, port: float, starboard: float
     ) -> dict[str, float]:
-        """By name of command channel; angles come in as degrees inward."""
+        """Return the commands by channel from inward angles in degrees."""
         angles = (radians(port), -radians(starboard))
         return dict(zip(self.commands, (pwm_port, pwm_starboard, *angles), strict=True))

@@ -1,4 +1,4 @@
-"""The L1 joystick without a speed sensor: it finds out about its motors before it starts, then reckons its surge."""
+"""L1 joystick without a speed sensor: motor check, then dead reckoning of the speed."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -12,20 +12,21 @@ from boatsim.control.joystick import AdaptiveJoystick
 from boatsim.control.motor_check import PORT, STARBOARD, Drift, MotorCheck, Pulse
 from boatsim.physics.base import param
 
-TURN_BACK = 0.03  # [rad/s] at which what the check turned is turned back
+TURN_BACK = 0.03  # [rad/s] rate at which the rotation by the check is reversed
 
 
 @dataclass
 class L1JoystickBlind(AdaptiveJoystick):
-    """Yaw by the gyro as its base; surge by what the motors are known to give, for nothing aboard feels it.
+    """L1 control of yaw by the gyro, and of surge by dead reckoning from the thrust of the motors.
 
-    From rest the motors are pulsed for 20 to 40 s in which the stick is not heard, or what such a check found before
-    is stated (`known_`). Commands then go out as they must for the boat to do what the base believes: astern by a
-    factor, both motors turned by an angle. So trimmed, speed and way are the sums of what was applied; the base
-    takes that speed for measured and gives the way back.
+    From rest the motors are pulsed for 20 to 40 s, during which the stick is ignored, unless the
+    result of an earlier check is given (`known_` parameters). Commands are then corrected so that
+    the boat responds as the base class assumes: PWM astern by a factor, both steering angles by an
+    offset. Speed and distance are integrals of the applied thrust; the base class uses that speed
+    as a measurement and returns the accumulated distance.
     """
 
-    words: ClassVar[str] = "L1 joystick for a boat without a speed sensor: tries its motors first"
+    words: ClassVar[str] = "L1 joystick for a boat without a speed sensor: checks its motors first"
 
     check_pwm: float = param(
         90.0, low=10.0, high=255.0, unit="", words="PWM of pulses ahead; choose that of a sway"
@@ -34,7 +35,7 @@ class L1JoystickBlind(AdaptiveJoystick):
         0.48, low=0.08, high=5.0, unit="s", words="standstill of the motors between pulses"
     )
     check_reach: float = param(
-        0.045, low=0.001, high=1.0, unit="m/s", words="speed that a pulse is to give"
+        0.045, low=0.001, high=1.0, unit="m/s", words="speed that a pulse should give"
     )
     check_shortest: float = param(
         0.24, low=0.08, high=5.0, unit="s", words="shortest pulse, the first ones"
@@ -51,7 +52,11 @@ class L1JoystickBlind(AdaptiveJoystick):
         1.25, low=0.5, high=3.0, unit="", words="exponent of thrust assumed in the check"
     )
     check_enough: float = param(
-        0.006, low=1e-4, high=0.5, unit="", words="standard deviation of the reverse it ends at"
+        0.006,
+        low=1e-4,
+        high=0.5,
+        unit="",
+        words="standard deviation of the reverse ratio at which the check ends",
     )
     check_most: float = param(
         4.0, low=2.0, high=50.0, unit="", words="most pairs of trains of pulses"
@@ -60,28 +65,33 @@ class L1JoystickBlind(AdaptiveJoystick):
         0.0, low=0.0, high=5.0, unit="", words="factor on PWM astern; 0: to be found by a check"
     )
     known_angle: float = param(
-        0.0, low=-0.5, high=0.5, unit="rad", words="by which both steerings are off"
+        0.0, low=-0.5, high=0.5, unit="rad", words="offset of both steering angles"
     )
     known_scale: float = param(
         1.0, low=0.05, high=20.0, unit="", words="true over assumed acceleration by the motors"
     )
     way_gain: float = param(
-        0.3, low=0.0, high=5.0, unit="1/s", words="surge speed asked for per way reckoned"
+        0.3, low=0.0, high=5.0, unit="1/s", words="surge speed demanded per reckoned distance"
     )
 
     def reset(self) -> None:
-        """At rest, motors untried unless they are known."""
+        """Reset to rest; the motors are to be checked unless they are known."""
         super().reset()
         self._check = None if self.known_astern else self._new_check()
         self._astern = self.known_astern or 1.0
         self._angle = self.known_angle
         self._scale = self.known_scale
         self._psi = self._start = nan  # [rad] compass when the base took over, and before the check
-        self._left = 0.0  # [rad] still to be turned back
-        self._u = self._x = 0.0  # [m/s], [m] reckoned, beside what the stick asked for
+        self._left = 0.0  # [rad] rotation that remains to be reversed
+        self._u = self._x = 0.0  # [m/s], [m] reckoned speed, and distance relative to the demand
 
     def step(self, sense: Sense, goal: Mapping[str, float]) -> dict[str, float]:
-        """Pulses until the motors are known, then the base's commands, trimmed."""
+        """Return pulses until the motors are known, then the corrected commands of the base class.
+
+        Args:
+            sense: Sensor readings.
+            goal: Demands of the stick.
+        """
         if self._psi != self._psi:
             self._psi = sense.psi
         if self._check:
@@ -93,7 +103,7 @@ class L1JoystickBlind(AdaptiveJoystick):
         return self._answered(sense, goal)
 
     def estimates(self) -> dict[str, Estimate]:
-        """The base's, what was found of the motors, and the reckoning."""
+        """Return the base estimates, the result of the check and the reckoned motion."""
         found = {
             "trim_astern": self._check.astern if self._check else self._astern,
             "trim_angle_rad": self._angle,
@@ -108,11 +118,11 @@ class L1JoystickBlind(AdaptiveJoystick):
 
     @property
     def found(self) -> tuple[float, float, float] | None:
-        """What to state as `known_astern`, `known_angle` and `known_scale` another time; None during the check."""
+        """Result for `known_astern`, `known_angle` and `known_scale`; None during the check."""
         return None if self._check else (self._astern, self._angle, self._scale)
 
     def loop_channels(self) -> tuple[LoopChannel, ...]:
-        """Yaw alone: surge is reckoned, and no reading of the water closes its loop."""
+        """Return the yaw loop only, because no measurement closes the surge loop."""
         return tuple(channel for channel in super().loop_channels() if channel.name == "yaw")
 
     def _new_check(self) -> MotorCheck:
@@ -131,7 +141,7 @@ class L1JoystickBlind(AdaptiveJoystick):
         )
 
     def _pulsed(self, check: MotorCheck, pulse: Pulse) -> dict[str, float]:
-        """Both motors ahead, astern or off, one of them turned inward."""
+        """Return the commands of a pulse: both motors ahead, astern or off, one turned inward."""
         astern = max(check.astern * self.pwm(-self.thrust(self.check_pwm)), -PWM_MAX)
         pwm = float(round({1: self.check_pwm, -1: astern, 0: 0.0}[pulse.sense]))
         return {
@@ -142,7 +152,7 @@ class L1JoystickBlind(AdaptiveJoystick):
         }
 
     def _take_over(self, check: MotorCheck, compass: float) -> None:
-        """Note what the check found and what it left of motion."""
+        """Store the result of the check and the motion that it left."""
         d = ANGLE_MAX
         # a pulse of thrust F turns by F (lever(d) - B), of which an angle e more takes F e (B sin d
         # + L cos d + L)
@@ -155,7 +165,7 @@ class L1JoystickBlind(AdaptiveJoystick):
         self._check = None
 
     def _answered(self, sense: Sense, goal: Mapping[str, float]) -> dict[str, float]:
-        """The base's answer to the reckoned speed, trimmed for the motors as they are."""
+        """Return the base commands for the reckoned speed, corrected for the motors."""
         stick = goal.get("surge_mps", 0.0)
         turn = clip(self._left, -TURN_BACK * self.period, TURN_BACK * self.period)
         self._left -= turn
@@ -169,14 +179,14 @@ class L1JoystickBlind(AdaptiveJoystick):
         return {name: self._trim(name, value) for name, value in commands.items()}
 
     def _reckon(self, commands: Mapping[str, float], stick: float) -> None:
-        """Speed and way after the next period."""
+        """Advance reckoned speed and distance by one period."""
         pwm = int(commands["pwm_port"]), int(commands["pwm_starboard"])
         push = self.applied(Setting(*pwm, round(degrees(commands["steer_port_rad"]))))
         self._u += self.period * self._scale * push.X / self.mass
         self._x += self.period * (self._u - stick)
 
     def _trim(self, name: str, value: float) -> float:
-        """Command under which these motors do what the base's would have done."""
+        """Return the command that makes the motors respond as the base class assumes."""
         if name.startswith("steer"):
             return value - self._angle
         return value if value >= 0.0 else float(round(max(value * self._astern, -PWM_MAX)))

@@ -1,4 +1,4 @@
-"""The L1 joystick with its sway closed too, for a boat that measures her sway velocity: three channels."""
+"""L1 joystick with three closed loops, for a boat that measures its sway velocity."""
 
 from dataclasses import dataclass
 from functools import partial
@@ -16,9 +16,17 @@ from boatsim.physics.base import param
 
 @merged
 def sway_spread(q: Any, m: Any, s: Any, wanted: float) -> float:
-    """Thrust difference [N] for a sway speed wanted [m/s]; without its sensor that of the open loop.
+    """Return the thrust difference [N] for a demanded sway speed.
 
-    It keeps the side of the stick and is never so small that the motors could not steer.
+    Without a sensor it is that of the open loop.
+
+    It has the sign of the stick and a lower limit, so that the motors can always steer.
+
+    Args:
+        q: Parameters.
+        m: State of the controller.
+        s: Sensor readings.
+        wanted: Demanded sway speed [m/s].
     """
     opened = sway_difference(q, wanted)
     if isnan(s.v):
@@ -43,7 +51,16 @@ def sway_spread(q: Any, m: Any, s: Any, wanted: float) -> float:
 
 @unlocked
 def law(boats: Any, settings: Any, memory: Any, sense: Any, goal: Any, sent: Any) -> None:
-    """Commands for the next period from the gyro, what speeds are measured, and the stick."""
+    """Set the commands for the next period from gyro, measured speeds and stick.
+
+    Args:
+        boats: Rows to process.
+        settings: Parameters of each boat.
+        memory: State of each controller.
+        sense: Sensor readings of each boat.
+        goal: Demands of each boat.
+        sent: Commands of each boat, filled in.
+    """
     for b in boats:
         q, m, s, g = settings[b], memory[b], sense[b], goal[b]
         moment = yaw_moment(q, m, s, g.yaw_radps)
@@ -56,10 +73,11 @@ def law(boats: Any, settings: Any, memory: Any, sense: Any, goal: Any, sent: Any
 
 @dataclass
 class L1JoystickSway(AdaptiveJoystick):
-    """As its base, and sway speed by an L1 channel of its own where a sensor gives it.
+    """L1 joystick with an additional L1 channel for the sway speed, if it is measured.
 
-    The motion asked for in sway is half as fast as in surge and yaw: what two small motors can give a hull that takes
-    her own mass of water with her. While the stick asks for no sway the motors do not work against each other for one.
+    The reference motion in sway is half as fast as in surge and yaw, because two small motors
+    accelerate a hull whose sway added mass equals its own mass. Without a sway demand the motors do
+    not work against each other for sway.
     """
 
     words: ClassVar[str] = (
@@ -74,7 +92,7 @@ class L1JoystickSway(AdaptiveJoystick):
         11.5, low=0.5, high=2000.0, unit="kg", words="assumed sway mass, added mass included"
     )
     sway_pole: float = param(
-        0.7, low=0.05, high=10.0, unit="1/s", words="pole of the sway asked for"
+        0.7, low=0.05, high=10.0, unit="1/s", words="pole of the reference motion in sway"
     )
     sway_bandwidth: float = param(
         1.0, low=0.05, high=20.0, unit="rad/s", words="low-pass of the sway estimate"
@@ -84,7 +102,7 @@ class L1JoystickSway(AdaptiveJoystick):
     )
 
     def estimates(self) -> dict[str, Estimate]:
-        """The base's, and those of sway."""
+        """Return the estimates of the base class and those of sway."""
         sway = self.remembered["sway"]
         return {
             **super().estimates(),
@@ -93,7 +111,7 @@ class L1JoystickSway(AdaptiveJoystick):
         }
 
     def loop_channels(self) -> tuple[LoopChannel, ...]:
-        """The base's, and sway."""
+        """Return the loops of the base class and that of sway."""
         delayed = partial(
             LoopChannel, hold_s=0.5 * self.period, servo_lag_s=SERVO_LAG, input_gain=(0.5, 1.0, 1.8)
         )

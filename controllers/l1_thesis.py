@@ -1,4 +1,7 @@
-"""The L1 controller of Bayless' simulations: gradient adaptation with projection, steering behind a low-pass."""
+"""L1 controller of the simulations of Bayless (2017): gradient adaptation with projection.
+
+The steering command passes a low-pass filter.
+"""
 
 from dataclasses import dataclass
 from math import nan, pi, radians, sin
@@ -25,7 +28,13 @@ BOUNDS = {"omega": OMEGA, "theta_v": OTHERS, "theta_r": OTHERS, "sigma": OTHERS}
 
 @merged
 def known(row: Any, v: float, r: float) -> float:
-    """Acceleration that the input and the states are taken to cause."""
+    """Return the acceleration that the estimates assign to input and states.
+
+    Args:
+        row: Estimates of one state.
+        v: Sway velocity [m/s].
+        r: Yaw rate [rad/s].
+    """
     return row.omega * row.given + row.theta_v * v + row.theta_r * r + row.sigma
 
 
@@ -33,14 +42,33 @@ def known(row: Any, v: float, r: float) -> float:
 def stepped(
     value: float, regressor: float, error: float, low: float, high: float, gain: float, dt: float
 ) -> float:
-    """An estimate after dt [s] of the gradient law with projection, cut at its bounds."""
+    """Return an estimate after one Euler step of the projected gradient law.
+
+    Args:
+        value: Estimate.
+        regressor: State, input or 1.
+        error: Entry of (xh - x)' P.
+        low: Lower bound.
+        high: Upper bound.
+        gain: Adaptation gain.
+        dt: Length of the step [s].
+    """
     rate = gain * projected(value, -regressor * error, low, high)
     return within(value + dt * rate, low, high)
 
 
 @merged
 def adapt(row: Any, error: float, v: float, r: float, gain: float, dt: float) -> None:
-    """E34 to E36: each estimate against its regressor; error is the row's entry of (xh - x)' P."""
+    """Adapt the estimates of one state, equations E34 to E36.
+
+    Args:
+        row: Estimates of the state, changed in place.
+        error: Entry of (xh - x)' P of the state.
+        v: Sway velocity [m/s].
+        r: Yaw rate [rad/s].
+        gain: Adaptation gain.
+        dt: Length of the step [s].
+    """
     row.omega = stepped(row.omega, row.given, error, OMEGA[0], OMEGA[1], gain, dt)
     row.theta_v = stepped(row.theta_v, v, error, OTHERS[0], OTHERS[1], gain, dt)
     row.theta_r = stepped(row.theta_r, r, error, OTHERS[0], OTHERS[1], gain, dt)
@@ -49,7 +77,14 @@ def adapt(row: Any, error: float, v: float, r: float, gain: float, dt: float) ->
 
 @merged
 def steer(q: Any, m: Any, v: float, r: float) -> float:
-    """Set the angle by the filtered law and return the power for it [N]."""
+    """Set the steering angle by the filtered law and return the power for it [N].
+
+    Args:
+        q: Parameters.
+        m: State of the controller.
+        v: Sway velocity [m/s].
+        r: Yaw rate [rad/s].
+    """
     wanted = 0.0 if q.feed_forward_as_published != 0.0 else -MODEL[1][0] * v
     drive = -1.07 * q.filter_gain * (known(m.yaw, v, r) - wanted) * q.period
     m.slow += FILTER_ZERO / FILTER_POLE * drive
@@ -64,7 +99,16 @@ def steer(q: Any, m: Any, v: float, r: float) -> float:
 
 @unlocked
 def law(boats: Any, settings: Any, memory: Any, sense: Any, goal: Any, sent: Any) -> None:
-    """Thrusts and angles from the measured sway velocity and yaw rate."""
+    """Set thrusts and angles from the measured sway velocity and yaw rate.
+
+    Args:
+        boats: Rows to process.
+        settings: Parameters of each boat.
+        memory: State of each controller.
+        sense: Sensor readings of each boat.
+        goal: Not used.
+        sent: Commands of each boat, filled in.
+    """
     for b in boats:
         q, m, v, r = settings[b], memory[b], sense[b].v, sense[b].r
         if m.started == 0.0:
@@ -81,10 +125,13 @@ def law(boats: Any, settings: Any, memory: Any, sense: Any, goal: Any, sent: Any
 
 @dataclass
 class L1Thesis(CompiledController):
-    """Sways with constant nominal power while the steering keeps the yaw rate at zero, its neutral angle unknown.
+    """Sway at constant nominal power, with the yaw rate kept zero by the steering.
 
-    E37 with a plus sign throughout. Sway is open loop, so the sway speed there is counts as the one asked for, and the
-    feed-forward is -A_m: v alone asks for no turning. `feed_forward_as_published` takes the thesis' diagonal one.
+    The neutral angle of the steering is unknown.
+
+    Equation E37 with a plus sign throughout. Sway is open loop, so that the actual sway speed is
+    the demanded one, and the feed-forward is -A_m: v alone demands no rotation.
+    `feed_forward_as_published` selects the diagonal feed-forward of the thesis.
     """
 
     words: ClassVar[str] = "L1 adaptive sway of the thesis' simulations, steering the only control"
@@ -123,7 +170,7 @@ class L1Thesis(CompiledController):
     feed_forward_as_published: bool = False
 
     def estimates(self) -> dict[str, Estimate]:
-        """All estimates with their bounds, and the predicted states."""
+        """Return all estimates with their bounds, and the predicted states."""
         _, vh, rh, *_, sway, yaw = self.remembered.item()
         found = {
             f"{name}_{axis}": Estimate(value, *bounds)

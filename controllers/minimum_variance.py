@@ -1,4 +1,7 @@
-"""Minimum variance: of the three swings the one that brings the ship nearest to an ideal response a period later."""
+"""Minimum variance control of yaw and roll by a three-way rudder.
+
+The rudder moves to port, stops or moves to starboard in each period.
+"""
 
 from dataclasses import dataclass
 from typing import ClassVar
@@ -9,11 +12,12 @@ from boatsim.physics.base import param
 
 @dataclass
 class MinimumVariance(LearningHelm):
-    """Martin (1993), section 2.5, on the difference equations multiplied by 1 - z^-1, so that a swing is the input.
+    """Minimum variance control of Martin (1993), section 2.5, with the rudder movement as input.
 
-    The ideal response is s(k+1) = first y(k) + second y(k-1). The thesis prints rho u^2 and does not say which input u
-    is; the swing, as the input of these equations, gives the printed rudder and yaw in quartering seas, the angle does
-    not.
+    The difference equations are multiplied by 1 - z^-1. The reference response is s(k+1) = first
+    y(k) + second y(k-1). The thesis prints rho u^2 without a definition of u; with the rudder
+    movement as u the printed rudder and yaw in quartering seas are reproduced, with the angle they
+    are not.
     """
 
     words: ClassVar[str] = (
@@ -37,7 +41,7 @@ class MinimumVariance(LearningHelm):
     weighs_angle: bool = False  # rho weighs the rudder angle instead of its swing
 
     def demand(self) -> float:
-        """The cheapest of the swings."""
+        """Return the angle after the rudder movement with the lowest cost."""
         yaw, roll = self._coasting()
         b_yaw, b_roll = self.ship.yaw[1], self.ship.roll[2]
         weight = self.roll_weight if self.roll_reduction else 0.0
@@ -50,7 +54,7 @@ class MinimumVariance(LearningHelm):
         return min(self.choices(), key=cost)
 
     def _coasting(self) -> tuple[float, float]:
-        """Yaw and roll [rad] a period later if the rudder stops, less the ideal ones."""
+        """Return yaw and roll [rad] after a period with stopped rudder, less their reference."""
         (s0, s1, s2), (f0, f1, f2) = self.psi, self.phi
         (a2y, _, b2y), (a1r, a2r, _, b2r) = self.ship.yaw, self.ship.roll
         psi = (2.0 + a2y) * s0 - (1.0 + 2.0 * a2y) * s1 + a2y * s2 + b2y * (f0 - f1)

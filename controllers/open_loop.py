@@ -1,4 +1,4 @@
-"""Commands played as they stand in the goal, for tests and for manoeuvres that show the boat to a diagnosis."""
+"""Open-loop commands: the goals are sent as commands, for tests and identification manoeuvres."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -9,11 +9,16 @@ from boatsim.control.base import Controller, Sense
 
 @dataclass
 class OpenLoop(Controller):
-    """Each goal of the moment is the command of the channel of its name; nothing is measured."""
+    """Each goal is the command of the channel of the same name; sensors are not used."""
 
     words: ClassVar[str] = "plays the commands given as goals, channel by channel"
     passes_on: ClassVar[bool] = True
 
     def step(self, sense: Sense, goal: Mapping[str, float]) -> dict[str, float]:
-        """The goal itself."""
+        """Return the goal as commands.
+
+        Args:
+            sense: Not used.
+            goal: Commands by channel.
+        """
         return dict(goal)

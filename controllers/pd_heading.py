@@ -1,4 +1,7 @@
-"""The plain rival of the L1 heading control: PD on heading and yaw rate, laid out on a first-order yaw response."""
+"""PD heading control of a water-jet craft, designed on a first-order yaw response.
+
+It is the reference against which the L1 heading control is compared.
+"""
 
 from dataclasses import dataclass
 from math import nan, radians
@@ -14,7 +17,16 @@ wrapped = lean(wrap)
 
 @merged
 def follow(q: Any, m: Any, s: Any, wanted: float) -> None:
-    """One period of the motion asked for, by the midpoint rule; it starts where the craft is."""
+    """Advance the reference model by one period with the midpoint rule.
+
+    It starts at the present state.
+
+    Args:
+        q: Parameters.
+        m: State of the controller.
+        s: Sensor readings.
+        wanted: Reference heading [rad].
+    """
     if m.started == 0.0:
         m.error, m.rate, m.started = wrapped(wanted - s.psi), s.r, 1.0
     else:
@@ -28,7 +40,16 @@ def follow(q: Any, m: Any, s: Any, wanted: float) -> None:
 
 @unlocked
 def law(boats: Any, settings: Any, memory: Any, sense: Any, goal: Any, sent: Any) -> None:
-    """Jet deflection for the next period."""
+    """Set the jet deflection for the next period.
+
+    Args:
+        boats: Rows to process.
+        settings: Parameters of each boat.
+        memory: State of each controller.
+        sense: Sensor readings of each boat.
+        goal: Set points of each boat.
+        sent: Commands of each boat, filled in.
+    """
     for b in boats:
         q, s, g = settings[b], sense[b], goal[b]
         follow(q, memory[b], s, g.psi_rad)
@@ -40,7 +61,9 @@ def law(boats: Any, settings: Any, memory: Any, sense: Any, goal: Any, sent: Any
 
 @dataclass
 class PdHeading(CompiledController):
-    """With the assumed gain K and time constant T, (K delta - r) / T, the loop is psi'' = stiffness e - damping psi'.
+    """PD control for the yaw model r' = (K delta - r) / T with assumed K and T.
+
+    psi'' = stiffness e - damping psi'  in closed loop
 
     Goals: `psi_rad`, and `throttle`, which is passed on.
     """
@@ -64,11 +87,11 @@ class PdHeading(CompiledController):
     )
     damping: float = param(1.4, low=0.0, high=100.0, unit="1/s", words="of the motion asked for")
     largest: float = param(
-        radians(15.0), low=0.0, high=1.5, unit="rad", words="jet deflection either way"
+        radians(15.0), low=0.0, high=1.5, unit="rad", words="largest jet deflection to either side"
     )
 
     def estimates(self) -> dict[str, Estimate]:
-        """Heading wanted, and the one of the motion asked for."""
+        """Return the set point and the reference heading."""
         goal, error = float(self.remembered["goal"]), float(self.remembered["error"])
         return {
             "reference_goal_rad": Estimate(goal, nan, nan),

@@ -1,4 +1,4 @@
-"""The plain rival: PID on the heading, PI on the surge speed, on the same allocation as the L1 joystick."""
+"""PID heading and PI surge control with the allocation of the L1 joystick."""
 
 from dataclasses import dataclass
 from functools import partial
@@ -20,7 +20,7 @@ from boatsim.control.allocation import (
 from boatsim.control.compiled import CompiledController, merged, record, unlocked
 from boatsim.physics.base import param
 
-ROUNDING = 1e-9  # [N m], [N] less is missed by rounding alone, which must not stop an integrator
+ROUNDING = 1e-9  # [N m], [N] a smaller difference is rounding and must not stop an integrator
 SERVO_LAG = 0.06  # [s] "about one time step" in the thesis; used for the printed margins only
 # Integral parts [N m], [N]; asked for minus applied in the last step [N m], [N].
 REMEMBERS = record(
@@ -30,13 +30,25 @@ REMEMBERS = record(
 
 @merged
 def missed(wanted: float, given: float) -> float:
-    """What outboards that saturate do not give."""
+    """Return the difference between demand and output of saturated outboards.
+
+    Args:
+        wanted: Demand.
+        given: Output.
+    """
     return wanted - given if abs(wanted - given) > ROUNDING else 0.0
 
 
 @merged
 def yaw_moment(q: Any, m: Any, s: Any, wanted: float) -> float:
-    """Yaw moment [N m]."""
+    """Return the yaw moment [N m] of the PID.
+
+    Args:
+        q: Parameters.
+        m: State of the controller.
+        s: Sensor readings.
+        wanted: Demanded yaw rate [rad/s].
+    """
     if m.acted != 0.0:
         keep_heading(m.heading, s.r, s.psi, wanted, q.period, q.compass_trust)
     error = within(m.heading.wanted - m.heading.own, -q.largest_error, q.largest_error)
@@ -47,7 +59,14 @@ def yaw_moment(q: Any, m: Any, s: Any, wanted: float) -> float:
 
 @merged
 def surge_force(q: Any, m: Any, s: Any, wanted: float) -> float:
-    """Surge force [N]; without a speed sensor only a guess of what the stick asks for."""
+    """Return the surge force [N] of the PI; without a speed sensor a feed-forward only.
+
+    Args:
+        q: Parameters.
+        m: State of the controller.
+        s: Sensor readings.
+        wanted: Demanded speed [m/s].
+    """
     if isnan(s.u):
         return q.blind_surge * wanted
     error = wanted - s.u
@@ -58,7 +77,16 @@ def surge_force(q: Any, m: Any, s: Any, wanted: float) -> float:
 
 @unlocked
 def law(boats: Any, settings: Any, memory: Any, sense: Any, goal: Any, sent: Any) -> None:
-    """Commands for the next period from the gyro, the surge speed if there is one, and the stick."""
+    """Set the commands for the next period from gyro, surge speed if measured, and stick.
+
+    Args:
+        boats: Rows to process.
+        settings: Parameters of each boat.
+        memory: State of each controller.
+        sense: Sensor readings of each boat.
+        goal: Demands of each boat.
+        sent: Commands of each boat, filled in.
+    """
     for b in boats:
         q, m, s, g = settings[b], memory[b], sense[b], goal[b]
         moment = yaw_moment(q, m, s, g.yaw_radps)
@@ -72,10 +100,10 @@ def law(boats: Any, settings: Any, memory: Any, sense: Any, goal: Any, sent: Any
 
 @dataclass
 class PidAutopilot(Outboards, CompiledController):
-    """PID on the integrated gyro with rate feed-forward; integrators stop where the outboards saturate.
+    """PID on the integrated gyro with rate feed-forward; conditional integration at saturation.
 
-    Gains are per unit of assumed inertia, so they read as squared frequency, its cube, and damping. Goals:
-    `surge_mps`, `sway_mps`, `yaw_radps`.
+    Gains are per unit of assumed inertia: kp [1/s^2], ki [1/s^3], kd [1/s]. Goals: `surge_mps`,
+    `sway_mps`, `yaw_radps`.
     """
 
     words: ClassVar[str] = "PID heading and PI surge speed on the joystick's allocation"
@@ -110,14 +138,14 @@ class PidAutopilot(Outboards, CompiledController):
         0.1, low=0.0, high=25.0, unit="1/s^2", words="the same per integrated speed error"
     )
     largest_error: float = param(
-        0.5, low=0.01, high=3.1, unit="rad", words="heading errors count up to this much"
+        0.5, low=0.01, high=3.1, unit="rad", words="limit of the heading error"
     )
     blind_surge: float = param(
         1.0, low=0.0, high=100.0, unit="N s/m", words="surge force per m/s with no speed sensor"
     )
 
     def loop_channels(self) -> tuple[LoopChannel, ...]:
-        """The feedback loops, for margins; PI on a speed is PD on its integral."""
+        """Return the feedback loops for margins; PI on a speed is PD on its integral."""
         delayed = partial(
             LoopChannel, hold_s=0.5 * self.period, servo_lag_s=SERVO_LAG, input_gain=(0.5, 1.0, 1.8)
         )

@@ -1,4 +1,4 @@
-"""The industry's course keeper: PID on the heading, the baseline of Martin's comparison."""
+"""PID course keeping, the baseline of the comparison of Martin (1993)."""
 
 from dataclasses import dataclass
 from typing import ClassVar
@@ -9,10 +9,12 @@ from boatsim.physics.base import param
 
 @dataclass
 class PidCourse(Helm):
-    """Martin (1993), section 2.4, in the form that adds a change to its last wish; positive rudder needs a gain < 0.
+    """PID of Martin (1993), section 2.4, in incremental form; positive rudder needs a gain < 0.
 
-    The wish is kept as it was, not as the steering machine could follow it: only then does a course offset kick the
-    rudder by its proportional part, as the printed responses show.
+    u(k) = u(k-1) + K ((1 + T_D/h) y(k) - (1 + 2 T_D/h - h/T_I) y(k-1) + T_D/h y(k-2))
+
+    u(k-1) is the previous demand and not the angle that the steering machine reached: only then
+    does a course change move the rudder by its proportional part, as the printed responses show.
     """
 
     words: ClassVar[str] = "PID on the heading, rudder limits on its output only"
@@ -25,13 +27,13 @@ class PidCourse(Helm):
     forgets_wish: bool = False  # True: the next change is added to the angle the rudder reached
 
     def reset(self) -> None:
-        """On the course, nothing wished for."""
+        """Reset the demand and the past heading errors to zero."""
         super().reset()
         # [rad] wish; heading errors one period ago and two
         self._wish = self._once = self._twice = 0.0
 
     def demand(self) -> float:
-        """q0 y + q1 y(k-1) + q2 y(k-2) beside the last wish; before its first sight the ship was on her course."""
+        """Return the previous demand plus its increment."""
         lead, y = self.derivative / self.period, self.psi[0]
         change = (
             (1.0 + lead) * y

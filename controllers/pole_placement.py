@@ -1,4 +1,4 @@
-"""Pole placement: feedback of the identified ship's states that gives yaw and roll the poles asked for."""
+"""Adaptive pole placement: state feedback with given poles of yaw and roll."""
 
 from dataclasses import dataclass
 from typing import ClassVar
@@ -10,7 +10,13 @@ from boatsim.physics.base import Array, param
 
 
 def ackermann(a: Array, b: Array, wanted: Array) -> Array | None:
-    """Gains (n,) that give A - B K the characteristic polynomial `wanted` (n + 1,); None where B does not reach all."""
+    """Return the gains (n,) of Ackermann's formula, or None if (A, B) is not controllable.
+
+    Args:
+        a: A (n, n).
+        b: B (n,).
+        wanted: Characteristic polynomial of A - B K (n + 1,).
+    """
     columns = [b]
     value = wanted[0] * np.eye(len(b))
     for coefficient in wanted[1:]:
@@ -24,7 +30,7 @@ def ackermann(a: Array, b: Array, wanted: Array) -> Array | None:
 
 @dataclass
 class PolePlacement(LearningHelm):
-    """Martin (1993), section 2.8: u = -K x on the heading, with roll reduction on heading and roll."""
+    """Pole placement of Martin (1993), section 2.8: u = -K x on heading, and on roll."""
 
     words: ClassVar[str] = "adaptive pole placement, with or without roll reduction"
     nominal_yaw: ClassVar = (0.8, 0.03, 0.0)  # Martin's nominal ship, section 3.2
@@ -40,7 +46,7 @@ class PolePlacement(LearningHelm):
     )
 
     def reset(self) -> None:
-        """Nothing learnt beyond the nominal ship."""
+        """Reset the gains and the identification to the nominal ship."""
         super().reset()
         self._gains = np.zeros(4 if self.roll_reduction else 2)
         self._wanted: Array = np.array(
@@ -51,7 +57,7 @@ class PolePlacement(LearningHelm):
             self._wanted = np.convolve(self._wanted, roll)
 
     def demand(self) -> float:
-        """Feedback by the gains of the moment; the last ones where the identified rudder has no effect."""
+        """Return the feedback; gains are kept while the identified rudder has no effect."""
         n = len(self._gains)
         a, b = self.ship.matrices()
         found = ackermann(a[:n, :n], b[:n], self._wanted)

@@ -1,4 +1,7 @@
-"""Generalised predictive control: the swing now that, never moved again, keeps the next periods' errors smallest."""
+"""Generalised predictive control with a control horizon of 1.
+
+The rudder movement of this period, with none after it, minimises the errors of the next periods.
+"""
 
 from dataclasses import dataclass
 from typing import ClassVar
@@ -11,9 +14,13 @@ from boatsim.physics.base import Array, param
 
 
 def predictions(a: Array, b: Array, periods: int, outputs: list[int]) -> tuple[Array, Array]:
-    """H (rows,) and the free response's matrix (rows, n): outputs after 1, 2, ... periods, those of a period together.
+    """Return forced response H (rows,) and matrix of the free response (rows, n), period by period.
 
-    A (n, n), B (n,); `outputs` are the states that count.
+    Args:
+        a: A (n, n).
+        b: B (n,).
+        periods: Prediction horizon.
+        outputs: Indices of the states that are predicted.
     """
     free, forced, power, column = [], [], a, b
     for _ in range(periods):
@@ -25,7 +32,7 @@ def predictions(a: Array, b: Array, periods: int, outputs: list[int]) -> tuple[A
 
 @dataclass
 class Predictive(LearningHelm):
-    """Martin (1993), section 2.6 and appendix II, control horizon 1: bang-bang, or any swing within the rate."""
+    """GPC of Martin (1993), section 2.6 and appendix II, bang-bang or rate-limited."""
 
     words: ClassVar[str] = (
         "adaptive GPC, bang-bang or rate-constrained, with or without roll reduction"
@@ -40,7 +47,7 @@ class Predictive(LearningHelm):
     sign_as_published: bool = False  # the thesis prints du = +(H'H)^-1 H' Psi0
 
     def demand(self) -> float:
-        """The rudder angle after the best swing."""
+        """Return the rudder angle after the best movement."""
         periods = round(self.horizon) or (10 if self.roll_reduction else 11)
         forced, free = predictions(
             *with_rudder(*self.ship.matrices()), periods, [0, 2] if self.roll_reduction else [0]

@@ -1,4 +1,4 @@
-"""Pull-out: a steady turn, then the helm midships, to either side."""
+"""Pull-out manoeuvre: a steady turn, then the helm midships, to both sides."""
 
 from dataclasses import dataclass
 from typing import ClassVar
@@ -20,7 +20,11 @@ class PullOut(Steered):
     )
 
     def helm(self, sense: Sense) -> float:
-        """The angle of this part."""
+        """Return the helm angle of the present part [rad].
+
+        Args:
+            sense: Sensor readings.
+        """
         return (
             self.angle
             * (1.0, 0.0, -1.0, 0.0)[min(int((sense.t - self.execute) / self.hold + 1e-6), 3)]

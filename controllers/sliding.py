@@ -1,4 +1,4 @@
-"""Variable structure control: the rudder swings to port, stops or swings to starboard by the side of a surface."""
+"""Sliding mode control: a three-way relay moves the rudder by the sign of a switching function."""
 
 from dataclasses import dataclass
 from math import degrees, radians
@@ -26,10 +26,16 @@ WEIGHTS = {  # diagonal of Q, not printed: found so that the iteration gives the
 
 
 def surface(a: Array, b: Array, weights: Array, swing: float) -> Array:
-    """G = B'P of P = Q + (A - B F)' P (A - B F), F = swing B'P, by iteration from Q (appendix III).
+    """Return G = B'P of P = Q + (A - B F)' P (A - B F), F = swing B'P, by iteration (appendix III).
 
-    A (n, n), B (n,), weights (n,) the diagonal of Q; swing [rad] is what the relay moves in a period. Raises BadInput
-    where the iteration has no limit.
+    Args:
+        a: A (n, n).
+        b: B (n,).
+        weights: Diagonal of Q (n,).
+        swing: Rudder movement of the relay in a period [rad].
+
+    Raises:
+        BadInput: The iteration does not converge.
     """
     p = q = np.diag(weights)
     for _ in range(10_000):
@@ -46,7 +52,11 @@ def surface(a: Array, b: Array, weights: Array, swing: float) -> Array:
 
 
 def nominal(roll_reduction: bool) -> tuple[Array, Array]:
-    """A, B of the ship the surfaces are made for: (psi, psi-1, phi, phi-1, u-1), or (psi-2, psi-1, psi)."""
+    """Return A and B of the nominal ship of the switching functions.
+
+    Args:
+        roll_reduction: State (psi, psi-1, phi, phi-1, u-1) if true, else (psi-2, psi-1, psi).
+    """
     if roll_reduction:
         return with_rudder(*state_space(YAW, ROLL))
     return np.array([[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.8, -2.6, 2.8]]), np.array(
@@ -56,9 +66,10 @@ def nominal(roll_reduction: bool) -> tuple[Array, Array]:
 
 @dataclass
 class Sliding(Helm):
-    """Martin (1993), section 2.7: du = -swing sign(S), nothing where |S| is inside the boundary layer.
+    """Variable structure control of Martin (1993), section 2.7: du = -swing sign(S).
 
-    Angles in S are radians: only so does the boundary layer hold the headings at which the printed runs come to rest.
+    No movement where |S| is inside the boundary layer. Angles in S are radians: only then does the
+    boundary layer contain the headings at which the printed runs come to rest.
     """
 
     words: ClassVar[str] = "three-way relay on a switching surface, with or without roll reduction"
@@ -75,16 +86,16 @@ class Sliding(Helm):
     in_degrees: bool = False  # angles in S in degrees, as the thesis states angles elsewhere
 
     def reset(self) -> None:
-        """Rudder amidships; the surface as the settings ask for."""
+        """Reset the histories and set the switching function."""
         super().reset()
         self._surface = self.surface()
 
     def needs_roll(self) -> bool:
-        """With roll reduction."""
+        """Return whether roll reduction is on."""
         return bool(self.roll_reduction)
 
     def surface(self) -> tuple[float, ...]:
-        """G, over (psi, psi-1, phi, phi-1, u-1) or (psi-2, psi-1, psi)."""
+        """Return G for the state (psi, psi-1, phi, phi-1, u-1) or (psi-2, psi-1, psi)."""
         key = (bool(self.roll_reduction), self.roll_reduction and self.design_rate > FAST)
         if self.printed:
             return PRINTED[key]
@@ -94,7 +105,7 @@ class Sliding(Helm):
         return tuple(found.tolist())
 
     def side(self) -> float:
-        """S = G x: which side of the surface the ship is on, and how far."""
+        """Return the switching function S = G x."""
         x = (
             (*self.psi[:2], *self.phi[:2], self.rudder)
             if self.roll_reduction
@@ -106,7 +117,7 @@ class Sliding(Helm):
         )
 
     def demand(self) -> float:
-        """A swing against the side, or none."""
+        """Return the angle after a rudder movement against the sign of S, or the present angle."""
         side = self.side()
         if abs(side) < self.boundary:
             return self.rudder

@@ -1,4 +1,4 @@
-"""Spiral: the helm goes in steps from one side to the other and back, each step held until the turn is steady."""
+"""Spiral manoeuvre: the helm moves in steps from side to side and back, each step held."""
 
 from dataclasses import dataclass
 from typing import ClassVar
@@ -9,7 +9,7 @@ from boatsim.physics.base import param
 
 @dataclass
 class Spiral(Steered):
-    """Dieudonne's manoeuvre: it shows whether a ship has two rates of turn at one helm angle."""
+    """Dieudonne's spiral, which shows whether a ship has two rates of turn at one helm angle."""
 
     words: ClassVar[str] = (
         "standard manoeuvre: helm in steps from side to side and back (Dieudonne)"
@@ -21,7 +21,11 @@ class Spiral(Steered):
     steps: int = param(4, low=1, high=50, unit="", words="from midships to the largest angle")
 
     def helm(self, sense: Sense) -> float:
-        """The angle of this step."""
+        """Return the helm angle of the present step [rad].
+
+        Args:
+            sense: Sensor readings.
+        """
         n = min(int((sense.t - self.execute) / self.hold + 1e-6), 4 * self.steps)
         down = self.steps - n  # in steps of angle: +steps .. -steps, then up again
         return self.angle * (down if down >= -self.steps else -2 * self.steps - down) / self.steps

@@ -1,4 +1,4 @@
-"""Turning circle: the helm is put over and held."""
+"""Turning circle: the helm is set to an angle and held."""
 
 from dataclasses import dataclass
 from typing import ClassVar
@@ -13,5 +13,9 @@ class TurningCircle(Steered):
     words: ClassVar[str] = "standard manoeuvre: puts the helm over and holds it"
 
     def helm(self, sense: Sense) -> float:
-        """The angle."""
+        """Return the helm angle [rad].
+
+        Args:
+            sense: Not used.
+        """
         return self.angle

@@ -1,4 +1,4 @@
-"""Waypoint navigation of Huang and Ji, Appendix B: full thrust when facing the point, a trickle when close."""
+"""Waypoint navigation of Y. Huang and Z. Ji, Autonomous boat dynamics, Appendix B."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -13,9 +13,10 @@ Place = tuple[float, float]  # [m] x, y in start axes
 
 @dataclass
 class Waypoint(Controller):
-    """Steers to the points given as goals, each in its turn: the next one comes when the last is reached.
+    """Steers to the points given as goals one after another.
 
-    `position_replay` repeats the paper's eq. 1: positions are integrals of u and v, turned by the heading as a whole.
+    `position_replay` reproduces equation 1 of the paper: positions are integrals of u and v,
+    rotated by the present heading.
     """
 
     words: ClassVar[str] = "waypoints with one azimuth thruster (Huang and Ji)"
@@ -34,10 +35,14 @@ class Waypoint(Controller):
         words="largest azimuth; negative for a thruster astern",
     )
     radius: float = param(
-        2.5, low=0.01, high=50.0, unit="m", words="a point this close counts as reached"
+        2.5, low=0.01, high=50.0, unit="m", words="distance at which a point counts as reached"
     )
     near: float = param(
-        10.0, low=0.1, high=200.0, unit="m", words="thrust fades inside this when turning"
+        10.0,
+        low=0.1,
+        high=200.0,
+        unit="m",
+        words="distance below which thrust decreases while turning",
     )
     position_replay: bool = False  # the published kinematics; False: the sensed position
 
@@ -46,7 +51,7 @@ class Waypoint(Controller):
         self.reset()
 
     def reset(self) -> None:
-        """No points yet, dead reckoning at the start."""
+        """Clear the points and restart dead reckoning."""
         self._ahead: list[Place] = []
         self._given: Place | None = None
         self._travelled = (0.0, 0.0)  # [m] integrals of u and v
@@ -54,7 +59,12 @@ class Waypoint(Controller):
         self._believed = (nan, nan)
 
     def step(self, sense: Sense, goal: Mapping[str, float]) -> dict[str, float]:
-        """Thrust and azimuth towards the point that is next."""
+        """Return thrust and azimuth towards the next point.
+
+        Args:
+            sense: Sensor readings.
+            goal: `x_m` and `y_m` of a point.
+        """
         self._believed = self._replayed(sense) if self.position_replay else (sense.x, sense.y)
         self._add(goal)
         x, y = self._believed
@@ -69,12 +79,12 @@ class Waypoint(Controller):
         return self._towards(hypot(north, east), wrap(atan2(east, north) - sense.psi))
 
     def estimates(self) -> dict[str, Estimate]:
-        """Where the navigation believes to be."""
+        """Return the position that the navigation uses."""
         x, y = self._believed
         return {"x_m": Estimate(x, nan, nan), "y_m": Estimate(y, nan, nan)}
 
     def _towards(self, distance: float, off: float) -> dict[str, float]:
-        """Commands for a point at this distance [m] and bearing off the bow [rad]."""
+        """Return the commands for a point at this distance [m] and bearing off the bow [rad]."""
         if distance <= self.radius:
             return {"thrust_N": 0.0, "azimuth_rad": 0.0}
         if abs(off) < pi / 2:
@@ -83,14 +93,14 @@ class Waypoint(Controller):
         return {"thrust_N": self.full * slow, "azimuth_rad": self.swing * copysign(1.0, off)}
 
     def _add(self, goal: Mapping[str, float]) -> None:
-        """A goal that was not there before goes to the end of the points."""
+        """Append a new goal to the list of points."""
         place = (goal["x_m"], goal.get("y_m", 0.0)) if "x_m" in goal else None
         if place is not None and place != self._given:
             self._ahead.append(place)
         self._given = place
 
     def _replayed(self, sense: Sense) -> Place:
-        """Position as eq. 1 has it: X = x cos psi - y sin psi, Y = x sin psi + y cos psi, x' = u, y' = v."""
+        """Return the position of eq. 1: X = x cos psi - y sin psi, Y = x sin psi + y cos psi."""
         if self._before is not None:
             half = 0.5 * (sense.t - self._before.t)
             x, y = self._travelled

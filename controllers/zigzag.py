@@ -7,12 +7,12 @@ from typing import ClassVar
 from boatsim.control.base import Sense, Steered
 from boatsim.physics.base import param
 
-REACHED = 1e-7  # [rad] a heading this close is reached
+REACHED = 1e-7  # [rad] tolerance with which a heading counts as reached
 
 
 @dataclass
 class Zigzag(Steered):
-    """Kempf's manoeuvre about the heading at the start of the run; a positive angle begins to starboard."""
+    """Kempf's zig-zag about the heading at the start; a positive angle begins to starboard."""
 
     words: ClassVar[str] = (
         "standard manoeuvre: reverses the helm each time the heading has reached an angle"
@@ -21,31 +21,41 @@ class Zigzag(Steered):
     heading: float = param(
         0.175, low=0.001, high=3.0, unit="rad", words="heading change at which the helm is reversed"
     )
-    reversals: int = param(5, low=1, high=1000, unit="", words="after which it is over")
+    reversals: int = param(
+        5, low=1, high=1000, unit="", words="number of reversals, after which the run may end"
+    )
     _side: float = field(default=0.0, init=False)
     _reversed: int = field(default=0, init=False)
 
     def reset(self) -> None:
-        """Back on course."""
+        """Reset the manoeuvre to its first execute."""
         super().reset()
         self._side, self._reversed = copysign(1.0, self.angle), 0
 
     def helm(self, sense: Sense) -> float:
-        """The angle, on the side that turns the ship back."""
+        """Return the helm angle [rad], reversed when the heading has been reached.
+
+        Args:
+            sense: Sensor readings.
+        """
         if self._left(sense) <= REACHED:
             self._side, self._reversed = -self._side, self._reversed + 1
         return self._side * abs(self.angle)
 
     def early(self, sense: Sense) -> float:
-        """When the heading will be reached if the ship goes on turning as now; asked again then, it comes closer."""
+        """Return the predicted time [s] until the heading is reached; repeated calls refine it.
+
+        Args:
+            sense: Sensor readings.
+        """
         left, rate = self._left(sense), self._side * sense.r
         return left / rate if self._helm and rate > 0.0 and left > REACHED else inf
 
     def _left(self, sense: Sense) -> float:
-        """Angle [rad] still to be turned before the helm is reversed."""
+        """Return the angle [rad] to turn before the helm is reversed."""
         return self.heading - self._side * (sense.psi - self._course)
 
     @property
     def done(self) -> bool:
-        """Reversed often enough."""
+        """Whether all reversals are done."""
         return self._reversed >= self.reversals

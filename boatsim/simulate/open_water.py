@@ -4,7 +4,7 @@ from functools import cached_property
 
 import numpy as np
 
-from boatsim.control.compiled import SENSE_FIELDS, ONE
+from boatsim.control.compiled import ONE, SENSE_FIELDS
 from boatsim.physics.signals import Array
 from boatsim.physics.vessel import Vessel
 from boatsim.simulate import world
