@@ -17,8 +17,9 @@ from typing import Any
 import numpy as np
 
 from boatsim.simulate import scenario
-from boatsim.simulate.evaluation import norms
-from boatsim.simulate.run import Runner, run
+from boatsim.simulate.evaluation import requested_metrics
+from boatsim.simulate.run import Simulation, run
+from boatsim.simulate.run_options import RunOptions
 
 TESTS = [f"{kind}_{n}" for kind in ("sway", "yaw") for n in (1, 2, 3, 4)]
 BELIEFS = {"rated_thrust": 0.35, "sway_thrust": 0.55}  # [N]
@@ -61,8 +62,13 @@ def known(test: str, settings: dict[str, Any], seed: int) -> dict[str, Any]:
     checked = scenario.load(
         f"joystick_boat/{test}_gyro", {**settings, "controller": blind, "until": {}, "goal": [{}]}
     )
-    runner, controller = Runner(checked, 1000 + seed), checked.controller
-    runner.run(stop=lambda: runner._state.t > LONGEST or controller.found is not None)
+    controller = checked.controller
+
+    def tested() -> bool:
+        return simulation.time > LONGEST or controller.found is not None
+
+    simulation = Simulation(checked, RunOptions(seed=1000 + seed, stop=tested))
+    simulation.run()
     astern, angle, scale = controller.found
     return {**blind, "known_astern": astern, "known_angle": angle, "known_scale": scale}
 
@@ -78,7 +84,7 @@ def study(test: str, boats: int) -> list[str]:
                 f"joystick_boat/{test}_gyro", {**settings, "controller": controller}
             )
             found[controller["use"]].append(
-                {n: abs(x.value or np.nan) for n, x in norms(run(made, seed)).items()}
+                {n: abs(x.value or np.nan) for n, x in requested_metrics(run(made, seed)).items()}
             )
     lines = []
     for name, rows in found.items():
@@ -114,7 +120,10 @@ def main() -> None:
         print("\n".join(study(test, given.boats)), flush=True)
     print("\nas shipped, seeds 0 to 5: mean (largest)")
     for test in given.test or TESTS:
-        rows = [norms(run(scenario.load(f"joystick_boat/{test}_blind"), seed)) for seed in range(6)]
+        rows = [
+            requested_metrics(run(scenario.load(f"joystick_boat/{test}_blind"), seed))
+            for seed in range(6)
+        ]
         cells = []
         for norm, _ in REQUIREMENTS[test.partition("_")[0]]:
             x = np.array([row[norm].value for row in rows], dtype=float)

@@ -18,7 +18,7 @@ from boatsim.physics.content import names
 from boatsim.physics.signals import STATE
 from boatsim.simulate import scenario
 from boatsim.simulate.baselines import TOLERANCE, digits, same
-from boatsim.simulate.evaluation import Norm, norms
+from boatsim.simulate.evaluation import Metric, requested_metrics
 from boatsim.simulate.run import run
 
 HOME = Path(__file__).parents[1]
@@ -48,12 +48,12 @@ def tracked() -> list[str]:
     ]
 
 
-def measured(name: str) -> dict[str, Norm]:
+def measured(name: str) -> dict[str, Metric]:
     """Norms of a scenario with seed 0."""
-    return norms(run(scenario.load(name), 0))
+    return requested_metrics(run(scenario.load(name), 0))
 
 
-def nudged(name: str) -> list[dict[str, Norm]]:
+def nudged(name: str) -> list[dict[str, Metric]]:
     """The same, started a little beside, each time in another direction."""
     start = scenario.load(name)
     chance = np.random.default_rng(0)
@@ -61,7 +61,7 @@ def nudged(name: str) -> list[dict[str, Norm]]:
     rates = [s.symbol for s in STATE if s.rate and s.axis in start.vessel.dof]
     said = start.file.start.model_dump()
     return [
-        norms(
+        requested_metrics(
             run(
                 scenario.load(
                     name, {"start": said | {k: said[k] + x for k, x in zip(rates, xs, strict=True)}}
@@ -73,7 +73,7 @@ def nudged(name: str) -> list[dict[str, Norm]]:
     ]
 
 
-def values(found: Mapping[str, Norm], beside: Sequence[Mapping[str, Norm]] = ()) -> Values:
+def values(found: Mapping[str, Metric], beside: Sequence[Mapping[str, Metric]] = ()) -> Values:
     """What is kept of each norm, and how far those of starts beside it lie where that is more than the tolerance."""
     kept = {}
     for name, n in found.items():

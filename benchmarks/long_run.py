@@ -17,7 +17,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from boatsim.recordings.table import read
-from boatsim.simulate.run_log import PIECE
+from boatsim.simulate.growing_table import PIECE
 
 HOUR, KILLED_AFTER, LOOK = 3600.0, 60.0, 0.2  # [s]
 ON_DISK = ("recording.csv", "camera.csv", "run.rrd")

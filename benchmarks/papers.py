@@ -27,12 +27,12 @@ from benchmarks import golden
 from boatsim.errors import BadInput
 from boatsim.files import read_toml
 from boatsim.simulate import scenario
-from boatsim.simulate.evaluation import MISSED, REPRODUCED, UNSTATED, within
+from boatsim.simulate.evaluation import MISSED, NO_TOLERANCE, REPRODUCED, within
 
 HOME = Path(__file__).parents[1]
 OUT = HOME / "docs" / "papers.md"
 WORDS = "in words"  # nothing to compute with
-VERDICTS = (REPRODUCED, MISSED, UNSTATED, WORDS)
+VERDICTS = (REPRODUCED, MISSED, NO_TOLERANCE, WORDS)
 BECAUSE = ("corrected", "can't be", "diagnosed")  # the last: a concealed case of the paper's
 KEYS = {"what", "unit", "published", "tolerance", "within", "span", "because", "reason"}
 OURS = ({"scenario", "norm"}, {"module", "figure"}, {"ours", "command"}, {"ours"}, set[str]())
@@ -141,7 +141,7 @@ def verdict_on(
     if span is not None:
         return REPRODUCED if ours is not None and span[0] <= ours <= span[1] else MISSED
     if tolerance is None:
-        return UNSTATED
+        return NO_TOLERANCE
     return REPRODUCED if ours is not None and within(ours, published, tolerance) else MISSED
 
 
@@ -157,7 +157,7 @@ def _margin(tolerance: float | None, span: tuple[float, float] | None, unit: str
 
 
 @cache
-def _norms(name: str) -> Mapping[str, scenario.NormTable]:
+def _norms(name: str) -> Mapping[str, scenario.MetricTable]:
     return scenario.load(name).file.norms
 
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from boatsim.physics.content import load_class
 from boatsim.simulate import scenario
-from boatsim.simulate.evaluation import norms
+from boatsim.simulate.evaluation import requested_metrics
 from boatsim.simulate.run import run
 
 BANDWIDTHS = (
@@ -52,7 +52,7 @@ def threshold(low: float = 5.0, high: float = 60.0) -> float:
 
 def value(name: str, norm: str, **changes: object) -> float:
     """Return a metric of a scenario with some of its top-level keys replaced."""
-    found = norms(run(scenario.load(f"jet_ski/{name}", changes), 0))[norm].value
+    found = requested_metrics(run(scenario.load(f"jet_ski/{name}", changes), 0))[norm].value
     return float("nan") if found is None else found
 
 
@@ -91,7 +91,7 @@ def main() -> None:
         "\ncontrol step [ms]   staircase: first and last time to 95 % [s]   heading sine: rms to the model [deg]"
     )
     for period in PERIODS:
-        stairs = norms(
+        stairs = requested_metrics(
             run(scenario.load("jet_ski/staircase", with_control("staircase", period=period)), 0)
         )
         times = [stairs[f"time_95_{i}"].value or np.nan for i in (1, 5)]

@@ -5,8 +5,7 @@ files. Input that can not be used raises `boatsim.errors.BadInput` with a messag
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, fields
-from math import inf
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -26,9 +25,11 @@ from boatsim.recordings.notes import notes_for
 from boatsim.recordings.table import Recording as Recording
 from boatsim.simulate.batch import Batch as Batch
 from boatsim.simulate.controllers import steered
-from boatsim.simulate.evaluation import Norm, NormEntry, all_norms
+from boatsim.simulate.evaluation import Metric, all_metrics
 from boatsim.simulate.fleet import Fleet as Fleet
 from boatsim.simulate.run import run as simulate
+from boatsim.simulate.run_files import run_into_folder
+from boatsim.simulate.run_options import RunOptions
 from boatsim.simulate.scenario import Scenario as Scenario
 from boatsim.sweeps.axes import axis_of
 from boatsim.sweeps.designs import Kind as Design
@@ -54,13 +55,13 @@ class Run:
     complete: bool  # whether it ran to its end
     recording: Recording  # the truth at every step: t, signals by column, `recording["psi_rad"]`
     camera: Recording | None  # what a camera above saw; None of a hull that it does not see move
-    norms: Mapping[str, Norm]  # by name: value, unit, guard, ok, lacking, ...
+    metrics: Mapping[str, Metric]  # by name: value, unit, band, ok, lacking, ...
     folder: Path | None = None  # of its files, where they were asked for
 
     @property
     def ok(self) -> bool:
-        """Whether every guard is met."""
-        return all(norm.ok is not False for norm in self.norms.values())
+        """Whether every regression band is met."""
+        return all(metric.ok is not False for metric in self.metrics.values())
 
 
 class Parameter(NamedTuple):
@@ -249,31 +250,24 @@ def run(
 
     >>> import boatsim
     >>> done = boatsim.run("joystick_boat/sway_1", out="out/sway_1")
-    >>> rms = done.norms["yaw_rate_rms"]
+    >>> rms = done.metrics["yaw_rate_rms"]
     >>> f"{rms.value:.2f} {rms.unit}", done.ok
     ('0.18 deg/s', True)
     >>> float(done.recording["y_m"][-1]) > 0.9  # [m] to starboard
     True
     """
-    told = _scenario(scenario, controller, vessel)
-    if out is None:
-        done = simulate(told, seed)
-        filmed = done.camera if "yaw" in told.vessel.dof else None
-        return Run(told.name, done.seed, done.complete, done.recording, filmed, all_norms(done))
-    from boatsim.view.outputs import CAMERA, run_into  # rerun takes half a second
+    loaded = _scenario(scenario, controller, vessel)
+    folder = None if out is None else Path(out)
+    if folder is None:
+        done = simulate(loaded, seed)
+        metrics: Mapping[str, Metric] = all_metrics(done)
+    else:
+        from boatsim.view.run_observers import rerun_observers  # rerun takes half a second
 
-    folder = Path(out)
-    content = run_into(folder, told, seed)
-    film = folder / f"{CAMERA}.csv"
-    return Run(
-        told.name,
-        content["seed"],
-        content["complete"],
-        table.read(folder / "recording.csv"),
-        table.read(film) if film.is_file() else None,
-        {name: _norm(entry) for name, entry in content["norms"].items()},
-        folder,
-    )
+        options = RunOptions(seed=seed)
+        done, metrics = run_into_folder(folder, loaded, options, rerun_observers(), in_memory=True)
+    camera = done.camera if "yaw" in loaded.vessel.dof else None
+    return Run(loaded.name, done.seed, done.complete, done.recording, camera, metrics, folder)
 
 
 def _scenario(given: Name | Scenario, controller: Name | None, vessel: Vessel | None) -> Scenario:
@@ -286,16 +280,6 @@ def _scenario(given: Name | Scenario, controller: Name | None, vessel: Vessel | 
             "a Scenario has its own"
         )
     return given
-
-
-def _norm(entry: NormEntry) -> Norm:
-    """A norm of norms.json."""
-    said = {f.name: entry[f.name] for f in fields(Norm)}  # type: ignore[literal-required]
-    if guard := entry["guard"]:
-        said["guard"] = tuple(
-            end if end is not None else (-inf, inf)[i] for i, end in enumerate(guard)
-        )
-    return Norm(**said)
 
 
 def read(path: Name, vessel: Name | None = None, load: Names = ()) -> Recording:

@@ -8,7 +8,7 @@ from typing import Any
 from boatsim.physics.content import names
 from boatsim.simulate import scenario
 from boatsim.simulate.cases import content
-from boatsim.simulate.evaluation import Norm, norms
+from boatsim.simulate.evaluation import Metric, requested_metrics
 from boatsim.simulate.run import run
 
 SHIPPED = tuple(name for name in names("scenario") if name.startswith("joystick_boat/"))
@@ -30,13 +30,13 @@ def raw(name: str) -> dict[str, Any]:
 
 
 @cache
-def found(name: str, seed: int = 0) -> tuple[dict[str, Norm], int]:
+def found(name: str, seed: int = 0) -> tuple[dict[str, Metric], int]:
     """Norms of a shipped scenario, and in how many steps the hull touched a wall."""
     done = run(scenario.load(name), seed)
-    return norms(done), int((done.recording["contacts"] > 0).sum())
+    return requested_metrics(done), int((done.recording["contacts"] > 0).sum())
 
 
-def mean(runs: Sequence[dict[str, Norm]]) -> dict[str, float]:
+def mean(runs: Sequence[dict[str, Metric]]) -> dict[str, float]:
     """Mean of each norm over runs; nan, which meets no bar, where one of them never reached it."""
     return {
         name: sum(nan if (value := one[name].value) is None else value for one in runs) / len(runs)

@@ -90,6 +90,7 @@ def test_the_picture_shows_every_import_from_folder_to_folder_once() -> None:
         "api",
         "errors",
         "files",
+        "atomic_folder",
         "quiet",
         "interruption",
         "progress",

@@ -32,9 +32,9 @@ from boatsim.recordings.table import Recording
 from boatsim.simulate import scenario
 from boatsim.simulate.compiled_engine import Twin
 from boatsim.simulate.engine import Engine, State
-from boatsim.simulate.evaluation import norms
+from boatsim.simulate.evaluation import requested_metrics
 from boatsim.simulate.run import Run, run
-from boatsim.view.outputs import run_into
+from boatsim.simulate.run_files import run_into_folder
 
 SHIPPED = [name for name in names("scenario") if name.startswith("catamaran/")]
 TABLE_III = {
@@ -63,7 +63,7 @@ def sailed(name: str) -> Run:
 
 
 def values(name: str) -> dict[str, float | None]:
-    return {n: norm.value for n, norm in norms(sailed(name)).items()}
+    return {n: norm.value for n, norm in requested_metrics(sailed(name)).items()}
 
 
 # Published numbers
@@ -112,7 +112,9 @@ def test_a_disturbance_fixed_to_the_hull_gives_the_published_outcomes_too(
 ) -> None:
     told = scenario.load(f"catamaran/disturbance_{trial}").file.set["gust"]
     hull = {"set": {"gust": told | {"turns_with_hull": 1.0}}, "duration": 60.0}
-    found = norms(run(scenario.load(f"catamaran/disturbance_{trial}", hull)))["time"].value
+    found = requested_metrics(run(scenario.load(f"catamaran/disturbance_{trial}", hull)))[
+        "time"
+    ].value
     assert found == (None if arrives is None else pytest.approx(arrives, rel=0.02))
 
 
@@ -197,7 +199,7 @@ def test_boat_replays_a_recording_of_its_own(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """The disturbance goes with the recording, in its notes."""
-    run_into(tmp_path / "run", scenario.load("catamaran/disturbance_5"))
+    run_into_folder(tmp_path / "run", scenario.load("catamaran/disturbance_5"))
     assert commands.compare(tmp_path / "run" / "recording.csv", None, [], None, tmp_path) == 0
     errors = {
         line.split()[0]: float(line.split()[1])

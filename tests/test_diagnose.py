@@ -25,7 +25,7 @@ from boatsim.recordings import table as recording
 from boatsim.recordings.table import Notes, Recording
 from boatsim.simulate import scenario
 from boatsim.simulate.engine import Engine
-from boatsim.view.outputs import run_into
+from boatsim.simulate.run_files import run_into_folder
 
 DATA = Path(__file__).parent / "data"
 DECAY = DATA / "kvlcc2_roll_decay" / "decay_0kn_run2.csv"
@@ -368,7 +368,7 @@ def test_parameter_keys_carry_their_unit(name, unit, key):
 def thesis(tmp_path_factory):
     folder = tmp_path_factory.mktemp("thesis")
     for name in ("sway_1", "yaw_1", "sway_3", "yaw_3"):
-        run_into(folder / name, scenario.load(f"joystick_boat/{name}_as_published"))
+        run_into_folder(folder / name, scenario.load(f"joystick_boat/{name}_as_published"))
     return folder
 
 

@@ -30,7 +30,7 @@ from boatsim.physics.content import names
 from boatsim.recordings.table import Recording, read
 from boatsim.simulate import scenario, tracking_errors
 from boatsim.simulate.manoeuvre import handled
-from boatsim.simulate.run import Runner
+from boatsim.simulate.run import run as simulate
 
 pytest.importorskip("websockets")
 
@@ -209,7 +209,7 @@ def test_while_a_goal_is_off_commands_are_neutral_and_the_controller_begins_anew
     rows = 0.0 if engine == "mujoco" else 0.5  # [s] between them: the other may leap in between
     over = {"duration": 12.0, "goal": goals, "tank": None, "engine": engine, "log": rows}
     made = scenario.load("joystick_boat/berth", over)
-    log = Runner(made).run().recording
+    log = simulate(made).recording
     off = (log.t >= 4.0 + made.controller.period) & (log.t < 7.99)
     for name, channel in made.vessel.commands.items():
         if name in type(made.controller).commands:

@@ -11,9 +11,9 @@ from boatsim.metrics.arrival import Arrival
 from boatsim.metrics.crossing import Crossing
 from boatsim.recordings.table import Recording
 from boatsim.simulate import scenario, tracking_errors
-from boatsim.simulate.camera_log import FilmMeasure
-from boatsim.simulate.evaluation import all_norms
-from boatsim.simulate.metric import Measure
+from boatsim.simulate.camera_metric import CameraMetricSet
+from boatsim.simulate.evaluation import all_metrics
+from boatsim.simulate.metric import MetricSet
 from boatsim.simulate.run import run
 
 TEXT = """
@@ -121,7 +121,7 @@ def test_a_run_logs_its_goals_judges_them_and_says_why_a_norm_is_not_reached(
     assert (done.recording["goal_yaw_radps"][~first] == 0.1).all() and np.isnan(
         done.recording["goal_sway_mps"][~first]
     ).all()
-    norms = all_norms(done)
+    norms = all_metrics(done)
     assert list(norms) == ["time", *tracking_errors.units(["sway_mps", "yaw_radps"])]
     assert norms["sway_error_largest"].value == pytest.approx(
         np.abs(0.07 - done.recording["v_mps"][first]).max()
@@ -133,12 +133,12 @@ def test_a_run_logs_its_goals_judges_them_and_says_why_a_norm_is_not_reached(
     ]
     largest = done.recording["psi_rad"].max()
     assert norms["time"].value is None
-    assert norms["time"].lacking == f"not reached: never got to 1 rad: largest {largest:.4g}"
+    assert norms["time"].lacking == f"not reached: never reached 1 rad: largest {largest:.4g}"
 
 
 def test_a_guard_of_a_tracking_norm_is_judged(tmp_path: Path) -> None:
     (tmp_path / "two.toml").write_text(TEXT + "[norms.sway_error_rms]\nguard = [0.0, 1e-9]\n")
-    assert all_norms(run(scenario.load(str(tmp_path / "two.toml"))))["sway_error_rms"].ok is False
+    assert all_metrics(run(scenario.load(str(tmp_path / "two.toml"))))["sway_error_rms"].ok is False
     (tmp_path / "two.toml").write_text(TEXT + "[norms.surge_error_rms]\nguard = [0.0, 1e-9]\n")
     with pytest.raises(BadInput, match="surge_error_rms.*sway_error_rms"):
         scenario.load(str(tmp_path / "two.toml"))
@@ -147,24 +147,24 @@ def test_a_guard_of_a_tracking_norm_is_judged(tmp_path: Path) -> None:
 def test_why_tells_the_nearest_that_was_reached() -> None:
     assert (
         Crossing(signal="u_mps", level=1.0).why("time", log(u_mps=0.7))
-        == "never got to 1 m/s: largest 0.7"
+        == "never reached 1 m/s: largest 0.7"
     )
     assert (
         Crossing(signal="u_mps", level=-1.0).why("time", log(u_mps=0.7))
-        == "never got to -1 m/s: smallest 0.7"
+        == "never reached -1 m/s: smallest 0.7"
     )
     far = Arrival(x=5.0, radius=1.0).why("time", log(x_m=2.0, y_m=0.0))
     assert far == "never within 1 m of the point: closest 3"
 
 
 def test_what_a_norm_is_follows_from_the_end_of_its_name() -> None:
-    assert [Measure().kind(n) for n in ("x_inf", "rms", "psi_max", "time")] == [
+    assert [MetricSet().kind(n) for n in ("x_inf", "rms", "psi_max", "time")] == [
         "largest",
         "rms",
         "largest",
         "",
     ]
-    assert (Measure().kind("x_l1"), FilmMeasure().kind("position_l1")) == (
+    assert (MetricSet().kind("x_l1"), CameraMetricSet().kind("position_l1")) == (
         "time integral",
         "sum over frames",
     )
@@ -173,5 +173,5 @@ def test_what_a_norm_is_follows_from_the_end_of_its_name() -> None:
 def test_a_guard_on_a_goal_that_never_comes_is_missed(tmp_path: Path) -> None:
     text = TEXT.replace("from = 1.0", "from = 9.0") + "[norms.yaw_error_rms]\nguard = [0.0, 9.0]\n"
     (tmp_path / "two.toml").write_text(text)
-    norm = all_norms(run(scenario.load(str(tmp_path / "two.toml"))))["yaw_error_rms"]
+    norm = all_metrics(run(scenario.load(str(tmp_path / "two.toml"))))["yaw_error_rms"]
     assert (norm.value, norm.ok, norm.unit) == (None, False, "deg/s")

@@ -11,7 +11,7 @@ from boatsim.physics import vessel
 from boatsim.physics.effects.mmg_hull import MmgHull
 from boatsim.recordings.table import Recording
 from boatsim.simulate import manoeuvre, scenario
-from boatsim.simulate.evaluation import norms
+from boatsim.simulate.evaluation import requested_metrics
 from boatsim.simulate.run import Run, run
 from validation.real import kvlcc2_mmg as bench
 from validation.real.common import RECORDINGS, runs_of
@@ -69,7 +69,7 @@ def test_the_ship_sails_a_zigzag_as_its_model_does_in_longer_time() -> None:
 
 def test_the_model_turns_back_sooner_than_the_tanks_measured(published: Run) -> None:
     """10/10 to starboard: 4.9 and 13.6 degrees by the published equations, 8.2 and 21.9 measured by MARIN."""
-    made = norms(published)
+    made = requested_metrics(published)
     found = made["first_overshoot"].value, made["second_overshoot"].value
     assert found == pytest.approx((4.9, 13.6), abs=0.05)
     assert found[0] < 8.2 - 1.5 and found[1] < 21.9 - 2.8  # by more than two tanks differ
@@ -98,7 +98,7 @@ def test_a_recalibration_moves_every_derivative_of_the_hull_and_the_flow_at_the_
 
 
 def test_reversals_and_overshoots_of_a_zigzag_are_those_of_its_norms(published: Run) -> None:
-    log, made = published.recording, norms(published)
+    log, made = published.recording, requested_metrics(published)
     at = bench.reversals(log["delta_rad"])
     found = bench.overshoots(log["psi_rad"], log["delta_rad"], at)
     assert np.abs(log["psi_rad"][at]) == pytest.approx(

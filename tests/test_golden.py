@@ -21,7 +21,7 @@ from benchmarks.golden import (
     values,
     with_reason,
 )
-from boatsim.simulate.evaluation import Norm
+from boatsim.simulate.evaluation import Metric
 
 TRACKED = tracked()
 OLD = {
@@ -47,7 +47,7 @@ def by_speed(name: str) -> Any:
 @pytest.mark.parametrize("name", [by_speed(name) for name in TRACKED])
 def test_norms_are_what_they_were_and_lie_within_their_bars(name: str) -> None:
     norms = found(name)[0]
-    assert {n: (norm.value, norm.guard) for n, norm in norms.items() if norm.ok is False} == {}
+    assert {n: (norm.value, norm.band) for n, norm in norms.items() if norm.ok is False} == {}
     lines = drifts(name, kept(name), values(norms))
     assert not lines, "\n".join(
         [*lines, 'if this is wanted: python -m benchmarks.golden --update --reason "..."']
@@ -111,7 +111,7 @@ def test_an_empty_history_gets_its_first_entry() -> None:
 
 
 def test_what_is_kept_of_a_norm_survives_the_file() -> None:
-    norm = Norm(1 / 3, "m", 0.07, 0.05, (0.0, 1.0), True, 2 / 3, 0.01)
+    norm = Metric(1 / 3, "m", 0.07, 0.05, (0.0, 1.0), True, 2 / 3, 0.01)
     stored = json.loads(json.dumps(values({"moved": norm})))
     assert stored == {
         "moved": {
@@ -131,7 +131,7 @@ def test_of_a_loop_that_runs_away_only_what_goes_beyond_its_own_restlessness_is_
 
 
 def test_how_far_starts_beside_it_end_is_kept_where_it_is_more_than_arithmetic() -> None:
-    norm = Norm(2.0, "m", None, None, None, None, None, None)
+    norm = Metric(2.0, "m", None, None, None, None, None, None)
     assert (
         "moves"
         not in values({"moved": norm}, [{"moved": replace(norm, value=2.0 + 1e-9)}])["moved"]

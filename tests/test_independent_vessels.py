@@ -18,7 +18,7 @@ from boatsim.physics.base import Array, Force, Wrench, motion
 from boatsim.simulate import scenario
 from boatsim.simulate.compiled_engine import Twin
 from boatsim.simulate.engine import Engine, State
-from boatsim.simulate.evaluation import norms
+from boatsim.simulate.evaluation import requested_metrics
 from boatsim.simulate.run import run
 
 Rates = Callable[[Array, float], Array]  # (x, y, psi, u, v, r), rudder [rad] -> their derivatives
@@ -218,7 +218,7 @@ MEASURED = {  # scenario -> published numbers its norms are held against
 @pytest.mark.parametrize("name", MEASURED)
 def test_kvlcc2_mmg_gives_the_published_manoeuvres(name: str) -> None:
     made = run(scenario.load(f"kvlcc2_mmg/{name}"))
-    found = norms(made)
+    found = requested_metrics(made)
     assert {n for n, norm in found.items() if norm.published is not None} == MEASURED[name]
     assert all(norm.ok for norm in found.values() if norm.ok is not None), found
     if name == "turning_circle_35":
@@ -328,13 +328,13 @@ def overshoots(helm: float) -> list[float]:
 
 @pytest.mark.parametrize("helm", [10, 20])
 def test_mariner_swings_in_a_zigzag_as_by_an_independent_integrator(helm: int) -> None:
-    found = norms(run(scenario.load(f"mariner/zigzag_{helm}")))
+    found = requested_metrics(run(scenario.load(f"mariner/zigzag_{helm}")))
     ours = [found[f"{which}_overshoot"].value for which in ("first", "second", "third")]
     assert ours == pytest.approx(overshoots(helm), abs=1e-3)
 
 
 @pytest.mark.parametrize("name", ["turning_circle_35", "zigzag_10", "zigzag_20", "pull_out_20"])
 def test_mariner_does_as_the_toolbox(name: str) -> None:
-    found = norms(run(scenario.load(f"mariner/{name}")))
+    found = requested_metrics(run(scenario.load(f"mariner/{name}")))
     assert sum(norm.ok is True for norm in found.values()) >= 4
     assert all(norm.ok is not False for norm in found.values()), found

@@ -18,16 +18,16 @@ import numpy as np
 import pytest
 
 from boatsim import interruption
+from boatsim.atomic_folder import atomic_folder
 from boatsim.files import AppendedFile, replacing
 from boatsim.interruption import deferred_signals
 from boatsim.physics.content import load_class, names
 from boatsim.physics.signals import STATE as OF_HULLS
 from boatsim.quiet import SIGNALS
 from boatsim.recordings.table import Notes, Recording, read
-from boatsim.simulate.camera_log import Film, FilmMeasure
+from boatsim.simulate.camera_metric import CameraFrames, CameraMetricSet
+from boatsim.simulate.growing_table import PIECE, FileTable, GrowingTable
 from boatsim.simulate.metric import TooShort
-from boatsim.simulate.run_log import PIECE, FiledLog, Log
-from boatsim.view.outputs import filling
 
 FILES = {"recording.csv", "camera.csv", "recording.toml", "norms.json", "run.rrd"}
 ENDLESS = """
@@ -221,7 +221,7 @@ def listening(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
 
 @pytest.mark.usefixtures("listening")
 def test_signals_wait_while_files_are_moved_and_count_afterwards(tmp_path: Path) -> None:
-    with deferred_signals() as stop, filling(tmp_path / "out") as new:
+    with deferred_signals() as stop, atomic_folder(tmp_path / "out") as new:
         for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
             stop.finishing = True
             os.kill(os.getpid(), number)
@@ -360,7 +360,7 @@ def test_a_temporary_name_is_visible_says_what_it_is_and_goes(tmp_path: Path) ->
 def test_a_folder_where_a_file_should_be_costs_nothing_that_is_there(tmp_path: Path) -> None:
     (tmp_path / "out" / "b").mkdir(parents=True)
     (tmp_path / "out" / "a").write_text("earlier")
-    with pytest.raises(Exception, match="b: is a folder"), filling(tmp_path / "out") as new:
+    with pytest.raises(Exception, match="b: is a folder"), atomic_folder(tmp_path / "out") as new:
         (new / "a").write_text("new")
         (new / "b").write_text("new")
     assert (tmp_path / "out" / "a").read_text() == "earlier" and len(list(tmp_path.iterdir())) == 1
@@ -373,7 +373,10 @@ def test_a_folder_where_a_file_should_be_costs_nothing_that_is_there(tmp_path: P
 @pytest.mark.parametrize("count", [0, 1, PIECE - 1, PIECE, PIECE + 1, 3 * PIECE + 7])
 def test_a_log_in_a_file_is_the_one_in_memory(count: int, tmp_path: Path) -> None:
     rng = np.random.default_rng(count)
-    logs: Sequence[Log] = (Log(["t_s", "a", "b"], 2), FiledLog(["t_s", "a", "b"], tmp_path))
+    logs: Sequence[GrowingTable] = (
+        GrowingTable(["t_s", "a", "b"], 2),
+        FileTable(["t_s", "a", "b"], tmp_path),
+    )
     for i in range(count):
         row = [float(i), *rng.standard_normal(2)]
         for log in logs:
@@ -420,9 +423,11 @@ def test_a_measure_of_a_short_log_has_numbers_or_says_that_it_is_too_short(
         )
         with warnings.catch_warnings():
             warnings.simplefilter("error")
-            if isinstance(made, FilmMeasure):
+            if isinstance(made, CameraMetricSet):
                 place = np.zeros((rows, 2))
-                found = made.of_film(Film(t, slope * t, {"bow": place}, place, slope * t))
+                found = made.from_frames(
+                    CameraFrames(t, slope * t, {"bow": place}, place, slope * t)
+                )
                 assert found == {}
                 continue
             try:

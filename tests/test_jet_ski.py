@@ -33,7 +33,7 @@ from boatsim.physics.signals import signals_of
 from boatsim.simulate import scenario
 from boatsim.simulate.compiled_engine import Twin
 from boatsim.simulate.engine import Engine, State
-from boatsim.simulate.evaluation import norms
+from boatsim.simulate.evaluation import requested_metrics
 from boatsim.simulate.run import run
 
 CRAFT = vessel.load(
@@ -277,7 +277,7 @@ NAMES = [name for name in names("scenario") if name.startswith("jet_ski/")]
 
 
 def test_staircase_first_four_steps_are_alike_and_the_last_saturates() -> None:
-    found = norms(run(scenario.load("jet_ski/staircase"), 0))
+    found = requested_metrics(run(scenario.load("jet_ski/staircase"), 0))
     times = [float(found[f"time_95_{i}"].value or 0.0) for i in range(1, 6)]
     assert max(times[:4]) < 2.2 and max(times[:4]) - min(times[:4]) < 0.15 * max(times[:4])
     assert times[4] > 1.3 * np.mean(times[:4]) and float(found["end_error"].value or 0.0) < 0.01
@@ -295,12 +295,14 @@ def test_a_control_step_ten_times_finer_changes_no_time_of_the_staircase() -> No
             "goal": [dict(g) for g in base.goal[:2]],
         }
         found.append(
-            norms(run(scenario.load("jet_ski/staircase", overrides), 0))["time_95_1"].value
+            requested_metrics(run(scenario.load("jet_ski/staircase", overrides), 0))[
+                "time_95_1"
+            ].value
         )
     assert found[0] == pytest.approx(found[1], abs=0.01)
 
 
 def test_overshoot_of_a_heading_step_is_that_of_the_motion_asked_for() -> None:
-    found = norms(run(scenario.load("jet_ski/heading_step"), 0))
+    found = requested_metrics(run(scenario.load("jet_ski/heading_step"), 0))
     ideal = 100.0 * exp(-0.7 / sqrt(1.0 - 0.49) * np.pi)
     assert found["overshoot"].value == pytest.approx(ideal, abs=0.5)

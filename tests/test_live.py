@@ -17,7 +17,8 @@ from typer.testing import CliRunner
 from boatsim.cli import app
 from boatsim.simulate import scenario
 from boatsim.simulate.real_time_pace import Pace
-from boatsim.simulate.run import Runner
+from boatsim.simulate.run import Simulation
+from boatsim.simulate.run_options import RunOptions
 from boatsim.view import viewer
 
 
@@ -64,9 +65,10 @@ def test_whoever_stops_a_run_does_not_wait_for_its_clock() -> None:
 
 def test_a_paced_run_is_the_same_run() -> None:
     made = scenario.load("joystick_boat/sway_1")
-    plain, paced, clock = Runner(made), Runner(made), Clock()
-    paced.pace = Pace(1.0, clock, clock.sleep)
-    whole, other = plain.run().recording, paced.run().recording
+    clock = Clock()
+    paced = RunOptions(pace=Pace(1.0, clock, clock.sleep))
+    whole = Simulation(made).run().recording
+    other = Simulation(made, paced).run().recording
     assert (whole["x_m"] == other["x_m"]).all() and clock.now - 100.0 == pytest.approx(
         other.t[-1], abs=0.1
     )

@@ -26,7 +26,7 @@ from boatsim.physics.effects.yaw_rate_waves import WAVES, YawRateWaves, componen
 from boatsim.recordings.table import Notes, Recording
 from boatsim.simulate import scenario
 from boatsim.simulate.engine import Engine, State
-from boatsim.simulate.evaluation import Norm, norms
+from boatsim.simulate.evaluation import Metric, requested_metrics
 from boatsim.simulate.run import Run, run
 
 Heading = load_class("controller", "l1_heading_discrete")
@@ -47,9 +47,9 @@ def done(name: str) -> Recording:
     return finished(f"jet_ski/low_{name}").recording
 
 
-def judged(name: str) -> dict[str, Norm]:
+def judged(name: str) -> dict[str, Metric]:
     """Its norms."""
-    return norms(finished(name))
+    return requested_metrics(finished(name))
 
 
 def value(name: str, norm: str) -> float:

@@ -12,7 +12,7 @@ from boatsim.diagnosis.filter import map_recording
 from boatsim.diagnosis.pipeline import Diagnosis
 from boatsim.recordings import table as recording
 from boatsim.simulate import scenario
-from boatsim.view.outputs import run_into
+from boatsim.simulate.run_files import run_into_folder
 
 pytestmark = pytest.mark.slow
 
@@ -110,7 +110,7 @@ def test_craft_as_modelled_has_nothing_missing(tmp_path: Path) -> None:
 
 
 def test_own_run_has_nothing_missing(tmp_path: Path) -> None:
-    run_into(tmp_path / "own", scenario.load("jet_ski/low_turns_l1"))
+    run_into_folder(tmp_path / "own", scenario.load("jet_ski/low_turns_l1"))
     assert (
         pipeline.diagnose([tmp_path / "own" / "camera.csv"]).findings.answer["verdict"]
         == "nothing_missing"

@@ -25,7 +25,7 @@ from boatsim.physics.base import Array
 from boatsim.physics.content import load_class
 from boatsim.recordings.table import Recording
 from boatsim.simulate import imo
-from boatsim.simulate.evaluation import norms
+from boatsim.simulate.evaluation import requested_metrics
 from boatsim.simulate.manoeuvre import handled, scenario_of
 from boatsim.simulate.run import run
 
@@ -329,7 +329,7 @@ def test_every_vessel_that_can_turn_does_a_short_zigzag_and_a_turning_circle(nam
     for command, channel in boat.commands.items():
         assert channel.low <= seen[command].min() and seen[command].max() <= channel.high
     made = run(replace(turn, file=turn.file.model_copy(update={"duration": 100.0 * unit})))
-    found = {k: norm.value for k, norm in norms(made).items()}
+    found = {k: norm.value for k, norm in requested_metrics(made).items()}
     assert made.recording["psi_rad"][-1] > pi
     widest = 25.0 if name == "jet_ski" else 10.0  # [L] eight lengths a second
     assert 0.1 < found["tactical_diameter"] < widest and 0.5 < found["advance"] < widest  # type: ignore[operator]
@@ -341,7 +341,9 @@ def test_a_symmetric_boat_does_the_same_to_both_sides(manoeuvre: str) -> None:
     one, other = (
         {
             k: n.value
-            for k, n in norms(run(scenario_of(manoeuvre, "trial_boat", angle=angle))).items()
+            for k, n in requested_metrics(
+                run(scenario_of(manoeuvre, "trial_boat", angle=angle))
+            ).items()
         }
         for angle in (20.0, -20.0)
     )
@@ -357,7 +359,7 @@ def test_helm_is_reversed_at_the_heading_and_not_at_the_end_of_a_step() -> None:
         made = replace(made, file=made.file.model_copy(update={"step": share * made.file.step}))
         made.controller.period, made.controller.reversals = made.file.step, 2  # type: ignore[attr-defined]
         done = run(made)
-        found.append({k: n.value for k, n in norms(done).items()}["first_overshoot"])
+        found.append({k: n.value for k, n in requested_metrics(done).items()}["first_overshoot"])
         helm, psi = done.recording["reference_helm_rad"], done.recording["psi_rad"]
         turned = np.flatnonzero(np.sign(helm[1:]) * np.sign(helm[:-1]) < 0.0) + 1
         assert np.abs(psi[turned]) == pytest.approx(radians(15.0), abs=1e-6)
@@ -379,7 +381,10 @@ def test_a_20_10_zigzag_puts_20_degrees_of_helm_on_and_reverses_at_10(angle: flo
 
 def test_roll_decay_of_a_vessel_shows_its_damping() -> None:
     """kvlcc2_roll is linear: inertia 135.4 kg m^2, damping 6.7 N m s, stiffness 822.3 N m."""
-    found = {k: n.value for k, n in norms(run(scenario_of("roll_decay", "kvlcc2_roll"))).items()}
+    found = {
+        k: n.value
+        for k, n in requested_metrics(run(scenario_of("roll_decay", "kvlcc2_roll"))).items()
+    }
     zeta = 6.7 / (2.0 * sqrt(822.3 * 135.4))
     assert found["damping_mean"] == pytest.approx(zeta, rel=1e-3)
     assert found["period"] == pytest.approx(2 * pi / sqrt(822.3 / 135.4 * (1 - zeta**2)), rel=1e-4)
@@ -389,7 +394,7 @@ def test_a_hull_that_also_turns_is_heeled_before_it_is_released() -> None:
     """Eastward Ho's roll is linear: 2 pi / sqrt(m g GM / I) = 7.14 s; sway and yaw add a little."""
     made = scenario_of("roll_decay", "eastward_ho", angle=5.0)
     assert made.file.duration == pytest.approx(12 * 7.14, rel=0.02)
-    assert norms(run(made))["period"].value == pytest.approx(7.14, rel=0.005)
+    assert requested_metrics(run(made))["period"].value == pytest.approx(7.14, rel=0.005)
 
 
 def test_a_tunnel_across_the_bow_drives_no_boat_ahead(tmp_path: Path) -> None:

@@ -12,7 +12,7 @@ from boatsim.metrics.sway import Sway
 from boatsim.metrics.yaw import Yaw
 from boatsim.recordings.table import Recording
 from boatsim.simulate.camera import Camera
-from boatsim.simulate.evaluation import Norm, norms, signal_norm, to_json
+from boatsim.simulate.evaluation import Metric, requested_metrics, signal_norm, to_json
 from boatsim.simulate.run import Run
 from boatsim.simulate.scenario import Scenario, load
 from validation.real.thesis_score import J
@@ -114,7 +114,9 @@ def turning(period: float, ahead: float, sense: float = 1.0) -> Callable[[float]
 
 
 def values(run: Run) -> dict[str, float]:
-    return {name: norm.value for name, norm in norms(run).items() if norm.value is not None}
+    return {
+        name: norm.value for name, norm in requested_metrics(run).items() if norm.value is not None
+    }
 
 
 # Sway
@@ -134,7 +136,7 @@ def test_steady_turn_during_a_sway_has_known_norms(rate: float) -> None:
 
 def test_twice_as_many_frames_make_the_sums_larger_and_the_largest_the_same() -> None:
     """6 Hz: 0.9 m end at frame 78, 78 rates leave 69 averages."""
-    found = norms(filmed("sway", swaying(1.5), 16.0))
+    found = requested_metrics(filmed("sway", swaying(1.5), 16.0))
     assert found["yaw_rate_inf"].at_reported == pytest.approx(1.5)
     assert found["yaw_rate_l2"].at_reported == pytest.approx(1.5 * sqrt(69))
     assert found["yaw_rate_l1"].at_reported == pytest.approx(1.5 * 69)
@@ -164,7 +166,7 @@ def test_moving_average_halves_a_jump_of_five_frames() -> None:
 
 
 def test_what_was_never_reached_has_no_value_and_fails_its_bar() -> None:
-    found = norms(filmed("sway", swaying(0.0, speed=0.03), 16.0))
+    found = requested_metrics(filmed("sway", swaying(0.0, speed=0.03), 16.0))
     assert all(
         norm.value is norm.at_reported is norm.noise_floor is None for norm in found.values()
     )
@@ -242,7 +244,7 @@ def test_noise_floor_of_the_distance_moved_is_that_of_two_marks() -> None:
 def test_perfect_motion_measured_with_noise_lies_near_its_floor(
     measure: str, pose: Callable[[float], Pose]
 ) -> None:
-    found = norms(filmed(measure, pose, 50.0, marks=0.002))
+    found = requested_metrics(filmed(measure, pose, 50.0, marks=0.002))
     floors = {name: norm for name, norm in found.items() if norm.noise_floor is not None}
     assert len(floors) >= 4
     for name in floors.keys() - {
@@ -254,7 +256,7 @@ def test_perfect_motion_measured_with_noise_lies_near_its_floor(
 
 def test_what_is_taken_from_the_truth_has_no_noise_floor() -> None:
     for measure, pose in (("sway", swaying(0.0)), ("yaw", turning(45.0, 0.1))):
-        found = norms(filmed(measure, pose, 50.0))
+        found = requested_metrics(filmed(measure, pose, 50.0))
         for name in {"surge_offset", "time_to_end", "turn_time", "excursion"} & found.keys():
             assert found[name].value is not None and found[name].noise_floor is None
 
@@ -266,8 +268,8 @@ def test_what_is_taken_from_the_truth_has_no_noise_floor() -> None:
 @pytest.mark.parametrize(("rate", "ok"), [(0.1, False), (0.5, True), (-0.5, False), (0.9, False)])
 def test_guards_hold_the_value_with_its_sign(rate: float, ok: bool) -> None:
     guard = {"heading_at_end": {"published": 12.2, "guard": [5.0, 8.0]}}
-    judged = norms(filmed("sway", swaying(rate), 16.0, norms=guard))["heading_at_end"]
-    assert (judged.ok, judged.published, judged.guard) == (ok, 12.2, (5.0, 8.0))
+    judged = requested_metrics(filmed("sway", swaying(rate), 16.0, norms=guard))["heading_at_end"]
+    assert (judged.ok, judged.published, judged.band) == (ok, 12.2, (5.0, 8.0))
 
 
 @pytest.mark.parametrize(
@@ -286,24 +288,26 @@ def test_guards_hold_the_value_with_its_sign(rate: float, ok: bool) -> None:
 def test_what_is_published_is_judged_by_its_own_tolerance_and_sign(
     value: float | None, published: float | None, tolerance: float | None, verdict: str | None
 ) -> None:
-    assert Norm(value, "m", published, tolerance, (-9.0, 9.0), True).verdict == verdict
+    assert Metric(value, "m", published, tolerance, (-9.0, 9.0), True).verdict == verdict
 
 
 def test_a_guard_that_is_open_is_null_in_the_file() -> None:
-    assert Norm(2.0, "m", guard=(1.0, inf), ok=True).to_json()["guard"] == [1.0, None]
+    assert Metric(2.0, "m", guard=(1.0, inf), ok=True).to_json()["guard"] == [1.0, None]
 
 
 def test_guards_of_a_mean_are_widened_by_the_noise_floor_for_one_run() -> None:
     guards = {"heading_at_end": {"guard": [5.0, 8.0]}, "time_to_end": {"guard": [0.0, 12.5]}}
-    found = norms(filmed("sway", swaying(0.35), 16.0, norms=guards, noise_widens_guards=True))
+    found = requested_metrics(
+        filmed("sway", swaying(0.35), 16.0, norms=guards, noise_widens_guards=True)
+    )
     heading, time = found["heading_at_end"], found["time_to_end"]
     assert (
         heading.value == pytest.approx(4.55)
         and heading.noise_floor is not None
         and heading.noise_floor > 0.4
     )
-    assert heading.guard == (5.0 - heading.noise_floor, 8.0 + heading.noise_floor) and heading.ok
-    assert time.guard == (0.0, 12.5) and time.ok is False
+    assert heading.band == (5.0 - heading.noise_floor, 8.0 + heading.noise_floor) and heading.ok
+    assert time.band == (0.0, 12.5) and time.ok is False
 
 
 def test_a_norm_that_is_not_measured_can_not_be_judged() -> None:
@@ -336,7 +340,7 @@ def berthed(x: float, y: float, psi: float, contacts: list[float]) -> Run:
 
 @pytest.mark.parametrize("turn", [pi, -pi, 3 * pi])
 def test_boat_back_in_its_berth_the_other_way_round(turn: float) -> None:
-    found = norms(berthed(0.03, -0.04, turn + radians(2.0), [0.0] * 30))
+    found = requested_metrics(berthed(0.03, -0.04, turn + radians(2.0), [0.0] * 30))
     assert {name: norm.value for name, norm in found.items()} == pytest.approx(
         {"return_distance": 0.05, "return_heading": 2.0, "wall_contacts": 0.0}
     )
@@ -344,7 +348,7 @@ def test_boat_back_in_its_berth_the_other_way_round(turn: float) -> None:
 
 
 def test_touching_a_wall_fails_the_berth() -> None:
-    found = norms(berthed(0.0, 0.0, pi, [0.0, 1.0, 2.0, 0.0]))
+    found = requested_metrics(berthed(0.0, 0.0, pi, [0.0, 1.0, 2.0, 0.0]))
     assert found["wall_contacts"].value == 2.0 and found["wall_contacts"].ok is False
 
 
@@ -366,15 +370,15 @@ def test_checks_stand_among_the_norms() -> None:
         {"signal": "psi_rad", "norm": "inf", "below": 0.2},
         {"signal": "psi_rad", "norm": "l1", "below": 1.0},
     ]
-    found = norms(filmed("sway", swaying(1.0), 16.0, check=check))
-    assert found["psi_rad_inf"] == Norm(
+    found = requested_metrics(filmed("sway", swaying(1.0), 16.0, check=check))
+    assert found["psi_rad_inf"] == Metric(
         pytest.approx(radians(16.0)), "rad", guard=(0.0, 0.2), ok=False, kind="largest"
     )
     assert found["psi_rad_l1"].unit == "rad s" and found["psi_rad_l1"].value == pytest.approx(
         radians(128.0)
     )
     with pytest.raises(BadInput, match="'psi_red' does not exist; did you mean 'psi_rad'"):
-        norms(
+        requested_metrics(
             filmed(
                 "sway",
                 swaying(1.0),
@@ -395,7 +399,7 @@ def test_json_has_the_fields_and_names_that_were_agreed(
     measure: str, pose: Callable[[float], Pose]
 ) -> None:
     run = filmed(measure, pose, 50.0)
-    content = json.loads(json.dumps(to_json(run, norms(run)), allow_nan=False))
+    content = json.loads(json.dumps(to_json(run, requested_metrics(run)), allow_nan=False))
     assert {k: v for k, v in content.items() if k != "norms"} == {
         "scenario": f"joystick_boat/{measure}_1",
         "controller": "l1_joystick",
@@ -468,7 +472,7 @@ def test_every_norm_has_a_unit() -> None:
         filmed("yaw", turning(40.0, 0.1), 45.0),
         berthed(0, 0, pi, [0.0]),
     ):
-        for name, norm in norms(run).items():
+        for name, norm in requested_metrics(run).items():
             expected = (
                 ""
                 if name == "wall_contacts"

@@ -48,5 +48,7 @@ def test_all_that_is_logged_is_as_on_mujoco(case: str) -> None:
 
 
 def test_walls_are_for_mujoco_alone() -> None:
-    with pytest.raises(BadInput, match='engine = "twin" with a \\[tank\\]; allowed is open water'):
+    with pytest.raises(
+        BadInput, match='engine = "twin" with a \\[tank\\]; the compiled engine has open water only'
+    ):
         scenario.load("joystick_boat/sway_1", {"engine": "twin"})

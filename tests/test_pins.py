@@ -1,4 +1,4 @@
-"""`boatsim test`: a folder's norms are pinned, a change is named, every bad file is listed, machines can read it."""
+"""`boatsim test`: a folder's metrics have baselines, a change is named, every bad file is listed, machines can read it."""
 
 import json
 import tomllib
@@ -10,8 +10,16 @@ import pytest
 from typer.testing import CliRunner
 
 from boatsim.cli import app
-from boatsim.simulate.baselines import TOLERANCE, Pin, PinsFile, drifts, pinned, read, text_of
-from boatsim.simulate.evaluation import Norm
+from boatsim.simulate.baselines import (
+    TOLERANCE,
+    Baseline,
+    BaselinesFile,
+    baselines_of,
+    differences,
+    read,
+    to_toml,
+)
+from boatsim.simulate.evaluation import Metric
 
 SCENARIO = """
 vessel = "joystick_boat"
@@ -29,13 +37,13 @@ def boatsim(*arguments: object) -> Any:
     return CliRunner().invoke(app, [str(a) for a in arguments], catch_exceptions=False)
 
 
-def norm(value: float | None) -> Norm:
-    return Norm(value, "m")
+def norm(value: float | None) -> Metric:
+    return Metric(value, "m")
 
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
-    """One scenario, pinned."""
+    """One scenario with baselines."""
     home = tmp_path / "mine"
     home.mkdir()
     (home / "sway.toml").write_text(SCENARIO)
@@ -80,8 +88,8 @@ def test_new_and_missing_scenarios_differ(folder: Path) -> None:
     (folder / "sway.toml").rename(folder / "other.toml")
     result = boatsim("test", folder)
     assert result.exit_code == 1
-    assert "other.toml: is not pinned" in result.stdout
-    assert "sway.toml: sway_error_rms is pinned and gone" in result.stdout
+    assert "other.toml: has no baseline" in result.stdout
+    assert "sway.toml: sway_error_rms has a baseline and is not computed any more" in result.stdout
 
 
 def test_a_file_that_can_not_be_read_keeps_its_pins(folder: Path) -> None:
@@ -134,33 +142,35 @@ def test_wrong_use_is_one_line(
 
 
 def test_a_tolerance_spans_the_seeds_and_is_never_less_than_arithmetic() -> None:
-    pins = pinned(
+    pins = baselines_of(
         [
             {"a": norm(2.0), "b": norm(1.0)},
             {"a": norm(2.3), "b": norm(1.0)},
             {"a": norm(1.9), "b": norm(None)},
         ]
     )
-    assert pins["a"] == Pin(value=2.0, unit="m", tolerance=0.4)
-    assert pins["b"] == Pin(value=1.0, unit="m", tolerance=TOLERANCE)
+    assert pins["a"] == Baseline(value=2.0, unit="m", tolerance=0.4)
+    assert pins["b"] == Baseline(value=1.0, unit="m", tolerance=TOLERANCE)
 
 
 def test_drift_begins_at_the_tolerance_and_a_norm_that_is_lost_is_one() -> None:
-    pins = {"a": Pin(value=2.0, unit="m", tolerance=0.4)}
-    assert drifts(pins, {"a": norm(2.39)}) == []
-    assert drifts(pins, {"a": norm(2.41)}) == ["a: 2 -> 2.41 m (+- 0.4)"]
-    assert drifts(pins, {"a": Norm(None, "m", lacking="not reached: why")}) == [
+    pins = {"a": Baseline(value=2.0, unit="m", tolerance=0.4)}
+    assert differences(pins, {"a": norm(2.39)}) == []
+    assert differences(pins, {"a": norm(2.41)}) == ["a: 2 -> 2.41 m (+- 0.4)"]
+    assert differences(pins, {"a": Metric(None, "m", lacking="not reached: why")}) == [
         "a: 2 -> not reached: why m (+- 0.4)"
     ]
-    assert drifts(pins, {}) == ["a is pinned and gone"] and drifts({}, {"a": norm(1.0)}) == [
-        "a is not pinned"
-    ]
+    assert differences(pins, {}) == [
+        "a has a baseline and is not computed any more"
+    ] and differences({}, {"a": norm(1.0)}) == ["a has no baseline"]
 
 
 def test_pins_survive_their_file(tmp_path: Path) -> None:
-    pins = PinsFile(
+    pins = BaselinesFile(
         seeds=3,
-        scenario={'a "b".toml:c': {"x_1": Pin(value=1e-12, unit="1/s"), "y": Pin(unit="°")}},
+        scenario={
+            'a "b".toml:c': {"x_1": Baseline(value=1e-12, unit="1/s"), "y": Baseline(unit="°")}
+        },
     )
-    (tmp_path / "pins.toml").write_text(text_of(pins), encoding="utf-8")
+    (tmp_path / "pins.toml").write_text(to_toml(pins), encoding="utf-8")
     assert read(tmp_path) == pins

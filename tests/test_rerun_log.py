@@ -10,7 +10,7 @@ from boatsim.errors import BadInput
 from boatsim.recordings.readers.rrd import last_time
 from boatsim.recordings.table import Recording, read, write_csv
 from boatsim.view import blueprint, rerun_log, water
-from boatsim.view.rerun_log import RunLog, log_overlay, norms_table
+from boatsim.view.rerun_log import RerunLog, log_overlay, norms_table
 from boatsim.view.scene import Thruster, plain_scene, scene_from
 
 PORT = Thruster("port", -0.5, -0.19, "actual_thrust_port_N", "actual_steer_port_rad")
@@ -63,9 +63,9 @@ def entities(path) -> dict[str, int]:
 
 @pytest.fixture
 def logged(tmp_path):
-    with RunLog(tmp_path / "run.rrd", SCENE) as log:
+    with RerunLog(tmp_path / "run.rrd", SCENE) as log:
         for piece in pieces(circle()):
-            log.chunk(piece)
+            log.add_rows(piece)
         log.finish(
             {
                 "moved": {
@@ -110,18 +110,18 @@ def test_a_log_opens_laid_out_with_scene_plots_and_norms(logged):
 def test_the_path_has_no_gap_between_two_pieces(tmp_path):
     lines = []
     for size in (37, 10_000):
-        with RunLog(tmp_path / f"{size}.rrd", SCENE) as log:
+        with RerunLog(tmp_path / f"{size}.rrd", SCENE) as log:
             for piece in pieces(circle(60.0), size):
-                log.chunk(piece)
+                log.add_rows(piece)
         lines.append(entities(tmp_path / f"{size}.rrd")["world/path"])
     assert lines[1] == 600  # one line for each 0.1 s
     assert lines[0] >= 600
 
 
 def test_an_interrupted_run_keeps_what_it_logged(tmp_path):
-    with pytest.raises(KeyboardInterrupt), RunLog(tmp_path / "run.rrd", SCENE) as log:
+    with pytest.raises(KeyboardInterrupt), RerunLog(tmp_path / "run.rrd", SCENE) as log:
         for piece in pieces(circle())[:4]:
-            log.chunk(piece)
+            log.add_rows(piece)
         raise KeyboardInterrupt
     again = read(tmp_path / "run.rrd")
     np.testing.assert_array_equal(again["y_m"], circle()["y_m"][:200])
@@ -222,8 +222,8 @@ def test_the_outline_is_that_of_the_hull_from_above():
 
 
 def test_without_a_file_and_a_viewer_there_is_nothing_to_do():
-    with RunLog(None, SCENE) as log:
-        log.chunk(circle())
+    with RerunLog(None, SCENE) as log:
+        log.add_rows(circle())
         log.finish({})
     assert not log.stream.heard
 

@@ -124,7 +124,7 @@ def test_the_log_holds_what_each_run_recorded_under_its_name_and_the_shared_goal
         ("l1_heading_discrete", r"controller l1_heading_discrete does not fit own: "),
         (
             "blind.py",
-            r"controller .*blind.py does not fit own: no \[\[goal\]\] in force says course_rad",
+            r"controller .*blind.py does not fit own: no \[\[goal\]\] in force gives course_rad",
         ),
         ("pid_autopilo", r"controller 'pid_autopilo' does not exist; did you mean 'pid_autopilot'"),
     ],

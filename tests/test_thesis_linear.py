@@ -18,9 +18,9 @@ from boatsim.physics.content import names
 from boatsim.recordings.table import Recording
 from boatsim.simulate import scenario
 from boatsim.simulate.engine import Engine, State
-from boatsim.simulate.evaluation import norms
+from boatsim.simulate.evaluation import requested_metrics
 from boatsim.simulate.run import Run, run
-from boatsim.view.outputs import run_into
+from boatsim.simulate.run_files import run_into_folder
 
 SHIPPED = [
     name.removeprefix("thesis_linear/")
@@ -51,7 +51,12 @@ def peak(name: str, **controller: Any) -> float:
     told = scenario.load(f"thesis_linear/{name}").file
     lag = {"set": {"servo": {"lag": controller["servo_lag"]}}} if "servo_lag" in controller else {}
     changed = {"duration": 3.0, "controller": told.controller | controller, **lag}
-    return norms(run(scenario.load(f"thesis_linear/{name}", changed)))["peak_yaw_rate"].value or 0.0
+    return (
+        requested_metrics(run(scenario.load(f"thesis_linear/{name}", changed)))[
+            "peak_yaw_rate"
+        ].value
+        or 0.0
+    )
 
 
 def sideways(F: float, d: float) -> dict[str, float]:
@@ -99,7 +104,7 @@ def test_boat_replays_a_recording_of_its_own(
         "step": 0.01,
         "goal": [{"from": t, **sideways(0.6, d)} for t, d in ((0.0, 0.0), (1.0, 0.6), (3.0, 0.3))],
     }
-    run_into(tmp_path / "run", scenario.load("thesis_linear/light_narrow", steps))
+    run_into_folder(tmp_path / "run", scenario.load("thesis_linear/light_narrow", steps))
     assert commands.compare(tmp_path / "run" / "recording.csv", None, [], None, tmp_path) == 0
     errors = {
         line.split()[0]: float(line.split()[1])
@@ -121,7 +126,7 @@ def test_wind_of_t12_is_a_force_and_a_moment_that_turn_with_the_boat() -> None:
 
 @pytest.mark.parametrize(("load", "motors"), few(LOADS, 1))
 def test_steering_finds_the_neutral_angle(load: str, motors: str) -> None:
-    found = norms(sailed(f"{load}_{motors}"))["steering"].value
+    found = requested_metrics(sailed(f"{load}_{motors}"))["steering"].value
     assert found == pytest.approx(degrees(atan(LEVERS[motors] / LEVERS[load])), abs=0.2)
 
 

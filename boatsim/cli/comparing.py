@@ -13,7 +13,7 @@ from boatsim.errors import printable
 from boatsim.files import replacing
 
 if TYPE_CHECKING:
-    from boatsim.simulate.evaluation import NormEntry, RunEntry
+    from boatsim.simulate.evaluation import MetricEntry, RunEntry
     from boatsim.view.rerun_log import Boat
 
 UNCUT = 10_000  # [columns] wider than any table
@@ -82,7 +82,7 @@ def _rows(runs: Sequence[Done]) -> list[list[str]]:
     return rows
 
 
-def _best(scenarios: Sequence[str], entries: Sequence["NormEntry | None"]) -> set[int]:
+def _best(scenarios: Sequence[str], entries: Sequence["MetricEntry | None"]) -> set[int]:
     """Which runs have the lowest value, of each scenario that is there several times, else of all.
 
     Lower is better of what is an error's size; a mean, a time or a place may be wanted as it is.
@@ -103,7 +103,7 @@ def _best(scenarios: Sequence[str], entries: Sequence["NormEntry | None"]) -> se
     return found
 
 
-def _cell(entry: "NormEntry | None", best: bool) -> str:
+def _cell(entry: "MetricEntry | None", best: bool) -> str:
     if entry is None:
         return ""
     plain = value({**entry, "unit": ""})

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
+from boatsim.atomic_folder import atomic_folder
 from boatsim.cli.exits import remark, say
 from boatsim.cli.progress import reporting
 from boatsim.diagnosis.checks.entry import entry_text
@@ -23,7 +24,6 @@ from boatsim.physics.signals import STATE, Array
 from boatsim.physics.vessel import Vessel
 from boatsim.recordings.table import Notes, Recording, write_csv
 from boatsim.simulate import scenario as scenarios
-from boatsim.view.outputs import filling
 
 WRITING = 0.97  # of a diagnosis is done when its files are written, by experience
 
@@ -145,7 +145,7 @@ def compare(run: Path, vessel: str | None, load: list[str], scenario: str | None
         }
         reach = float(np.nanmax(recording.signals[name]) - np.nanmin(recording.signals[name]))
         lines.append(f"{name:10s} {_rms(off):12.5g} {np.nanmax(np.abs(off)):12.5g}   {reach:.5g}")
-    with filling(out) as new:
+    with atomic_folder(out) as new:
         write_csv(Recording(recording.name, recording.t, signals, Notes()), new / "compare.csv")
         _compare_rrd(boat, recording, simulated, new / "compare.rrd")
     say([*lines, f"written to {out}: compare.csv, compare.rrd"])

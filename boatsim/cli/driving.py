@@ -13,7 +13,8 @@ from boatsim.drive.server import Server
 from boatsim.drive.session import Session, folder_name
 from boatsim.drive.task import FILE, Task
 from boatsim.simulate.evaluation import RunEntry
-from boatsim.view.outputs import run_into
+from boatsim.simulate.run_files import run_into_folder
+from boatsim.view.run_observers import rerun_observers
 from boatsim.view.viewer import display
 
 
@@ -39,7 +40,9 @@ def drive(
         remark(f"drive in a browser, on this machine: {server.address}")
         if display() if browser is None else browser:
             webbrowser.open(server.address)
-        content = run_into(folder, task.in_folder(folder), viewer=to, steering=session)
+        observers = rerun_observers(to)
+        driven = task.in_folder(folder)
+        content = run_into_folder(folder, driven, observers=observers, steering=session).to_json()
         server.farewell({"folder": str(folder)})
     return _told(content, folder, session)
 

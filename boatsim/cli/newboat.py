@@ -2,12 +2,12 @@
 
 from pathlib import Path
 
+from boatsim.atomic_folder import atomic_folder
 from boatsim.cli.exits import say
 from boatsim.cli.progress import reporting
 from boatsim.errors import BadInput
 from boatsim.newboat.particulars import Particulars
 from boatsim.newboat.write import VESSEL, files
-from boatsim.view.outputs import filling
 
 
 def new_boat(folder: Path, boat: Particulars, logs: list[Path], force: bool) -> int:
@@ -15,7 +15,7 @@ def new_boat(folder: Path, boat: Particulars, logs: list[Path], force: bool) -> 
     if folder.exists() and not force:
         raise BadInput(f"{folder}: is there already; --force writes a new boat over it")
     lines: list[str] = []
-    with filling(folder) as new:
+    with atomic_folder(folder) as new:
         for name, text in files(boat).items():
             (new / name).write_text(text, encoding="utf-8")
         if logs:

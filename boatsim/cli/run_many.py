@@ -5,13 +5,14 @@ from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import ExitStack, contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from multiprocessing import get_context, parent_process
 from multiprocessing.sharedctypes import SynchronizedArray
 from multiprocessing.synchronize import Event
 from pathlib import Path
 from threading import Lock, Thread
+from typing import NamedTuple
 
 from boatsim.cli import comparing, progress, show
 from boatsim.cli.exits import FAULTS, Exit, complain, remark, words
@@ -22,6 +23,7 @@ from boatsim.simulate.cases import meant
 from boatsim.simulate.controllers import steered
 from boatsim.simulate.evaluation import RunEntry
 from boatsim.simulate.real_time_pace import Pace
+from boatsim.simulate.run_options import LIVE_REFRESH, RunOptions
 from boatsim.simulate.scenario import Scenario
 
 POLL = 0.1  # [s] between two looks at the processes
@@ -38,6 +40,13 @@ class Task:
     folder: Path
     seed: int | None
     controller: str | None = None  # in place of the scenario's own, by name or path
+
+
+class Planned(NamedTuple):
+    """A task and its scenario, which a run in this process need not load again."""
+
+    task: Task
+    scenario: Scenario
 
 
 @dataclass(frozen=True)
@@ -80,7 +89,8 @@ def run_all(
 
     `side_by_side` is one table of all of them, and one log. All are checked before any runs; raises BadInput.
     """
-    tasks = plan(names, out, seed, controllers)
+    planned = plan(names, out, seed, controllers)
+    tasks = [task for task, _ in planned]
     jobs = min(jobs, len(tasks))
     if watched and jobs > 1:
         raise BadInput("--live and --serve show one run at a time; leave --jobs away")
@@ -89,7 +99,7 @@ def run_all(
         report = until_done.enter_context(progress.running([(t.name, t.duration) for t in tasks]))
         speed = watched.speed if watched and to else 0.0
         outcomes = (
-            _in_processes(tasks, jobs, report) if jobs > 1 else _in_turn(tasks, report, to, speed)
+            _in_processes(tasks, jobs, report) if jobs > 1 else _in_turn(planned, report, to, speed)
         )
     for outcome in outcomes:
         if outcome.error:
@@ -133,10 +143,12 @@ def watching(serve: bool) -> Iterator[str | None]:
 
 def run_manoeuvre(scenario: Scenario, folder: Path) -> int:
     """Run a standard manoeuvre and print its figures; the limits beside them are a yardstick, not a test."""
-    from boatsim.view.outputs import run_into
+    from boatsim.simulate.run_files import run_into_folder
+    from boatsim.view.run_observers import rerun_observers
 
     with progress.running([(scenario.name, scenario.file.duration)], several=False) as report:
-        content = run_into(folder, scenario, progress=lambda t: report(0, t))
+        options = RunOptions(progress=lambda t: report(0, t))
+        content = run_into_folder(folder, scenario, options, rerun_observers()).to_json()
     show.norms(content, folder)
     warn_of_limits(content)
     return Exit.MET if content["complete"] else Exit.INTERRUPTED
@@ -154,7 +166,7 @@ def warn_of_limits(content: RunEntry) -> None:
 
 def plan(
     names: Sequence[str], out: Path | None, seed: int | None, controllers: Sequence[str] = ()
-) -> list[Task]:
+) -> list[Planned]:
     """What to run and where its files go, from names that may be wrong."""
     stems = [Path(c).stem for c in controllers]
     if twice := next((c for c in stems if stems.count(c) > 1), None):
@@ -165,13 +177,16 @@ def plan(
     loaded = [[steered(name, c) for c in steering] for name in names]
     folders = _folders([s[0].name for s in loaded], out)
     return [
-        Task(
-            given,
-            s.name,
-            s.file.duration,
-            folder / Path(c).stem if several and c else folder,
-            seed,
-            c,
+        Planned(
+            Task(
+                given,
+                s.name,
+                s.file.duration,
+                folder / Path(c).stem if several and c else folder,
+                seed,
+                c,
+            ),
+            s,
         )
         for given, many, folder in zip(names, loaded, folders, strict=True)
         for s, c in zip(many, steering, strict=True)
@@ -189,15 +204,31 @@ def _folders(names: Sequence[str], out: Path | None) -> list[Path]:
 
 
 def carry_out(
-    task: Task, told: Callable[[float], None], viewer: str | None = None, speed: float = 0.0
+    task: Task,
+    told: Callable[[float], None],
+    scenario: Scenario | None = None,
+    viewer: str | None = None,
+    speed: float = 0.0,
 ) -> Outcome:
-    """Run one task, whatever comes of it; a viewer shows it at so many times real time (0: as fast as can be)."""
-    try:
-        from boatsim.view.outputs import run_into
+    """Run one task and return its outcome, which may be an error.
 
-        pace = Pace(speed) if speed > 0.0 else None
-        scenario = steered(task.given, task.controller)
-        return Outcome(task, run_into(task.folder, scenario, task.seed, viewer, told, pace))
+    Args:
+        task: The task.
+        told: Receives the simulated time [s].
+        scenario: The task's scenario, where it is loaded already.
+        viewer: Address of a viewer that shows the run.
+        speed: Simulated time by real time; 0: as fast as possible.
+    """
+    try:
+        from boatsim.simulate.run_files import run_into_folder
+        from boatsim.view.run_observers import rerun_observers
+
+        options = RunOptions(seed=task.seed, progress=told)
+        if speed > 0.0:
+            options = replace(options, pace=Pace(speed), refresh=LIVE_REFRESH)
+        found = scenario or steered(task.given, task.controller)
+        done = run_into_folder(task.folder, found, options, rerun_observers(viewer))
+        return Outcome(task, done.to_json())
     except FAULTS as error:
         return Outcome(task, error=f"{task.name}: {words(error)}")
     except KeyboardInterrupt:
@@ -205,14 +236,14 @@ def carry_out(
 
 
 def _in_turn(
-    tasks: Sequence[Task], report: progress.Reached, viewer: str | None, speed: float
+    planned: Sequence[Planned], report: progress.Reached, viewer: str | None, speed: float
 ) -> list[Outcome]:
     outcomes: list[Outcome] = []
-    for number, task in enumerate(tasks):
+    for number, (task, scenario) in enumerate(planned):
         if signal_received():  # while the files of the one before were written
             outcomes.append(Outcome(task))
             break
-        outcomes.append(carry_out(task, partial(report, number), viewer, speed))
+        outcomes.append(carry_out(task, partial(report, number), scenario, viewer, speed))
         report(number, task.duration)
         if outcomes[-1].code == Exit.INTERRUPTED:
             break

@@ -11,7 +11,7 @@ from boatsim.physics import content
 from boatsim.simulate import cases
 
 if TYPE_CHECKING:
-    from boatsim.simulate.evaluation import NormEntry, RunEntry
+    from boatsim.simulate.evaluation import MetricEntry, RunEntry
 
 UNCUT = 10_000  # [columns] wider than any table
 
@@ -41,7 +41,7 @@ def norms(found: "RunEntry", folder: Path) -> None:
         console.print(Text(printable(line)), soft_wrap=True)
 
 
-def _columns(norms: Iterable["NormEntry"]) -> dict[str, Literal["left", "right"]]:
+def _columns(norms: Iterable["MetricEntry"]) -> dict[str, Literal["left", "right"]]:
     """Headings with the side they keep to; those of bars only where one of the norms has any."""
     found: dict[str, Literal["left", "right"]] = {"norm": "left", "value": "right"}
     norms = list(norms)
@@ -52,14 +52,14 @@ def _columns(norms: Iterable["NormEntry"]) -> dict[str, Literal["left", "right"]
     return found
 
 
-def _cells(norm: "NormEntry") -> dict[str, str]:
+def _cells(norm: "MetricEntry") -> dict[str, str]:
     """What stands under each heading."""
-    from boatsim.simulate.evaluation import MISSED, REPRODUCED, UNSTATED
+    from boatsim.simulate.evaluation import MISSED, NO_TOLERANCE, REPRODUCED
 
     short = {
         REPRODUCED: "same",
         MISSED: "[bold]differs[/]",
-        UNSTATED: "unstated",
+        NO_TOLERANCE: "unstated",
     }  # in a table 80 columns wide
     return {
         "value": value(norm),
@@ -70,7 +70,7 @@ def _cells(norm: "NormEntry") -> dict[str, str]:
     }
 
 
-def value(norm: "NormEntry") -> str:
+def value(norm: "MetricEntry") -> str:
     """A norm with its unit, or in two words why it has no value."""
     found = norm["value"]
     if found is None:
@@ -78,7 +78,7 @@ def value(norm: "NormEntry") -> str:
     return f"{found:.4g} {norm['unit']}".rstrip()
 
 
-def meanings(norms: Mapping[str, "NormEntry"]) -> list[str]:
+def meanings(norms: Mapping[str, "MetricEntry"]) -> list[str]:
     """A line that says what the endings of these norms stand for, where the names do not say it themselves."""
     found: dict[str, str] = {}
     for name, norm in norms.items():
@@ -88,7 +88,7 @@ def meanings(norms: Mapping[str, "NormEntry"]) -> list[str]:
     return ["; ".join(f"{ending}: {kind}" for kind, ending in found.items())] if found else []
 
 
-def reasons(norms: Mapping[str, "NormEntry"]) -> list[str]:
+def reasons(norms: Mapping[str, "MetricEntry"]) -> list[str]:
     """A line for each reason why norms were not reached."""
     found: dict[str, list[str]] = {}
     for name, norm in norms.items():

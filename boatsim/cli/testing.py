@@ -13,9 +13,9 @@ from boatsim.cli.exits import FAULTS, Exit, complain, words
 from boatsim.errors import BadInput, printable
 from boatsim.files import replacing
 from boatsim.simulate import baselines
-from boatsim.simulate.baselines import Pin, PinsFile
+from boatsim.simulate.baselines import Baseline, BaselinesFile
 from boatsim.simulate.cases import files_of, meant
-from boatsim.simulate.evaluation import Norm, all_norms
+from boatsim.simulate.evaluation import Metric, all_metrics
 from boatsim.simulate.run import run
 from boatsim.simulate.scenario import Scenario, load
 
@@ -25,13 +25,13 @@ class Case:
     """What became of one scenario; of a file that is no scenario, why."""
 
     name: str  # file, or file:case
-    runs: Sequence[Mapping[str, Norm]] = ()  # norms with its own seed, then with further ones
-    pins: Mapping[str, Pin] | None = None  # None: it has none
+    runs: Sequence[Mapping[str, Metric]] = ()  # norms with its own seed, then with further ones
+    pins: Mapping[str, Baseline] | None = None  # None: it has none
     error: str = ""
     seconds: float = 0.0
 
     @property
-    def norms(self) -> Mapping[str, Norm]:
+    def norms(self) -> Mapping[str, Metric]:
         """Those with its own seed."""
         return self.runs[0] if self.runs else {}
 
@@ -44,7 +44,11 @@ class Case:
         missed = [f"{name} is {value}, outside its guard" for name, value in bars.items()]
         return [
             *missed,
-            *(["is not pinned"] if self.pins is None else baselines.drifts(self.pins, self.norms)),
+            *(
+                ["has no baseline"]
+                if self.pins is None
+                else baselines.differences(self.pins, self.norms)
+            ),
         ]
 
     @property
@@ -76,7 +80,7 @@ def regress(folder: Path, pin: bool, seeds: int, junit: Path | None, as_json: bo
     return max(case.code for case in cases)
 
 
-def _run_all(folder: Path, kept: PinsFile | None, seeds: int) -> list[Case]:
+def _run_all(folder: Path, kept: BaselinesFile | None, seeds: int) -> list[Case]:
     """All cases of all files, those that can not be read too."""
     found: list[Case] = []
     ready: list[tuple[str, Scenario]] = []
@@ -97,7 +101,7 @@ def _run_all(folder: Path, kept: PinsFile | None, seeds: int) -> list[Case]:
 def _run(
     name: str,
     scenario: Scenario,
-    own: Mapping[str, Pin] | None,
+    own: Mapping[str, Baseline] | None,
     seeds: int,
     report: Callable[[float], None],
 ) -> Case:
@@ -111,13 +115,13 @@ def _run(
             )
             if not done.complete:
                 raise KeyboardInterrupt
-            runs.append(all_norms(done))
+            runs.append(all_metrics(done))
     except FAULTS as error:
         return Case(name, pins=own, error=words(error), seconds=monotonic() - begun)
     return Case(name, runs, own, seconds=monotonic() - begun)
 
 
-def _unread(cases: Sequence[Case], kept: PinsFile | None) -> set[str]:
+def _unread(cases: Sequence[Case], kept: BaselinesFile | None) -> set[str]:
     """Scenarios with pins whose file can not be read: they are not gone."""
     bad = [case.name for case in cases if case.error]
     return {
@@ -127,15 +131,15 @@ def _unread(cases: Sequence[Case], kept: PinsFile | None) -> set[str]:
     }
 
 
-def _pin(folder: Path, kept: PinsFile | None, cases: Sequence[Case], seeds: int) -> list[Case]:
+def _pin(folder: Path, kept: BaselinesFile | None, cases: Sequence[Case], seeds: int) -> list[Case]:
     """Write what was found; of a scenario that can not be run the old pins stay. Returns the cases as pinned."""
     was = kept.scenario if kept else {}
     stay = {case.name for case in cases if case.error} | _unread(cases, kept)
     new = {name: dict(norms) for name, norms in was.items() if name in stay}
-    new |= {case.name: baselines.pinned(case.runs) for case in cases if not case.error}
+    new |= {case.name: baselines.baselines_of(case.runs) for case in cases if not case.error}
     with replacing(folder / baselines.FILE) as temporary:
         temporary.write_text(
-            baselines.text_of(PinsFile(seeds=seeds, scenario=new)), encoding="utf-8"
+            baselines.to_toml(BaselinesFile(seeds=seeds, scenario=new)), encoding="utf-8"
         )
     return [Case(c.name, c.runs, new.get(c.name), c.error, c.seconds) for c in cases]
 
@@ -194,7 +198,7 @@ def _as_json(folder: Path, cases: Sequence[Case]) -> dict[str, object]:
     }
 
 
-def _entry(norm: Norm, pin: Pin | None) -> dict[str, object]:
+def _entry(norm: Metric, pin: Baseline | None) -> dict[str, object]:
     """A norm as norms.json has it, beside its pin."""
     return {**norm.to_json(), "pin": pin.model_dump() if pin else None}
 

@@ -6,7 +6,7 @@ from contextlib import contextmanager
 from queue import Empty, SimpleQueue
 
 from boatsim.recordings.table import Recording, joined
-from boatsim.simulate.run import Listener
+from boatsim.simulate.run_options import Listener
 
 
 @contextmanager

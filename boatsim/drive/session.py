@@ -11,7 +11,9 @@ from boatsim.drive.server import Server
 from boatsim.drive.task import FILE, Task
 from boatsim.drive.telemetry import Painter
 from boatsim.recordings.table import Recording
-from boatsim.simulate.run import LIVE, OFTEN, Listener, Runner
+from boatsim.simulate.engine import Engine
+from boatsim.simulate.open_water import OpenWater
+from boatsim.simulate.run_options import LIVE_REFRESH, REFRESH, Listener
 from boatsim.simulate.scenario import OFF
 from boatsim.simulate.tracking_errors import Tally
 
@@ -29,8 +31,10 @@ class Session:
     ) -> None:
         """`told` gets a line when the sticks are let go or taken; `watched`: a viewer wants rows more often."""
         self.task, self.server, self.hands = task, server, server.hands
-        self.clock = Clock(task.scenario.controller.period)
-        self._told, self._every = told, LIVE if watched else OFTEN
+        self.clock = self.pace = Clock(task.scenario.controller.period)
+        self.refresh = FRAME
+        self._told = told
+        self._every = LIVE_REFRESH if watched else REFRESH
         self._tally = Tally()
         self._goals: list[tuple[float, Mapping[str, float] | None]] = []
         self._goal: Mapping[str, float] = NOBODY
@@ -43,23 +47,25 @@ class Session:
     # What a run asks of it
     # ------------------------------------------------------------------------------------------
 
-    def take(self, runner: Runner, stop: Callable[[], bool]) -> None:
-        """Take the run over, once somebody has taken the sticks."""
-        runner.goal_at, runner.enough, runner.pace, runner.often = (
-            self.goal_at,
-            self.enough,
-            self.clock,
-            FRAME,
-        )
-        self._painter = Painter(runner, self.task.dials, self.task.scenario)
+    def start(self, engine: Engine | OpenWater, stop: Callable[[], bool]) -> None:
+        """Show the vessel and wait until a driver has taken the sticks.
+
+        Args:
+            engine: The engine of the run.
+            stop: Whether to give up.
+
+        Raises:
+            KeyboardInterrupt: If `stop` returns True.
+        """
+        self._painter = Painter(engine, self.task.dials, self.task.scenario)
         self.server.greet(self._painter.hello())
         while self.hands.away and not self.server.ended and not stop():
             time.sleep(WAIT)
         if stop():  # nothing has begun
             raise KeyboardInterrupt
 
-    def enough(self) -> bool:
-        """Whether somebody wants it to end."""
+    def finished(self) -> bool:
+        """Return whether the driver has ended the run."""
         return self.server.ended
 
     def goal_at(self, t: float) -> Mapping[str, float]:
@@ -70,7 +76,7 @@ class Session:
         return self._goal
 
     @contextmanager
-    def beside(self, listen: Listener) -> Iterator[Listener]:
+    def listening(self, listen: Listener) -> Iterator[Listener]:
         """A listener that shows the rows and hands them on, without waiting for the files."""
         with aside(listen, self._every) as files:
 

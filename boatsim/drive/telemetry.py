@@ -10,7 +10,8 @@ from boatsim.drive.stick_mapping import HEADING, Dials
 from boatsim.physics.signals import follower
 from boatsim.recordings.notes import unit_of
 from boatsim.recordings.table import Recording
-from boatsim.simulate.run import Runner
+from boatsim.simulate.engine import Engine
+from boatsim.simulate.open_water import OpenWater
 from boatsim.simulate.scenario import Scenario
 from boatsim.simulate.tracking_errors import units
 from boatsim.view.scene import scene_from
@@ -21,8 +22,8 @@ MOTION = ("x_m", "y_m", "psi_rad", "u_mps", "v_mps", "r_radps")
 class Painter:
     """Turns rows of a run's log into what its page draws."""
 
-    def __init__(self, runner: Runner, dials: Dials, scenario: Scenario) -> None:
-        self._scene = scene_from(runner.engine.model, scenario.vessel, runner.engine.tank)
+    def __init__(self, engine: Engine | OpenWater, dials: Dials, scenario: Scenario) -> None:
+        self._scene = scene_from(engine.model, scenario.vessel, engine.tank)
         self._dials, self._scenario = dials, scenario
 
     def hello(self) -> dict[str, object]:

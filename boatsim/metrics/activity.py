@@ -9,11 +9,11 @@ import numpy as np
 from boatsim.physics.base import param
 from boatsim.recordings.notes import unit_of
 from boatsim.recordings.table import Recording
-from boatsim.simulate.metric import Measure, seen
+from boatsim.simulate.metric import MetricSet, rows_between
 
 
 @dataclass(frozen=True)
-class Activity(Measure):
+class Activity(MetricSet):
     """From `since` on; the rate is that between rows, so log every step where it matters."""
 
     words: ClassVar[str] = "largest value of a command and rms of its rate"
@@ -22,14 +22,14 @@ class Activity(Measure):
     signal: str = "jet_rad"
     since: float = param(0.0, low=0.0, high=1e6, unit="s", words="beginning of what is looked at")
 
-    def unit(self, norm: str) -> str:
+    def unit(self, metric: str) -> str:
         """That of the signal, angles in degrees; per second."""
         own = unit_of(self.signal).replace("rad", "deg")
-        return own if norm == "peak" else f"{own or '1'}/s"
+        return own if metric == "peak" else f"{own or '1'}/s"
 
     def values(self, log: Recording) -> dict[str, float]:
         """Both over the same rows."""
-        rows = seen(log, self.since, least=2)
+        rows = rows_between(log, self.since, least=2)
         y = (degrees(1.0) if unit_of(self.signal) == "rad" else 1.0) * log[self.signal][rows]
         rate = np.diff(y) / np.diff(log.t[rows])
         return {"peak": float(np.abs(y).max()), "rate_rms": float(np.sqrt(np.mean(rate**2)))}

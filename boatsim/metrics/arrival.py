@@ -7,11 +7,11 @@ import numpy as np
 
 from boatsim.physics.base import Array, param
 from boatsim.recordings.table import Recording
-from boatsim.simulate.metric import Measure, crossing, seen, travelled
+from boatsim.simulate.metric import MetricSet, first_crossing, rows_between, surge_distance
 
 
 @dataclass(frozen=True)
-class Arrival(Measure):
+class Arrival(MetricSet):
     """For a boat on its way to one point."""
 
     words: ClassVar[str] = "time and way to a point, or how close a boat came"
@@ -30,7 +30,7 @@ class Arrival(Measure):
     x_signal: str = "x_m"
     y_signal: str = "y_m"
 
-    def why(self, norm: str, log: Recording) -> str:
+    def why(self, metric: str, log: Recording) -> str:
         """How close it came."""
         away = np.hypot(self.x - log[self.x_signal], self.y - log[self.y_signal])
         closest = (
@@ -42,16 +42,16 @@ class Arrival(Measure):
 
     def values(self, log: Recording) -> dict[str, float]:
         """Time, integral of the surge speed and straight line until there; closest and last place of the whole run."""
-        seen(log)
+        rows_between(log)
         x, y = log[self.x_signal], log[self.y_signal]
         away = np.hypot(self.x - x, self.y - y)
         found = {"closest": float(away.min()), "end_x": float(x[-1]), "end_y": float(y[-1])}
-        time = crossing(log.t, self.radius - away)
+        time = first_crossing(log.t, self.radius - away)
         return found if time is None else found | {"time": time} | self._way(log, x, y, time)
 
     def _way(self, log: Recording, x: Array, y: Array, time: float) -> dict[str, float]:
         line = np.hypot(x - x[0], y - y[0])
         return {
-            "distance": float(np.interp(time, log.t, travelled(log))),
+            "distance": float(np.interp(time, log.t, surge_distance(log))),
             "straight_line": float(np.interp(time, log.t, line)),
         }

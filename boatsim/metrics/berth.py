@@ -8,11 +8,11 @@ import numpy as np
 
 from boatsim.control.base import wrap
 from boatsim.recordings.table import Recording
-from boatsim.simulate.metric import Measure, seen
+from boatsim.simulate.metric import MetricSet, rows_between
 
 
 @dataclass(frozen=True)
-class Berth(Measure):
+class Berth(MetricSet):
     """For a boat that is to turn half round and come back."""
 
     words: ClassVar[str] = "distance and heading of a return to the berth, the other way round"
@@ -20,7 +20,7 @@ class Berth(Measure):
 
     def values(self, log: Recording) -> dict[str, float]:
         """Distance of the CG from its first place, heading beside the half turn, steps with the hull at a wall."""
-        seen(log)
+        rows_between(log)
         x, y, psi = (log[name][-1] - log[name][0] for name in ("x_m", "y_m", "psi_rad"))
         return {
             "return_distance": hypot(x, y),

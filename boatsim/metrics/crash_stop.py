@@ -7,11 +7,11 @@ import numpy as np
 
 from boatsim.physics.base import param
 from boatsim.recordings.table import Recording
-from boatsim.simulate.metric import Measure, at, track
+from boatsim.simulate.metric import MetricSet, path_length, value_at
 
 
 @dataclass(frozen=True)
-class CrashStop(Measure):
+class CrashStop(MetricSet):
     """Until the ship has no way on; distances in lengths."""
 
     words: ClassVar[str] = "track, head and side reach and time of a crash stop"
@@ -25,7 +25,7 @@ class CrashStop(Measure):
     execute: float = param(0.0, low=0.0, high=1e6, unit="s", words="when the engines went astern")
     length: float = param(1.0, low=0.001, high=1e3, unit="m", words="of the ship")
 
-    def why(self, norm: str, log: Recording) -> str:
+    def why(self, metric: str, log: Recording) -> str:
         """How fast she still was."""
         return f"never stopped: still {log['u_mps'][log.t > self.execute].min(initial=log['u_mps'][-1]):.4g} m/s ahead"
 
@@ -36,9 +36,11 @@ class CrashStop(Measure):
             return {}
         rows = [int(stopped[0]), int(stopped[0]) - 1]
         end = float(np.interp(0.0, log["u_mps"][rows], log.t[rows]))
-        psi0 = at(log, self.execute, "psi_rad")
-        dx, dy = (at(log, end, name) - at(log, self.execute, name) for name in ("x_m", "y_m"))
-        travelled = np.interp([self.execute, end], log.t, track(log))
+        psi0 = value_at(log, self.execute, "psi_rad")
+        dx, dy = (
+            value_at(log, end, name) - value_at(log, self.execute, name) for name in ("x_m", "y_m")
+        )
+        travelled = np.interp([self.execute, end], log.t, path_length(log))
         return {
             "track_reach": float(travelled[1] - travelled[0]) / self.length,
             "head_reach": float(np.cos(psi0) * dx + np.sin(psi0) * dy) / self.length,

@@ -8,11 +8,11 @@ import numpy as np
 from boatsim.physics.base import param
 from boatsim.recordings.notes import unit_of
 from boatsim.recordings.table import Recording
-from boatsim.simulate.metric import Measure, never
+from boatsim.simulate.metric import MetricSet, why_not_reached
 
 
 @dataclass(frozen=True)
-class Crossing(Measure):
+class Crossing(MetricSet):
     """The first time after `since`, either way, counted from there."""
 
     words: ClassVar[str] = "time until a signal first passes a level"
@@ -24,9 +24,11 @@ class Crossing(Measure):
         0.0, low=0.0, high=1e6, unit="s", words="time from which it is looked for and counted"
     )
 
-    def why(self, norm: str, log: Recording) -> str:
+    def why(self, metric: str, log: Recording) -> str:
         """How near it came."""
-        return never(log[self.signal][log.t >= self.since - 1e-9], self.level, unit_of(self.signal))
+        return why_not_reached(
+            log[self.signal][log.t >= self.since - 1e-9], self.level, unit_of(self.signal)
+        )
 
     def values(self, log: Recording) -> dict[str, float]:
         """Interpolated between rows; nothing if the signal stays on one side."""

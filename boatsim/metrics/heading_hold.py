@@ -8,11 +8,11 @@ import numpy as np
 
 from boatsim.physics.base import param
 from boatsim.recordings.table import Recording
-from boatsim.simulate.metric import Measure, seen
+from boatsim.simulate.metric import MetricSet, rows_between
 
 
 @dataclass(frozen=True)
-class HeadingHold(Measure):
+class HeadingHold(MetricSet):
     """Over the rows from `since` on, the heading against `target`, the steering about its own mean."""
 
     words: ClassVar[str] = (
@@ -33,7 +33,7 @@ class HeadingHold(Measure):
 
     def values(self, log: Recording) -> dict[str, float]:
         """Each rms is about the mean; rates are central differences between rows of the log."""
-        rows = seen(log, self.since, least=2)
+        rows = rows_between(log, self.since, least=2)
         off, angle = log["psi_rad"][rows] - self.target, log[self.steering][rows]
         rate = np.gradient(angle, log.t[rows])
         found = (

@@ -6,13 +6,13 @@ from typing import ClassVar
 from boatsim.physics.base import param
 from boatsim.recordings.notes import unit_of
 from boatsim.recordings.table import Recording
-from boatsim.simulate.metric import Measure, seen
+from boatsim.simulate.metric import MetricSet, rows_between
 
 MOST = 12  # levels
 
 
 @dataclass(frozen=True)
-class Levels(Measure):
+class Levels(MetricSet):
     """The signal at the end of every interval of `every` s."""
 
     words: ClassVar[str] = "value of a signal at the end of each interval"
@@ -21,17 +21,17 @@ class Levels(Measure):
     signal: str = "u_mps"
     every: float = param(10.0, low=1e-3, high=1e6, unit="s", words="length of an interval")
 
-    def unit(self, norm: str) -> str:
+    def unit(self, metric: str) -> str:
         """That of the signal."""
         return unit_of(self.signal)
 
-    def why(self, norm: str, log: Recording) -> str:
+    def why(self, metric: str, log: Recording) -> str:
         """How many intervals there were."""
         return f"the run ends at {log.t[-1]:.4g} s, after {int((log.t[-1] + 1e-6) / self.every)} intervals"
 
     def values(self, log: Recording) -> dict[str, float]:
         """Of as many whole intervals as the log has."""
-        seen(log)
+        rows_between(log)
         ends = [i * self.every for i in range(1, MOST + 1) if i * self.every <= log.t[-1] + 1e-6]
         rows = [int(abs(log.t - end).argmin()) for end in ends]
         return {f"level_{i}": float(log[self.signal][row]) for i, row in enumerate(rows, 1)}

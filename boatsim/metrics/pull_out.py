@@ -6,13 +6,13 @@ from typing import ClassVar
 import numpy as np
 
 from boatsim.recordings.table import Recording
-from boatsim.simulate.metric import Measure
+from boatsim.simulate.metric import MetricSet
 
 PARTS = ("first_turn", "after_first", "second_turn", "after_second")
 
 
 @dataclass(frozen=True)
-class PullOut(Measure):
+class PullOut(MetricSet):
     """Rates of turn at the end of each of the four parts, positive to starboard."""
 
     words: ClassVar[str] = "rates of turn before and after the helm is put midships, both ways"
@@ -21,7 +21,7 @@ class PullOut(Measure):
         "residual_difference": "deg/s",
     }
 
-    def why(self, norm: str, log: Recording) -> str:
+    def why(self, metric: str, log: Recording) -> str:
         """How many parts there were."""
         helm = log["reference_helm_rad"]
         return (

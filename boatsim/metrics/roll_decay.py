@@ -9,19 +9,19 @@ from typing import ClassVar
 import numpy as np
 
 from boatsim.recordings.table import Recording
-from boatsim.simulate.metric import Measure, seen
+from boatsim.simulate.metric import MetricSet, rows_between
 
 SMALLEST = 0.02  # share of the release below which peaks are left out
 
 
 @dataclass(frozen=True)
-class RollDecay(Measure):
+class RollDecay(MetricSet):
     """Peaks to both sides; the logarithmic decrement of half a swing is pi zeta / sqrt(1 - zeta^2)."""
 
     words: ClassVar[str] = "period and damping of a free roll, at its first and at its last swings"
     units: ClassVar = {"period": "s", "damping_first": "", "damping_mean": "", "damping_last": ""}
 
-    def why(self, norm: str, log: Recording) -> str:
+    def why(self, metric: str, log: Recording) -> str:
         """Where it began."""
         if not log["phi_rad"][0]:
             return "it was not heeled at the start"
@@ -29,7 +29,7 @@ class RollDecay(Measure):
 
     def values(self, log: Recording) -> dict[str, float]:
         """None for a hull that does not swing or was not heeled."""
-        seen(log, least=3)
+        rows_between(log, least=3)
         t, phi = log.t, log["phi_rad"]
         inner = phi[1:-1]
         rows = 1 + np.flatnonzero((inner - phi[:-2]) * (inner - phi[2:]) > 0.0)

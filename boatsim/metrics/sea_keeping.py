@@ -7,11 +7,11 @@ from typing import ClassVar
 import numpy as np
 
 from boatsim.recordings.table import Recording
-from boatsim.simulate.metric import Measure, seen
+from boatsim.simulate.metric import MetricSet, rows_between
 
 
 @dataclass(frozen=True)
-class SeaKeeping(Measure):
+class SeaKeeping(MetricSet):
     """Root mean squares over the whole run, about zero: what a course keeper is to hold."""
 
     words: ClassVar[str] = "rms of yaw, roll and rudder angle in a seaway"
@@ -23,9 +23,11 @@ class SeaKeeping(Measure):
 
     def values(self, log: Recording) -> dict[str, float]:
         """The three norms; a signal that the log has not is left out."""
-        seen(log)
+        rows_between(log)
         named = {"yaw_rms": self.heading, "roll_rms": self.roll, "rudder_rms": self.rudder}
-        return {norm: rms(log, signal) for norm, signal in named.items() if signal in log.signals}
+        return {
+            metric: rms(log, signal) for metric, signal in named.items() if signal in log.signals
+        }
 
 
 def rms(log: Recording, signal: str) -> float:

@@ -10,11 +10,11 @@ from boatsim.errors import BadInput, unknown_name
 from boatsim.physics.base import param
 from boatsim.recordings.notes import unit_of
 from boatsim.recordings.table import Recording
-from boatsim.simulate.metric import Measure, never, seen
+from boatsim.simulate.metric import MetricSet, rows_between, why_not_reached
 
 
 @dataclass(frozen=True)
-class Settling(Measure):
+class Settling(MetricSet):
     """An angle after an offset or a kick, in the columns of Martin's calm-water tables (1993, appendix VI).
 
     The end is the mean over the time after `late`: what the source prints as final angle lies near zero for limit
@@ -37,17 +37,17 @@ class Settling(Measure):
     )
     late: float = param(300.0, low=0.0, high=86400.0, unit="s", words="the end begins")
 
-    def why(self, norm: str, log: Recording) -> str:
+    def why(self, metric: str, log: Recording) -> str:
         """Where it ends, or that it is over too soon."""
         if log.t[-1] - log.t[0] < self.late:
             return f"the run ends at {log.t[-1] - log.t[0]:.4g} s, before {self.late:g} s, where its end begins"
-        return never(log[self.signal], self.target, unit_of(self.signal))
+        return why_not_reached(log[self.signal], self.target, unit_of(self.signal))
 
     def values(self, log: Recording) -> dict[str, float]:
         """rise: first crossing once off the target; settling: last time out of the band; extremes about the end."""
         if self.signal not in log.signals:
             raise BadInput(unknown_name("settling: signal", self.signal, log.signals))
-        seen(log)
+        rows_between(log)
         t, x = log.t - log.t[0], log[self.signal] - self.target
         if not (t >= self.late).any():
             return {}

@@ -6,13 +6,13 @@ from typing import ClassVar
 import numpy as np
 
 from boatsim.recordings.table import Recording
-from boatsim.simulate.metric import Measure, seen
+from boatsim.simulate.metric import MetricSet, rows_between
 
 SAME = 1e-6  # [rad] between two helm angles that are one
 
 
 @dataclass(frozen=True)
-class Spiral(Measure):
+class Spiral(MetricSet):
     """The loop of the curve rate over helm angle."""
 
     words: ClassVar[str] = (
@@ -25,7 +25,7 @@ class Spiral(Measure):
         "rate_midships": "deg/s",
     }
 
-    def why(self, norm: str, log: Recording) -> str:
+    def why(self, metric: str, log: Recording) -> str:
         """How far the helm got."""
         last = np.degrees(log["reference_helm_rad"][-1])
         return f"the helm did not come back to its first angle: it ends at {last:.3g} deg"
@@ -35,7 +35,7 @@ class Spiral(Measure):
 
         None unless the helm came back to its first angle.
         """
-        seen(log)
+        rows_between(log)
         helm = log["reference_helm_rad"]
         begin = int(np.argmax(helm != 0.0))
         ends = np.array(

@@ -9,13 +9,13 @@ from boatsim.metrics.step_response import first
 from boatsim.physics.base import param
 from boatsim.recordings.notes import unit_of
 from boatsim.recordings.table import Recording
-from boatsim.simulate.metric import Measure, TooShort, seen
+from boatsim.simulate.metric import MetricSet, TooShort, rows_between
 
 MOST = 8  # steps of a staircase
 
 
 @dataclass(frozen=True)
-class Staircase(Measure):
+class Staircase(MetricSet):
     """Steps of `height` every `every` s from `bottom`, the first at `since`; a later one starts where it should."""
 
     words: ClassVar[str] = (
@@ -38,13 +38,13 @@ class Staircase(Measure):
     since: float = param(0.0, low=0.0, high=1e6, unit="s", words="time of the first step")
     every: float = param(10.0, low=1e-3, high=1e6, unit="s", words="time between two steps")
 
-    def unit(self, norm: str) -> str:
+    def unit(self, metric: str) -> str:
         """Times in s, errors in the signal's unit."""
-        return self.units[norm] or unit_of(self.signal)
+        return self.units[metric] or unit_of(self.signal)
 
-    def why(self, norm: str, log: Recording) -> str:
+    def why(self, metric: str, log: Recording) -> str:
         """Whether there was such a step, and how much of it was made."""
-        number = int(norm.rpartition("_")[2]) if norm[-1].isdigit() else 1
+        number = int(metric.rpartition("_")[2]) if metric[-1].isdigit() else 1
         begin = self.since + (number - 1) * self.every
         rows = (log.t >= begin - 1e-9) & (log.t < begin + self.every - 1e-9)
         if log.t[-1] + 1e-6 * self.every < begin + self.every:
@@ -57,7 +57,7 @@ class Staircase(Measure):
 
     def values(self, log: Recording) -> dict[str, float]:
         """Of as many whole steps as the log has; a time that is not reached is left out."""
-        seen(log, self.since)
+        rows_between(log, self.since)
         count = min(MOST, int((log.t[-1] - self.since) / self.every + 1e-6))
         if count < 1:
             return {}

@@ -9,13 +9,13 @@ import numpy as np
 from boatsim.physics.base import Array, param
 from boatsim.recordings.notes import unit_of
 from boatsim.recordings.table import Recording
-from boatsim.simulate.metric import Measure, seen
+from boatsim.simulate.metric import MetricSet, rows_between
 
 BAND = 0.05  # of the step: what counts as settled
 
 
 @dataclass(frozen=True)
-class StepResponse(Measure):
+class StepResponse(MetricSet):
     """From the time of the step to `until`; the step leads from where the signal then is to `target`."""
 
     words: ClassVar[str] = "times of a step response, its overshoot and its end error"
@@ -40,23 +40,23 @@ class StepResponse(Measure):
         0.0, low=0.0, high=1e6, unit="s", words="end of what is looked at; 0: of the log"
     )
 
-    def unit(self, norm: str) -> str:
+    def unit(self, metric: str) -> str:
         """The value at the end has the signal's unit."""
-        return unit_of(self.signal) if norm == "end" else self.units[norm]
+        return unit_of(self.signal) if metric == "end" else self.units[metric]
 
-    def why(self, norm: str, log: Recording) -> str:
+    def why(self, metric: str, log: Recording) -> str:
         """How much of the step it made."""
-        y = log[self.signal][seen(log, self.since, self.until or inf, least=2)]
+        y = log[self.signal][rows_between(log, self.since, self.until or inf, least=2)]
         if y[0] == self.target:
             return f"there is no step: it begins at its target, {self.target:.4g} {unit_of(self.signal)}".rstrip()
         done = (y - y[0]) / (self.target - y[0])
-        if norm == "settle":
+        if metric == "settle":
             return f"ends {100.0 * abs(done[-1] - 1.0):.3g} % of the step off; settled is {100.0 * BAND:g} %"
         return f"made at most {100.0 * done.max():.3g} % of the step"
 
     def values(self, log: Recording) -> dict[str, float]:
         """Times from the step on, interpolated between rows; `rise` from 10 to 90 %; errors in per cent of the step."""
-        rows = seen(log, self.since, self.until or inf, least=2)
+        rows = rows_between(log, self.since, self.until or inf, least=2)
         t, y = log.t[rows] - self.since, log[self.signal][rows]
         if y[0] == self.target:  # no step
             return {"end": float(y[-1])}

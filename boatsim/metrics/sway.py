@@ -8,14 +8,14 @@ import numpy as np
 from boatsim.physics.base import Array, param
 from boatsim.recordings.table import Recording
 from boatsim.simulate.camera import Camera
-from boatsim.simulate.camera_log import Film, FilmMeasure, first, noise
-from boatsim.simulate.metric import never
+from boatsim.simulate.camera_metric import CameraFrames, CameraMetricSet, first_frame, mark_noise
+from boatsim.simulate.metric import why_not_reached
 
 REMAIN = 3  # averages there are at least
 
 
 @dataclass(frozen=True)
-class Sway(FilmMeasure):
+class Sway(CameraMetricSet):
     """From the start to the first frame `distance` to starboard; the wanted yaw rate is none."""
 
     words: ClassVar[str] = (
@@ -38,17 +38,19 @@ class Sway(FilmMeasure):
         10.0, low=1.0, high=1000.0, unit="", words="yaw rates in the moving average"
     )
 
-    def why(self, norm: str, log: Recording) -> str:
+    def why(self, metric: str, log: Recording) -> str:
         """How far to starboard it came."""
         psi, dx, dy = log["psi_rad"][0], log["x_m"] - log["x_m"][0], log["y_m"] - log["y_m"][0]
-        return f"{never(np.cos(psi) * dy - np.sin(psi) * dx, self.distance, 'm')} to starboard"
+        return f"{why_not_reached(np.cos(psi) * dy - np.sin(psi) * dx, self.distance, 'm')} to starboard"
 
-    def of_film(self, film: Film) -> dict[str, float]:
+    def from_frames(self, frames: CameraFrames) -> dict[str, float]:
         """Yaw rates and heading as the camera has them, the rest as it was."""
-        frame = first(film.place[:, 1] >= self.distance, least=round(self.averaged) + REMAIN)
+        frame = first_frame(
+            frames.place[:, 1] >= self.distance, least=round(self.averaged) + REMAIN
+        )
         if frame is None:
             return {}
-        part = film.until(frame)
+        part = frames.until(frame)
         found = self.yaw_rates(np.unwrap(part.heading), part.t[1] - part.t[0])
         return {name: float(value) for name, value in found.items()} | {
             "surge_offset": float(part.place[-1, 0] - part.place[0, 0]),  # x_i - x_0
@@ -56,11 +58,11 @@ class Sway(FilmMeasure):
             "frames": float(len(part.t)),
         }
 
-    def of_noise(self, frames: int, camera: Camera) -> dict[str, Array]:
+    def from_noise(self, frames: int, camera: Camera) -> dict[str, Array]:
         """A heading that never changes."""
         still = np.zeros(frames)
         return self.yaw_rates(
-            camera.pose(camera.seen(still, still, noise(frames, camera)))[1], 1.0 / self.scored
+            camera.pose(camera.seen(still, still, mark_noise(frames, camera)))[1], 1.0 / self.scored
         )
 
     def yaw_rates(self, psi: Array, dt: float) -> dict[str, Array]:

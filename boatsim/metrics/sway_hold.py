@@ -7,11 +7,11 @@ from typing import ClassVar
 import numpy as np
 
 from boatsim.recordings.table import Recording
-from boatsim.simulate.metric import Measure, seen
+from boatsim.simulate.metric import MetricSet, rows_between
 
 
 @dataclass(frozen=True)
-class SwayHold(Measure):
+class SwayHold(MetricSet):
     """For a boat that is to move sideways without turning; the last half of the run counts as settled."""
 
     words: ClassVar[str] = (
@@ -28,7 +28,7 @@ class SwayHold(Measure):
 
     def values(self, log: Recording) -> dict[str, float]:
         """Largest yaw rate, its rms in the last half, largest heading change, mean angle in the last half."""
-        seen(log)
+        rows_between(log)
         last = log.t >= 0.5 * (log.t[0] + log.t[-1])
         r, psi = np.degrees(log["r_radps"]), np.degrees(log["psi_rad"] - log["psi_rad"][0])
         return {

@@ -9,11 +9,11 @@ import numpy as np
 from boatsim.physics.base import Array, param
 from boatsim.recordings.notes import unit_of
 from boatsim.recordings.table import Recording
-from boatsim.simulate.metric import Measure, seen
+from boatsim.simulate.metric import MetricSet, rows_between
 
 
 @dataclass(frozen=True)
-class Tracking(Measure):
+class Tracking(MetricSet):
     """From `since` to `until`. `reference` is another signal of the log; without one the reference is 0."""
 
     words: ClassVar[str] = "rms and largest error of a signal against its reference"
@@ -25,17 +25,17 @@ class Tracking(Measure):
     since: float = param(0.0, low=0.0, high=1e6, unit="s", words="beginning of what is looked at")
     until: float = param(0.0, low=0.0, high=1e6, unit="s", words="its end; 0: that of the log")
 
-    def unit(self, norm: str) -> str:
+    def unit(self, metric: str) -> str:
         """That of the signal, angles in degrees."""
         return unit_of(self.signal).replace("rad", "deg")
 
-    def why(self, norm: str, log: Recording) -> str:
+    def why(self, metric: str, log: Recording) -> str:
         """Norms against a goal need one."""
         return "" if self.goal else "the measure names no goal"
 
     def values(self, log: Recording) -> dict[str, float]:
         """Rms and largest error; rms of the error against the goal, and that error's mean over the last second."""
-        rows = seen(log, self.since, self.until or inf)
+        rows = rows_between(log, self.since, self.until or inf)
         scale = degrees(1.0) if unit_of(self.signal).startswith("rad") else 1.0
 
         def error(name: str) -> Array:

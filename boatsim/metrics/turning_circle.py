@@ -8,11 +8,11 @@ import numpy as np
 
 from boatsim.physics.base import param
 from boatsim.recordings.table import Recording
-from boatsim.simulate.metric import Measure, at, seen
+from boatsim.simulate.metric import MetricSet, rows_between, value_at
 
 
 @dataclass(frozen=True)
-class TurningCircle(Measure):
+class TurningCircle(MetricSet):
     """Distances in lengths, from where the helm was put over, along and across the approach course."""
 
     words: ClassVar[str] = (
@@ -39,23 +39,25 @@ class TurningCircle(Measure):
     )
     length: float = param(1.0, low=0.001, high=1e3, unit="m", words="of the ship")
 
-    def why(self, norm: str, log: Recording) -> str:
+    def why(self, metric: str, log: Recording) -> str:
         """How far it turned."""
-        asked = 90 if norm in ("advance", "transfer", "time_to_90") else 180
+        asked = 90 if metric in ("advance", "transfer", "time_to_90") else 180
         line = self.execute if self.course < 0.0 else self.course
-        turned = np.degrees(np.abs(log["psi_rad"] - at(log, line, "psi_rad")).max())
+        turned = np.degrees(np.abs(log["psi_rad"] - value_at(log, line, "psi_rad")).max())
         return f"never turned {asked} deg: at most {turned:.3g}"
 
     def values(self, log: Recording) -> dict[str, float]:
         """What the turn reached."""
-        seen(log)
+        rows_between(log)
         line = self.execute if self.course < 0.0 else self.course
-        psi0 = at(log, line, "psi_rad")
+        psi0 = value_at(log, line, "psi_rad")
         c, s = np.cos(psi0), np.sin(psi0)
-        ahead = c * (log["x_m"] - at(log, self.execute, "x_m")) + s * (
-            log["y_m"] - at(log, self.execute, "y_m")
+        ahead = c * (log["x_m"] - value_at(log, self.execute, "x_m")) + s * (
+            log["y_m"] - value_at(log, self.execute, "y_m")
         )
-        aside = c * (log["y_m"] - at(log, line, "y_m")) - s * (log["x_m"] - at(log, line, "x_m"))
+        aside = c * (log["y_m"] - value_at(log, line, "y_m")) - s * (
+            log["x_m"] - value_at(log, line, "x_m")
+        )
         side = float(np.sign(log["psi_rad"][-1] - psi0))
         turned = side * (log["psi_rad"] - psi0)
         found = {}

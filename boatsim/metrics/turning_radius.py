@@ -6,11 +6,11 @@ from typing import ClassVar
 import numpy as np
 
 from boatsim.recordings.table import Recording
-from boatsim.simulate.metric import Measure
+from boatsim.simulate.metric import MetricSet
 
 
 @dataclass(frozen=True)
-class TurningRadius(Measure):
+class TurningRadius(MetricSet):
     """For a boat that turns as tightly as it can."""
 
     words: ClassVar[str] = "radius of the tightest turn"
@@ -18,7 +18,7 @@ class TurningRadius(Measure):
 
     while_on: str = "thrust_N"  # signal that is not zero during the turn
 
-    def why(self, norm: str, log: Recording) -> str:
+    def why(self, metric: str, log: Recording) -> str:
         """It is looked at while something is on."""
         return f"{self.while_on} is zero, or the boat does not turn, throughout"
 

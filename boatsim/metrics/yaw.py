@@ -10,11 +10,11 @@ from boatsim.errors import BadInput, unknown_name
 from boatsim.physics.base import Array, param
 from boatsim.recordings.table import Recording
 from boatsim.simulate.camera import Camera
-from boatsim.simulate.camera_log import Film, FilmMeasure, first, noise
+from boatsim.simulate.camera_metric import CameraFrames, CameraMetricSet, first_frame, mark_noise
 
 
 @dataclass(frozen=True)
-class Yaw(FilmMeasure):
+class Yaw(CameraMetricSet):
     """From the start to the first frame after a full turn either way."""
 
     words: ClassVar[str] = (
@@ -40,19 +40,19 @@ class Yaw(FilmMeasure):
         if self.mark not in camera.marks:
             raise BadInput(unknown_name("yaw: mark", self.mark, camera.marks))
 
-    def why(self, norm: str, log: Recording) -> str:
+    def why(self, metric: str, log: Recording) -> str:
         """How far it turned."""
         turned = np.degrees(np.abs(log["psi_rad"] - log["psi_rad"][0]).max())
         return f"never turned 360 deg: at most {turned:.3g}"
 
-    def of_film(self, film: Film) -> dict[str, float]:
+    def from_frames(self, frames: CameraFrames) -> dict[str, float]:
         """Distances of the mark as the camera has them, the rest as it was."""
-        if not len(film.t):
+        if not len(frames.t):
             return {}
-        frame = first(np.abs(film.psi - film.psi[0]) >= 2.0 * pi)
+        frame = first_frame(np.abs(frames.psi - frames.psi[0]) >= 2.0 * pi)
         if frame is None:
             return {}
-        part = film.until(frame)
+        part = frames.until(frame)
         turn = np.sign(part.psi[-1] - part.psi[0])
         away = np.hypot(*(part.place - part.place[0]).T)
         found = self.distances(part.marks[self.mark], float(turn))
@@ -62,10 +62,10 @@ class Yaw(FilmMeasure):
             "frames": float(len(part.t)),
         }
 
-    def of_noise(self, frames: int, camera: Camera) -> dict[str, Array]:
+    def from_noise(self, frames: int, camera: Camera) -> dict[str, Array]:
         """A mark that goes once round its circle."""
         angle, at = np.linspace(0.0, 2.0 * pi, frames), 2 * list(camera.marks).index(self.mark)
-        shaken = camera.mark_sd * noise(frames, camera)[..., at : at + 2]
+        shaken = camera.mark_sd * mark_noise(frames, camera)[..., at : at + 2]
         return self.distances(
             self.radius * np.stack([np.cos(angle), np.sin(angle)], axis=-1) + shaken, 1.0
         )

@@ -7,13 +7,13 @@ import numpy as np
 
 from boatsim.physics.base import param
 from boatsim.recordings.table import Recording
-from boatsim.simulate.metric import Measure, seen, track
+from boatsim.simulate.metric import MetricSet, path_length, rows_between
 
 COUNT = ("first", "second", "third")
 
 
 @dataclass(frozen=True)
-class Zigzag(Measure):
+class Zigzag(MetricSet):
     """An overshoot is the largest heading after a reversal, less the heading at which the helm is reversed."""
 
     words: ClassVar[str] = "overshoots of a zig-zag and the track to the first reversal"
@@ -32,7 +32,7 @@ class Zigzag(Measure):
     )
     length: float = param(1.0, low=0.001, high=1e3, unit="m", words="of the ship")
 
-    def why(self, norm: str, log: Recording) -> str:
+    def why(self, metric: str, log: Recording) -> str:
         """How often the helm was reversed, or how far she turned."""
         count = int((np.diff(np.sign(log["reference_helm_rad"])) != 0.0).sum()) - 1
         turned = np.degrees(np.abs(log["psi_rad"] - log["psi_rad"][0]).max())
@@ -40,7 +40,7 @@ class Zigzag(Measure):
 
     def values(self, log: Recording) -> dict[str, float]:
         """Of as many reversals as there were."""
-        seen(log)
+        rows_between(log)
         helm, psi = log["reference_helm_rad"], log["psi_rad"] - log["psi_rad"][0]
         reversals = 1 + np.flatnonzero(np.sign(helm[1:]) * np.sign(helm[:-1]) < 0.0)
         if not len(reversals):
@@ -49,7 +49,7 @@ class Zigzag(Measure):
             reversals[0] - 1, reversals[0] + 1
         )  # rows between which the heading was reached
         reached = float(np.interp(self.heading, np.sign(helm[last][0]) * psi[last], log.t[last]))
-        travelled = np.interp([self.execute, reached], log.t, track(log))
+        travelled = np.interp([self.execute, reached], log.t, path_length(log))
         found = {
             "time_to_reversal": reached - self.execute,
             "track_to_reversal": float(travelled[1] - travelled[0]) / self.length,

@@ -8,13 +8,13 @@ import numpy as np
 
 from boatsim.physics.base import param
 from boatsim.recordings.table import Recording
-from boatsim.simulate.metric import Measure, seen
+from boatsim.simulate.metric import MetricSet, rows_between
 
 REVERSALS = 4
 
 
 @dataclass(frozen=True)
-class ZigzagSwings(Measure):
+class ZigzagSwings(MetricSet):
     """The helm is the command channel `signal`; a craft that does not roll has no roll."""
 
     words: ClassVar[str] = (
@@ -33,16 +33,16 @@ class ZigzagSwings(Measure):
     signal: str = "jet_rad"
     since: float = param(0.0, low=0.0, high=1e6, unit="s", words="beginning of what is looked at")
 
-    def why(self, norm: str, log: Recording) -> str:
+    def why(self, metric: str, log: Recording) -> str:
         """How often the helm was reversed."""
-        if norm in ("roll", "heading", "yaw_rate"):
+        if metric in ("roll", "heading", "yaw_rate"):
             return "this craft has no such motion"
-        count = int((np.diff(np.sign(log[self.signal][seen(log, self.since)])) != 0).sum())
+        count = int((np.diff(np.sign(log[self.signal][rows_between(log, self.since)])) != 0).sum())
         return f"{count} reversals of {self.signal}"
 
     def values(self, log: Recording) -> dict[str, float]:
         """Reversals the run gets as far as; the period is the mean of two half swings that follow the first."""
-        rows = seen(log, self.since)
+        rows = rows_between(log, self.since)
         t, helm = log.t[rows], log[self.signal][rows]
         at = t[1:][np.diff(np.sign(helm)) != 0] - self.since
         found = {f"reversal_{i}": float(time) for i, time in enumerate(at[:REVERSALS], 1)}

@@ -1,7 +1,8 @@
-"""Norms pinned beside the scenarios they are of, so that no change of a boat, a controller or this program goes unseen.
+"""Baselines of metrics, stored next to the scenarios, so that every change of behaviour is noticed.
 
-`pins.toml` in a folder of scenarios holds each norm's value with the scenario's own seed, and a tolerance: its range
-over several seeds, for a change that but draws other noise is none, and at least what other machines' arithmetic moves.
+`pins.toml` in a folder of scenarios holds the value of each metric with the scenario's own seed, and
+a tolerance: the range of the metric over several seeds, because other noise is not a change, and at
+least the difference between the arithmetic of two machines.
 """
 
 import json
@@ -11,99 +12,138 @@ from pathlib import Path
 from pydantic import Field
 
 from boatsim.files import Table, checked, read_toml
-from boatsim.simulate.evaluation import Norm
+from boatsim.simulate.evaluation import Metric
 
 FILE = "pins.toml"
-# Arithmetic of other machines differs in the 16th digit. Start conditions off by 1e-12 move the
-# norms of nearly every
-# scenario by less than 1e-7 of themselves, relays in a controller included; so 1e-6 is a change of
-# the code.
+# Relative. Machines differ in the 16th digit. Start conditions changed by 1e-12 move the metrics of
+# nearly every scenario by less than 1e-7, even with relays in the controller; 1e-6 is therefore a
+# change of the code.
 TOLERANCE = 1e-6
-NOTHING = 1e-9  # absolute, for norms that are zero
+NOTHING = 1e-9  # absolute tolerance, for metrics that are zero
 
 
-class Pin(Table):
-    """A norm as it was."""
+class Baseline(Table):
+    """The stored value of a metric."""
 
-    value: float | None = None  # None: not reached
+    value: float | None = None  # None: the run did not reach the metric's condition
     unit: str = ""
-    tolerance: float = Field(default=0.0, ge=0.0)  # either way
+    tolerance: float = Field(default=0.0, ge=0.0)  # to either side
 
 
-class PinsFile(Table):
+class BaselinesFile(Table):
     """The content of a pins.toml."""
 
-    seeds: int = Field(default=1, ge=1)  # over which the tolerances were drawn
-    scenario: dict[str, dict[str, Pin]] = {}  # by file, or file:case
+    seeds: int = Field(default=1, ge=1)  # number of seeds behind the tolerances
+    scenario: dict[str, dict[str, Baseline]] = {}  # by file, or file:case
 
 
-def same(old: float | str | None, new: float | str | None, reach: float) -> bool:
-    """Whether a number is what it was, within `reach` and arithmetic; of anything else, whether it is equal."""
+def same(old: float | str | None, new: float | str | None, tolerance: float) -> bool:
+    """Return whether two values agree.
+
+    Args:
+        old: Stored value.
+        new: New value.
+        tolerance: Largest difference of two numbers, in addition to the arithmetic's.
+
+    Returns:
+        For two numbers whether they agree within the tolerance, otherwise whether they are equal.
+    """
     if not isinstance(old, float | int) or not isinstance(new, float | int):
         return old == new
-    return abs(new - old) <= max(TOLERANCE * abs(old), NOTHING, reach)
+    return abs(new - old) <= max(TOLERANCE * abs(old), NOTHING, tolerance)
 
 
 def digits(value: float | None) -> float | None:
-    """Nine digits: more than the tolerance sees."""
+    """Round a value to nine digits, which is finer than the tolerance."""
     return None if value is None else float(f"{value:.9g}")
 
 
-def read(folder: Path) -> PinsFile | None:
-    """The pins of a folder, None if there are none. Raises BadInput."""
+def read(folder: Path) -> BaselinesFile | None:
+    """Read the baselines of a folder.
+
+    Args:
+        folder: Folder of scenarios.
+
+    Returns:
+        The baselines, or None if the folder has none.
+
+    Raises:
+        BadInput: If the file is not valid.
+    """
     path = folder / FILE
-    return checked(PinsFile, read_toml(path), str(path)) if path.exists() else None
+    return checked(BaselinesFile, read_toml(path), str(path)) if path.exists() else None
 
 
-def pinned(runs: Sequence[Mapping[str, Norm]]) -> dict[str, Pin]:
-    """Pins of the norms of one scenario: the values of the first run, tolerances that span those with other seeds."""
-    pins = {}
-    for name, norm in runs[0].items():
-        values = [x for run in runs if name in run and (x := run[name].value) is not None]
-        spread = max(values) - min(values) if values and norm.value is not None else 0.0
-        least = max(TOLERANCE * abs(norm.value or 0.0), NOTHING)
-        pins[name] = Pin(
-            value=digits(norm.value), unit=norm.unit, tolerance=float(f"{max(spread, least):.3g}")
-        )
-    return pins
+def baselines_of(runs: Sequence[Mapping[str, Metric]]) -> dict[str, Baseline]:
+    """Return the baselines of one scenario.
+
+    Args:
+        runs: Metrics of runs with different seeds; the first run has the scenario's own seed.
+
+    Returns:
+        Baseline by metric: the value of the first run, with a tolerance that spans all runs.
+    """
+    found: dict[str, Baseline] = {}
+    for name, metric in runs[0].items():
+        tolerance = max(TOLERANCE * abs(metric.value or 0.0), NOTHING)
+        if metric.value is not None:
+            values = [run[name].value for run in runs if name in run]
+            numbers = [value for value in values if value is not None]
+            tolerance = max(max(numbers) - min(numbers), tolerance)
+        rounded = float(f"{tolerance:.3g}")
+        found[name] = Baseline(value=digits(metric.value), unit=metric.unit, tolerance=rounded)
+    return found
 
 
-def drifts(pins: Mapping[str, Pin], found: Mapping[str, Norm]) -> list[str]:
-    """A line for every norm that is not as it was pinned."""
+def differences(baselines: Mapping[str, Baseline], metrics: Mapping[str, Metric]) -> list[str]:
+    """Compare the metrics of a run with their baselines.
+
+    Args:
+        baselines: Baseline by metric.
+        metrics: The metrics of a run.
+
+    Returns:
+        A line for each metric that differs.
+    """
     lines = []
-    for name in {**pins, **found}:
-        if name not in pins:
-            lines.append(f"{name} is not pinned")
-        elif name not in found:
-            lines.append(f"{name} is pinned and gone")
-        elif not same(pins[name].value, found[name].value, pins[name].tolerance):
-            old, new = (_said(x.value, found[name].lacking) for x in (pins[name], found[name]))
-            lines.append(
-                f"{name}: {old} -> {new} {found[name].unit}".rstrip()
-                + f" (+- {pins[name].tolerance:.3g})"
-            )
-        elif pins[name].unit != found[name].unit:
-            lines.append(f"{name}: its unit was {pins[name].unit!r} and is {found[name].unit!r}")
+    for name in {**baselines, **metrics}:
+        if name not in baselines:
+            lines.append(f"{name} has no baseline")
+            continue
+        if name not in metrics:
+            lines.append(f"{name} has a baseline and is not computed any more")
+            continue
+        old = baselines[name]
+        new = metrics[name]
+        if not same(old.value, new.value, old.tolerance):
+            before = _text(old.value, new.lacking)
+            after = _text(new.value, new.lacking)
+            changed = f"{name}: {before} -> {after} {new.unit}".rstrip()
+            lines.append(f"{changed} (+- {old.tolerance:.3g})")
+        elif old.unit != new.unit:
+            lines.append(f"{name}: its unit was {old.unit!r} and is {new.unit!r}")
     return lines
 
 
-def _said(value: float | None, lacking: str | None) -> str:
-    return (lacking or "not reached") if value is None else f"{value:.6g}"
+def _text(value: float | None, lacking: str | None) -> str:
+    if value is None:
+        return lacking or "not reached"
+    return f"{value:.6g}"
 
 
-def text_of(pins: PinsFile) -> str:
-    """Content of a pins.toml: a line for each norm, so that a change of one is a change of one line."""
+def to_toml(baselines: BaselinesFile) -> str:
+    """Return the content of a pins.toml, with one line per metric so that diffs are readable."""
     lines = [
-        "# Norms of the scenarios in this folder, each with the scenario's own seed. `boatsim test FOLDER` compares,",
-        "# `boatsim test FOLDER --pin` writes this file. tolerance: range over the seeds, at least a millionth.",
-        f"seeds = {pins.seeds}",
+        "# Baselines of the metrics of the scenarios in this folder, with each scenario's own seed.",
+        "# `boatsim test FOLDER` compares with them, `boatsim test FOLDER --pin` writes this file.",
+        "# tolerance: range over the seeds, at least a millionth of the value.",
+        f"seeds = {baselines.seeds}",
     ]
-    for scenario, norms in sorted(pins.scenario.items()):
+    for scenario, entries in sorted(baselines.scenario.items()):
         lines += ["", f"[scenario.{json.dumps(scenario)}]"]
-        for name, pin in norms.items():
-            value = "" if pin.value is None else f"value = {pin.value!r}, "
-            rest = (
-                f"tolerance = {pin.tolerance!r}, unit = {json.dumps(pin.unit, ensure_ascii=False)}"
-            )
+        for name, entry in entries.items():
+            value = "" if entry.value is None else f"value = {entry.value!r}, "
+            unit = json.dumps(entry.unit, ensure_ascii=False)
+            rest = f"tolerance = {entry.tolerance!r}, unit = {unit}"
             lines.append(f"{json.dumps(name)} = {{ {value}{rest} }}")
     return "\n".join(lines) + "\n"

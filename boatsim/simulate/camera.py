@@ -12,6 +12,7 @@ from boatsim.physics.base import Array, Checked, param
 from boatsim.physics.vessel import Vessel
 
 Pose = tuple[float, float, float]  # x, y [m] of the CG, psi [rad]
+CAMERA_POSE = ("x_m", "y_m", "psi_rad")  # columns of the pose that a frame gives
 
 
 class Frame(NamedTuple):
@@ -94,7 +95,7 @@ class Camera(Checked):
         """Whether frame `number` has been taken by the time t [s]."""
         return number / self.rate <= t + 1e-9
 
-    def film(
+    def frames_between(
         self, t0: float, before: Pose, t1: float, after: Pose, first: int, rng: np.random.Generator
     ) -> Iterator[Frame]:
         """Frames number `first` on that fall into (t0, t1], the pose interpolated between its two ends."""

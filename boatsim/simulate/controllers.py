@@ -7,7 +7,7 @@ from boatsim.errors import BadInput
 from boatsim.physics.content import find, load_class, names
 from boatsim.physics.vessel import Vessel
 from boatsim.simulate.cases import content
-from boatsim.simulate.run import what_went_wrong
+from boatsim.simulate.control_loop import controller_error
 from boatsim.simulate.scenario import Scenario, from_table, load
 
 
@@ -48,7 +48,7 @@ def steered(
 
 def _rehearse(scenario: Scenario) -> None:
     """One step of the controller under each of its goals, of a boat at rest. Raises BadInput for a goal it misses."""
-    readings = {n: 0.0 for sensor in scenario.aboard for n in type(sensor).columns}
+    readings = {n: 0.0 for sensor in scenario.additional_sensors for n in type(sensor).columns}
     at_rest = dict.fromkeys(("psi", "r", "ax", "ay", "u", "v", "x", "y", "phi", "p"), 0.0)
     for goal in scenario.file.goal or [{}]:
         t = float(begin) if isinstance(begin := goal.get("from", 0.0), float) else 0.0
@@ -57,7 +57,7 @@ def _rehearse(scenario: Scenario) -> None:
             scenario.controller.step(Sense(t, **at_rest, more=readings), scenario.goal_at(t))
         except KeyError as error:
             if error.args and error.args[0] in type(scenario.controller).goals:
-                raise BadInput(what_went_wrong(error, scenario.controller)) from None
+                raise BadInput(controller_error(error, scenario.controller)) from None
         except Exception:  # of a boat that never was; what goes wrong in a run is told there
             continue
     scenario.controller.reset()

@@ -1,4 +1,4 @@
-"""Judges a run: the norms of its measure and the checks of its signals, beside the values they are held against."""
+"""Metrics of a run: those of its metric set and of its checks, with published values and bands."""
 
 from collections.abc import Mapping
 from contextlib import suppress
@@ -12,21 +12,21 @@ from boatsim.errors import BadInput, unknown_name
 from boatsim.physics.base import Array
 from boatsim.recordings.table import Recording
 from boatsim.simulate import tracking_errors
-from boatsim.simulate.camera_log import FilmMeasure, film
-from boatsim.simulate.metric import KINDS, Measure, TooShort
+from boatsim.simulate.camera_metric import CameraMetricSet, camera_frames
+from boatsim.simulate.metric import KINDS, MetricSet, TooShort
 from boatsim.simulate.run import Run
-from boatsim.simulate.scenario import CheckTable, NormTable, Scenario
+from boatsim.simulate.scenario import CheckTable, MetricTable, Scenario
 
-SHORT, NOT_REACHED = (
-    "too short",
-    "not reached",
-)  # a log that ends too soon; what a whole run never did
-PIECE = 100_000  # rows of a log looked at together
-REPRODUCED, MISSED, UNSTATED = "reproduced", "not reproduced", "no tolerance stated"
+SHORT = "too short"  # reason for a missing value: the log ends before the data are complete
+NOT_REACHED = "not reached"  # reason for a missing value: a complete run did not meet the condition
+PIECE = 100_000  # [rows] of a log processed at a time, so that a log of a day is not copied
+REPRODUCED = "reproduced"
+MISSED = "not reproduced"
+NO_TOLERANCE = "no tolerance stated"
 
 
-class NormEntry(TypedDict):
-    """One norm in norms.json: a `Norm` with its verdict."""
+class MetricEntry(TypedDict):
+    """One metric in norms.json: a `Metric` with its verdict."""
 
     value: float | None
     unit: str
@@ -38,7 +38,7 @@ class NormEntry(TypedDict):
     noise_floor: float | None
     verdict: str | None
     lacking: str | None  # why there is no value
-    kind: str  # largest, rms, mean, time integral, sum over frames; "" for what is none of these
+    kind: str  # largest, rms, mean, time integral, sum over frames; "" for others
 
 
 class RunEntry(TypedDict):
@@ -49,49 +49,62 @@ class RunEntry(TypedDict):
     seed: int
     complete: bool
     steps: int
-    saturated_steps: Mapping[str, int]  # by channel: more was sent than it takes
-    norms: dict[str, NormEntry]
+    saturated_steps: Mapping[str, int]  # channel -> steps in which a command exceeded its range
+    norms: dict[str, MetricEntry]
 
 
 @dataclass(frozen=True)
-class Norm:
-    """One norm of a run beside the paper's value, and apart from it the band about our own value."""
+class Metric:
+    """One metric of a run with the published value and the regression band.
 
-    value: float | None  # None: the run never got as far as the norm asks
+    Attributes:
+        value: The value; None if the run did not reach the metric's condition.
+        unit: Unit of all values.
+        published: Value in the publication that the scenario reproduces.
+        tolerance: Tolerance of `published`, where the publication states one.
+        band: Regression band (low, high). It makes a change visible and promises no accuracy.
+        ok: Whether the value lies within the band; None without a band.
+        at_reported: For metrics on camera frames, the value at the second, reported frame rate.
+        noise_floor: Value that the camera's noise alone causes for error-free motion and as many
+            frames.
+        lacking: Why there is no value.
+        kind: How the metric summarises its signal: largest, rms, mean, time integral, sum over
+            frames.
+    """
+
+    value: float | None
     unit: str
     published: float | None = None
-    tolerance: float | None = None  # of what is published, where its document states one
-    # low, high: no promise, only that a change does not go unseen
-    guard: tuple[float, float] | None = None
-    ok: bool | None = None  # whether the value lies within the guard; None: there is none
-    # of measures on camera frames: at the rate reported beside the one scored
+    tolerance: float | None = None
+    band: tuple[float, float] | None = None
+    ok: bool | None = None
     at_reported: float | None = None
-    # what the camera's noise alone would give, error-free motion, as many frames
     noise_floor: float | None = None
-    lacking: str | None = None  # why there is no value
-    # which value of a signal it is: largest, rms, mean, time integral, sum over frames
+    lacking: str | None = None
     kind: str = ""
 
     @property
     def verdict(self) -> str | None:
-        """Whether what is published is reproduced, signs included; None where nothing is."""
+        """Whether the published value is reproduced, sign included; None without one."""
         if self.published is None:
             return None
         if self.tolerance is None:
-            return UNSTATED
-        close = self.value is not None and within(self.value, self.published, self.tolerance)
-        return REPRODUCED if close else MISSED
+            return NO_TOLERANCE
+        if self.value is not None and within(self.value, self.published, self.tolerance):
+            return REPRODUCED
+        return MISSED
 
-    def to_json(self) -> NormEntry:
-        """Its entry in norms.json."""
+    def to_json(self) -> MetricEntry:
+        """Return the metric's entry in norms.json."""
+        ends = None
+        if self.band is not None:
+            ends = [end if isfinite(end) else None for end in self.band]
         return {
             "value": self.value,
             "unit": self.unit,
             "published": self.published,
             "tolerance": self.tolerance,
-            "guard": None
-            if self.guard is None
-            else [end if isfinite(end) else None for end in self.guard],
+            "guard": ends,
             "ok": self.ok,
             "at_reported": self.at_reported,
             "noise_floor": self.noise_floor,
@@ -102,100 +115,120 @@ class Norm:
 
 
 def within(value: float, published: float, tolerance: float) -> bool:
-    """Whether a value lies so near to a published one, on the edge too."""
+    """Return whether a value differs from a published one by at most the tolerance."""
     return abs(value - published) <= tolerance * (1 + 1e-9)
 
 
-def norms(run: Run) -> dict[str, Norm]:
-    """All norms the scenario asks for, by name: those of its `measure`, then its checks. Raises BadInput."""
-    measure = run.scenario.measure
-    found: dict[str, Norm] = {}
+def requested_metrics(run: Run) -> dict[str, Metric]:
+    """Return the metrics that the scenario requests.
+
+    Args:
+        run: A run, which may have been interrupted.
+
+    Returns:
+        Metrics by name: those of the scenario's metric set, then those of its checks.
+
+    Raises:
+        BadInput: If a signal is missing.
+    """
+    metric_set = run.scenario.measure
+    found: dict[str, Metric] = {}
     try:
-        found = _measured(run, measure) if measure else {}
+        if metric_set:
+            found = _of_set(run, metric_set)
     except TooShort:
-        found = _of_nothing(run, measure)
+        found = _without_values(run, metric_set)
     except BadInput:
         raise
     except Exception:
         if run.complete:
             raise
-        found = _of_nothing(
-            run, measure
-        )  # of an interrupted run a measure may make nothing; its log is kept
-    return found | {
-        f"{c.signal}_{c.norm}": _checked(run.recording, c) for c in run.scenario.file.check
-    }
+        # a metric set may fail on the log of an interrupted run, which is kept all the same
+        found = _without_values(run, metric_set)
+    for check in run.scenario.file.check:
+        found[f"{check.signal}_{check.norm}"] = _checked(run.recording, check)
+    return found
 
 
-def all_norms(run: Run) -> dict[str, Norm]:
-    """Those the scenario asks for, and how well it followed its goals, which needs no asking. Raises BadInput."""
-    asked, followed, barred = (
-        norms(run),
-        tracking_errors.errors(run.recording),
-        run.scenario.file.norms,
-    )
-    beside = {
-        name: replace(
-            _judged(run, name, followed.get(name), unit), kind=KINDS[name.rpartition("_")[2]]
-        )
-        for name, unit in tracking_errors.units(run.scenario.goal_keys).items()
-        if name in followed or name in barred  # a bar on what never was there is missed
-    }
-    return asked | {name: norm for name, norm in beside.items() if name not in asked}
+def all_metrics(run: Run) -> dict[str, Metric]:
+    """Return the requested metrics and those of the tracking errors, which are always computed.
+
+    Args:
+        run: A run, which may have been interrupted.
+
+    Returns:
+        Metrics by name.
+
+    Raises:
+        BadInput: If a signal is missing.
+    """
+    found = requested_metrics(run)
+    errors = tracking_errors.errors(run.recording)
+    for name, unit in tracking_errors.units(run.scenario.goal_keys).items():
+        # a band on a tracking error that never occurred is not met
+        if name not in found and (name in errors or name in run.scenario.file.norms):
+            kind = KINDS[name.rpartition("_")[2]]
+            found[name] = replace(_evaluated(run, name, errors.get(name), unit), kind=kind)
+    return found
 
 
-def names(scenario: Scenario) -> set[str]:
-    """Norms that a run of a scenario can have."""
-    measured = type(scenario.measure).units if scenario.measure else {}
-    checks = (f"{check.signal}_{check.norm}" for check in scenario.file.check)
-    return {*measured, *checks, *tracking_errors.units(scenario.goal_keys)}
+def metric_names(scenario: Scenario) -> set[str]:
+    """Return the names of all metrics that a run of a scenario can have."""
+    found = set(tracking_errors.units(scenario.goal_keys))
+    found |= {f"{check.signal}_{check.norm}" for check in scenario.file.check}
+    if scenario.measure:
+        found |= type(scenario.measure).units.keys()
+    return found
 
 
-def _measured(run: Run, measure: Measure) -> dict[str, Norm]:
-    """Norms of a measure, on the log or on the camera's frames."""
-    units = type(measure).units
-    if not isinstance(measure, FilmMeasure):
-        values = measure.values(run.recording)
-        return {
-            n: _of(measure, run, _judged(run, n, values.get(n), measure.unit(n)), n) for n in units
-        }
-    values, beside = (
-        film_values(run, measure, measure.scored),
-        film_values(run, measure, measure.reported),
-    )
-    floor = measure.noise_floor(round(values["frames"]), run.scenario.camera) if values else {}
-    found = {
-        n: _judged(run, n, values.get(n), unit, beside.get(n), floor.get(n))
-        for n, unit in units.items()
-    }
-    return {n: _of(measure, run, norm, n) for n, norm in found.items()}
+def _of_set(run: Run, metric_set: MetricSet) -> dict[str, Metric]:
+    """Metrics of a metric set, computed from the log or from the camera frames."""
+    found: dict[str, Metric] = {}
+    if not isinstance(metric_set, CameraMetricSet):
+        values = metric_set.values(run.recording)
+        for name in type(metric_set).units:
+            metric = _evaluated(run, name, values.get(name), metric_set.unit(name))
+            found[name] = _explained(metric_set, run, metric, name)
+        return found
+    values = camera_metrics(run, metric_set, metric_set.scored)
+    reported = camera_metrics(run, metric_set, metric_set.reported)
+    floor: dict[str, float] = {}
+    if values:
+        floor = metric_set.noise_floor(round(values["frames"]), run.scenario.camera)
+    for name, unit in type(metric_set).units.items():
+        metric = _evaluated(run, name, values.get(name), unit, reported.get(name), floor.get(name))
+        found[name] = _explained(metric_set, run, metric, name)
+    return found
 
 
-def _of(measure: Measure, run: Run, norm: Norm, name: str) -> Norm:
-    """A norm with what its measure says of it: which value it is, and why there is none."""
-    why = ""
-    if norm.lacking == NOT_REACHED:
-        with suppress(
-            ArithmeticError, LookupError, ValueError
-        ):  # an explanation that fails must not cost the run
-            why = measure.why(name, run.recording)
-    return replace(
-        norm, kind=measure.kind(name), lacking=f"{NOT_REACHED}: {why}" if why else norm.lacking
-    )
+def _explained(metric_set: MetricSet, run: Run, metric: Metric, name: str) -> Metric:
+    """Add the kind of a metric and, where it has no value, the reason."""
+    reason = ""
+    if metric.lacking == NOT_REACHED:
+        # an explanation that fails must not cost the run
+        with suppress(ArithmeticError, LookupError, ValueError):
+            reason = metric_set.why(name, run.recording)
+    lacking = f"{NOT_REACHED}: {reason}" if reason else metric.lacking
+    return replace(metric, kind=metric_set.kind(name), lacking=lacking)
 
 
-def _of_nothing(run: Run, measure: Measure | None) -> dict[str, Norm]:
-    """Norms of a measure that the log is too short for."""
-    if measure is None:
-        return {}
-    return {
-        n: replace(_judged(run, n, None, measure.unit(n)), lacking=SHORT)
-        for n in type(measure).units
-    }
+def _without_values(run: Run, metric_set: MetricSet | None) -> dict[str, Metric]:
+    """Metrics of a metric set whose log is too short."""
+    found: dict[str, Metric] = {}
+    if metric_set is not None:
+        for name in type(metric_set).units:
+            metric = _evaluated(run, name, None, metric_set.unit(name))
+            found[name] = replace(metric, lacking=SHORT)
+    return found
 
 
-def to_json(run: Run, norms: Mapping[str, Norm]) -> RunEntry:
-    """Content of norms.json."""
+def to_json(run: Run, metrics: Mapping[str, Metric]) -> RunEntry:
+    """Return the content of norms.json.
+
+    Args:
+        run: The run.
+        metrics: Its metrics by name.
+    """
     return {
         "scenario": run.scenario.name,
         "controller": str(run.scenario.file.controller["use"]),
@@ -203,31 +236,49 @@ def to_json(run: Run, norms: Mapping[str, Norm]) -> RunEntry:
         "complete": run.complete,
         "steps": run.steps,
         "saturated_steps": run.saturated,
-        "norms": {name: norm.to_json() for name, norm in norms.items()},
+        "norms": {name: metric.to_json() for name, metric in metrics.items()},
     }
 
 
-def film_values(run: Run, measure: FilmMeasure, rate: float) -> dict[str, float]:
-    """Norms of a measure on the frames of a run at a rate [Hz], which the camera's own rate is a multiple of."""
+def camera_metrics(run: Run, metric_set: CameraMetricSet, rate: float) -> dict[str, float]:
+    """Compute the metrics of the camera frames of a run at a lower frame rate.
+
+    Args:
+        run: The run.
+        metric_set: What to compute.
+        rate: Frame rate [Hz]; the camera's own rate is a multiple of it.
+
+    Returns:
+        Value by metric.
+    """
     start = run.scenario.file.start
     every = round(run.scenario.camera.rate / rate)
-    return measure.of_film(
-        film(run.camera, run.recording, (start.x, start.y, start.psi), every, measure.begin)
+    pose = (start.x, start.y, start.psi)
+    return metric_set.from_frames(
+        camera_frames(run.camera, run.recording, pose, every, metric_set.begin)
     )
 
 
 def signal_norm(t: Array, x: Array, kind: str) -> float:
-    """Norm of a logged signal; rows without a value (a camera between its frames) are left out.
+    """Compute a norm of a logged signal over the time T of the log, ignoring rows without a value.
 
-    Over the time T of the log: inf max|x|, rms sqrt(mean x^2), l2 sqrt(T mean x^2), l1 T mean|x|, so that l1 and l2 are
-    integrals that do not depend on the step.
+    Args:
+        t: Times (N,) [s].
+        x: Signal (N,); rows between two frames of a camera are nan.
+        kind: "inf" max|x|, "rms" sqrt(mean x^2), "l2" sqrt(T mean x^2) or "l1" T mean|x|; l1 and
+            l2 are integrals, which do not depend on the step.
+
+    Returns:
+        The norm; 0 if there is no value.
     """
     count, largest, total, squares = 0, 0.0, 0.0, 0.0
-    for start in range(0, len(x), PIECE):  # a day of rows is not copied
+    for start in range(0, len(x), PIECE):
         part = x[start : start + PIECE]
         known = np.abs(part[np.isfinite(part)])
-        count, largest = count + len(known), float(known.max(initial=largest))
-        total, squares = total + float(known.sum()), squares + float((known**2).sum())
+        count += len(known)
+        largest = float(known.max(initial=largest))
+        total += float(known.sum())
+        squares += float((known**2).sum())
     if kind == "inf" or not count:
         return largest
     span = float(t[-1] - t[0])
@@ -238,36 +289,39 @@ def signal_norm(t: Array, x: Array, kind: str) -> float:
     }[kind]
 
 
-def _checked(log: Recording, check: CheckTable) -> Norm:
+def _checked(log: Recording, check: CheckTable) -> Metric:
     if check.signal not in log.signals:
         raise BadInput(unknown_name("[[check]] signal", check.signal, log.signals))
     value = signal_norm(log.t, log[check.signal], check.norm)
     unit = log.unit(check.signal)
-    unit = {"l2": f"{unit} s^0.5".strip(), "l1": tracking_errors.times_second(unit)}.get(
-        check.norm, unit
-    )
-    return Norm(
-        value, unit, guard=(0.0, check.below), ok=value < check.below, kind=KINDS[check.norm]
-    )
+    if check.norm == "l2":
+        unit = f"{unit} s^0.5".strip()
+    elif check.norm == "l1":
+        unit = tracking_errors.times_second(unit)
+    ok = value < check.below
+    return Metric(value, unit, band=(0.0, check.below), ok=ok, kind=KINDS[check.norm])
 
 
-def _judged(
+def _evaluated(
     run: Run,
     name: str,
     value: float | None,
     unit: str,
     at_reported: float | None = None,
     floor: float | None = None,
-) -> Norm:
-    """The norm beside what the scenario says of it; its guard may be widened by the noise floor."""
-    table = run.scenario.file.norms.get(name, NormTable())
-    value = value if value is not None and isfinite(value) else None
-    guard, ok = table.guard, None
-    if guard is not None:
-        more = floor if run.scenario.file.noise_widens_guards and floor is not None else 0.0
-        guard = (guard[0] - more, guard[1] + more)
-        ok = value is not None and guard[0] <= value <= guard[1]
-    lacking = None if value is not None else NOT_REACHED if run.complete else SHORT
-    return Norm(
-        value, unit, table.published, table.tolerance, guard, ok, at_reported, floor, lacking
+) -> Metric:
+    """The metric with the scenario's published value and band, which the noise floor may widen."""
+    table = run.scenario.file.norms.get(name, MetricTable())
+    lacking = None
+    if value is None or not isfinite(value):
+        value = None
+        lacking = NOT_REACHED if run.complete else SHORT
+    band = table.guard
+    ok = None
+    if band is not None:
+        if run.scenario.file.noise_widens_guards and floor is not None:
+            band = (band[0] - floor, band[1] + floor)
+        ok = value is not None and band[0] <= value <= band[1]
+    return Metric(
+        value, unit, table.published, table.tolerance, band, ok, at_reported, floor, lacking
     )

@@ -70,7 +70,7 @@ class Fleet:
         )
         if len(self.seeds) != count:
             raise BadInput(f"{len(self.seeds)} seeds for {count} boats; allowed is one for each")
-        if scenario.lets_go:
+        if scenario.has_off_goal:
             raise BadInput(
                 f"{scenario.name}: a goal says off; boats of a fleet are steered all the time"
             )

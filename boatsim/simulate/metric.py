@@ -1,4 +1,4 @@
-"""What a measure is: it turns the log of a run into named numbers that norms.json holds beside the paper's."""
+"""Base class of metric sets, which compute named numbers from the log of a run, and helpers for them."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -12,6 +12,7 @@ from boatsim.errors import BoatsimError
 from boatsim.physics.base import Array, Checked
 from boatsim.recordings.table import Recording
 
+# last part of a metric's name -> how it summarises a signal
 KINDS = {
     "inf": "largest",
     "max": "largest",
@@ -21,61 +22,116 @@ KINDS = {
     "l1": "time integral",
     "l2": "root of integrated squares",
     "integral": "time integral",
-}  # ending of a norm's name -> what it is
+}
+TIME_TOLERANCE = 1e-9  # [s] by which the time of a row may differ from a limit through rounding
 
 
 class TooShort(BoatsimError):
-    """A log ends before there is what a measure asks of it: that of a run that was interrupted, say."""
+    """A log ends before the data that a metric set needs, as after an interruption."""
 
 
 @dataclass(frozen=True)
-class Measure(Checked):
-    """Base of measures: `measure = { use = "arrival", x = 20.0 }` in a scenario makes one and asks it for its values.
+class MetricSet(Checked):
+    """Base class of metric sets.
 
-    Numbers that people read are in degrees, their unit says so.
+    `measure = { use = "arrival", x = 20.0 }` in a scenario creates one and calls `values` after the
+    run. Angles in metrics are in degrees; the unit of each metric states it.
     """
 
     words: ClassVar[str] = ""  # one line for `boatsim list`
-    units: ClassVar[Mapping[str, str]] = {}  # norm -> its unit
+    units: ClassVar[Mapping[str, str]] = {}  # metric -> its unit
 
-    def unit(self, norm: str) -> str:
-        """Unit of one of its norms; a measure of any signal goes by that signal's."""
-        return type(self).units[norm]
+    def unit(self, metric: str) -> str:
+        """Return the unit of a metric; sets that work on any signal use the signal's unit.
 
-    def kind(self, norm: str) -> str:
-        """Which value of a signal a norm is: largest, rms, mean, a sum or an integral; "" for what is none of these."""
-        return KINDS.get(norm.rpartition("_")[2], "")
+        Args:
+            metric: Name of one of the metrics.
+        """
+        return type(self).units[metric]
 
-    def why(self, norm: str, log: Recording) -> str:
-        """Why a run never got as far as a norm asks, in a few words with the figure it got to; "" if unknown."""
+    def kind(self, metric: str) -> str:
+        """Return how a metric summarises its signal, such as "rms"; "" if it is none of `KINDS`.
+
+        Args:
+            metric: Name of one of the metrics.
+        """
+        return KINDS.get(metric.rpartition("_")[2], "")
+
+    def why(self, metric: str, log: Recording) -> str:
+        """Explain in a few words why a run has no value of a metric; "" if unknown.
+
+        Args:
+            metric: Name of the metric without a value.
+            log: The log of the run.
+        """
         return ""
 
     def values(self, log: Recording) -> dict[str, float]:
-        """Norms of a run; one that the run never got as far as is left out. Raises TooShort if none can be told."""
+        """Compute the metrics of a run.
+
+        Args:
+            log: The log of the run.
+
+        Returns:
+            Value by metric, without the metrics whose condition the run did not reach.
+
+        Raises:
+            TooShort: If the log is too short for every metric.
+        """
         raise NotImplementedError
 
 
-def seen(
+def rows_between(
     log: Recording, since: float = -inf, until: float = inf, least: int = 1
 ) -> NDArray[np.bool_]:
-    """Which rows (N,) lie between two times [s]. Raises TooShort if they are fewer than `least`."""
-    found = (log.t >= since - 1e-9) & (log.t <= until + 1e-9)
-    if (count := int(np.count_nonzero(found))) < least:
+    """Return which rows of a log lie between two times.
+
+    Args:
+        log: Log with N rows.
+        since: First time [s].
+        until: Last time [s].
+        least: Smallest number of rows required.
+
+    Returns:
+        Mask (N,).
+
+    Raises:
+        TooShort: If there are fewer than `least` rows.
+    """
+    found = (log.t >= since - TIME_TOLERANCE) & (log.t <= until + TIME_TOLERANCE)
+    count = int(np.count_nonzero(found))
+    if count < least:
         raise TooShort(f"{log.name}: {count} rows where at least {least} are needed")
     return np.asarray(found)
 
 
-def never(x: Array, level: float, unit: str = "") -> str:
-    """Why a signal (N,) passed no level: how near it came."""
+def why_not_reached(x: Array, level: float, unit: str = "") -> str:
+    """Describe how close a signal came to a level that it did not cross.
+
+    Args:
+        x: Signal (N,).
+        level: The level, in the signal's unit.
+        unit: The signal's unit.
+    """
     x = x[np.isfinite(x)]
     if not len(x):
-        return "nothing was recorded of it then"
-    near, which = (x.max(), "largest") if x.max() < level else (x.min(), "smallest")
-    return f"never got to {level:.4g} {unit}".rstrip() + f": {which} {near:.4g}"
+        return "the signal has no values in this interval"
+    closest = f"smallest {x.min():.4g}"
+    if x.max() < level:
+        closest = f"largest {x.max():.4g}"
+    return f"never reached {level:.4g} {unit}".rstrip() + f": {closest}"
 
 
-def crossing(t: Array, above: Array) -> float | None:
-    """First time [s] at which a signal (N,) is not negative, interpolated between its rows; None if it never is."""
+def first_crossing(t: Array, above: Array) -> float | None:
+    """Return the first time [s] at which a signal is not negative, interpolated between rows.
+
+    Args:
+        t: Times (N,) [s].
+        above: Signal (N,).
+
+    Returns:
+        The time, or None if the signal is always negative.
+    """
     at = int(np.argmax(above >= 0.0))
     if above[at] < 0.0:
         return None
@@ -85,17 +141,17 @@ def crossing(t: Array, above: Array) -> float | None:
     return float(t[at - 1] + share * (t[at] - t[at - 1]))
 
 
-def travelled(log: Recording) -> Array:
-    """(N,) integral of the surge speed [m] since the first row, trapezoid rule."""
+def surge_distance(log: Recording) -> Array:
+    """Return the integral of the surge speed since the first row by the trapezoid rule, (N,) [m]."""
     u = log["u_mps"]
     return np.concatenate(([0.0], np.cumsum(0.5 * (u[1:] + u[:-1]) * np.diff(log.t))))
 
 
-def at(log: Recording, time: float, name: str) -> float:
-    """Value of a column at a time [s], between the rows."""
+def value_at(log: Recording, time: float, name: str) -> float:
+    """Return a column's value at a time [s] by linear interpolation."""
     return float(np.interp(time, log.t, log[name]))
 
 
-def track(log: Recording) -> Array:
-    """Distance (N,) travelled up to each row [m]."""
+def path_length(log: Recording) -> Array:
+    """Return the length of the path up to each row, (N,) [m]."""
     return np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(log["x_m"]), np.diff(log["y_m"])))])

@@ -1,4 +1,4 @@
-"""Stretches of a run in one compiled call: a compiled law and a boat in open water, left alone until a row is due."""
+"""Several control periods in one compiled call, for a compiled controller in open water."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -12,21 +12,32 @@ from boatsim.simulate.open_water import OpenWater
 from boatsim.simulate.scenario import Scenario, UntilTable
 from boatsim.simulate.stepper import Stepper
 
-WORTH_IT = 2  # [periods] of a leap; a shorter one costs more than it saves
+FEWEST_PERIODS = 2  # in one call; a call for less costs more time than it saves
 
 
 @dataclass(frozen=True)
-class Leapt:
-    """What a leap leaves to be counted."""
+class PeriodsDone:
+    """The result of several control periods.
+
+    Attributes:
+        steps: Number of physics steps.
+        seconds: Simulated time [s].
+        saturated: Channel -> steps in which a command exceeded its range.
+        mean: Channel -> mean of the command in force.
+    """
 
     steps: int
     seconds: float
-    saturated: Mapping[str, int]  # channel -> steps in which more was sent than it takes
-    mean: Mapping[str, float]  # commands in force
+    saturated: Mapping[str, int]
+    mean: Mapping[str, float]
 
 
-class Leap:
-    """Steps law and boat together, period by period, as `Runner` would."""
+class MultiPeriodStep:
+    """Steps controller and vessel together, period by period, with the results of `ControlLoop`.
+
+    Attributes:
+        period: Control period [s].
+    """
 
     def __init__(
         self,
@@ -35,50 +46,82 @@ class Leap:
         law: CompiledController,
         imu: np.random.Generator,
     ) -> None:
-        self.scenario, self.engine, self.period = scenario, engine, law.period
-        self.steps = round(law.period / engine.step)  # of a period
-        self._aboard = Aboard(
-            engine.batch, scenario.sensors, self.steps, np.zeros((1, len(engine.sent))), [imu]
-        )
+        """Compile the loop; use `if_possible` instead, which checks the conditions.
+
+        Args:
+            scenario: The scenario.
+            engine: The engine of the run.
+            law: The scenario's controller.
+            imu: Random generator of the inertial unit.
+        """
+        self.period = law.period
+        self._scenario, self._engine = scenario, engine
+        self._steps = round(law.period / engine.step)  # of a period
+        saturated = np.zeros((1, len(engine.sent)))
+        self._aboard = Aboard(engine.batch, scenario.sensors, self._steps, saturated, [imu])
         self._law = ByLaw(self._aboard, [law], law.memory)
 
     @classmethod
-    def possible(
+    def if_possible(
         cls, scenario: Scenario, engine: Stepper, imu: np.random.Generator
-    ) -> "Leap | None":
-        """For a compiled law at work all along, in open water which nothing but time ends, with the usual sensors."""
+    ) -> "MultiPeriodStep | None":
+        """Return the stepper of a run, or None if its periods can not be taken together.
+
+        They can if a compiled controller steers all the time and acts once per period, in open
+        water, with the usual sensors, and nothing but time ends the run.
+
+        Args:
+            scenario: The scenario.
+            engine: The engine of the run.
+            imu: Random generator of the inertial unit.
+        """
         law = scenario.controller
         if not isinstance(law, CompiledController) or not isinstance(engine, OpenWater):
             return None
-        if scenario.aboard or scenario.lets_go or not law.only_evaluates_law:
+        if scenario.additional_sensors or scenario.has_off_goal or not law.only_evaluates_law:
             return None
-        kind, each = type(law), law.period / engine.step
+        kind, steps = type(law), law.period / engine.step
         acts_between = kind.early is not Controller.early or kind.done is not Controller.done
-        if acts_between or scenario.file.until != UntilTable() or abs(each - round(each)) > 1e-9:
+        if acts_between or scenario.file.until != UntilTable() or abs(steps - round(steps)) > 1e-9:
             return None
         return cls(scenario, engine, law, imu)
 
     def periods(self, t: float, until: float) -> int:
-        """Whole periods from now that end at least a step before a time; 0 where a leap is not worth it."""
-        found = int(((until - t) / self.engine.step - 1.0 + 1e-6) / self.steps)
-        return found if found >= WORTH_IT else 0
+        """Return how many periods from time t [s] end at least a step before `until` [s].
 
-    def leap(
+        Returns:
+            The number of whole periods; 0 if there are too few of them to save time.
+        """
+        found = int(((until - t) / self._engine.step - 1.0 + 1e-6) / self._steps)
+        return found if found >= FEWEST_PERIODS else 0
+
+    def advance(
         self, t: float, periods: int, goal_at: Callable[[float], Mapping[str, float]]
-    ) -> Leapt:
-        """So many periods, each with the law at its end; the commands in force now were the law's last."""
-        law, aboard, engine = self._law, self._aboard, self.engine
-        law.orders[0] = [engine.sent[c] for c in law.places]
-        aboard.saturated[:] = aboard.total[:] = 0.0
-        times = (
-            [t + i * self.period for i in range(1, periods + 1)] if self.scenario.file.goal else []
-        )
-        law.sail([goal_at(at) for at in times] or [{}] * periods, begins=False)
-        for c, order in zip(law.places, law.orders[0].tolist(), strict=True):
-            engine.sent[c] = order
-        names, seconds = list(self.scenario.vessel.commands), periods * self.period
-        counted = zip(names, aboard.saturated[0].tolist(), strict=False)
+    ) -> PeriodsDone:
+        """Advance the engine over periods, each of which ends with the controller.
+
+        Args:
+            t: Time now [s]; the commands in force are the controller's last ones.
+            periods: Number of periods.
+            goal_at: Goals in force at a time [s].
+
+        Returns:
+            What happened.
+        """
+        law, aboard, engine = self._law, self._aboard, self._engine
+        law.orders[0] = [engine.sent[place] for place in law.places]
+        aboard.saturated[:] = 0.0
+        aboard.total[:] = 0.0
+        goals: list[Mapping[str, float]] = [{}] * periods
+        if self._scenario.file.goal:
+            goals = [goal_at(t + i * self.period) for i in range(1, periods + 1)]
+        law.sail(goals, begins=False)
+        for place, order in zip(law.places, law.orders[0].tolist(), strict=True):
+            engine.sent[place] = order
+        names, seconds = list(self._scenario.vessel.commands), periods * self.period
+        saturated: dict[str, int] = {}
+        for name, steps in zip(names, aboard.saturated[0].tolist(), strict=False):
+            if steps:
+                saturated[name] = round(steps)
         mean = dict(zip(names, (aboard.total[0] / seconds).tolist(), strict=False))
-        return Leapt(
-            periods * self.steps, seconds, {name: round(n) for name, n in counted if n}, mean
-        )
+        return PeriodsDone(periods * self._steps, seconds, saturated, mean)

@@ -1,84 +1,150 @@
-"""A table that grows by rows, in memory, or in a file: then a long run takes no more memory than a short one."""
+"""The log of a run: its columns, and a row for every time at which one is due."""
 
-from pathlib import Path
-from tempfile import TemporaryFile
+from collections.abc import Sequence
+from math import nan
+from operator import attrgetter
 
-import numpy as np
-
-from boatsim.files import AppendedFile
-from boatsim.physics.base import Array
+from boatsim.physics.base import Force, motion
+from boatsim.physics.signals import AXES, COMPONENTS, signals_of
 from boatsim.recordings.table import Notes, Recording
+from boatsim.simulate.camera import CAMERA_POSE, Frame
+from boatsim.simulate.camera_log import mark_columns
+from boatsim.simulate.control_loop import TIME_TOLERANCE, ControlLoop
+from boatsim.simulate.engine import State
+from boatsim.simulate.growing_table import GrowingTable, MakeTable
+from boatsim.simulate.tracking_errors import GOAL
 
-PIECE = 500  # [rows] in memory of a table that lies in a file
-
-
-class Log:
-    """A table filled row by row, one float a column; laid out by columns, so that a recording of it copies nothing."""
-
-    def __init__(self, names: list[str], most: int) -> None:
-        """`most` is how many rows are expected; memory is taken only as rows come."""
-        self.names, self.count = names, 0
-        self._columns = np.empty((len(names), most))
-
-    def add(self, row: list[float]) -> None:
-        """One more row."""
-        if self.count == self._columns.shape[1]:
-            self._columns = np.concatenate([self._columns, np.empty_like(self._columns)], axis=1)
-        self._columns[:, self.count] = row
-        self.count += 1
-
-    def amend(self, first: int, values: Array) -> None:
-        """Other values in the last row, from a column on."""
-        self._columns[first:, self.count - 1] = values
-
-    def rows(self, start: int, end: int) -> Array:
-        """(columns, rows) from row `start` up to row `end`."""
-        return self._columns[:, start:end]
-
-    def recording(
-        self, name: str, notes: Notes, start: int = 0, end: int | None = None
-    ) -> Recording:
-        """The rows from `start` to `end` or the last one; the first column is time."""
-        t, *signals = self.rows(start, self.count if end is None else end)
-        return Recording(name, t, dict(zip(self.names[1:], signals, strict=True)), notes)
+SENSED = ("psi_rad", "r_radps", "ax_mps2", "ay_mps2", "u_mps", "x_m", "y_m")
+SENSE_VALUES = attrgetter("psi", "r", "ax", "ay", "u", "x", "y")  # of a Sense, in the same order
+REFERENCE = "reference_"  # prefix of estimates that are reference signals of a controller
 
 
-class FiledLog(Log):
-    """The same in a file without a name, gone when the process is; what is read of it is mapped, not loaded."""
+class RunLog:
+    """Writes the state of a control loop into a table.
 
-    def __init__(self, names: list[str], folder: Path) -> None:
-        """`folder` says on which disk."""
-        super().__init__(names, PIECE)
-        self._file = TemporaryFile(dir=folder, buffering=0)
-        self._whole = AppendedFile(self._file, folder)
-        self._written = 0  # rows
+    Columns besides the motion and the commands in force: `sent_` is a command as the controller
+    sent it, before its range limits it; `goal_` is a goal, nan where none is in force; `actual_` is
+    an actuator; `sensed_` and `camera_` are measurements; `force_` is the sum of all effects and
+    `wind_` that of the effects of air; `estimate_` is an estimate of the controller.
 
-    def add(self, row: list[float]) -> None:
-        """One more row. Raises OSError where the disk is full."""
-        at = self.count - self._written
-        if at == PIECE:
-            self._put_away(PIECE)
-            at = 0
-        self._columns[:, at] = row
-        self.count += 1
+    Attributes:
+        scenario: The scenario.
+        table: The rows.
+        due: Time of the next row [s].
+    """
 
-    def amend(self, first: int, values: Array) -> None:
-        """Other values in the last row, which is always in memory."""
-        self._columns[first:, self.count - self._written - 1] = values
+    def __init__(self, loop: ControlLoop, make_table: MakeTable) -> None:
+        """Create an empty log for a control loop whose controller has acted once.
 
-    def rows(self, start: int, end: int) -> Array:
-        """(columns, rows), a view of the file; of rows that are in memory a copy."""
-        width = len(self.names)
-        if start >= self._written:
-            return self._columns[:, start - self._written : end - self._written].copy()
-        waiting = self._columns[:, : self.count - self._written].T
-        self._whole.add(np.ascontiguousarray(waiting).tobytes())
-        self._whole.discard_end(
-            waiting.nbytes
-        )  # the next piece is written over it: its last row may change
-        found = np.memmap(self._file, np.float64, "r", 8 * width * start, (end - start, width))
-        return np.asarray(found).T
+        Args:
+            loop: The control loop.
+            make_table: Creates a table from names of columns and the expected number of rows.
 
-    def _put_away(self, rows: int) -> None:
-        self._whole.add(np.ascontiguousarray(self._columns[:, :rows].T).tobytes())
-        self._written += rows
+        Raises:
+            BadInput: If the controller fails to give its estimates.
+        """
+        self._loop = loop
+        self.scenario = loop.scenario
+        vessel = loop.engine.vessel
+        with loop.controller_at_work() as controller:
+            estimates = list(controller.estimates())
+        self._references = [name for name in estimates if name.startswith(REFERENCE)]
+        self._estimates = [name for name in estimates if not name.startswith(REFERENCE)]
+        self._signals = signals_of(vessel.dof)
+        self._motion_of = attrgetter(*(signal.symbol for signal in self._signals))
+        self._axes = [i for i, axis in enumerate(AXES) if axis in vessel.dof]
+        self._readings: dict[str, str] = {}  # reading of a further sensor -> its column
+        for sensor in self.scenario.additional_sensors:
+            self._readings |= type(sensor).columns
+        self._measured = {name: channel.neutral for name, channel in vessel.measured.items()}
+        # goals that are commands are already in the columns `sent_`
+        self._goals = [key for key in self.scenario.goal_keys if key not in vessel.commands]
+        self._winds = [e for e in vessel.effects if isinstance(e, Force) and type(e).of_air]
+        self.due = 0.0
+        file = self.scenario.file
+        rows = file.duration / max(file.log, file.step)
+        self.table: GrowingTable = make_table(self._columns(), rows)
+
+    def _columns(self) -> list[str]:
+        components = [COMPONENTS[AXES[i]] for i in self._axes]
+        columns = ["t_s", *(signal.column for signal in self._signals), *self._loop.channels]
+        columns += self._measured
+        columns += [f"sent_{name}" for name in self._loop.channels]
+        columns += [f"actual_{name}" for name in self._loop.engine.vessel.actuators]
+        columns += [f"sensed_{name}" for name in (*SENSED, *self._readings.values())]
+        columns += [
+            *mark_columns(self.scenario.camera),
+            *(f"camera_{name}" for name in CAMERA_POSE),
+        ]
+        columns += [f"force_{component}" for component in components]
+        if self._winds:
+            columns += [f"wind_{component}" for component in components]
+        columns.append("contacts")
+        for name in self._estimates:
+            columns += [f"estimate_{name}", f"estimate_{name}_low", f"estimate_{name}_high"]
+        return [*columns, *self._references, *(f"{GOAL}{name}" for name in self._goals)]
+
+    def is_due(self) -> bool:
+        """Return whether a row is due now."""
+        return self._loop.state.t >= self.due - TIME_TOLERANCE
+
+    def add_row(self, frames: Sequence[Frame]) -> None:
+        """Append the present state of the loop.
+
+        Args:
+            frames: Camera frames since the last row; the row holds the last of them.
+
+        Raises:
+            BadInput: If the controller fails to give its estimates.
+            OSError: If the disk is full.
+        """
+        loop = self._loop
+        state, engine, sense = loop.state, loop.engine, loop.sense
+        if self.is_due():
+            self.due += self.scenario.file.log
+        with loop.controller_at_work() as controller:
+            estimates = controller.estimates()
+        goal = loop.goal_at(state.t)
+        row = [state.t, *self._motion_of(state), *loop.in_force(), *self._measured.values()]
+        row += [loop.sent[name] for name in loop.channels]
+        row += engine.actuators.values()
+        row += SENSE_VALUES(sense)
+        row += [sense.more[name] for name in self._readings]
+        if frames:
+            row += [*frames[-1].marks, *frames[-1][1:4]]
+        else:
+            row += [nan] * (2 * len(self.scenario.camera.marks) + len(CAMERA_POSE))
+        wrench = engine.wrench()
+        row += [wrench[i] for i in self._axes]
+        if self._winds:
+            wind = self._wind(state)
+            row += [wind[i] for i in self._axes]
+        row.append(engine.contacts)
+        for name in self._estimates:
+            row += estimates[name]
+        row += [estimates[name].value for name in self._references]
+        row += [goal.get(name, nan) for name in self._goals]
+        self.table.add(row)
+
+    def _wind(self, state: State) -> list[float]:
+        """Force of the air (X, Y, Z, K, M, N) in body axes [N, N m]."""
+        total = [0.0] * len(AXES)
+        for effect in self._winds:
+            # interpreted: a single call is not worth compiling
+            law = type(effect).law.py_func  # type: ignore[attr-defined]
+            values: dict[str, float] = {}
+            for role, channel in self.scenario.vessel.specified_bindings(effect).items():
+                values[role] = self._measured[channel] if isinstance(channel, str) else channel
+            signals = (type(effect).signals(**values),) if type(effect).roles else ()
+            wrench = law(motion(**state._asdict()), effect.values(), *signals)
+            total = [a + b for a, b in zip(total, wrench, strict=True)]
+        return total
+
+    def recording(self, notes: Notes, start: int = 0) -> Recording:
+        """Return the rows from `start` on.
+
+        Args:
+            notes: Notes of the recording.
+            start: First row.
+        """
+        return self.table.recording(self.scenario.name.replace("/", "_"), notes, start)

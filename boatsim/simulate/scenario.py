@@ -19,13 +19,13 @@ from boatsim.physics.signals import STATE
 from boatsim.physics.vessel import Vessel
 from boatsim.simulate import tracking_errors
 from boatsim.simulate.camera import Camera, camera_over
-from boatsim.simulate.camera_log import FilmMeasure
+from boatsim.simulate.camera_metric import CameraMetricSet
 from boatsim.simulate.cases import Place, content
-from boatsim.simulate.metric import Measure
+from boatsim.simulate.metric import MetricSet
 from boatsim.simulate.sensing import Sensor, Sensors
 
 T = TypeVar("T")
-M = TypeVar("M", Controller, Measure, Sensor)
+M = TypeVar("M", Controller, MetricSet, Sensor)
 # key of a goal while which nothing is steered: commands are neutral, the controller begins anew
 # after it
 OFF = "off"
@@ -73,7 +73,7 @@ class UntilTable(Table):
     turned: float | None = Field(default=None, gt=0)  # [rad] turned either way
 
 
-class NormTable(Table):
+class MetricTable(Table):
     """What a norm is held against: the paper's value, and the band about our own that a change must not leave."""
 
     published: float | None = None
@@ -124,8 +124,8 @@ class ScenarioFile(Table):
     duration: float = Field(gt=0, le=86400)  # [s]
     step: float = Field(default=0.02, gt=1e-4, le=1.0)  # [s]
     seed: int = Field(default=0, ge=0)
-    # twin: compiled code alone, in open water; the same to rounding
-    engine: Literal["mujoco", "twin"] = "mujoco"
+    # the compiled engine works in open water; "twin" is its old name
+    engine: Literal["mujoco", "compiled", "twin"] = "mujoco"
     tank: TankTable | None = None
     start: StartTable = StartTable()
     until: UntilTable = UntilTable()
@@ -141,9 +141,14 @@ class ScenarioFile(Table):
     ] = {}  # the surroundings, as the vessel's channels of that kind read them throughout
     measure: str | dict[str, object] | None = None
     log: float = Field(default=0.0, ge=0)  # [s] between rows of the log; 0: every step
-    norms: dict[str, NormTable] = {}
+    norms: dict[str, MetricTable] = {}
     noise_widens_guards: bool = False
     check: list[CheckTable] = []
+
+    @property
+    def is_compiled(self) -> bool:
+        """Whether the scenario runs on the compiled engine instead of MuJoCo."""
+        return self.engine != "mujoco"
 
 
 @dataclass(frozen=True)
@@ -156,8 +161,8 @@ class Scenario:
     controller: Controller
     sensors: Sensors
     camera: Camera
-    measure: Measure | None = None
-    aboard: tuple[Sensor, ...] = ()  # beside the usual ones
+    measure: MetricSet | None = None
+    additional_sensors: tuple[Sensor, ...] = ()
     address: str = ""  # what it is found by again
 
     @classmethod
@@ -197,7 +202,7 @@ class Scenario:
         )
 
     @property
-    def lets_go(self) -> bool:
+    def has_off_goal(self) -> bool:
         """Whether nobody steers for some of the time."""
         return any(goal.get(OFF) for goal in self.file.goal)
 
@@ -249,7 +254,7 @@ def from_table(raw: Mapping[str, object], place: Place, vessel: Vessel | None = 
     file = checked(ScenarioFile, raw, label)
     try:
         vessel = _vessel(file, path.parent, vessel)
-        controller = _made(Controller, file.controller, path.parent)
+        controller = _created(Controller, "controller", file.controller, path.parent)
         sensors = _settings("sensors", lambda: Sensors.from_settings(file.sensors))
         aboard = _aboard(file.sensor, path.parent)
         camera = _settings("camera", lambda: camera_over(vessel, file.camera))
@@ -267,7 +272,7 @@ def from_table(raw: Mapping[str, object], place: Place, vessel: Vessel | None = 
         sensors=sensors,
         camera=camera,
         measure=measure,
-        aboard=aboard,
+        additional_sensors=aboard,
         address=place.address,
     )
 
@@ -284,9 +289,9 @@ def _vessel(file: ScenarioFile, folder: Path, vessel: Vessel | None) -> Vessel:
     return vessel.with_measured(file.measured)
 
 
-def _made(base: type[M], table: Mapping[str, object], folder: Path) -> M:
-    """The controller, measure or sensor of a table."""
-    kind, use = base.__name__.lower(), table.get("use")
+def _created(base: type[M], kind: str, table: Mapping[str, object], folder: Path) -> M:
+    """Create the controller, metric set or sensor that a table asks for."""
+    use = table.get("use")
     if not isinstance(use, str):
         raise BadInput(f"[{kind}] needs use = its name")
     found: type[M] = load_class(kind, use, folder)
@@ -297,7 +302,7 @@ def _aboard(tables: Sequence[Mapping[str, object]], folder: Path) -> tuple[Senso
     """The sensors of the [[sensor]] tables, no two of which read the same."""
     aboard: list[Sensor] = []
     for table in tables:
-        made = _made(Sensor, table, folder)
+        made = _created(Sensor, "sensor", table, folder)
         if twice := [n for other in aboard for n in type(other).columns if n in type(made).columns]:
             raise BadInput(
                 f"[[sensor]] {table['use']}: {twice[0]} is read by another sensor already"
@@ -306,12 +311,12 @@ def _aboard(tables: Sequence[Mapping[str, object]], folder: Path) -> tuple[Senso
     return tuple(aboard)
 
 
-def _measure(given: str | Mapping[str, object] | None, folder: Path) -> Measure | None:
+def _measure(given: str | Mapping[str, object] | None, folder: Path) -> MetricSet | None:
     """The measure on the log that a scenario asks for."""
     if given is None:
         return None
     table = {"use": given} if isinstance(given, str) else given
-    return _made(Measure, table, folder)
+    return _created(MetricSet, "measure", table, folder)
 
 
 def _begin(goal: Mapping[str, float | CourseTable]) -> float:
@@ -357,9 +362,10 @@ def _check_shape(file: ScenarioFile, controller: Controller) -> None:
         raise BadInput(
             f"step = {file.step:g} s; allowed is at most the controller's period, {controller.period:g} s"
         )
-    if file.tank and file.engine == "twin":
+    if file.tank and file.is_compiled:
         raise BadInput(
-            'engine = "twin" with a [tank]; allowed is open water: its walls are MuJoCo\'s'
+            f'engine = "{file.engine}" with a [tank]; the compiled engine has open water only, '
+            "walls need MuJoCo"
         )
     if file.tank:
         dx, dy = file.start.x - file.tank.centre[0], file.start.y - file.tank.centre[1]
@@ -369,20 +375,20 @@ def _check_shape(file: ScenarioFile, controller: Controller) -> None:
             )
 
 
-def _check_norms(file: ScenarioFile, camera: Camera, measure: Measure | None) -> None:
+def _check_norms(file: ScenarioFile, camera: Camera, measure: MetricSet | None) -> None:
     """Only norms of what is measured are judged, and the frames they need are taken."""
     followed = tracking_errors.units(key for goal in file.goal for key in goal)
     allowed = (*(type(measure).units if measure else ()), *followed)
     for name in file.norms:
         if name not in allowed:
             raise BadInput(unknown_name("[norms] key", name, allowed))
-    if isinstance(measure, FilmMeasure):
+    if isinstance(measure, CameraMetricSet):
         measure.check(camera)
 
 
 __all__ = [
     "CheckTable",
-    "NormTable",
+    "MetricTable",
     "Scenario",
     "ScenarioFile",
     "UntilTable",

@@ -74,7 +74,7 @@ class Sensors(Checked):
     # all of the motion is known as it is, roll too, whatever the noise stated above
     ideal: bool = False
 
-    def feel(
+    def sample(
         self,
         t: float,
         pose: tuple[float, float, float],

@@ -16,7 +16,7 @@ from boatsim.errors import BadInput, BadPhysics
 from boatsim.physics.content import find
 from boatsim.physics.signals import Array
 from boatsim.simulate.cases import Place, content, meant
-from boatsim.simulate.evaluation import names as norm_names
+from boatsim.simulate.evaluation import metric_names
 from boatsim.simulate.run import run
 from boatsim.simulate.scenario import from_table
 from boatsim.sweeps.axes import Axis
@@ -134,7 +134,7 @@ class Plan:
                 )
                 with suppress(BadPhysics):  # that run's failure, and told there
                     run(replace(scenario, file=short))
-                there |= norm_names(scenario)
+                there |= metric_names(scenario)
         return there
 
     def about(self) -> dict[str, Any]:

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 from boatsim.errors import BoatsimError
 from boatsim.interruption import signal_received
 from boatsim.simulate.cases import Place
-from boatsim.simulate.evaluation import all_norms
+from boatsim.simulate.evaluation import all_metrics
 from boatsim.simulate.run import run
 from boatsim.simulate.scenario import from_table
 from boatsim.sweeps.journal import Entry
@@ -29,7 +29,7 @@ def carried_out(told: Told) -> Entry:
         done = run(from_table(told.said, told.place), told.seed, progress=_ended)
         if not done.complete:
             raise KeyboardInterrupt
-        norms = all_norms(done)
+        norms = all_metrics(done)
     except BoatsimError as error:
         return {"failure": reason(str(error))}
     except Exception as error:  # of a controller, a law, a measure: this boat's, not the sweep's

@@ -18,7 +18,7 @@ import rerun as rr
 from boatsim.physics.signals import POSE, Array
 from boatsim.recordings.readers.rrd import SIGNALS, TIMELINE
 from boatsim.recordings.table import Notes, Recording
-from boatsim.simulate.evaluation import MISSED, REPRODUCED, UNSTATED, NormEntry
+from boatsim.simulate.evaluation import MISSED, NO_TOLERANCE, REPRODUCED, MetricEntry
 from boatsim.simulate.tracking_errors import GOAL
 from boatsim.view import blueprint
 from boatsim.view.blueprint import WORLD
@@ -49,7 +49,7 @@ BOATS = {
     "recalibrated": (45, 140, 225),
     "patched": (0, 165, 120),
 }
-VERDICTS = {REPRODUCED: "(the same)", MISSED: "(differs)", UNSTATED: ""}
+VERDICTS = {REPRODUCED: "(the same)", MISSED: "(differs)", NO_TOLERANCE: ""}
 # [s] between the end of one stretch, a gap, and the begin of the next at the same time
 PARTING = 1e-9
 
@@ -62,8 +62,8 @@ class Flagged(TypedDict):
     to_s: float
 
 
-class RunLog:
-    """A run's log: `chunk` takes new rows while it runs, `finish` the norms; leaving the `with` block keeps all of it.
+class RerunLog:
+    """A run's log: `add_rows` takes new rows while it runs, `finish` the norms; leaving the `with` block keeps all of it.
 
     `path` is the `.rrd` to write, `viewer` the address of one that is fed (None: none).
     """
@@ -84,7 +84,7 @@ class RunLog:
             self._say("Norms follow when the run is over.")
             self.stream.keep()
 
-    def chunk(self, rows: Recording) -> None:
+    def add_rows(self, rows: Recording) -> None:
         """Log new rows, which follow those logged before."""
         if len(rows) and self.stream.heard:
             self._waiting.append(rows)
@@ -95,7 +95,7 @@ class RunLog:
         ):
             self._write()
 
-    def finish(self, norms: Mapping[str, NormEntry]) -> None:
+    def finish(self, norms: Mapping[str, MetricEntry]) -> None:
         """Add the table of norms: name -> value, unit, published, verdict, guard [low, high], ok."""
         self._write()
         if self.stream.heard:
@@ -243,7 +243,7 @@ def _begin(stream: Stream) -> None:
     stream.log(WORLD, rr.ViewCoordinates.RIGHT_HAND_Z_UP, static=True)
 
 
-def norms_table(norms: Mapping[str, NormEntry]) -> str:
+def norms_table(norms: Mapping[str, MetricEntry]) -> str:
     """Markdown table norm, what it is, value, guard, met, published with the verdict on it; what counts first."""
     if not norms:
         return "This scenario has no norms.\n"

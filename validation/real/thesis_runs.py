@@ -17,7 +17,7 @@ from boatsim.physics.content import load_class
 from boatsim.physics.kernel.records import Model
 from boatsim.physics.program import Program
 from boatsim.simulate import scenario
-from boatsim.simulate.camera_log import Film, FilmMeasure
+from boatsim.simulate.camera_metric import CameraFrames, CameraMetricSet
 from boatsim.simulate.cases import content
 from boatsim.simulate.scenario import Scenario
 
@@ -73,7 +73,7 @@ class Bench:
         settings = {k: {**raw.get("set", {}).get(k, {}), **v} for k, v in (nominal or {}).items()}
         over = {"tank": None, "effect": [*own, *told], "set": {**raw.get("set", {}), **settings}}
         self.scenario: Scenario = scenario.load(f"joystick_boat/{name}", over)
-        assert isinstance(self.scenario.measure, FilmMeasure)
+        assert isinstance(self.scenario.measure, CameraMetricSet)
         self.name, self.measure = name, self.scenario.measure
         self.program = Program(self.scenario.vessel)
         self.published = {
@@ -90,10 +90,10 @@ class Bench:
         self, knobs: Sequence[Knob], values: Sequence[float], seeds: Sequence[int]
     ) -> dict[str, float]:
         """Mean norms over seeds; empty where a run never got as far as they ask."""
-        found = [self.measure.of_film(self._film(knobs, values, seed)) for seed in seeds]
+        found = [self.measure.from_frames(self._film(knobs, values, seed)) for seed in seeds]
         return {n: float(np.mean([f[n] for f in found])) for n in found[0]} if all(found) else {}
 
-    def _film(self, knobs: Sequence[Knob], values: Sequence[float], seed: int) -> Film:
+    def _film(self, knobs: Sequence[Knob], values: Sequence[float], seed: int) -> CameraFrames:
         """What the camera sees of one run."""
         p, body = self.program.values(), self.program.body.copy()
         controller, camera = self.scenario.controller, self.scenario.camera
@@ -134,7 +134,7 @@ class Bench:
             name: np.stack([z.real, z.imag], axis=-1)
             for name, z in zip(camera.marks, seen.T, strict=True)
         }
-        return Film(frames, camera.pose(seen)[1], points, np.stack([x, east], axis=-1), psi)
+        return CameraFrames(frames, camera.pose(seen)[1], points, np.stack([x, east], axis=-1), psi)
 
     def commands(self, rng: np.random.Generator) -> Array:
         """Commands of every step of the boat without knobs, the last ones held until the duration is over."""
@@ -175,7 +175,7 @@ class Bench:
         while t < file.duration - 1e-9 and not _over(file.until, y):
             x, east, psi, *_ = y.tolist()
             u, v, r = self.program.body_rates(y[None])[0, 3:].tolist()
-            sense: Sense = sensors.feel(t, (x, east, psi), (u, v, r), pull, rng)
+            sense: Sense = sensors.sample(t, (x, east, psi), (u, v, r), pull, rng)
             row = self.program.command_array(controller.step(sense, told.goal_at(t)))
             commands = np.tile(row, (period, 1))
             code.rollout(

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
+from boatsim.atomic_folder import atomic_folder
 from boatsim.diagnosis.experiment_design.next_experiment import scenario_text
 from boatsim.diagnosis.free_runs import FreeRun
 from boatsim.diagnosis.pipeline import NEXT, Diagnosis
@@ -15,7 +16,6 @@ from boatsim.errors import BadPhysics
 from boatsim.files import replacing
 from boatsim.physics.signals import COMPONENTS, Array
 from boatsim.recordings.table import Recording
-from boatsim.view.outputs import filling
 
 FORCE_NAMES = {axis: f"force_{component}" for axis, component in COMPONENTS.items()}
 
@@ -28,7 +28,7 @@ def write(found: Diagnosis, out: Path) -> None:
         raise BadPhysics(
             f"{found.vessel.name}: a fitted boat diverges; are the units of the recording right?"
         ) from None
-    with filling(out) as new:
+    with atomic_folder(out) as new:
         report.write(found.findings, new)
         laws = found.ranking.laws
         patched = patched_vessel.patched(

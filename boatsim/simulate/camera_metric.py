@@ -1,0 +1,195 @@
+"""Metric sets that are computed from the frames of the camera instead of the log."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from boatsim.errors import BadInput
+from boatsim.physics.base import Array, param
+from boatsim.recordings.table import Recording
+from boatsim.simulate.camera import Camera, Pose
+from boatsim.simulate.metric import MetricSet
+
+NOISE_SAMPLES = 200  # of the camera's noise; they give the noise floor to about 2 %
+
+
+@dataclass(frozen=True)
+class CameraFrames:
+    """Measured marks and true pose at the frames, in axes with origin and heading of the start.
+
+    Attributes:
+        t: Times (n,) [s].
+        heading: Measured heading (n,) [rad].
+        marks: Measured position of each mark (n, 2) [m].
+        place: True position of the CG (n, 2) [m].
+        psi: True heading (n,) [rad].
+    """
+
+    t: Array
+    heading: Array
+    marks: Mapping[str, Array]
+    place: Array
+    psi: Array
+
+    def until(self, frame: int) -> "CameraFrames":
+        """Return the frames up to and including number `frame`."""
+        n = frame + 1
+        marks = {name: positions[:n] for name, positions in self.marks.items()}
+        return CameraFrames(self.t[:n], self.heading[:n], marks, self.place[:n], self.psi[:n])
+
+
+@dataclass(frozen=True)
+class CameraMetricSet(MetricSet):
+    """Base class of metric sets on camera frames, at a scored rate and at a second, reported rate.
+
+    Times and positions count from `begin`; earlier frames, as of preparations, are ignored.
+    """
+
+    scored: float = param(
+        5.0, low=0.1, high=240.0, unit="Hz", words="frame rate at which the norms are judged"
+    )
+    reported: float = param(
+        10.0, low=0.1, high=240.0, unit="Hz", words="frame rate whose norms stand beside them"
+    )
+    begin: float = param(0.0, low=0.0, high=1e6, unit="s", words="when what is measured begins")
+
+    def check(self, camera: Camera) -> None:
+        """Check that the camera can deliver the frames.
+
+        Args:
+            camera: The scenario's camera.
+
+        Raises:
+            BadInput: If its rate is not a multiple of both rates, or a mark is missing.
+        """
+        for rate in (self.reported, self.scored):
+            times = camera.rate / rate
+            if abs(times - max(round(times), 1)) > 1e-9:
+                raise BadInput(
+                    f"[camera] rate = {camera.rate:g} Hz; "
+                    f"allowed with this measure is a multiple of {rate:g} Hz"
+                )
+
+    def from_frames(self, frames: CameraFrames) -> dict[str, float]:
+        """Compute the metrics of camera frames.
+
+        Args:
+            frames: The frames.
+
+        Returns:
+            Value by metric, and the number of `frames` used; empty if the run did not reach the
+            condition of the metrics.
+        """
+        raise NotImplementedError
+
+    def from_noise(self, frames: int, camera: Camera) -> dict[str, Array]:
+        """Compute the metrics of error-free motion under a camera with noisy marks.
+
+        Args:
+            frames: Number of frames.
+            camera: The camera.
+
+        Returns:
+            Samples (NOISE_SAMPLES,) of each metric.
+        """
+        raise NotImplementedError
+
+    def kind(self, metric: str) -> str:
+        """Return how a metric summarises its signal; sums are over frames, whatever the rate.
+
+        Args:
+            metric: Name of one of the metrics.
+        """
+        sums = {"l1": "sum over frames", "l2": "root of summed squares"}
+        return sums.get(metric.rpartition("_")[2]) or super().kind(metric)
+
+    def noise_floor(self, frames: int, camera: Camera) -> dict[str, float]:
+        """Return the mean of each metric that the noise of the marks alone causes.
+
+        Args:
+            frames: Number of frames.
+            camera: The camera.
+        """
+        found: dict[str, float] = {}
+        for name, samples in self.from_noise(frames, camera).items():
+            found[name] = float(np.abs(samples).mean())
+        return found
+
+
+def camera_frames(
+    camera: Recording, truth: Recording, start: Pose, every: int, begin: float = 0.0
+) -> CameraFrames:
+    """Select camera frames and the true pose at their times.
+
+    Args:
+        camera: Recording of the camera.
+        truth: Log of the run.
+        start: Pose of the start.
+        every: Use one frame of so many.
+        begin: Time of the first frame [s]; later than 0, the pose then is the origin.
+
+    Returns:
+        The frames.
+    """
+    if begin > 0.0:
+        camera = camera.between(begin, np.inf)
+        x = float(np.interp(begin, truth.t, truth["x_m"]))
+        y = float(np.interp(begin, truth.t, truth["y_m"]))
+        psi = float(np.interp(begin, truth.t, truth["psi_rad"]))
+        start = (x, y, psi)
+    t = camera.t[::every]
+    c, s = np.cos(start[2]), np.sin(start[2])
+
+    def in_start_axes(x: Array, y: Array) -> Array:
+        dx, dy = x - start[0], y - start[1]
+        return np.stack([c * dx + s * dy, c * dy - s * dx], axis=-1)
+
+    marks: dict[str, Array] = {}
+    for column in camera.signals:
+        if column.startswith("camera_") and not column.endswith("_y_m"):
+            name = column.removeprefix("camera_").removesuffix("_x_m")
+            north, east = camera[f"camera_{name}_x_m"], camera[f"camera_{name}_y_m"]
+            marks[name] = in_start_axes(north[::every], east[::every])
+    north = np.interp(t, truth.t, truth["x_m"])
+    east = np.interp(t, truth.t, truth["y_m"])
+    heading = np.interp(t, truth.t, truth["psi_rad"])
+    return CameraFrames(
+        t - begin,
+        camera["psi_rad"][::every] - start[2],
+        marks,
+        in_start_axes(north, east),
+        heading - start[2],
+    )
+
+
+def mark_noise(frames: int, camera: Camera) -> Array:
+    """Return standard normal samples for all coordinates of the marks.
+
+    The samples are the same for every seed, so that a noise floor depends on the frames alone.
+
+    Args:
+        frames: Number of frames.
+        camera: The camera with M marks.
+
+    Returns:
+        Samples (NOISE_SAMPLES, frames, 2 M).
+    """
+    shape = (NOISE_SAMPLES, frames, 2 * len(camera.marks))
+    return np.random.default_rng(0).standard_normal(shape)
+
+
+def first_frame(reached: NDArray[np.bool_], least: int = 0) -> int | None:
+    """Return the number of the first frame at which a condition holds.
+
+    Args:
+        reached: Whether the condition holds, (n,).
+        least: Smallest number to return.
+
+    Returns:
+        The number, at least `least`; None if the condition never holds or there are too few frames.
+    """
+    if not reached.any() or len(reached) <= least:
+        return None
+    return max(int(np.argmax(reached)), least)

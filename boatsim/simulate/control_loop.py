@@ -1,0 +1,221 @@
+"""The closed loop of a run: sensors, controller, commands and physics."""
+
+import traceback
+from collections import Counter
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from inspect import getsourcefile
+from math import inf
+
+import numpy as np
+
+from boatsim.control.base import Controller, Sense
+from boatsim.errors import BadInput, BoatsimError
+from boatsim.simulate.engine import Engine, State
+from boatsim.simulate.multi_period_step import MultiPeriodStep
+from boatsim.simulate.open_water import OpenWater
+from boatsim.simulate.run_options import GoalSource
+from boatsim.simulate.scenario import OFF, Scenario
+from boatsim.simulate.sensing import sensed
+
+SHORTEST_PART = 1e-6  # [s] of a step that the controller cuts
+TIME_TOLERANCE = 1e-9  # [s] by which rounding may shift the time at which something is due
+
+
+class ControlLoop:
+    """Senses and controls once per control period and advances the physics in between.
+
+    Attributes:
+        scenario: The scenario.
+        engine: What steps the vessel.
+        goal_at: Goals in force at a time [s].
+        state: State of the vessel at the end of the last step.
+        sense: The latest sample of the sensors.
+        sent: Commands sent by the controller, before ranges limit them.
+        steps: Number of physics steps.
+        saturated: Channel -> steps in which a command exceeded its range.
+    """
+
+    def __init__(
+        self,
+        scenario: Scenario,
+        engine: Engine | OpenWater,
+        goal_at: GoalSource,
+        generators: Sequence[np.random.Generator],
+        on_interval: Callable[[list[float], float], None],
+    ) -> None:
+        """Put the vessel at its start and let the controller act once.
+
+        Args:
+            scenario: The scenario.
+            engine: What steps the vessel.
+            goal_at: Goals in force at a time [s].
+            generators: Random generators of the inertial unit and of each further sensor.
+            on_interval: Receives the commands in force and the length [s] of each interval.
+
+        Raises:
+            BadInput: If the controller fails.
+        """
+        self.scenario = scenario
+        self.engine = engine
+        self.goal_at = goal_at
+        self._imu, *self._sensor_generators = generators
+        self._on_interval = on_interval
+        vessel = scenario.vessel
+        #: channels that the controller sets, and their places among the vessel's commands
+        self.channels = list(type(scenario.controller).commands or vessel.commands)
+        self._places = [list(vessel.commands).index(name) for name in self.channels]
+        self.sent: dict[str, float] = {}
+        self._beyond: list[str] = []
+        self.saturated: Counter[str] = Counter()
+        self.steps = 0
+        self._due = 0.0  # [s] when the next control period begins
+        self._early = inf  # [s] when the controller acts within its period
+        start = scenario.file.start
+        self.state = State(**start.motion())
+        with self.controller_at_work() as controller:
+            controller.reset()
+            engine.reset(self.state, {**controller.initial_commands(), **start.commands})
+            self._note_sent()
+        self._many_periods = MultiPeriodStep.if_possible(scenario, engine, self._imu)
+        self._due += scenario.controller.period
+        self._sense_and_control()
+
+    @contextmanager
+    def controller_at_work(self) -> Iterator[Controller]:
+        """Yield the controller; an error in the block names it and the time.
+
+        Raises:
+            BadInput: If anything in the block fails.
+        """
+        controller = self.scenario.controller
+        try:
+            yield controller
+        except Exception as error:
+            use = self.scenario.file.controller["use"]
+            where = f"controller {use} at t = {self.state.t:g} s"
+            raise BadInput(f"{where}: {controller_error(error, controller)}") from error
+
+    def advance(self, on_early_command: Callable[[], None]) -> None:
+        """Advance by one step of physics with the commands held.
+
+        The step is cut where the controller acts within its period.
+
+        Args:
+            on_early_command: Called when the controller changed the commands within the step.
+
+        Raises:
+            BadInput: If the controller fails.
+            BadPhysics: If the motion diverges.
+        """
+        begin = self.state.t
+        end = begin + self.engine.step
+        self.steps += 1
+        self.saturated.update(self._beyond)
+        while self._early < end - SHORTEST_PART:
+            self._move(max(self._early - self.state.t, SHORTEST_PART))
+            held = self.sent
+            self._sense_and_control()
+            if self.sent != held:
+                on_early_command()
+        if self.state.t > begin:
+            self._move(end - self.state.t)
+        else:
+            self._move(self.engine.step)
+
+    def control(self) -> None:
+        """Sense and control if a control period begins now.
+
+        Raises:
+            BadInput: If the controller fails.
+        """
+        if self.state.t >= self._due - TIME_TOLERANCE:
+            self._due += self.scenario.controller.period
+            self._sense_and_control()
+
+    def advance_periods(self, until: float) -> None:
+        """Advance over whole control periods in one compiled call, if scenario and engine allow it.
+
+        Nothing happens unless a period has just begun and several periods end at least a step
+        before `until` [s].
+
+        Raises:
+            BadInput: If the controller or the physics fails.
+        """
+        many, t = self._many_periods, self.state.t
+        if many is None:
+            return
+        periods = many.periods(t, until)
+        if not periods or abs(self._due - t - many.period) > TIME_TOLERANCE:
+            return
+        with self.controller_at_work():
+            done = many.advance(t, periods, self.goal_at)
+        self.steps += done.steps
+        self.saturated.update(done.saturated)
+        self._on_interval([done.mean[name] for name in self.channels], done.seconds)
+        self.state = self.engine.state
+        self._due += done.seconds
+        self._note_sent()
+
+    def in_force(self) -> list[float]:
+        """Return the commands that act, in the order of `channels`."""
+        commands = self.engine.in_force()
+        return [commands[place] for place in self._places]
+
+    def _move(self, seconds: float) -> None:
+        self._on_interval(self.in_force(), seconds)
+        self.engine.advance(length=seconds)
+        self.state = self.engine.state
+
+    def _sense_and_control(self) -> None:
+        state = self.state
+        usual = self.scenario.sensors.sample(
+            state.t,
+            (state.x, state.y, state.psi),
+            (state.u, state.v, state.r),
+            self.engine.acceleration(),
+            self._imu,
+            (state.phi, state.p),
+        )
+        self.sense: Sense = sensed(
+            usual, self.scenario.additional_sensors, self.engine, self._sensor_generators
+        )
+        goal = self.goal_at(state.t)
+        with self.controller_at_work() as controller:
+            if goal.get(OFF):
+                controller.reset()
+                self._send({})
+                self._early = inf
+                return
+            self._send(controller.step(self.sense, goal))
+            self._early = state.t + controller.early(self.sense)
+
+    def _send(self, commands: dict[str, float]) -> None:
+        self.engine.command(commands)
+        self._note_sent()
+
+    def _note_sent(self) -> None:
+        self.sent = dict(zip(self.scenario.vessel.commands, self.engine.sent, strict=False))
+        self._beyond = self.engine.beyond
+
+
+def controller_error(error: Exception, controller: Controller) -> str:
+    """Describe an error of a controller in one line.
+
+    Args:
+        error: What was raised.
+        controller: The controller.
+
+    Returns:
+        The text of an error of this package; for another one its kind and the controller's line.
+    """
+    if isinstance(error, BoatsimError):
+        return str(error)
+    goals = type(controller).goals
+    if isinstance(error, KeyError) and error.args[0] in goals:
+        return f"no [[goal]] in force gives {error.args[0]}; it takes {', '.join(goals)}"
+    file = getsourcefile(type(controller))
+    frames = traceback.extract_tb(error.__traceback__)
+    lines = [frame.lineno for frame in frames if frame.filename == file]
+    text = f"{type(error).__name__}: {error}"
+    return f"{text} ({file}, line {lines[-1]})" if lines else text

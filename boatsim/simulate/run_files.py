@@ -1,0 +1,319 @@
+"""Files of a run: recording.csv, camera.csv, recording.toml, norms.json and those of observers.
+
+They are written during the run into a folder named `.part-...` next to the final one, which remains
+if the process is killed.
+"""
+
+import json
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import AbstractContextManager, ExitStack, nullcontext, suppress
+from dataclasses import replace
+from pathlib import Path
+from time import monotonic
+from typing import NamedTuple, Protocol, Self, TypeAlias
+from warnings import catch_warnings, simplefilter
+
+import numpy as np
+
+from boatsim.atomic_folder import atomic_folder
+from boatsim.errors import BadInput
+from boatsim.files import AppendedFile, replacing
+from boatsim.interruption import deferred_signals
+from boatsim.physics.content import vessel_address
+from boatsim.recordings.table import Recording, csv_header, csv_rows
+from boatsim.simulate import evaluation
+from boatsim.simulate.engine import Engine
+from boatsim.simulate.evaluation import Metric, MetricEntry, RunEntry
+from boatsim.simulate.open_water import OpenWater
+from boatsim.simulate.real_time_pace import Pace
+from boatsim.simulate.run import Run, Simulation, engine_for, notes_of, seed_of
+from boatsim.simulate.run_options import Listener, RunOptions
+from boatsim.simulate.scenario import Scenario
+
+CAMERA = "camera"  # stem of the file that a diagnosis reads
+METRICS = "norms.json"
+METRICS_INTERVAL = 1.0  # [s] of wall time at least between two updates of norms.json
+METRICS_SHARE = 0.03  # largest share of the time of a run that these updates may take
+
+
+class RunObserver(Protocol):
+    """Follows a run while it goes, as a rerun log does."""
+
+    def add_rows(self, rows: Recording) -> None:
+        """Receive the rows of the log that follow those received before."""
+
+    def finish(self, metrics: Mapping[str, MetricEntry]) -> None:
+        """Receive the metrics at the end of the run."""
+
+
+# starts to observe a run of an engine; files of the observer go into the folder
+StartObserver: TypeAlias = Callable[[Path, Engine | OpenWater], AbstractContextManager[RunObserver]]
+
+
+class Steering(Protocol):
+    """Steers a run in place of its scenario's goals, as a driver does."""
+
+    @property
+    def pace(self) -> Pace:
+        """What holds the run back to the pace of a clock."""
+
+    @property
+    def refresh(self) -> float:
+        """Wall time between two deliveries of rows [s]."""
+
+    def goal_at(self, t: float, /) -> Mapping[str, float]:
+        """Return the goals at a time [s]."""
+
+    def finished(self) -> bool:
+        """Return whether the run shall end."""
+
+    def start(self, engine: Engine | OpenWater, stop: Callable[[], bool]) -> None:
+        """Prepare for a run of an engine.
+
+        Raises:
+            KeyboardInterrupt: If `stop` returns True before the run begins.
+        """
+
+    def listening(self, listener: Listener) -> AbstractContextManager[Listener]:
+        """Yield a listener for the time of the run that passes the rows on to another one."""
+
+    def facts(self) -> Mapping[str, object]:
+        """Return entries for the table [facts] of recording.toml."""
+
+    def files(self) -> Mapping[str, str]:
+        """Return further files of the run up to the present, text by name."""
+
+
+class RecordedRun(NamedTuple):
+    """A run and its metrics."""
+
+    run: Run
+    metrics: Mapping[str, Metric]
+
+    def to_json(self) -> RunEntry:
+        """Return the content of norms.json."""
+        return evaluation.to_json(self.run, self.metrics)
+
+
+def run_into_folder(
+    folder: Path,
+    scenario: Scenario,
+    options: RunOptions | None = None,
+    observers: Sequence[StartObserver] = (),
+    steering: Steering | None = None,
+    *,
+    in_memory: bool = False,
+) -> RecordedRun:
+    """Run a scenario and write its files into a folder, all of them or none.
+
+    An interruption ends the run; what was logged is kept, with its metrics so far. With `steering`,
+    files are written in a separate thread and norms.json only at the end, so that neither delays
+    the run.
+
+    Args:
+        folder: Folder of the files.
+        scenario: The scenario.
+        options: How it is run; listeners, folder and stop condition are set here.
+        observers: Follow the run.
+        steering: Steers the run in place of the scenario's goals.
+        in_memory: Keep the log in memory too. Otherwise the recordings of the result are views of
+            a temporary file, so that a run of any length fits.
+
+    Returns:
+        The run with its metrics.
+
+    Raises:
+        BadInput: If the scenario can not be run.
+        BadPhysics: If the motion diverges.
+        BoatsimError: If the disk is full; the message names the folder with the data until then.
+        OSError: If a file can not be written.
+    """
+    options = options or RunOptions()
+    seed = seed_of(scenario, options.seed)
+    engine = engine_for(scenario, seed)
+    with deferred_signals() as stop, atomic_folder(folder, keep="recording.csv") as new:
+        _describe(new, scenario, seed, False, steering)
+        options = replace(options, folder=None if in_memory else new, stop=stop)
+        if steering:
+            options = _steered(options, steering, engine)
+        with ExitStack() as open_files:
+            started = [open_files.enter_context(start(new, engine)) for start in observers]
+            table = open_files.enter_context(CsvFile(new / "recording.csv"))
+            so_far = None if steering else MetricsSoFar(new / METRICS)
+            if "yaw" in scenario.vessel.dof:  # a camera above the water does not see a hull roll
+                camera = open_files.enter_context(CsvFile(new / f"{CAMERA}.csv"))
+                options = replace(options, camera_listener=camera.add)
+
+            def listen(rows: Recording) -> None:
+                table.add(rows)
+                for observer in started:
+                    observer.add_rows(rows)
+                if so_far:
+                    so_far.update(simulation.so_far)
+
+            with steering.listening(listen) if steering else nullcontext(listen) as listener:
+                simulation = Simulation(scenario, replace(options, listener=listener), engine)
+                run = simulation.run()
+            stop.finishing = True  # signals must not cost the files now
+            result = RecordedRun(run, evaluation.all_metrics(run))
+            content = result.to_json()
+            for observer in started:
+                observer.finish(content["norms"])
+        _describe(new, scenario, seed, run.complete, steering)
+        write_metrics(new / METRICS, content)
+    return result
+
+
+def _steered(options: RunOptions, steering: Steering, engine: Engine | OpenWater) -> RunOptions:
+    """Options under a driver, who is ready when this returns."""
+    steering.start(engine, options.stop)
+    return replace(
+        options,
+        goal_source=steering.goal_at,
+        finish=steering.finished,
+        pace=steering.pace,
+        refresh=steering.refresh,
+    )
+
+
+def _describe(
+    folder: Path, scenario: Scenario, seed: int, complete: bool, steering: Steering | None
+) -> None:
+    """Write recording.toml and the further files of a driver."""
+    facts: Mapping[str, object] = {}
+    files: dict[str, str] = {}
+    if steering:
+        facts = steering.facts()
+        files.update(steering.files())
+    texts = {"recording.toml": notes_toml(scenario, seed, complete, facts), **files}
+    for name, text in texts.items():
+        (folder / name).write_text(text, "utf-8")
+
+
+def write_metrics(path: Path, content: RunEntry) -> None:
+    """Write norms.json, replacing an existing one.
+
+    Args:
+        path: The file.
+        content: Its content.
+
+    Raises:
+        OSError: If it can not be written.
+    """
+    with replacing(path) as temporary:
+        temporary.write_text(json.dumps(content, indent=1) + "\n", encoding="utf-8")
+
+
+class MetricsSoFar:
+    """Updates norms.json during a run, for the case that the run is killed or the disk is full."""
+
+    def __init__(self, path: Path) -> None:
+        """Prepare the first update.
+
+        Args:
+            path: The norms.json.
+        """
+        self._path = path
+        self._due = monotonic() + METRICS_INTERVAL
+
+    def update(self, so_far: Callable[[], Run]) -> None:
+        """Write the metrics so far if an update is due.
+
+        Updates are rare enough not to delay a long run, whose evaluation takes long.
+
+        Args:
+            so_far: Returns the run up to the present.
+
+        Raises:
+            OSError: If the file can not be written.
+        """
+        begin = monotonic()
+        if begin < self._due:
+            return
+        run = so_far()
+        # an incomplete log causes warnings; what can not be evaluated at all is reported at the end
+        with suppress(BadInput), np.errstate(all="ignore"), catch_warnings():
+            simplefilter("ignore")
+            write_metrics(self._path, evaluation.to_json(run, evaluation.all_metrics(run)))
+        duration = monotonic() - begin
+        self._due = begin + duration + max(METRICS_INTERVAL, duration / METRICS_SHARE)
+
+
+class CsvFile:
+    """A CSV file of a recording that arrives in pieces; it contains whole rows at any time."""
+
+    def __init__(self, path: Path) -> None:
+        """Create the file.
+
+        Args:
+            path: Its path.
+
+        Raises:
+            OSError: If it can not be written.
+        """
+        self._file = AppendedFile(path.open("wb", buffering=0), path)
+        self._has_header = False
+
+    def add(self, rows: Recording) -> None:
+        """Append rows.
+
+        Args:
+            rows: The rows that follow.
+
+        Raises:
+            OSError: If the disk is full; then none of the rows is in the file.
+        """
+        header = "" if self._has_header else csv_header(rows)
+        self._file.add((header + csv_rows(rows)).encode())
+        self._has_header = True
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._file.close()
+
+
+def notes_toml(scenario: Scenario, seed: int, complete: bool, facts: Mapping[str, object]) -> str:
+    """Return the content of recording.toml: what a diagnosis of the run may know.
+
+    Effects that the scenario adds are not part of it, since a diagnosis has to find them.
+
+    Args:
+        scenario: The scenario.
+        seed: Seed of the run.
+        complete: Whether the run reached its end.
+        facts: Further entries for the table [facts].
+    """
+    notes = notes_of(scenario)
+    address = vessel_address(scenario.vessel.file)
+    lines = [f"vessel = {_value(address)}", f"load = {_value(list(notes.load))}"]
+    for effect, values in notes.settings.items():
+        lines += _table(f"set.{_key(effect)}", values)
+    # recording.csv has no noise: it holds the true motion
+    lines += _table(f"runs.{CAMERA}.noise", notes.noise)
+    place = scenario.address or scenario.name
+    lines += _table("facts", {"scenario": place, "seed": seed, "complete": complete, **facts})
+    return "\n".join(lines) + "\n"
+
+
+def _table(name: str, values: Mapping[str, object]) -> list[str]:
+    lines = ["", f"[{name}]"]
+    for key, value in values.items():
+        lines.append(f"{_key(key)} = {_value(value)}")
+    return lines
+
+
+def _key(name: str) -> str:
+    if name.isascii() and name.replace("_", "a").replace("-", "a").isalnum():
+        return name
+    return _value(name)
+
+
+def _value(value: object) -> str:
+    """A text, number, truth value or list of them in TOML, which has JSON's syntax for these."""
+    if isinstance(value, list):
+        return f"[{', '.join(map(_value, value))}]"
+    if isinstance(value, str):
+        value = value.encode("utf-8", "backslashreplace").decode("utf-8")
+    return json.dumps(value, ensure_ascii=False)
