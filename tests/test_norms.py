@@ -292,7 +292,7 @@ def test_what_is_published_is_judged_by_its_own_tolerance_and_sign(
 
 
 def test_a_guard_that_is_open_is_null_in_the_file() -> None:
-    assert Metric(2.0, "m", guard=(1.0, inf), ok=True).to_json()["guard"] == [1.0, None]
+    assert Metric(2.0, "m", band=(1.0, inf), ok=True).to_json()["guard"] == [1.0, None]
 
 
 def test_guards_of_a_mean_are_widened_by_the_noise_floor_for_one_run() -> None:
@@ -372,7 +372,7 @@ def test_checks_stand_among_the_norms() -> None:
     ]
     found = requested_metrics(filmed("sway", swaying(1.0), 16.0, check=check))
     assert found["psi_rad_inf"] == Metric(
-        pytest.approx(radians(16.0)), "rad", guard=(0.0, 0.2), ok=False, kind="largest"
+        pytest.approx(radians(16.0)), "rad", band=(0.0, 0.2), ok=False, kind="largest"
     )
     assert found["psi_rad_l1"].unit == "rad s" and found["psi_rad_l1"].value == pytest.approx(
         radians(128.0)
