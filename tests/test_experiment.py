@@ -178,7 +178,11 @@ def test_expected_gain_is_the_divergence_of_the_dense_predictions_of_a_linear_mo
     )
     found = simulate_manoeuvre(problem, winner, Manoeuvre("", duration=24.0, release_angle=0.15))
     assert found is not None
-    n, h, P0 = len(found.recording.times), 0.2, found.recording.spread + np.diag([1e-6, 0.0, 4.0])
+    n, h, P0 = (
+        len(found.recording.times),
+        0.2,
+        found.recording.initial.covariance + np.diag([1e-6, 0.0, 4.0]),
+    )
 
     def dense(theta: Array) -> tuple[Array, Array]:
         """Mean and covariance of all samples after the first at given parameters."""

@@ -395,7 +395,10 @@ class ChecksConfig:
         4, "count", "Fixes for which the course must continue after an outlier.", low=1
     )
     outlier_min_return: float = setting(
-        0.5, "1", "Share of the deviation that disappears at once when an outlier ends.", high=1.0
+        0.5,
+        "1",
+        "Share of the deviation that disappears within one row when an outlier ends.",
+        high=1.0,
     )
     outlier_search_rows: int = setting(
         200, "count", "Rows after a fix in which the end of an outlier is sought.", low=2
@@ -548,8 +551,8 @@ class ChecksConfig:
     compare_max_rate: float = setting(
         1.5,
         "1",
-        "Multiple of the usual row rate from which each instrument has rows of its own, so that "
-        "the rows are reduced.",
+        "Multiple of the usual row rate above which the rows are reduced, because each instrument "
+        "then has separate rows.",
         low=1.0,
     )
     compare_max_candidates: int = setting(

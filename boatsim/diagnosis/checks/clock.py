@@ -55,13 +55,13 @@ def _jump_finding(
     recording: Recording, steps: Array, jumps: NDArray[np.int64], config: ChecksConfig
 ) -> Finding:
     t = recording.t
-    listed = jumps[:MAX_LISTED].tolist()
+    listed = jumps[:MAX_LISTED]
     places = ", ".join(f"{t[k]:g} s by {steps[k]:.4g} s" for k in listed)
     return Finding(
         "clock_leaps",
         f"the time jumps ahead at {places}, but the boat does not move in these intervals",
         probability=config.probability_strong,
-        spans=tuple((float(t[k]), float(t[k + 1])) for k in listed),
+        spans=tuple(zip(t[listed].tolist(), t[listed + 1].tolist(), strict=True)),
         use=longest_part(t, jumps),
     )
 

@@ -28,16 +28,26 @@ def check_column_names(recording: Recording, vessel: Vessel, config: ChecksConfi
     if not poses and not commands:
         return []
     other = _other_columns(recording, vessel)
-    candidates = {n: [g for g in other if g.column == n] for n in poses}
-    for name in commands:
-        candidates[name] = _command_guesses(name, other)
-    unique = {name: each[0] for name, each in candidates.items() if len(each) == 1}
-    if not unique:
+    evidence = []
+    changes = []
+    for name in (*poses, *commands):
+        if name in poses:
+            candidates = [guess for guess in other if guess.column == name]
+        else:
+            candidates = _command_guesses(name, other)
+        if len(candidates) == 1:
+            guess = candidates[0]
+            evidence.append(f"{name} is missing, and {guess.name} may be it")
+            changes.append(Change(name, guess.name, _factor(guess)))
+    if not changes:
         return []
-    evidence = ", ".join(f"{n} is missing, and {g.name} may be it" for n, g in unique.items())
-    changes = tuple(Change(n, g.name, _factor(g)) for n, g in unique.items())
     return [
-        Finding("column_names", evidence, probability=config.probability_likely, changes=changes)
+        Finding(
+            "column_names",
+            ", ".join(evidence),
+            probability=config.probability_likely,
+            changes=tuple(changes),
+        )
     ]
 
 
@@ -47,7 +57,7 @@ def _missing_poses(recording: Recording, vessel: Vessel) -> list[str]:
         if axis in vessel.dof and name not in recording.signals:
             missing.append(name)
     if {"u_mps", "v_mps"} & recording.signals.keys():
-        return [name for name in missing if name == "psi_rad"]
+        return ["psi_rad"] if "psi_rad" in missing else []
     return missing
 
 

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from boatsim.diagnosis.checks.finding import Change, Finding
+from boatsim.diagnosis.checks.finding import Finding, scaled
 from boatsim.diagnosis.config import ChecksConfig
 from boatsim.physics.base import Array
 from boatsim.physics.vessel import Vessel
@@ -42,10 +42,10 @@ def check_command_unit(recording: Recording, vessel: Vessel, config: ChecksConfi
     groups: dict[Conversion, list[str]] = {}
     for name, conversion in _conversions(recording, vessel, config).items():
         groups.setdefault(conversion, []).append(name)
-    return [
-        _finding(recording, vessel, conversion, names, config)
-        for conversion, names in groups.items()
-    ]
+    found = []
+    for conversion, names in groups.items():
+        found.append(_finding(recording, vessel, conversion, names, config))
+    return found
 
 
 def _finding(
@@ -77,7 +77,7 @@ def _finding(
         "command_unit",
         f"{'; '.join(evidence)}. The unit {verb} {conversion.unit}",
         probability=probability,
-        changes=tuple(Change(n, n, conversion.factor, conversion.offset) for n in channels),
+        changes=scaled(channels, conversion.factor, conversion.offset),
     )
 
 
@@ -129,5 +129,8 @@ def _same_range(recording: Recording, vessel: Vessel, names: list[str]) -> list[
         return unit_of(name), vessel.commands[name].low, vessel.commands[name].high
 
     ranges = set(map(key, names))
-    others = [n for n in vessel.commands if n in recording.signals and n not in names]
-    return [n for n in others if key(n) in ranges]
+    others = []
+    for name in vessel.commands:
+        if name in recording.signals and name not in names and key(name) in ranges:
+            others.append(name)
+    return others

@@ -36,9 +36,14 @@ def heading_offset(
         Angle [rad] from the bow to the course, positive to starboard; None if the recordings do
         not determine it.
     """
-    stretches = [_straight_stretches(r, vessel, config) for r in recordings]
-    displacement = np.concatenate([q for q, _ in stretches])
-    psi = np.concatenate([p for _, p in stretches])
+    displacements = []
+    headings = []
+    for recording in recordings:
+        moved, heading = _straight_stretches(recording, vessel, config)
+        displacements.append(moved)
+        headings.append(heading)
+    displacement = np.concatenate(displacements)
+    psi = np.concatenate(headings)
     if len(displacement) < config.course_min_stretches:
         return None
     across = np.column_stack([displacement.imag, -displacement.real])
@@ -88,12 +93,10 @@ def _straight_stretches(
 
 def _thrust_ahead(recording: Recording, vessel: Vessel) -> Array:
     """(N,) sum of the thrust commands, in shares of full command; ones without any command."""
-    thrusts = {
-        n: c for n, c in vessel.commands.items() if unit_of(n) != "rad" and n in recording.signals
-    }
-    if not thrusts:
-        return np.ones(len(recording))
     total = np.zeros(len(recording))
-    for name, command in thrusts.items():
-        total += (recording[name] - command.neutral) / max(abs(command.low), abs(command.high))
-    return total
+    thrusts = 0
+    for name, command in vessel.commands.items():
+        if unit_of(name) != "rad" and name in recording.signals:
+            total += (recording[name] - command.neutral) / max(abs(command.low), abs(command.high))
+            thrusts += 1
+    return total if thrusts else np.ones(len(recording))

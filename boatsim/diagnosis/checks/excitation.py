@@ -42,13 +42,17 @@ def _limit(name: str, evidence: str, remedy: str) -> Finding:
 
 
 def _never_astern(recording: Recording, vessel: Vessel) -> list[Finding]:
-    drives = [n for n in vessel.actuators if n in recording.signals and n not in vessel.angles]
-    reversible = [n for n in drives if vessel.commands[n].low < vessel.commands[n].neutral]
+    reversible = []
+    for name in vessel.actuators:
+        if name not in recording.signals or name in vessel.angles:
+            continue
+        command = vessel.commands[name]
+        if command.low < command.neutral:
+            reversible.append(name)
+            if not (recording[name] >= command.neutral).all():
+                return []
     if not reversible:
         return []
-    for name in reversible:
-        if not (recording[name] >= vessel.commands[name].neutral).all():
-            return []
     return [
         _limit(
             "never_astern",

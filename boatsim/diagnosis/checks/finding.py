@@ -1,6 +1,6 @@
 """A finding about a log: its name, the evidence, and the change of columns that corrects it."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
@@ -71,6 +71,16 @@ class Finding:
         return self.kind == "fault" and bool(self.changes) and certain
 
 
+def scaled(names: Iterable[str], factor: float, offset: float = 0.0) -> tuple[Change, ...]:
+    """Return the changes that multiply columns by a factor and add an offset."""
+    return tuple(Change(name, name, factor, offset) for name in names)
+
+
+def changed_columns(changes: Iterable[Change]) -> set[str]:
+    """Return the names of the columns that changes set."""
+    return {change.column for change in changes}
+
+
 def longest_part(t: Array, breaks: NDArray[np.int64]) -> tuple[float, float]:
     """Return the longest interval of a time axis between breaks.
 
@@ -108,6 +118,11 @@ def apply_changes(recording: Recording, changes: Sequence[Change]) -> Recording:
     signals = changed({"t_s": recording.t, **recording.signals})
     t = signals.pop("t_s")
     return replace(recording, t=t, signals=signals, orders=orders)
+
+
+def apply_to_all(recordings: Iterable[Recording], changes: Sequence[Change]) -> list[Recording]:
+    """Return recordings with corrected columns, see `apply_changes`."""
+    return [apply_changes(recording, changes) for recording in recordings]
 
 
 def column_lines(changes: Sequence[Change], sources: Mapping[str, Expression]) -> list[str]:

@@ -13,7 +13,14 @@ from typing import NamedTuple
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from boatsim.diagnosis.checks.finding import Change, Finding, apply_changes
+from boatsim.diagnosis.checks.finding import (
+    Change,
+    Finding,
+    apply_changes,
+    apply_to_all,
+    changed_columns,
+    scaled,
+)
 from boatsim.diagnosis.checks.reinterpretations import (
     Reinterpretation,
     heading_disagrees_with_course,
@@ -55,7 +62,7 @@ class Comparison:
 
     def mapped(self, recordings: Sequence[Recording], changes: Sequence[Change] = ()) -> Problem:
         """The problem with recordings whose columns are changed. Raises BadInput."""
-        changed = [apply_changes(r, changes) for r in recordings]
+        changed = apply_to_all(recordings, changes)
         return self.problem.on(list(map(self.map_recording, changed)))
 
     def score(self, recordings: Sequence[Recording], changes: Sequence[Change]) -> Score:
@@ -115,7 +122,10 @@ def unexplained_force_share(problem: Problem, fit: Fit) -> float:
     drives = np.zeros(len(axes))
     for recording in problem.recordings:
         drives = np.maximum(drives, _drive_force(recording))
-    thrust = max((drives[i] for i, a in enumerate(axes) if a in PLANAR_AXES[:2]), default=0.0)
+    thrust = 0.0
+    for axis, force in zip(axes, drives.tolist(), strict=True):
+        if axis in ("surge", "sway"):
+            thrust = max(thrust, force)
     if not thrust > 0.0:
         return 0.0
     least_moment = 4.0 * (problem.config.checks.unexplained_min_arm * thrust * vessel.length)
@@ -141,7 +151,7 @@ def _shortened(
 ) -> list[Recording]:
     """The first rows of the first recordings, which suffice because a fault concerns all rows.
 
-    Recordings in which each instrument has rows of its own are reduced to the usual rate first.
+    Recordings with separate rows for each instrument are reduced to the usual rate first.
     """
     runs = list(recordings)[: config.checks.compare_max_recordings]
     usual = rate(vessel, config=config.load)
@@ -157,19 +167,19 @@ def _shortened(
 
 def _with_recorded_rudder(recording: Recording) -> Recording:
     """The recording with the rudder signs of its file."""
-    return apply_changes(recording, [Change(n, n, -1.0) for n in reversed_commands(recording)])
+    return apply_changes(recording, scaled(reversed_commands(recording), -1.0))
 
 
 def _find_faults(recordings: list[Recording], comparison: Comparison) -> list[Finding]:
     found: list[Finding] = []
     corrected: tuple[Change, ...] = ()
     for _ in range(comparison.config.compare_max_faults):
-        current = [apply_changes(r, corrected) for r in recordings]
+        current = apply_to_all(recordings, corrected)
         finding = _best_finding(current, comparison)
         if finding is None:
             break
         found.append(finding)
-        if {c.column for c in finding.changes} & {c.column for c in corrected}:
+        if changed_columns(finding.changes) & changed_columns(corrected):
             break
         corrected = (*corrected, *finding.changes)
         if comparison.is_explained(comparison.mapped(current, finding.changes)):

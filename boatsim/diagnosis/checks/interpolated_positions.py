@@ -34,7 +34,8 @@ def check_interpolated_positions(
     t = recording.t
     durations = t[ends] - t[begins]
     longest = np.argsort(durations)[::-1][:MAX_LISTED]
-    spans = tuple((float(t[begins[k]]), float(t[ends[k]])) for k in sorted(longest.tolist()))
+    longest = np.sort(longest)
+    spans = tuple(zip(t[begins[longest]].tolist(), t[ends[longest]].tolist(), strict=True))
     evidence = (
         f"{int(straight.sum())} of {len(recording)} rows in {len(begins)} places lie on straight "
         f"lines with equal steps, exact to the last digit (longest {float(durations.max()):.3g} s)"
@@ -98,7 +99,7 @@ def _equal_steps(columns: list[Array], config: ChecksConfig) -> tuple[NDArray[np
         chance *= max(float(equal.mean()), 1.0 / n)
     if noisy < 2:
         return np.zeros(n - 2, dtype=np.bool_), chance
-    moving = np.any([np.diff(c)[1:] != 0.0 for c in columns], axis=0)
+    moving = (np.diff(columns)[:, 1:] != 0.0).any(axis=0)
     return exact & moving, chance
 
 

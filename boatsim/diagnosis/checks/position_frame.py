@@ -6,6 +6,7 @@ proportion to yaw rate and distance from the origin.
 """
 
 from dataclasses import replace
+from operator import itemgetter
 
 import numpy as np
 
@@ -41,7 +42,8 @@ def drop_rotated_positions(
         f"proportion to yaw rate and distance from the origin (share {share:.2f}, sd {sd:.2g}). "
         "The positions were rotated with the heading and are not used"
     )
-    signals = {k: v for k, v in recording.signals.items() if k not in ("x_m", "y_m")}
+    signals = dict(recording.signals)
+    del signals["x_m"], signals["y_m"]
     return replace(recording, signals=signals, remarks=(*recording.remarks, remark))
 
 
@@ -57,7 +59,7 @@ def rotated_share(recording: Recording) -> tuple[float, float]:
     Returns:
         The share (0 for correct positions, 1 for rotated ones) and its standard deviation.
     """
-    x, y, psi, u, v = (recording[name] for name in NEEDED)
+    x, y, psi, u, v = itemgetter(*NEEDED)(recording.signals)
     t = recording.t - recording.t[0]
     c = np.cos(psi)
     s = np.sin(psi)

@@ -27,7 +27,7 @@ def check_position_jumps(recording: Recording, _: Vessel, config: ChecksConfig) 
     """
     found = []
     for name, columns, unit in SIGNALS:
-        if all(c in recording.signals for c in columns):
+        if set(columns) <= recording.signals.keys():
             found += _check_columns(recording, name, columns, unit, config)
     return found
 
@@ -52,7 +52,7 @@ def _check_columns(
             name,
             f"{', '.join(columns)} jump permanently: {', '.join(places)}",
             probability=config.probability_strong,
-            spans=tuple((float(t[k]), float(t[k + 1])) for k in listed),
+            spans=tuple(zip(t[rows].tolist(), t[rows + 1].tolist(), strict=True))[:MAX_LISTED],
             use=longest_part(t, rows),
         )
     ]

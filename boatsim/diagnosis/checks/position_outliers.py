@@ -47,7 +47,7 @@ def drop_position_outliers(
     remarks = list(recording.remarks)
     duration = config.checks.outlier_max_duration * froude_time(vessel)
     for names, scale in ((("x_m", "y_m"), vessel.length), (("psi_rad",), 1.0)):
-        if any(n not in signals for n in names):
+        if not set(names) <= signals.keys():
             continue
         values = np.column_stack([signals[n] for n in names])
         finest = config.load.finest_noise * scale

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from boatsim.diagnosis.checks.finding import Change, Finding
+from boatsim.diagnosis.checks.finding import Change, Finding, scaled
 from boatsim.diagnosis.config import ChecksConfig
 from boatsim.diagnosis.priors import froude_time
 from boatsim.physics.base import Array
@@ -48,8 +48,9 @@ def _check_degrees(
         lon = y * scale
         if not _may_be_degrees(lat, lon, config):
             continue
-        meridian, across = (r * UNITS["deg"] for r in radii(float(np.radians(lat[0]))))
-        across *= float(np.cos(np.radians(lat[0])))
+        latitude = float(np.radians(lat[0]))
+        meridian, across = np.multiply(radii(latitude), UNITS["deg"]).tolist()
+        across *= float(np.cos(latitude))
         froude = _froude_number(
             t, (lat - lat[0]) * meridian, (lon - lon[0]) * across, vessel, config
         )
@@ -107,7 +108,7 @@ def _check_scale(
                 f"x_m, y_m move at {speed:.3g} m/s, too fast for a hull of {vessel.length:g} m. "
                 f"In {unit} they move at {speed * UNITS[unit]:.3g} m/s"
             )
-            changes = tuple(Change(n, n, UNITS[unit]) for n in ("x_m", "y_m"))
+            changes = scaled(("x_m", "y_m"), UNITS[unit])
             return [Finding("position_unit", evidence, changes=changes)]
     return []
 

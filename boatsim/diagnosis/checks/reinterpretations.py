@@ -6,11 +6,12 @@ A reinterpretation is a change of columns that a user may have forgotten.
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from math import degrees, pi
+from operator import itemgetter
 
 import numpy as np
 
 from boatsim.diagnosis.checks.course_over_ground import heading_offset
-from boatsim.diagnosis.checks.finding import Change, apply_changes
+from boatsim.diagnosis.checks.finding import Change, apply_to_all, changed_columns, scaled
 from boatsim.diagnosis.config import ChecksConfig
 from boatsim.diagnosis.priors import froude_time
 from boatsim.physics.base import Array
@@ -63,7 +64,7 @@ def reinterpretations(
     Returns:
         Reinterpretations; their changes concern columns that the recordings have.
     """
-    columns = {c for r in recordings for c in r.signals}
+    columns = set[str]().union(*(r.signals for r in recordings))
 
     def available(changes: Sequence[Change]) -> tuple[Change, ...]:
         return tuple(c for c in changes if c.source in columns)
@@ -99,7 +100,7 @@ def heading_disagrees_with_course(
     angle, agreement = _mean_drift_angle(recordings, vessel)
     if abs(angle) > config.heading_min_offset and agreement > config.heading_min_agreement:
         return True
-    mirrored = [apply_changes(r, MIRRORED_HEADING) for r in recordings]
+    mirrored = apply_to_all(recordings, MIRRORED_HEADING)
     _, mirrored_agreement = _mean_drift_angle(mirrored, vessel)
     better = mirrored_agreement > agreement + config.heading_min_improvement
     return better and mirrored_agreement > config.heading_min_agreement
@@ -108,7 +109,7 @@ def heading_disagrees_with_course(
 def _have_planar_poses(recordings: Sequence[Recording], vessel: Vessel) -> bool:
     if not set(vessel.dof) >= PLANAR_DOF:
         return False
-    return all(n in r.signals for r in recordings for n in POSE)
+    return all(set(POSE) <= r.signals.keys() for r in recordings)
 
 
 def _axes(
@@ -152,7 +153,7 @@ def _mean_drift_angle(recordings: Sequence[Recording], vessel: Vessel) -> tuple[
     total = 0.0 + 0.0j
     distance = 0.0
     for recording in recordings:
-        x, y, psi = (recording[n] for n in POSE)
+        x, y, psi = itemgetter(*POSE)(recording.signals)
         known = np.isfinite(x) & np.isfinite(y) & np.isfinite(psi)
         t = recording.t[known]
         z = x[known] + 1j * y[known]
@@ -166,10 +167,10 @@ def _mean_drift_angle(recordings: Sequence[Recording], vessel: Vessel) -> tuple[
 def _drives(
     recordings: Sequence[Recording], vessel: Vessel, config: ChecksConfig
 ) -> Iterator[Reinterpretation]:
-    channels = [n for n in vessel.commands if all(n in r.signals for r in recordings)]
+    channels = _common_commands(recordings, vessel)
     exchanged = _exchanged_sides(channels)
     if exchanged:
-        names = " and ".join(sorted({c.column for c in exchanged}))
+        names = " and ".join(sorted(changed_columns(exchanged)))
         yield Reinterpretation("thrusters_exchanged", f"{names} are exchanged", exchanged)
     reversible = [n for n in channels if vessel.commands[n].low < 0.0 < vessel.commands[n].high]
     for unit in dict.fromkeys(map(unit_of, channels)):
@@ -180,15 +181,23 @@ def _drives(
         yield Reinterpretation(
             "rudder_reversed" if unit == "rad" else "thrust_reversed",
             f"the sign of {names} is reversed",
-            tuple(Change(n, n, -1.0) for n in same_unit),
+            scaled(same_unit, -1.0),
         )
         verb = "are" if len(same_unit) > 1 else "is"
         for words, factor in _command_shares(recordings, vessel, same_unit, config):
             yield Reinterpretation(
                 "command_unit",
                 f"{names} {verb} in {words} of full command",
-                tuple(Change(n, n, factor) for n in same_unit),
+                scaled(same_unit, factor),
             )
+
+
+def _common_commands(recordings: Sequence[Recording], vessel: Vessel) -> list[str]:
+    """Commands that all recordings have."""
+    common = list(vessel.commands)
+    for recording in recordings:
+        common = [name for name in common if name in recording.signals]
+    return common
 
 
 def _exchanged_sides(channels: list[str]) -> tuple[Change, ...]:

@@ -25,7 +25,7 @@ def drop_repeated_positions(recording: Recording) -> Recording:
     signals = dict(recording.signals)
     remarks = list(recording.remarks)
     for names in COLUMNS_OF_ONE_FIX:
-        if any(n not in signals for n in names):
+        if not set(names) <= signals.keys():
             continue
         repeated = repeated_rows(np.column_stack([signals[n] for n in names]))
         if repeated.any():

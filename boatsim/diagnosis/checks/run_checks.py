@@ -53,7 +53,7 @@ def check_table(path: Path, vessel: Vessel, config: ChecksConfig) -> list[Findin
         for finding in new:
             recording = apply_changes(recording, finding.changes)
         found += new
-    return [replace(f, run=str(path)) for f in found]
+    return _of_run(found, path)
 
 
 def check_recording(
@@ -70,7 +70,7 @@ def check_recording(
     found = cleaning_findings(cleaned)
     for check in RECORDING_CHECKS:
         found += check(recording, vessel, config)
-    return [replace(f, run=str(recording.path or recording.name)) for f in found]
+    return _of_run(found, recording.path or recording.name)
 
 
 def check_identifiability(
@@ -86,4 +86,9 @@ def check_identifiability(
     found: list[Finding] = []
     for check in IDENTIFIABILITY_CHECKS:
         found += check(recording, vessel, config)
-    return [replace(f, run=str(recording.path or recording.name)) for f in found]
+    return _of_run(found, recording.path or recording.name)
+
+
+def _of_run(found: list[Finding], run: Path | str) -> list[Finding]:
+    """Findings with the file of their recording."""
+    return [replace(finding, run=str(run)) for finding in found]

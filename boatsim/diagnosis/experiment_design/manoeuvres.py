@@ -43,8 +43,8 @@ class Manoeuvre:
 
 SCRIPTS: dict[str, tuple[Step, ...]] = {
     "slow and fast astern, thrusters straight and turned": (
-        (6, -0.4, -0.4, 0, 0), (6, -0.9, -0.9, 0, 0), (6, 0.6, 0.6, 0, 0), (6, -0.6, -0.6, 0.5, 0.5),
-        (6, -0.6, -0.6, -0.5, -0.5), (10, 0.6, 0.6, 0, 0),
+        (6, -0.4, -0.4, 0, 0), (6, -0.9, -0.9, 0, 0), (6, 0.6, 0.6, 0, 0),
+        (6, -0.6, -0.6, 0.5, 0.5), (6, -0.6, -0.6, -0.5, -0.5), (10, 0.6, 0.6, 0, 0),
     ),
     "slow and fast spins on the spot, both ways round": (
         (10, 0.4, -0.4, 0, 0), (10, -0.4, 0.4, 0, 0), (10, 0.9, -0.9, 0, 0), (10, -0.9, 0.9, 0, 0),
@@ -127,9 +127,9 @@ def driven_commands(vessel: Vessel) -> tuple[str, ...]:
     """Return the commands of a manoeuvre; a command that feeds an actuator (PWM) replaces it."""
     fed = set()
     for effect in vessel.effects:
-        fed |= {
-            target for target in vessel.targets(effect) if vessel.feeding_command(effect, target)
-        }
+        for target in vessel.targets(effect):
+            if vessel.feeding_command(effect, target):
+                fed.add(target)
     return tuple(name for name in vessel.commands if name not in fed)
 
 
@@ -159,11 +159,13 @@ def _boat_manoeuvres(vessel: Vessel, walls: bool, config: PlanConfig) -> tuple[M
         name = f"random steps of all commands on several levels, {seed}"
         scripts[name] = _random_script(seed, holds, config.boat_duration, config)
     scripts |= SCRIPTS
-    found = [_from_script(vessel, name, script, config) for name, script in scripts.items()]
+    found = []
+    for name, script in scripts.items():
+        found.append(_from_script(vessel, name, script, config))
     if walls:
         name = "slowly up to a wall and back, twice"
         found.append(_from_script(vessel, name, TO_WALL, config, to_wall=True))
-    return tuple(m for m in found if any(any(level.values()) for level in m.levels))
+    return tuple(filter(_moves, found))
 
 
 def _ship_manoeuvres(
@@ -178,7 +180,17 @@ def _ship_manoeuvres(
     if "yaw" in vessel.dof:
         for degrees in config.zigzag_angles:
             found.append(_zigzag(vessel, degrees, usual_commands, config))
-    return tuple(m for m in found if any(level != m.levels[0] for level in m.levels))
+    return tuple(filter(_varies, found))
+
+
+def _moves(manoeuvre: Manoeuvre) -> bool:
+    """Whether a manoeuvre has a command other than zero."""
+    return any(any(level.values()) for level in manoeuvre.levels)
+
+
+def _varies(manoeuvre: Manoeuvre) -> bool:
+    """Whether the commands of a manoeuvre change."""
+    return any(level != manoeuvre.levels[0] for level in manoeuvre.levels)
 
 
 def _zigzag(
@@ -215,14 +227,16 @@ def _from_script(
     """
     scale = froude_scale("s", vessel)
     tick = float(f"{config.command_tick * scale:.1g}")
-    ends = np.cumsum([0.0, *(step[0] for step in script)]) * scale
-    times = [round(float(tick * np.round(t / tick)), 6) for t in ends]
+    elapsed = [0.0]
     levels = []
     for step in script:
+        elapsed.append(elapsed[-1] + step[0])
         level = {}
         for command in driven_commands(vessel):
             level[command] = _command(vessel, command, step, config, usual_commands)
         levels.append(level)
+    ends = np.array(elapsed) * scale
+    times = [round(t, 6) for t in (tick * np.round(ends / tick)).tolist()]
     return Manoeuvre(
         name,
         tuple(times[:-1]),

@@ -5,12 +5,13 @@ Kullback-Leibler divergence of their predictions, each with the posterior of its
 Hill 1967, Discrimination among mechanistic models, Technometrics 9, 57-71). Both predictions pass
 through the filter, so that the latent force can absorb differences, and use the noise levels of the
 best hypothesis. The expected motion of the best hypothesis is treated as a recording without noise,
-and the rival is refitted to it. The rival may attribute the remaining misfit to a larger disturbance,
-which reduces a large expected log Bayes factor.
+and the rival is refitted to it. The rival may attribute the remaining misfit to a larger
+disturbance, which reduces a large expected log Bayes factor.
 """
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from operator import attrgetter
 
 import numpy as np
 
@@ -94,10 +95,8 @@ def all_plans(problem: Problem, best: Fit, rivals: Mapping[str, Fit]) -> list[Pl
     """
     if not rivals:
         return []
-    own = []
-    for name in best.effects:
-        if any(name not in rival.effects for rival in rivals.values()):
-            own.append(name)
+    shared = set(best.effects).intersection(*(rival.effects for rival in rivals.values()))
+    own = [name for name in best.effects if name not in shared]
     manoeuvres = available_manoeuvres(
         problem.program.vessel,
         _usual_commands(problem),
@@ -145,7 +144,7 @@ def open_question(ranking: Ranking, config: DiagnosisConfig) -> tuple[Fit, dict[
     Returns:
         The best hypothesis, and its rivals by name.
     """
-    undecided = [named for named in ranking.named if named.tied_with]
+    undecided = list(filter(attrgetter("tied_with"), ranking.named))
     if not undecided:
         undecided = sorted(ranking.named, key=lambda named: named.probability)[:1]
     if undecided:
@@ -209,12 +208,15 @@ def scenario_text(plan: Plan, vessel: Vessel) -> str:
         "",
         "[start]  # m, rad, m/s",
     ]
-    lines += [f"{name} = {value:.4g}" for name, value in plan.start.items() if value]
+    for name, value in plan.start.items():
+        if value:
+            lines.append(f"{name} = {value:.4g}")
     lines += ["", "[controller]", 'use = "open_loop"', f"period = {step:g}  # [s]"]
     for time, level in zip(plan.times, plan.levels, strict=True):
         if level:
             lines += ["", "[[goal]]", f"from = {time:g}  # [s]"]
-            lines += [f"{name} = {value:g}" for name, value in level.items()]
+            for name, value in level.items():
+                lines.append(f"{name} = {value:g}")
     return "\n".join(lines) + "\n"
 
 
@@ -259,8 +261,8 @@ def _with_refitted_disturbance(gain: float, recording: MappedRecording, best: Fi
     """Expected log Bayes factor [nats] if the disturbance level of the rival is refitted too.
 
     A misfit of g nats is distributed over n independent intervals of the latent force, where
-    n = 1 + T / 2 tau for an Ornstein-Uhlenbeck process that must explain a constant. If its variance
-    is refitted, n/2 log(1 + 2 g / n) remains.
+    n = 1 + T / 2 tau for an Ornstein-Uhlenbeck process that must explain a constant. If its
+    variance is refitted, n/2 log(1 + 2 g / n) remains.
     """
     if not gain > 0.0:
         return gain
@@ -278,8 +280,8 @@ def _refit(
     config = problem.config.plan
     on = problem.program.switches(model.effects)
     root = np.linalg.cholesky(model.covariance)
-    low = np.array([parameter.low for parameter in model.free])
-    high = np.array([parameter.high for parameter in model.free])
+    low = np.array(list(map(attrgetter("low"), model.free)))
+    high = np.array(list(map(attrgetter("high"), model.free)))
 
     def values(xi: Array) -> Array:
         return problem.values(recording, model.free, np.clip(model.theta + root @ xi, low, high))

@@ -1,5 +1,6 @@
 """Simulation of a manoeuvre with a fitted vessel, as a recording without noise."""
 
+from bisect import bisect_left
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -76,7 +77,7 @@ def wall_distances(problem: Problem) -> Array | None:
 
 def _shortened(manoeuvre: Manoeuvre, end: float) -> Manoeuvre:
     """The manoeuvre until a time [s]."""
-    count = sum(t < end for t in manoeuvre.times)
+    count = bisect_left(manoeuvre.times, end)
     return replace(
         manoeuvre,
         times=manoeuvre.times[:count],

@@ -1,9 +1,9 @@
-"""The missing force of each axis over time with its band, and the intervals in which it is not zero.
+"""The missing force of each axis over time with its band, and the intervals where it is not zero.
 
-The missing force is what the vessel as specified lacks to move as recorded. The smoother follows the
-recording with a recalibrated vessel, because the error of a coefficient changes abruptly with the
-commands and a slowly varying force can not follow it. The change by the recalibration is then added
-with its uncertainty. Forces are averages over the correlation time of the assumed disturbance.
+The missing force is what the vessel as specified lacks to move as recorded. The smoother follows
+the recording with a recalibrated vessel, because the error of a coefficient changes abruptly with
+the commands and a slowly varying force can not follow it. The change by the recalibration is then
+added with its uncertainty. Forces are averages over the correlation time of the disturbance.
 """
 
 from collections.abc import Sequence

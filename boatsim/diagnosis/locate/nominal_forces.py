@@ -53,7 +53,7 @@ def body_forces(
         states: States (N, 2 NQ) of the vessel.
         held: Actuator states (N, HELD).
         values: Parameter values.
-        effects: Candidates that act, besides the effects of the vessel.
+        effects: Candidates that act in addition to the effects of the vessel.
 
     Returns:
         Forces and moments (N, axes) [N, N m].

@@ -1,9 +1,9 @@
 """Test for a periodic missing force: a peak in the spectrum of the prediction errors.
 
 Prediction errors are white if the model is complete, and each ordinate of their periodogram is then
-exponentially distributed. The ratio of the mean power in a narrow band and in the neighbouring bands
-has an F distribution. The reference is the geometric mean of the neighbours on either side, so that
-a spectrum that only rises or falls has no peak.
+exponentially distributed. The ratio of the mean power in a narrow band and in the neighbouring
+bands has an F distribution. The reference is the geometric mean of the neighbours on either side,
+so that a spectrum that only rises or falls has no peak.
 """
 
 from collections.abc import Sequence

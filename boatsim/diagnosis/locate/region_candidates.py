@@ -111,7 +111,7 @@ def _thrust_astern(mapped: MappedRecording) -> Iterator[RegionCandidate]:
 def _steering_play(mapped: MappedRecording, config: LocateConfig) -> Iterator[RegionCandidate]:
     """The force missing while steering angles lag after a reversal (play operator)."""
     vessel = mapped.program.vessel
-    angles = [vessel.actuators.index(a) for a in vessel.angles]
+    angles = list(map(vessel.actuators.index, vessel.angles))
     if not angles:
         return
     play = config.play_width

@@ -40,7 +40,7 @@ class ScoreStatistics:
             shapes: Shapes (N, axes) of every candidate.
             force: Smoothed latent force of the recording.
         """
-        columns = _consecutive({name: len(each) for name, each in shapes.items()})
+        columns = _consecutive(shapes)
         arrays: list[Array] = []
         for each in shapes.values():
             arrays += each
@@ -55,7 +55,7 @@ class ScoreStatistics:
     def subset(self, names: Sequence[str]) -> "ScoreStatistics":
         """Return the statistics of some candidates alone, in the given order."""
         kept = self.indices(names)
-        columns = _consecutive({name: len(self.columns[name]) for name in names})
+        columns = _consecutive(dict(zip(names, map(self.columns.__getitem__, names), strict=True)))
         return ScoreStatistics(
             columns,
             self.information[np.ix_(kept, kept)],
@@ -115,11 +115,11 @@ def combined(statistics: Sequence[ScoreStatistics], names: Sequence[str]) -> Sco
     )
 
 
-def _consecutive(counts: Mapping[str, int]) -> dict[str, tuple[int, ...]]:
-    """Consecutive indices for candidates with given numbers of shapes."""
+def _consecutive(shapes: Mapping[str, Sequence[object]]) -> dict[str, tuple[int, ...]]:
+    """Consecutive indices for the shapes of each candidate."""
     columns = {}
     begin = 0
-    for name, count in counts.items():
-        columns[name] = tuple(range(begin, begin + count))
-        begin += count
+    for name, own in shapes.items():
+        columns[name] = tuple(range(begin, begin + len(own)))
+        begin += len(own)
     return columns

@@ -1,4 +1,4 @@
-"""Regions of the state in which a force is missing: thrust astern, near a wall, with speed, periodic.
+"""Regions of the state in which a force is missing, such as thrust astern or nearness to a wall.
 
 Each candidate is tested in addition to the coefficients that a recalibration changes and to the
 other regions found. p-values are corrected for the number of candidates tested (Bonferroni).
@@ -104,7 +104,8 @@ def _select(
         chosen.append(min(p_values, key=lambda name: p_values[name]))
     results = {}
     for name in chosen:
-        others = [other for other in chosen if other != name]
+        others = chosen.copy()
+        others.remove(name)
         results[name] = statistics.test(name, [COEFFICIENTS, *others])
     return results
 
