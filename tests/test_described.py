@@ -129,7 +129,8 @@ def test_the_library_has_no_entry_of_its_own_for_what_is_described() -> None:
         e.name for e in library.slots
     }
     assert not any(
-        content.load_class("effect", n).told_by for n in ("described_force", "described_thrust")
+        content.load_class("effect", n).confounded_with
+        for n in ("described_force", "described_thrust")
     )
 
 

@@ -169,13 +169,13 @@ def drawn_signals(kind: type[Effect], seed: int) -> Any:
 
 def arguments(kind: type[Effect], seed: int, image: bool = False) -> tuple[Any, ...]:
     """What a law takes beside motion and values: signals of its roles, or those of what it rides on and its values."""
-    of = SHELF[kind.rides] if kind.rides else kind
+    of = SHELF[kind.per_instance_of] if kind.per_instance_of else kind
     if not of.roles:
         return ()
     signals, carrier = drawn_signals(of, seed), drawn(of, seed + 1)
     if image:
         signals, carrier = signals._replace(**mirrored_motion(signals._asdict())), mirrored(carrier)
-    return (signals, carrier.values()) if kind.rides else (signals,)
+    return (signals, carrier.values()) if kind.per_instance_of else (signals,)
 
 
 WALLS = {"y_low": "y_high", "y_high": "y_low"}  # change place and sign
@@ -312,7 +312,7 @@ def test_a_uniform_current_changes_no_force_but_of_what_holds_on_to_the_world(
             -np.cross([still.p, still.q, still.r], flow), np.zeros(3)
         )
     same = after - before == pytest.approx(wanted, abs=1e-12 * max(1.0, np.abs(before).max()))
-    anchor = getattr(kind, "anchored", "")
+    anchor = getattr(kind, "tied_to", "")
     assert same != bool(anchor), anchor or after - before
 
 

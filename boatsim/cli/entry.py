@@ -72,8 +72,8 @@ def _said_of_effect(made: type[Effect]) -> Iterator[tuple[str, str]]:
         yield f"on.{role}", f"{said.words} [{said.unit}]{left_out}"
     if issubclass(made, Channel) and made.acts_on:
         yield "acts on", f"commands of {made.acts_on.replace('|', ' or ')}"
-    if made.rides:
-        yield "rides on", made.rides
+    if made.per_instance_of:
+        yield "acts on each", made.per_instance_of
     if made.needs:
         yield "needs", f"{' and '.join(made.needs)} free"
     if made.ruled_out_by:
@@ -85,8 +85,8 @@ def _said_of_effect(made: type[Effect]) -> Iterator[tuple[str, str]]:
         yield "ruled out by", " or ".join(facts)
     if made.facts:
         yield "needs the facts", ", ".join(made.facts)
-    if made.told_by:
-        yield "only on request", f"looks the same as {' or '.join(made.told_by)}"
+    if made.confounded_with:
+        yield "only on request", f"looks the same as {' or '.join(made.confounded_with)}"
 
 
 def _toml(value: object) -> str:

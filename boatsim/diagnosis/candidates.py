@@ -80,9 +80,9 @@ def library_for(
         if lacks := lacking(kind, vessel, known, table):
             idle[called] = lacks
             continue
-        if kind.told_by and not asked:
+        if kind.confounded_with and not asked:
             left_out[called] = (
-                f"looks the same as {' or '.join(kind.told_by)}; --library {called} tries it"
+                f"looks the same as {' or '.join(kind.confounded_with)}; --library {called} tries it"
             )
             continue
         left_out.pop(called, None)
@@ -105,7 +105,7 @@ def slots(vessel: Vessel) -> tuple[Effect, ...]:
     found, taken = list[Effect](), {e.name for e in vessel.effects}
     for idea, (begins, most) in SLOTS.items():
         kind: type[Effect] = load_class("effect", idea)
-        if kind.rides and not vessel.effects_of(kind.rides):
+        if kind.per_instance_of and not vessel.effects_of(kind.per_instance_of):
             continue
         free = (name for k in count(1) if (name := f"{begins}{k}") not in taken)
         found += [

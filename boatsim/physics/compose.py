@@ -62,14 +62,18 @@ class Composition:
     # -----------------------------------------------------------------------------------------------
 
     def sites(self, number: int) -> Sequence[Site]:
-        """The calls of an effect's laws: one, or one for each instance that it rides on."""
+        """The calls of an effect's laws: one, or one for each instance on which it acts."""
         effect = self.effects[number]
         own = self._values(number)
         held = ("act", "at", f"np.int64({self.own(number)})") if type(effect).sees_held else ()
-        if type(effect).rides:
+        if type(effect).per_instance_of:
             carriers = [self.effects.index(e) for e in self.vessel.carriers(effect)]
             return [
-                Site(number, own, (self._carried(i, type(effect).rides), self._values(i), *held))
+                Site(
+                    number,
+                    own,
+                    (self._carried(i, type(effect).per_instance_of), self._values(i), *held),
+                )
                 for i in carriers
             ]
         return [Site(number, own, ((self._signals(number),) if type(effect).roles else ()) + held)]

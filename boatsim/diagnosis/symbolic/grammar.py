@@ -75,7 +75,7 @@ def terms(
     for axis in (*axes, *level):
         for run, acts, begin, end in (*lasting, *swinging):
             yield DescribedForce(axis=axis, acts=acts, begin=begin, end=end, run=run)
-    if vessel.effects_of(DescribedThrust.rides):
+    if vessel.effects_of(DescribedThrust.per_instance_of):
         for side in SIDES if _sided(vessel) else ("all",):
             for sense in SENSES:
                 for run, acts, begin, end in (*lasting, *_swinging(tracks, OF_THRUST)):
@@ -105,7 +105,9 @@ def _pushes(vessel: Vessel, signal: str, side: float) -> bool:
 
 def _sided(vessel: Vessel) -> bool:
     """Whether a drive lies to one side."""
-    return any(getattr(e, "y", 0.0) != 0.0 for e in vessel.effects_of(DescribedThrust.rides))
+    return any(
+        getattr(e, "y", 0.0) != 0.0 for e in vessel.effects_of(DescribedThrust.per_instance_of)
+    )
 
 
 def _products(

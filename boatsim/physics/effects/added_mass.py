@@ -269,7 +269,7 @@ class ShallowWater(Release):
     """Larger sway and yaw added mass and cross-flow drag in shallow water, by one factor k."""
 
     needs: ClassVar = ("sway", "yaw")
-    told_by: ClassVar = ("added_mass_error",)
+    confounded_with: ClassVar = ("added_mass_error",)
     words: ClassVar[str] = "shallow water increases the added mass and the drag in sway and yaw"
     shown_by: ClassVar[str] = "the same sway in deep and in shallow water"
     source: ClassVar[str] = (

@@ -49,7 +49,7 @@ class AsternTimeConstant(Force):
         "L. R. S. Theisen, R. Galeazzi, M. Blanke, IFAC CAMS 2013, section 3.2: 1/T is not "
         "consistent"
     )
-    rides: ClassVar[str] = "reversing_jet"
+    per_instance_of: ClassVar[str] = "reversing_jet"
     law: ClassVar = law
     starts: ClassVar = ({"factor": 0.7}, {"factor": 1.4})
 

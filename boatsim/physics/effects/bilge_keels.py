@@ -47,7 +47,7 @@ class BilgeKeels(Force):
     [rad/s].
     """
 
-    told_by: ClassVar = ("quadratic_damping",)
+    confounded_with: ClassVar = ("quadratic_damping",)
     words: ClassVar[str] = "bilge keels damp the roll, the more the larger its amplitude"
     shown_by: ClassVar[str] = "a roll decay from a large heel"
     source: ClassVar[str] = (

@@ -49,7 +49,7 @@ class DescribedThrust(Described):
 
     words: ClassVar[str] = "a change of thrust that no effect of the library explains"
     shown_by: ClassVar[str] = "the same command, repeated"
-    rides: ClassVar[str] = "thruster"
+    per_instance_of: ClassVar[str] = "thruster"
     law: ClassVar = law
 
     side: str = "all"  # one of `SIDES`

@@ -62,7 +62,7 @@ class DraggedPropeller(Force):
     )
     shown_by: ClassVar[str] = "one thruster astern at speed, and from rest"
     source: ClassVar[str] = "drag of a disc across the flow, 0.5 rho A C_D u^2"
-    rides: ClassVar[str] = "thruster"
+    per_instance_of: ClassVar[str] = "thruster"
     law: ClassVar = law
 
     drag: float = param(

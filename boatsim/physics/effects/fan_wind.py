@@ -63,7 +63,7 @@ class FanWind(Force):
     words: ClassVar[str] = "a steady wind exerts a drag and a yaw moment on the hull"
     shown_by: ClassVar[str] = "turning through all headings while holding the thrust"
     source: ClassVar[str] = "checked specification of Bayless 2017, section 7 (wind model [A])"
-    anchored: ClassVar[str] = "the air"
+    tied_to: ClassVar[str] = "the air"
     law: ClassVar = law
     of_air: ClassVar = True
 

@@ -109,7 +109,7 @@ class IrregularSea(Force):
     source: ClassVar[str] = (
         "C. R. Martin, Rudder Roll Reduction for Small Ships, UBC 1993, Appendix V"
     )
-    anchored: ClassVar[str] = "the ground, to which the phase of its waves is referred"
+    tied_to: ClassVar[str] = "the ground, to which the phase of its waves is referred"
     law: ClassVar = law
 
     significant_height: float = param(

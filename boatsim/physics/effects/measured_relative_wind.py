@@ -36,7 +36,7 @@ class MeasuredRelativeWind(MeasuredWind):
     """
 
     # the reading is relative to the hull, so no frame of reference is needed
-    anchored: ClassVar[str] = ""
+    tied_to: ClassVar[str] = ""
     law: ClassVar = law
     roles: ClassVar = {
         "speed": Role("m/s", "speed of the air past the hull"),

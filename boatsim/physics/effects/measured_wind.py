@@ -43,7 +43,7 @@ class MeasuredWind(Force):
     source: ClassVar[str] = (
         "T. I. Fossen, Handbook of Marine Craft Hydrodynamics, 2nd ed. 2021, section 10.1"
     )
-    anchored: ClassVar[str] = "the air"
+    tied_to: ClassVar[str] = "the air"
     law: ClassVar = law
     of_air: ClassVar = True
     roles: ClassVar = {

@@ -43,7 +43,7 @@ class PropWalk(Force):
     source: ClassVar[str] = (
         "J. Brix (ed.), Manoeuvring Technical Manual, 1993; a third of it ahead is an assumption"
     )
-    rides: ClassVar[str] = "thruster"
+    per_instance_of: ClassVar[str] = "thruster"
     law: ClassVar = law
 
     side_force_per_thrust: float = param(

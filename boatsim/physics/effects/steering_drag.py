@@ -33,7 +33,7 @@ class SteeringDrag(Force):
     source: ClassVar[str] = (
         "T. I. Fossen, Handbook of Marine Craft Hydrodynamics, 2nd ed. 2021, chapter 9"
     )
-    rides: ClassVar[str] = "rudder"
+    per_instance_of: ClassVar[str] = "rudder"
     law: ClassVar = law
 
     drag: float = param(

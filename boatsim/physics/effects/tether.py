@@ -60,7 +60,7 @@ class Tether(Force):
     needs: ClassVar = ("surge", "sway")
     words: ClassVar[str] = "a line or cable pulls the boat towards a fixed point"
     shown_by: ClassVar[str] = "visiting the corners of the tank on several headings"
-    anchored: ClassVar[str] = "a fixed point"
+    tied_to: ClassVar[str] = "a fixed point"
     law: ClassVar = law
     strength: ClassVar = ("tension", "stiffness", "drag")
     starts: ClassVar = (

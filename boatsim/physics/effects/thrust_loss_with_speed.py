@@ -37,7 +37,7 @@ class ThrustLossWithSpeed(Force):
     source: ClassVar[str] = (
         "T. I. Fossen, Handbook of Marine Craft Hydrodynamics, 2nd ed. 2021, section 9.3: K_T(J)"
     )
-    rides: ClassVar[str] = "thruster"
+    per_instance_of: ClassVar[str] = "thruster"
     law: ClassVar = law
 
     loss: float = param(

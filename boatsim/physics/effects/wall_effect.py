@@ -62,7 +62,7 @@ class WallEffect(Force):
     )
     shown_by: ClassVar[str] = "approaching a wall slowly and leaving it again"
     source: ClassVar[str] = "assumption: exponential decay with a reach of half a boat length"
-    anchored: ClassVar[str] = "the walls"
+    tied_to: ClassVar[str] = "the walls"
     law: ClassVar = law
     strength: ClassVar = ("damping_rise", "pull")
     facts: ClassVar = {"walls_m": ("x_low", "x_high", "y_low", "y_high")}

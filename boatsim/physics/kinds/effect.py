@@ -59,7 +59,7 @@ class Effect(Checked):
     # fact -> values that exclude the effect
     ruled_out_by: ClassVar[Mapping[str, tuple[object, ...]]] = {}
     # effects with the same signature: this one is a candidate on request only
-    told_by: ClassVar[tuple[str, ...]] = ()
+    confounded_with: ClassVar[tuple[str, ...]] = ()
     # a random process: the filter tracks it, a simulation without data cannot
     random: ClassVar[bool] = False
     alone: ClassVar[bool] = False  # no candidate for a vessel that has one already
@@ -68,7 +68,7 @@ class Effect(Checked):
     # its law also takes all actuators: `act`, `at` and the index of the recalled value
     sees_held: ClassVar[bool] = False
     # effect on each of whose instances it acts: its law takes their signals and parameters
-    rides: ClassVar[str] = ""
+    per_instance_of: ClassVar[str] = ""
 
     filled: frozenset[str] = field(  # parameters set by `completed` instead of by a file
         default=frozenset(), kw_only=True, repr=False, compare=False, metadata={"ours": True}

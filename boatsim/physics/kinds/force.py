@@ -22,17 +22,17 @@ WRENCH = Part(
 class Force(Kind):
     """Memoryless force: compiled `law(motion, values) -> Wrench`.
 
-    With `roles` the law takes the bound signals as a third argument. An effect with `rides` is
-    evaluated once for each instance of that other effect, with its signals and parameters. An
-    effect that can stand for another one (a propeller for a thruster) converts its signals by a
-    compiled function `as_<name>`.
+    With `roles` the law takes the bound signals as a third argument. An effect with
+    `per_instance_of` is evaluated once for each instance of that other effect, with its signals and
+    parameters. An effect that can stand for another one (a propeller for a thruster) converts its
+    signals by a compiled function `as_<name>`.
     """
 
     parts: ClassVar = (WRENCH,)
     laws: ClassVar[tuple[str, ...]] = ("law", "as_thruster")
     of_air: ClassVar[bool] = False  # a force of the air, logged separately
     # frame to which the force is tied other than the water: "the air", "walls"; empty: none
-    anchored: ClassVar[str] = ""
+    tied_to: ClassVar[str] = ""
     law: ClassVar[Callable[..., Wrench]]
 
     @classmethod

@@ -179,7 +179,7 @@ class Bindings:
 
     def carriers(self, effect: Effect) -> list[Effect]:
         """Return the effects at which an effect acts, such as the thrusters of a prop walk: those it names, else all."""
-        carriers = self.effects_of(type(effect).rides)
+        carriers = self.effects_of(type(effect).per_instance_of)
         return [e for e in carriers if not effect.on or e.name in effect.on]
 
     def targets(self, effect: Effect) -> tuple[str, ...]:
@@ -228,7 +228,7 @@ def check_bindings(vessel: Bindings, label: str) -> None:
             )
         if isinstance(effect, Channel):
             _check_channel(vessel, effect, what)
-        elif type(effect).rides:
+        elif type(effect).per_instance_of:
             _check_carriers(vessel, effect, what)
 
 
@@ -259,7 +259,7 @@ def _check_channel(vessel: Bindings, effect: Channel, what: str) -> None:
 
 
 def _check_carriers(vessel: Bindings, effect: Effect, what: str) -> None:
-    idea = type(effect).rides
+    idea = type(effect).per_instance_of
     carriers = [carrier.name for carrier in vessel.effects_of(idea)]
     for name in effect.on:
         if name not in carriers:
