@@ -562,7 +562,7 @@ def test_a_table_beyond_the_limits_is_refused_by_what_it_says_of_itself_or_as_so
         + ("1," * (columns - 1) + "1\n") * 20_000 * (columns < 100)
     )
     (tmp_path / "log.csv").write_text(text + "1\n")
-    monkeypatch.setattr("boatsim.recordings.importing.log.MOST_VALUES", 499)
+    monkeypatch.setattr("boatsim.recordings.importing.log.MAX_VALUES", 499)
     for name in ("log.parquet", "log.csv"):
         assert re.search("columns|signals|values", line_of(open_log, tmp_path / name))
 

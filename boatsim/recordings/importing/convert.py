@@ -1,4 +1,7 @@
-"""A log by its map as one recording: SI units, our axes, one clock, and remarks on all that was left out or held."""
+"""Conversion of a log by its map to a recording: SI units, SNAME axes and one clock.
+
+Remarks of the recording list all samples that were left out or held.
+"""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
@@ -18,7 +21,7 @@ from boatsim.recordings.importing.frames import local
 from boatsim.recordings.importing.log import Log, Signal, rate_of
 from boatsim.recordings.importing.mapping import Map, Position, Range
 from boatsim.recordings.importing.resample import (
-    LEAST_LOST,
+    MIN_LOST,
     Samples,
     clock,
     held,
@@ -30,21 +33,23 @@ from boatsim.recordings.raw_table import file_error
 from boatsim.recordings.repeated_values import repeated_rows
 from boatsim.recordings.table import FEWEST_ROWS, MAX_GAP, Recording, allowed_gaps, is_command
 
-TOGETHER = (("x_m", "y_m"), ("psi_rad",))  # columns that come with one fix
+# Columns of one fix
+TOGETHER = (("x_m", "y_m"), ("psi_rad",))
+# Prefixes of columns that, like commands, are in force until the next value
 HELD = (
     "stick_",
     "sent_",
     "reference_",
-)  # beside commands, what somebody wants is in force until he wants otherwise
-ALIKE = 1.5  # times as fast as the poses: from there on commands set the clock
-NEAR = 0.05  # of a step of the rows: what is measured so near to a row is in it
-ROUNDS = 4
-MOST_ROWS = 5_000_000
+)
+FASTER = 1.5  # commands set the clock if their rate is this many times that of the poses
+ROW_TOLERANCE = 0.05  # a sample is in a row if it is nearer than this share of the step of the rows
+MAX_ROUNDS = 4
+MAX_ROWS = 5_000_000
 
 
 @dataclass(frozen=True)
 class Column:
-    """One column before it is put on the common clock."""
+    """A column before resampling to the rows; `held` values are in force until the next sample."""
 
     given: Samples
     held: bool
@@ -52,7 +57,7 @@ class Column:
 
 @dataclass
 class _Work:
-    """What is being made, and what there is to say about it."""
+    """State of a conversion, with the remarks on it."""
 
     log: Log
     file: str  # of the map, for messages
@@ -62,16 +67,23 @@ class _Work:
     remarks: list[str] = field(default_factory=list)
     begin: float = 0.0  # [s] first time of the log
 
-    def say(self, text: str) -> None:
+    def remark(self, text: str) -> None:
         self.remarks.append(f"{self.log.path}: {text}")
 
 
 def convert(
     log: Log, map: Map, file: str, channels: Mapping[str, tuple[float, float]] | None = None
 ) -> Recording:
-    """The recording that a map makes of a log; `channels` are the vessel's commands with their ends.
+    """Return the recording of a log.
 
-    Raises BadInput, one line with the map's key, for a signal that is not there and for what can not be converted.
+    Args:
+        log: The log.
+        map: Signals of the columns.
+        file: Name of the map in messages.
+        channels: Allowed range (low, high) of the vessel's commands.
+
+    Raises:
+        BadInput: One line with the key of the map for a signal that does not exist or can not be converted.
     """
     work = _Work(log, file, map, channels or {}, remarks=list(log.remarks))
     starts = [float(np.nanmin(s.t)) for s in log.signals.values() if np.isfinite(s.t).any()]
@@ -81,16 +93,18 @@ def convert(
     for name, what in map.columns.items():
         t, values = _column(work, name, what)
         is_held = name in work.channels or is_command(name) or name.startswith(HELD)
-        work.columns[name] = Column(_of_use(work, name, samples(t, values)), is_held)
+        work.columns[name] = Column(_not_empty(work, name, samples(t, values)), is_held)
     _drop_repeats(work)
     rows, near = _clock(work)
-    signals = {
-        n: held(rows, c.given) if c.held else placed(rows, c.given, near)
-        for n, c in work.columns.items()
-    }
-    _say_what_was_held(work, rows)
-    rows, signals = _whole(work, rows, signals)
-    _say_times(work, rows)
+    signals: dict[str, Array] = {}
+    for name, column in work.columns.items():
+        if column.held:
+            signals[name] = held(rows, column.given)
+        else:
+            signals[name] = placed(rows, column.given, near)
+    _remark_held(work, rows)
+    rows, signals = _complete_rows(work, rows, signals)
+    _remark_times(work, rows)
     return Recording(
         log.path.stem,
         np.round(rows - rows[0], 6),
@@ -101,7 +115,7 @@ def convert(
 
 
 def _signal(work: _Work, key: str, text: str) -> tuple[Signal, Expression]:
-    """The signal that an expression names, at the times the map asks for."""
+    """The signal of an expression, with the time of the map."""
     try:
         found = parse(text, work.log.signals.keys())
     except BadInput as error:
@@ -129,13 +143,12 @@ def _column(work: _Work, name: str, what: str | Range) -> tuple[Array, Array]:
     values = how.of(signal.values)
     ends = sorted([(what.low, what.least), (what.neutral, 0.0), (what.high, what.most)])
     if beyond := int(np.sum((values < ends[0][0]) | (values > ends[2][0]))):
-        work.say(
-            f"{name}: {beyond} of {len(values)} samples lie beyond {ends[0][0]:g} to {ends[2][0]:g}, and are taken "
-            "as its ends"
+        work.remark(
+            f"{name}: {beyond} of {len(values)} samples are outside {ends[0][0]:g} to {ends[2][0]:g} and are set to "
+            "the limit"
         )
-    return signal.t, np.interp(
-        values, np.array([a for a, _ in ends]), np.array([b for _, b in ends])
-    )
+    of_signal, of_column = np.array(ends).T
+    return signal.t, np.interp(values, of_signal, of_column)
 
 
 def _add_position(work: _Work, position: Position) -> None:
@@ -143,7 +156,7 @@ def _add_position(work: _Work, position: Position) -> None:
     east, how_east = _signal(work, "position.longitude", position.longitude)
     if len(north.t) != len(east.t) or not np.array_equal(north.t, east.t, equal_nan=True):
         raise BadInput(
-            f"{work.file}: position: latitude and longitude are of two streams; name those of one fix"
+            f"{work.file}: position: latitude and longitude are of two streams; allowed are those of one"
         )
     t, lat, lon = north.t, how_north.of(north.values), how_east.of(east.values)
     there = np.isfinite(t) & np.isfinite(lat) & np.isfinite(lon)
@@ -154,7 +167,7 @@ def _add_position(work: _Work, position: Position) -> None:
         )
     nowhere = there & (lat == 0.0) & (lon == 0.0)
     if nowhere.any():
-        work.say(
+        work.remark(
             f"{int(nowhere.sum())} fixes at latitude and longitude 0, before satellites were found, are left out"
         )
     there &= ~nowhere
@@ -167,7 +180,7 @@ def _add_position(work: _Work, position: Position) -> None:
     first = int(np.argmin(t))
     at = position.origin or (degrees(lat[first]), degrees(lon[first]))
     x, y = local(lat, lon, (radians(at[0]), radians(at[1])))
-    work.say(f"x_m and y_m are counted from latitude {at[0]:.8f}, longitude {at[1]:.8f}")
+    work.remark(f"x_m and y_m are counted from latitude {at[0]:.8f}, longitude {at[1]:.8f}")
     for name, values in (("x_m", x), ("y_m", y)):
         work.columns[name] = Column(samples(t, values), False)
 
@@ -179,23 +192,23 @@ def _in_use(work: _Work, t: Array) -> "np.ndarray[tuple[int, ...], np.dtype[np.b
     return np.asarray((since >= work.map.use[0] - 1e-9) & (since <= work.map.use[1] + 1e-9))
 
 
-def _of_use(work: _Work, name: str, given: Samples) -> Samples:
+def _not_empty(work: _Work, name: str, given: Samples) -> Samples:
     if not len(given.t):
         raise BadInput(f"{work.file}: columns.{name} has no number in {work.log.path.name}")
     return given
 
 
 def _drop_repeats(work: _Work) -> None:
-    """Without fixes that the logger only repeated: they are no measurements."""
+    """Remove fixes that the logger repeated, for they are not measurements."""
     for names in TOGETHER:
         there = [work.columns[n] for n in names if n in work.columns]
         if len(there) < len(names) or any(len(c.given.t) != len(there[0].given.t) for c in there):
             continue
         repeated = repeated_rows(np.column_stack([c.given.values for c in there]))
         if repeated.any():
-            work.say(
+            work.remark(
                 f"{', '.join(names)}: {int(repeated.sum())} of {len(repeated)} samples repeat the one before and are "
-                "no measurements; they are left empty"
+                "not measurements; they are left empty"
             )
             for name, c in zip(names, there, strict=True):
                 work.columns[name] = replace(
@@ -204,28 +217,25 @@ def _drop_repeats(work: _Work) -> None:
 
 
 def _clock(work: _Work) -> tuple[Array, float]:
-    """(N,) times of the rows [s], of the log's clock, and how near to one a sample is in it [s].
+    """Times (N,) of the rows [s] of the log's clock, and the largest distance of a sample from its row [s].
 
-    They are those of the fastest signal, and of what of the others is measured at other times; or evenly at the rate
-    that the map asks for.
+    The rows are the samples of the fastest signal and those of others at other times, or evenly spaced at the rate of
+    the map.
     """
     poses = {n: c for n, c in work.columns.items() if n in (*POSE, *RATES)}
     orders = {n: c for n, c in work.columns.items() if c.held and not n.startswith(HELD)}
     fastest = max(poses.values(), key=lambda c: c.given.rate)
     quick = max(orders.values(), key=lambda c: c.given.rate, default=fastest)
-    if quick.given.rate > ALIKE * fastest.given.rate:
+    if quick.given.rate > FASTER * fastest.given.rate:
         fastest = quick
-    begin = max(
-        [
-            min(float(c.given.t[0]) for c in poses.values()),
-            *(float(c.given.t[0]) for c in orders.values()),
-        ]
-    )
+    begin = min(float(c.given.t[0]) for c in poses.values())
+    for order in orders.values():
+        begin = max(begin, float(order.given.t[0]))
     end = max(float(c.given.t[-1]) for c in poses.values())
     if work.map.rate:
-        if (end - begin) * work.map.rate > MOST_ROWS:
+        if (end - begin) * work.map.rate > MAX_ROWS:
             raise BadInput(
-                f"{work.file}: rate = {work.map.rate:g} Hz over {end - begin:g} s is more than {MOST_ROWS:,} rows"
+                f"{work.file}: rate = {work.map.rate:g} Hz over {end - begin:g} s is more than {MAX_ROWS:,} rows"
             )
         rows = begin + np.arange(0.0, max(end - begin, 0.0) + 1e-9, 1.0 / work.map.rate)
     else:
@@ -238,21 +248,23 @@ def _clock(work: _Work) -> tuple[Array, float]:
             f"poses and commands have {span} in common, in which the fastest has {len(rows)} samples; at least "
             f"{FEWEST_ROWS} are needed",
         )
-    _say_rates(work, rows)
+    _remark_rates(work, rows)
     if work.map.rate:
-        work.say(
-            f"what is measured is put into the nearest row, up to {0.5 / work.map.rate:.3g} s from its own time"
+        work.remark(
+            f"measurements are put into the nearest row, up to {0.5 / work.map.rate:.3g} s from its own time"
         )
         return rows, 1.0 / work.map.rate
-    near = NEAR * float(np.median(np.diff(rows)))
+    near = ROW_TOLERANCE * float(np.median(np.diff(rows)))
     others = sorted((c.given for c in poses.values() if c is not fastest), key=lambda s: -s.rate)
     rows = clock(rows, others, near)
     return rows[_in_use(work, rows)], near
 
 
-def _say_rates(work: _Work, rows: Array) -> None:
-    """What is measured less often than rows are written, and what more often."""
-    rate, slow, quick = rate_of(rows), dict[str, list[str]](), dict[str, list[str]]()
+def _remark_rates(work: _Work, rows: Array) -> None:
+    """Remark signals that are measured less often or more often than rows are written."""
+    rate = rate_of(rows)
+    slow: dict[str, list[str]] = {}
+    quick: dict[str, list[str]] = {}
     for name, c in work.columns.items():
         inside = int(np.sum((c.given.t >= rows[0] - 1e-9) & (c.given.t <= rows[-1] + 1e-9)))
         if not c.held and c.given.rate < 0.9 * rate:
@@ -262,54 +274,54 @@ def _say_rates(work: _Work, rows: Array) -> None:
                 f"{c.given.rate:.3g} times a second: {inside - len(rows)} samples", []
             ).append(name)
     for times, names in slow.items():
-        work.say(
+        work.remark(
             f"{', '.join(names)}: measured {times} times a second; the other rows, {rate:.3g} a second, are empty"
         )
     for what, names in quick.items():
-        work.say(
+        work.remark(
             f"{', '.join(names)}: logged {what} between the {rate:.3g} rows a second are left out"
         )
 
 
-def _say_what_was_held(work: _Work, rows: Array) -> None:
+def _remark_held(work: _Work, rows: Array) -> None:
     for name, c in work.columns.items():
         if c.held and (longest := longest_hold(rows, c.given)):
-            work.say(
+            work.remark(
                 f"{name} is held for up to {longest:.3g} s without a new value; was it still in force?"
             )
 
 
-def _whole(work: _Work, rows: Array, signals: dict[str, Array]) -> tuple[Array, dict[str, Array]]:
-    """Without rows in which a command is unknown, and those few in which a pose is missing that others have.
+def _complete_rows(
+    work: _Work, rows: Array, signals: dict[str, Array]
+) -> tuple[Array, dict[str, Array]]:
+    """Remove rows without a command, and rows in which a pose is missing that is measured in the others.
 
-    A column that is empty in many rows is a slow one, and its reader knows it; one that is empty in a few has lost
-    samples.
+    A column that is empty in many rows is measured less often; one that is empty in a few rows has lost samples.
     """
     kept = np.ones(len(rows), dtype=np.bool_)
     for name, values in signals.items():
         if work.columns[name].held and not name.startswith(HELD):
             kept &= np.isfinite(values)
-    for _ in range(ROUNDS):  # rows that are left out may make a slow column of one that was not
-        fair = allowed_gaps({n: v[kept] for n, v in signals.items()})
-        unfair = [
-            np.isnan(v[kept]) & ~fair.get(n, False)
-            for n, v in signals.items()
-            if n in (*POSE, *RATES)
-        ]
-        lost = np.flatnonzero(kept)[np.any(unfair, axis=0)]
+    for _ in range(MAX_ROUNDS):  # the removal of rows may change which columns are slow
+        allowed = allowed_gaps({n: v[kept] for n, v in signals.items()})
+        missing = np.zeros(int(kept.sum()), dtype=np.bool_)
+        for name, values in signals.items():
+            if name in (*POSE, *RATES):
+                missing |= np.isnan(values[kept]) & ~np.asarray(allowed.get(name, False))
+        lost = np.flatnonzero(kept)[missing]
         if not len(lost):
             break
-        work.say(
+        work.remark(
             f"{len(lost)} rows in which a pose or rate is missing that the others have are left out"
         )
         kept[lost] = False
     if kept.sum() < FEWEST_ROWS:
         raise file_error(
             work.log.path,
-            f"{int(kept.sum())} rows have all that is needed; at least {FEWEST_ROWS} must",
+            f"{int(kept.sum())} rows are complete; at least {FEWEST_ROWS} are needed",
         )
-    for name in [n for n in signals if n in (*POSE, *RATES)]:
-        if np.isfinite(signals[name][kept]).sum() < FEWEST_ROWS:
+    for name, values in signals.items():
+        if name in (*POSE, *RATES) and np.isfinite(values[kept]).sum() < FEWEST_ROWS:
             raise file_error(
                 work.log.path,
                 f"{name} has fewer than {FEWEST_ROWS} samples in the rows",
@@ -318,43 +330,49 @@ def _whole(work: _Work, rows: Array, signals: dict[str, Array]) -> tuple[Array, 
     return rows[kept], {name: values[kept] for name, values in signals.items()}
 
 
-def _say_times(work: _Work, rows: Array) -> None:
+def _remark_times(work: _Work, rows: Array) -> None:
     if YEAR_2000 < rows[0] < YEAR_2100:
-        work.say(
+        work.remark(
             f"t_s = 0 is {datetime.fromtimestamp(float(rows[0]), UTC).isoformat(timespec='milliseconds')}"
         )
     elif isfinite(work.begin):
-        work.say(f"t_s = 0 is {rows[0] - work.begin:.3f} s after the log begins")
+        work.remark(f"t_s = 0 is {rows[0] - work.begin:.3f} s after the log begins")
     steps = np.diff(rows)
-    if (longest := float(steps.max())) > max(LEAST_LOST, 5.0 * float(np.median(steps))):
+    if (longest := float(steps.max())) > max(MIN_LOST, 5.0 * float(np.median(steps))):
         where = float(rows[int(np.argmax(steps))] - rows[0])
-        more = (
-            "; no diagnosis reads over that: cut the log with use = [from_s, to_s]"
-            if longest > MAX_GAP
-            else ""
-        )
-        work.say(f"there is a gap of {longest:.3g} s at t = {where:.3f} s{more}")
+        more = ""
+        if longest > MAX_GAP:
+            more = "; a diagnosis refuses it: cut the log with use = [from_s, to_s]"
+        work.remark(f"there is a gap of {longest:.3g} s at t = {where:.3f} s{more}")
 
 
 def position_fix(map: Map) -> str | None:
-    """The fact `position_fix` that a map tells: satellites, where positions are latitudes."""
+    """Return the fact `position_fix` of a map: "gnss" where positions are latitudes, else None."""
     return "gnss" if map.position else None
 
 
 def notes_of(path: Path, vessel: str, fix: str | None) -> str:
-    """What a recording.toml should say of the recording in `path`."""
-    key = (
-        path.stem
-        if path.stem.replace("_", "").replace("-", "").isalnum() and path.stem.isascii()
-        else f'"{_quoted(path.stem)}"'
-    )
+    """Return the text of a recording.toml.
+
+    Args:
+        path: File of the recording.
+        vessel: Name or path of the vessel.
+        fix: The fact `position_fix`, None if unknown.
+    """
+    key = path.stem
+    if not (key.replace("_", "").replace("-", "").isalnum() and key.isascii()):
+        key = f'"{_quoted(key)}"'
     lines = [f"[runs.{key}]", f'vessel = "{_quoted(vessel)}"']
-    return "\n".join([*lines, *([f'facts.position_fix = "{fix}"'] if fix else [])]) + "\n"
+    if fix:
+        lines.append(f'facts.position_fix = "{fix}"')
+    return "\n".join(lines) + "\n"
 
 
 def _quoted(text: str) -> str:
-    return "".join(
-        c if c.isprintable() and c not in '"\\' else f"\\u{ord(c):04x}"
-        for c in text
-        if ord(c) < 0x10000
-    )
+    quoted = ""
+    for c in text:
+        if c.isprintable() and c not in '"\\':
+            quoted += c if ord(c) < 0x10000 else ""
+        elif ord(c) < 0x10000:
+            quoted += f"\\u{ord(c):04x}"
+    return quoted

@@ -1,4 +1,4 @@
-"""Places and attitudes in other frames, brought to ours: x north, y east, heading clockwise, SNAME body axes."""
+"""Conversion of positions and attitudes to x north, y east, heading clockwise and SNAME body axes."""
 
 import re
 from collections.abc import Mapping
@@ -12,24 +12,29 @@ from boatsim.recordings.importing.log import Signal
 SEMI_MAJOR, FLATTENING = 6378137.0, 1.0 / 298.257223563  # [m], 1
 QUATERNION = re.compile(r"^(.*?)(?:\.([xyzw])|\[([0-3])\])$")
 ATTITUDE = re.compile(r"(^|[._/])(q|quat|quaternion|orientation|rotation|attitude)$")
-UNIT_LENGTH = 0.01  # by which a quaternion's length may miss 1
+UNIT_LENGTH = 0.01  # largest difference of a quaternion's length from 1
 
 
 def local(latitude: Array, longitude: Array, origin: tuple[float, float]) -> tuple[Array, Array]:
-    """North and east (N,) m of an origin from geodetic latitude and longitude (N,) rad; the origin is in rad too.
+    """Return the position north and east of an origin, each (N,) [m].
 
-    north = (lat - lat0) M, east = (lon - lon0) N cos(lat0), with the radii of curvature of WGS 84 at the origin. What
-    that neglects goes with the square of the distance: less than 2 mm 100 m away and 0.2 m 1 km away at latitudes up
-    to 60 degrees, where it is largest in the north (tests/test_frames.py holds it to that).
+    north = (lat - lat0) M, east = (lon - lon0) N cos(lat0), with the radii of curvature of WGS 84 at the origin. The
+    error grows with the square of the distance: less than 2 mm at 100 m and 0.2 m at 1 km at latitudes up to 60
+    degrees (checked by tests/test_frames.py).
+
+    Args:
+        latitude: Geodetic latitude (N,) [rad].
+        longitude: Longitude (N,) [rad].
+        origin: Latitude and longitude of the origin [rad].
     """
     lat0, lon0 = origin
     meridian, across = radii(lat0)
-    turned = np.remainder(longitude - lon0 + np.pi, 2.0 * np.pi) - np.pi  # over the date line
+    turned = np.remainder(longitude - lon0 + np.pi, 2.0 * np.pi) - np.pi  # across the date line
     return (latitude - lat0) * meridian, turned * across * np.cos(lat0)
 
 
 def radii(latitude: float) -> tuple[float, float]:
-    """Radii of curvature [m] of WGS 84 along the meridian, M, and across it, N, at a latitude [rad]."""
+    """Return the radii of curvature of WGS 84 [m] along the meridian, M, and across it, N, at a latitude [rad]."""
     squared = FLATTENING * (2.0 - FLATTENING)  # of the first eccentricity
     w = 1.0 - squared * np.sin(latitude) ** 2
     across = SEMI_MAJOR / np.sqrt(w)
@@ -37,18 +42,19 @@ def radii(latitude: float) -> tuple[float, float]:
 
 
 def angles(w: Array, x: Array, y: Array, z: Array) -> tuple[Array, Array, Array]:
-    """Roll, pitch, yaw (N,) rad of quaternions, about x, y, z of whatever axes they are in, yaw first."""
+    """Return roll, pitch and yaw, each (N,) [rad], of quaternions; the rotations are in the order yaw, pitch, roll."""
     roll = np.arctan2(2.0 * (w * x + y * z), 1.0 - 2.0 * (x * x + y * y))
     pitch = np.arcsin(np.clip(2.0 * (w * y - z * x), -1.0, 1.0))
     return roll, pitch, np.arctan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))
 
 
 def with_angles(signals: Mapping[str, Signal]) -> dict[str, Signal]:
-    """All signals, and roll, pitch and yaw beside each attitude that is a quaternion: `q.yaw`, `orientation.yaw`.
+    """Return all signals, with roll, pitch and yaw of each quaternion added: `q.yaw`, `orientation.yaw`.
 
-    Letters name the parts of one; numbers count from its real part.
+    The parts of a quaternion are named by letters, or numbered from the real part.
     """
-    found, groups = dict(signals), dict[str, dict[str, Signal]]()
+    found = dict(signals)
+    groups: dict[str, dict[str, Signal]] = {}
     for name, signal in signals.items():
         if (parts := QUATERNION.match(name)) and ATTITUDE.search(parts[1]):
             groups.setdefault(parts[1], {})[parts[2] or "wxyz"[int(parts[3])]] = signal

@@ -1,4 +1,4 @@
-"""The map from a log to a recording: which signal is which column, in which unit; a TOML file that a user checks."""
+"""The map from a log to a recording: the signal and unit of each column, in a TOML file that the user checks."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -9,17 +9,26 @@ from boatsim.errors import BadInput
 from boatsim.files import Table, checked, read_toml
 from boatsim.physics.signals import POSE, RATES
 
-HELD = ("t_s", "x_m", "y_m")  # columns that `position` and the clock make
+COMPUTED = ("t_s", "x_m", "y_m")  # columns that follow from the clock and from `position`
 
 
 class Range(Table):
-    """A signal between its ends, such as a pulse of 1100 to 1900 us, as a column between its own, bent at neutral."""
+    """Piecewise linear conversion of a signal, such as a pulse of 1100 to 1900 us, to a column.
+
+    Attributes:
+        signal: Expression of the signal.
+        low: Value of the signal at `least`.
+        neutral: Value of the signal at 0.
+        high: Value of the signal at `most`.
+        least: Value of the column where the signal is low.
+        most: Value of the column where the signal is high.
+    """
 
     signal: str
-    low: float  # of the signal, in its unit
+    low: float
     neutral: float
     high: float
-    least: float = -1.0  # of the column, where the signal is low
+    least: float = -1.0
     most: float = 1.0
 
     @model_validator(mode="after")
@@ -30,11 +39,17 @@ class Range(Table):
 
 
 class Position(Table):
-    """Latitude and longitude as expressions that end in radians, and the origin they are counted from."""
+    """Position by latitude and longitude.
+
+    Attributes:
+        latitude: Expression in rad.
+        longitude: Expression in rad.
+        origin: Latitude and longitude of the origin [deg]; the first fix by default.
+    """
 
     latitude: str
     longitude: str
-    origin: tuple[float, float] | None = None  # [deg] latitude, longitude; None: the first fix
+    origin: tuple[float, float] | None = None
 
     @field_validator("origin")
     @classmethod
@@ -47,15 +62,23 @@ class Position(Table):
 
 
 class Map(Table):
-    """A whole map."""
+    """Content of a map.
+
+    Attributes:
+        about: Description.
+        vessel: Name or path of the vessel.
+        rate: Rate of the rows [Hz]; that of the fastest signal by default.
+        use: Part of the log that is converted, from and to [s] since its begin.
+        time: Expression in s of the time of a table without a column of a known name.
+        position: Latitude and longitude.
+        columns: Column -> expression of a signal, or its `Range`.
+    """
 
     about: str = ""
     vessel: str | None = None
-    rate: float | None = Field(
-        None, gt=0.0, le=1000.0
-    )  # [Hz] of rows; None: that of the fastest signal
-    use: tuple[float, float] | None = None  # [s] since the log begins; None: all of it
-    time: str | None = None  # of a table whose time is not found by its name; ends in s
+    rate: float | None = Field(None, gt=0.0, le=1000.0)
+    use: tuple[float, float] | None = None
+    time: str | None = None
     position: Position | None = None
     columns: dict[str, str | Range] = {}
 
@@ -72,7 +95,7 @@ class Map(Table):
 
     @model_validator(mode="after")
     def _fits(self) -> "Map":
-        taken = HELD if self.position else HELD[:1]
+        taken = COMPUTED if self.position else COMPUTED[:1]
         if twice := [name for name in self.columns if name in taken]:
             raise ValueError(
                 f"columns.{twice[0]} is what {'time' if twice[0] == 't_s' else 'position'} makes; leave it out"
@@ -87,12 +110,12 @@ class Map(Table):
 
 
 def read_map(path: Path) -> Map:
-    """A map from its file. Raises BadInput."""
+    """Return the map of a file. Raises BadInput."""
     return map_of(read_toml(path), str(path))
 
 
 def map_of(table: Mapping[str, object], file: str) -> Map:
-    """A map from what a file says. Raises BadInput."""
+    """Return the map of the content of a file. Raises BadInput."""
     try:
         return checked(Map, table, file)
     except BadInput as error:

@@ -16,8 +16,7 @@ from boatsim.recordings.importing.signal_classification import (
     side_of,
     tokens_of,
 )
-from boatsim.recordings.importing.turning import SURE as TURNS_BY_IT
-from boatsim.recordings.importing.turning import Turning
+from boatsim.recordings.importing.turning import MIN_CORRELATION, Turning
 from boatsim.recordings.notes import unit_of
 
 USUAL_PULSE = (
@@ -336,7 +335,7 @@ def _by_order(
     } == {*SIDED}:
         port = [side_of(frozenset(tokens_of(d.name))) for d in missing].index(SIDED[0])
         sense = turning.by((left[port], 1.0), (left[1 - port], -1.0))
-        if abs(sense) > TURNS_BY_IT:
+        if abs(sense) > MIN_CORRELATION:
             left = list(left) if sense > 0.0 else [left[1], left[0]]
             why = f"; CHECK: its side is told by how the boat turns (correlation {abs(sense):.2f})"
     pairs = zip(missing, left, strict=False)
@@ -424,7 +423,7 @@ def _drive_line(name: str, g: Guess, drive: Drive | None, sense: float = 0.0) ->
     note = f"  # {rate_of(g.signal.t):.3g} Hz" + (
         f"; {_safe(g.signal.about)}" if g.signal.about else ""
     )
-    turned = sense < -TURNS_BY_IT
+    turned = sense < -MIN_CORRELATION
     if turned:
         note += f"; CHECK: sign turned, as the boat turns the other way (correlation {sense:+.2f})"
     scale = _scale(g, values, drive)

@@ -1,7 +1,7 @@
-"""Many clocks on one, without inventing data: what was measured stays at its sample, what was commanded is held.
+"""Resampling of signals with different clocks to common rows, without interpolation.
 
-A measured value goes into one row, that of its own time; rows between samples are empty (nan). A command
-is in force from its own time until the next one.
+A measurement goes into one row, that of its own time; rows between samples are empty (nan). A command is in force from
+its own time until the next one.
 """
 
 from collections.abc import Sequence
@@ -12,28 +12,34 @@ import numpy as np
 from boatsim.physics.base import Array
 from boatsim.recordings.importing.log import rate_of
 
-LOST = 5.0  # of its usual steps after which a command is no longer taken for held on purpose,
-LEAST_LOST = 2.0  # [s] and at least so long
-SAME = 1e-6  # [s] times since 1970 are known to a quarter of that
+# A command without a new value for this many median steps and this long [s] may be lost
+LOST_STEPS = 5.0
+MIN_LOST = 2.0
+SAME_TIME = 1e-6  # [s] resolution of times; those since 1970 are exact to a quarter of it
 
 
 @dataclass(frozen=True)
 class Samples:
-    """One signal with the times it was logged at, sorted, each time once, without what is not a number."""
+    """Samples of one signal: sorted, one per time, all finite.
 
-    t: Array  # (K,) s
-    values: Array  # (K,)
+    Attributes:
+        t: Times (K,) [s].
+        values: Values (K,).
+    """
+
+    t: Array
+    values: Array
 
     @property
     def rate(self) -> float:
-        """Samples a second."""
+        """Rate of the samples [Hz]."""
         return rate_of(self.t)
 
 
 def samples(t: Array, values: Array) -> Samples:
-    """Sorted by time, of two at one time the later logged; nan left out."""
-    there = np.isfinite(t) & np.isfinite(values)
-    t, values = t[there], values[there]
+    """Return the samples sorted by time, without nan; of two at one time the later logged is kept."""
+    finite = np.isfinite(t) & np.isfinite(values)
+    t, values = t[finite], values[finite]
     order = np.argsort(t, kind="stable")
     t, values = t[order], values[order]
     last = np.append(np.diff(t) > 0.0, True) if len(t) else np.zeros(0, dtype=bool)
@@ -41,7 +47,7 @@ def samples(t: Array, values: Array) -> Samples:
 
 
 def clock(base: Array, others: Sequence[Samples], near: float) -> Array:
-    """(N,) times of rows: those of the base, and of every sample of the others that is not `near` [s] to one."""
+    """Return the times (N,) of the rows [s]: those of `base`, and of samples of others farther than `near` [s] from them."""
     rows = base
     for given in others:
         t = given.t[(given.t >= base[0] - near) & (given.t <= base[-1] + near)]
@@ -55,45 +61,44 @@ def _distance(rows: Array, t: Array) -> Array:
 
 
 def placed(rows: Array, given: Samples, near: float) -> Array:
-    """(N,) the sample nearest to each row, nan where none is `near` [s] to it or each is nearer to another row."""
+    """Return the nearest sample of each row (N,); nan where none is within `near` [s] or nearest to this row."""
     found = np.full(len(rows), np.nan)
     if not len(given.t) or len(rows) < 2:
         return found
     nearest = np.searchsorted(0.5 * (rows[1:] + rows[:-1]), given.t)
     off = np.abs(given.t - rows[nearest])
-    order = np.argsort(-off, kind="stable")  # of two in one row the nearer is written last
+    order = np.argsort(-off, kind="stable")  # the nearest sample of a row is written last
     order = order[off[order] <= near]
     found[nearest[order]] = given.values[order]
     return found
 
 
 def held(rows: Array, given: Samples) -> Array:
-    """(N,) mean until the next row of a value that is in force from each sample to the next; nan before the first.
+    """Return the mean until the next row (N,) of a signal that holds each sample until the next; nan before the first.
 
-    Where none comes between two rows that is the last sample itself. The mean, because a recording's commands are held
-    from row to row: taken at the row, a command given just behind it would be late by a whole row.
+    Without a new sample between two rows this is the last sample. The mean is used because commands of a recording
+    hold from row to row: a command sent just after a row would otherwise be delayed by a whole row.
     """
     found = np.full(len(rows), np.nan)
     if not len(given.t):
         return found
-    last = np.searchsorted(given.t, rows + SAME, side="right") - 1
+    last = np.searchsorted(given.t, rows + SAME_TIME, side="right") - 1
     known = last >= 0
     found[known] = given.values[last[known]]
-    area = np.append(
-        0.0, np.cumsum(given.values[:-1] * np.diff(given.t))
-    )  # under the held value, at each sample
+    # Integral of the held value at each sample
+    area = np.append(0.0, np.cumsum(given.values[:-1] * np.diff(given.t)))
     at = np.where(known, area[last] + given.values[last] * (rows - given.t[last]), np.nan)
-    newest = np.searchsorted(given.t, rows[1:] - SAME) - 1  # before the next row
+    newest = np.searchsorted(given.t, rows[1:] - SAME_TIME) - 1  # before the next row
     changed = np.flatnonzero(known[:-1] & (newest > last[:-1]))
     found[changed] = (at[changed + 1] - at[changed]) / (rows[changed + 1] - rows[changed])
     return found
 
 
 def longest_hold(rows: Array, given: Samples) -> float:
-    """[s] over which a command is held beyond what its rate explains; 0 where it is not."""
+    """Return the longest time [s] without a new value of a command, 0 if its rate explains it."""
     if len(given.t) < 2:
         return 0.0
     gaps = np.diff(np.append(given.t, max(float(rows[-1]), float(given.t[-1]))))
     usual = float(np.median(gaps))
     longest = float(gaps.max())
-    return longest if longest > max(LOST * usual, LEAST_LOST) else 0.0
+    return longest if longest > max(LOST_STEPS * usual, MIN_LOST) else 0.0

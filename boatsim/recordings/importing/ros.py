@@ -1,4 +1,4 @@
-"""Messages of ROS 1 and 2 by their definitions: the numbers in them, without making or running any code."""
+"""Decoding of the numbers in ROS 1 and 2 messages by their definitions, without generated code."""
 
 import re
 import struct
@@ -11,30 +11,29 @@ import numpy as np
 
 from boatsim.physics.base import Array
 from boatsim.recordings.importing.frames import with_angles
-from boatsim.recordings.importing.log import MOST_SIGNALS, Log, Room, Signal, signals_of
+from boatsim.recordings.importing.log import MAX_SIGNALS, Log, Room, Signal, signals_of
 
-# types of numbers -> letter of `struct` and size; char is one byte of either sign, time two words
+# Type of number -> letter of `struct` and size; char is one byte, signed or not, time is two words
 NUMBERS = {
     "bool": ("?", 1), "byte": ("b", 1), "char": ("B", 1), "int8": ("b", 1), "uint8": ("B", 1), "int16": ("h", 2),
     "uint16": ("H", 2), "int32": ("i", 4), "uint32": ("I", 4), "int64": ("q", 8), "uint64": ("Q", 8),
     "float32": ("f", 4), "float64": ("d", 8),
 }  # fmt: skip
 STAMP = {"time": ("uint32", "uint32"), "duration": ("int32", "int32")}  # of ROS 1
-BUILT_IN = {  # which definitions of ROS 2 do not always bring along
+BUILT_IN = {  # may be missing in definitions of ROS 2
     "builtin_interfaces/Time": "int32 sec\nuint32 nanosec",
     "builtin_interfaces/Duration": "int32 sec\nuint32 nanosec",
 }
 FIELD = re.compile(r"^\s*([\w/]+)(?:<=\d+)?(\[(?:<=)?(\d*)\])?\s+([A-Za-z]\w*)\s*(.*)$")
 SECTION = re.compile(r"^=+\s*$\s*^MSG:\s*(\S+)\s*$", re.MULTILINE)
-DEEPEST = 20  # messages in messages
-# of a list of numbers that are kept; covariances and pictures have more, or are called so
-MOST_ELEMENTS = 16
-MOST_PARTS = 4  # of a list of messages
-MOST_EMPTY = 1000  # messages of no size in a message
-MOST_SIZE = 1_000_000  # [bytes] of a message that is read; only pictures and clouds are larger
-AGREE = 10.0  # [s] by which a message's own stamp and the time of its logging may differ
+MAX_NESTING = 20  # of messages in messages
+MAX_ELEMENTS = 16  # of a list of numbers that is kept; images and point clouds have more
+MAX_PARTS = 4  # kept of a list of messages
+MAX_EMPTY = 1000  # messages without content in a message
+MAX_SIZE = 1_000_000  # [bytes] of a message that is read; only images and point clouds are larger
+MAX_CLOCK_OFFSET = 10.0  # [s] between the stamp of a message and the time of its logging
 
-UNITS = {  # of the usual messages (common_interfaces, mavros_msgs), by the end of the name
+UNITS = {  # of fields of common_interfaces and mavros_msgs, by the end of the name
     "angular_velocity.x": "rad/s",
     "angular_velocity.y": "rad/s",
     "angular_velocity.z": "rad/s",
@@ -60,20 +59,20 @@ class Part:
     """One field of a message."""
 
     name: str
-    kind: str  # a number, a text, or the full name of a message
-    count: int | None = None  # of a list: how many, -1 where the message says it; None: no list
+    kind: str  # a type of number or text, or the full name of a message
+    count: int | None = None  # length of a list, -1 if the message has the length; None for no list
 
 
 @dataclass
 class Topic:
-    """What is kept of one topic while a bag is read."""
+    """Values of one topic while a bag is read."""
 
     decode: "Callable[[bytes], dict[str, float]]"
     logged: array = field(default_factory=lambda: array("d"))  # type: ignore[type-arg]
     columns: dict[str, array] = field(default_factory=dict)  # type: ignore[type-arg]
 
     def add(self, when: float, data: bytes, room: Room) -> None:
-        """One more message, logged at `when` [s]. Raises ValueError if it does not fit its definition."""
+        """Add a message that was logged at `when` [s]. Raises ValueError if it does not fit its definition."""
         found = self.decode(data)
         rows = len(self.logged)
         for name, value in found.items():
@@ -85,7 +84,15 @@ class Topic:
 
 
 def definitions(text: str, root: str) -> dict[str, list[Part]]:
-    """Parts of a message and of those in it, from definitions written one below the other. Raises ValueError."""
+    """Return the fields of a message and of the messages in it, by name, from its concatenated definitions.
+
+    Args:
+        text: The definitions.
+        root: Name of the message.
+
+    Raises:
+        ValueError: If a definition is missing.
+    """
     pieces = SECTION.split(text)
     texts = (
         BUILT_IN
@@ -99,7 +106,7 @@ def definitions(text: str, root: str) -> dict[str, list[Part]]:
 
 
 def _full(name: str) -> str:
-    """geometry_msgs/msg/Pose and geometry_msgs/Pose are one."""
+    """The name in the form geometry_msgs/Pose."""
     return name.replace("/msg/", "/")
 
 
@@ -110,26 +117,38 @@ def _part(line: str, owner: str, known: Mapping[str, str]) -> Part | None:
         return None
     kind, brackets, count, name = _full(found[1]), found[2], found[3], found[4]
     if kind not in NUMBERS and kind not in STAMP and kind not in ("string", "wstring"):
-        beside = f"{owner.rpartition('/')[0]}/{kind}"
-        kind = kind if kind in known else "std_msgs/Header" if kind == "Header" else beside
         if kind not in known:
-            raise ValueError(f"{owner} has a part {found[1]} that nothing defines")
+            same_package = f"{owner.rpartition('/')[0]}/{kind}"
+            kind = "std_msgs/Header" if kind == "Header" else same_package
+        if kind not in known:
+            raise ValueError(f"{owner} has a part {found[1]} without a definition")
     fixed = bool(count) and "<=" not in brackets
-    return Part(name, kind, None if not brackets else int(count) if fixed else -1)
+    if not brackets:
+        return Part(name, kind)
+    return Part(name, kind, int(count) if fixed else -1)
 
 
 class Decoder:
-    """Takes the numbers out of a message of one type."""
+    """Decoder of the numbers in messages of one type."""
 
     def __init__(self, text: str, root: str, cdr: bool) -> None:
-        """`cdr`: as ROS 2 writes it, aligned and with its byte order in front; else as ROS 1. Raises ValueError."""
+        """Prepare the decoder.
+
+        Args:
+            text: The definitions.
+            root: Name of the message.
+            cdr: Whether messages are in the encoding of ROS 2, aligned and with the byte order in front.
+
+        Raises:
+            ValueError: If a definition is missing or recursive.
+        """
         self.parts, self.root, self.cdr = definitions(text, root), _full(root), cdr
         self._check()
 
     def _check(self) -> None:
-        """Each level of messages in messages once, however many ways lead there."""
+        """Check that messages are not nested too deeply. Raises ValueError."""
         level = {self.root}
-        for _ in range(DEEPEST + 1):
+        for _ in range(MAX_NESTING + 1):
             level = {
                 part.kind for name in level for part in self.parts[name] if part.kind in self.parts
             }
@@ -137,7 +156,11 @@ class Decoder:
             raise ValueError(f"{self.root} holds itself, or messages in messages too deep to read")
 
     def __call__(self, data: bytes) -> dict[str, float]:
-        """Numbers by their names: `pose.position.x`, `channels[3]`. Raises ValueError where the message is cut."""
+        """Return the numbers of a message by name, `pose.position.x` or `channels[3]`.
+
+        Raises:
+            ValueError: If the message is cut or has another encoding.
+        """
         if self.cdr and (len(data) < 4 or data[1] > 1):
             raise ValueError("message in an encoding other than plain CDR")
         order = ">" if self.cdr and data[1] == 0 else "<"
@@ -152,19 +175,18 @@ class Decoder:
 
 
 class _Cursor:
-    """Where in a message one is."""
+    """Position in a message."""
 
     def __init__(
         self, data: bytes, order: str, aligned: bool, parts: Mapping[str, list[Part]]
     ) -> None:
         self.data, self.order, self.aligned, self.parts, self.at = data, order, aligned, parts, 0
-        self.left = MOST_EMPTY + len(
-            data
-        )  # messages in it that are looked at: those of no size have no other bound
+        # Number of messages that are still decoded; messages without content have no other limit
+        self.remaining = MAX_EMPTY + len(data)
 
     def message(self, name: str, prefix: str, found: dict[str, float] | None) -> None:
-        self.left -= 1
-        if self.left < 0:
+        self.remaining -= 1
+        if self.remaining < 0:
             raise ValueError("more messages in the message than it has bytes")
         parts = self.parts[name]
         if not parts and self.aligned:
@@ -203,19 +225,19 @@ class _Cursor:
         count = int(self.number("uint32")) if part.count == -1 else part.count or 0
         if count > len(self.data) - self.at:
             raise ValueError(
-                f"{name} is said to have {count} elements, more than the message has bytes"
+                f"{name} has {count} elements by its length, more than the message has bytes"
             )
         if part.kind in NUMBERS:
             letter, size = NUMBERS[part.kind]
             if count:
                 self.align(size)
-            if found is not None and count <= MOST_ELEMENTS and "covariance" not in name:
+            if found is not None and count <= MAX_ELEMENTS and "covariance" not in name:
                 values = struct.unpack_from(f"{self.order}{count}{letter}", self.data, self.at)
                 found.update({f"{name}[{i}]": float(v) for i, v in enumerate(values)})
             self.skip(count * size)
             return
         for i in range(count):
-            self.one(part.kind, f"{name}[{i}]", found if i < MOST_PARTS else None)
+            self.one(part.kind, f"{name}[{i}]", found if i < MAX_PARTS else None)
 
     def skip(self, size: int) -> None:
         self.at += size
@@ -224,7 +246,15 @@ class _Cursor:
 
 
 def log_of(path: Path, topics: Mapping[str, Topic], remarks: list[str]) -> Log:
-    """All topics as one log: messages at their own stamps where those agree with the time of logging, else at that."""
+    """Return all topics as one log.
+
+    Messages have the time of their stamps if these agree with the time of logging, else the time of logging.
+
+    Args:
+        path: The bag.
+        topics: Topics by name.
+        remarks: Remarks of the log.
+    """
     signals: dict[str, Signal] = {}
     for name, topic in topics.items():
         logged = np.array(topic.logged)
@@ -234,20 +264,24 @@ def log_of(path: Path, topics: Mapping[str, Topic], remarks: list[str]) -> Log:
         t = logged
         if stamped[0] is not None and stamped[1] is not None:
             own = stamped[0] + 1e-9 * stamped[1]
-            if abs(float(np.median(own - logged))) < AGREE:
+            if abs(float(np.median(own - logged))) < MAX_CLOCK_OFFSET:
                 t = own
             else:
                 remarks.append(
                     f"{path}: the stamps of {name} are of another clock; the times of logging are used"
                 )
-        units = {
-            n: next((u for end, u in UNITS.items() if f".{n}".endswith(f".{end}")), "")
-            for n in columns
-        }
+        units = {column: _unit_of(column) for column in columns}
         signals |= signals_of(name, t, columns, units)
-        if len(signals) > MOST_SIGNALS:
+        if len(signals) > MAX_SIGNALS:
             Room(path).take(0, len(signals))
     return Log(path, with_angles(signals), "ENU", tuple(dict.fromkeys(remarks)))
+
+
+def _unit_of(name: str) -> str:
+    for end, unit in UNITS.items():
+        if f".{name}".endswith(f".{end}"):
+            return unit
+    return ""
 
 
 def _filled(column: "array[float]", rows: int) -> Array:

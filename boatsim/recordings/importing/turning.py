@@ -1,6 +1,6 @@
-"""What an output does to the boat, by the log: a helm goes with the turning that follows it, a throttle with the speed.
+"""Correlation of outputs with the motion in a log: turning follows a helm, speed follows a throttle.
 
-The sign of the former tells which way the boat turns by it.
+The sign of the correlation shows to which side a positive helm turns the vessel.
 """
 
 from collections.abc import Mapping, Sequence
@@ -10,21 +10,25 @@ import numpy as np
 from boatsim.physics.base import Array
 from boatsim.recordings.importing.signal_classification import Guess
 
-SURE = 0.3  # correlation with the turning from which a signal steers
-# by which that of the one that steers, less its correlation with the speed, is ahead of every
-# other's
-AHEAD = 0.2
-LAGS = (0.0, 0.3, 0.6, 1.0, 1.5, 2.5, 4.0)  # [s] by which boats follow their helms
-STRETCH = 1.0  # [s] over which a speed is taken
-LONGEST = 400.0  # [s] of rows that are compared
-RATE = 10.0  # [Hz] of them
+MIN_CORRELATION = 0.3  # with the turning, of a signal that steers
+# By which the score of the helm (correlation with turning less that with speed) must exceed all others
+MIN_LEAD = 0.2
+DELAYS = (0.0, 0.3, 0.6, 1.0, 1.5, 2.5, 4.0)  # [s] between helm and turning of small boats
+SPEED_WINDOW = 1.0  # [s] over which a speed is computed
+MAX_DURATION = 400.0  # [s] of rows that are compared
+RATE = 10.0  # [Hz] of these rows
 
 
 class Turning:
-    """The turning that a log tells of, to starboard, and the speed over ground."""
+    """Turning to starboard and speed over ground in a log."""
 
     def __init__(self, best: Mapping[str, Sequence[Guess]], enu: bool) -> None:
-        """`best` has the guesses of each column; `enu`: rates and yaws are counted to port, as ROS has it."""
+        """Compute turning and speed.
+
+        Args:
+            best: Column -> classified signals, the most probable first.
+            enu: Whether rates and yaws are positive to port, as in ROS.
+        """
         self.t, self.r = np.empty(0), np.empty(0)
         self.at, self.speed = _speed(best)
         for column in ("r_radps", "psi_rad"):
@@ -42,25 +46,25 @@ class Turning:
                 return
 
     def by(self, *signals: tuple[Guess, float]) -> float:
-        """Correlation of a sum of signals, each times a factor, with the turning after it, of the clearest lag.
+        """Return the correlation of a weighted sum of signals with the turning after it, at the best delay.
 
-        1: all turning to starboard follows it. 0 where nothing can be told.
+        1: all turning to starboard follows it; 0 where there is no data.
         """
         return _followed(signals, self.t, self.r)
 
     def helm(self, signals: Sequence[Guess]) -> tuple[Guess, float] | None:
-        """The signal that steers, with its correlation; None where it is not clear."""
+        """Return the signal that steers, with its correlation; None where several are possible."""
         turns = [(g, self.by((g, 1.0))) for g in signals]
         scores = [abs(c) - abs(_followed(((g, 1.0),), self.at, self.speed)) for g, c in turns]
         order = np.argsort(scores)[::-1]
-        if not len(order) or abs(turns[order[0]][1]) < SURE:
+        if not len(order) or abs(turns[order[0]][1]) < MIN_CORRELATION:
             return None
-        rivals = len(order) > 1 and scores[order[0]] < scores[order[1]] + AHEAD
+        rivals = len(order) > 1 and scores[order[0]] < scores[order[1]] + MIN_LEAD
         return None if rivals else turns[order[0]]
 
 
 def _speed(best: Mapping[str, Sequence[Guess]]) -> tuple[Array, Array]:
-    """Times [s] and speeds over ground there, in any unit."""
+    """Times [s] and speeds over ground, in an arbitrary unit."""
     pair = [best[n][0] for n in ("x_m", "y_m") if best.get(n)]
     earth = [best[n][0] for n in ("latitude", "longitude") if best.get(n)]
     pair = pair if len(pair) == 2 else earth
@@ -74,16 +78,16 @@ def _speed(best: Mapping[str, Sequence[Guess]]) -> tuple[Array, Array]:
     degrees = 1e-7 if "1e-7" in pair[0].word else 1.0
     wide = float(np.cos(np.radians(degrees * np.median(north[there])))) if pair is earth else 1.0
     z = north[there][rows] + 1j * wide * east[there][rows]
-    after = np.searchsorted(t, t + STRETCH).clip(max=len(t) - 1)
+    after = np.searchsorted(t, t + SPEED_WINDOW).clip(max=len(t) - 1)
     return t, np.asarray(np.abs(z[after] - z) / np.maximum(t[after] - t, 1e-9))
 
 
 def _followed(signals: Sequence[tuple[Guess, float]], t: Array, values: Array) -> float:
-    """Correlation of a sum of signals with what follows it, of the clearest lag; 0 where nothing can be told."""
+    """Correlation of a weighted sum of signals with a signal that follows, at the best delay; 0 without data."""
     if len(t) < 2 or any(len(g.signal.t) < 2 for g, _ in signals):
         return 0.0
-    begin = max(float(t[0]), *(float(np.nanmin(g.signal.t)) for g, _ in signals)) + LAGS[-1]
-    rows = np.arange(begin, min(float(t[-1]), begin + LONGEST), 1.0 / RATE)
+    begin = max(float(t[0]), *(float(np.nanmin(g.signal.t)) for g, _ in signals)) + DELAYS[-1]
+    rows = np.arange(begin, min(float(t[-1]), begin + MAX_DURATION), 1.0 / RATE)
     if len(rows) < 10:
         return 0.0
     followed = np.interp(rows, t, values)
@@ -91,11 +95,11 @@ def _followed(signals: Sequence[tuple[Guess, float]], t: Array, values: Array) -
     def given(lag: float) -> Array:
         return np.asarray(np.sum([f * _held(g, rows - lag) for g, f in signals], axis=0))
 
-    return max((_alike(given(lag), followed) for lag in LAGS), key=abs)
+    return max((_alike(given(lag), followed) for lag in DELAYS), key=abs)
 
 
 def _held(g: Guess, rows: Array) -> Array:
-    """(N,) values in force."""
+    """Values (N,) in force at the rows."""
     there = np.isfinite(g.signal.values) & np.isfinite(g.signal.t)
     t, order = np.unique(g.signal.t[there], return_index=True)
     values = g.signal.values[there][order]
@@ -103,7 +107,7 @@ def _held(g: Guess, rows: Array) -> Array:
 
 
 def _alike(a: Array, b: Array) -> float:
-    """Correlation; 0 of what never changes."""
+    """Correlation; 0 for a constant signal."""
     a, b = a - np.mean(a), b - np.mean(b)
     size = float(np.linalg.norm(a) * np.linalg.norm(b))
     return float(a @ b) / size if size > 0.0 else 0.0

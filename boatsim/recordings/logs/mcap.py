@@ -6,8 +6,8 @@ from pathlib import Path
 from typing import Any
 
 from boatsim.errors import BadInput
-from boatsim.recordings.importing.log import MOST_SIGNALS, Log, Room, damaged, needs
-from boatsim.recordings.importing.ros import DEEPEST, MOST_SIZE, Decoder, Topic, log_of
+from boatsim.recordings.importing.log import MAX_SIGNALS, Log, Room, damaged, needs
+from boatsim.recordings.importing.ros import MAX_NESTING, MAX_SIZE, Decoder, Topic, log_of
 
 SUFFIXES = (".mcap",)
 MOST_CHUNK = 256_000_000  # [bytes] of a chunk when it is unpacked
@@ -51,7 +51,7 @@ def _fill(path: Path, topics: dict[str, Topic], remarks: list[str]) -> None:
         elif (
             isinstance(record, Message)
             and record.channel_id in names
-            and len(record.data) <= MOST_SIZE
+            and len(record.data) <= MAX_SIZE
         ):
             name = names[record.channel_id]
             try:
@@ -121,8 +121,8 @@ def _numbers_of_json(data: bytes) -> dict[str, float]:
 
 
 def _flatten(value: object, name: str, found: dict[str, float], depth: int) -> None:
-    if isinstance(value, int | float) and abs(value) < 1e300 and len(found) < MOST_SIGNALS:
+    if isinstance(value, int | float) and abs(value) < 1e300 and len(found) < MAX_SIGNALS:
         found[name or "value"] = float(value)
-    elif isinstance(value, dict) and depth < DEEPEST:
+    elif isinstance(value, dict) and depth < MAX_NESTING:
         for key, inner in value.items():
             _flatten(inner, f"{name}.{key}" if name else str(key), found, depth + 1)

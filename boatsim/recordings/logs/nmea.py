@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from boatsim.physics.base import Array
-from boatsim.recordings.importing.log import MOST_TEXT, Log, Room, Signal, needs
+from boatsim.recordings.importing.log import MAX_TEXT_BYTES, Log, Room, Signal, needs
 from boatsim.recordings.raw_table import file_error
 
 SUFFIXES = (".nmea", ".0183", ".txt", ".log")
@@ -52,10 +52,10 @@ def read(path: Path) -> Log:
         import pynmea2
     except ImportError as error:
         raise needs(path, "pynmea2", "nmea") from error
-    if path.stat().st_size > MOST_TEXT:
+    if path.stat().st_size > MAX_TEXT_BYTES:
         raise file_error(
             path,
-            f"has {path.stat().st_size:,} bytes; at most {MOST_TEXT:,} of text are read: cut the log",
+            f"has {path.stat().st_size:,} bytes; at most {MAX_TEXT_BYTES:,} of text are read: cut the log",
         )
     lines = path.read_bytes().decode("ascii", "replace").splitlines()
     kept, bad = _sentences(path, lines, pynmea2.parse)

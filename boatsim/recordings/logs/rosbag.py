@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import Any
 
 from boatsim.errors import BadInput
-from boatsim.recordings.importing.log import BAG, MOST_BYTES, Log, Room, damaged, needs
-from boatsim.recordings.importing.ros import MOST_SIZE, Decoder, Topic, log_of
+from boatsim.recordings.importing.log import BAG, MAX_BYTES, Log, Room, damaged, needs
+from boatsim.recordings.importing.ros import MAX_SIZE, Decoder, Topic, log_of
 from boatsim.recordings.raw_table import file_error
 
 SUFFIXES = (".bag", ".db3", "/")
@@ -61,8 +61,8 @@ def _check_folder(path: Path, folder: Path) -> None:
         )
     if str(said.get("storage_identifier")) == "mcap":
         raise file_error(path, "is a folder of MCAP files; give the .mcap in it")
-    if sum(file.stat().st_size for file in folder.iterdir() if file.is_file()) > MOST_BYTES:
-        raise file_error(path, f"has more than {MOST_BYTES:,} bytes; cut the log")
+    if sum(file.stat().st_size for file in folder.iterdir() if file.is_file()) > MAX_BYTES:
+        raise file_error(path, f"has more than {MAX_BYTES:,} bytes; cut the log")
 
 
 def _bound(bag: Any) -> None:
@@ -95,7 +95,7 @@ def _fill(path: Path, bag: Any, topics: dict[str, Topic], remarks: list[str]) ->
         except (ValueError, RecursionError) as error:
             remarks.append(f"{path}: {connection.topic} is not read ({error})")
     for connection, when, data in bag.messages(connections=read) if read else ():
-        if len(data) <= MOST_SIZE:
+        if len(data) <= MAX_SIZE:
             try:
                 topics[connection.topic].add(when * 1e-9, bytes(data), room)
             except ValueError as error:

@@ -11,7 +11,7 @@ import numpy as np
 
 from boatsim.physics.base import Array
 from boatsim.recordings.importing.clocks import clock_of, dates, seconds
-from boatsim.recordings.importing.log import MOST_SIGNALS, MOST_TEXT, Log, Room, Signal, damaged
+from boatsim.recordings.importing.log import MAX_SIGNALS, MAX_TEXT_BYTES, Log, Room, Signal, damaged
 from boatsim.recordings.notes import unit_of
 from boatsim.recordings.raw_table import check_unique_names, file_error
 
@@ -128,7 +128,7 @@ def _head(path: Path) -> _Head:
     first = lines[0][1].lstrip("#%/ ")
     separator = max(SEPARATORS, key=first.count)
     header = [name.strip() for name in next(csv.reader([first], delimiter=separator))]
-    if len(header) > MOST_SIGNALS:
+    if len(header) > MAX_SIGNALS:
         raise file_error(path, f"has {len(header)} columns; no log of a boat has as many")
     check_unique_names(path, header)
     if all(_number(cell, separator) is not None for cell in header):
@@ -189,10 +189,10 @@ def _of_texts(column: "ChunkedArray", separator: str) -> Array:
 
 def _line_by_line(path: Path, head: _Head) -> tuple[dict[str, Array], tuple[str, ...]]:
     """The columns of any other table: with dates and words, or with rows that are no rows, which are told by line."""
-    if path.stat().st_size > MOST_TEXT:
+    if path.stat().st_size > MAX_TEXT_BYTES:
         raise file_error(
             path,
-            f"has rows that are not as its header, and {path.stat().st_size:,} bytes; at most {MOST_TEXT:,} of such a "
+            f"has rows that are not as its header, and {path.stat().st_size:,} bytes; at most {MAX_TEXT_BYTES:,} of such a "
             "table are read",
         )
     lines = enumerate(_text(path, path.read_bytes()).splitlines())
