@@ -212,7 +212,7 @@ def test_a_controller_that_hangs_ends_at_the_second_ctrl_c(endless: Path, tmp_pa
 @pytest.fixture
 def listening(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     """This process hears signals, whatever started it ignores; what it heard is forgotten afterwards."""
-    monkeypatch.setattr(interruption, "_struck", False)
+    monkeypatch.setattr(interruption, "_received", False)
     before = {s: signal.signal(s, signal.default_int_handler) for s in SIGNALS}
     yield
     for s, handler in before.items():

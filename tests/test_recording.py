@@ -501,10 +501,10 @@ def test_native_code_reads_a_csv_as_python_does_line_by_line_or_not_at_all(
     path = tmp_path_factory.getbasetemp() / "alike.csv"
     path.write_bytes(content)
     with path.open("rb") as file:
-        quick = csv._quick(path, file.readline(), content)
+        quick = csv._read_fast(path, file.readline(), content)
     if quick is None:
         return
-    slow = csv._line_by_line(path, content)
+    slow = csv._read_line_by_line(path, content)
     assert list(quick.rows) == list(slow.rows) and list(quick.columns) == list(slow.columns)
     assert {n: (i, cell.replace("\r\n", "\n")) for n, (i, cell) in quick.text.items()} == slow.text
     for name, values in slow.columns.items():
@@ -514,6 +514,6 @@ def test_native_code_reads_a_csv_as_python_does_line_by_line_or_not_at_all(
 
 def test_a_csv_of_numbers_is_read_by_native_code(tmp_path: Path) -> None:
     content = b"t_s,x_m,mode\n0,0.5,AUTO\n1,,AUTO\n"
-    quick = csv._quick(tmp_path / "run.csv", content[:13], content)
+    quick = csv._read_fast(tmp_path / "run.csv", content[:13], content)
     assert quick is not None and quick.text == {"mode": (2, "AUTO")}
     np.testing.assert_array_equal(quick.columns["x_m"], [0.5, np.nan])

@@ -686,7 +686,7 @@ def test_the_page_states_the_limits_that_are() -> None:
         and f"{limits.BYTES_PER_CELL} bytes for each cell" in said
     )
     assert (
-        f"{MAX_TOML_BYTES >> 20} MiB, {MAX_DEPTH} tables" in said
+        f"{MAX_TOML_BYTES >> 20} MiB, {MAX_DEPTH} nested tables" in said
         and f"at most {LONGEST} characters" in said
     )
     assert f"at most {MESSAGE} bytes" in said and f"silent for {PATIENCE:g} s" in said

@@ -1,1 +1,1 @@
-"""One format of logs a file: `SUFFIXES`, and `read(path) -> Log`; found by the suffix of the log."""
+"""Formats of logs, one module per format with `SUFFIXES` and `read(path) -> Log`."""

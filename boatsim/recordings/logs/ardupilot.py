@@ -1,4 +1,4 @@
-"""ArduPilot's `.BIN`: messages that describe themselves; outputs are explained by the log's own parameters."""
+"""Reader of ArduPilot's `.BIN`: self-describing messages; the log's parameters give the functions of outputs."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -22,8 +22,8 @@ from boatsim.recordings.importing.log import (
 from boatsim.recordings.raw_table import file_error
 
 SUFFIXES = (".bin",)
-# letter of a FMT message -> numpy type and factor (libraries/AP_Logger/LogStructure.h); arrays and
-# texts have none
+# Letter of a FMT message -> numpy type and factor (libraries/AP_Logger/LogStructure.h); arrays and
+# texts have no factor
 LETTERS: dict[str, tuple[str, float | None]] = {
     "a": ("V64", None), "b": ("i1", 1.0), "B": ("u1", 1.0), "g": ("f2", 1.0), "h": ("i2", 1.0), "H": ("u2", 1.0),
     "i": ("i4", 1.0), "I": ("u4", 1.0), "f": ("f4", 1.0), "d": ("f8", 1.0), "n": ("V4", None), "N": ("V16", None),
@@ -31,7 +31,7 @@ LETTERS: dict[str, tuple[str, float | None]] = {
     "L": ("i4", 1e-7), "M": ("u1", 1.0), "q": ("i8", 1.0), "Q": ("u8", 1.0),
 }  # fmt: skip
 CLOCKS = {"TimeUS": 1e-6, "TimeMS": 1e-3}  # [s]
-ITS_OWN = (
+LOG_MESSAGES = (
     "FMT",
     "FMTU",
     "UNIT",
@@ -39,14 +39,14 @@ ITS_OWN = (
     "PARM",
     "MSG",
     "FILE",
-)  # about the log, not about the boat
+)  # messages about the log itself
 UNITS = {
     "degheading": "deg",
     "deglatitude": "deg",
     "deglongitude": "deg",
     "µs": "us",
-}  # its words, ours
-FUNCTIONS = {  # of SERVOn_FUNCTION, from the list of parameters of Rover
+}  # unit in the log -> unit
+FUNCTIONS = {  # values of SERVOn_FUNCTION, from the parameter list of Rover
     0: "disabled",
     1: "passed through from the pilot",
     26: "ground steering",
@@ -59,7 +59,7 @@ STICK, OUTPUT = "pilot's stick", "output"
 
 
 class _Formats(dict[int, Any]):
-    """Formats of messages by number; one of no length is refused, at which the library would stay for ever."""
+    """Formats of messages by number. A format without length is refused, for the library would loop endlessly."""
 
     def __setitem__(self, number: int, format: Any) -> None:
         if format.len <= 0:
@@ -72,23 +72,23 @@ class _Formats(dict[int, Any]):
 
 
 def read(path: Path) -> Log:
-    """Every message with a time and numbers: `ATT.Yaw`, `GPS[1].Lat`. Raises BadInput."""
+    """Return all messages with a time and numbers: `ATT.Yaw`, `GPS[1].Lat`. Raises BadInput."""
     try:
         from pymavlink import DFReader
     except ImportError as error:
         raise needs(path, "pymavlink", "ardupilot") from error
     if path.stat().st_size == 0:
         raise file_error(path, "is empty")
-    # no clock is looked for: times are those since the autopilot started
-    ours = {"init_clock": lambda self: None, "formats": _Formats.kept}
-    quick = type("Quick", (DFReader.DFReader_binary,), ours)
+    # No search for a clock: times are since the start of the autopilot
+    methods = {"init_clock": lambda self: None, "formats": _Formats.kept}
+    quick = type("Quick", (DFReader.DFReader_binary,), methods)
     try:
         with quiet():
             index = quick(str(path))
         return _log(path, index)
     except BadInput:
         raise
-    except Exception as error:  # whatever the library finds in a damaged file
+    except Exception as error:  # the library raises any exception on a damaged file
         raise damaged(path, "an ArduPilot log", error) from error
 
 
@@ -101,23 +101,23 @@ def _log(path: Path, index: Any) -> Log:
         rows = _rows(data, np.asarray(index.offsets[number], dtype=np.int64), format)
         if rows is None:
             skipped.append(format.name)
-        elif len(rows) and format.name not in ITS_OWN:
+        elif len(rows) and format.name not in LOG_MESSAGES:
             for instance, part in _instances(rows, format):
                 if found := _signals(part, format):
                     streams[format.name, instance] = found
-    called = numbered(list(streams))
-    signals = {
-        f"{called[key]}.{name}": s for key, found in streams.items() for name, s in found.items()
-    }
+    stream_names = numbered(list(streams))
+    signals: dict[str, Signal] = {}
+    for key, found in streams.items():
+        signals |= {f"{stream_names[key]}.{name}": signal for name, signal in found.items()}
     remark = f"{path}: not read, its length is not that of its format: {', '.join(skipped)[:200]}"
-    explained = _explained(signals, _parameters(data, index))
-    return Log(path, explained, "NED", (remark,) if skipped else ())
+    described = _described(signals, _parameters(data, index))
+    return Log(path, described, "NED", (remark,) if skipped else ())
 
 
 def _rows(
     data: NDArray[np.uint8], offsets: NDArray[np.int64], format: Any
 ) -> "NDArray[Any] | None":
-    """(N,) records of a message, those left out that the file cuts; None where format and length disagree."""
+    """Complete records (N,) of a message; None where format and length disagree."""
     kinds = [LETTERS[letter][0] for letter in format.format]
     names = [f"{i} {name}" for i, name in enumerate(format.columns)]
     if len(names) != len(kinds):
@@ -133,7 +133,7 @@ def _rows(
 
 
 def _instances(rows: "NDArray[Any]", format: Any) -> list[tuple[int, "NDArray[Any]"]]:
-    """The records of each sensor of several, by its number."""
+    """The records of each instance of a sensor, by its number."""
     if (
         not format.instance_field
         or LETTERS[format.format[format.columns.index(format.instance_field)]][1] is None
@@ -148,23 +148,23 @@ def _field(format: Any, name: str) -> str:
 
 
 def _signals(rows: "NDArray[Any]", format: Any) -> dict[str, Signal]:
-    """The numbers of one stream; none where it has no time."""
+    """The signals of one stream; {} without a time."""
     clock = next((c for c in CLOCKS if c in format.columns), None)
     if clock is None:
         return {}
     t = rows[_field(format, clock)] * CLOCKS[clock]
     units = format.units or [""] * len(format.columns)
-    fields, said = {}, {}
+    fields, known = {}, {}
     for i, (name, letter) in enumerate(zip(format.columns, format.format, strict=True)):
         factor = LETTERS[letter][1]
         if factor is not None and name not in (clock, format.instance_field):
             fields[name] = rows[f"{i} {name}"] * factor
-            said[name] = UNITS.get(units[i], units[i])
-    return signals_of("", t, fields, said)
+            known[name] = UNITS.get(units[i], units[i])
+    return signals_of("", t, fields, known)
 
 
 def _parameters(data: NDArray[np.uint8], index: Any) -> dict[str, float]:
-    """The autopilot's parameters as the log gives them, the last word of each."""
+    """The last value of each parameter of the autopilot in the log."""
     number = index.name_to_id.get("PARM")
     format = index.formats.get(number)
     if format is None or not {"Name", "Value"} <= set(format.columns):
@@ -179,8 +179,8 @@ def _parameters(data: NDArray[np.uint8], index: Any) -> dict[str, float]:
     return {n: float(v) for n, v in zip(names, values, strict=True) if np.isfinite(v)}
 
 
-def _explained(signals: Mapping[str, Signal], parameters: Mapping[str, float]) -> dict[str, Signal]:
-    """Outputs with what they drive and the pulses [us] of their range, the pilot's sticks named as such."""
+def _described(signals: Mapping[str, Signal], parameters: Mapping[str, float]) -> dict[str, Signal]:
+    """The signals with a description of outputs and sticks, and the range of outputs [us]."""
     found = dict(signals)
     for name, signal in signals.items():
         stream, _, field = name.partition(".")
@@ -188,15 +188,18 @@ def _explained(signals: Mapping[str, Signal], parameters: Mapping[str, float]) -
         if stream == "RCIN" and number.isdigit():
             found[name] = replace(signal, unit="us", about=f"{STICK} {number}")
         elif stream == "RCOU" and number.isdigit():
-            drives = FUNCTIONS.get(
-                int(parameters.get(f"SERVO{number}_FUNCTION", -1)), f"{OUTPUT} {number}"
-            )
-            ends = [
-                parameters.get(f"SERVO{number}_{end}", np.nan) for end in ("MIN", "TRIM", "MAX")
-            ]
-            low, neutral, high = ends[::-1] if parameters.get(f"SERVO{number}_REVERSED") else ends
-            known = low < neutral < high or low > neutral > high
-            found[name] = replace(
-                signal, unit="us", about=drives, pulse=(low, neutral, high) if known else None
-            )
+            function = int(parameters.get(f"SERVO{number}_FUNCTION", -1))
+            about = FUNCTIONS.get(function, f"{OUTPUT} {number}")
+            pulse = _pulse(parameters, f"SERVO{number}")
+            found[name] = replace(signal, unit="us", about=about, pulse=pulse)
     return found
+
+
+def _pulse(parameters: Mapping[str, float], servo: str) -> tuple[float, float, float] | None:
+    """Low, neutral and high pulse [us] of an output; None where the log has no valid range."""
+    keys = (f"{servo}_MIN", f"{servo}_TRIM", f"{servo}_MAX")
+    low, neutral, high = (parameters.get(key, np.nan) for key in keys)
+    if parameters.get(f"{servo}_REVERSED"):
+        low, high = high, low
+    is_valid = low < neutral < high or low > neutral > high
+    return (low, neutral, high) if is_valid else None

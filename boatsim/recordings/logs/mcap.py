@@ -1,4 +1,4 @@
-"""MCAP, as ROS 2 and Foxglove write it; read from front to back, so that one that was cut is read up to there."""
+"""Reader of MCAP files of ROS 2 and Foxglove, sequentially, so that a cut file is read as far as it goes."""
 
 import json
 from collections.abc import Callable, Iterator
@@ -10,13 +10,13 @@ from boatsim.recordings.importing.log import MAX_SIGNALS, Log, Room, damaged, ne
 from boatsim.recordings.importing.ros import MAX_NESTING, MAX_SIZE, Decoder, Topic, log_of
 
 SUFFIXES = (".mcap",)
-MOST_CHUNK = 256_000_000  # [bytes] of a chunk when it is unpacked
+MAX_CHUNK = 256_000_000  # [bytes] of a chunk when it is unpacked
 
 
 def read(path: Path) -> Log:
-    """Every number of every topic that ROS messages or JSON carry: `/odom.pose.pose.position.x`. Raises BadInput."""
+    """Return all numbers of all topics in ROS messages or JSON: `/odom.pose.pose.position.x`. Raises BadInput."""
     try:
-        import lz4.frame  # noqa: F401  # which comes with mcap
+        import lz4.frame  # noqa: F401  # a dependency of mcap
         import mcap.stream_reader  # noqa: F401
         import zstandard  # noqa: F401
     except ImportError as error:
@@ -27,13 +27,12 @@ def read(path: Path) -> Log:
         _fill(path, topics, remarks)
     except BadInput:
         raise
-    except Exception as error:  # whatever the library finds in a damaged file
+    except Exception as error:  # the library raises any exception on a damaged file
         if not any(len(topic.logged) for topic in topics.values()):
             raise damaged(path, "MCAP", error) from error
-        remarks.append(f"{path}: ends early or is damaged; what stands before is used")
-    return log_of(
-        path, {name: topic for name, topic in topics.items() if len(topic.logged)}, remarks
-    )
+        remarks.append(f"{path}: ends early or is damaged; the part before is used")
+    with_data = {name: topic for name, topic in topics.items() if len(topic.logged)}
+    return log_of(path, with_data, remarks)
 
 
 def _fill(path: Path, topics: dict[str, Topic], remarks: list[str]) -> None:
@@ -63,12 +62,12 @@ def _fill(path: Path, topics: dict[str, Topic], remarks: list[str]) -> None:
 
 
 def _records(path: Path) -> "Iterator[Any]":
-    """All records, chunks unpacked within bounds."""
+    """All records; chunks are unpacked up to a limit of their size."""
     from mcap.records import Chunk
     from mcap.stream_reader import StreamReader, breakup_chunk
 
     with path.open("rb") as file:
-        for record in StreamReader(file, emit_chunks=True, record_size_limit=MOST_CHUNK).records:
+        for record in StreamReader(file, emit_chunks=True, record_size_limit=MAX_CHUNK).records:
             if isinstance(record, Chunk):
                 record.data, record.compression = _unpacked(record.compression, record.data), ""
                 yield from breakup_chunk(record)
@@ -80,20 +79,20 @@ def _unpacked(compression: str, data: bytes) -> bytes:
     if compression == "zstd":
         import zstandard
 
-        if zstandard.get_frame_parameters(data).content_size > MOST_CHUNK:
+        if zstandard.get_frame_parameters(data).content_size > MAX_CHUNK:
             raise ValueError("a chunk too large to unpack")
-        return bytes(zstandard.ZstdDecompressor().decompress(data, max_output_size=MOST_CHUNK))
+        return bytes(zstandard.ZstdDecompressor().decompress(data, max_output_size=MAX_CHUNK))
     if compression == "lz4":
         from lz4.frame import LZ4FrameDecompressor
 
-        return bytes(LZ4FrameDecompressor().decompress(data, max_length=MOST_CHUNK))
+        return bytes(LZ4FrameDecompressor().decompress(data, max_length=MAX_CHUNK))
     return data
 
 
 def _decoder(
     channel: Any, schema: Any, remarks: list[str], path: Path
 ) -> "Callable[[bytes], dict[str, float]] | None":
-    """What takes the numbers out of a channel's messages; None, and a remark, where its encoding is not read."""
+    """The decoder of the messages of a channel; None, with a remark, for an unknown encoding."""
     encoding = (channel.message_encoding, schema.encoding if schema else "")
     try:
         if encoding in (("cdr", "ros2msg"), ("ros1", "ros1msg")):

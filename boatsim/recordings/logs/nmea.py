@@ -1,4 +1,4 @@
-"""NMEA 0183: sentences of instruments, some with the time of day, which counts for those behind it."""
+"""Reader of NMEA 0183: sentences of instruments; the time of day of one holds for the sentences after it."""
 
 import re
 from collections.abc import Callable
@@ -13,9 +13,8 @@ from boatsim.recordings.importing.log import MAX_TEXT_BYTES, Log, Room, Signal, 
 from boatsim.recordings.raw_table import file_error
 
 SUFFIXES = (".nmea", ".0183", ".txt", ".log")
-FIELDS: dict[
-    str, dict[str, tuple[str, str]]
-] = {  # sentence -> our field: attribute of the library, unit
+# Sentence -> signal -> attribute of the library and unit
+FIELDS: dict[str, dict[str, tuple[str, str]]] = {
     "GGA": {
         "latitude": ("latitude", "deg"),
         "longitude": ("longitude", "deg"),
@@ -37,17 +36,16 @@ FIELDS: dict[
     "RPM": {"shaft": ("speed", "rpm")},
     "VHW": {"speed_water": ("water_speed_knots", "kn")},
 }
-NUMBERED = {"RPM": "engine_no"}  # several of these are told apart
+NUMBERED = {"RPM": "engine_no"}  # sentence -> attribute with the number of the device
 STATUS = {"RMC": "status", "GLL": "status"}  # "A" where the fix is valid
 SENTENCE = re.compile(r"[$!][A-Za-z]{1,5}[\w]*,[^\r\n]*")
-STAMP = re.compile(
-    r"(?:^|[\s,;\\]|c:)(\d{9,13}(?:\.\d+)?)(?=[\s,;*\\])"
-)  # of the logger: s or ms since 1970
+# Time of the logger: s or ms since 1970
+STAMP = re.compile(r"(?:^|[\s,;\\]|c:)(\d{9,13}(?:\.\d+)?)(?=[\s,;*\\])")
 DAY = 86400.0  # [s]
 
 
 def read(path: Path) -> Log:
-    """Numbers of the sentences that speak of a boat's motion: `RMC.latitude`, `HDT.heading`. Raises BadInput."""
+    """Return the numbers of sentences about motion and drives: `RMC.latitude`, `HDT.heading`. Raises BadInput."""
     try:
         import pynmea2
     except ImportError as error:
@@ -64,20 +62,20 @@ def read(path: Path) -> Log:
             path, "has no NMEA 0183 sentence that can be read; if it is a table, call it .csv"
         )
     t, counted = _times(kept)
-    remarks = (
-        [f"{path}: {bad} of {len(lines)} lines are no whole sentences and are left out"]
-        if bad
-        else []
-    )
+    remarks = []
+    if bad:
+        remarks.append(
+            f"{path}: {bad} of {len(lines)} lines are no whole sentences and are left out"
+        )
     if counted is None:
         raise file_error(
             path,
-            "no sentence has a time (GGA, RMC, GLL, or a logger's stamp in front); without one none can be placed",
+            "no sentence has a time (GGA, RMC, GLL, or a logger's stamp in front); a time is needed",
         )
     if counted:
         remarks.append(
-            f"{path}: {counted} of {len(t)} sentences have no time of their own; each is taken to be of the time that "
-            "was told before it, several of one name evenly from there on"
+            f"{path}: {counted} of {len(t)} sentences have no time; each has the time of the last sentence "
+            "with one, several of one name are spread evenly"
         )
     return Log(path, _signals(kept, t), "NED", tuple(remarks))
 
@@ -85,12 +83,12 @@ def read(path: Path) -> Log:
 def _sentences(
     path: Path, lines: list[str], parse: "Callable[..., Any]"
 ) -> tuple[list[tuple[float | None, str, dict[str, float]]], int]:
-    """Time (None where it has none), name and numbers of every sentence; how many lines are none."""
+    """Time (None without one), name and numbers of every sentence, and the number of other lines."""
     found: list[tuple[float | None, str, dict[str, float]]] = []
     room, bad = Room(path), 0
     stamped, clock = any(_stamp(line) is not None for line in lines[:50]), _Clock()
     for line in lines:
-        sentence = _whole(line, parse)
+        sentence = _parsed(line, parse)
         if sentence is None:
             bad += bool(line.strip())
             continue
@@ -99,28 +97,27 @@ def _sentences(
             continue
         when = _stamp(line) if stamped else clock.read(sentence)
         valid = name not in STATUS or getattr(sentence, STATUS[name], "A") == "A"
-        numbers = (
-            {ours: _float(sentence, theirs) for ours, (theirs, _) in FIELDS[name].items()}
-            if valid
-            else {}
-        )
+        numbers: dict[str, float] = {}
+        if valid:
+            for signal, (attribute, _) in FIELDS[name].items():
+                numbers[signal] = _float(sentence, attribute)
         number = _float(sentence, NUMBERED[name]) if name in NUMBERED else 0.0
         room.take(len(numbers) + 1)
         found.append((when, f"{name}[{number:.0f}]" if name in NUMBERED else name, numbers))
-    return [
-        (when if when is None else when + clock.midnight, name, values)
-        for when, name, values in found
-    ], bad
+    if clock.midnight:
+        for i, (when, name, numbers) in enumerate(found):
+            found[i] = (None if when is None else when + clock.midnight, name, numbers)
+    return found, bad
 
 
 class _Clock:
-    """Time of day that runs on over midnight, and the midnight it counts from once a sentence has told the date."""
+    """Time of day that continues after midnight, and the first midnight once a sentence has the date."""
 
     def __init__(self) -> None:
         self.last, self.days, self.midnight = -1.0, 0.0, 0.0
 
     def read(self, sentence: Any) -> float | None:
-        """Seconds since the first midnight; None for a sentence without a time."""
+        """Return the time since the first midnight [s]; None for a sentence without a time."""
         of_day = getattr(sentence, "timestamp", None)
         if not isinstance(of_day, time):
             return None
@@ -135,19 +132,19 @@ class _Clock:
         return now + self.days
 
 
-def _whole(line: str, parse: "Callable[..., Any]") -> Any:
-    """The sentence in a line; None where there is none, or where its sum is wrong."""
+def _parsed(line: str, parse: "Callable[..., Any]") -> Any:
+    """The sentence in a line; None where there is none or its checksum is wrong."""
     found = SENTENCE.search(line)
-    if found is None or not _sum_is_right(found[0]):
+    if found is None or not _checksum_is_valid(found[0]):
         return None
     try:
         return parse(found[0], check=False)
-    except Exception:  # whatever a line of noise does to the library
+    except Exception:  # the library raises any exception on a line of noise
         return None
 
 
-def _sum_is_right(text: str) -> bool:
-    """Whether a sentence's check sum is that of its characters; one without a sum is taken as it is."""
+def _checksum_is_valid(text: str) -> bool:
+    """Whether the checksum of a sentence is right; true for a sentence without one."""
     body, star, given = text[1:].partition("*")
     if not star:
         return True
@@ -158,7 +155,7 @@ def _sum_is_right(text: str) -> bool:
 
 
 def _stamp(line: str) -> float | None:
-    """The logger's own time in front of a sentence, s since 1970."""
+    """The time of the logger in front of a sentence [s since 1970]."""
     found = STAMP.search(line.partition("$")[0].partition("!")[0])
     if not found:
         return None
@@ -174,9 +171,9 @@ def _float(sentence: Any, name: str) -> float:
 
 
 def _times(kept: "list[tuple[float | None, str, dict[str, float]]]") -> tuple[Array, int | None]:
-    """(N,) times [s], and how many sentences had none of their own; None where hardly any had one.
+    """Times (N,) [s], and the number of sentences without one; None where fewer than two have one.
 
-    One that comes once between two times is of the first of them, as instruments send what belongs together in one go;
+    A sentence that occurs once between two times has the first of them, for instruments send sentences in groups;
     several of one name are spread evenly.
     """
     t = np.array([np.nan if when is None else when for when, *_ in kept])
@@ -188,7 +185,9 @@ def _times(kept: "list[tuple[float | None, str, dict[str, float]]]") -> tuple[Ar
         return t, None
     usual = float(np.median(np.diff(t[first])))
     for begin, end in zip(first, np.append(first[1:], len(t)), strict=True):
-        step = min(t[end] - t[begin], usual) if end < len(t) else usual  # not over a gap of the log
+        step = (
+            min(t[end] - t[begin], usual) if end < len(t) else usual
+        )  # limited at a gap of the log
         rows = dict[str, list[int]]()
         for i in range(begin, end):
             if np.isnan(t[i]):

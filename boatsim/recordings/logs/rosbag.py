@@ -1,4 +1,4 @@
-"""Bags of ROS 1 (`.bag`) and of ROS 2 (the folder with its `metadata.yaml`, or the `.db3` in it)."""
+"""Reader of bags of ROS 1 (`.bag`) and ROS 2 (the folder with `metadata.yaml`, or the `.db3` in it)."""
 
 from bz2 import BZ2Decompressor
 from collections.abc import Callable
@@ -12,12 +12,12 @@ from boatsim.recordings.importing.ros import MAX_SIZE, Decoder, Topic, log_of
 from boatsim.recordings.raw_table import file_error
 
 SUFFIXES = (".bag", ".db3", "/")
-MOST_CHUNK = 256_000_000  # [bytes] of a chunk when it is unpacked
-MOST_ABOUT = 500_000  # [bytes] of what a bag says of itself; that many take the library 10 s
+MAX_CHUNK = 256_000_000  # [bytes] of a chunk when it is unpacked
+MAX_METADATA = 500_000  # [bytes]; the library needs 10 s for this size
 
 
 def read(path: Path) -> Log:
-    """Every number of every topic: `/imu.angular_velocity.z`. Raises BadInput."""
+    """Return all numbers of all topics: `/imu.angular_velocity.z`. Raises BadInput."""
     try:
         from rosbags.rosbag1 import Reader as Bag1
         from rosbags.rosbag2 import Reader as Bag2
@@ -34,39 +34,38 @@ def read(path: Path) -> Log:
             _fill(path, bag, topics, remarks)
     except BadInput:
         raise
-    except Exception as error:  # whatever the library finds in a damaged file
+    except Exception as error:  # the library raises any exception on a damaged file
         if not any(len(topic.logged) for topic in topics.values()):
             raise damaged(path, "a bag of ROS", error) from error
-        remarks.append(f"{path}: ends early or is damaged; what stands before is used")
-    return log_of(
-        path, {name: topic for name, topic in topics.items() if len(topic.logged)}, remarks
-    )
+        remarks.append(f"{path}: ends early or is damaged; the part before is used")
+    with_data = {name: topic for name, topic in topics.items() if len(topic.logged)}
+    return log_of(path, with_data, remarks)
 
 
 def _check_folder(path: Path, folder: Path) -> None:
-    """Refuse what the library would unpack without bounds, or to a file of its own, which no reader here writes."""
-    from ruamel.yaml import YAML  # which comes with rosbags
+    """Refuse bags that the library would unpack without limit or into a file. Raises BadInput."""
+    from ruamel.yaml import YAML  # a dependency of rosbags
 
     about = folder / BAG
     if not about.is_file():
-        raise file_error(path, f"a ROS 2 bag needs its {BAG} beside it")
-    if about.stat().st_size > MOST_ABOUT:
-        raise file_error(about, "is too large for what a bag says of itself")
-    said = YAML(typ="safe").load(about.read_text(encoding="utf-8", errors="replace"))[
+        raise file_error(path, f"a ROS 2 bag needs its {BAG} in the same folder")
+    if about.stat().st_size > MAX_METADATA:
+        raise file_error(about, "is too large for the metadata of a bag")
+    metadata = YAML(typ="safe").load(about.read_text(encoding="utf-8", errors="replace"))[
         "rosbag2_bagfile_information"
     ]
-    if str(said.get("compression_mode") or "none").lower() != "none":
+    if str(metadata.get("compression_mode") or "none").lower() != "none":
         raise file_error(
             path, "is compressed; unpack it first: ros2 bag convert, with compression_mode none"
         )
-    if str(said.get("storage_identifier")) == "mcap":
+    if str(metadata.get("storage_identifier")) == "mcap":
         raise file_error(path, "is a folder of MCAP files; give the .mcap in it")
     if sum(file.stat().st_size for file in folder.iterdir() if file.is_file()) > MAX_BYTES:
         raise file_error(path, f"has more than {MAX_BYTES:,} bytes; cut the log")
 
 
 def _bound(bag: Any) -> None:
-    """Let the chunks of a bag of ROS 1 be unpacked to so much and no more."""
+    """Limit the size of unpacked chunks of a bag of ROS 1."""
     for position, chunk in getattr(bag, "chunks", {}).items():
         bag.chunks[position] = chunk._replace(decompressor=partial(_unpacked, chunk.decompressor))
 
@@ -78,7 +77,7 @@ def _unpacked(usual: "Callable[[bytes], bytes]", data: bytes) -> bytes:
     if library not in ("bz2", "_bz2", "lz4"):  # not compressed at all
         return usual(data)
     machine: Any = LZ4FrameDecompressor() if library == "lz4" else BZ2Decompressor()
-    found = bytes(machine.decompress(data, max_length=MOST_CHUNK))
+    found = bytes(machine.decompress(data, max_length=MAX_CHUNK))
     if not machine.eof:
         raise ValueError("a chunk that is cut, or too large to unpack")
     return found
@@ -105,7 +104,7 @@ def _fill(path: Path, bag: Any, topics: dict[str, Topic], remarks: list[str]) ->
 
 
 def _usual(name: str) -> str:
-    """Definition of a message of ROS 2 itself, for bags that do not bring theirs. Raises ValueError."""
+    """Definition of a message of ROS 2 itself, for bags without definitions. Raises ValueError."""
     from rosbags.typesys import Stores, get_typestore
 
     store = get_typestore(Stores.ROS2_HUMBLE)

@@ -1,4 +1,4 @@
-"""Any table: CSV with commas, semicolons, tabs or bars, comments above, a row of units below its header; Parquet."""
+"""Reader of tables: Parquet, and CSV with commas, semicolons, tabs or bars, comments, and a row of units."""
 
 import csv
 import re
@@ -23,13 +23,13 @@ SEPARATORS = ",;\t|"
 COMMENT = ("#", "%", "//")
 BRACKETS = re.compile(r"[\[(]([^\])]*)[\])]\s*$")  # Heading [deg]
 PER_SECOND = re.compile(r"(?:^|[_ ])(rad|deg|m)[_ ](?:per[_ ])?s(?:ec)?$")
-NOTHING = ("", "nan", "null", "none", "na", "n/a", "-")
-MOST_HEAD = 1_000_000  # [bytes] in which names and units stand
+EMPTY_WORDS = ("", "nan", "null", "none", "na", "n/a", "-")
+MAX_HEAD = 1_000_000  # [bytes] that are read to find names and units
 csv.field_size_limit(1_000_000)
 
 
 def read(path: Path) -> Log:
-    """Every column with numbers, at the times of the column that is the time. Raises BadInput."""
+    """Return all columns with numbers, at the times of the time column. Raises BadInput."""
     if path.suffix.lower() in (".parquet", ".pq"):
         return _log(path, _parquet(path), {})
     return _csv(path)
@@ -44,21 +44,21 @@ def _log(
     clock = clock_of(columns)
     count = len(next(iter(columns.values()), ()))
     t = np.arange(count, dtype=float) if clock is None else seconds(clock, columns[clock])
-    signals = {
-        name: Signal(t, values, "s" if name == clock else units.get(name, "") or _unit(name))
-        for name, values in columns.items()
-        if np.isfinite(values).any()
-    }
-    untimed = (
-        (f"{path}: no column is called a time: rows are counted; the map can say `time`",)
-        if not clock
-        else ()
-    )
-    return Log(path, signals, remarks=(*remarks, *untimed))
+    signals: dict[str, Signal] = {}
+    for name, values in columns.items():
+        if np.isfinite(values).any():
+            unit = units.get(name, "") or _unit(name)
+            signals[name] = Signal(t, values, "s" if name == clock else unit)
+    if not clock:
+        no_time = (
+            f"{path}: no column is called a time: rows are counted; the map can name it with `time`"
+        )
+        remarks = (*remarks, no_time)
+    return Log(path, signals, remarks=remarks)
 
 
 def _unit(name: str) -> str:
-    """By the end of a name: seconds are what something is told in per, as in `yaw_rate_deg_s`."""
+    """The unit by the end of a name; `yaw_rate_deg_s` is in deg/s."""
     per = PER_SECOND.search(name.lower())
     return f"{per[1]}/s" if per else unit_of(name)
 
@@ -91,7 +91,7 @@ def _parquet(path: Path) -> dict[str, Array]:
 
 
 def _is_number(types: Any, kind: Any) -> bool:
-    """Whether a column is numbers, true or false, or times; texts are not even unpacked."""
+    """Whether a column has numbers, truth values or times; texts are not unpacked."""
     return any(
         getattr(types, f"is_{k}")(kind)
         for k in ("integer", "floating", "decimal", "boolean", "timestamp")
@@ -100,26 +100,27 @@ def _is_number(types: Any, kind: Any) -> bool:
 
 @dataclass(frozen=True)
 class _Head:
-    """What the begin of a table says of the rest."""
+    """Names, separator and units at the begin of a table."""
 
     columns: list[str]
     separator: str
     units: dict[str, str]
-    row: int  # line of the file in which the first row of numbers stands, from 0
+    row: int  # line of the first row of numbers, counted from 0
 
 
 def _csv(path: Path) -> Log:
     head = _head(path)
-    columns, remarks = _quick(path, head), tuple[str, ...]()
+    remarks: tuple[str, ...] = ()
+    columns = _read_fast(path, head)
     if columns is None:
-        columns, remarks = _line_by_line(path, head)
+        columns, remarks = _read_line_by_line(path, head)
     return _log(path, {n: c for n, c in columns.items() if n}, head.units, remarks)
 
 
 def _head(path: Path) -> _Head:
     """Separator, names and units of a table. Raises BadInput."""
     with path.open("rb") as file:
-        begin = _text(path, file.read(MOST_HEAD))
+        begin = _text(path, file.read(MAX_HEAD))
     lines = [(i, line) for i, line in enumerate(begin.splitlines()) if line.strip()]
     while lines and lines[0][1].lstrip().startswith(COMMENT) and not _may_be_header(lines):
         lines.pop(0)
@@ -147,8 +148,8 @@ def _head(path: Path) -> _Head:
     return _Head(header, separator, units, lines[1][0])
 
 
-def _quick(path: Path, head: _Head) -> dict[str, Array] | None:
-    """The columns of a table whose rows are all as long as its header, read by native code; None of any other."""
+def _read_fast(path: Path, head: _Head) -> dict[str, Array] | None:
+    """The columns of a table, read by native code; None if some rows differ from the header in length."""
     import pyarrow as pa
     from pyarrow import csv as arrow
 
@@ -174,25 +175,25 @@ def _quick(path: Path, head: _Head) -> dict[str, Array] | None:
 
 
 def _of_texts(column: "ChunkedArray", separator: str) -> Array:
-    """(N,) floats of a column of texts, of one that is nothing but numbers and empty cells without a look at each."""
+    """Numbers (N,) of a column of texts, by native code if all cells are numbers or empty."""
     import pyarrow as pa
     from pyarrow import compute
 
     texts = column if separator == "," else compute.replace_substring(column, ",", ".")
-    nothing = compute.is_in(compute.utf8_lower(texts), pa.array(NOTHING))
+    empty = compute.is_in(compute.utf8_lower(texts), pa.array(EMPTY_WORDS))
     try:
-        filled = compute.if_else(nothing, pa.scalar(None, pa.string()), texts)
+        filled = compute.if_else(empty, pa.scalar(None, pa.string()), texts)
         return np.array(filled.cast(pa.float64()).to_numpy(), dtype=float)
     except pa.ArrowException:
         return _column(column.to_pylist(), separator)
 
 
-def _line_by_line(path: Path, head: _Head) -> tuple[dict[str, Array], tuple[str, ...]]:
-    """The columns of any other table: with dates and words, or with rows that are no rows, which are told by line."""
+def _read_line_by_line(path: Path, head: _Head) -> tuple[dict[str, Array], tuple[str, ...]]:
+    """The columns of any other table, and remarks. Raises BadInput with the line of a mistake."""
     if path.stat().st_size > MAX_TEXT_BYTES:
         raise file_error(
             path,
-            f"has rows that are not as its header, and {path.stat().st_size:,} bytes; at most {MAX_TEXT_BYTES:,} of such a "
+            f"has rows that differ from its header, and {path.stat().st_size:,} bytes; at most {MAX_TEXT_BYTES:,} of such a "
             "table are read",
         )
     lines = enumerate(_text(path, path.read_bytes()).splitlines())
@@ -201,9 +202,11 @@ def _line_by_line(path: Path, head: _Head) -> tuple[dict[str, Array], tuple[str,
     rows, remarks = _rows(path, kept, head.separator, len(head.columns))
     if not rows:
         raise file_error(path, "has a header and no rows")
-    return {
-        n: _column([row[i] for row in rows], head.separator) for i, n in enumerate(head.columns)
-    }, remarks
+    cells_of = zip(*rows, strict=True)
+    columns: dict[str, Array] = {}
+    for name, cells in zip(head.columns, cells_of, strict=True):
+        columns[name] = _column(cells, head.separator)
+    return columns, remarks
 
 
 def _text(path: Path, found: bytes) -> str:
@@ -212,11 +215,11 @@ def _text(path: Path, found: bytes) -> str:
     try:
         return found.decode("utf-8-sig")
     except UnicodeDecodeError:
-        return found.decode("latin-1")  # degree signs of programs that know nothing else
+        return found.decode("latin-1")  # old programs write degree signs so
 
 
 def _may_be_header(lines: Sequence[tuple[int, str]]) -> bool:
-    """Whether a commented line is the header: the next is no comment and has as many cells."""
+    """Whether a commented line is the header: the next line is no comment and has as many cells."""
     if len(lines) < 2 or lines[1][1].lstrip().startswith(COMMENT):
         return False
     separator = max(SEPARATORS, key=lines[1][1].count)
@@ -226,7 +229,7 @@ def _may_be_header(lines: Sequence[tuple[int, str]]) -> bool:
 def _rows(
     path: Path, lines: Sequence[tuple[int, str]], separator: str, width: int
 ) -> tuple[list[list[str]], tuple[str, ...]]:
-    """Rows of as many cells as the header; a last one that is cut is left out."""
+    """Rows with as many cells as the header, without a last one that is cut. Raises BadInput."""
     rows: list[list[str]] = []
     for k, (number, line) in enumerate(lines):
         if line.lstrip().startswith(COMMENT):
@@ -248,7 +251,7 @@ def _rows(
 
 
 def _is_units(row: Sequence[str], header: Sequence[str], separator: str) -> bool:
-    """Whether the row below the header says units: no numbers, and few long words."""
+    """Whether the row below the header has units: short words and no numbers."""
     filled = [cell for cell in row if cell.strip()]
     words = [
         c
@@ -259,7 +262,7 @@ def _is_units(row: Sequence[str], header: Sequence[str], separator: str) -> bool
 
 
 def _column(cells: Sequence[str], separator: str) -> Array:
-    """(N,) floats; nan where a cell is empty or a word. Dates become s since 1970."""
+    """Numbers (N,); nan where a cell is empty or a word. Dates become s since 1970."""
     try:
         return np.array([float(c) if "_" not in c else np.nan for c in cells])
     except ValueError:
@@ -271,9 +274,9 @@ def _column(cells: Sequence[str], separator: str) -> Array:
 
 
 def _number(cell: str, separator: str) -> float | None:
-    """The number of a cell, nan where it is empty, None where it is a word."""
+    """The number of a cell, nan if it is empty, None if it is a word."""
     text = cell.strip()
-    if text.lower() in NOTHING:
+    if text.lower() in EMPTY_WORDS:
         return float("nan")
     if separator != ",":
         text = text.replace(",", ".")

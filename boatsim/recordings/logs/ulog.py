@@ -1,4 +1,4 @@
-"""PX4's ULog: topics that describe themselves, times in microseconds since the autopilot started."""
+"""Reader of PX4's ULog: self-describing topics, with times in microseconds since the start of the autopilot."""
 
 import re
 from pathlib import Path
@@ -20,8 +20,7 @@ from boatsim.recordings.importing.log import (
 )
 
 SUFFIXES = (".ulg", ".ulog")
-# fields whose integers are not in the unit of their name (msg/SensorGps.msg,
-# msg/VehicleGpsPosition.msg)
+# Fields of integers with a factor (msg/SensorGps.msg, msg/VehicleGpsPosition.msg)
 SCALED = {
     ("vehicle_gps_position", "lat"): (1e-7, "deg"),
     ("vehicle_gps_position", "lon"): (1e-7, "deg"),
@@ -43,23 +42,23 @@ TOPICS = {
     "vehicle_angular_velocity": {f"xyz[{i}]": "rad/s" for i in range(3)},
     "vehicle_global_position": {"lat": "deg", "lon": "deg"},
 }
-# reads that reach no further; a search byte by byte takes two for each of the 2^16 of a message
-MOST_IN_VAIN = 500_000
-PULSES = re.compile(r"actuator_outputs|input_rc")  # channels are pulses [us] there
+# Reads without progress; a search byte by byte needs two for each of the 2^16 bytes of a message
+MAX_READS_WITHOUT_PROGRESS = 500_000
+PULSES = re.compile(r"actuator_outputs|input_rc")  # topics with pulses [us]
 
 
-class _Onward:
-    """A file that ends for a reader which does not get on: the library goes in circles where its end is damaged."""
+class _ProgressingFile:
+    """A file that raises EOFError without progress, for the library loops endlessly at a damaged end."""
 
     def __init__(self, file: IO[bytes]) -> None:
-        self._file, self._furthest, self._in_vain = file, 0, 0
+        self._file, self._furthest, self._without_progress = file, 0, 0
 
     def read(self, size: int) -> bytes:
         found = self._file.read(size)
         at = self._file.tell()
-        self._in_vain = 0 if at > self._furthest else self._in_vain + 1
+        self._without_progress = 0 if at > self._furthest else self._without_progress + 1
         self._furthest = max(at, self._furthest)
-        if self._in_vain > MOST_IN_VAIN:
+        if self._without_progress > MAX_READS_WITHOUT_PROGRESS:
             raise EOFError("its end is damaged")
         return found
 
@@ -68,41 +67,42 @@ class _Onward:
 
 
 def read(path: Path) -> Log:
-    """Every number of every topic: `vehicle_local_position.x`, `actuator_outputs.output[0]`. Raises BadInput."""
+    """Return all numbers of all topics: `vehicle_local_position.x`, `actuator_outputs.output[0]`. Raises BadInput."""
     try:
         from pyulog import ULog
     except ImportError as error:
         raise needs(path, "pyulog", "px4") from error
     try:
         with quiet(), path.open("rb") as file:
-            found = ULog(_Onward(file))
+            found = ULog(_ProgressingFile(file))
         return _log(path, found.data_list, found.file_corruption)
     except BadInput:
         raise
-    except Exception as error:  # whatever the library finds in a damaged file
+    except Exception as error:  # the library raises any exception on a damaged file
         raise damaged(path, "a ULog", error) from error
 
 
 def _log(path: Path, topics: list, corrupt: bool) -> Log:  # type: ignore[type-arg]
     room, signals = Room(path), dict[str, Signal]()
-    called = numbered([(topic.name, int(topic.multi_id)) for topic in topics])
+    stream_names = numbered([(topic.name, int(topic.multi_id)) for topic in topics])
     for topic in topics:
         t = topic.data.get("timestamp")
         if t is None or not len(t):
             continue
-        fields = {
-            n: v for n, v in topic.data.items() if "timestamp" not in n and "_padding" not in n
-        }
+        fields = {}
+        for name, values in topic.data.items():
+            if "timestamp" not in name and "_padding" not in name:
+                fields[name] = values
         room.take(len(t) * len(fields), len(signals) + len(fields))
         known = UNITS | TOPICS.get(topic.name, {})
-        units = {
-            n: "us" if PULSES.match(topic.name) and "[" in n else known.get(n, "") for n in fields
-        }
+        units: dict[str, str] = {}
         for name in fields:
+            is_pulse = PULSES.match(topic.name) and "[" in name
+            units[name] = "us" if is_pulse else known.get(name, "")
             if (topic.name, name) in SCALED:
                 factor, units[name] = SCALED[topic.name, name]
                 fields[name] = fields[name] * factor
-        stream = called[topic.name, int(topic.multi_id)]
+        stream = stream_names[topic.name, int(topic.multi_id)]
         signals |= signals_of(stream, np.asarray(t, dtype=float) * 1e-6, fields, units)
-    remark = f"{path}: is damaged in places; what could be read is used"
+    remark = f"{path}: is damaged in places; the readable part is used"
     return Log(path, with_angles(signals), "NED", (remark,) if corrupt else ())
