@@ -148,7 +148,7 @@ def test_a_stated_top_speed_is_reached_at_full_thrust(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     "changed, said",
     [
-        ({"thrusters": []}, "a boat needs something that drives it"),
+        ({"thrusters": []}, "a boat needs at least one thruster"),
         ({"thrusters": ["-1"]}, "allowed is X,Y"),
         ({"thrusters": ["a,b"]}, "--thruster a,b"),
         ({"thrusters": ["-9,0"]}, "within the length"),

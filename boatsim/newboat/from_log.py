@@ -1,8 +1,8 @@
-"""Fits the coefficients of a boat from particulars to logs of it, and says what that is worth on parts unseen.
+"""Fit of the coefficients of a boat from particulars to its logs, with validation on held-out parts.
 
-Each log gives its first two thirds to the fit and its last to the judgement. Beside the coefficients a few things are
-tried, each kept if the evidence gains enough: added mass, lag of the thrust, weak reverse and the like, which belong to
-the boat and are written into its file, and a current, which belongs to the day and is only told.
+The first two thirds of each log are fitted, the last third is held out. A few candidate effects are tested besides the
+coefficients, and kept if the evidence increases enough: effects of the boat (added mass, thrust lag, weak reverse, ...)
+are written into its file, a current belongs to the day and is only reported.
 """
 
 import re
@@ -31,7 +31,7 @@ from boatsim.physics.vessel import Vessel
 from boatsim.progress import Report, part, silent
 from boatsim.recordings.table import Recording
 
-# its own, tried beside the coefficients
+# Candidate effects that belong to the boat
 OF_BOAT = (
     "added_mass_error",
     "lateral_centre_shift",
@@ -40,51 +40,65 @@ OF_BOAT = (
     "weak_reverse",
     "thrust_deadband",
 )
-OF_DAY = ("current",)  # what the water did while the log was taken
-GAIN = 3.0  # [nats] that makes one worth its parameters
+OF_DAY = ("current",)  # candidate effects of the water during the log
+MIN_GAIN = 3.0  # [nats] evidence that an effect must add
 FITTED_PART = 2 / 3  # of each log
-# relative sd that is left to a fitted coefficient: another day is never quite the same
-LEAST = 0.05
-LONG = re.compile(
+# Smallest relative standard deviation of a fitted coefficient, for no two days are the same
+MIN_SD = 0.05
+LONG_NUMBER = re.compile(
     r"(?<== )-?\d+\.\d{5,}(?:e[+-]?\d+)?$|(?<== )-?\d+\.\d{5,}(?:e[+-]?\d+)?(?= #)", re.MULTILINE
 )
 
 
 @dataclass(frozen=True)
 class Fitted:
-    """A boat fitted to logs, and how it was judged."""
+    """A boat fitted to logs, with its errors on held-out data.
+
+    Attributes:
+        boat: The boat before the fit.
+        problem: Estimation problem of the fitted parts.
+        best: The fit.
+        judge: Estimation problem of the held-out parts.
+        before: Family of signals -> rms of free runs on the held-out parts before the fit.
+        after: The same after the fit.
+    """
 
     boat: Vessel
     problem: Problem
     best: Fit
-    judge: Problem  # the same question to what was not fitted
-    before: Mapping[
-        str, float
-    ]  # family of signals -> rms of free runs on the unseen parts, as the file had it
+    judge: Problem
+    before: Mapping[str, float]
     after: Mapping[str, float]
 
     @property
     def better(self) -> bool:
-        """Whether the fit does better on what it has not seen: a log with a fault of its own teaches wrong numbers."""
+        """Whether the fit reduces the error on held-out data; a log with a fault gives wrong numbers."""
         return all(self.after[family] <= before for family, before in self.before.items())
 
 
 def fitted(
     vessel_file: Path, logs: Sequence[Path], held_out: Sequence[Path] = (), report: Report = silent
 ) -> Fitted:
-    """The vessel of a file with its coefficients fitted to logs.
+    """Return the vessel of a file with its coefficients fitted to logs.
 
-    Judged on the last third of each, or on the logs `unseen`, and then the others are fitted whole and what belongs to
-    their day is left out. Raises BadInput.
+    Args:
+        vessel_file: The vessel.toml.
+        logs: Recordings; the last third of each is held out unless `held_out` is given.
+        held_out: Held-out recordings; effects of the day do not apply to them.
+        report: Called with the progress.
+
+    Raises:
+        BadInput: If a recording can not be used.
     """
     report(f"reading {len(logs) + len(held_out)} logs")
     opened = [open_recording(path, str(vessel_file), ()) for path in (*logs, *held_out)]
     boat = opened[0][1]
     duration = total_duration([r for r, _ in opened])
-    whole = [clean_recording(r, boat, duration) for r, _ in opened]
-    parts = [_parted(r) for r in whole[: len(logs)]]
-    first = whole[: len(logs)] if held_out else [a for a, _ in parts]
-    last = whole[len(logs) :] if held_out else [b for _, b in parts]
+    cleaned = [clean_recording(r, boat, duration) for r, _ in opened]
+    if held_out:
+        first, last = cleaned[: len(logs)], cleaned[len(logs) :]
+    else:
+        first, last = map(list, zip(*map(_parted, cleaned), strict=True))
     report("compiling, or loading what was compiled before", 0.05)
     problem, judge = _problems(boat, first, last)
     try:
@@ -92,7 +106,7 @@ def fitted(
             report("fitting the coefficients", 0.1)
             nominal, best = baseline(problem)
             best = _with_more(problem, best, part(report, 0.3, 0.9))
-            report("judging on what was not fitted", 0.9)
+            report("validating on held-out data", 0.9)
             before, after = _errors(judge, nominal, _without(best, OF_DAY) if held_out else best)
     except (np.linalg.LinAlgError, FloatingPointError) as error:
         raise BadInput(
@@ -102,18 +116,28 @@ def fitted(
 
 
 def in_words(found: Fitted, on: str = "the last third of each log") -> list[str]:
-    """What was fitted, and what that is worth."""
-    return [*_told(found.best), *_judged(found, on)]
+    """Return lines that report the fitted effects and the errors on held-out data.
+
+    Args:
+        found: The fit.
+        on: The held-out data in words.
+    """
+    return [*_fit_lines(found.best), *_error_lines(found, on)]
 
 
 def text(found: Fitted, logs: Sequence[Path]) -> str:
-    """The vessel file with the numbers that are the boat's own."""
+    """Return the text of the vessel file with the fitted numbers of the boat.
+
+    Args:
+        found: The fit.
+        logs: Files of the recordings, for comments.
+    """
     own = _without(found.best, OF_DAY)
     return _written(found.problem, found.boat, own, ", ".join(path.name for path in logs))
 
 
 def _parted(whole: Recording) -> tuple[Recording, Recording]:
-    """The first two thirds of a recording and its last."""
+    """The first two thirds and the last third of a recording."""
     at = float(whole.t[0] + FITTED_PART * (whole.t[-1] - whole.t[0]))
     step = float(np.median(np.diff(whole.t)))
     return whole.between(float(whole.t[0]), at), whole.between(at + 0.5 * step, float(whole.t[-1]))
@@ -122,33 +146,33 @@ def _parted(whole: Recording) -> tuple[Recording, Recording]:
 def _problems(
     boat: Vessel, first: Sequence[Recording], last: Sequence[Recording]
 ) -> tuple[Problem, Problem]:
-    """The question to the parts that are fitted, and the same to those that judge."""
+    """The estimation problems of the fitted and the held-out parts."""
     program, _ = composed(boat)
     levels = prior_levels(boat, first)
-    laid = [with_initial_actuators(map_recording(r, program), levels) for r in first]
-    problem = Problem(laid, levels, priors.uncertainty(boat))
+    mapped = [with_initial_actuators(map_recording(r, program), levels) for r in first]
+    problem = Problem(mapped, levels, priors.uncertainty(boat))
     return problem, problem.on([map_recording(r, program) for r in last])
 
 
 def _with_more(problem: Problem, best: Fit, report: Report) -> Fit:
-    """With those of the candidates that gain, the one that gains most first."""
-    there = [n for n in (*OF_BOAT, *OF_DAY) if n in problem.program.entries]
-    while there:
-        tried = {}
-        for i, n in enumerate(there):
-            share = (len(best.effects) + i / len(there)) / (len(best.effects) + 2)
-            report("trying what a boat may have besides", share, n.replace("_", " "))
-            tried[n] = converge(problem, _start(problem, best, n))
-        name = max(tried, key=lambda n: tried[n].evidence)
-        if not tried[name].evidence > best.evidence + GAIN:
+    """Add the candidate effects that increase the evidence enough, the best first."""
+    candidates = [n for n in (*OF_BOAT, *OF_DAY) if n in problem.program.entries]
+    while candidates:
+        fits: dict[str, Fit] = {}
+        for i, candidate in enumerate(candidates):
+            share = (len(best.effects) + i / len(candidates)) / (len(best.effects) + 2)
+            report("testing candidate effects", share, candidate.replace("_", " "))
+            fits[candidate] = converge(problem, _start(problem, best, candidate))
+        name = max(fits, key=lambda n: fits[n].evidence)
+        if not fits[name].evidence > best.evidence + MIN_GAIN:
             break
-        best = tried[name]
-        there = [n for n in there if n != name and tried[n].evidence > -np.inf]
+        best = fits[name]
+        candidates = [n for n in candidates if n != name and fits[n].evidence > -np.inf]
     return best
 
 
 def _start(problem: Problem, best: Fit, name: str) -> Fit:
-    """The start of a fit with one more."""
+    """The initial values of a fit with one more effect."""
     effects = (*best.effects, name)
     free = problem.parameters(effects)
     known = {(f.effect, f.name): x for f, x in zip(best.free, best.theta, strict=True)}
@@ -157,7 +181,7 @@ def _start(problem: Problem, best: Fit, name: str) -> Fit:
 
 
 def _without(best: Fit, names: Sequence[str]) -> Fit:
-    """The fit less what is not the boat's."""
+    """The fit without some effects."""
     keep = [j for j, f in enumerate(best.free) if f.effect not in names]
     effects = tuple(n for n in best.effects if n not in names)
     return replace(
@@ -170,66 +194,62 @@ def _without(best: Fit, names: Sequence[str]) -> Fit:
 
 
 def _errors(judge: Problem, nominal: Fit, best: Fit) -> tuple[dict[str, float], dict[str, float]]:
-    """Free runs on what was not fitted, before and after."""
+    """Errors of free runs on held-out data before and after the fit. Raises BadInput if the data are too short."""
     found = errors(
         free_runs(judge, {"before": nominal, "after": best}, judge.recordings, judge.horizon)
     )
     if not found:
-        raise BadInput(
-            f"the part kept to judge by is shorter than a free run of {judge.horizon:g} s"
-        )
+        raise BadInput(f"the held-out part is shorter than a free run of {judge.horizon:g} s")
     return {k: v["before"] for k, v in found.items()}, {k: v["after"] for k, v in found.items()}
 
 
 def _written(problem: Problem, boat: Vessel, own: Fit, logs: str) -> str:
-    """The vessel file with the fitted numbers and how well they are known."""
+    """The text of the vessel file with the fitted numbers and their uncertainty."""
     document = tomlkit.parse(
-        LONG.sub(_shortened, patched_vessel.patched(problem, boat, own, boat.file))
+        LONG_NUMBER.sub(_shortened, patched_vessel.patched(problem, boat, own, boat.file))
     )
-    for key in ("based_on", "found"):  # it is a vessel of its own
+    for key in ("based_on", "found"):  # the file is no patch of another vessel
         del document[key]
     by_rule = boat.diagnosis.coefficient_uncertainty
-    sd = {str(kind): LEAST for kind in by_rule}
+    sd = {str(kind): MIN_SD for kind in by_rule}
     for f, x, variance in zip(own.free, own.theta, np.diag(own.covariance), strict=True):
         for effect in (e for e in boat.effects if f.relative and e.name in boat.names_of(f.effect)):
             table = document["effect"][boat.effects.index(effect)]
-            # against the rule's number where less is left: what is next to nothing is not unsure
-            spread, kind = (
-                float(np.sqrt(variance)) / max(float(x), 1.0),
-                type(effect).params()[f.name].calibrates,
-            )
+            # Relative to the number of the rule if the fitted one is smaller
+            spread = float(np.sqrt(variance)) / max(float(x), 1.0)
+            kind = type(effect).params()[f.name].calibrates
             sd[kind] = max(sd[kind], float(f"{spread:.2g}"))
             table[f.name].comment(
                 f"{_before(table, f.name)}, x {x:.3g} +- {100 * spread:.2g} % by {logs}"
             )
-    told = document["diagnosis"]
-    told["coefficient_uncertainty"] = tomlkit.inline_table()
-    told["coefficient_uncertainty"].update(
+    diagnosis = document["diagnosis"]
+    diagnosis["coefficient_uncertainty"] = tomlkit.inline_table()
+    diagnosis["coefficient_uncertainty"].update(
         {str(k): min(sd[str(k)], float(most)) for k, most in by_rule.items()}
     )
-    told["coefficient_uncertainty"].comment(
-        f"relative sd: the largest of those fitted, at least {LEAST:g}"
+    diagnosis["coefficient_uncertainty"].comment(
+        f"relative sd: the largest of those fitted, at least {MIN_SD:g}"
     )
-    told["reasons"]["coefficient_uncertainty"] = f"fitted to {logs}"
+    diagnosis["reasons"]["coefficient_uncertainty"] = f"fitted to {logs}"
     return str(tomlkit.dumps(document)).replace("# found by the diagnosis", f"# fitted to {logs}")
 
 
 def _shortened(found: re.Match[str]) -> str:
-    """A fitted number to as many digits as its spread bears."""
+    """A fitted number with five digits."""
     return str(float(f"{float(found[0]):.5g}"))
 
 
 def _before(table: Mapping[str, Any], key: str) -> str:
-    """The comment of a key without what a patched file adds."""
+    """The comment of a key without the part that a patched file adds."""
     if key not in table:
-        return "nobody stated it"
+        return "no value before"
     comment: str = table[key].trivia.comment
     before = comment.removeprefix("# ").partition("recalibrated")[0].removesuffix("; ")
     return before or "1 by definition"
 
 
-def _told(best: Fit) -> list[str]:
-    """What was found beside the coefficients."""
+def _fit_lines(best: Fit) -> list[str]:
+    """Lines that report the number of coefficients and the identified effects."""
     lines = []
     for name in best.effects:
         cells = [
@@ -238,15 +258,15 @@ def _told(best: Fit) -> list[str]:
             if f.effect == name
         ]
         where = (
-            "the water of that day, not written" if name in OF_DAY else "written into the vessel"
+            "of the water on that day, not written" if name in OF_DAY else "written into the vessel"
         )
         lines.append(f"  {name}: {', '.join(cells)} ({where})")
     return [f"fitted {sum(f.relative for f in best.free)} coefficients", *lines]
 
 
-def _judged(found: Fitted, on: str) -> list[str]:
-    """Before and after, on what was not fitted."""
-    lines = [f"free runs of {found.judge.horizon:g} s on {on}, which no fit has seen:"]
+def _error_lines(found: Fitted, on: str) -> list[str]:
+    """Lines that report the errors on held-out data before and after the fit."""
+    lines = [f"free runs of {found.judge.horizon:g} s on {on}, which were held out:"]
     for key in found.before:
         scale, unit = (1.0, "m") if key.endswith("_m") else (57.29578, "deg")
         before, after = found.before[key] * scale, found.after[key] * scale

@@ -1,4 +1,4 @@
-"""What an owner says of a boat on the command line, checked."""
+"""Particulars of a boat as its owner gives them on the command line, with checks."""
 
 import math
 import re
@@ -13,47 +13,73 @@ NAME = re.compile(r"[A-Za-z0-9][\w.+-]{0,59}")
 
 @dataclass(frozen=True)
 class Mount:
-    """A thruster; its largest thrusts are None where nobody stated them."""
+    """A thruster.
 
-    x: float  # [m] ahead of the mass centre
-    y: float  # [m] to starboard of it
-    ahead: float | None = None  # [N]
-    astern: float | None = None  # [N]
+    Attributes:
+        x: Position ahead of the mass centre [m].
+        y: Position to starboard of the mass centre [m].
+        ahead: Largest thrust ahead [N], None if unknown.
+        astern: Largest thrust astern [N], None if unknown.
+        turns: Whether the thruster can be turned.
+    """
+
+    x: float
+    y: float
+    ahead: float | None = None
+    astern: float | None = None
     turns: bool = False
 
 
 @dataclass(frozen=True)
 class Blade:
-    """A rudder; `area` is None where nobody stated it."""
+    """A rudder.
 
-    x: float  # [m] ahead of the mass centre
-    area: float | None = None  # [m^2]
+    Attributes:
+        x: Position ahead of the mass centre [m].
+        area: Area [m^2], None if unknown.
+    """
+
+    x: float
+    area: float | None = None
 
 
 @dataclass(frozen=True)
 class Particulars:
-    """A boat as its owner knows it."""
+    """Particulars of a boat.
+
+    Attributes:
+        name: Name of the boat.
+        hull: Dimensions and mass.
+        draught_stated: Whether the owner gave the draught.
+        speed: Speed at full thrust [m/s], None if unknown.
+        thrusters: Thrusters.
+        rudder: Rudder, None without one.
+    """
 
     name: str
     hull: Hull
     draught_stated: bool
-    speed: float | None  # [m/s] at full thrust
+    speed: float | None
     thrusters: tuple[Mount, ...]
     rudder: Blade | None = None
 
     def named(self) -> list[tuple[str, Mount]]:
-        """Thrusters with names by their side, numbered where a side has several; one alone is `motor`."""
-        sides = [
-            "starboard" if m.y > 0 else "port" if m.y < 0 else "middle" for m in self.thrusters
-        ]
+        """Return the thrusters with names by side, numbered if a side has several; a single one is `motor`."""
+        sides = [_side(mount) for mount in self.thrusters]
         if len(sides) == 1:
             return [("motor", self.thrusters[0])]
-        seen = {side: 0 for side in sides}
+        seen = dict.fromkeys(sides, 0)
         found = []
         for side, mount in zip(sides, self.thrusters, strict=True):
             seen[side] += 1
             found.append((f"{side}{seen[side]}" if sides.count(side) > 1 else side, mount))
         return found
+
+
+def _side(mount: Mount) -> str:
+    if mount.y == 0:
+        return "middle"
+    return "starboard" if mount.y > 0 else "port"
 
 
 def particulars(
@@ -69,16 +95,31 @@ def particulars(
     speed: float | None = None,
     thrust: float | None = None,
 ) -> Particulars:
-    """The boat that the command line tells of; `thrust` [N] is that of each thruster that states none.
+    """Return the checked particulars of a boat.
 
-    Raises BadInput for what can not be of a boat.
+    Args:
+        name: Name of the boat.
+        length: Length [m].
+        beam: Beam [m].
+        mass: Mass [kg].
+        thrusters: Fixed thrusters, each "X,Y[,MAX_N[,ASTERN_N]]".
+        steered: Thrusters that turn, in the same form.
+        rudder: Rudder, "X[,AREA]".
+        draught: Draught [m].
+        hulls: Number of hulls, 1 or 2.
+        speed: Speed at full thrust [m/s].
+        thrust: Largest thrust of each thruster without one [N].
+
+    Raises:
+        BadInput: For values that no boat can have.
     """
     if not NAME.fullmatch(name):
         raise BadInput(f"the boat's name = {name!r}; allowed are letters, digits and _ . + -")
     sizes = {"length": (length, 500.0), "beam": (beam, 100.0), "mass": (mass, 1e9)}
-    asked = {"draught": (draught, 50.0), "speed": (speed, 50.0), "thrust": (thrust, 1e8)}
-    stated = {key: (value, most) for key, (value, most) in asked.items() if value is not None}
-    for key, (value, most) in {**sizes, **stated}.items():
+    optional = {"draught": (draught, 50.0), "speed": (speed, 50.0), "thrust": (thrust, 1e8)}
+    for key, (value, most) in {**sizes, **optional}.items():
+        if value is None:
+            continue
         if not (math.isfinite(value) and 0.0 < value <= most):
             raise BadInput(f"--{key} {value:g}; allowed is more than 0 to {most:g}")
     if beam >= length:
@@ -86,9 +127,7 @@ def particulars(
     mounts = [_mount("--thruster", text, thrust, length, False) for text in thrusters]
     mounts += [_mount("--steered", text, thrust, length, True) for text in steered]
     if not mounts:
-        raise BadInput(
-            "no --thruster X,Y and no --steered X,Y; a boat needs something that drives it"
-        )
+        raise BadInput("no --thruster X,Y and no --steered X,Y; a boat needs at least one thruster")
     blade = None if rudder is None else _blade(rudder, length)
     made = hull(length, beam, mass, hulls, draught)
     return Particulars(name, made, draught is not None, speed, tuple(mounts), blade)
@@ -115,9 +154,7 @@ def _mount(option: str, text: str, thrust: float | None, length: float, turns: b
         raise BadInput(
             f"{option} {text}; allowed are places within the length, {length:g} m, of the mass centre"
         )
-    if any(abs(value) < 1e-6 or abs(value) > 1e8 for value in most[:1]) or any(
-        abs(v) > 1e8 for v in most
-    ):
+    if (most and abs(most[0]) < 1e-6) or max(map(abs, most), default=0.0) > 1e8:
         raise BadInput(f"{option} {text}; allowed is a largest thrust of more than 0 N")
     ahead = abs(most[0]) if most else thrust
     return Mount(x, y, ahead, abs(most[1]) if len(most) > 1 else None, turns)

@@ -1,11 +1,11 @@
-"""The turn.toml of a boat: a first scenario, ahead, turns to both sides and a stop, that shows what it can do."""
+"""The turn.toml of a new boat: a first scenario with runs ahead, turns to both sides and a stop."""
 
 import math
 from collections.abc import Iterator
 
 from boatsim.newboat.particulars import Particulars
 from boatsim.newboat.vessel_text import (
-    TURNS,
+    MAX_ANGLE,
     approach,
     full_thrust,
     number,
@@ -13,18 +13,18 @@ from boatsim.newboat.vessel_text import (
     thrust_channel,
 )
 
-STAGE = 8.0  # [s] of each part on a boat of 3 m, by Froude's law on others
-BOAT = 3.0  # [m]
+STAGE_DURATION = 8.0  # [s] for a boat of the reference length, scaled by Froude's law for others
+REFERENCE_LENGTH = 3.0  # [m]
 HELM = 0.35  # [rad] 20 deg
 
 
 def turn_text(boat: Particulars) -> str:
-    """The whole file."""
+    """Return the text of the file."""
     return "\n".join([*_lines(boat), ""])
 
 
 def _lines(boat: Particulars) -> Iterator[str]:
-    stage = round(STAGE * math.sqrt(boat.hull.length / BOAT), 1)
+    stage = round(STAGE_DURATION * math.sqrt(boat.hull.length / REFERENCE_LENGTH), 1)
     parts = _stages(boat)
     yield "#!/usr/bin/env -S boatsim run"
     yield 'about = "Ahead, a turn to starboard and one to port, faster, and astern."'
@@ -37,10 +37,11 @@ def _lines(boat: Particulars) -> Iterator[str]:
 
 
 def _stages(boat: Particulars) -> list[dict[str, float]]:
-    """Commands of each part, within the channels' ranges."""
+    """Commands of each stage, within the ranges of the channels."""
     full, _ = full_thrust(boat)
     pairs = list(zip(boat.named(), full, strict=True))
-    steer, part = steering(boat), approach(boat)
+    steer = steering(boat)
+    part = approach(boat)
 
     def at(share: float, helm: float) -> dict[str, float]:
         found = {thrust_channel(n): share * most for (n, _), most in pairs}
@@ -57,6 +58,6 @@ def _stages(boat: Particulars) -> list[dict[str, float]]:
         at(part, HELM),
         at(part, -HELM),
         at(fast, 0.0),
-        at(slow, -TURNS),
+        at(slow, -MAX_ANGLE),
         at(-part, 0.0),
     ]

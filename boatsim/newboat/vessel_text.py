@@ -1,4 +1,4 @@
-"""The vessel.toml of a boat of which only the particulars are known: every number with its rule."""
+"""The vessel.toml of a new boat from its particulars: every number has the rule it follows from."""
 
 import json
 import math
@@ -17,17 +17,21 @@ from boatsim.physics.estimate import rudder as rudders
 from boatsim.physics.estimate.base import DENSITY, Estimate
 
 OWNER = "the owner's"
-COLUMN = 32  # where comments begin
-TURNS = 0.7  # [rad] 40 deg: rudders and outboards turn no further
-HALF = 0.5  # of the full thrust: what a manoeuvre is approached with, if that is
-EASY = 2.0  # times the resistance at the easy speed at most
-DAMPING = 1.0  # relative sd of a coefficient by a rule: rules of thumb are off by a factor of two
-STATED, RULED = 0.3, 0.6  # of thrust: bollard pull beside that under way; nobody stated any
-WATER = 0.4  # of added mass: strips beside regressions beside measurements
+COMMENT_COLUMN = 32  # where comments begin
+MAX_ANGLE = 0.7  # [rad] 40 deg, the usual limit of rudders and outboards
+# Thrust at the approach of manoeuvres: this part of full thrust, but at most this many times the
+# resistance at service speed
+APPROACH_PART = 0.5
+APPROACH_RESISTANCE = 2.0
+# Relative standard deviations of coefficients
+DAMPING_SD = 1.0  # rules of thumb for damping are off by a factor of two
+GIVEN_THRUST_SD = 0.3  # bollard pull differs from the thrust under way
+ESTIMATED_THRUST_SD = 0.6
+ADDED_MASS_SD = 0.4  # difference of strip theory, regressions and measurements
 
 
 def vessel_text(boat: Particulars) -> str:
-    """The whole file."""
+    """Return the text of the file."""
     return "\n".join(
         [
             *_head(boat),
@@ -42,15 +46,17 @@ def vessel_text(boat: Particulars) -> str:
 
 
 def number(value: float) -> str:
-    """Four digits, as TOML reads a float."""
+    """Return a number with four digits as a TOML float."""
     text = f"{value:.4g}"
-    return text if any(c in text for c in ".e") else f"{text}.0"
+    if "." in text or "e" in text:
+        return text
+    return f"{text}.0"
 
 
 def line(key: str, value: float, unit: str, rule: str) -> str:
-    """`key = value  # [unit] rule`."""
-    stated = f"{key} = {number(value)}"
-    return f"{stated:{COLUMN - 1}} # {f'[{unit}] ' if unit else ''}{rule}"
+    """Return the line `key = value  # [unit] rule`."""
+    entry = f"{key} = {number(value)}"
+    return f"{entry:{COMMENT_COLUMN - 1}} # {f'[{unit}] ' if unit else ''}{rule}"
 
 
 def _of(key: str, found: Estimate, unit: str) -> str:
@@ -62,19 +68,19 @@ def _text(value: str) -> str:
 
 
 def full_thrust(boat: Particulars) -> tuple[list[float], bool]:
-    """Largest thrust of each thruster [N], and whether the owner stated them all."""
+    """Return the largest thrust of each thruster [N], and whether the owner gave all."""
     by_rule = thrust.full(boat.hull).value / len(boat.thrusters)
     stated = all(m.ahead is not None for m in boat.thrusters)
     return [by_rule if m.ahead is None else m.ahead for m in boat.thrusters], stated
 
 
 def thrust_channel(name: str) -> str:
-    """Its thrust command."""
+    """Return the name of the thrust command of a thruster."""
     return f"thrust_{name}_N"
 
 
 def steer_channel(name: str) -> str:
-    """Its angle command, of a thruster that turns."""
+    """Return the name of the angle command of a thruster that turns."""
     return f"steer_{name}_rad"
 
 
@@ -82,16 +88,14 @@ def _head(boat: Particulars) -> Iterator[str]:
     hull = boat.hull
     kind = "one hull" if hull.hulls == 1 else "two hulls"
     yield f"about = {_text(f'{boat.name}: {hull.length:g} m, {hull.mass:g} kg, {kind}, from its particulars')}"
-    yield 'source = "boatsim new: sizes are the owner\'s, each other number by the rule beside it"'
+    yield 'source = "boatsim new: sizes are the owner\'s, each other number follows the rule in its comment"'
     yield 'hull = "hull.xml"'
     yield 'freedoms = ["surge", "sway", "yaw"]'
     yield line("length", hull.length, "m", OWNER)
     yield line("beam", hull.beam, "m", OWNER)
-    rule = (
-        OWNER
-        if boat.draught_stated
-        else displacement.draught(hull.length, hull.beam, hull.mass, hull.hulls).rule
-    )
+    rule = OWNER
+    if not boat.draught_stated:
+        rule = displacement.draught(hull.length, hull.beam, hull.mass, hull.hulls).rule
     yield line("draught", hull.draught, "m", rule)
 
 
@@ -112,18 +116,18 @@ def _channels(boat: Particulars) -> Iterator[str]:
     yield from ("", "[channels]")
     for (name, mount), most in zip(boat.named(), full, strict=True):
         least = most if mount.astern is None else mount.astern
-        said = OWNER if mount.ahead is not None else thrust.full(boat.hull).rule
+        rule = OWNER if mount.ahead is not None else thrust.full(boat.hull).rule
         if mount.astern is None:
-            said = f"{said}; astern as much"
+            rule = f"{rule}; the same astern"
         low = "0.0" if least == 0.0 else f"-{number(least)}"
         limits = f'low = {low}, high = {number(most)}, about = "ahead positive"'
-        yield f"{thrust_channel(name)} = {{ {limits} }}  # [N] {said}"
+        yield f"{thrust_channel(name)} = {{ {limits} }}  # [N] {rule}"
         if mount.turns:
             about = "positive pushes to starboard"
-            yield f'{steer_channel(name)} = {{ low = -{TURNS}, high = {TURNS}, about = "{about}" }}  # [rad] 40 deg'
+            yield f'{steer_channel(name)} = {{ low = -{MAX_ANGLE}, high = {MAX_ANGLE}, about = "{about}" }}  # [rad] 40 deg'
     if boat.rudder is not None:
         turns = f'turns = "{"starboard" if boat.rudder.x < 0 else "port"}"'
-        yield f"rudder_rad = {{ low = -{TURNS}, high = {TURNS}, {turns} }}  # [rad] 40 deg"
+        yield f"rudder_rad = {{ low = -{MAX_ANGLE}, high = {MAX_ANGLE}, {turns} }}  # [rad] 40 deg"
 
 
 def _effects(boat: Particulars) -> Iterator[str]:
@@ -160,13 +164,13 @@ def _effects(boat: Particulars) -> Iterator[str]:
 
 
 def service(boat: Particulars) -> float:
-    """Speed [m/s] at which a rudder is taken: an easy one, or the boat's top speed where that is less."""
+    """Return the speed [m/s] to which the rudder coefficients belong: service speed, or top speed if that is less."""
     easy = resistance.service_speed(boat.hull)
     return easy if boat.speed is None else min(easy, boat.speed)
 
 
 def stated_thrust(boat: Particulars) -> float | None:
-    """Full thrust of all thrusters [N], None where nobody stated it."""
+    """Return the full thrust of all thrusters [N], None if the owner gave none."""
     full, stated = full_thrust(boat)
     return math.fsum(full) if stated else None
 
@@ -184,9 +188,8 @@ def _rudder(boat: Particulars, speed: float) -> Iterator[str]:
     assert blade is not None
     area = Estimate(blade.area, OWNER) if blade.area is not None else by_rule
     slope = rudders.slope(area.value, speed)
-    sign = (
-        1.0 if blade.x < 0 else -1.0
-    )  # a positive angle pushes a blade astern to port, which swings the bow to
+    # A positive angle pushes a blade aft to port, which turns the bow to starboard
+    sign = 1.0 if blade.x < 0 else -1.0
     yield from ("", "[[effect]]", 'use = "rudder"', f"# area {number(area.value)} m^2: {area.rule}")
     yield 'on = { angle = "rudder_rad" }'
     yield line("sway", -sign * slope.value, "N/rad", slope.rule)
@@ -198,7 +201,7 @@ def _rudder(boat: Particulars, speed: float) -> Iterator[str]:
     )
     yield from ("", "[[effect]]", 'use = "speed_scaled_steering"', 'on = { angle = "rudder_rad" }')
     yield line("speed", speed, "m/s", "to which the coefficients above belong")
-    yield line("rudder_sway", 1.0, "", "the blade's force goes with the square of the speed")
+    yield line("rudder_sway", 1.0, "", "the force grows with the square of the speed")
     yield line("rudder_yaw", 1.0, "", "same")
     if washed := _washing(boat, blade):
         found = rudders.race()
@@ -208,15 +211,18 @@ def _rudder(boat: Particulars, speed: float) -> Iterator[str]:
 
 
 def _washing(boat: Particulars, blade: Blade) -> str:
-    """Name of the only fixed thruster in the middle line ahead of the rudder; "" where there is none, or several."""
+    """Name of the only fixed thruster on the centre line ahead of the rudder; "" if there is none or several."""
     ahead = [name for name, m in boat.named() if m.y == 0.0 and not m.turns and m.x > blade.x]
     return ahead[0] if len(ahead) == 1 else ""
 
 
 def approach(boat: Particulars) -> float:
-    """Part of the full thrust with which manoeuvres are approached."""
+    """Return the part of full thrust at the approach of manoeuvres."""
     full, _ = full_thrust(boat)
-    return min(HALF, EASY * resistance.at_service(boat.hull).value / math.fsum(full))
+    return min(
+        APPROACH_PART,
+        APPROACH_RESISTANCE * resistance.at_service(boat.hull).value / math.fsum(full),
+    )
 
 
 def _manoeuvring(boat: Particulars) -> Iterator[str]:
@@ -229,17 +235,17 @@ def _manoeuvring(boat: Particulars) -> Iterator[str]:
         for (channel, most), (_, m) in zip(drives, named, strict=True)
         if m.astern is None or m.astern > 0.0
     )
-    rule = "twice the resistance at an easy speed" if part < HALF else "half thrust"
+    rule = "twice the resistance at an easy speed" if part < APPROACH_PART else "half thrust"
     yield from ("", "[manoeuvring]", f"ahead = {{ {ahead} }}  # [N] {rule}")
     if astern:
         yield f"astern = {{ {astern} }}  # [N]"
     if steer := steering(boat):
-        told = ", ".join(f"{channel} = {number(gain)}" for channel, gain in steer.items())
-        yield f"steer = {{ {told} }}  # per rad of helm, positive to starboard"
+        gains = ", ".join(f"{channel} = {number(gain)}" for channel, gain in steer.items())
+        yield f"steer = {{ {gains} }}  # per rad of helm, positive to starboard"
 
 
 def steering(boat: Particulars) -> dict[str, float]:
-    """Command per rad of helm: the rudder, else what turns, else thrust more on the outer side."""
+    """Return the command per rad of helm: of the rudder, else of thrusters that turn, else by differential thrust."""
     if boat.rudder is not None:
         return {"rudder_rad": 1.0}
     turning = {steer_channel(n): -1.0 if m.x <= 0 else 1.0 for n, m in boat.named() if m.turns}
@@ -248,7 +254,7 @@ def steering(boat: Particulars) -> dict[str, float]:
     full, _ = full_thrust(boat)
     pairs, part = zip(boat.named(), full, strict=True), approach(boat)
     return {
-        thrust_channel(n): -math.copysign(part * most / TURNS, m.y)
+        thrust_channel(n): -math.copysign(part * most / MAX_ANGLE, m.y)
         for (n, m), most in pairs
         if m.y != 0.0
     }
@@ -257,7 +263,9 @@ def steering(boat: Particulars) -> dict[str, float]:
 def _diagnosis(boat: Particulars) -> Iterator[str]:
     _, stated = full_thrust(boat)
     yield from ("", "[diagnosis]")
-    sds = f"damping = {DAMPING}, thrust = {STATED if stated else RULED}, added_mass = {WATER}"
+    thrust_sd = GIVEN_THRUST_SD if stated else ESTIMATED_THRUST_SD
+    sds = f"damping = {DAMPING_SD}, thrust = {thrust_sd}, added_mass = {ADDED_MASS_SD}"
     yield f"coefficient_uncertainty = {{ {sds} }}  # relative sd"
-    pushes = "a stated thrust is one at rest" if stated else "nobody stated a thrust"
-    yield f'reasons.coefficient_uncertainty = "rules of thumb for damping are off by a factor of two; {pushes}"'
+    reason = "rules of thumb for damping are off by a factor of two; "
+    reason += "a given thrust is one at rest" if stated else "no thrust was given"
+    yield f'reasons.coefficient_uncertainty = "{reason}"'

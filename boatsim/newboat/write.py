@@ -1,4 +1,4 @@
-"""The files of a new boat, as texts by name."""
+"""The files of a new boat."""
 
 from boatsim.newboat.hull_drawing import hull_xml
 from boatsim.newboat.particulars import Particulars
@@ -9,5 +9,5 @@ VESSEL = "vessel.toml"
 
 
 def files(boat: Particulars) -> dict[str, str]:
-    """File name -> content of a boat's folder."""
+    """Return the file name -> text of each file of a boat's folder."""
     return {VESSEL: vessel_text(boat), "hull.xml": hull_xml(boat), "turn.toml": turn_text(boat)}
