@@ -103,9 +103,9 @@ def test_a_new_boat_fitted_to_a_log_says_its_stages(tmp_path: Path) -> None:
     done = boatsim(
         "new", tmp_path / "own", "--length", "1.2", "--beam", "0.44", "--mass", "4.6", *drives
     )
-    assert {"fitting the coefficients", "validating on held-out data"} <= set(
-        lines(done.stderr)
-    ), done.stderr
+    assert {"fitting the coefficients", "validating on held-out data"} <= set(lines(done.stderr)), (
+        done.stderr
+    )
 
 
 def test_a_log_that_is_imported_says_its_stages(tmp_path: Path) -> None:
