@@ -123,6 +123,6 @@ def test_channels_that_no_name_fits_get_the_outputs_in_order_and_it_is_said():
     text = proposal(
         log_of(psi=(0.0, 3.0), **{"rudder": (-0.4, 0.4), "motor 1": (-0.9, 0.9)}), "v", drives
     )
-    assert 'rudder_rad = "rudder"' in text and "CHECK: the only one that is left" in text
+    assert 'rudder_rad = "rudder"' in text and "CHECK: the only signal that is left" in text
     text = proposal(log_of(psi=(0.0, 3.0)), "v", drives)
     assert '# rudder_rad = "..."' in text

@@ -65,10 +65,10 @@ def test_outputs_without_names_are_told_by_what_the_boat_does(
     assert columns["steer_motor_rad"]["most"] == -sign * 0.7  # what is positive of it turns to port
     line = next(line for line in text.splitlines() if line.startswith("steer_motor_rad"))
     assert (
-        "CHECK: taken for it as the boat turns by it" in line
-        and "full helm is taken for 40 deg" in line
+        "CHECK: chosen because the boat turns with it" in line
+        and "full helm is assumed to be 40 deg" in line
     )
-    assert ("sign turned" in line) == (sign > 0.0)
+    assert ("sign inverted" in line) == (sign > 0.0)
 
 
 def test_where_the_boat_shows_nothing_order_decides_and_it_is_said() -> None:
@@ -78,14 +78,14 @@ def test_where_the_boat_shows_nothing_order_decides_and_it_is_said() -> None:
     )
     text, columns = proposed(log, OUTBOARD)
     assert columns["steer_motor_rad"]["most"] == 0.7  # no sign is turned on no evidence
-    assert text.count("CHECK: by its order alone") == 2
+    assert text.count("CHECK: by order only") == 2
 
 
 def test_a_sign_is_left_alone_where_the_vessel_does_not_say_which_way_it_steers() -> None:
     outputs = {"rudder_cmd": Signal(T, 0.5 * HELM, "rad"), "throttle_cmd": pulses(THROTTLE)}
     log = log_of(-0.3 * follows(HELM, 0.8), 3.0 * follows(THROTTLE, 3.0), outputs)
     text, columns = proposed(log, [OUTBOARD[0], Drive("rudder_rad", -0.6, 0.6)])
-    assert columns["rudder_rad"] == "rudder_cmd" and "sign turned" not in text
+    assert columns["rudder_rad"] == "rudder_cmd" and "sign inverted" not in text
 
 
 def test_shaft_and_rudder_of_a_network_are_proposed_and_what_is_assumed_is_said() -> None:
@@ -97,10 +97,7 @@ def test_shaft_and_rudder_of_a_network_are_proposed_and_what_is_assumed_is_said(
     text, columns = proposed(log, OUTBOARD)
     assert columns["thrust_motor_N"]["signal"] == "RPM[1].shaft"
     assert columns["steer_motor_rad"] == "-RSA.rudder_starboard * deg"
-    assert (
-        "what was measured is taken for what was ordered" in text
-        and "goes with their square" in text
-    )
+    assert "the measured angle is used as the command" in text and "goes with their square" in text
 
 
 @pytest.mark.parametrize("first", ["port", "starboard"])
@@ -115,7 +112,7 @@ def test_engines_with_numbers_get_the_side_that_the_boat_turns_by(first: str) ->
     number = 1 if first == "port" else 2
     assert columns["thrust_port_N"]["signal"] == f"RPM[{number}].shaft"
     assert columns["thrust_starboard_N"]["signal"] == f"RPM[{3 - number}].shaft"
-    assert text.count("CHECK: its side is told by how the boat turns") == 2
+    assert text.count("CHECK: side by the turning of the boat") == 2
 
 
 def test_the_sign_of_a_thrust_is_never_turned_for_what_it_does_alone() -> None:
@@ -127,7 +124,7 @@ def test_the_sign_of_a_thrust_is_never_turned_for_what_it_does_alone() -> None:
     )
     assert (
         all(columns[d.name]["least"] < columns[d.name]["most"] for d in TWIN)
-        and "sign turned" not in text
+        and "sign inverted" not in text
     )
 
 

@@ -1,4 +1,4 @@
-"""A map proposed for a log, as text to be saved and checked, and the list of its signals."""
+"""Proposal of a map for a log, as a text that the user saves and checks, and the list of the signals."""
 
 import re
 from collections.abc import Collection, Mapping, Sequence
@@ -19,15 +19,11 @@ from boatsim.recordings.importing.signal_classification import (
 from boatsim.recordings.importing.turning import MIN_CORRELATION, Turning
 from boatsim.recordings.notes import unit_of
 
-USUAL_PULSE = (
-    1100.0,
-    1500.0,
-    1900.0,
-)  # [us] low, neutral, high of most motor controllers of small boats
-QUICKEST = 50.0  # [Hz] beyond it rows are proposed at a stated rate: no boat moves so fast
-MOST_LISTED = 400
-# from z up, as ROS has it (REP 103: x east, y north, z up; x forward, y port), to ours: column ->
-# signal's column, sign
+USUAL_PULSE = (1100.0, 1500.0, 1900.0)  # [us] low, neutral, high of most motor controllers
+MAX_ROW_RATE = 50.0  # [Hz] a higher rate of rows is not needed for the motion of boats
+MAX_LISTED = 400
+# Column -> column of the signal and sign, for logs with z up (ROS, REP 103: x east, y north; x
+# forward, y port)
 FROM_ENU = {
     "x_m": ("y_m", ""),
     "y_m": ("x_m", ""),
@@ -37,60 +33,61 @@ FROM_ENU = {
     "r_radps": ("r_radps", "-"),
     "psi_rad": ("psi_rad", "-"),
 }
-QUARTER = " + 90 * deg"  # heading from north = a quarter turn less the yaw from east
-SURE = ("x_m", "y_m", "psi_rad", "r_radps", "u_mps", "v_mps")
+QUARTER_TURN = " + 90 * deg"  # heading from north = 90 degrees - yaw from east
+POSE_COLUMNS = ("x_m", "y_m", "psi_rad", "r_radps", "u_mps", "v_mps")
 KINDS = {
     "angle": ("rad", "deg"),
     "turning": ("rad/s", "deg/s", "1/s", "1/min", "rpm"),
     "force": ("N", "kN"),
 }
 SIDED = ("port", "starboard")
-LEANS = {"phi_rad": "roll", "p_radps": "roll", "theta_rad": "pitch", "q_radps": "pitch"}
+INCLINATIONS = {"phi_rad": "roll", "p_radps": "roll", "theta_rad": "pitch", "q_radps": "pitch"}
 
 
 @dataclass(frozen=True)
 class Drive:
-    """A vessel's channel, as far as a proposal needs it."""
+    """A command channel of a vessel.
+
+    Attributes:
+        name: Name of the channel.
+        low: Smallest value.
+        high: Largest value.
+        turns: Side to which a positive value turns the vessel: 1 starboard, -1 port, 0 unknown.
+    """
 
     name: str
     low: float
     high: float
-    turns: int = 0  # 1: what is positive turns the boat to starboard, -1: to port, 0: nobody says
+    turns: int = 0
 
 
 def listing(log: Log) -> list[str]:
-    """A line for each signal: name, unit, rate, samples, range, what it probably is."""
+    """Return a table of the signals of a log: name, unit, rate, samples, range, classification."""
     found = {g.name: g for g in guesses(log)}
     rows = [("signal", "unit", "Hz", "samples", "lowest", "highest", "probably")]
-    shown = (
-        list(log.signals)
-        if len(log.signals) <= MOST_LISTED
-        else [n for n in log.signals if n in found]
-    )
-    for name in shown:
+    listed = list(log.signals)
+    if len(listed) > MAX_LISTED:
+        listed = [name for name in listed if name in found]
+    for name in listed:
         rows.append(
             (_safe(name), *_figures(log.signals[name]), _words(found.get(name), log.signals[name]))
         )
-    widths = [max(len(row[i]) for row in rows) for i in range(6)]
-    lines = [
-        "  ".join(
-            [
-                row[0].ljust(widths[0]),
-                row[1].ljust(widths[1]),
-                *(c.rjust(w) for c, w in zip(row[2:6], widths[2:], strict=True)),
-                row[6],
-            ]
-        ).rstrip()
-        for row in rows
-    ]
-    if len(shown) < len(log.signals):
-        lines.append(f"and {len(log.signals) - len(shown)} signals more, of which nothing is known")
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    lines: list[str] = []
+    for row in rows:
+        cells = [row[0].ljust(widths[0]), row[1].ljust(widths[1])]
+        cells += map(str.rjust, row[2:6], widths[2:6])
+        lines.append("  ".join([*cells, row[6]]).rstrip())
+    if len(listed) < len(log.signals):
+        lines.append(f"and {len(log.signals) - len(listed)} unknown signals")
     return lines
 
 
 def _figures(signal: Signal) -> tuple[str, str, str, str, str]:
     values = signal.values[np.isfinite(signal.values)]
-    low, high = (f"{values.min():.6g}", f"{values.max():.6g}") if len(values) else ("", "")
+    low = high = ""
+    if len(values):
+        low, high = f"{values.min():.6g}", f"{values.max():.6g}"
     return (
         _safe(signal.unit)[:12],
         f"{rate_of(signal.t[np.isfinite(signal.values)]):.3g}",
@@ -101,11 +98,12 @@ def _figures(signal: Signal) -> tuple[str, str, str, str, str]:
 
 
 def _words(guess: Guess | None, signal: Signal) -> str:
-    return ", ".join(text for text in (guess.column if guess else "", signal.about) if text)
+    column = guess.column if guess else ""
+    return ", ".join(filter(None, (column, signal.about)))
 
 
 def _safe(name: str) -> str:
-    """A name without characters that a terminal would act on."""
+    """A name without control characters."""
     return "".join(c if c.isprintable() else "?" for c in name)[:120]
 
 
@@ -116,21 +114,26 @@ def proposal(
     dof: Sequence[str] = (),
     stated: Mapping[str, str] | None = None,
 ) -> str:
-    """Text of a map: the likeliest signal of each column, the others beside it in comments.
+    """Return the text of a map: the most probable signal of each column, with the others in comments.
 
-    `stated` is what the vessel's file says of the columns of its recordings: our name, and the expression of theirs.
+    Args:
+        log: The log.
+        vessel: Name or path of the vessel.
+        drives: Command channels of the vessel.
+        dof: Degrees of freedom of the vessel.
+        stated: Column -> expression of a signal, by the vessel's file.
     """
-    known = {
-        ours: e
-        for ours, e in (stated or {}).items()
-        if parse(e, log.signals.keys()).signal in log.signals
-    }
-    spoken_for = {parse(e, log.signals.keys()).signal for e in known.values()}
-    found = guesses(log, [d.name for d in drives])
-    found = [g for g in found if g.column not in known and g.name not in spoken_for]
+    known: dict[str, str] = {}
+    used_signals: set[str] = set()
+    for column, expression in (stated or {}).items():
+        signal = parse(expression, log.signals.keys()).signal
+        if signal in log.signals:
+            known[column] = expression
+            used_signals.add(signal)
     best: dict[str, list[Guess]] = {}
-    for g in found:
-        best.setdefault(g.column, []).append(g)
+    for g in guesses(log, [d.name for d in drives]):
+        if g.column not in known and g.name not in used_signals:
+            best.setdefault(g.column, []).append(g)
     lines = [
         "# Proposed from the names, units and ranges of the signals in the log: check every line."
     ]
@@ -139,34 +142,40 @@ def proposal(
     body += [f"{_key(n)} = {_text(e)}  # as the vessel's file says" for n, e in known.items()]
     open_drives = [d for d in drives if d.name not in known]
     turning = Turning(best, log.frame == "ENU")
-    commands, driven = (
-        _commands(best, open_drives, turning) if open_drives or not drives else ([], [])
-    )
-    commands = ["# all are above"] if drives and not open_drives else commands
-    if (
-        quickest := max((rate_of(g.signal.t) for g in (*used, *driven)), default=0.0)
-    ) > 1.01 * QUICKEST:
-        lines.append(f"rate = {QUICKEST:g}  # [Hz] of rows; the quickest signal has {quickest:.3g}")
+    driven: list[Guess] = []
+    if drives and not open_drives:
+        commands = ["# all are above"]
+    else:
+        commands, driven = _commands(best, open_drives, turning)
+    fastest = max((rate_of(g.signal.t) for g in (*used, *driven)), default=0.0)
+    if fastest > 1.01 * MAX_ROW_RATE:
+        lines.append(
+            f"rate = {MAX_ROW_RATE:g}  # [Hz] of rows; the fastest signal has {fastest:.3g}"
+        )
     lines += [
-        "# use = [0.0, 60.0]  # [s] since the log begins, to leave out what was before and after",
+        "# use = [0.0, 60.0]  # [s] since the log begins, the part to convert",
         "",
         *body,
     ]
     lines += ["", "# commands: what was sent to the drives", *(commands or ["# none was found"])]
-    for kind, said in (
-        ("actual", "what the drives did"),
-        ("stick", "the pilot's hand, kept beside the commands"),
+    for kind, about in (
+        ("actual", "measured state of the drives"),
+        ("stick", "the pilot's sticks, recorded with the commands"),
     ):
         moving = [g for g in best.get(kind, []) if not _still(g)]
         if moving:
-            lines += ["", f"# {said}", *_kept(kind, sorted(moving, key=lambda g: g.name))]
+            lines += [
+                "",
+                f"# {about}",
+                *_further_columns(kind, sorted(moving, key=lambda g: g.name)),
+            ]
     return "\n".join(lines) + "\n"
 
 
 def _poses(
     log: Log, best: Mapping[str, list[Guess]], dof: Sequence[str], known: Collection[str]
 ) -> tuple[list[str], list[Guess]]:
-    """Lines of position and columns of motion, and the guesses in them."""
+    """Lines of the position and the columns of motion, and their signals."""
     lines, used = [], list[Guess]()
     pair = _pair(best.get("latitude", []), best.get("longitude", []))
     if pair:
@@ -184,42 +193,40 @@ def _poses(
     enu = log.frame == "ENU"
     if enu and not pair and best.get("x_m"):
         lines.append(
-            "# x east, y north, z up, hull x forward, y port, as ROS has it; ours is north, east, clockwise"
+            "# x east, y north, z up, hull x forward, y port, as in ROS; recordings have x north, y east, angles clockwise"
         )
     if not log.frame and best.get("psi_rad"):
         lines.append(
-            "# taken for granted: x north or ahead, y east or to starboard, heading and its rate clockwise"
+            "# assumed: x north or ahead, y east or to starboard, heading and its rate clockwise"
         )
-    for column in (*SURE, *LEANS):
+    for column in (*POSE_COLUMNS, *INCLINATIONS):
         source, sign = FROM_ENU.get(column, (column, "")) if enu else (column, "")
         if column in ("x_m", "y_m") and pair or source not in best:
             continue
         g = best[source][0]
-        held = column in LEANS and (LEANS[column] not in dof or _still(g))
-        compass = (
-            column == "psi_rad" and "yaw" not in g.tokens
-        )  # which counts from north, clockwise
-        sign, quarter = (
-            ("", "") if compass else (sign, QUARTER if enu and column == "psi_rad" else "")
-        )
+        held = column in INCLINATIONS and (INCLINATIONS[column] not in dof or _still(g))
+        quarter = QUARTER_TURN if enu and column == "psi_rad" else ""
+        if column == "psi_rad" and "yaw" not in g.tokens:
+            # A compass heading is clockwise from north
+            sign = quarter = ""
         lines.append(
             f"{'# ' if held else ''}{column} = {_text(sign + _expression(g) + quarter)}{_note(g, best[source])}"
         )
         used += [] if held else [g]
     if "psi_rad" not in {*best, *known}:
         lines.append(
-            '# psi_rad = "..."  # no heading was found; a vessel that turns can not be followed without one'
+            '# psi_rad = "..."  # no heading was found; it is needed for a vessel that turns'
         )
     return lines, used
 
 
 def _still(g: Guess) -> bool:
-    """Whether a signal has one value throughout."""
+    """Whether a signal is constant."""
     return float(np.ptp(g.signal.values[np.isfinite(g.signal.values)])) == 0.0
 
 
 def _pair(latitudes: Sequence[Guess], longitudes: Sequence[Guess]) -> list[Guess]:
-    """The likeliest latitude with the longitude of its stream."""
+    """The most probable latitude with the longitude of its stream."""
     for lat in latitudes:
         stream = lat.name.rpartition(".")[0]
         for lon in longitudes:
@@ -233,7 +240,7 @@ def _expression(g: Guess) -> str:
 
 
 def _note(g: Guess, others: Sequence[Guess]) -> str:
-    """A comment: rate, what was taken for granted, what else it might be."""
+    """A comment with the rate, the assumption and further possible signals."""
     also = [_safe(o.name) for o in others if o is not g][:4]
     parts = [f"{rate_of(g.signal.t):.3g} Hz", g.why, f"also {', '.join(also)}" if also else ""]
     return "  # " + "; ".join(p for p in parts if p)
@@ -248,7 +255,7 @@ def _text(value: str) -> str:
 def _commands(
     best: Mapping[str, Sequence[Guess]], drives: Sequence[Drive], turning: Turning
 ) -> tuple[list[str], list[Guess]]:
-    """Lines of the vessel's channels, or of all outputs that moved where there is no vessel."""
+    """Lines of the vessel's channels, or without a vessel of all outputs that are not constant."""
     moving = [
         g for g in best.get("command", []) if not _still(g) or g.name in [d.name for d in drives]
     ]
@@ -256,12 +263,13 @@ def _commands(
     if not drives:
         names = _names([_called(g) for g in moving])
         return [_drive_line(n, g, None) for n, g in zip(names, moving, strict=True)], list(moving)
-    lines, taken = [], list[Guess]()
+    lines: list[str] = []
+    taken: list[Guess] = []
     chosen = _chosen(best, drives, moving, turning)
     for drive in drives:
         if drive.name not in chosen:
             lines.append(
-                f'# {drive.name} = "..."  # {drive.low:g} to {drive.high:g}; no signal is called like it'
+                f'# {drive.name} = "..."  # {drive.low:g} to {drive.high:g}; no signal has a similar name'
             )
             continue
         g, why = chosen[drive.name]
@@ -279,7 +287,7 @@ def _chosen(
     moving: Sequence[Guess],
     turning: Turning,
 ) -> dict[str, tuple[Guess, str]]:
-    """A signal for each channel, as far as there is one, and what must be checked of it: by name, by deed, by order."""
+    """Signals of the channels by name, by their effect on the motion, or by order, and what the user must check."""
     found = {n: (g, "") for n, g in _matched(drives, moving).items()}
     left = [g for g in moving if g not in [h for h, _ in found.values()]]
     helms = [d for d in drives if d.name not in found and _steers(d)]
@@ -303,13 +311,13 @@ def _helms(
     measured: Sequence[Guess],
     turning: Turning,
 ) -> dict[str, tuple[Guess, str]]:
-    """Signals of channels that steer: the one helm that has a name, what the boat turns by, or what was measured."""
+    """Signals of channels that steer: the only one with a name, one that the turning follows, or a measured one."""
     if named:
-        return {d.name: (named[0], "; CHECK: one helm is taken for all") for d in helms}
+        return {d.name: (named[0], "; CHECK: one helm is used for all") for d in helms}
     if steers := turning.helm([g for g in left if _fits(helms[0], g)]):
-        why = f"; CHECK: taken for it as the boat turns by it (correlation {steers[1]:+.2f})"
+        why = f"; CHECK: chosen because the boat turns with it (correlation {steers[1]:+.2f})"
         return {d.name: (steers[0], why) for d in helms}
-    why = "; CHECK: what was measured is taken for what was ordered"
+    why = "; CHECK: the measured angle is used as the command"
     rudders = [g for g in measured if g.tokens & HELM and _fits(helms[0], g)]
     if len(rudders) == 1:
         return {d.name: (rudders[0], why) for d in helms}
@@ -317,7 +325,7 @@ def _helms(
 
 
 def _steers(drive: Drive) -> bool:
-    """Whether a channel is an angle or called one; two thrusts turn a boat too, each of them in no way alone."""
+    """Whether a channel is an angle or has the name of one."""
     return (
         unit_of(drive.name) == "rad"
         or not unit_of(drive.name)
@@ -328,8 +336,8 @@ def _steers(drive: Drive) -> bool:
 def _by_order(
     missing: Sequence[Drive], left: Sequence[Guess], turning: Turning
 ) -> dict[str, tuple[Guess, str]]:
-    """Channels and signals one after the other; of two sides that which turns the boat as it should is put right."""
-    why = "; CHECK: by its order alone" if len(left) > 1 else "; CHECK: the only one that is left"
+    """Signals of channels by order; two sides are exchanged if the turning shows it."""
+    why = "; CHECK: by order only" if len(left) > 1 else "; CHECK: the only signal that is left"
     if len(missing) == len(left) == 2 and {
         side_of(frozenset(tokens_of(d.name))) for d in missing
     } == {*SIDED}:
@@ -337,26 +345,30 @@ def _by_order(
         sense = turning.by((left[port], 1.0), (left[1 - port], -1.0))
         if abs(sense) > MIN_CORRELATION:
             left = list(left) if sense > 0.0 else [left[1], left[0]]
-            why = f"; CHECK: its side is told by how the boat turns (correlation {abs(sense):.2f})"
+            why = f"; CHECK: side by the turning of the boat (correlation {abs(sense):.2f})"
     pairs = zip(missing, left, strict=False)
     return {d.name: (g, why) for d, g in pairs if _fits(d, g) or _turns_a_screw(d, g)}
 
 
 def _as_many(moving: Sequence[Guess], count: int) -> list[Guess]:
-    """The signals of the one stream that has just so many that move; none where no stream has."""
+    """The signals of the stream with this number of signals; [] if no stream has it."""
     streams: dict[str, list[Guess]] = {}
     for g in moving:
         streams.setdefault(g.name.rpartition(".")[0], []).append(g)
-    return next((found for found in (*streams.values(), list(moving)) if len(found) == count), [])
+    for signals in (*streams.values(), list(moving)):
+        if len(signals) == count:
+            return signals
+    return []
 
 
 def _order(name: str) -> list[tuple[int, str]]:
-    """Sorts output 10 behind output 9."""
-    return [(int(p), "") if p.isdigit() else (-1, p) for p in re.split(r"(\d+)", name) if p]
+    """Sort key by which output 10 comes after output 9."""
+    parts = filter(None, re.split(r"(\d+)", name))
+    return [(int(p), "") if p.isdigit() else (-1, p) for p in parts]
 
 
 def _matched(drives: Sequence[Drive], moving: Sequence[Guess]) -> dict[str, Guess]:
-    """Channels and the signals whose words fit them best, each once."""
+    """The signal with the most similar name of each channel; no signal is used twice."""
     pairs = sorted(
         ((_likeness(d, g), -i, d.name, g) for d in drives for i, g in enumerate(moving)),
         key=lambda p: p[:2],
@@ -397,16 +409,20 @@ def _likeness(drive: Drive, g: Guess) -> float:
 
 
 def _fits(drive: Drive, g: Guess) -> bool:
-    """Whether a channel can be of a signal's kind, as an angle is no force; pulses and plain numbers may be any."""
-    kinds = [
-        next((k for k, units in KINDS.items() if u in units), "")
-        for u in (unit_of(drive.name), _unit(g))
-    ]
+    """Whether channel and signal may be of one kind: angle, rate or force; pulses and plain numbers fit any kind."""
+    kinds = (_kind_of(unit_of(drive.name)), _kind_of(_unit(g)))
     return "" in kinds or kinds[0] == kinds[1]
 
 
+def _kind_of(unit: str) -> str:
+    for kind, units in KINDS.items():
+        if unit in units:
+            return kind
+    return ""
+
+
 def _turns_a_screw(drive: Drive, g: Guess) -> bool:
-    """Whether a force may be told by revolutions alone."""
+    """Whether the channel is a thrust and the signal revolutions."""
     return unit_of(drive.name) in KINDS["force"] and _unit(g) in KINDS["turning"]
 
 
@@ -417,15 +433,22 @@ def _unit(g: Guess) -> str:
 
 
 def _drive_line(name: str, g: Guess, drive: Drive | None, sense: float = 0.0) -> str:
-    """A line of the map; `sense`: from 1, the boat turns as the channel says, to -1, it turns the other way."""
+    """A line of the map.
+
+    Args:
+        name: Name of the column.
+        g: The signal.
+        drive: Channel of the vessel.
+        sense: Correlation of the signal with turning to the side of the channel, -1 for the opposite side.
+    """
     values = g.signal.values[np.isfinite(g.signal.values)]
     low, high = (drive.low, drive.high) if drive else (-1.0, 1.0)
-    note = f"  # {rate_of(g.signal.t):.3g} Hz" + (
-        f"; {_safe(g.signal.about)}" if g.signal.about else ""
-    )
+    note = f"  # {rate_of(g.signal.t):.3g} Hz"
+    if g.signal.about:
+        note += f"; {_safe(g.signal.about)}"
     turned = sense < -MIN_CORRELATION
     if turned:
-        note += f"; CHECK: sign turned, as the boat turns the other way (correlation {sense:+.2f})"
+        note += f"; CHECK: sign inverted, for the boat turns to the opposite side (correlation {sense:+.2f})"
     scale = _scale(g, values, drive)
     if scale is None:
         made = g.name if g.name == name else _converted(g, name)
@@ -437,24 +460,26 @@ def _drive_line(name: str, g: Guess, drive: Drive | None, sense: float = 0.0) ->
     given = ", ".join(f"{k} = {v:g}" for k, v in zip(("low", "neutral", "high"), ends, strict=True))
     note += f"; {why}" if why else ""
     if drive and unit_of(drive.name) == "rad":
-        note += f"; CHECK: full helm is taken for {np.degrees(max(abs(low), abs(high))):.0f} deg"
+        note += (
+            f"; CHECK: full helm is assumed to be {np.degrees(max(abs(low), abs(high))):.0f} deg"
+        )
     return f"{_key(name)} = {{ signal = {_text(g.name)}, {given}, least = {low:g}, most = {high:g} }}{note}"
 
 
 def _scale(
     g: Guess, values: "np.ndarray[tuple[int, ...], np.dtype[np.float64]]", drive: Drive | None
 ) -> tuple[tuple[float, float, float], str] | None:
-    """Low, neutral and high of a signal that is a share of full command, and a word on where they come from."""
+    """Low, neutral and high of a signal in proportion to full command, and their source; None for another signal."""
     share = "in proportion to full command"
     if drive and g.name == drive.name:
         return None
     if g.signal.pulse:
         return g.signal.pulse, share if drive else ""
     if PULSE[0] <= values.min() and values.max() <= PULSE[1]:
-        return USUAL_PULSE, f"usual pulses of 1100 to 1900 us are taken for granted, {share}"
+        return USUAL_PULSE, f"usual pulses of 1100 to 1900 us are assumed, {share}"
     largest = float(np.max(np.abs(values)))
     if drive and _turns_a_screw(drive, g):
-        why = "CHECK: full thrust is taken for the most revolutions here; it goes with their square, not straight"
+        why = "CHECK: full thrust is assumed at the most revolutions here; thrust grows with their square"
         return (-largest, 0.0, largest), why
     if drive is None or unit_of(drive.name) and g.word and g.word != "percent":
         return None
@@ -469,7 +494,7 @@ def _scale(
 
 
 def _converted(g: Guess, name: str) -> str:
-    """An expression that ends in the unit of the column."""
+    """An expression in the unit of the column."""
     if g.word == "rpm" and name.endswith("_rps"):
         return f"{g.name} / 60"
     return g.name if g.word == "rpm" and name.endswith("_rpm") else _expression(g)
@@ -483,8 +508,9 @@ def _called(g: Guess) -> str:
 
 
 def _names(names: Sequence[str]) -> list[str]:
-    """The same, numbered where there are several of one name."""
-    found, seen = [], dict[str, int]()
+    """The names, numbered where several are equal."""
+    found: list[str] = []
+    seen: dict[str, int] = {}
     for name in names:
         seen[name] = seen.get(name, 0) + 1
         stem, _, unit = name.partition("_rad")
@@ -493,8 +519,8 @@ def _names(names: Sequence[str]) -> list[str]:
     return found
 
 
-def _kept(kind: str, found: Sequence[Guess]) -> list[str]:
-    """Lines of further columns, named by their kind and their own names."""
+def _further_columns(kind: str, found: Sequence[Guess]) -> list[str]:
+    """Lines of further columns, named by kind and signal."""
     names = _names(
         [f"{kind}_{re.sub(r'[^a-z0-9]+', '_', g.name.lower()).strip('_')}" for g in found]
     )

@@ -1,4 +1,4 @@
-"""What each signal of a log probably is, by its name, unit and range: general rules, which know no boat and no log."""
+"""Classification of the signals of a log by name, unit and range, with rules that hold for all vessels and logs."""
 
 import re
 from collections.abc import Sequence
@@ -11,8 +11,8 @@ from boatsim.physics.signals import POSE, RATES
 from boatsim.recordings.importing.log import Log, Signal, rate_of
 from boatsim.recordings.table import is_command
 
-FEWEST = 20  # samples
-WORDS = {  # units as formats spell them -> as expressions do; "" is the SI unit itself
+MIN_SAMPLES = 20
+WORDS = {  # unit as formats write it -> unit in expressions; "" is the SI unit
     "deg": "deg",
     "degree": "deg",
     "degrees": "deg",
@@ -55,7 +55,7 @@ WORDS = {  # units as formats spell them -> as expressions do; "" is the SI unit
     "us": "us",
     "µs": "us",
 }
-NOT_MEASURED = set(  # what is wanted, off, or about a signal
+NOT_MEASURED = set(  # words of set points, errors and properties of signals
     "des desired target setpoint sp ref reference cmd command commanded error err innov innovation bias cov covariance "
     "var variance std sd accuracy reset resets delta test ratio valid status flags timeout home origin".split()
 )
@@ -82,17 +82,17 @@ SIDES = {
     "sb": "starboard",
 }
 LETTERS = {"l": "port", "p": "port", "r": "starboard", "s": "starboard"}  # sides of drives
-PULSE = (800.0, 2200.0)  # [us] between which the pulses of all servos and motor controllers lie
+PULSE = (800.0, 2200.0)  # [us] range of the pulses of all servos and motor controllers
 TURNS = {
     "r_radps": ("z", "yaw"),
     "q_radps": ("y", "pitch"),
     "p_radps": ("x", "roll"),
-}  # about which axis
+}  # rate -> axis and name of the rotation
 SPEEDS = {"rate", "speed", "velocity", "vel"}
-BODY = {"odom", "odometry", "body", "base"}  # frames of a velocity in which x is forward
+BODY = {"odom", "odometry", "body", "base"}  # frames with x forward
 SUPERFLUOUS = set(
     "data value raw filtered est estimate estimated meas measured".split()
-)  # ends of names
+)  # words at the end of names without meaning here
 OTHER = set(
     "alt roll pitch yaw lat lon error err curr current volt voltage temp temperature vel power".split()
 )
@@ -102,55 +102,80 @@ NUMBERED = {
     *SIDES,
     *map(str, range(10)),
     *WORDS,
-}  # what else a shaft speed's name has in it
+}  # other words in the name of a shaft speed
 ANGLES = set("rudder steer steering nozzle azimuth helm delta".split())
-STEEPEST = 1.6  # [rad] beyond it an angle of a rudder is in degrees
+MAX_RUDDER = 1.6  # [rad] a larger rudder angle is in degrees
 COLUMNS = (*POSE, *RATES)
 
 
 @dataclass(frozen=True)
 class Guess:
-    """One signal taken for one column; `word` brings it to SI."""
+    """Classification of one signal.
+
+    Attributes:
+        name: Name of the signal.
+        signal: The signal.
+        column: Column of a recording, or latitude, longitude, command, actual or stick.
+        word: Unit in an expression that converts the signal to SI; "" for none.
+        score: The signal with the highest score is proposed.
+        why: Assumption of the classification; "" for none.
+        tokens: Words of the name.
+    """
 
     name: str
     signal: Signal
-    column: str  # of ours, or latitude, longitude, command, actual, stick
-    word: str  # unit of an expression, "" for none
-    score: float  # the highest is proposed
-    why: str = ""  # what was taken for granted
+    column: str
+    word: str
+    score: float
+    why: str = ""
     tokens: frozenset[str] = field(default_factory=frozenset)
 
 
 def tokens_of(name: str) -> list[str]:
-    """Words of a signal's name, lower case, numbers apart: ATT.DesYaw -> att, des, yaw; motor1 -> motor, 1."""
+    """Return the words of a name in lower case, with numbers separate: ATT.DesYaw -> att, des, yaw; motor1 -> motor, 1."""
     parted = re.sub(
         r"(?<=[a-z])(?=[A-Z])|(?<=[A-Za-z])(?=\d)|(?<=\d)(?=[A-Za-z])", " ", name
     ).lower()
     parted = re.sub(
         r"\b(rad|deg|m)[_ ]?(?:/|p|per_?)?[_ ]?s(?:ec)?\b", r"\1/s", parted.replace("_", " ")
     )
-    split = re.split(r"[^a-z0-9%°/]+", parted)
-    return [w for t in split for w in ([t] if t in WORDS else t.split("/")) if w]
+    words: list[str] = []
+    for token in re.split(r"[^a-z0-9%°/]+", parted):
+        words += [token] if token in WORDS else token.split("/")
+    return list(filter(None, words))
 
 
 def guesses(log: Log, channels: Sequence[str] = ()) -> list[Guess]:
-    """What every signal is that is anything, likeliest first; `channels` are names of the vessel's commands."""
-    found = [
-        g for name, s in log.signals.items() if (g := guess(name, s, log, channels)) is not None
-    ]
+    """Return the classified signals of a log, the highest score first.
+
+    Args:
+        log: The log.
+        channels: Names of the vessel's commands.
+    """
+    found: list[Guess] = []
+    for name, signal in log.signals.items():
+        if (classified := guess(name, signal, log, channels)) is not None:
+            found.append(classified)
     return sorted(found, key=lambda g: -g.score)
 
 
 def guess(name: str, signal: Signal, log: Log, channels: Sequence[str] = ()) -> Guess | None:
-    """What a signal is, if its name, unit and range say so."""
+    """Return the classification of a signal by name, unit and range, None if it is unknown.
+
+    Args:
+        name: Name of the signal.
+        signal: The signal.
+        log: The log.
+        channels: Names of the vessel's commands.
+    """
     values = signal.values[np.isfinite(signal.values)]
-    if len(values) < FEWEST:
+    if len(values) < MIN_SAMPLES:
         return None
-    words = tokens_of(name) or [""]  # a name need not have a word
+    words = tokens_of(name) or [""]  # a name may have no word
     tokens = frozenset(words)
     last = [w for w in words if w not in (*WORDS, *SUPERFLUOUS) or w == "n"] or words
     moves = 10.0 if float(np.ptp(values)) > 0.0 else 0.0
-    rate = min(rate_of(signal.t), 50.0) / 100.0  # of two alike the quicker
+    rate = min(rate_of(signal.t), 50.0) / 100.0  # the faster of two equal signals is preferred
     for place, match in (
         ("latitude", ("lat", "latitude")),
         ("longitude", ("lon", "lng", "long", "longitude")),
@@ -159,12 +184,15 @@ def guess(name: str, signal: Signal, log: Log, channels: Sequence[str] = ()) -> 
             return _degrees(
                 name, signal, place, tokens, moves + rate + 10.0 * bool(tokens & SATELLITES)
             )
-    if kind := "command" if name in channels or is_command(name) else _drives(signal, tokens):
+    kind = _drive_kind(signal, tokens)
+    if name in channels or is_command(name):
+        kind = "command"
+    if kind:
         word, why = _word(name, signal), ""
         if (
             not (signal.unit or word)
             and tokens & ANGLES
-            and STEEPEST < float(np.max(np.abs(values))) <= 90.0
+            and MAX_RUDDER < float(np.max(np.abs(values))) <= 90.0
         ):
             word, why = "deg", "degrees by its range"
         return Guess(name, signal, kind, word, moves + rate, why, tokens)
@@ -181,7 +209,7 @@ def guess(name: str, signal: Signal, log: Log, channels: Sequence[str] = ()) -> 
 
 
 def _angle(column: str, signal: Signal, tokens: frozenset[str], word: str) -> tuple[str, str]:
-    """Unit of an angle or its rate, by its range where nothing says it."""
+    """Unit of an angle or its rate, by the range where name and format have none, and the assumption."""
     if (
         not column.endswith(("_rad", "_radps"))
         or signal.unit
@@ -196,7 +224,7 @@ def _angle(column: str, signal: Signal, tokens: frozenset[str], word: str) -> tu
 
 
 def _word(name: str, signal: Signal) -> str:
-    """The unit as a word of expressions, by the format or else by the name."""
+    """The unit as a word of expressions, by the format, else by the name."""
     if signal.unit:
         return WORDS.get(signal.unit.lower(), "")
     words = tokens_of(name) or [""]
@@ -206,7 +234,7 @@ def _word(name: str, signal: Signal) -> str:
 def _degrees(
     name: str, signal: Signal, column: str, tokens: frozenset[str], score: float
 ) -> Guess | None:
-    """Latitudes and longitudes are degrees, or whole numbers of 1e-7 degrees, or radians, by unit and range."""
+    """Classification of a latitude or longitude in degrees, 1e-7 degrees or radians, by unit and range."""
     largest = float(np.nanmax(np.abs(signal.values)))
     if signal.unit == "rad" or "rad" in tokens:
         return Guess(name, signal, column, "", score, "", tokens)
@@ -219,27 +247,27 @@ def _degrees(
     return None
 
 
-def _drives(signal: Signal, tokens: frozenset[str]) -> str | None:
-    """Whether a signal is the pilot's stick, what is sent to a drive, or what a drive is measured to do."""
-    said = frozenset(tokens_of(signal.about))
-    if tokens & STICKS or {"rc", "in"} <= tokens or {"rc", "input"} <= tokens or "stick" in said:
+def _drive_kind(signal: Signal, tokens: frozenset[str]) -> str | None:
+    """The kind of a signal of the drives: "stick", "command" or "actual"; None for another."""
+    about = frozenset(tokens_of(signal.about))
+    if tokens & STICKS or {"rc", "in"} <= tokens or {"rc", "input"} <= tokens or "stick" in about:
         return "stick"
     driven = (
         tokens & OUTPUTS
-        or said
+        or about
         or {"rc", "out"} <= tokens
         or "n" in tokens
         and not tokens - NUMBERED
     )
     if not driven or tokens & OTHER:
         return None
-    return (
-        "actual" if tokens & SENSED and not tokens & {"cmd", "command", "commanded"} else "command"
-    )
+    if tokens & SENSED and not tokens & {"cmd", "command", "commanded"}:
+        return "actual"
+    return "command"
 
 
 def _motion(last: list[str], tokens: frozenset[str], log: Log) -> str | None:
-    """The pose or rate that a name speaks of."""
+    """The pose or velocity of a name; None for another."""
     end = last[-1]
     if found := _turn(end, tokens):
         return found
@@ -265,7 +293,7 @@ def _motion(last: list[str], tokens: frozenset[str], log: Log) -> str | None:
 
 
 def _turn(end: str, tokens: frozenset[str]) -> str | None:
-    """The rate of turning that a name speaks of."""
+    """The angular rate of a name; None for another."""
     for column, (axis, spelt) in TURNS.items():
         number = str("xyz".index(axis))
         by_axis = end == axis or end == number and tokens & {"xyz", "rad"}
@@ -291,6 +319,9 @@ def _turn(end: str, tokens: frozenset[str]) -> str | None:
 
 
 def side_of(tokens: frozenset[str]) -> str:
-    """port, starboard or "" by the words of a name; single letters where there is no word."""
-    found = next((SIDES[t] for t in sorted(tokens) if t in SIDES), "")
-    return found or next((LETTERS[t] for t in sorted(tokens) if t in LETTERS), "")
+    """Return "port", "starboard" or "" by the words of a name, or by single letters if there is no word."""
+    for sides in (SIDES, LETTERS):
+        for token in sorted(tokens):
+            if token in sides:
+                return sides[token]
+    return ""
