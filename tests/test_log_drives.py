@@ -97,7 +97,10 @@ def test_shaft_and_rudder_of_a_network_are_proposed_and_what_is_assumed_is_said(
     text, columns = proposed(log, OUTBOARD)
     assert columns["thrust_motor_N"]["signal"] == "RPM[1].shaft"
     assert columns["steer_motor_rad"] == "-RSA.rudder_starboard * deg"
-    assert "the measured angle is used as the command" in text and "goes with their square" in text
+    assert (
+        "the measured angle is used as the command" in text
+        and "thrust grows with their square" in text
+    )
 
 
 @pytest.mark.parametrize("first", ["port", "starboard"])
