@@ -16,8 +16,8 @@ from boatsim.diagnosis.config import DEFAULT
 from boatsim.diagnosis.locate.nominal_forces import actuator_states
 from boatsim.diagnosis.report.described_terms import factors, over_words, unit_of
 from boatsim.diagnosis.symbolic.grammar import neighbours
-from boatsim.diagnosis.symbolic.slots import write
-from boatsim.diagnosis.symbolic.term_forces import ways
+from boatsim.diagnosis.symbolic.slots import write_term
+from boatsim.diagnosis.symbolic.term_forces import fitted_recordings
 from boatsim.errors import BadInput
 from boatsim.physics import vessel
 from boatsim.physics.base import Array
@@ -204,15 +204,17 @@ def test_a_term_that_looks_back_is_said_in_words_with_its_unit() -> None:
 
 def test_the_quick_weighing_recalls_what_the_filter_does() -> None:
     problem, fit = laid(sail("run", 1, nothing)[0])
-    (way,), program = ways(problem, fit), problem.program
+    (way,), program = fitted_recordings(problem, fit), problem.program
     term = DescribedForce(axis="sway", of=("recent_abs_thrust_port_N",), memory=1.7)
-    write(problem, "described_1", term, problem.recordings)
+    write_term(problem, "described_1", term, problem.recordings)
     number = next(i for i, e in enumerate(program.effects) if e.name == "described_1")
     acting = actuator_states(problem.recordings[0], ("described_1",), problem.recordings[0].values)
     np.testing.assert_allclose(
         way.size(term), acting[:, program.composition.own(number)], atol=1e-9
     )
-    assert {t.memory for t in neighbours(term, problem.recordings, 0.5)} == {1.7 * 1.5, 1.7 / 1.5}
+    assert {
+        t.memory for t in neighbours(term, problem.recordings, 0.5, problem.config.describe)
+    } == {1.7 * 1.5, 1.7 / 1.5}
 
 
 @pytest.mark.parametrize(

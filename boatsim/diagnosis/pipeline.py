@@ -45,8 +45,8 @@ from boatsim.diagnosis.report.findings import Findings, Missing
 from boatsim.diagnosis.report.formatting import capital, listed
 from boatsim.diagnosis.report.schema import Answer, LogEntry
 from boatsim.diagnosis.search.ranking import Ranking, rank
-from boatsim.diagnosis.symbolic.residual_description import described
-from boatsim.diagnosis.symbolic.slots import write
+from boatsim.diagnosis.symbolic.residual_description import describe
+from boatsim.diagnosis.symbolic.slots import write_term
 from boatsim.errors import BadInput
 from boatsim.files import Value
 from boatsim.physics import vessel as vessels
@@ -86,7 +86,7 @@ class Diagnosis:
         mapped = map_recording(recording, self.problem.program, stated)
         made = with_initial_actuators(mapped, self.problem.ambient, self.problem.config.checks)
         for w in self.ranking.description.terms if self.ranking.description else ():
-            write(self.problem, w.term.name, w.term, [made])
+            write_term(self.problem, w.term.name, w.term, [made])
         return made
 
 
@@ -412,7 +412,7 @@ def _described(
 ) -> Ranking:
     """The same with a law written down for what nothing explains, and without entries that but stood for it."""
     found = (
-        described(problem, ranking.best, ranking.recalibrated, held_out, report)
+        describe(problem, ranking.best, ranking.recalibrated, held_out, report)
         if ranking.unknown
         else None
     )

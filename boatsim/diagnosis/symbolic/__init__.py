@@ -1,1 +1,1 @@
-"""Describes what no entry of the library explains: a law of few terms, chosen by evidence inside the filter."""
+"""Symbolic regression: a formula of few terms for a force that no candidate effect explains."""

@@ -1,76 +1,96 @@
-"""A described term as a curve over what it goes with, beside what the recordings call for there."""
+"""The curve of a term over the quantity that it varies with, and the force estimated there."""
 
 from collections.abc import Sequence
 
 import numpy as np
 
 from boatsim.diagnosis.description import Curve
-from boatsim.diagnosis.symbolic.term_forces import NEVER, Way
+from boatsim.diagnosis.symbolic.term_forces import NO_AVERAGE, FittedRecording
 from boatsim.physics.base import Array
 from boatsim.physics.described_laws import Described
 from boatsim.physics.terms import RIPPLES, codes, looks
 
-BINS = 40  # of a curve
-FEWEST = 3  # rows of a bin that is drawn
+BINS = 40  # of a curve; the figure of a report is not wider
+FEWEST_ROWS = 3  # of a bin that is drawn; fewer show noise only
 
 
-def curve(ways: Sequence[Way], term: Described, coefficient: float, sd: float) -> Curve | None:
-    """The curve of a term of the fit that the recordings are seen by; None of what is always the same."""
+def curve(
+    recordings: Sequence[FittedRecording], term: Described, coefficient: float, sd: float
+) -> Curve | None:
+    """Return the curve of a fitted term.
+
+    Args:
+        recordings: The recordings as the fit explains them.
+        term: A term of the fit.
+        coefficient: Its fitted coefficient.
+        sd: Standard deviation of the coefficient.
+
+    Returns:
+        Means over bins; None for a term that is constant or acts in none of these recordings.
+    """
     over = _over(term)
-    near = [w for w in ways if term.run in ("", w.track.name)]
-    if not over or not near:
+    acting = [r for r in recordings if term.run in ("", r.recording.name)]
+    if not over or not acting:
         return None
-    parts = [_along(w, term, over, coefficient) for w in near]
-    x, size, found, weight = (np.concatenate(column) for column in zip(*parts, strict=True))
+    parts = [_along(r, term, over, coefficient) for r in acting]
+    x, size, found, weight = map(np.concatenate, zip(*parts, strict=True))
     if not np.ptp(x) > 0.0:
         return None
     place = np.minimum((BINS * (x - x.min()) / np.ptp(x)).astype(int), BINS - 1)
-    there = np.flatnonzero(np.bincount(place, weight > 0.0, BINS) >= FEWEST)
-    total = np.bincount(place, weight, BINS)[there]
+    filled = np.flatnonzero(np.bincount(place, weight > 0.0, BINS) >= FEWEST_ROWS)
+    if len(filled) < 2:
+        return None
+    total = np.bincount(place, weight, BINS)[filled]
 
     def mean(values: Array) -> Array:
-        return np.asarray(np.bincount(place, weight * values, BINS)[there] / total)
+        return np.asarray(np.bincount(place, weight * values, BINS)[filled] / total)
 
     law = mean(size)
-    return (
-        Curve(over, mean(x), coefficient * law, sd * np.abs(law), mean(found))
-        if len(there) > 1
-        else None
-    )
+    return Curve(over, mean(x), coefficient * law, sd * np.abs(law), mean(found))
 
 
 def _over(term: Described) -> str:
-    """What a term is drawn over: the only thing that it goes with, the product of several, or time."""
+    """Return what a curve is drawn over: a factor, "product" of several, "time", or "" for none."""
     if not term.of:
         return "" if term.acts == "always" else "time"
-    bases = {
-        name.removeprefix("abs_").removeprefix("sign_").removeprefix("beyond_") for name in term.of
-    }
-    return bases.pop() if len(bases) == 1 else "product"
+    bases = set()
+    for name in term.of:
+        bases.add(name.removeprefix("abs_").removeprefix("sign_").removeprefix("beyond_"))
+    if len(bases) > 1:
+        return "product"
+    return bases.pop()
 
 
 def _along(
-    way: Way, term: Described, over: str, coefficient: float
+    fitted: FittedRecording, term: Described, over: str, coefficient: float
 ) -> tuple[Array, Array, Array, Array]:
-    """(N,) each: what it is drawn over, the term with a coefficient of one, what is called for, and how much it says.
+    """Return abscissa, size of the term, estimated size and weight of each row, (N,) each.
 
-    The force that all terms leave over, and this one's own, in shares of the force that goes with a size of one.
+    The size of a term is its force with a coefficient of 1, relative to that of a constant term.
+    The estimate is the residual force of the fit plus the force of the term.
     """
-    size, whole = way.size(term), way.along(term)
-    ones = way.along(term.having({"of": (), "acts": "always"}))
-    weight = np.einsum("na,na->n", ones, ones)
+    size, force = fitted.size(term), fitted.force(term)
+    unit = fitted.force(term.having({"of": (), "acts": "always"}))
+    weight = np.einsum("na,na->n", unit, unit)
     with np.errstate(divide="ignore", invalid="ignore"):
-        found = np.einsum("na,na->n", way.left + coefficient * whole, ones) / weight
-    return _values(way, term, over, size), size, np.where(weight > 0.0, found, 0.0), weight
+        found = np.einsum("na,na->n", fitted.residual + coefficient * force, unit) / weight
+    x = _abscissa(fitted, term, over, size)
+    return x, size, np.where(weight > 0.0, found, 0.0), weight
 
 
-def _values(way: Way, term: Described, over: str, size: Array) -> Array:
+def _abscissa(fitted: FittedRecording, term: Described, over: str, size: Array) -> Array:
+    """Return the quantity (N,) over which a curve is drawn."""
     if over == "time":
-        return way.track.times
+        return fitted.recording.times
     if over == "product":
         return size
     if over in RIPPLES:
-        return np.asarray(way.motion.x if over.endswith("north") else way.motion.y)
-    held = way.problem.program.vessel.described_signals
-    (number, *_), late = codes(term.name, (over,), held), looks(term.name, (over,), held)
-    return way.factor(number, (1.0, 0.0, 1.0, 0.0), (*late, term.memory) if late[0] else NEVER)
+        motion = fitted.motion
+        return np.asarray(motion.x if over.endswith("north") else motion.y)
+    signals = fitted.problem.program.vessel.described_signals
+    code, *_ = codes(term.name, (over,), signals)
+    average = NO_AVERAGE
+    looks_at, deviation = looks(term.name, (over,), signals)
+    if looks_at:
+        average = (looks_at, deviation, term.memory)
+    return fitted.factor(code, (1.0, 0.0, 1.0, 0.0), average)

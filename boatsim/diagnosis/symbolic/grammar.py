@@ -1,16 +1,18 @@
-"""The grammar of described laws: all terms that are weighed on a vessel, and what lies next to one.
+"""Grammar of the symbolic regression: all terms that are tested on a vessel, and their neighbours.
 
-A term is a described effect without a coefficient. Forces go with powers and products of speeds, commands, what these
-were of late, heading and place, changes of thrust with the drives; either may act for a while: within a stretch,
-rising, fading, swinging. What acts within a stretch of one recording is an event of that run.
+A term is a described effect without a coefficient. Forces are products of powers of speeds,
+commands, averages of commands over the past, heading and position; a change of thrust belongs to
+the drives. Either may act for a limited time: within an interval, rising, fading, oscillating. A
+term that acts within an interval of one recording is an event of that recording.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
-from itertools import combinations
+from dataclasses import dataclass, replace
+from itertools import combinations, product
 
 import numpy as np
 
+from boatsim.diagnosis.config import DescribeConfig
 from boatsim.diagnosis.filter import MappedRecording, axes_of
 from boatsim.physics.base import Array
 from boatsim.physics.described_laws import EVER, Described
@@ -19,255 +21,317 @@ from boatsim.physics.effects.described_thrust import SENSES, SIDES, DescribedThr
 from boatsim.physics.terms import BEYOND, RIPPLES, SPEEDS
 from boatsim.physics.vessel import Vessel
 
-PARTS = 16  # of a recording, at whose ends a stretch may begin and end
-LENGTHS = (1, 2, 4, 8)  # of a stretch, in such parts
-SPANS = (1.0, 0.5, 0.25, 0.125)  # of a recording, in which a law rises or fades
-SWINGS, OF_THRUST = (
-    60,
-    8,
-)  # what swings does so up to so many times in a recording, what changes the thrust less often
-SHORTEST_SWING = 6  # rows
-BELOW = (0.2, 0.4, 0.6, 0.8)  # shares of the rows that lie below a threshold
-WAVES, SHORTEST_WAVE = (
-    24,
-    0.5,
-)  # lengths of a pattern on the water: so many, from so many boat lengths to what was seen
-MEMORIES, SHORTEST_MEMORY, LONGEST_MEMORY = (
-    6,
-    2,
-    0.25,
-)  # time constants from so many rows to a share of a recording
-LEVEL = (SPEEDS[0], SPEEDS[1], SPEEDS[5])  # speeds of a hull on level water
-PUSHES = ("thrust", "shaft")  # roles of actuators that drive
-# How near neighbours of a term lie: of a part, a span, the step between periods or wavelengths, a
-# threshold, a memory
-FINER, FINEST = (0.5, 0.25), (0.12, 0.06, 0.03, 0.015)
+Recordings = Sequence[MappedRecording]
+PLANAR_SPEEDS = (SPEEDS[0], SPEEDS[1], SPEEDS[5])  # surge, sway and yaw
+THRUST_ROLES = ("thrust", "shaft")  # roles of actuators that drive the hull
+BEARINGS = ("cos_heading", "sin_heading", "cos_twice_heading", "sin_twice_heading")
+RIPPLE_STEP = 0.15  # relative step between the wavelengths of the grammar
+OSCILLATION_STEP = 0.5  # step between its periods, relative to a period per recording
+QUARTER = 0.25  # of a period or wavelength: a cosine and a sine are tested
+
+
+@dataclass(frozen=True)
+class Course:
+    """When a term acts.
+
+    Attributes:
+        run: Name of the recording of an event; "" for all recordings.
+        acts: "within", "rising", "fading" or "swinging".
+        begin: Begin [s].
+        end: End [s].
+    """
+
+    run: str
+    acts: str
+    begin: float
+    end: float
 
 
 def terms(
     vessel: Vessel,
-    tracks: Sequence[MappedRecording],
-    moves: Mapping[str, Array],
-    given: Sequence[str],
+    recordings: Recordings,
+    speeds: Mapping[str, Array],
+    commands: Sequence[str],
+    config: DescribeConfig,
 ) -> Iterator[Described]:
-    """All terms that are weighed: `moves` are the speeds [SI], `given` the actuators that vary in the recordings."""
-    lasting, swinging, memories = (
-        list(_lasting(tracks)),
-        list(_swinging(tracks, SWINGS)),
-        _memories(tracks),
-    )
+    """Yield all terms that are tested.
+
+    Args:
+        vessel: The vessel.
+        recordings: The fitted recordings.
+        speeds: Speeds through the water (rows,) [SI] that vary, by the name of the factor.
+        commands: Actuators that vary.
+        config: Settings of the symbolic regression.
+    """
+    lasting = list(_lasting(recordings, config))
+    oscillating = list(_oscillating(recordings, config.most_oscillations, config))
+    memories = _memories(recordings, config)
     axes = axes_of(vessel)
-    level = ("north", "east") if {"surge", "sway"} <= set(axes) else ()
+    earth = ("north", "east") if {"surge", "sway"} <= set(axes) else ()
     for axis in axes:
-        for of in _products(vessel, list(moves), given):
+        for of in _products(vessel, list(speeds), commands):
             yield DescribedForce(axis=axis, of=of)
-        for of in _histories(list(moves), given):
-            for memory in memories:
-                yield DescribedForce(axis=axis, of=of, memory=memory)
-        for speed, beyond in _thresholds(moves):
+        for of, memory in product(_averages(list(speeds), commands), memories):
+            yield DescribedForce(axis=axis, of=of, memory=memory)
+        for speed, beyond in _thresholds(speeds, config):
             yield DescribedForce(axis=axis, of=(speed,), beyond=beyond)
             yield DescribedForce(axis=axis, of=(speed, speed), beyond=beyond)
-    for axis in level or axes:  # what lies still on the water pushes in directions that lie still
-        for place, wavelength, crest in _ripples(vessel, tracks):
+    for axis in earth or axes:  # a pattern fixed to the earth pushes in a fixed direction
+        for place, wavelength, crest in _ripples(vessel, recordings, config):
             yield DescribedForce(axis=axis, of=(place,), wavelength=wavelength, crest=crest)
-        for place in ("north", "east")[: len(level)]:
+        for place in earth:
             yield DescribedForce(axis=axis, of=(place,))
-    for axis in (*axes, *level):
-        for run, acts, begin, end in (*lasting, *swinging):
-            yield DescribedForce(axis=axis, acts=acts, begin=begin, end=end, run=run)
+    for axis in (*axes, *earth):
+        for c in (*lasting, *oscillating):
+            yield DescribedForce(axis=axis, acts=c.acts, begin=c.begin, end=c.end, run=c.run)
     if vessel.effects_of(DescribedThrust.per_instance_of):
-        for side in SIDES if _sided(vessel) else ("all",):
-            for sense in SENSES:
-                for run, acts, begin, end in (*lasting, *_swinging(tracks, OF_THRUST)):
-                    yield DescribedThrust(
-                        side=side, sense=sense, acts=acts, begin=begin, end=end, run=run
-                    )
-                for speed in moves:
-                    yield DescribedThrust(side=side, sense=sense, of=(f"abs_{speed}",))
-                for drive in (c for c in given if _pushes(vessel, c, SIDES[side])):
-                    for memory in memories:
-                        yield DescribedThrust(
-                            side=side, sense=sense, of=(f"recent_abs_{drive}",), memory=memory
-                        )
+        courses = [*lasting, *_oscillating(recordings, config.most_thrust_oscillations, config)]
+        yield from _thrust_terms(vessel, list(speeds), commands, courses, memories)
 
 
-def _pushes(vessel: Vessel, signal: str, side: float) -> bool:
-    """Whether a signal is of drives on this side; 0: of all together, or of the only one."""
-    (first, *others) = vessel.sums.get(signal, (signal,))
-    if vessel.roles[first] not in PUSHES:
+def _thrust_terms(
+    vessel: Vessel,
+    speeds: Sequence[str],
+    commands: Sequence[str],
+    courses: Sequence[Course],
+    memories: Sequence[float],
+) -> Iterator[Described]:
+    """Yield changes of the thrust, of the drives on each side and in each sense."""
+    sides = SIDES if _has_side_drives(vessel) else ("all",)
+    for side, sense in product(sides, SENSES):
+        for c in courses:
+            yield DescribedThrust(
+                side=side, sense=sense, acts=c.acts, begin=c.begin, end=c.end, run=c.run
+            )
+        for speed in speeds:
+            yield DescribedThrust(side=side, sense=sense, of=(f"abs_{speed}",))
+        for drive in commands:
+            if not _drives(vessel, drive, SIDES[side]):
+                continue
+            for memory in memories:
+                of = (f"recent_abs_{drive}",)
+                yield DescribedThrust(side=side, sense=sense, of=of, memory=memory)
+
+
+def _drives(vessel: Vessel, signal: str, side: float) -> bool:
+    """Return whether a signal belongs to drives on a side; 0 for all drives, or the only one."""
+    first, *others = vessel.sums.get(signal, (signal,))
+    if vessel.roles[first] not in THRUST_ROLES:
         return False
-    return (
-        vessel.side(signal) == side
-        if side
-        else bool(others) or vessel.roles[first] not in vessel.sums
-    )
+    if side:
+        return vessel.side(signal) == side
+    return bool(others) or vessel.roles[first] not in vessel.sums
 
 
-def _sided(vessel: Vessel) -> bool:
-    """Whether a drive lies to one side."""
+def _has_side_drives(vessel: Vessel) -> bool:
+    """Return whether a drive lies off the centre line."""
     return any(
         getattr(e, "y", 0.0) != 0.0 for e in vessel.effects_of(DescribedThrust.per_instance_of)
     )
 
 
 def _products(
-    vessel: Vessel, moves: Sequence[str], given: Sequence[str]
+    vessel: Vessel, speeds: Sequence[str], commands: Sequence[str]
 ) -> Iterator[tuple[str, ...]]:
-    """Factors of forces that act always."""
+    """Yield the factors of forces that always act."""
+    planar = [s for s in speeds if s in PLANAR_SPEEDS]
     yield ()
-    for s in moves:
+    for s in speeds:
         yield from ((s,), (s, f"abs_{s}"), (s, s, s), (f"abs_{s}",), (s, s), (f"sign_{s}",))
-    for a, b in combinations(moves, 2):
+    for a, b in combinations(speeds, 2):
         yield from ((a, b), (a, f"abs_{b}"), (f"abs_{a}", b), (a, b, b), (a, a, b))
-    for c in given:
+    for c in commands:
         yield from ((c,), (f"abs_{c}",), (c, f"abs_{c}"))
-        for s in moves:
+        for s in speeds:
             yield from ((c, s), (f"abs_{c}", s), (c, f"abs_{s}"))
-    for a, b in combinations((c for c in given if c in vessel.actuators), 2):
-        yield (a, b)
+    yield from combinations((c for c in commands if c in vessel.actuators), 2)
     if "yaw" in vessel.dof:
-        for bearing in ("cos_heading", "sin_heading", "cos_twice_heading", "sin_twice_heading"):
+        for bearing in BEARINGS:
             yield (bearing,)
-            yield from ((bearing, s) for s in moves if s in LEVEL)
+            yield from product((bearing,), planar)
     if "heave" in vessel.dof:
         yield ("depth",)
     for axis, angle in (("roll", "roll_angle"), ("pitch", "pitch_angle")):
         if axis in vessel.dof:
             yield from ((angle,), (angle, angle), (angle, angle, angle))
-            yield from ((angle, s) for s in moves)
+            yield from product((angle,), speeds)
     if {"surge", "sway"} <= set(vessel.dof):
-        yield from ((place, s) for place in ("north", "east") for s in moves if s in LEVEL)
+        yield from product(("north", "east"), planar)
 
 
-def _histories(moves: Sequence[str], given: Sequence[str]) -> Iterator[tuple[str, ...]]:
-    """Factors of forces that go with what was commanded of late, or with a change of it that dies out."""
-    for c in given:
-        yield from ((f"recent_{c}",), (f"recent_abs_{c}",), (f"changed_{c}",))
-        for s in moves:
-            yield from ((f"recent_{c}", s), (f"recent_abs_{c}", s))
+def _averages(speeds: Sequence[str], commands: Sequence[str]) -> list[tuple[str, ...]]:
+    """Return the factors of forces that vary with the average of a command over the past."""
+    found: list[tuple[str, ...]] = []
+    for c in commands:
+        found += [(f"recent_{c}",), (f"recent_abs_{c}",), (f"changed_{c}",)]
+        for s in speeds:
+            found += [(f"recent_{c}", s), (f"recent_abs_{c}", s)]
+    return found
 
 
-def _memories(tracks: Sequence[MappedRecording]) -> list[float]:
-    """Time constants [s] of what was commanded of late: what is shorter no row shows, what is longer looks constant."""
-    rows = max(float(np.median(np.diff(t.times))) for t in tracks)
-    whole = max(float(t.times[-1] - t.times[0]) for t in tracks)
-    shortest, longest = (
-        SHORTEST_MEMORY * rows,
-        max(LONGEST_MEMORY, SHORTEST_MEMORY * rows / whole) * whole,
-    )
-    return [_memory(x) for x in np.geomspace(shortest, longest, MEMORIES).tolist()]
+def _row_interval(recordings: Recordings) -> float:
+    """Return the longest typical interval [s] between rows."""
+    return max(float(np.median(np.diff(r.times))) for r in recordings)
 
 
-def _memory(seconds: float) -> float:
-    """The nearest time constant [s] that a law may have."""
+def _longest(recordings: Recordings) -> float:
+    """Return the length [s] of the longest recording."""
+    return max(float(r.times[-1] - r.times[0]) for r in recordings)
+
+
+def _memories(recordings: Recordings, config: DescribeConfig) -> list[float]:
+    """Return the time constants [s] of averages over the past."""
+    rows, whole = _row_interval(recordings), _longest(recordings)
+    shortest = config.shortest_memory * rows
+    longest = max(config.longest_memory, config.shortest_memory * rows / whole) * whole
+    return list(map(_allowed_memory, np.geomspace(shortest, longest, config.memories).tolist()))
+
+
+def _allowed_memory(seconds: float) -> float:
+    """Return the nearest time constant [s] that a term may have."""
     about = Described.params()["memory"]
     return min(max(seconds, about.low), about.high)
 
 
-def _thresholds(moves: Mapping[str, Array]) -> Iterator[tuple[str, float]]:
-    """Thresholds [SI] of a speed, by the share of the rows that lie below: factor and threshold."""
-    for speed, values in moves.items():
-        for share in BELOW:
+def _thresholds(speeds: Mapping[str, Array], config: DescribeConfig) -> Iterator[tuple[str, float]]:
+    """Yield factors with their thresholds [SI] of a speed."""
+    for speed, values in speeds.items():
+        for share in config.threshold_shares:
             yield f"beyond_{speed}", float(np.quantile(np.abs(values), share))
 
 
 def _ripples(
-    vessel: Vessel, tracks: Sequence[MappedRecording]
+    vessel: Vessel, recordings: Recordings, config: DescribeConfig
 ) -> Iterator[tuple[str, float, float]]:
-    """Patterns that lie still on the water: factor, wavelength [m] up to what was sailed through, and crest [m]."""
+    """Yield patterns fixed to the earth: factor, wavelength [m], position of a crest [m]."""
     for axis, place, signal in (("surge", "north", "x_m"), ("sway", "east", "y_m")):
-        columns = [t.measured[:, t.signals.index(signal)] for t in tracks if signal in t.signals]
+        columns = []
+        for r in recordings:
+            if signal in r.signals:
+                columns.append(r.measured[:, r.signals.index(signal)])
         if axis not in vessel.dof or not columns:
             continue
-        extent = float(np.nanmax(np.concatenate(columns)) - np.nanmin(np.concatenate(columns)))
-        shortest = SHORTEST_WAVE * vessel.length
+        positions = np.concatenate(columns)
+        extent = float(np.nanmax(positions) - np.nanmin(positions))
+        shortest = config.shortest_wavelength * vessel.length
         if extent > 2.0 * shortest:
-            for wavelength in np.geomspace(shortest, extent, WAVES).tolist():
+            for wavelength in np.geomspace(shortest, extent, config.wavelengths).tolist():
                 yield f"ripple_{place}", wavelength, 0.0
-                yield f"ripple_{place}", wavelength, 0.25 * wavelength
+                yield f"ripple_{place}", wavelength, QUARTER * wavelength
 
 
-def _lasting(tracks: Sequence[MappedRecording]) -> Iterator[tuple[str, str, float, float]]:
-    """How a law may act for a while: recording or "" for all of them, course, begin, end [s]."""
-    begin, end = _clock(tracks)
-    for span in SPANS:
-        yield "", "fading", begin, begin + span * (end - begin)
-    yield "", "rising", begin, end
-    for track in tracks:
-        first, last = float(track.times[0]), float(track.times[-1])
-        part = (last - first) / PARTS
-        for a, b in _stretches():
-            yield track.name, "within", first + a * part, first + b * part
-        for k in range(PARTS - LENGTHS[-1] + 1, PARTS):  # from then on
-            yield track.name, "within", first + k * part, EVER
-    if len(tracks) > 1:
-        part = (end - begin) / PARTS
-        for a, b in _stretches():
-            yield "", "within", begin + a * part, begin + b * part
+def _lasting(recordings: Recordings, config: DescribeConfig) -> Iterator[Course]:
+    """Yield intervals of one or all recordings, and courses that rise or fade."""
+    begin, end = _time_range(recordings)
+    parts = config.recording_parts
+    for span in config.fading_spans:
+        yield Course("", "fading", begin, begin + span * (end - begin))
+    yield Course("", "rising", begin, end)
+    for recording in recordings:
+        first, last = float(recording.times[0]), float(recording.times[-1])
+        part = (last - first) / parts
+        for a, b in _intervals(config):
+            yield Course(recording.name, "within", first + a * part, first + b * part)
+        for k in range(parts - int(config.interval_lengths[-1]) + 1, parts):  # until the end
+            yield Course(recording.name, "within", first + k * part, EVER)
+    if len(recordings) > 1:
+        part = (end - begin) / parts
+        for a, b in _intervals(config):
+            yield Course("", "within", begin + a * part, begin + b * part)
 
 
-def _stretches() -> Iterator[tuple[int, int]]:
-    """Begin and end of the stretches of a recording, in its parts."""
-    for length in LENGTHS:
-        for k in range(PARTS - length + 1):
+def _intervals(config: DescribeConfig) -> Iterator[tuple[int, int]]:
+    """Yield begin and end of the intervals of a recording, in its parts."""
+    for length in map(int, config.interval_lengths):
+        for k in range(config.recording_parts - length + 1):
             yield k, k + length
 
 
-def _swinging(
-    tracks: Sequence[MappedRecording], most: int
-) -> Iterator[tuple[str, str, float, float]]:
-    """What swings, in all recordings alike or in one of them, with its cosine and its sine."""
-    for run, near in (("", tracks), *((t.name, [t]) for t in tracks if len(tracks) > 1)):
-        begin, end = _clock(near)
-        shortest = SHORTEST_SWING * max(float(np.median(np.diff(t.times))) for t in near)
+def _oscillating(recordings: Recordings, most: int, config: DescribeConfig) -> Iterator[Course]:
+    """Yield oscillations, as cosine and sine, of all recordings alike and of single ones."""
+    groups: list[tuple[str, Recordings]] = [("", recordings)]
+    if len(recordings) > 1:
+        for recording in recordings:
+            groups.append((recording.name, [recording]))
+    for run, group in groups:
+        begin, end = _time_range(group)
+        shortest = config.shortest_period * _row_interval(group)
         for half in range(2, 2 * most + 1):
             period = 2.0 * (end - begin) / half
             if period > shortest:
-                yield run, "swinging", 0.0, period
-                yield run, "swinging", 0.25 * period, 1.25 * period
+                yield Course(run, "swinging", 0.0, period)
+                yield Course(run, "swinging", QUARTER * period, (1.0 + QUARTER) * period)
 
 
-def _clock(tracks: Sequence[MappedRecording]) -> tuple[float, float]:
-    """First and last time [s] of recordings."""
-    return min(float(t.times[0]) for t in tracks), max(float(t.times[-1]) for t in tracks)
+def _time_range(recordings: Recordings) -> tuple[float, float]:
+    """Return the first and the last time [s] of recordings."""
+    first = min(float(r.times[0]) for r in recordings)
+    return first, max(float(r.times[-1]) for r in recordings)
 
 
-def neighbours(term: Described, tracks: Sequence[MappedRecording], by: float) -> list[Described]:
-    """The same term a little otherwise: begin, end, wavelength or period moved by a share `by` of the grid's step."""
+def neighbours(
+    term: Described, recordings: Recordings, step: float, config: DescribeConfig
+) -> list[Described]:
+    """Return the terms that differ from a term by a small change of its times or lengths.
+
+    Args:
+        term: The term.
+        recordings: The fitted recordings.
+        step: Size of the change, relative to the step of the grammar.
+        config: Settings of the symbolic regression.
+    """
+    whole = _longest([r for r in recordings if term.run in ("", r.name)])
     found: list[Described] = []
-    near = [t for t in tracks if term.run in ("", t.name)]
-    whole = max(float(t.times[-1] - t.times[0]) for t in near)
     if term.acts == "within":
-        step = by * whole / PARTS
-        edges = [
-            (term.begin + a * step, term.end + b * step)
-            for a in (-1, 0, 1)
-            for b in (-1, 0, 1)
-            if a or b
-        ]
-        edges = [(a, EVER if term.end >= EVER else b) for a, b in edges]
-        found += [replace(term, begin=a, end=b) for a, b in edges if b > a]
+        found += _moved_interval(term, step * whole / config.recording_parts)
     if term.acts in ("rising", "fading"):
         span = term.end - term.begin
-        found += [replace(term, end=term.begin + span * x) for x in (2.0**by, 2.0**-by)]
+        for factor in (2.0**step, 2.0**-step):
+            found.append(replace(term, end=term.begin + span * factor))
     if term.acts == "swinging":
-        period, ratio = term.end - term.begin, 1.0 + by * 0.5 * (term.end - term.begin) / whole
-        for p in (period * ratio, period, period / ratio):
-            for phase in (-by / 4, 0.0, by / 4):
-                if p != period or phase:
-                    begin = (term.begin / period + phase) * p
-                    found.append(replace(term, begin=begin, end=begin + p))
+        found += _moved_oscillation(term, step, whole)
     if set(term.of) & set(RIPPLES):
-        for step in (1.0 + 0.15 * by, 1.0, 1.0 / (1.0 + 0.15 * by)):
-            for shift in (-0.25 * by, 0.0, 0.25 * by):
-                if step != 1.0 or shift:
-                    wavelength = term.wavelength * step
-                    crest = float(np.remainder(term.crest + shift * wavelength, wavelength))
-                    found.append(replace(term, wavelength=wavelength, crest=crest))
-    if set(term.of) & set(BEYOND):
-        found += [replace(term, beyond=term.beyond * x) for x in (1.0 + by, 1.0 / (1.0 + by))]
-    if term.looks_back:
-        found += [
-            replace(term, memory=_memory(term.memory * x)) for x in (1.0 + by, 1.0 / (1.0 + by))
-        ]
+        found += _moved_ripple(term, step)
+    for factor in (1.0 + step, 1.0 / (1.0 + step)):
+        if set(term.of) & set(BEYOND):
+            found.append(replace(term, beyond=term.beyond * factor))
+    for factor in (1.0 + step, 1.0 / (1.0 + step)):
+        if term.looks_back:
+            found.append(replace(term, memory=_allowed_memory(term.memory * factor)))
+    return found
+
+
+def _moved_interval(term: Described, seconds: float) -> list[Described]:
+    """Return the term with begin and end moved by this time [s] in all combinations."""
+    found = []
+    for a, b in product((-1, 0, 1), repeat=2):
+        begin, end = term.begin + a * seconds, term.end + b * seconds
+        if term.end >= EVER:
+            end = EVER
+        if (a or b) and end > begin:
+            found.append(replace(term, begin=begin, end=end))
+    return found
+
+
+def _moved_oscillation(term: Described, step: float, whole: float) -> list[Described]:
+    """Return the term with period and phase changed in all combinations."""
+    found, period = [], term.end - term.begin
+    ratio = 1.0 + step * OSCILLATION_STEP * period / whole
+    for p in (period * ratio, period, period / ratio):
+        for phase in (-step / 4, 0.0, step / 4):
+            if p != period or phase:
+                begin = (term.begin / period + phase) * p
+                found.append(replace(term, begin=begin, end=begin + p))
+    return found
+
+
+def _moved_ripple(term: Described, step: float) -> list[Described]:
+    """Return the term with wavelength and crest changed in all combinations."""
+    found, ratio = [], 1.0 + RIPPLE_STEP * step
+    for factor in (ratio, 1.0, 1.0 / ratio):
+        for shift in (-QUARTER * step, 0.0, QUARTER * step):
+            if factor != 1.0 or shift:
+                wavelength = term.wavelength * factor
+                crest = float(np.remainder(term.crest + shift * wavelength, wavelength))
+                found.append(replace(term, wavelength=wavelength, crest=crest))
     return found

@@ -1,4 +1,4 @@
-"""A description of what no entry of the library explains, and how far it carries over to recordings not seen."""
+"""Symbolic description of the force that a fit leaves unexplained, validated on held-out data."""
 
 from collections.abc import Mapping, Sequence
 
@@ -11,75 +11,84 @@ from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.diagnosis.search import generalization
 from boatsim.diagnosis.search.evidence import left_over
 from boatsim.diagnosis.symbolic.curves import curve
-from boatsim.diagnosis.symbolic.term_forces import ways
-from boatsim.diagnosis.symbolic.term_selection import Chosen, chosen, less
+from boatsim.diagnosis.symbolic.term_forces import fitted_recordings
+from boatsim.diagnosis.symbolic.term_selection import Formula, select_terms, without_term
 from boatsim.progress import Report, silent
 
-# of the mean square errors: free runs must get that much better for one more term to carry over
-BETTER = 0.98
 
-
-def described(
+def describe(
     problem: Problem,
     best: Fit,
     recalibrated: Fit,
     held_out: Sequence[MappedRecording],
     report: Report = silent,
 ) -> Description | None:
-    """What is left over beside a set, as terms; None where no term is worth its price."""
-    found = chosen(problem, best, held_out, report)
+    """Describe the force that a fit leaves unexplained by a formula.
+
+    Args:
+        problem: The estimation problem.
+        best: The fit of the identified effects.
+        recalibrated: The fit of the vessel without any effect.
+        held_out: Held-out recordings, on which the terms are validated.
+        report: Receives the progress.
+
+    Returns:
+        The terms with their evidence; None if no term has enough evidence.
+    """
+    found = select_terms(problem, best, held_out, report)
     if not found.terms:
         return None
-    alone = {name: less(problem, found, name).fit for name in found.terms}
-    gains = {name: found.fit.evidence - f.evidence for name, f in alone.items()}
-    kept = _carried(problem, found, Chosen(best, {}), gains, recalibrated, held_out)
-    written, seen = [], ways(problem, found.fit)
-    for name, term in sorted(found.terms.items(), key=lambda pair: -gains[pair[0]]):
-        carries = name in kept.terms and not term.run
-        value, sd = (kept if carries else found).fit.value(name, "coefficient")
-        own = found.fit.value(name, "coefficient")
-        shown = curve(seen, term, *own)
-        written.append(
-            Written(
-                term.having({"name": name, "coefficient": value}), sd, gains[name], carries, shown
-            )
-        )
-    return Description(tuple(written), kept.fit, left_over(problem, found.fit))
+    gains = {}
+    for slot in found.terms:
+        gains[slot] = found.fit.evidence - without_term(problem, found, slot).fit.evidence
+    general = _general(problem, found, Formula(best, {}), gains, recalibrated, held_out)
+    written, recordings = [], fitted_recordings(problem, found.fit)
+    for slot, term in sorted(found.terms.items(), key=lambda pair: -gains[pair[0]]):
+        carries = slot in general.terms and not term.run
+        fit = general.fit if carries else found.fit
+        value, sd = fit.value(slot, "coefficient")
+        drawn = curve(recordings, term, *found.fit.value(slot, "coefficient"))
+        described = term.having({"name": slot, "coefficient": value})
+        written.append(Written(described, sd, gains[slot], carries, drawn))
+    return Description(tuple(written), general.fit, left_over(problem, found.fit))
 
 
-def _carried(
+def _general(
     problem: Problem,
-    found: Chosen,
-    begun: Chosen,
+    found: Formula,
+    start: Formula,
     gains: Mapping[str, float],
     recalibrated: Fit,
     held_out: Sequence[MappedRecording],
-) -> Chosen:
-    """As many of the terms that gain most as free runs over unseen recordings are best with, and all events.
+) -> Formula:
+    """Return the formula with the terms that reduce the errors on held-out recordings.
 
-    Or none of them, but the entries that made way for them, where these foretell unseen recordings best.
+    Terms are removed in the order of increasing evidence; events of single recordings remain. The
+    last choice is the fit without any term, if terms have replaced effects of it.
     """
     lasting = sorted((n for n, t in found.terms.items() if not t.run), key=lambda n: gains[n])
     chain = [found]
-    for name in lasting:
-        chain.append(less(problem, chain[-1], name))
-    if not set(begun.fit.effects) <= set(chain[-1].fit.effects):
-        chain.append(begun)
-    fits = {"recalibrated": recalibrated} | {str(k): c.fit for k, c in enumerate(chain)}
-    longest = max((float(t.times[-1] - t.times[0]) for t in held_out), default=0.0)
-    stretches = (
-        free_runs(problem, fits, held_out, min(problem.horizon, longest)) if held_out else []
-    )
-    before = generalization.squares(stretches, "recalibrated")
-    if not before:  # nobody has seen a law carry over
+    for slot in lasting:
+        chain.append(without_term(problem, chain[-1], slot))
+    if not set(start.fit.effects) <= set(chain[-1].fit.effects):
+        chain.append(start)
+    fits = {"recalibrated": recalibrated}
+    for k, formula in enumerate(chain):
+        fits[str(k)] = formula.fit
+    runs = []
+    if held_out:
+        longest = max(float(r.times[-1] - r.times[0]) for r in held_out)
+        runs = free_runs(problem, fits, held_out, min(problem.horizon, longest))
+    before = generalization.squares(runs, "recalibrated")
+    if not before:  # without held-out data no term is confirmed
         return chain[len(lasting)]
-    misfits = [
-        generalization.misfit(generalization.squares(stretches, str(k)), before)
-        for k in range(len(chain))
-    ]
-    misfits = [m if np.isfinite(m) else np.inf for m in misfits]  # the boat runs away
+    misfits = []
+    for k in range(len(chain)):
+        misfit = generalization.misfit(generalization.squares(runs, str(k)), before)
+        misfits.append(misfit if np.isfinite(misfit) else np.inf)  # inf: the simulation diverges
+    improvement = problem.config.describe.general_improvement
     best = len(chain) - 1
     for k in reversed(range(len(chain))):
-        if misfits[k] < BETTER * misfits[best]:
+        if misfits[k] < improvement * misfits[best]:
             best = k
     return chain[best]

@@ -1,6 +1,6 @@
-"""Terms written into the slots of a compiled program: one compiled law is any of them."""
+"""Slots of a compiled program: placeholder effects whose parameters are set to those of a term."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 from boatsim.diagnosis.filter import MappedRecording
 from boatsim.diagnosis.problem import Problem
@@ -8,29 +8,45 @@ from boatsim.physics.base import Array
 from boatsim.physics.described_laws import Described
 from boatsim.physics.terms import COURSES
 
-NEVER = (
-    float(COURSES.index("within")),
-    0.0,
-    0.0,
-)  # course, begin and end of what is an event of another recording
+# parameters of a slot that never acts: used where a term is an event of another recording
+NEVER = {"course": float(COURSES.index("within")), "begin": 0.0, "end": 0.0}
 
 
-def free_slot(problem: Problem, kind: type[Described], taken: Sequence[str]) -> str:
-    """Name of a slot of this kind that no term stands in; "" if all are taken."""
-    there = (e.name for e in problem.program.candidates if type(e) is kind)
-    return next((n for n in there if n not in taken), "")
+def free_slot(problem: Problem, kind: type[Described], used: Sequence[str]) -> str:
+    """Return the name of a slot that has no term yet.
+
+    Args:
+        problem: The estimation problem.
+        kind: Kind of the term: a force or a change of thrust.
+        used: Names of the slots that have a term.
+
+    Returns:
+        Name of the slot; "" if all are used.
+    """
+    for effect in problem.program.candidates:
+        if type(effect) is kind and effect.name not in used:
+            return effect.name
+    return ""
 
 
-def write(problem: Problem, name: str, term: Described, tracks: Sequence[MappedRecording]) -> None:
-    """Put a term's numbers into a slot, in the values of all recordings that may be looked at."""
-    numbers = term.completed(problem.program.vessel).by_name()
-    for track in tracks:
-        _put(problem, name, numbers, track.values)
-        if term.run not in ("", track.name):
-            event = dict(zip(("course", "begin", "end"), NEVER, strict=True))
-            _put(problem, name, event, track.values)
+def write_term(
+    problem: Problem, slot: str, term: Described, recordings: Sequence[MappedRecording]
+) -> None:
+    """Write the parameters of a term into a slot.
+
+    Args:
+        problem: The estimation problem.
+        slot: Name of the slot.
+        term: The term.
+        recordings: Recordings whose parameter values are changed.
+    """
+    parameters = term.completed(problem.program.vessel).by_name()
+    for recording in recordings:
+        _set(problem, slot, parameters, recording.values)
+        if term.run not in ("", recording.name):
+            _set(problem, slot, NEVER, recording.values)
 
 
-def _put(problem: Problem, name: str, numbers: dict[str, float], values: Array) -> None:
-    for key, x in numbers.items():
-        values[problem.program.index(name, key)] = x
+def _set(problem: Problem, slot: str, parameters: Mapping[str, float], values: Array) -> None:
+    for name, value in parameters.items():
+        values[problem.program.index(slot, name)] = value

@@ -1,4 +1,4 @@
-"""What a term is along a recording: the force that goes with it, row by row, where the boat was."""
+"""The force of a term along a recording, row by row, at the smoothed states of a fit."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -16,95 +16,113 @@ from boatsim.physics.effects.described_force import DescribedForce
 from boatsim.physics.effects.described_thrust import DescribedThrust
 from boatsim.physics.signals import AXES
 
-Late = tuple[float, float, float]  # what is recalled, by `terms.looks`, and its time constant [s]
-NEVER: Late = (0.0, 0.0, 1.0)
+# signal and kind of an average over the past, by `terms.looks`, and its time constant [s]
+Average = tuple[float, float, float]
+NO_AVERAGE: Average = (0.0, 0.0, 1.0)
+PLACES = dict(zip(AXES, ("x", "y", "z", "phi", "theta", "psi"), strict=True))
+RATES = dict(zip(AXES, "uvwpqr", strict=True))
 
 
 def lagged(signals: Array, times: Array, time_constant: float) -> Array:
-    """(K, N) means, from row to row, of what follows signals (K, N) with a lag; each is held from row to row."""
+    """Return the mean of a first-order lag of signals over each row.
+
+    Args:
+        signals: Signals (K, N), constant from row to row.
+        times: Times (N,) [s].
+        time_constant: Time constant of the lag [s].
+
+    Returns:
+        Means (K, N).
+    """
     steps = np.append(np.diff(times), times[-1] - times[-2]) / time_constant
-    decay = np.exp(-steps)
-    out, y = np.empty_like(signals), signals[:, 0]
-    for row, (step, kept) in enumerate(zip(steps.tolist(), decay.tolist(), strict=True)):
+    decays = np.exp(-steps)
+    means = np.empty_like(signals)
+    y = signals[:, 0]
+    for row, (step, decay) in enumerate(zip(steps.tolist(), decays.tolist(), strict=True)):
         x = signals[:, row]
-        out[:, row] = x + (y - x) * ((1.0 - kept) / step)
-        y = x + (y - x) * kept
-    return out
+        means[:, row] = x + (y - x) * ((1.0 - decay) / step)
+        y = x + (y - x) * decay
+    return means
 
 
 @dataclass(frozen=True)
-class Way:
-    """A recording as a fit sees it: motion and actuators of every row, the force it leaves over."""
+class FittedRecording:
+    """A recording as a fit explains it.
+
+    Attributes:
+        problem: The estimation problem.
+        recording: The recording.
+        fit: The fit.
+        states: Smoothed states (N, 2 NQ).
+        residual: Force (N, axes) [N, N m] that the fit does not explain.
+        smoother: Covariances (N, n, n) of the smoothed states, and gains (N, n, n) of the smoother.
+    """
 
     problem: Problem
-    track: MappedRecording
-    found: Fit
-    states: Array  # (N, 2 NQ) smoothed
-    left: Array  # (N, axes) force left over [N, N m]
-    smoother: tuple[
-        Array, Array
-    ]  # covariances (N, n, n) of the smoothed states, and the smoother's gains (N, n, n)
+    recording: MappedRecording
+    fit: Fit
+    states: Array
+    residual: Array
+    smoother: tuple[Array, Array]
 
     @cached_property
     def motion(self) -> Motion:
-        """Of every row, each field (N,)."""
-        vessel, rows = self.problem.program.vessel, len(self.states)
-        axes, nq = axes_of(vessel), self.problem.program.module.NQ
-        given: dict[str, Any] = dict.fromkeys(Motion._fields, np.zeros(rows)) | {
-            "t": self.track.times
-        }
-        rates = self.problem.program.body_rates(self.states)[:, nq:]
-        symbols = dict(
-            zip(
-                AXES,
-                zip(("x", "y", "z", "phi", "theta", "psi"), "uvwpqr", strict=True),
-                strict=True,
-            )
-        )
+        """Motion of all rows; each field has the shape (N,)."""
+        program, rows = self.problem.program, len(self.states)
+        axes, nq = axes_of(program.vessel), program.module.NQ
+        fields: dict[str, Any] = dict.fromkeys(Motion._fields, np.zeros(rows))
+        fields["t"] = self.recording.times
+        rates = program.body_rates(self.states)[:, nq:]
         for i, axis in enumerate(axes):
-            place, speed = symbols[axis]
-            given |= {place: self.states[:, i], speed: rates[:, i]}
-        c, s = np.cos(given["psi"]), np.sin(given["psi"])
-        north, east = (
-            self.problem.program.module.flow(self.values, self.on)
-            if "surge" in axes
-            else (0.0, 0.0)
-        )
-        given |= {"cos_psi": c, "sin_psi": s, "wr": given["w"]}
-        given |= {"ur": given["u"] - c * north - s * east, "vr": given["v"] - c * east + s * north}
-        return Motion(**given)
+            fields[PLACES[axis]] = self.states[:, i]
+            fields[RATES[axis]] = rates[:, i]
+        c, s = np.cos(fields["psi"]), np.sin(fields["psi"])
+        north, east = (0.0, 0.0)
+        if "surge" in axes:
+            north, east = program.module.flow(self.values, self.on)
+        fields |= {"cos_psi": c, "sin_psi": s, "wr": fields["w"]}
+        fields["ur"] = fields["u"] - c * north - s * east
+        fields["vr"] = fields["v"] - c * east + s * north
+        return Motion(**fields)
 
     @cached_property
     def values(self) -> Array:
-        """Numbers of the fitted boat."""
-        return self.problem.values(self.track, self.found.free, self.found.theta)
+        """Parameter values of the fitted vessel."""
+        return self.problem.values(self.recording, self.fit.free, self.fit.theta)
 
     @cached_property
     def on(self) -> Array:
-        """Which effects act."""
-        return self.problem.program.switches(self.found.effects)
+        """Switches of the effects that act."""
+        return self.problem.program.switches(self.fit.effects)
 
     @cached_property
     def held(self) -> Array:
-        """(HELD, N) actuators."""
-        return nominal_forces.actuator_states(self.track, self.found.effects, self.values).T
+        """Actuator signals (K, N)."""
+        return nominal_forces.actuator_states(self.recording, self.fit.effects, self.values).T
 
     @cached_property
     def _thrusts(self) -> dict[tuple[str, str], Array]:
         return {}
 
     @cached_property
-    def _factors(self) -> dict[tuple[float, terms.Detail, Late], Array]:
+    def _factors(self) -> dict[tuple[float, terms.Detail, Average], Array]:
         return {}
 
     @cached_property
     def _lagged(self) -> dict[float, Array]:
         return {}
 
-    def along(self, term: Described) -> Array:
-        """(N, axes) force [N, N m] of a term with a coefficient of one; nothing where it is of another recording."""
+    def force(self, term: Described) -> Array:
+        """Return the force of a term with a coefficient of 1.
+
+        Args:
+            term: The term.
+
+        Returns:
+            Force (N, axes) [N, N m]; zero for an event of another recording.
+        """
         axes = axes_of(self.problem.program.vessel)
-        if term.run not in ("", self.track.name):
+        if term.run not in ("", self.recording.name):
             return np.zeros((len(self.states), len(axes)))
         size = self.size(term)
         if isinstance(term, DescribedThrust):
@@ -113,76 +131,112 @@ class Way:
         out, m = np.zeros((len(size), len(axes))), self.motion
         if term.axis in axes:
             out[:, axes.index(term.axis)] = size
-        else:
-            ahead, abeam = (
-                (m.cos_psi, -m.sin_psi) if term.axis == "north" else (m.sin_psi, m.cos_psi)
-            )
-            out[:, axes.index("surge")], out[:, axes.index("sway")] = size * ahead, size * abeam
+            return out
+        ahead, abeam = m.sin_psi, m.cos_psi  # towards east
+        if term.axis == "north":
+            ahead, abeam = m.cos_psi, -m.sin_psi
+        out[:, axes.index("surge")] = size * ahead
+        out[:, axes.index("sway")] = size * abeam
         return out
 
     def size(self, term: Described) -> Array:
-        """(N,) product of a term's factors and its course."""
+        """Return the product (N,) of the factors of a term and of its course over time.
+
+        Args:
+            term: The term.
+        """
         vessel = self.problem.program.vessel
         acts = float(terms.COURSES.index(term.acts))
-        size = np.asarray(terms.course.py_func(self.track.times, acts, term.begin, term.end))
-        little = term.completed(vessel).little if set(term.of) & set(terms.SENSES) else 1.0
+        size = np.asarray(terms.course.py_func(self.recording.times, acts, term.begin, term.end))
+        little = 1.0
+        if set(term.of) & set(terms.SENSES):
+            little = term.completed(vessel).little
         detail = (term.wavelength, term.crest, little, term.beyond)
-        late = (
-            (*terms.looks(term.name, term.of, vessel.described_signals), term.memory)
-            if term.looks_back
-            else NEVER
-        )
-        for number in terms.codes(term.name, term.of, vessel.described_signals)[: len(term.of)]:
-            size = size * self.factor(number, detail, late)
+        average = NO_AVERAGE
+        if term.looks_back:
+            looks_at, deviation = terms.looks(term.name, term.of, vessel.described_signals)
+            average = (looks_at, deviation, term.memory)
+        codes = terms.codes(term.name, term.of, vessel.described_signals)
+        for code in codes[: len(term.of)]:
+            size = size * self.factor(code, detail, average)
         return size
 
-    def factor(self, number: float, detail: terms.Detail, late: Late = NEVER) -> Array:
-        """(N,) one factor."""
-        key = number, detail, late
+    def factor(self, code: float, detail: terms.Detail, average: Average = NO_AVERAGE) -> Array:
+        """Return one factor (N,).
+
+        Args:
+            code: Code of the factor, by `terms.codes`.
+            detail: Wavelength, crest, smallest speed and threshold of the term.
+            average: Average over the past to which the factor refers.
+        """
+        key = code, detail, average
         if key not in self._factors:
-            held = self.recalled(*late)[None] if late[0] else self.held
-            held = held if terms.RECALLED <= number < terms.FIRST_HELD else self.held
-            found = terms.factor.py_func(self.motion, held, 0, 0, number, detail)
+            held = self.held
+            if average[0] and terms.RECALLED <= code < terms.FIRST_HELD:
+                held = self.averaged(*average)[None]
+            found = terms.factor.py_func(self.motion, held, 0, 0, code, detail)
             self._factors[key] = np.asarray(found, dtype=float)
         return self._factors[key]
 
-    def recalled(self, looks_at: float, beyond: float, memory: float) -> Array:
-        """(N,) an actuator signal, or its size, as it was of late, or by how much it is beyond that; row to row."""
+    def averaged(self, looks_at: float, deviation: float, time_constant: float) -> Array:
+        """Return the average over the past of an actuator signal or its size, or the deviation from it.
+
+        Args:
+            looks_at: Code of the signal, by `terms.looks`.
+            deviation: Whether the deviation is returned, 1 or 0.
+            time_constant: Time constant of the average [s].
+
+        Returns:
+            Values (N,).
+        """
         signals = np.repeat(self.held, 2, axis=0)
         signals[1::2] = np.abs(signals[1::2])
-        if memory not in self._lagged:
-            self._lagged[memory] = lagged(signals, self.track.times, memory)
+        if time_constant not in self._lagged:
+            self._lagged[time_constant] = lagged(signals, self.recording.times, time_constant)
         k = int(looks_at) - terms.FIRST_HELD
-        late = self._lagged[memory][k]
-        return np.asarray(signals[k] - late if beyond else late)
+        average = self._lagged[time_constant][k]
+        if deviation:
+            average = signals[k] - average
+        return np.asarray(average)
 
     def thrust(self, side: str, sense: str) -> Array:
-        """(N, axes) force of the drives on one side while they push in one sense."""
+        """Return the force of the drives on one side while they push in one sense.
+
+        Args:
+            side: "port", "starboard" or "all".
+            sense: "ahead", "astern" or "both".
+
+        Returns:
+            Force (N, axes) [N, N m].
+        """
         if (side, sense) not in self._thrusts:
-            slot = next(
-                e for e in self.problem.program.candidates if isinstance(e, DescribedThrust)
-            )
-            whole, own = self.values.copy(), DescribedThrust(name=slot.name, side=side, sense=sense)
             program = self.problem.program
-            for name, x in own.completed(program.vessel).by_name().items():
-                whole[program.index(slot.name, name)] = x
-            whole[program.index(slot.name, "coefficient")] = 1.0
+            slot = next(e.name for e in program.candidates if isinstance(e, DescribedThrust))
+            values = self.values.copy()
+            term = DescribedThrust(name=slot, side=side, sense=sense).completed(program.vessel)
+            for name, x in term.by_name().items():
+                values[program.index(slot, name)] = x
+            values[program.index(slot, "coefficient")] = 1.0
             states, held = np.ascontiguousarray(self.states), np.ascontiguousarray(self.held.T)
-            nothing, everything = (
-                nominal_forces.body_forces(self.track, states, held, whole, effects)
-                for effects in ((), (slot.name,))
-            )
-            self._thrusts[side, sense] = everything - nothing
+            without = nominal_forces.body_forces(self.recording, states, held, values, ())
+            doubled = nominal_forces.body_forces(self.recording, states, held, values, (slot,))
+            self._thrusts[side, sense] = doubled - without
         return self._thrusts[side, sense]
 
 
-def ways(problem: Problem, found: Fit) -> list[Way]:
-    """The recordings fitted, as a fit sees them."""
-    on, nq = problem.program.switches(found.effects), problem.program.module.NQ
-    out = []
-    for track in problem.recordings:
-        values = problem.values(track, found.free, found.theta)
-        means, *smoother = track.smooth(values, on, found.levels)
-        states, left = means[:, : 2 * nq].copy(), means[:, 2 * nq : 3 * nq].copy()
-        out.append(Way(problem, track, found, states, left, (smoother[0], smoother[1])))
-    return out
+def fitted_recordings(problem: Problem, fit: Fit) -> list[FittedRecording]:
+    """Return the recordings of a problem as a fit explains them.
+
+    Args:
+        problem: The estimation problem.
+        fit: A fit of it.
+    """
+    on, nq = problem.program.switches(fit.effects), problem.program.module.NQ
+    fitted = []
+    for recording in problem.recordings:
+        values = problem.values(recording, fit.free, fit.theta)
+        means, covariances, gains = recording.smooth(values, on, fit.levels)
+        states, residual = means[:, : 2 * nq].copy(), means[:, 2 * nq : 3 * nq].copy()
+        smoother = (covariances, gains)
+        fitted.append(FittedRecording(problem, recording, fit, states, residual, smoother))
+    return fitted

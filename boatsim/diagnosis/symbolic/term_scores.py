@@ -1,6 +1,8 @@
-"""How much each term would gain beside a fit, by the force that the fit leaves over: quick, and good enough to choose.
+"""Approximate evidence of each term in addition to a fit, computed from the residual force.
 
-A term's coefficient has a prior about nothing as wide as that of a steady force, over the rows in which it acts.
+It is fast and accurate enough to choose the terms that are fitted with the filter. The prior of a
+coefficient has mean zero; its standard deviation gives the force of a steady force where the term
+acts.
 """
 
 from collections.abc import Sequence
@@ -11,7 +13,7 @@ import numpy as np
 from boatsim.diagnosis.filter import axes_of
 from boatsim.diagnosis.locate.smoothing import LatentForce, separate_information
 from boatsim.diagnosis.problem import froude_scale
-from boatsim.diagnosis.symbolic.term_forces import Way
+from boatsim.diagnosis.symbolic.term_forces import FittedRecording
 from boatsim.physics.base import AXES, Array
 from boatsim.physics.described_laws import Described
 from boatsim.physics.effects.described_thrust import DescribedThrust
@@ -19,89 +21,130 @@ from boatsim.physics.effects.push import SteadyForce
 from boatsim.physics.terms import SPEEDS
 from boatsim.physics.vessel import Vessel
 
-STEADY = {
-    axis: about.spread for axis, about in SteadyForce.params().items() if about.fit
-}  # [N, N m] on a 1.2 m boat
-FORCE = STEADY | {"heave": STEADY["sway"], "pitch": STEADY["yaw"]}
-SHARE = DescribedThrust.params()["coefficient"].spread  # of the thrust
-AT_ONCE = 200  # terms: more would not fit into a processor's cache
+# prior sd of a steady force [N, N m] by axis, on the hull of 1.2 m for which effects specify it
+STEADY_FORCE = {axis: about.spread for axis, about in SteadyForce.params().items() if about.fit}
+FORCE = STEADY_FORCE | {"heave": STEADY_FORCE["sway"], "pitch": STEADY_FORCE["yaw"]}
+THRUST_SHARE = DescribedThrust.params()["coefficient"].spread  # prior sd of a change of thrust
+BATCH = 200  # terms computed together; more do not fit into the cache of a processor
+SPEED_FIELDS = ("ur", "vr", "wr", "p", "q", "r")  # fields of a motion, by axis
 
 
 @dataclass(frozen=True)
-class Weighed:
-    """A term with what it promises."""
+class ScoredTerm:
+    """A term and its approximate fit.
+
+    Attributes:
+        term: The term.
+        gain: Log Bayes factor [nats] in addition to the fit.
+        coefficient: Its coefficient.
+        spread: Prior standard deviation of the coefficient.
+    """
 
     term: Described
-    gain: float  # [nats] that it would gain, the freedom of its coefficient paid for
-    coefficient: float  # that it would have,
-    spread: float  # and its prior sd
+    gain: float
+    coefficient: float
+    spread: float
 
 
-def weighed(ways: Sequence[Way], terms: Sequence[Described]) -> list[Weighed]:
-    """Each term by itself on top of the fit, the best first; those that never act are left out."""
-    found: list[Weighed] = []
-    for first in range(0, len(terms), AT_ONCE):
-        found += _batch(ways, terms[first : first + AT_ONCE])
-    return sorted(found, key=lambda w: -w.gain)
+def score_terms(
+    recordings: Sequence[FittedRecording], terms: Sequence[Described]
+) -> list[ScoredTerm]:
+    """Return the approximate evidence of each term alone in addition to a fit.
+
+    Args:
+        recordings: The recordings as the fit explains them.
+        terms: The terms.
+
+    Returns:
+        The terms that act at all, those with most evidence first.
+    """
+    scored: list[ScoredTerm] = []
+    for first in range(0, len(terms), BATCH):
+        scored += _score_batch(recordings, terms[first : first + BATCH])
+    return sorted(scored, key=lambda s: -s.gain)
 
 
-def _batch(ways: Sequence[Way], terms: Sequence[Described]) -> list[Weighed]:
-    known, score = np.zeros(len(terms)), np.zeros(len(terms))
+def _score_batch(
+    recordings: Sequence[FittedRecording], terms: Sequence[Described]
+) -> list[ScoredTerm]:
+    information, score = np.zeros(len(terms)), np.zeros(len(terms))
     squares, rows = np.zeros(len(terms)), np.zeros(len(terms))
-    for way in ways:
+    for fitted in recordings:
         with np.errstate(over="ignore"):
-            shapes = np.stack([way.along(t) for t in terms], axis=2)
-            sizes = np.stack(
-                [
-                    way.size(t) if t.run in ("", way.track.name) else 0.0 * way.track.times
-                    for t in terms
-                ]
-            )
+            forces = np.stack([fitted.force(term) for term in terms], axis=2)
+            sizes = np.stack([_size(fitted, term) for term in terms])
         squares += (sizes**2).sum(axis=1)
         rows += (sizes != 0.0).sum(axis=1)
-        nq, levels, on = way.problem.program.module.NQ, way.found.levels, way.on
-        latent = slice(2 * nq, 3 * nq)
-        force = LatentForce(
-            way.track.times,
-            np.hstack([way.states, way.left]),
-            *way.smoother,
-            latent,
-            *way.track.latent_force_rms(way.values, on, levels),
+        recording, levels = fitted.recording, fitted.fit.levels
+        nq = fitted.problem.program.module.NQ
+        latent = LatentForce(
+            recording.times,
+            np.hstack([fitted.states, fitted.residual]),
+            *fitted.smoother,
+            slice(2 * nq, 3 * nq),
+            *recording.latent_force_rms(fitted.values, fitted.on, levels),
             levels.time_constant,
         )
-        learnt, slope = separate_information(shapes, force)
-        known, score = known + learnt, score + slope
-    out, vessel = [], ways[0].problem.program.vessel
-    numbers = np.column_stack([known, score, squares, rows]).tolist()
+        more_information, more_score = separate_information(forces, latent)
+        information = information + more_information
+        score = score + more_score
+    scored = []
+    numbers = np.column_stack([information, score, squares, rows]).tolist()
     for term, (i, s, square, n) in zip(terms, numbers, strict=True):
         if not (np.isfinite(i) and i > 0.0 and square > 0.0):
             continue
-        spread = strength(vessel, term) / float(np.sqrt(square / n))
+        spread = strength(recordings[0].problem.program.vessel, term) / float(np.sqrt(square / n))
         whole = i + spread**-2
         gain = 0.5 * s**2 / whole - 0.5 * float(np.log(whole * spread**2))
-        out.append(Weighed(term, gain, s / whole, spread))
-    return out
+        scored.append(ScoredTerm(term, gain, s / whole, spread))
+    return scored
+
+
+def _size(fitted: FittedRecording, term: Described) -> Array:
+    """Return the size (N,) of a term; zero for an event of another recording."""
+    if term.run in ("", fitted.recording.name):
+        return fitted.size(term)
+    return 0.0 * fitted.recording.times
 
 
 def strength(vessel: Vessel, term: Described) -> float:
-    """Prior sd of what a term amounts to where it acts: a force [N], a moment [N m], or a share of the thrust."""
+    """Return the prior standard deviation of a term where it acts.
+
+    Args:
+        vessel: The vessel.
+        term: The term.
+
+    Returns:
+        A force [N], a moment [N m] or a share of the thrust.
+    """
     if isinstance(term, DescribedThrust):
-        return SHARE
+        return THRUST_SHARE
     axis = str(getattr(term, "axis", ""))
-    turning = axis in ("roll", "pitch", "yaw")
-    return FORCE.get(axis, FORCE["surge"]) * froude_scale("N m" if turning else "N", vessel)
+    unit = "N m" if axis in ("roll", "pitch", "yaw") else "N"
+    return FORCE.get(axis, FORCE["surge"]) * froude_scale(unit, vessel)
 
 
-def varying(ways: Sequence[Way]) -> tuple[dict[str, Array], list[str]]:
-    """Speeds through the water that vary along the recordings, of all rows, and actuators: by the names of factors."""
-    vessel = ways[0].problem.program.vessel
-    fields = dict(zip(AXES, ("ur", "vr", "wr", "p", "q", "r"), strict=True))
-    names = dict(zip(AXES, SPEEDS, strict=True))
-    speeds = {
-        names[a]: np.concatenate([getattr(w.motion, fields[a]) for w in ways])
-        for a in axes_of(vessel)
-    }
-    held = np.concatenate([w.held for w in ways], axis=1)
-    moves = {n: x for n, x in speeds.items() if np.ptp(x) > 0.0}
-    given = (*vessel.actuators, *vessel.sums)
-    return moves, [a for a in given if np.ptp(held[vessel.described_signals.index(a)]) > 0.0]
+def varying_signals(
+    recordings: Sequence[FittedRecording],
+) -> tuple[dict[str, Array], list[str]]:
+    """Return the speeds and actuator signals that vary along the recordings.
+
+    Args:
+        recordings: The recordings as a fit explains them.
+
+    Returns:
+        Speeds through the water (rows,) [SI] by the name of the factor, and names of actuators.
+    """
+    vessel = recordings[0].problem.program.vessel
+    speeds = {}
+    for axis in axes_of(vessel):
+        name, field = SPEEDS[AXES.index(axis)], SPEED_FIELDS[AXES.index(axis)]
+        values = np.concatenate([getattr(fitted.motion, field) for fitted in recordings])
+        if np.ptp(values) > 0.0:
+            speeds[name] = values
+    held = np.concatenate([fitted.held for fitted in recordings], axis=1)
+    commands = []
+    for name in (*vessel.actuators, *vessel.sums):
+        if np.ptp(held[vessel.described_signals.index(name)]) > 0.0:
+            commands.append(name)
+    return speeds, commands

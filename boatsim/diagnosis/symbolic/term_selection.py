@@ -1,4 +1,8 @@
-"""Chooses the terms of a description: weighed quickly, the best tried in the filter, made finer, judged by evidence."""
+"""Selection of the terms of a formula by evidence.
+
+All terms are scored by their approximate evidence, the best of them are fitted with the filter, and
+the parameters of the chosen term, such as its times, are refined.
+"""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -9,218 +13,282 @@ from boatsim.diagnosis.filter import MappedRecording
 from boatsim.diagnosis.fit import converge, fit, gauss_newton, remove_effect
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.diagnosis.search.evidence import price
-from boatsim.diagnosis.search.forward_selection import SLIGHT
-from boatsim.diagnosis.search.pruning import ALIKE_SHARE, WORTH
-from boatsim.diagnosis.symbolic.grammar import FINER, FINEST, neighbours, terms
-from boatsim.diagnosis.symbolic.slots import free_slot, write
-from boatsim.diagnosis.symbolic.term_forces import ways
-from boatsim.diagnosis.symbolic.term_scores import Weighed, varying, weighed
+from boatsim.diagnosis.symbolic.grammar import neighbours, terms
+from boatsim.diagnosis.symbolic.slots import free_slot, write_term
+from boatsim.diagnosis.symbolic.term_forces import FittedRecording, fitted_recordings
+from boatsim.diagnosis.symbolic.term_scores import ScoredTerm, score_terms, varying_signals
 from boatsim.physics.described_laws import Described
 from boatsim.progress import Report, silent
 
-MOST = 5  # terms
-TRIED = 4  # of those that promise most, in the filter
-TOLD = 0.1  # [nats] by which a move must gain
-TURNS = 4  # of moving a term by the filter and fitting all else
-ROUNDS = 3  # moves of a term's times or wavelength at one fineness
+DESCRIBING = "describing the unexplained force"
+Recordings = Sequence[MappedRecording]
+Family = tuple[object, ...]  # what terms share that differ in their times or lengths only
 
 
 @dataclass(frozen=True)
-class Chosen:
-    """A description so far: the fit, and the term that stands in each slot, in the order in which they came."""
+class Formula:
+    """A fit with terms.
+
+    Attributes:
+        fit: The fit.
+        terms: Terms by the name of their slot, in the order in which they were added.
+    """
 
     fit: Fit
     terms: dict[str, Described]
 
 
-def chosen(
-    problem: Problem, best: Fit, held_out: Sequence[MappedRecording], report: Report = silent
-) -> Chosen:
-    """Terms added one by one to a set, each time the one by which the evidence rises most, while one is worth it."""
-    report("describing what is left over")
-    begun = so_far = Chosen(best, {})
-    everywhere, refused = [*problem.recordings, *held_out], set[Likeness]()
-    while len(so_far.terms) < MOST:
-        seen = ways(problem, so_far.fit)
-        ordered = weighed(
-            seen, list(terms(problem.program.vessel, problem.recordings, *varying(seen)))
-        )
-        ahead = [
-            w for w in best_of_each(ordered) if w.gain > 0.0 and likeness(w.term) not in refused
-        ][:TRIED]
-        tried = [made for w in ahead if (made := _with(problem, so_far, w, everywhere))]
-        if not tried:
+@dataclass(frozen=True)
+class _Trial:
+    """A formula with one more term: its slot, the fit, and the term as scored."""
+
+    slot: str
+    fit: Fit
+    scored: ScoredTerm
+
+
+def select_terms(
+    problem: Problem, best: Fit, held_out: Recordings, report: Report = silent
+) -> Formula:
+    """Add terms to a fit, each time the one with most evidence, while it has enough.
+
+    Args:
+        problem: The estimation problem.
+        best: The fit of the identified effects.
+        held_out: Held-out recordings, whose slots receive the terms as well.
+        report: Receives the progress.
+
+    Returns:
+        The formula; it has no terms if none has enough evidence.
+    """
+    report(DESCRIBING)
+    config = problem.config
+    formula = Formula(best, {})
+    everywhere, refused = [*problem.recordings, *held_out], set[Family]()
+    while len(formula.terms) < config.describe.most_terms:
+        ordered = _score_all(problem, fitted_recordings(problem, formula.fit))
+        trials = _trials(problem, formula, ordered, refused, everywhere)
+        if not trials:
             break
-        slot, found, w = max(tried, key=lambda t: t[1].evidence)
-        write(problem, slot, w.term, everywhere)  # others were tried in this slot after it
-        problem.spreads[slot] = w.spread
-        term, found = _finer(problem, so_far, slot, w, found, everywhere)
+        trial = max(trials, key=lambda t: t.fit.evidence)
+        # the slot has the term of the last trial
+        _write_scored(problem, trial.slot, trial.scored, everywhere)
+        term, found = _refined(problem, formula, trial, everywhere)
         found = converge(problem, found)
-        gained = so_far.fit.evidence - begun.fit.evidence
-        if found.evidence - so_far.fit.evidence < max(price(len(ordered)), SLIGHT * gained):
+        gained = formula.fit.evidence - best.evidence
+        required = max(price(len(ordered)), config.select.slight_share * gained)
+        if found.evidence - formula.fit.evidence < required:
             break
-        further = Chosen(found, so_far.terms | {slot: term})
-        if _said_already(problem, so_far, further):
-            refused.add(likeness(w.term))
+        extended = Formula(found, formula.terms | {trial.slot: term})
+        if _replaces_effect(problem, formula, extended):
+            refused.add(family(trial.scored.term))
             continue
-        so_far = _pruned(problem, further)
-        if len(so_far.terms) > 1:
-            so_far = _beside(problem, so_far, everywhere)
-        gain = found.evidence - best.evidence
-        report(
-            "describing what is left over",
-            len(so_far.terms) / MOST,
-            f"{len(so_far.terms)} terms ({gain:.0f} nats)",
-        )
-    return so_far
+        formula = _pruned(problem, extended)
+        if len(formula.terms) > 1:
+            formula = _refine_all(problem, formula, everywhere)
+        count, gain = len(formula.terms), found.evidence - best.evidence
+        done = count / config.describe.most_terms
+        report(DESCRIBING, done, f"{count} terms ({gain:.0f} nats)")
+    return formula
 
 
-Likeness = tuple[object, ...]
-
-
-def likeness(term: Described) -> Likeness:
-    """What terms share that differ in no more than when they act, or in a wavelength."""
-    return (
-        type(term),
-        term.of,
-        term.acts,
-        term.run,
-        *(getattr(term, n, "") for n in ("axis", "side", "sense")),
+def _score_all(problem: Problem, recordings: Sequence[FittedRecording]) -> list[ScoredTerm]:
+    """Return all terms of the grammar with their approximate evidence."""
+    speeds, commands = varying_signals(recordings)
+    grammar = terms(
+        problem.program.vessel, problem.recordings, speeds, commands, problem.config.describe
     )
+    return score_terms(recordings, list(grammar))
 
 
-def best_of_each(ordered: Sequence[Weighed]) -> list[Weighed]:
-    """Of terms that differ in no more than when they act, or in a wavelength, the best: it is made finer later."""
-    found: dict[Likeness, Weighed] = {}
-    for w in ordered:
-        found.setdefault(likeness(w.term), w)
-    return list(found.values())
+def _trials(
+    problem: Problem,
+    formula: Formula,
+    ordered: Sequence[ScoredTerm],
+    refused: set[Family],
+    everywhere: Recordings,
+) -> list[_Trial]:
+    """Fit the formula with each of the best terms."""
+    best = []
+    for scored in best_of_each(ordered):
+        if scored.gain > 0.0 and family(scored.term) not in refused:
+            best.append(scored)
+    trials = []
+    for scored in best[: problem.config.describe.fitted_terms]:
+        if trial := _with_term(problem, formula, scored, everywhere):
+            trials.append(trial)
+    return trials
 
 
-def _with(
-    problem: Problem, so_far: Chosen, w: Weighed, tracks: Sequence[MappedRecording]
-) -> tuple[str, Fit, Weighed] | None:
-    """The fit with one more term, in its slot; None where no slot is free or the boat runs away."""
-    slot = free_slot(problem, type(w.term), list(so_far.terms))
+def family(term: Described) -> Family:
+    """Return what terms share that differ in their times, wavelength or threshold only.
+
+    Args:
+        term: The term.
+    """
+    place = [getattr(term, name, "") for name in ("axis", "side", "sense")]
+    return type(term), term.of, term.acts, term.run, *place
+
+
+def best_of_each(ordered: Sequence[ScoredTerm]) -> list[ScoredTerm]:
+    """Return the best term of each family.
+
+    Args:
+        ordered: Terms, those with most evidence first.
+    """
+    best: dict[Family, ScoredTerm] = {}
+    for scored in ordered:
+        best.setdefault(family(scored.term), scored)
+    return list(best.values())
+
+
+def _write_scored(problem: Problem, slot: str, scored: ScoredTerm, everywhere: Recordings) -> None:
+    """Write a term into a slot, and the prior of its coefficient into the problem."""
+    write_term(problem, slot, scored.term, everywhere)
+    problem.spreads[slot] = scored.spread
+
+
+def _with_term(
+    problem: Problem, formula: Formula, scored: ScoredTerm, everywhere: Recordings
+) -> _Trial | None:
+    """Fit the formula with one more term; None if no slot is free or the simulation diverges."""
+    slot = free_slot(problem, type(scored.term), list(formula.terms))
     if not slot:
         return None
-    write(problem, slot, w.term, tracks)
-    problem.spreads[slot] = w.spread
-    base = so_far.fit
-    free = problem.parameters((*base.effects, slot))
-    known = {(f.effect, f.name): x for f, x in zip(base.free, base.theta, strict=True)}
-    theta = np.array([known.get((f.effect, f.name), w.coefficient) for f in free])
-    start = Fit(
-        (*base.effects, slot), free, theta, np.diag([f.sd**2 for f in free]), base.levels, -np.inf
-    )
-    found = gauss_newton(problem, start, 4, problem.config.fit.refit_gain)
-    return (slot, fit(problem, found), w) if np.isfinite(found.evidence) else None
+    _write_scored(problem, slot, scored, everywhere)
+    base, config = formula.fit, problem.config.fit
+    effects = (*base.effects, slot)
+    free = problem.parameters(effects)
+    known = {}
+    for f, x in zip(base.free, base.theta, strict=True):
+        known[f.effect, f.name] = x
+    theta = np.array([known.get((f.effect, f.name), scored.coefficient) for f in free])
+    covariance = np.diag([f.sd**2 for f in free])
+    start = Fit(effects, free, theta, covariance, base.levels, -np.inf)
+    found = gauss_newton(problem, start, config.first_steps, config.refit_gain)
+    if not np.isfinite(found.evidence):
+        return None
+    return _Trial(slot, fit(problem, found), scored)
 
 
-def _finer(
-    problem: Problem,
-    so_far: Chosen,
-    slot: str,
-    w: Weighed,
-    found: Fit,
-    tracks: Sequence[MappedRecording],
+def _refined(
+    problem: Problem, formula: Formula, trial: _Trial, everywhere: Recordings
 ) -> tuple[Described, Fit]:
-    """The term with its times or its wavelength moved to where they explain most, and the fit with it."""
-    if not neighbours(w.term, problem.recordings, FINER[0]):
-        return w.term, found
-    seen, best = ways(problem, so_far.fit), w
-    for by in FINER:
-        for _ in range(ROUNDS):
-            near = weighed(seen, neighbours(best.term, problem.recordings, by))
-            if not near or near[0].gain <= best.gain:
+    """Refine the times or lengths of the newest term; return the term and the fit with it."""
+    config, slot, found = problem.config.describe, trial.slot, trial.fit
+    scored = trial.scored
+    if not neighbours(scored.term, problem.recordings, config.coarse_refinement[0], config):
+        return scored.term, found
+    recordings, best = fitted_recordings(problem, formula.fit), scored
+    for step in config.coarse_refinement:
+        for _ in range(config.refinement_moves):
+            near = neighbours(best.term, problem.recordings, step, config)
+            moved = score_terms(recordings, near)
+            if not moved or moved[0].gain <= best.gain:
                 break
-            best = near[0]
-    if best.term != w.term:
-        made = _with(problem, so_far, best, tracks)
-        if made and made[1].evidence > found.evidence:
-            w, found = best, made[1]
+            best = moved[0]
+    if best.term != scored.term:
+        better = _with_term(problem, formula, best, everywhere)
+        if better and better.fit.evidence > found.evidence:
+            scored, found = best, better.fit
         else:
-            write(problem, slot, w.term, tracks)
-            problem.spreads[slot] = w.spread
-    return _polished(problem, slot, w.term, found, tracks)
+            _write_scored(problem, slot, scored, everywhere)
+    return _refined_by_filter(problem, slot, scored.term, found, everywhere)
 
 
-def _polished(
-    problem: Problem, slot: str, term: Described, found: Fit, tracks: Sequence[MappedRecording]
+def _refined_by_filter(
+    problem: Problem, slot: str, term: Described, found: Fit, everywhere: Recordings
 ) -> tuple[Described, Fit]:
-    """The same by the filter itself, all else held, and the fit then made: what is left over says it but roughly.
+    """Refine the times or lengths of a term with the filter, whose likelihood is exact.
 
-    In turns, for what is held may go along: a force that follows more slowly must be the stronger one.
+    Moves of the term and fits of all parameters alternate, because they depend on each other: a
+    force with a longer time constant must be stronger.
     """
-    for _ in range(TURNS if neighbours(term, problem.recordings, FINEST[0]) else 0):
-        moved = _moved(problem, slot, term, found, tracks)
+    config = problem.config.describe
+    if not neighbours(term, problem.recordings, config.fine_refinement[0], config):
+        return term, found
+    for _ in range(config.refinement_turns):
+        moved = _moved(problem, slot, term, found, everywhere)
         if moved == term:
             break
         again = fit(problem, found)
         if not again.evidence > found.evidence:
-            write(problem, slot, term, tracks)
+            write_term(problem, slot, term, everywhere)
             break
         term, found = moved, again
     return term, found
 
 
-def _beside(problem: Problem, so_far: Chosen, tracks: Sequence[MappedRecording]) -> Chosen:
-    """All terms moved once more, each beside the others: the first ones stood for a part of those that came later."""
-    terms, found = dict(so_far.terms), so_far.fit
-    for slot, term in terms.items():
-        terms[slot], found = _polished(problem, slot, term, found, tracks)
-    return so_far if found is so_far.fit else Chosen(converge(problem, found), terms)
+def _refine_all(problem: Problem, formula: Formula, everywhere: Recordings) -> Formula:
+    """Refine all terms in the presence of the others, of which they may have explained a part."""
+    refined, found = dict(formula.terms), formula.fit
+    for slot, term in formula.terms.items():
+        refined[slot], found = _refined_by_filter(problem, slot, term, found, everywhere)
+    if found is formula.fit:
+        return formula
+    return Formula(converge(problem, found), refined)
 
 
 def _moved(
-    problem: Problem, slot: str, term: Described, found: Fit, tracks: Sequence[MappedRecording]
+    problem: Problem, slot: str, term: Described, found: Fit, everywhere: Recordings
 ) -> Described:
-    """A term, written into its slot, moved to where the filter finds the recordings likeliest, the fit held."""
-    on = problem.program.switches(found.effects)
+    """Move a term to the maximum of the likelihood with all fitted parameters held."""
+    config, on = problem.config.describe, problem.program.switches(found.effects)
 
-    def likelihood(one: Described) -> float:
-        write(problem, slot, one, tracks)
+    def likelihood(candidate: Described) -> float:
+        write_term(problem, slot, candidate, everywhere)
         return problem.log_likelihood(found.free, found.theta, on, found.levels)
 
     best = likelihood(term)
-    for by in FINEST:
-        for _ in range(ROUNDS):
-            scores = [
-                (likelihood(t), i, t)
-                for i, t in enumerate(neighbours(term, problem.recordings, by))
-            ]
-            score, _, ahead = max(scores, key=lambda s: s[:2])
-            if not score > best + TOLD:
+    for step in config.fine_refinement:
+        for _ in range(config.refinement_moves):
+            near = neighbours(term, problem.recordings, step, config)
+            scores = list(map(likelihood, near))
+            # the last one of equally likely neighbours
+            last = max(range(len(near)), key=lambda i: (scores[i], i))
+            if not scores[last] > best + config.least_move_gain:
                 break
-            term, best = ahead, score
-    write(problem, slot, term, tracks)
+            term, best = near[last], scores[last]
+    write_term(problem, slot, term, everywhere)
     return term
 
 
-def _said_already(problem: Problem, before: Chosen, further: Chosen) -> bool:
-    """Whether the newest term would take the place of an entry that alone explains most of what the term does.
+def _replaces_effect(problem: Problem, before: Formula, extended: Formula) -> bool:
+    """Return whether the newest term only replaces an identified effect.
 
-    A law of the library with a name, a little off, is the better answer: a wind, not a side force with the heading.
+    It does if the effect alone explains most of what the term explains. The effect is the better
+    answer even if it is a little less exact: wind, not a side force that varies with the heading.
     """
-    for name in (n for n in before.fit.effects if n not in before.terms):
-        without = less(problem, further, name).fit
-        if without.evidence > further.fit.evidence - WORTH:
-            neither = less(problem, before, name).fit.evidence
-            if before.fit.evidence - neither > ALIKE_SHARE * (without.evidence - neither):
+    config = problem.config.select
+    for name in before.fit.effects:
+        if name in before.terms:
+            continue
+        without = without_term(problem, extended, name).fit
+        if without.evidence > extended.fit.evidence - config.least_gain:
+            neither = without_term(problem, before, name).fit.evidence
+            share = config.alike_share * (without.evidence - neither)
+            if before.fit.evidence - neither > share:
                 return True
     return False
 
 
-def _pruned(problem: Problem, so_far: Chosen) -> Chosen:
-    """Without what the newest term has made needless: an earlier term, or an entry that but stood for it."""
-    for name in so_far.fit.effects[:-1]:
-        without = converge(problem, remove_effect(problem, so_far.fit, name))
-        if without.evidence > so_far.fit.evidence - WORTH:
-            so_far = Chosen(without, {n: t for n, t in so_far.terms.items() if n != name})
-    return so_far
+def _pruned(problem: Problem, formula: Formula) -> Formula:
+    """Return the formula without earlier terms or effects that the newest term makes unnecessary."""
+    for name in formula.fit.effects[:-1]:
+        without = without_term(problem, formula, name)
+        if without.fit.evidence > formula.fit.evidence - problem.config.select.least_gain:
+            formula = without
+    return formula
 
 
-def less(problem: Problem, so_far: Chosen, name: str) -> Chosen:
-    """A description without one of its terms."""
-    found = converge(problem, remove_effect(problem, so_far.fit, name))
-    return replace(so_far, fit=found, terms={n: t for n, t in so_far.terms.items() if n != name})
+def without_term(problem: Problem, formula: Formula, name: str) -> Formula:
+    """Return a formula fitted without one of its terms or effects.
+
+    Args:
+        problem: The estimation problem.
+        formula: The formula.
+        name: Name of the slot of the term, or of the effect.
+    """
+    found = converge(problem, remove_effect(problem, formula.fit, name))
+    kept = {slot: term for slot, term in formula.terms.items() if slot != name}
+    return replace(formula, fit=found, terms=kept)
