@@ -1,4 +1,4 @@
-"""Writes a fitted boat back as a vessel file: the original with comments, recalibrated, the effects found added."""
+"""The patched vessel file: the original with comments, recalibrated, with the effects added."""
 
 import os
 from collections.abc import Mapping
@@ -15,8 +15,8 @@ from boatsim.physics.base import Change, Channel, Effect, Release
 from boatsim.physics.content import address, find, vessel_address
 from boatsim.physics.vessel import Body, Vessel, effect_from_table, overlaid
 
-DIGITS = 10  # significant, so that the file gives the fitted motion back
-SAME = 1e-9  # numbers this close, relative, are one
+DIGITS = 10  # significant, so that the file reproduces the fitted motion
+SAME = 1e-9  # relative difference below which two numbers are the same
 
 
 def patched(
@@ -26,50 +26,48 @@ def patched(
     path: Path,
     described: Mapping[str, Effect] | None = None,
 ) -> str:
-    """Text of the patched vessel file that is to lie at `path`; its own paths start there, so that folders can move.
+    """Return the text of a patched vessel file.
 
-    `described` are the laws that a diagnosis wrote down, by name; what else of that kind was fitted are events of runs.
+    Args:
+        problem: The estimation problem.
+        vessel: The vessel of the original file.
+        found: The fit.
+        path: Where the file will be; its own paths are relative to it.
+        described: Terms of formulas that generalize, by the name of their slot. Other terms of the
+            fit are events of recordings and are not written.
     """
-    events = {e.name for e in problem.program.candidates if type(e).described} - set(
-        described or {}
-    )
-    candidates = [
-        (described or {}).get(e.name, e) for e in problem.program.candidates if e.name not in events
-    ]
-    text = vessel.file.read_text(encoding="utf-8-sig")
-    base = tomlkit.parse(text).get("based_on")
-    for key, empty in (("found", "[]"), ("based_on", '""')):  # new keys go first, above the tables
-        if key not in tomlkit.parse(text):
-            text = f"{key} = {empty}\n{text}"
-    document = tomlkit.parse(text)
-    document["based_on"] = tomlkit.item(_based_on(vessel, base, path))
-    document["based_on"].comment("its folder holds the hull")
-    laws = [e.name for e in candidates if e.name in found.effects and not isinstance(e, Release)]
-    document["found"] = tomlkit.item(laws)
-    document["found"].comment("effects that were added to it; the others it had")
-    document.setdefault("effect", tomlkit.aot())
+    described = described or {}
+    candidates: list[Effect] = []
+    events = set()
+    for effect in problem.program.candidates:
+        if type(effect).described and effect.name not in described:
+            events.add(effect.name)
+        else:
+            candidates.append(described.get(effect.name, effect))
+    document = _document(vessel, path)
+    added = []
+    for effect in candidates:
+        if effect.name in found.effects and not isinstance(effect, Release):
+            added.append(effect.name)
+    document["found"] = tomlkit.item(added)
+    document["found"].comment("effects that the diagnosis added")
     settings: dict[str, dict[str, float]] = {name: {} for name in found.effects}
     for free, x in zip(found.free, found.theta, strict=True):
-        if free.relative:
-            for one in vessel.names_of(free.effect):
-                change = Change(free.name, one, free.name, "scales", 1.0)
-                _alter(document, vessel, change, float(x), f"recalibrated x {x:.4f}")
-        else:
+        if not free.relative:
             settings[free.effect][free.name] = float(x)
+            continue
+        for name in vessel.names_of(free.effect):
+            change = Change(free.name, name, free.name, "scales", 1.0)
+            _change(document, vessel, change, float(x), f"recalibrated x {x:.4f}")
     for effect in candidates:  # channels act in the order of the diagnosis
-        if effect.name in settings and isinstance(effect, Release):
-            _release(document, vessel, effect, settings[effect.name])
-        elif effect.name in settings:
-            named = {} if effect.name == type(effect).idea() else {"name": effect.name}
-            bound: dict[str, object] = {"on": list(effect.on)} if effect.on else {}
-            if isinstance(effect, Channel) and effect.other_side:
-                bound["other_side"] = True
-            said = named | bound | effect.shape() | settings[effect.name]
-            table = _effect_table(_address(type(effect), vessel), said)
-            table.add(tomlkit.nl())
-            document["effect"].append(table)
-    _hold(document, problem, vessel, found)
-    document.pop("spread", None)  # that of an earlier diagnosis
+        if effect.name not in settings:
+            continue
+        if isinstance(effect, Release):
+            _apply_release(document, vessel, effect, settings[effect.name])
+        else:
+            document["effect"].append(_effect_table(effect, vessel, settings[effect.name]))
+    _keep_fitted_defaults(document, problem, vessel, found)
+    document.pop("spread", None)  # of an earlier diagnosis
     if (spread := spread_table.spread(problem, found, events)) is not None:
         document["spread"] = spread
     return str(tomlkit.dumps(document))
@@ -82,58 +80,83 @@ def write(
     path: Path,
     described: Mapping[str, Effect] | None = None,
 ) -> None:
-    """Write the patched vessel file."""
+    """Write a patched vessel file.
+
+    Args:
+        problem: The estimation problem.
+        vessel: The vessel of the original file.
+        found: The fit.
+        path: The file.
+        described: Terms of formulas that generalize, by the name of their slot.
+    """
     with replacing(path) as temporary:
         temporary.write_text(patched(problem, vessel, found, path, described), encoding="utf-8")
 
 
+def _document(vessel: Vessel, path: Path) -> tomlkit.TOMLDocument:
+    """Return the original file with the keys of a patched one, above all tables."""
+    text = vessel.file.read_text(encoding="utf-8-sig")
+    original = tomlkit.parse(text)
+    for key, empty in (("found", "[]"), ("based_on", '""')):
+        if key not in original:
+            text = f"{key} = {empty}\n{text}"
+    document = tomlkit.parse(text)
+    document["based_on"] = tomlkit.item(_based_on(vessel, original.get("based_on"), path))
+    document["based_on"].comment("its folder contains the hull")
+    document.setdefault("effect", tomlkit.aot())
+    return document
+
+
 def _based_on(vessel: Vessel, base: str | None, path: Path) -> str:
-    """A shipped vessel by its name, one's own by its way from the patched file's folder."""
+    """Return a shipped vessel by its name, another one by its path from the patched file."""
     file = find("vessel", base, vessel.file.parent) if base else vessel.file
     name = vessel_address(file)
-    return (
-        os.path.relpath(file.resolve(), path.resolve().parent) if name.endswith(".toml") else name
-    )
+    if name.endswith(".toml"):
+        return os.path.relpath(file.resolve(), path.resolve().parent)
+    return name
 
 
 def _address(kind: type[Effect], vessel: Vessel) -> str:
-    """An effect on the shelf by its name, one's own by its way from the vessel's folder."""
+    """Return a shipped effect by its name, another one by its path from the vessel's folder."""
     name = address(kind)
-    return os.path.relpath(name, vessel.path) if name.endswith(".py") else name
+    if name.endswith(".py"):
+        return os.path.relpath(name, vessel.path)
+    return name
 
 
-def _release(
+def _apply_release(
     document: tomlkit.TOMLDocument, vessel: Vessel, release: Release, values: Mapping[str, float]
 ) -> None:
-    """Write the numbers that a release found to be off."""
+    """Write the numbers of the vessel that a release changes."""
     for change in release.changes(vessel):
         if change.parameter in values:
             x = values[change.parameter]
-            _alter(document, vessel, change, x, f"{release.name}, {change.parameter} = {x:.4g}")
+            _change(document, vessel, change, x, f"{release.name}, {change.parameter} = {x:.4g}")
 
 
-def _alter(
-    document: tomlkit.TOMLDocument, vessel: Vessel, change: Change, x: float, why: str
+def _change(
+    document: tomlkit.TOMLDocument, vessel: Vessel, change: Change, x: float, reason: str
 ) -> None:
-    """Change a number wherever the file states it: in the vessel's own table, and in those of loads."""
+    """Change a number wherever the file specifies it: in its own table and in those of loads."""
     if change.owner == "body":
         own, nominal = document["body"], getattr(vessel.body, change.key)
     else:
         place = [e.name for e in vessel.effects].index(change.owner)
         own, nominal = document["effect"][place], getattr(vessel.effect(change.owner), change.key)
-    loads = {
-        n: t[change.owner]
-        for n, t in document.get("loads", {}).items()
-        if change.key in t.get(change.owner, {})
-    }
-    for table in loads.values():
-        _state(table, change.key, change.of(float(table[change.key]), x), why)
-    if change.key in own or not any(n in loads for n in vessel.load):
-        _state(own, change.key, change.of(float(own.get(change.key, nominal)), x), why)
+    loads = set()
+    for name, tables in document.get("loads", {}).items():
+        table = tables.get(change.owner, {})
+        if change.key in table:
+            loads.add(name)
+            _set(table, change.key, change.of(float(table[change.key]), x), reason)
+    if change.key in own or loads.isdisjoint(vessel.load):
+        _set(own, change.key, change.of(float(own.get(change.key, nominal)), x), reason)
 
 
-def _hold(document: tomlkit.TOMLDocument, problem: Problem, vessel: Vessel, found: Fit) -> None:
-    """State what the file's own rules would now fill in otherwise than the fitted boat had it."""
+def _keep_fitted_defaults(
+    document: tomlkit.TOMLDocument, problem: Problem, vessel: Vessel, found: Fit
+) -> None:
+    """Write the numbers that default rules would now compute differently than in the fit."""
     values = problem.values(problem.recordings[0], found.free, found.theta)
     raw = document.unwrap()
     for name in vessel.load:
@@ -141,29 +164,39 @@ def _hold(document: tomlkit.TOMLDocument, problem: Problem, vessel: Vessel, foun
     boat = replace(vessel, body=Body(**raw["body"]), effects=())
     for table, given in zip(document["effect"], raw["effect"], strict=True):
         effect = effect_from_table(given, vessel.name, vessel.path).completed(boat)
-        fitted = {n: float(values[problem.place(effect.name, n)]) for n in sorted(effect.filled)}
-        off = {
-            n: _rounded(x) for n, x in fitted.items() if abs(x - getattr(effect, n)) > SAME * abs(x)
-        }
-        for name, x in off.items():
-            _state(table, name, x, "as fitted")
-        boat = boat.composed_with(effect.having(off))
+        changed = {}
+        for name in sorted(effect.filled):
+            fitted = float(values[problem.place(effect.name, name)])
+            if abs(fitted - getattr(effect, name)) > SAME * abs(fitted):
+                changed[name] = _rounded(fitted)
+                _set(table, name, changed[name], "as fitted")
+        boat = boat.composed_with(effect.having(changed))
 
 
-def _state(table: Table | InlineTable, name: str, value: float, why: str) -> None:
-    """Put a number into a table with a comment, which an inline table has no room for; reasons add up."""
-    before = table[name].trivia.comment.removeprefix("# ") if name in table else ""
+def _set(table: Table | InlineTable, name: str, value: float, reason: str) -> None:
+    """Set a number of a table and add the reason to its comment; inline tables have none."""
+    if name in table:
+        before = table[name].trivia.comment.removeprefix("# ")
+        reason = f"{before}; {reason}" if before else reason
     table[name] = tomlkit.item(_rounded(value))
     if not isinstance(table, InlineTable):
-        table[name].comment(f"{before}; {why}" if before else why)
+        table[name].comment(reason)
 
 
-def _effect_table(name: str, settings: Mapping[str, object]) -> Table:
+def _effect_table(effect: Effect, vessel: Vessel, settings: Mapping[str, float]) -> Table:
+    """Return the table of an added effect."""
     table = tomlkit.table()
-    table["use"] = name
+    table["use"] = _address(type(effect), vessel)
     table["use"].comment("found by the diagnosis")
-    for key, value in settings.items():
+    if effect.name != type(effect).idea():
+        table["name"] = effect.name
+    if effect.on:
+        table["on"] = list(effect.on)
+    if isinstance(effect, Channel) and effect.other_side:
+        table["other_side"] = True
+    for key, value in (effect.shape() | dict(settings)).items():
         table[key] = _rounded(value) if isinstance(value, float) else value
+    table.add(tomlkit.nl())
     return table
 
 

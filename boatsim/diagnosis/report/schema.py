@@ -1,86 +1,82 @@
-"""What diagnosis.json holds, table by table."""
+"""Schema of diagnosis.json: one typed dictionary for each table."""
 
 from typing import Literal, NotRequired, TypedDict
 
 from boatsim.diagnosis.config import Plain
 
-Family = Literal[
-    "position_rms_m", "heading_rms_rad", "roll_rms_rad"
-]  # of signals whose error on unseen data is told
+# signals whose rms error on held-out recordings is reported
+Family = Literal["position_rms_m", "heading_rms_rad", "roll_rms_rad"]
 
 
 class ParameterEntry(TypedDict):
-    """A fitted parameter of an effect that was found."""
+    """A fitted parameter of an identified effect."""
 
     value: float
     sd: float
     unit: str
-    at_bound: NotRequired[bool]  # as far as the entry allows: the data may want more
+    at_bound: NotRequired[bool]  # at a bound of its range: the true value may lie outside
 
 
 class Acting(TypedDict, total=False):
-    """What an effect acts on, where its table says so."""
+    """The signals on which an effect acts, if it specifies any."""
 
     on: list[str]
 
 
 class EffectEntry(Acting):
-    """An effect that was found."""
+    """An identified effect."""
 
     name: str
     kind: str  # "physics" or "measurement"
-    probability: float
-    gain_nats: float
+    probability: float  # among its rivals
+    gain_nats: float  # log Bayes factor
     words: str
     tied_with: list[str]  # look-alikes
     parameters: dict[str, ParameterEntry]  # by name with unit
 
 
 class TermEntry(TypedDict):
-    """One term of a described law."""
+    """One term of a formula."""
 
-    of: str  # what it goes with, in words
+    of: str  # what it varies with, in words
     value: float
     sd: float
-    # of the value: force or moment per product of what it goes with; "" for a share of the thrust
-    unit: str
+    unit: str  # force or moment per product of the factors; "" for a share of the thrust
     gain_nats: float
-    run: NotRequired[str]  # the recording of which it is an event
+    run: NotRequired[str]  # recording of which it is an event
 
 
 class DescribedEntry(TypedDict):
-    """A law written down for what no entry of the library explains, along one axis."""
+    """A formula along one axis for a force that no candidate effect explains."""
 
     axis: str  # "surge" ... "yaw", "north", "east", or "thrust"
     statement: str
     terms: list[TermEntry]
-    carries_over: bool  # free runs over unseen recordings get better by it
+    carries_over: bool  # it reduces the errors on held-out recordings
 
 
 class StructureEntry(TypedDict):
-    """What the force left over goes with."""
+    """The quantity that the unexplained force varies with."""
 
     axis: str
     goes_with: str  # in words
     gain_nats: float
-    p_value: float  # corrected for all that were tried
-    tried: int
+    p_value: float  # corrected for the number of quantities tested
+    tried: int  # number of quantities tested
 
 
 class UnknownEntry(TypedDict):
-    """Whether something is missing that no entry of the library explains."""
+    """Whether a force is missing that no candidate effect explains."""
 
     flag: bool
     gain_nats: float
-    told_from_nats: float  # the gain from which it is flagged: more where entries explained much
-    rest: NotRequired[
-        dict[str, "StrengthEntry"]
-    ]  # force that the named effects leave over, where something is missing
-    structure: NotRequired[StructureEntry]  # where that force goes with something, be it weak
+    told_from_nats: float  # threshold of the gain; it increases with the evidence explained
+    rest: NotRequired[dict[str, "StrengthEntry"]]  # force that the identified effects leave
+    structure: NotRequired[StructureEntry]  # if that force varies with any quantity
 
 
 class CandidateEntry(TypedDict):
-    """An entry of the library, tried alone."""
+    """A candidate effect tested alone."""
 
     name: str
     gain_nats: float
@@ -88,7 +84,7 @@ class CandidateEntry(TypedDict):
 
 
 class StrengthEntry(TypedDict):
-    """The missing force of one axis over all runs."""
+    """The missing force of one axis over all recordings."""
 
     rms: float
     sd: float
@@ -96,16 +92,16 @@ class StrengthEntry(TypedDict):
 
 
 class MeanEntry(TypedDict):
-    """A force that pushes the same way all along and stays in the patched vessel, along one axis of the hull."""
+    """The mean force along one axis of the hull that remains in the patched vessel."""
 
     mean: float
     sd: float
     unit: str
-    share_of_full_thrust: NotRequired[float]  # of a force, where the vessel's drives push ahead
+    share_of_full_thrust: NotRequired[float]  # of a force, if drives push the vessel ahead
 
 
 class IntervalEntry(TypedDict):
-    """A stretch of a run in which the force of an axis is missing."""
+    """An interval of a recording in which a force is missing along an axis."""
 
     run: str
     from_s: float
@@ -114,7 +110,7 @@ class IntervalEntry(TypedDict):
 
 
 class RegionEntry(TypedDict):
-    """A state region in which a force is missing."""
+    """A range of a variable in which a force is missing."""
 
     variable: str
     statement: str
@@ -122,7 +118,7 @@ class RegionEntry(TypedDict):
 
 
 class WhereEntry(TypedDict):
-    """Where what is missing shows."""
+    """Along which axes, when, and under which conditions a force is missing."""
 
     axes: dict[str, StrengthEntry]
     intervals: list[IntervalEntry]
@@ -130,7 +126,7 @@ class WhereEntry(TypedDict):
 
 
 class FitEntry(TypedDict):
-    """Rms error on unseen data by model, for each family of signals."""
+    """Rms error of free runs over held-out recordings, by model, of each family of signals."""
 
     horizon_s: float
     held_out: list[str]
@@ -140,7 +136,7 @@ class FitEntry(TypedDict):
 
 
 class NextEntry(TypedDict, total=False):
-    """What to record next; empty where no manoeuvre would tell more."""
+    """The next experiment; empty if no manoeuvre adds evidence."""
 
     manoeuvre: str
     scenario: str
@@ -149,48 +145,47 @@ class NextEntry(TypedDict, total=False):
 
 
 class LeftOutEntry(TypedDict):
-    """An entry of the library that was not tried."""
+    """A candidate effect that was excluded."""
 
     name: str
-    reason: str  # the fact, the column that is missing, or the vessel's own reason
+    reason: str  # a fact, a missing column, or the vessel's own reason
 
 
 class AmbientEntry(TypedDict):
-    """The unmodelled force of one axis that is nobody's fault."""
+    """The assumed disturbance level of one axis."""
 
     rms: float
     unit: str
-    share_of_full_thrust: NotRequired[float]  # of a force, where the vessel's drives push ahead
+    share_of_full_thrust: NotRequired[float]  # of a force, if drives push the vessel ahead
 
 
 class RulesEntry(TypedDict):
-    """What was taken for granted before any data were seen, by one rule for every boat or by the file's own word."""
+    """The assumptions made before any recording was evaluated, by rules or by the vessel file."""
 
     ambient: dict[str, AmbientEntry]
     time_constant_s: float
     horizon_s: float
-    effect_gain_nats: float  # that an effect needs, for so many tried
+    effect_gain_nats: float  # required for an effect, given the number of candidates
     overridden: dict[str, str]  # rule -> the vessel's reason
 
 
 class OtherwiseEntry(TypedDict):
-    """What explains a log as well as a finding on it does."""
+    """Another explanation of a problem of a recording."""
 
     words: str
     lines: list[str]
 
 
 class LogEntry(TypedDict):
-    """What was found wrong with a log."""
+    """A problem of a recording."""
 
     run: str  # file
     name: str
-    kind: (
-        str  # "fault": put the file right; "mended": left out by itself; "limit": nothing is wrong
-    )
+    # "fault": correct the file; "mended": corrected by the diagnosis; "limit": nothing is wrong
+    kind: str
     evidence: str
-    sure: float
-    spans_s: list[list[float]]  # where it shows; empty: all along
+    sure: float  # probability
+    spans_s: list[list[float]]  # intervals [s] in which it occurs; empty: everywhere
     lines: list[str]  # to write into recording.toml
     alternatives: list[OtherwiseEntry]
     remedy: NotRequired[str]
@@ -198,7 +193,7 @@ class LogEntry(TypedDict):
 
 
 class Answer(TypedDict):
-    """The whole of diagnosis.json."""
+    """The content of diagnosis.json."""
 
     verdict: str  # "named", "ambiguous", "described", "unknown" or "nothing_missing"
     sentence: str
@@ -207,8 +202,8 @@ class Answer(TypedDict):
     effects: list[EffectEntry]
     unknown: UnknownEntry
     described: list[DescribedEntry]
-    mean_left: NotRequired[dict[str, MeanEntry]]  # by axis; empty where no mean force stays
-    log: NotRequired[list[LogEntry]]  # what is wrong with the recordings themselves
+    mean_left: NotRequired[dict[str, MeanEntry]]  # by axis; empty if no mean force remains
+    log: NotRequired[list[LogEntry]]  # problems of the recordings
     candidates: list[CandidateEntry]
     tried: NotRequired[list[str]]
     left_out: NotRequired[list[LeftOutEntry]]
@@ -219,5 +214,4 @@ class Answer(TypedDict):
     fit: FitEntry
     next_experiment: NextEntry
     patch: str
-    # all settings of the diagnosis by dotted name, such as "select.odds"
-    config: NotRequired[dict[str, Plain]]
+    config: NotRequired[dict[str, Plain]]  # all settings by dotted name, such as "select.odds"

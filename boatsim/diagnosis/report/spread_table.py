@@ -1,4 +1,4 @@
-"""[spread] of a patched file: how far off the fitted numbers may be, from the covariance of the fit."""
+"""The table [spread] of a patched vessel file: standard deviations and correlation of a fit."""
 
 from collections.abc import Collection
 
@@ -13,29 +13,38 @@ from boatsim.diagnosis.report.answer import told_sd
 DIGITS = 6  # significant
 
 
-def spread(problem: Problem, found: Fit, gone: Collection[str] = ()) -> Table | None:
-    """The table, or None where nothing was fitted; `gone` are effects that the patched file does not have."""
-    boat = {e.name for e in problem.program.vessel.effects} | set(found.effects)
+def spread(problem: Problem, found: Fit, removed: Collection[str] = ()) -> Table | None:
+    """Return the table of the uncertainty of the fitted numbers.
+
+    Args:
+        problem: The estimation problem.
+        found: The fit.
+        removed: Effects of the fit that the patched file does not have.
+
+    Returns:
+        The table; None if the file has no fitted number.
+    """
+    owners = {e.name for e in problem.program.vessel.effects} | set(found.effects)
+    owners = owners - set(removed) | {"body"}
     kept, rows = [], []
     for j, free in enumerate(found.free):
-        there = [
-            name
-            for name in _numbers(problem, free)
-            if name[0].partition(".")[0] in boat - set(gone) | {"body"}
-        ]
+        numbers = {}
+        for name, weight in _numbers(problem, free).items():
+            if name.partition(".")[0] in owners:
+                numbers[name] = weight
         sd = _sd(problem, found, j)
-        if there and sd > 0.0:
+        if numbers and sd > 0.0:
             kept.append(j)
-            rows.append(_row(free, float(found.theta[j]), sd, there))
+            rows.append(_row(free, float(found.theta[j]), sd, numbers))
     if not kept:
         return None
     table = tomlkit.table()
-    table.comment("how far off the fitted numbers may be, one standard deviation")
+    table.comment("uncertainty of the fitted numbers: one standard deviation")
     covariance = found.covariance[np.ix_(kept, kept)]
     sds = np.sqrt(np.diag(covariance))
     table["correlation"] = tomlkit.array()
-    for row in covariance / np.outer(sds, sds):
-        table["correlation"].add_line([_rounded(x) for x in row])
+    for correlations in covariance / np.outer(sds, sds):
+        table["correlation"].add_line(list(map(_rounded, correlations)))
     table["correlation"].add_line()
     table["of"] = tomlkit.aot()
     for row in rows:
@@ -44,38 +53,42 @@ def spread(problem: Problem, found: Fit, gone: Collection[str] = ()) -> Table | 
 
 
 def _sd(problem: Problem, found: Fit, j: int) -> float:
-    """As the report tells it of what was found, as it was fitted of a coefficient."""
+    """Return the sd of a fitted number: for an effect as reported, for a coefficient as fitted."""
     free = found.free[j]
-    effect = next((e for e in problem.program.candidates if e.name == free.effect), None)
-    if effect is not None and not free.relative and not type(effect).described:
-        return told_sd(found, effect, free.name)
+    for effect in problem.program.candidates:
+        if effect.name == free.effect and not free.relative and not type(effect).described:
+            return told_sd(found, effect, free.name)
     return float(np.sqrt(max(found.covariance[j, j], 0.0)))
 
 
-def _numbers(problem: Problem, free: FreeParameter) -> list[tuple[str, float]]:
-    """Numbers, as "effect.number", that a fitted quantity acts on, each with its weight, and those that follow them."""
-    places = {
-        problem.program.index(e.name, n): f"{e.name}.{n}"
-        for e in problem.program.effects
-        for n in e.params()
-    }
-    places |= {len(problem.program.values()) + k: f"body.{name}" for k, name in enumerate(BODY)}
-    weights = dict(zip(free.at, free.weights, strict=True))
-    weights |= {to: weights[source] for to, source in problem.links if source in weights}
-    return [(places[at], weight) for at, weight in weights.items()]
+def _numbers(problem: Problem, free: FreeParameter) -> dict[str, float]:
+    """Return the weights of the numbers, as "effect.number", that a fitted parameter changes."""
+    places = {}
+    for effect in problem.program.effects:
+        for name in effect.params():
+            places[problem.program.index(effect.name, name)] = f"{effect.name}.{name}"
+    for k, name in enumerate(BODY, len(problem.program.values())):
+        places[k] = f"body.{name}"
+    own = dict(zip(free.at, free.weights, strict=True))
+    weights = dict(own)
+    for to, source in problem.links:
+        if source in own:
+            weights[to] = own[source]
+    return {places[at]: weight for at, weight in weights.items()}
 
 
-def _row(free: FreeParameter, x: float, sd: float, there: list[tuple[str, float]]) -> Table:
+def _row(free: FreeParameter, x: float, sd: float, numbers: dict[str, float]) -> Table:
     row = tomlkit.table()
     row["fitted"] = f"{free.effect}.{free.name}"
     if free.how == "scales":
         row["sd"] = _rounded(sd / abs(x))
         row["sd"].comment("relative")
-        row["scales"] = [name for name, _ in there]
+        row["scales"] = list(numbers)
         return row
     row["sd"] = _rounded(sd)
     row["shifts"] = tomlkit.inline_table()
-    row["shifts"].update({name: _rounded(weight) for name, weight in there})
+    for name, weight in numbers.items():
+        row["shifts"][name] = _rounded(weight)
     return row
 
 
