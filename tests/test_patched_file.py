@@ -28,7 +28,7 @@ OFF = 0.1  # relative, of every coefficient that a diagnosis recalibrates
 
 def problem_of(boat: Vessel) -> Problem:
     """A made-up run of a vessel, to fit nothing with: commands in steps, no measurements."""
-    releases = tuple(e for e in composed(boat)[0].effects if isinstance(e, Release))
+    releases = tuple(e for e in composed(boat)[0].candidates if isinstance(e, Release))
     program = Program(boat, releases)  # a law that does not act would only be compiled for nothing
     rng = np.random.default_rng(7)
     low, high = (np.array([getattr(c, a) for c in boat.commands.values()]) for a in ("low", "high"))
