@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
+from boatsim.atomic_folder import atomic_folder
 from boatsim.diagnosis.experiment_design.next_experiment import scenario_text
 from boatsim.diagnosis.free_runs import FreeRun
 from boatsim.diagnosis.pipeline import NEXT, Diagnosis
@@ -16,7 +17,6 @@ from boatsim.errors import BadPhysics
 from boatsim.files import replacing
 from boatsim.physics.signals import COMPONENTS, Array
 from boatsim.recordings.table import Recording
-from boatsim.view.outputs import atomic_folder
 
 FORCE_NAMES = {axis: f"force_{component}" for axis, component in COMPONENTS.items()}
 BAND = 2.0  # [sd] half width of the band of a missing force
