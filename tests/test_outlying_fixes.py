@@ -1,4 +1,4 @@
-"""Fixes that leap away and come back: found by the leaps, left out, and the diagnosis stays what it was."""
+"""Outliers of positions are found by their jumps, ignored, and do not change the diagnosis."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -40,7 +40,7 @@ def test_a_burst_of_any_length_is_found_and_nothing_else(rows: slice) -> None:
     )
     found = drop_position_outliers(astray(run, 0.4, rows), boat)
     assert np.flatnonzero(np.isnan(found["x_m"])).tolist() == list(range(rows.start, rows.stop))
-    assert np.isfinite(found["psi_rad"]).all() and "leap away and come back" in found.remarks[-1]
+    assert np.isfinite(found["psi_rad"]).all() and "jump away and return" in found.remarks[-1]
 
 
 @pytest.mark.parametrize("noise", [0.0, 0.003], ids=["no noise", "noise"])

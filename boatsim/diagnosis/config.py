@@ -373,6 +373,13 @@ class ChecksConfig:
     jump_course_rows: int = setting(
         5, "count", "Rows on either side of a jump through which the course is fitted.", low=2
     )
+    jump_min_spacing: int = setting(
+        50,
+        "rows",
+        "Rows per large step, at least; with more large steps the signal is noisy, and none is a "
+        "jump.",
+        low=1,
+    )
     jump_min_share: float = setting(
         0.5, "1", "Share of a step that must persist, so that it is a jump and no outlier."
     )

@@ -24,7 +24,7 @@ from boatsim.recordings.table import Recording
 # phrase in a remark of a recording -> name of the finding
 FINDING_OF_REMARK = {
     "repeat each fix": "position_held",
-    "leap away and come back": "outliers",
+    "jump away and return": "outliers",
     "off the course of the following fixes": "begins_astray",
     "were rotated with the heading": "positions_turned",
     "turns the hull to the other side": "rudder_sense",

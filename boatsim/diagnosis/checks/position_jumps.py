@@ -74,7 +74,7 @@ def jump_rows(t: Array, values: Array, config: ChecksConfig = DEFAULT.checks) ->
     per_row = np.maximum(np.diff(t) / float(np.median(np.diff(t))), 1.0)[:, None]
     size = np.linalg.norm(step / per_row, axis=1)
     large = np.flatnonzero(size > config.jump_min_step * float(np.quantile(size, 0.99)))
-    if not len(large) or len(large) > n // 50 + 3:
+    if not len(large) or len(large) > n // config.jump_min_spacing + 3:
         return np.zeros(0, dtype=np.int64)
     sampled = range(side, n - side - 1, max(1, n // 200))
     usual = float(np.median([_course_gap(t, values, k, side) for k in sampled]))

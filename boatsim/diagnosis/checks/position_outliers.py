@@ -54,7 +54,7 @@ def drop_position_outliers(
         outlier = outlier_rows(recording.t, values, finest, duration, config.checks)
         if outlier.any():
             remarks.append(
-                f"{recording.path or recording.name}: {', '.join(names)} leap away and come back "
+                f"{recording.path or recording.name}: {', '.join(names)} jump away and return "
                 f"({int(outlier.sum())} of {len(recording)} rows, first at "
                 f"{recording.t[outlier][0]:g} s); these values are not used"
             )
