@@ -1,8 +1,9 @@
 """boatsim: small-boat motion and control on MuJoCo, and diagnosis of simulations against recordings.
 
-`load_vessel`, `load_scenario`, `run`, `sweep`, `read`, `diagnose` and `replay` are the Python equivalents of the
-commands. `Vessel`, `Scenario`, `Recording`, `Diagnosis`, `Run` and `Sweep` are their arguments and results; `Batch` and
-`Fleet` simulate many vessels together. All are defined or exported by `boatsim.api`, which is imported at first use.
+`load_vessel`, `load_scenario`, `run`, `sweep`, `read`, `diagnose` and `replay` are the Python
+equivalents of the commands. `Vessel`, `Scenario`, `Recording`, `Diagnosis`, `Run` and `Sweep` are
+their arguments and results; `Batch` and `Fleet` simulate many vessels together. All are defined or
+exported by `boatsim.api`, which is imported at first use.
 """
 
 from importlib import import_module

@@ -1,7 +1,8 @@
 """Python interface: build or load vessels, run scenarios, read recordings, diagnose and replay them, run sweeps.
 
-Everything is available as `boatsim.NAME` and imported at first use. Units are SI and radians, axes are SNAME, as in
-files. Input that can not be used raises `boatsim.errors.BadInput` with a message of one line.
+Everything is available as `boatsim.NAME` and imported at first use. Units are SI and radians, axes
+are SNAME, as in files. Input that can not be used raises `boatsim.errors.BadInput` with a message
+of one line.
 """
 
 from collections.abc import Mapping, Sequence
@@ -119,7 +120,8 @@ class Diagnosis:
     def skill(self) -> dict[str, float]:
         """Reduction of the error on held-out data, for "position", "heading" and "roll" where they are recorded.
 
-        It is 1 - rms of the patched vessel / rms of the recalibrated one: 0 is no improvement, 1 a perfect model.
+        It is 1 - rms of the patched vessel / rms of the recalibrated one: 0 is no improvement, 1 a
+        perfect model.
         """
         fit = self.answer["fit"]
         errors = {
@@ -242,7 +244,8 @@ def run(
         seed: Seed of sensor noise and random effects; the scenario's by default.
         controller: Name or file of a controller in place of the scenario's; not for a `Scenario`.
         out: Folder for the files of the run; none are written by default.
-        vessel: Vessel in place of the scenario's; not for a `Scenario`. One that was not saved is saved in `out`.
+        vessel: Vessel in place of the scenario's; not for a `Scenario`. One that was not saved is
+            saved in `out`.
 
     Raises:
         BadInput: If scenario, controller and vessel do not fit each other.
@@ -325,7 +328,8 @@ def diagnose(
         library: Candidate effects to test besides the usual ones.
         without: Candidate effects not to test.
         horizon: Length of the free runs by which the result is judged [s].
-        settings: Dotted name of a setting of `boatsim.diagnosis.config`, such as "select.odds" -> value.
+        settings: Dotted name of a setting of `boatsim.diagnosis.config`, such as "select.odds" ->
+            value.
 
     Returns:
         The identified effects, their parameters and the errors on held-out data.
@@ -366,12 +370,14 @@ def replay(
 
     Args:
         recording: File of the recording.
-        vessel: Name or file of the vessel, such as a patched.toml; that of the recording.toml by default.
+        vessel: Name or file of the vessel, such as a patched.toml; that of the recording.toml by
+            default.
         load: Load conditions of the vessel.
         horizon: Length of a free run [s].
 
     Returns:
-        The simulated pose at the times of the recording; the signal `segment` is the number of the free run.
+        The simulated pose at the times of the recording; the signal `segment` is the number of the
+        free run.
 
     Raises:
         BadInput: If the recording or the vessel can not be used.

@@ -26,7 +26,8 @@ def unknown_name(what: str, found: str, allowed: Iterable[str]) -> str:
     Args:
         what: Kind of name, such as "vessel".
         found: The name.
-        allowed: All valid names; of many the message lists the nearest few. "vessel/case" is matched by "case" too.
+        allowed: All valid names; of many the message lists the nearest few. "vessel/case" is
+            matched by "case" too.
     """
     names = sorted(allowed)
     nearest = _nearest(found, names)
@@ -55,8 +56,8 @@ def printable(text: str, longest: int | None = None) -> str:
 
     Args:
         text: Text from files of others.
-        longest: Longest result; the middle of a longer one is cut out, since the file's name is at the beginning and
-            the reason at the end.
+        longest: Longest result; the middle of a longer one is cut out, since the file's name is at
+            the beginning and the reason at the end.
     """
     characters = []
     for c in text:

@@ -39,7 +39,8 @@ def read_toml(path: Path) -> dict[str, Value]:
     """Return the content of a TOML file.
 
     Raises:
-        BadInput: With line and column of a syntax error, or for a file that is too large or too deeply nested.
+        BadInput: With line and column of a syntax error, or for a file that is too large or too
+            deeply nested.
     """
     try:
         with path.open("rb") as file:

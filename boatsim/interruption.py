@@ -36,7 +36,8 @@ class Stop:
         """Record a signal.
 
         Raises:
-            KeyboardInterrupt: On a second signal, if the block did not react to the first, as with a hanging controller.
+            KeyboardInterrupt: On a second signal, if the block did not react to the first, as with
+                a hanging controller.
         """
         global _received
         _received = True
@@ -49,8 +50,8 @@ class Stop:
 def deferred_signals() -> Iterator[Stop]:
     """Defer signals until the block exits, so that a run stops after a step and its files are complete.
 
-    The block sets `stop.finishing = True` when it stops calling `stop`. A nested block is a part of the outer one.
-    Outside the main thread nothing changes.
+    The block sets `stop.finishing = True` when it stops calling `stop`. A nested block is a part of
+    the outer one. Outside the main thread nothing changes.
 
     Yields:
         The `Stop` that the block calls at every step.

@@ -1,8 +1,9 @@
 """Fit of the coefficients of a boat from particulars to its logs, with validation on held-out parts.
 
-The first two thirds of each log are fitted, the last third is held out. A few candidate effects are tested besides the
-coefficients, and kept if the evidence increases enough: effects of the boat (added mass, thrust lag, weak reverse, ...)
-are written into its file, a current belongs to the day and is only reported.
+The first two thirds of each log are fitted, the last third is held out. A few candidate effects are
+tested besides the coefficients, and kept if the evidence increases enough: effects of the boat
+(added mass, thrust lag, weak reverse, ...) are written into its file, a current belongs to the day
+and is only reported.
 """
 
 import re

@@ -1,7 +1,8 @@
 """Content by name: vessels, controllers, scenarios and effects are files whose name is the name of the content.
 
-A name is searched for in the library, then in the folder of the file that uses it, then in the folders of the user's
-own content. Content is data, which is read, or a Python file, which `trust` must allow to run.
+A name is searched for in the library, then in the folder of the file that uses it, then in the
+folders of the user's own content. Content is data, which is read, or a Python file, which `trust`
+must allow to run.
 """
 
 import hashlib
@@ -120,8 +121,8 @@ def find(kind: str, name: str, base_folder: Path | None = None) -> Path:
     Args:
         kind: "vessel", "controller" or "scenario".
         name: Name or path.
-        base_folder: Folder of the file that names the content; relative paths start there. Without one the user names
-            it, and paths start from the working directory.
+        base_folder: Folder of the file that names the content; relative paths start there. Without
+            one the user names it, and paths start from the working directory.
 
     Raises:
         BadInput: If there is none, with the nearest valid name.
@@ -262,7 +263,8 @@ def load_class(
         kind: "effect", "measure", "sensor" or "controller".
         name: Name, or path of a .py file.
         base_folder: Folder of the file that names the class; relative paths start there.
-        named: Whether the user gives the name directly; then a Python file outside trusted folders may run.
+        named: Whether the user gives the name directly; then a Python file outside trusted folders
+            may run.
 
     Raises:
         BadInput: If there is no such class, or its file is not trusted.

@@ -139,7 +139,8 @@ def notes_for(recording: Path) -> NotesFile:
 def _own_folders(folder: Path) -> Iterator[Path]:
     """The folder of a recording and those above it, up to the user's home or the root of a repository.
 
-    The search ends below a folder that all users may write to, such as /tmp, for its files may be of other users.
+    The search ends below a folder that all users may write to, such as /tmp, for its files may be
+    of other users.
     """
     home = home_folder()
     yield folder

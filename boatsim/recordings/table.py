@@ -66,7 +66,8 @@ class Orders:
 class Recording:
     """One run of a vessel, in SI units and SNAME axes. A command is in force until the next row.
 
-    Headings are unwrapped. `boatsim.read` returns the recording of a file; `recording["psi_rad"]` is a signal.
+    Headings are unwrapped. `boatsim.read` returns the recording of a file; `recording["psi_rad"]`
+    is a signal.
 
     Attributes:
         name: Name of the recording.
@@ -114,8 +115,8 @@ class Recording:
     def thinned(self, rate: float) -> "Recording":
         """Return every n-th row, with the mean command until the next of these rows.
 
-        Poses and rates that are not measured in every row keep every n-th of their own samples. `orders` of the
-        result are all commands.
+        Poses and rates that are not measured in every row keep every n-th of their own samples.
+        `orders` of the result are all commands.
 
         Args:
             rate: Rows per second of the result, approximately [Hz].
@@ -175,7 +176,8 @@ def read(
 
     Args:
         path: File of the recording.
-        channels: Allowed range (low, high) of the vessel's inputs; inputs without a column are absent.
+        channels: Allowed range (low, high) of the vessel's inputs; inputs without a column are
+            absent.
         columns: Signal -> column of the vessel's recordings; those of the notes replace them.
 
     Raises:
@@ -290,7 +292,8 @@ def _renamed(
 ) -> tuple[Raw, Mapping[str, Expression], tuple[str, ...]]:
     """The table with names of signals, their expressions, and a remark on columns of the notes that do not exist.
 
-    A mapping of the vessel whose column does not exist is ignored; one of the notes with a misspelt column is an error.
+    A mapping of the vessel whose column does not exist is ignored; one of the notes with a misspelt
+    column is an error.
     """
     made: dict[str, Expression] = {}
     absent: list[str] = []
@@ -374,8 +377,9 @@ def allowed_gaps(
 ) -> dict[str, "np.ndarray[tuple[int], np.dtype[np.bool_]]"]:
     """Return the rows (N,) in which each pose and rate may be empty, because it is not measured there.
 
-    A signal that is empty in many rows is measured less often than rows are written. Other signals may be empty in the
-    rows that exist for such a signal. Any other empty cell is a mistake in the file.
+    A signal that is empty in many rows is measured less often than rows are written. Other signals
+    may be empty in the rows that exist for such a signal. Any other empty cell is a mistake in the
+    file.
     """
     empty = {n: np.isnan(v) for n, v in columns.items() if n in (*POSE, *RATES)}
     slow = {

@@ -72,8 +72,8 @@ def _row(rows: NDArray[np.int64], index: int | None) -> int | None:
 def heading_in_degrees(t: Array, psi: Array, signals: Mapping[str, Array]) -> int | None:
     """Return the row that shows that a heading is in degrees, None if it is in radians.
 
-    Recorded rates and the course made good decide by their ratio to the changes of the heading. Without them, steps,
-    scatter and turning that no vessel and no compass has in radians decide.
+    Recorded rates and the course made good decide by their ratio to the changes of the heading.
+    Without them, steps, scatter and turning that no vessel and no compass has in radians decide.
 
     Args:
         t: Times (N,) [s].

@@ -16,8 +16,8 @@ ANGLE_PARTS = ("cos", "sin")
 class Bindings:
     """Dimensions, channels and effects of a vessel, with the channels that each effect is bound to.
 
-    An *actuator* is a command channel that a law uses; other commands only feed actuators (PWM feeds thrust). A
-    *reading* is a measured channel that a law uses.
+    An *actuator* is a command channel that a law uses; other commands only feed actuators (PWM
+    feeds thrust). A *reading* is a measured channel that a law uses.
 
     Attributes:
         name: Name of the vessel.
@@ -165,8 +165,8 @@ class Bindings:
     def bindings(self, effect: Effect) -> dict[str, str | float]:
         """Return what each role of an effect is bound to: a channel's name, or a constant.
 
-        An effect without bindings of its own is bound to the vessel's only channel in each role. An optional role
-        stays unbound then: a fixed thruster does not turn with the only rudder.
+        An effect without bindings of its own is bound to the vessel's only channel in each role. An
+        optional role stays unbound then: a fixed thruster does not turn with the only rudder.
         """
         bound = dict(self.specified_bindings(effect))
         if bound:

@@ -25,13 +25,14 @@ def load(
     Args:
         name: Name of a shipped vessel, or path of a vessel.toml or of its folder.
         loads: Load conditions in force.
-        settings: Values that replace those of the file: name of an effect or "body" -> key -> value.
+        settings: Values that replace those of the file: name of an effect or "body" -> key ->
+            value.
         extra: Tables of further effects, as [[effect]] of a scenario.
         base_folder: Folder of the file that names the vessel; relative paths start there.
 
     Raises:
-        BadInput: For names, keys and values that do not exist or are out of bounds: one line with file, key, value
-            found, what is allowed and the nearest valid name.
+        BadInput: For names, keys and values that do not exist or are out of bounds: one line with
+            file, key, value found, what is allowed and the nearest valid name.
     """
     path = find("vessel", name, base_folder)
     vessel_name = path.parent.name if path.name == FILE_NAME else path.stem

@@ -65,8 +65,8 @@ def overlaid(
 
     Args:
         raw: Content of the vessel file.
-        changes: Name of an effect, "body", "geometry", "manoeuvring" or "diagnosis" -> values; "length", "beam" or
-            "draught" -> number.
+        changes: Name of an effect, "body", "geometry", "manoeuvring" or "diagnosis" -> values;
+            "length", "beam" or "draught" -> number.
         label: Name of the file in messages.
 
     Raises:

@@ -54,8 +54,9 @@ SAME_IN_FILE = (
 class Vessel(Bindings):
     """A vessel in one load condition, with effects that are completed and ready to be compiled.
 
-    `load_vessel` reads one from a file, `Vessel.from_effects` builds one in Python. A vessel is immutable: `replace`,
-    `with_effect`, `without_effect` and `with_parameters` return changed vessels.
+    `load_vessel` reads one from a file, `Vessel.from_effects` builds one in Python. A vessel is
+    immutable: `replace`, `with_effect`, `without_effect` and `with_parameters` return changed
+    vessels.
 
     >>> import boatsim
     >>> barge = boatsim.Vessel.from_effects(
@@ -173,13 +174,17 @@ class Vessel(Bindings):
             length: Length [m].
             beam: Beam [m].
             draught: Draught [m].
-            body: Mass [kg] and inertia [kg m^2]: `mass`, `roll_inertia`, `yaw_inertia`, `pitch_inertia`, `centre`.
-            effects: Effects in the order of composition: objects, or tables as in [[effect]] of a vessel.toml.
+            body: Mass [kg] and inertia [kg m^2]: `mass`, `roll_inertia`, `yaw_inertia`,
+                `pitch_inertia`, `centre`.
+            effects: Effects in the order of composition: objects, or tables as in [[effect]] of a
+                vessel.toml.
             channels: Command channels: `low`, `high`, `neutral`, `turns`, `about`.
-            more: Further keys of a vessel.toml, such as `about`, `geometry`, `measured` and `manoeuvring`.
+            more: Further keys of a vessel.toml, such as `about`, `geometry`, `measured` and
+                `manoeuvring`.
 
         Raises:
-            BadInput: For keys and values that are not allowed, or an effect that names an unknown channel.
+            BadInput: For keys and values that are not allowed, or an effect that names an unknown
+                channel.
         """
         table: dict[str, object] = {
             "about": name,
@@ -225,7 +230,8 @@ class Vessel(Bindings):
             effect: The effect, or its table as in [[effect]] of a vessel.toml.
 
         Raises:
-            BadInput: If the name of the effect is taken, or it names a channel or an effect that does not exist.
+            BadInput: If the name of the effect is taken, or it names a channel or an effect that
+                does not exist.
         """
         changed = self.composed_with(self._effect(effect))
         check_bindings(changed, self.name)
@@ -378,8 +384,9 @@ class Vessel(Bindings):
     def save(self, folder: Path | str) -> Self:
         """Write the vessel, in its present load condition, as a vessel.toml that `load_vessel` reads.
 
-        A vessel from a file keeps the hull of its folder by `based_on`. For a vessel without a hull file a plain
-        hull.xml is written, unless the folder has one. Load conditions of the file are not written.
+        A vessel from a file keeps the hull of its folder by `based_on`. For a vessel without a hull
+        file a plain hull.xml is written, unless the folder has one. Load conditions of the file are
+        not written.
 
         Args:
             folder: Folder of the new file; its name is the name of the saved vessel.

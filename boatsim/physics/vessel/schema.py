@@ -42,7 +42,8 @@ class Body(Table):
         mass: Mass [kg].
         roll_inertia: Inertia about the longitudinal axis [kg m^2].
         yaw_inertia: Inertia about the vertical axis [kg m^2].
-        pitch_inertia: Inertia about the transverse axis [kg m^2]; required for a vessel that is free in pitch.
+        pitch_inertia: Inertia about the transverse axis [kg m^2]; required for a vessel that is
+            free in pitch.
         centre: Mass centre ahead of the origin of motion and below it [m].
     """
 
@@ -69,7 +70,8 @@ class CommandChannel(Table):
         low: Smallest allowed value.
         high: Largest allowed value.
         neutral: Value where nothing is sent; required for a channel whose range excludes 0.
-        turns: Side to which a positive rudder command turns the vessel. Recordings with the opposite sign are converted.
+        turns: Side to which a positive rudder command turns the vessel. Recordings with the
+            opposite sign are converted.
         about: Description.
     """
 
@@ -99,7 +101,8 @@ class DiagnosisTable(Table):
         leave_out: Candidate effects that are not tested, each with its reason.
         also: Further candidates, as [[effect]] tables, for example an effect on another channel.
         coefficient_uncertainty: Relative standard deviation of the model's coefficients, by kind.
-        ambient: Tolerated unmodelled force by axis, rms [N, N m]; replaces a rule of `boatsim.diagnosis.priors`.
+        ambient: Tolerated unmodelled force by axis, rms [N, N m]; replaces a rule of
+            `boatsim.diagnosis.priors`.
         horizon: Length of a free run [s]; replaces a rule.
         rate: Rate of the rows that are used [Hz]; replaces a rule.
         noise: Standard deviation of the instruments by family; replaces a rule.
@@ -154,7 +157,8 @@ class VesselFile(Table):
     """Content of a vessel.toml. `Vessel` has the descriptions of the keys that it shares with this table.
 
     Attributes:
-        based_on: Vessel whose folder holds the hull and the effects' own files; set in a patched file.
+        based_on: Vessel whose folder holds the hull and the effects' own files; set in a patched
+            file.
         found: Names of the effects that a diagnosis identified; set in a patched file.
         spread: Uncertainty of the fitted parameters; set in a patched file.
         freedoms: Degrees of freedom.
@@ -192,8 +196,8 @@ class VesselFile(Table):
             label: Name of the file in messages.
 
         Raises:
-            BadInput: For a reserved or malformed name, an empty range, a neutral value outside the range, or a channel
-                that is both commanded and measured.
+            BadInput: For a reserved or malformed name, an empty range, a neutral value outside the
+                range, or a channel that is both commanded and measured.
         """
         for name, channel in self.channels.items():
             _check_name(name, label)

@@ -46,7 +46,8 @@ def seconds(name: str, values: Array) -> Array:
     """Return times (N,) in s.
 
     Args:
-        name: Name of the column, which gives the unit of times that are not since 1970; s by default.
+        name: Name of the column, which gives the unit of times that are not since 1970; s by
+            default.
         values: Times (N,); the size of times since 1970 shows their unit.
     """
     finite = values[np.isfinite(values)]

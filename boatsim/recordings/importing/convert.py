@@ -83,7 +83,8 @@ def convert(
         channels: Allowed range (low, high) of the vessel's commands.
 
     Raises:
-        BadInput: One line with the key of the map for a signal that does not exist or can not be converted.
+        BadInput: One line with the key of the map for a signal that does not exist or can not be
+            converted.
     """
     work = _Work(log, file, map, channels or {}, remarks=list(log.remarks))
     starts = [float(np.nanmin(s.t)) for s in log.signals.values() if np.isfinite(s.t).any()]
@@ -219,8 +220,8 @@ def _drop_repeats(work: _Work) -> None:
 def _clock(work: _Work) -> tuple[Array, float]:
     """Times (N,) of the rows [s] of the log's clock, and the largest distance of a sample from its row [s].
 
-    The rows are the samples of the fastest signal and those of others at other times, or evenly spaced at the rate of
-    the map.
+    The rows are the samples of the fastest signal and those of others at other times, or evenly
+    spaced at the rate of the map.
     """
     poses = {n: c for n, c in work.columns.items() if n in (*POSE, *RATES)}
     orders = {n: c for n, c in work.columns.items() if c.held and not n.startswith(HELD)}
@@ -296,7 +297,8 @@ def _complete_rows(
 ) -> tuple[Array, dict[str, Array]]:
     """Remove rows without a command, and rows in which a pose is missing that is measured in the others.
 
-    A column that is empty in many rows is measured less often; one that is empty in a few rows has lost samples.
+    A column that is empty in many rows is measured less often; one that is empty in a few rows has
+    lost samples.
     """
     kept = np.ones(len(rows), dtype=np.bool_)
     for name, values in signals.items():

@@ -49,7 +49,8 @@ class Log:
     Attributes:
         path: The file.
         signals: Name, `STREAM.FIELD` or the column of a table -> signal.
-        frame: Axes of the format: "NED", or "ENU" with body axes x forward, y port, z up; "" where unknown.
+        frame: Axes of the format: "NED", or "ENU" with body axes x forward, y port, z up; "" where
+            unknown.
         remarks: Messages about content that was not read.
     """
 

@@ -439,7 +439,8 @@ def _drive_line(name: str, g: Guess, drive: Drive | None, sense: float = 0.0) ->
         name: Name of the column.
         g: The signal.
         drive: Channel of the vessel.
-        sense: Correlation of the signal with turning to the side of the channel, -1 for the opposite side.
+        sense: Correlation of the signal with turning to the side of the channel, -1 for the
+            opposite side.
     """
     values = g.signal.values[np.isfinite(g.signal.values)]
     low, high = (drive.low, drive.high) if drive else (-1.0, 1.0)

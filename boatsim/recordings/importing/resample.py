@@ -1,7 +1,7 @@
 """Resampling of signals with different clocks to common rows, without interpolation.
 
-A measurement goes into one row, that of its own time; rows between samples are empty (nan). A command is in force from
-its own time until the next one.
+A measurement goes into one row, that of its own time; rows between samples are empty (nan). A
+command is in force from its own time until the next one.
 """
 
 from collections.abc import Sequence
@@ -76,8 +76,9 @@ def placed(rows: Array, given: Samples, near: float) -> Array:
 def held(rows: Array, given: Samples) -> Array:
     """Return the mean until the next row (N,) of a signal that holds each sample until the next; nan before the first.
 
-    Without a new sample between two rows this is the last sample. The mean is used because commands of a recording
-    hold from row to row: a command sent just after a row would otherwise be delayed by a whole row.
+    Without a new sample between two rows this is the last sample. The mean is used because commands
+    of a recording hold from row to row: a command sent just after a row would otherwise be delayed
+    by a whole row.
     """
     found = np.full(len(rows), np.nan)
     if not len(given.t):

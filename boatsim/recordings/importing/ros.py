@@ -137,7 +137,8 @@ class Decoder:
         Args:
             text: The definitions.
             root: Name of the message.
-            cdr: Whether messages are in the encoding of ROS 2, aligned and with the byte order in front.
+            cdr: Whether messages are in the encoding of ROS 2, aligned and with the byte order in
+                front.
 
         Raises:
             ValueError: If a definition is missing or recursive.
@@ -248,7 +249,8 @@ class _Cursor:
 def log_of(path: Path, topics: Mapping[str, Topic], remarks: list[str]) -> Log:
     """Return all topics as one log.
 
-    Messages have the time of their stamps if these agree with the time of logging, else the time of logging.
+    Messages have the time of their stamps if these agree with the time of logging, else the time of
+    logging.
 
     Args:
         path: The bag.

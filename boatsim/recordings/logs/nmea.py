@@ -173,8 +173,8 @@ def _float(sentence: Any, name: str) -> float:
 def _times(kept: "list[tuple[float | None, str, dict[str, float]]]") -> tuple[Array, int | None]:
     """Times (N,) [s], and the number of sentences without one; None where fewer than two have one.
 
-    A sentence that occurs once between two times has the first of them, for instruments send sentences in groups;
-    several of one name are spread evenly.
+    A sentence that occurs once between two times has the first of them, for instruments send
+    sentences in groups; several of one name are spread evenly.
     """
     t = np.array([np.nan if when is None else when for when, *_ in kept])
     known = np.flatnonzero(np.isfinite(t))
