@@ -160,7 +160,10 @@ class Sweep:
 
     @property
     def columns(self) -> dict[str, Sequence[Any]]:
-        """Columns of sweep.parquet with one row per run: varied and sampled keys, and metrics; None where missing."""
+        """Columns of sweep.parquet with one row per run: varied and sampled keys, and metrics.
+
+        None where missing.
+        """
         return self.results.columns()
 
     @property

@@ -9,11 +9,17 @@ NEAREST_LISTED = 5  # number of nearest names that are listed then
 
 
 class BoatsimError(Exception):
-    """Base class of all errors raised by boatsim; the command line prints the message as one line."""
+    """Base class of all errors raised by boatsim.
+
+    The command line prints the message as one line.
+    """
 
 
 class BadInput(BoatsimError):
-    """Input that can not be used (a file, key, value or name). The message states what is allowed."""
+    """Input that can not be used (a file, key, value or name).
+
+    The message states what is allowed.
+    """
 
 
 class BadPhysics(BoatsimError):

@@ -81,7 +81,8 @@ def _check_sizes(content: Mapping[str, Value]) -> None:
             pending += [(key, v, depth + 1) for v in value]
         elif isinstance(value, int) and abs(value) >= INTEGER_LIMIT:
             raise ValueError(
-                f"{key} is an integer of {len(str(abs(value)))} digits; allowed are those of 64 bits"
+                f"{key} is an integer of {len(str(abs(value)))} digits; allowed are those of 64 "
+                "bits"
             )
 
 
@@ -139,7 +140,10 @@ def _keys(model: type[BaseModel], place: tuple[int | str, ...]) -> list[str]:
 
 
 class AppendedFile:
-    """A file to which pieces are appended. A piece that can not be written, as on a full disk, leaves no trace."""
+    """A file to which pieces are appended.
+
+    A piece that can not be written, as on a full disk, leaves no trace.
+    """
 
     def __init__(self, file: IO[bytes], path: Path, whole: int = 0) -> None:
         """Append to an open file.

@@ -1,4 +1,7 @@
-"""Handling of signals that end the program: Ctrl-C, kill, a closed terminal. Files in progress are completed first."""
+"""Handling of signals that end the program: Ctrl-C, kill, a closed terminal.
+
+Files in progress are completed first.
+"""
 
 import signal
 import sys
@@ -80,7 +83,8 @@ def _handled(handler: Handler) -> Iterator[None]:
     before = {}
     if current_thread() is main_thread():
         for number in SIGNALS:
-            # A signal that is ignored stays ignored: nohup and shells that run jobs in the background rely on it
+            # A signal that is ignored stays ignored: nohup and shells that run jobs in the
+            # background rely on it
             if signal.getsignal(number) != signal.SIG_IGN:
                 before[number] = signal.signal(number, handler)
     try:

@@ -1,4 +1,7 @@
-"""Progress of long work: a callback that the library calls and the caller may display. The default displays nothing."""
+"""Progress of long work: a callback that the library calls and the caller may display.
+
+The default displays nothing.
+"""
 
 from typing import Protocol
 

@@ -1,4 +1,7 @@
-"""Signals while the program starts and exits, when no data can be lost. The module imports only the standard library."""
+"""Signals while the program starts and exits, when no data can be lost.
+
+The module imports only the standard library.
+"""
 
 import os
 import signal
@@ -13,6 +16,7 @@ CODE = 130  # exit code of an interrupted program by the convention of shells: 1
 def exit_on_signals() -> None:
     """End the program without a message on each of SIGNALS from now on."""
     for number in SIGNALS:
-        # A signal that is ignored stays ignored: nohup and shells that run jobs in the background rely on it
+        # A signal that is ignored stays ignored: nohup and shells that run jobs in the background
+        # rely on it
         if signal.getsignal(number) != signal.SIG_IGN:
             signal.signal(number, lambda *_: os._exit(CODE))

@@ -73,7 +73,10 @@ class Fitted:
 
     @property
     def better(self) -> bool:
-        """Whether the fit reduces the error on held-out data; a log with a fault gives wrong numbers."""
+        """Whether the fit reduces the error on held-out data.
+
+        A log with a fault gives wrong numbers.
+        """
         return all(self.after[family] <= before for family, before in self.before.items())
 
 
@@ -195,7 +198,10 @@ def _without(best: Fit, names: Sequence[str]) -> Fit:
 
 
 def _errors(judge: Problem, nominal: Fit, best: Fit) -> tuple[dict[str, float], dict[str, float]]:
-    """Errors of free runs on held-out data before and after the fit. Raises BadInput if the data are too short."""
+    """Errors of free runs on held-out data before and after the fit.
+
+    Raises BadInput if the data are too short.
+    """
     found = errors(
         free_runs(judge, {"before": nominal, "after": best}, judge.recordings, judge.horizon)
     )
@@ -272,6 +278,7 @@ def _error_lines(found: Fitted, on: str) -> list[str]:
         scale, unit = (1.0, "m") if key.endswith("_m") else (57.29578, "deg")
         before, after = found.before[key] * scale, found.after[key] * scale
         lines.append(
-            f"  {key.partition('_')[0]} rms [{unit}]: from particulars {before:.4g}, fitted {after:.4g}"
+            f"  {key.partition('_')[0]} rms [{unit}]: from particulars {before:.4g}, fitted "
+            f"{after:.4g}"
         )
     return lines

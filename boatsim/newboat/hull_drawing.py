@@ -10,7 +10,10 @@ COMMENT = "Drawn by boatsim new from the boat's sizes; forces and masses are in 
 
 
 def hull_xml(boat: Particulars) -> str:
-    """Return the MJCF of a boat, with the origin at the transom in the water surface; x forward, y to port, z up."""
+    """Return the MJCF of a boat, with the origin at the transom in the water surface.
+
+    X forward, y to port, z up.
+    """
     return plain_hull.hull_xml(boat.hull, boat.name, COMMENT, _fittings(boat))
 
 
@@ -38,5 +41,6 @@ def _outboard(boat: Particulars, name: str, mount: Mount) -> Iterator[str]:
         yield geom(f"cowl_{name}", "ellipsoid", at, size, "seen", "dark")
     yield (
         f'<geom name="propeller_{name}" class="seen" type="cylinder" material="dark" '
-        f'pos="{numbers(x, y, -hull.draught)}" euler="0 90 0" size="{radius:.4g} {1.5 * radius:.4g}"/>'
+        f'pos="{numbers(x, y, -hull.draught)}" euler="0 90 0" size="{radius:.4g} '
+        f'{1.5 * radius:.4g}"/>'
     )

@@ -64,7 +64,10 @@ class Particulars:
     rudder: Blade | None = None
 
     def named(self) -> list[tuple[str, Mount]]:
-        """Return the thrusters with names by side, numbered if a side has several; a single one is `motor`."""
+        """Return the thrusters with names by side, numbered if a side has several.
+
+        A single one is `motor`.
+        """
         sides = [_side(mount) for mount in self.thrusters]
         if len(sides) == 1:
             return [("motor", self.thrusters[0])]
@@ -152,7 +155,8 @@ def _mount(option: str, text: str, thrust: float | None, length: float, turns: b
     x, y, *most = _numbers(option, text, 2, 4)
     if max(abs(x), abs(y)) > length:
         raise BadInput(
-            f"{option} {text}; allowed are places within the length, {length:g} m, of the mass centre"
+            f"{option} {text}; allowed are places within the length, {length:g} m, of the mass "
+            "centre"
         )
     if (most and abs(most[0]) < 1e-6) or max(map(abs, most), default=0.0) > 1e8:
         raise BadInput(f"{option} {text}; allowed is a largest thrust of more than 0 N")
@@ -165,7 +169,8 @@ def _blade(text: str, length: float) -> Blade:
     x, *area = _numbers("--rudder", text, 1, 2)
     if not 0.0 < abs(x) <= length:
         raise BadInput(
-            f"--rudder {text}; allowed is a place within the length, {length:g} m, of the mass centre, not 0"
+            f"--rudder {text}; allowed is a place within the length, {length:g} m, of the mass "
+            "centre, not 0"
         )
     if area and not 0.0 < area[0] <= 500.0:
         raise BadInput(f"--rudder {text}; allowed is an area of more than 0 to 500 m^2")

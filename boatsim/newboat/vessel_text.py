@@ -87,8 +87,14 @@ def steer_channel(name: str) -> str:
 def _head(boat: Particulars) -> Iterator[str]:
     hull = boat.hull
     kind = "one hull" if hull.hulls == 1 else "two hulls"
-    yield f"about = {_text(f'{boat.name}: {hull.length:g} m, {hull.mass:g} kg, {kind}, from its particulars')}"
-    yield 'source = "boatsim new: sizes are the owner\'s, each other number follows the rule in its comment"'
+    yield (
+        "about = "
+        f"{_text(f'{boat.name}: {hull.length:g} m, {hull.mass:g} kg, {kind}, from its particulars')}"
+    )
+    yield (
+        "source = \"boatsim new: sizes are the owner's, each other number follows the rule in "
+        'its comment"'
+    )
     yield 'hull = "hull.xml"'
     yield 'freedoms = ["surge", "sway", "yaw"]'
     yield line("length", hull.length, "m", OWNER)
@@ -124,7 +130,10 @@ def _channels(boat: Particulars) -> Iterator[str]:
         yield f"{thrust_channel(name)} = {{ {limits} }}  # [N] {rule}"
         if mount.turns:
             about = "positive pushes to starboard"
-            yield f'{steer_channel(name)} = {{ low = -{MAX_ANGLE}, high = {MAX_ANGLE}, about = "{about}" }}  # [rad] 40 deg'
+            yield (
+                f"{steer_channel(name)} = {{ low = -{MAX_ANGLE}, high = {MAX_ANGLE}, about = "
+                f'"{about}" }}  # [rad] 40 deg'
+            )
     if boat.rudder is not None:
         turns = f'turns = "{"starboard" if boat.rudder.x < 0 else "port"}"'
         yield f"rudder_rad = {{ low = -{MAX_ANGLE}, high = {MAX_ANGLE}, {turns} }}  # [rad] 40 deg"
@@ -211,7 +220,10 @@ def _rudder(boat: Particulars, speed: float) -> Iterator[str]:
 
 
 def _washing(boat: Particulars, blade: Blade) -> str:
-    """Name of the only fixed thruster on the centre line ahead of the rudder; "" if there is none or several."""
+    """Name of the only fixed thruster on the centre line ahead of the rudder.
+
+    "" if there is none or several.
+    """
     ahead = [name for name, m in boat.named() if m.y == 0.0 and not m.turns and m.x > blade.x]
     return ahead[0] if len(ahead) == 1 else ""
 

@@ -50,7 +50,10 @@ def root() -> Path:
 
 
 def names(kind: str) -> list[str]:
-    """Return the names of all content of a kind in the library; scenarios are folder/file or folder/case."""
+    """Return the names of all content of a kind in the library.
+
+    Scenarios are folder/file or folder/case.
+    """
     if kind == "effect":
         return sorted(_effect_files())
     if kind in PACKAGES:
@@ -102,7 +105,9 @@ def all_names(kind: str) -> list[str]:
 
 
 def full_name(kind: str, name: str) -> str:
-    """Return folder/name of a scenario that is given by its bare name; any other name is returned unchanged.
+    """Return folder/name of a scenario that is given by its bare name.
+
+    Any other name is returned unchanged.
 
     Raises:
         BadInput: If several scenarios have the name.
@@ -187,7 +192,10 @@ def _in_working_directory(kind: str, name: str, base_folder: Path | None) -> Pat
 
 
 def _scenarios(home: Path) -> dict[str, Path]:
-    """Name of every scenario in a folder of content, folder/file or folder/case -> its file. Raises BadInput."""
+    """Name of every scenario in a folder of content, folder/file or folder/case -> its file.
+
+    Raises BadInput.
+    """
     found: dict[str, Path] = {}
     for path in sorted((home / KINDS["scenario"]).glob("*/[!_]*.toml")):
         for case in _cases(path, path.stat().st_mtime_ns) or (path.stem,):
@@ -257,7 +265,9 @@ def module_of(kind: str, name: str) -> ModuleType:
 def load_class(
     kind: str, name: str, base_folder: Path | None = None, named: bool = False
 ) -> type[Any]:
-    """Return the class of an effect, measure, sensor or controller; its name is the file's in CamelCase.
+    """Return the class of an effect, measure, sensor or controller.
+
+    Its name is the file's in CamelCase.
 
     Args:
         kind: "effect", "measure", "sensor" or "controller".
@@ -287,7 +297,8 @@ def load_class(
     # All base classes of content have this method
     if not hasattr(found, "from_settings"):
         raise BadInput(
-            f"{module.__file__}: class {camel_case(name)} is no {kind}; it must be derived from the base class of one"
+            f"{module.__file__}: class {camel_case(name)} is no {kind}; it must be derived from "
+            "the base class of one"
         )
     return found
 
@@ -316,7 +327,10 @@ def vessel_address(file: Path) -> str:
 
 
 def _user_module(path: Path, named: bool) -> ModuleType:
-    """Import a user's file. Path and content make the module name, for the file may change while the program runs."""
+    """Import a user's file.
+
+    Path and content make the module name, for the file may change while the program runs.
+    """
     path = path.resolve()
     digest = hashlib.sha256(str(path).encode() + path.read_bytes()).hexdigest()[:16]
     name = f"boatsim_own_{path.stem}_{digest}"

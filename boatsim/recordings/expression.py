@@ -1,4 +1,6 @@
-"""Expressions that compute a column from a signal: `[-] name [* unit or number]... [+ number [* unit]]`.
+"""Expressions that compute a column from a signal: `[-] name [* unit or number].
+
+[+ number [* unit]]`.
 
 The text is parsed, never executed as code.
 """

@@ -25,7 +25,10 @@ CGROUP_LIMITS = (
 
 
 def check_file(path: Path) -> None:
-    """Check the size of a file. Raises BadInput if it is too large or does not fit into the free memory."""
+    """Check the size of a file.
+
+    Raises BadInput if it is too large or does not fit into the free memory.
+    """
     size = path.stat().st_size
     if size > MAX_FILE_BYTES:
         raise file_error(

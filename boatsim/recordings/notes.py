@@ -53,7 +53,10 @@ UNITS = {
 
 
 def unit_of(name: str) -> str:
-    """Return the unit by the suffix of a column or key: `r_radps` -> "rad/s"; "" where it has none."""
+    """Return the unit by the suffix of a column or key: `r_radps` -> "rad/s".
+
+    "" where it has none.
+    """
     for bound in ("_low", "_high"):  # bounds of an adaptive estimate have the unit of the estimate
         name = name.removesuffix(bound)
     _, separator, ending = name.rpartition("_")
@@ -183,7 +186,10 @@ def _is_number(value: object) -> bool:
 
 
 def _collect(mistakes: list[str], read: Callable[[], T], default: T) -> T:
-    """A part of the notes. Its mistake is added to a list, so that one message has all mistakes of a file."""
+    """A part of the notes.
+
+    Its mistake is added to a list, so that one message has all mistakes of a file.
+    """
     try:
         return read()
     except BadInput as error:

@@ -1,4 +1,7 @@
-"""The `Recording` of a vessel: time, named signals with units and notes; read with checks, written as CSV."""
+"""The `Recording` of a vessel: time, named signals with units and notes.
+
+Read with checks, written as CSV.
+"""
 
 import math
 import re
@@ -101,7 +104,10 @@ class Recording:
         return unit_of(name)
 
     def between(self, from_s: float, to_s: float) -> "Recording":
-        """Return the rows with from_s <= t <= to_s [s]; times are not shifted. Raises BadInput if there are none."""
+        """Return the rows with from_s <= t <= to_s [s]; times are not shifted.
+
+        Raises BadInput if there are none.
+        """
         inside = (self.t >= from_s - 1e-9) & (self.t <= to_s + 1e-9)
         if not inside.any():
             message = (
@@ -207,7 +213,8 @@ def read(
     if len(part := recording.used()) < FEWEST_ROWS:
         raise file_error(
             path,
-            f"has {len(part)} rows in its part to use {found.notes.use}; at least {FEWEST_ROWS} needed",
+            f"has {len(part)} rows in its part to use {found.notes.use}; at least {FEWEST_ROWS} "
+            "needed",
         )
     return recording
 
@@ -237,7 +244,10 @@ def read_unchecked(
 
 
 def write_csv(recording: Recording, path: Path | str) -> None:
-    """Write all signals with 12 digits, t_s first; equal recordings give equal files. Raises OSError."""
+    """Write all signals with 12 digits, t_s first; equal recordings give equal files.
+
+    Raises OSError.
+    """
     with replacing(path) as temporary, temporary.open("w", encoding="utf-8", newline="") as file:
         file.write(csv_header(recording))
         for start in range(0, len(recording), 10_000):  # limits the memory of the text
@@ -310,8 +320,10 @@ def _renamed(
             absent.append(f"{ours} = {words!r}")
             if near := get_close_matches(found.signal, list(raw.columns), n=1, cutoff=MISSPELT):
                 raise BadInput(
-                    f"{raw.path} by its recording.toml: columns.{ours} = {words!r}, but there is no column "
-                    f"{found.signal!r}; did you mean {near[0]!r}? (there are: {', '.join(raw.columns)[:200]})"
+                    f"{raw.path} by its recording.toml: columns.{ours} = {words!r}, but there is "
+                    "no column "
+                    f"{found.signal!r}; did you mean {near[0]!r}? (there are: "
+                    f"{', '.join(raw.columns)[:200]})"
                 )
     used = {e.signal for e in made.values()}
     kept = {n: v for n, v in raw.columns.items() if n not in used and n not in made}
@@ -405,7 +417,10 @@ def _check_overlap(
     if posed.any() and commanded.any() and not (posed & commanded).any():
         t = raw.columns["t_s"]
         spans = [f"{t[rows][0]:g} to {t[rows][-1]:g} s" for rows in (posed, commanded)]
-        message = f"poses ({spans[0]}) and commands ({spans[1]}) have no row in common; every row needs both"
+        message = (
+            f"poses ({spans[0]}) and commands ({spans[1]}) have no row in common; every "
+            "row needs both"
+        )
         raise file_error(raw.path, message, raw.rows[int(np.argmax(commanded))], "t_s")
 
 
@@ -418,13 +433,19 @@ def _check_time(raw: Raw) -> None:
         raise file_error(raw.path, message, raw.rows[index], "t_s")
     if (apart := np.diff(t) > MAX_GAP).any():
         index = int(np.argmax(apart)) + 1
-        message = f"{t[index] - t[index - 1]:g} s after the row before, at most {MAX_GAP:g} s are allowed; is it in seconds?"
+        message = (
+            f"{t[index] - t[index - 1]:g} s after the row before, at most {MAX_GAP:g} s "
+            "are allowed; is it in seconds?"
+        )
         raise file_error(raw.path, message, raw.rows[index], "t_s")
 
 
 def _check_units(raw: Raw) -> None:
     for name, index in units.columns_in_degrees(raw.columns).items():
-        message = f"{raw.columns[name][index]:g} looks like degrees; allowed are radians ({unit_of(name)})"
+        message = (
+            f"{raw.columns[name][index]:g} looks like degrees; allowed are radians "
+            f"({unit_of(name)})"
+        )
         raise file_error(raw.path, message, raw.rows[index], name)
 
 

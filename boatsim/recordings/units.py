@@ -1,4 +1,7 @@
-"""Detection of angles recorded in degrees, by their motion; the range of a heading does not show its unit."""
+"""Detection of angles recorded in degrees, by their motion.
+
+The range of a heading does not show its unit.
+"""
 
 import math
 from collections.abc import Mapping
@@ -9,7 +12,8 @@ from numpy.typing import NDArray
 from boatsim.physics.base import Array
 
 DEGREES = 180.0 / math.pi
-# Factor by which a ratio may differ from its expected value, for sensors have delay, drift and scale errors
+# Factor by which a ratio may differ from its expected value, for sensors have delay, drift and
+# scale errors
 RATIO_TOLERANCE = 1.5
 # [rad/s] sustained turning that no vessel reaches; 4 deg/s is a gentle turn of a small boat
 MAX_TURNING = 4.0
@@ -133,7 +137,10 @@ def _rows_in(t: Array, seconds: float) -> int:
 
 
 def _ratio(known: Array, asked: Array) -> float:
-    """Ratio of the changes of `asked` to those of `known` over windows; nan where they are not correlated."""
+    """Ratio of the changes of `asked` to those of `known` over windows.
+
+    Nan where they are not correlated.
+    """
     for parts in (64, 16, 4):  # short windows have most information, long ones average the noise
         rows = max(1, len(known) // parts)
         a, b = known[rows:] - known[:-rows], asked[rows:] - asked[:-rows]

@@ -40,7 +40,7 @@ class Bindings:
     effects: tuple[Effect, ...] = ()
 
     # Channels
-    # -----------------------------------------------------------------------------------------------
+    # ----------------------------------------------------------------------------------------------
 
     @property
     def inputs(self) -> tuple[str, ...]:
@@ -135,10 +135,12 @@ class Bindings:
         return unknown_name(f"{self.name}: command", name, self.commands)
 
     # Effects
-    # -----------------------------------------------------------------------------------------------
+    # ----------------------------------------------------------------------------------------------
 
     def effect(self, name: str) -> Effect | None:
-        """Return the effect of that name, or the only effect of that type; None where there is none or several.
+        """Return the effect of that name, or the only effect of that type.
+
+        None where there is none or several.
 
         Args:
             name: Name of an effect ("port"), or of a type of effects as in `use` ("thruster").
@@ -224,7 +226,8 @@ def check_bindings(vessel: Bindings, label: str) -> None:
         _check_roles(vessel, effect, what)
         if type(effect).sees_held and not effect.still_as_on(vessel):
             raise BadInput(
-                f"{what} stands before an effect by which a channel acts; move it behind all of these"
+                f"{what} stands before an effect by which a channel acts; move it behind all of "
+                "these"
             )
         if isinstance(effect, Channel):
             _check_channel(vessel, effect, what)
@@ -254,7 +257,8 @@ def _check_channel(vessel: Bindings, effect: Channel, what: str) -> None:
             raise BadInput(unknown_name(f"{what}: channel", name, vessel.commands))
     if effect.fed_by and len(effect.fed_by) != len(effect.on):
         raise BadInput(
-            f"{what}: fed_by names {len(effect.fed_by)} channels, on {len(effect.on)}; each needs one"
+            f"{what}: fed_by names {len(effect.fed_by)} channels, on {len(effect.on)}; each "
+            "needs one"
         )
 
 

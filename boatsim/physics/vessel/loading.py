@@ -59,7 +59,9 @@ def load(
 def merged_loads(
     name: str, loads: Sequence[str], more: Sequence[str], base_folder: Path | None = None
 ) -> list[str]:
-    """Return load conditions with others added; those that exclude one of the added ones are removed.
+    """Return load conditions with others added.
+
+    Those that exclude one of the added ones are removed.
 
     Args:
         name: Name or path of the vessel.

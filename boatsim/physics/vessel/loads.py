@@ -29,7 +29,8 @@ def check_compatible(names: Sequence[str], loads: Loads, label: str) -> None:
     for first, second in combinations(dict.fromkeys(names), 2):
         for key, (one, other) in conflicts(loads[first], loads[second]).items():
             raise BadInput(
-                f"{label}: loads {first} ({key} = {one}) and {second} ({key} = {other}) exclude each other"
+                f"{label}: loads {first} ({key} = {one}) and {second} ({key} = {other}) exclude "
+                "each other"
             )
 
 

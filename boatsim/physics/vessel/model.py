@@ -127,7 +127,7 @@ class Vessel(Bindings):
     spread: Spread | None = field(default=None, compare=False)
 
     # Construction
-    # -----------------------------------------------------------------------------------------------
+    # ----------------------------------------------------------------------------------------------
 
     @classmethod
     def from_file(cls, content: VesselFile, name: str, file: Path, folder: Path) -> Self:
@@ -210,7 +210,7 @@ class Vessel(Bindings):
         return dataclasses.replace(vessel, hull_xml=text)._rebuilt(effects)
 
     # Changes
-    # -----------------------------------------------------------------------------------------------
+    # ----------------------------------------------------------------------------------------------
 
     def replace(self, **changes: Any) -> Self:
         """Return the vessel with other values of its fields, such as `length` or `body`.
@@ -299,7 +299,8 @@ class Vessel(Bindings):
         except (ArithmeticError, ValueError) as error:
             # A rule that divides by zero, or takes the root of a negative number
             raise BadInput(
-                f"{self.name}: {effect.name}: a parameter can not be computed from the vessel ({error})"
+                f"{self.name}: {effect.name}: a parameter can not be computed from the vessel "
+                f"({error})"
             ) from None
         if not isinstance(effect, Release):
             return dataclasses.replace(self, effects=(*self.effects, effect))
@@ -370,14 +371,18 @@ class Vessel(Bindings):
             raise BadInput(f"{label}: body.pitch_inertia is missing; {self.name} is free in pitch")
         if self.body.centre[1] and "roll" in self.dof and not tilts(frozenset(self.dof)):
             raise BadInput(
-                f"{label}: body.centre = {self.body.centre}; allowed is a height of 0 where pitch is held"
+                f"{label}: body.centre = {self.body.centre}; allowed is a height of 0 where "
+                "pitch is held"
             )
 
     # Use
-    # -----------------------------------------------------------------------------------------------
+    # ----------------------------------------------------------------------------------------------
 
     def limits(self) -> dict[str, tuple[float, float]]:
-        """Return the allowed range (low, high) of each input. That of a measured channel is unbounded."""
+        """Return the allowed range (low, high) of each input.
+
+        That of a measured channel is unbounded.
+        """
         limits = {name: (channel.low, channel.high) for name, channel in self.commands.items()}
         return limits | dict.fromkeys(self.measured, (-inf, inf))
 

@@ -63,7 +63,10 @@ def _hull_parts(hull: Hull) -> Iterator[str]:
     half_height = 0.5 * (high + hull.draught)
     yaw_inertia = inertia.yaw(hull).value
     diagonal = numbers(yaw_inertia, yaw_inertia, yaw_inertia)
-    yield f'<inertial pos="{numbers(0.5 * length, 0, 0)}" mass="{hull.mass:g}" diaginertia="{diagonal}"/>'
+    yield (
+        f'<inertial pos="{numbers(0.5 * length, 0, 0)}" mass="{hull.mass:g}" '
+        f'diaginertia="{diagonal}"/>'
+    )
     size = (0.5 * length, 0.5 * hull.beam, half_height)
     yield geom("collision", "box", (0.5 * length, 0, middle), size, "touch")
     if hull.hulls == 1:

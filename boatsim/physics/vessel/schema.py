@@ -36,7 +36,9 @@ OVERRIDES = ("ambient", "horizon", "rate", "noise")
 
 
 class Body(Table):
-    """Rigid body. Inertia is about the mass centre, which is the origin of motion unless `centre` is given.
+    """Rigid body.
+
+    Inertia is about the mass centre, which is the origin of motion unless `centre` is given.
 
     Attributes:
         mass: Mass [kg].
@@ -83,7 +85,9 @@ class CommandChannel(Table):
 
 
 class MeasuredChannel(Table):
-    """A measured quantity of the environment, such as the wind. It is an input of the model but not a command.
+    """A measured quantity of the environment, such as the wind.
+
+    It is an input of the model but not a command.
 
     Attributes:
         neutral: Value in a simulation whose scenario gives none.
@@ -154,7 +158,9 @@ class ManoeuvringTable(Table):
 
 
 class VesselFile(Table):
-    """Content of a vessel.toml. `Vessel` has the descriptions of the keys that it shares with this table.
+    """Content of a vessel.toml.
+
+    `Vessel` has the descriptions of the keys that it shares with this table.
 
     Attributes:
         based_on: Vessel whose folder holds the hull and the effects' own files; set in a patched

@@ -33,7 +33,10 @@ EPOCH_UNITS = (1.0, 1e-3, 1e-6, 1e-9)  # [s] units in which times since 1970 are
 
 
 def clock_of(columns: Mapping[str, Array]) -> str | None:
-    """Return the name of the time column by the names; None if there is none whose values increase."""
+    """Return the name of the time column by the names.
+
+    None if there is none whose values increase.
+    """
     for name, values in columns.items():
         plain = re.sub(r"[\s.]+", "_", ENDING.sub("", name.lower())) or "t"
         finite = values[np.isfinite(values)]
@@ -61,7 +64,10 @@ def seconds(name: str, values: Array) -> Array:
 
 
 def dates(cells: Sequence[str]) -> Array | None:
-    """Return the times (N,) [s] since 1970 of ISO 8601 dates, UTC without a zone; None if some cells are not dates."""
+    """Return the times (N,) [s] since 1970 of ISO 8601 dates, UTC without a zone.
+
+    None if some cells are not dates.
+    """
     found = np.full(len(cells), np.nan)
     for i, cell in enumerate(cells):
         if text := cell.strip():

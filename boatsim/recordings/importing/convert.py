@@ -125,7 +125,8 @@ def _signal(work: _Work, key: str, text: str) -> tuple[Signal, Expression]:
         near = get_close_matches(found.signal, list(work.log.signals), n=1, cutoff=0.5)
         hint = f"; did you mean {near[0]!r}?" if near else ""
         raise BadInput(
-            f"{work.file}: {key} = {text[:80]!r}: {work.log.path.name} has no signal {found.signal!r}{hint} (it has "
+            f"{work.file}: {key} = {text[:80]!r}: {work.log.path.name} has no signal "
+            f"{found.signal!r}{hint} (it has "
             f"{len(work.log.signals)}; boatsim import {work.log.path.name} lists them)"
         )
     signal = work.log.signals[found.signal]
@@ -145,7 +146,8 @@ def _column(work: _Work, name: str, what: str | Range) -> tuple[Array, Array]:
     ends = sorted([(what.low, what.least), (what.neutral, 0.0), (what.high, what.most)])
     if beyond := int(np.sum((values < ends[0][0]) | (values > ends[2][0]))):
         work.remark(
-            f"{name}: {beyond} of {len(values)} samples are outside {ends[0][0]:g} to {ends[2][0]:g} and are set to "
+            f"{name}: {beyond} of {len(values)} samples are outside {ends[0][0]:g} to "
+            f"{ends[2][0]:g} and are set to "
             "the limit"
         )
     of_signal, of_column = np.array(ends).T
@@ -157,19 +159,22 @@ def _add_position(work: _Work, position: Position) -> None:
     east, how_east = _signal(work, "position.longitude", position.longitude)
     if len(north.t) != len(east.t) or not np.array_equal(north.t, east.t, equal_nan=True):
         raise BadInput(
-            f"{work.file}: position: latitude and longitude are of two streams; allowed are those of one"
+            f"{work.file}: position: latitude and longitude are of two streams; allowed are "
+            "those of one"
         )
     t, lat, lon = north.t, how_north.of(north.values), how_east.of(east.values)
     there = np.isfinite(t) & np.isfinite(lat) & np.isfinite(lon)
     if there.any() and max(np.abs(lat[there]).max() / 0.5, np.abs(lon[there]).max()) > np.pi + 1e-9:
         largest = float(np.abs(lat[there]).max())
         raise BadInput(
-            f"{work.file}: position: latitudes up to {largest:g} rad; are they in degrees? write `* deg` behind them"
+            f"{work.file}: position: latitudes up to {largest:g} rad; are they in degrees? write "
+            "`* deg` behind them"
         )
     nowhere = there & (lat == 0.0) & (lon == 0.0)
     if nowhere.any():
         work.remark(
-            f"{int(nowhere.sum())} fixes at latitude and longitude 0, before satellites were found, are left out"
+            f"{int(nowhere.sum())} fixes at latitude and longitude 0, before satellites were "
+            "found, are left out"
         )
     there &= ~nowhere
     inside = there & _in_use(work, t)
@@ -208,7 +213,8 @@ def _drop_repeats(work: _Work) -> None:
         repeated = repeated_rows(np.column_stack([c.given.values for c in there]))
         if repeated.any():
             work.remark(
-                f"{', '.join(names)}: {int(repeated.sum())} of {len(repeated)} samples repeat the one before and are "
+                f"{', '.join(names)}: {int(repeated.sum())} of {len(repeated)} samples repeat "
+                "the one before and are "
                 "not measurements; they are left empty"
             )
             for name, c in zip(names, there, strict=True):
@@ -236,7 +242,8 @@ def _clock(work: _Work) -> tuple[Array, float]:
     if work.map.rate:
         if (end - begin) * work.map.rate > MAX_ROWS:
             raise BadInput(
-                f"{work.file}: rate = {work.map.rate:g} Hz over {end - begin:g} s is more than {MAX_ROWS:,} rows"
+                f"{work.file}: rate = {work.map.rate:g} Hz over {end - begin:g} s is more than "
+                f"{MAX_ROWS:,} rows"
             )
         rows = begin + np.arange(0.0, max(end - begin, 0.0) + 1e-9, 1.0 / work.map.rate)
     else:
@@ -246,13 +253,15 @@ def _clock(work: _Work) -> tuple[Array, float]:
         span = f"{end - begin:.3g} s" if end > begin else "no time at all"
         raise file_error(
             work.log.path,
-            f"poses and commands have {span} in common, in which the fastest has {len(rows)} samples; at least "
+            f"poses and commands have {span} in common, in which the fastest has {len(rows)} "
+            "samples; at least "
             f"{FEWEST_ROWS} are needed",
         )
     _remark_rates(work, rows)
     if work.map.rate:
         work.remark(
-            f"measurements are put into the nearest row, up to {0.5 / work.map.rate:.3g} s from its own time"
+            f"measurements are put into the nearest row, up to {0.5 / work.map.rate:.3g} s from "
+            "its own time"
         )
         return rows, 1.0 / work.map.rate
     near = ROW_TOLERANCE * float(np.median(np.diff(rows)))
@@ -276,7 +285,8 @@ def _remark_rates(work: _Work, rows: Array) -> None:
             ).append(name)
     for times, names in slow.items():
         work.remark(
-            f"{', '.join(names)}: measured {times} times a second; the other rows, {rate:.3g} a second, are empty"
+            f"{', '.join(names)}: measured {times} times a second; the other rows, {rate:.3g} a "
+            "second, are empty"
         )
     for what, names in quick.items():
         work.remark(
@@ -288,7 +298,8 @@ def _remark_held(work: _Work, rows: Array) -> None:
     for name, c in work.columns.items():
         if c.held and (longest := longest_hold(rows, c.given)):
             work.remark(
-                f"{name} is held for up to {longest:.3g} s without a new value; was it still in force?"
+                f"{name} is held for up to {longest:.3g} s without a new value; was it still in "
+                "force?"
             )
 
 
@@ -335,7 +346,8 @@ def _complete_rows(
 def _remark_times(work: _Work, rows: Array) -> None:
     if YEAR_2000 < rows[0] < YEAR_2100:
         work.remark(
-            f"t_s = 0 is {datetime.fromtimestamp(float(rows[0]), UTC).isoformat(timespec='milliseconds')}"
+            "t_s = 0 is "
+            f"{datetime.fromtimestamp(float(rows[0]), UTC).isoformat(timespec='milliseconds')}"
         )
     elif isfinite(work.begin):
         work.remark(f"t_s = 0 is {rows[0] - work.begin:.3f} s after the log begins")

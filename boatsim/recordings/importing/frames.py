@@ -42,7 +42,10 @@ def radii(latitude: float) -> tuple[float, float]:
 
 
 def angles(w: Array, x: Array, y: Array, z: Array) -> tuple[Array, Array, Array]:
-    """Return roll, pitch and yaw, each (N,) [rad], of quaternions; the rotations are in the order yaw, pitch, roll."""
+    """Return roll, pitch and yaw, each (N,) [rad], of quaternions.
+
+    The rotations are in the order yaw, pitch, roll.
+    """
     roll = np.arctan2(2.0 * (w * x + y * z), 1.0 - 2.0 * (x * x + y * y))
     pitch = np.arcsin(np.clip(2.0 * (w * y - z * x), -1.0, 1.0))
     return roll, pitch, np.arctan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))

@@ -112,7 +112,10 @@ def quiet() -> Iterator[None]:
 
 
 def open_log(path: Path) -> Log:
-    """Return a log, read by the reader of its suffix; implausible numbers are nan. Raises BadInput."""
+    """Return a log, read by the reader of its suffix; implausible numbers are nan.
+
+    Raises BadInput.
+    """
     found = reader_for(path)(path)
     if not found.signals:
         raise file_error(path, "has no signals: nothing in it has numbers and times")

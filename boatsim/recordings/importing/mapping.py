@@ -89,7 +89,10 @@ class Map(Table):
             if isinstance(value, dict):
                 checked(Range, value, f"columns.{name}")
             elif not isinstance(value, str | Range):
-                allowed = '"[-] signal [* unit or number] [+ number]" or { signal, low, neutral, high, least, most }'
+                allowed = (
+                    '"[-] signal [* unit or number] [+ number]" or { signal, low, neutral, '
+                    "high, least, most }"
+                )
                 raise ValueError(f"{name} is {value!r}; allowed is {allowed}")
         return found
 
@@ -98,7 +101,8 @@ class Map(Table):
         taken = COMPUTED if self.position else COMPUTED[:1]
         if twice := [name for name in self.columns if name in taken]:
             raise ValueError(
-                f"columns.{twice[0]} is what {'time' if twice[0] == 't_s' else 'position'} makes; leave it out"
+                f"columns.{twice[0]} is what {'time' if twice[0] == 't_s' else 'position'} "
+                "makes; leave it out"
             )
         if self.use and not self.use[0] < self.use[1]:
             raise ValueError("use must be [from_s, to_s], the second larger")

@@ -193,7 +193,8 @@ def _poses(
     enu = log.frame == "ENU"
     if enu and not pair and best.get("x_m"):
         lines.append(
-            "# x east, y north, z up, hull x forward, y port, as in ROS; recordings have x north, y east, angles clockwise"
+            "# x east, y north, z up, hull x forward, y port, as in ROS; recordings have x "
+            "north, y east, angles clockwise"
         )
     if not log.frame and best.get("psi_rad"):
         lines.append(
@@ -210,7 +211,8 @@ def _poses(
             # A compass heading is clockwise from north
             sign = quarter = ""
         lines.append(
-            f"{'# ' if held else ''}{column} = {_text(sign + _expression(g) + quarter)}{_note(g, best[source])}"
+            f"{'# ' if held else ''}{column} = "
+            f"{_text(sign + _expression(g) + quarter)}{_note(g, best[source])}"
         )
         used += [] if held else [g]
     if "psi_rad" not in {*best, *known}:
@@ -269,7 +271,8 @@ def _commands(
     for drive in drives:
         if drive.name not in chosen:
             lines.append(
-                f'# {drive.name} = "..."  # {drive.low:g} to {drive.high:g}; no signal has a similar name'
+                f'# {drive.name} = "..."  # {drive.low:g} to {drive.high:g}; no signal has a '
+                "similar name"
             )
             continue
         g, why = chosen[drive.name]
@@ -409,7 +412,10 @@ def _likeness(drive: Drive, g: Guess) -> float:
 
 
 def _fits(drive: Drive, g: Guess) -> bool:
-    """Whether channel and signal may be of one kind: angle, rate or force; pulses and plain numbers fit any kind."""
+    """Whether channel and signal may be of one kind: angle, rate or force.
+
+    Pulses and plain numbers fit any kind.
+    """
     kinds = (_kind_of(unit_of(drive.name)), _kind_of(_unit(g)))
     return "" in kinds or kinds[0] == kinds[1]
 
@@ -449,7 +455,10 @@ def _drive_line(name: str, g: Guess, drive: Drive | None, sense: float = 0.0) ->
         note += f"; {_safe(g.signal.about)}"
     turned = sense < -MIN_CORRELATION
     if turned:
-        note += f"; CHECK: sign inverted, for the boat turns to the opposite side (correlation {sense:+.2f})"
+        note += (
+            "; CHECK: sign inverted, for the boat turns to the opposite side (correlation "
+            f"{sense:+.2f})"
+        )
     scale = _scale(g, values, drive)
     if scale is None:
         made = g.name if g.name == name else _converted(g, name)
@@ -464,13 +473,19 @@ def _drive_line(name: str, g: Guess, drive: Drive | None, sense: float = 0.0) ->
         note += (
             f"; CHECK: full helm is assumed to be {np.degrees(max(abs(low), abs(high))):.0f} deg"
         )
-    return f"{_key(name)} = {{ signal = {_text(g.name)}, {given}, least = {low:g}, most = {high:g} }}{note}"
+    return (
+        f"{_key(name)} = {{ signal = {_text(g.name)}, {given}, least = {low:g}, most = "
+        f"{high:g} }}{note}"
+    )
 
 
 def _scale(
     g: Guess, values: "np.ndarray[tuple[int, ...], np.dtype[np.float64]]", drive: Drive | None
 ) -> tuple[tuple[float, float, float], str] | None:
-    """Low, neutral and high of a signal in proportion to full command, and their source; None for another signal."""
+    """Low, neutral and high of a signal in proportion to full command, and their source.
+
+    None for another signal.
+    """
     share = "in proportion to full command"
     if drive and g.name == drive.name:
         return None
@@ -480,7 +495,10 @@ def _scale(
         return USUAL_PULSE, f"usual pulses of 1100 to 1900 us are assumed, {share}"
     largest = float(np.max(np.abs(values)))
     if drive and _turns_a_screw(drive, g):
-        why = "CHECK: full thrust is assumed at the most revolutions here; thrust grows with their square"
+        why = (
+            "CHECK: full thrust is assumed at the most revolutions here; thrust grows with "
+            "their square"
+        )
         return (-largest, 0.0, largest), why
     if drive is None or unit_of(drive.name) and g.word and g.word != "percent":
         return None

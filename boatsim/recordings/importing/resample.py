@@ -37,7 +37,10 @@ class Samples:
 
 
 def samples(t: Array, values: Array) -> Samples:
-    """Return the samples sorted by time, without nan; of two at one time the later logged is kept."""
+    """Return the samples sorted by time, without nan.
+
+    Of two at one time the later logged is kept.
+    """
     finite = np.isfinite(t) & np.isfinite(values)
     t, values = t[finite], values[finite]
     order = np.argsort(t, kind="stable")
@@ -61,7 +64,10 @@ def _distance(rows: Array, t: Array) -> Array:
 
 
 def placed(rows: Array, given: Samples, near: float) -> Array:
-    """Return the nearest sample of each row (N,); nan where none is within `near` [s] or nearest to this row."""
+    """Return the nearest sample of each row (N,).
+
+    Nan where none is within `near` [s] or nearest to this row.
+    """
     found = np.full(len(rows), np.nan)
     if not len(given.t) or len(rows) < 2:
         return found
@@ -74,7 +80,9 @@ def placed(rows: Array, given: Samples, near: float) -> Array:
 
 
 def held(rows: Array, given: Samples) -> Array:
-    """Return the mean until the next row (N,) of a signal that holds each sample until the next; nan before the first.
+    """Return the mean until the next row (N,) of a signal that holds each sample until the next.
+
+    Nan before the first.
 
     Without a new sample between two rows this is the last sample. The mean is used because commands
     of a recording hold from row to row: a command sent just after a row would otherwise be delayed

@@ -72,7 +72,10 @@ class Topic:
     columns: dict[str, array] = field(default_factory=dict)  # type: ignore[type-arg]
 
     def add(self, when: float, data: bytes, room: Room) -> None:
-        """Add a message that was logged at `when` [s]. Raises ValueError if it does not fit its definition."""
+        """Add a message that was logged at `when` [s].
+
+        Raises ValueError if it does not fit its definition.
+        """
         found = self.decode(data)
         rows = len(self.logged)
         for name, value in found.items():
@@ -270,7 +273,8 @@ def log_of(path: Path, topics: Mapping[str, Topic], remarks: list[str]) -> Log:
                 t = own
             else:
                 remarks.append(
-                    f"{path}: the stamps of {name} are of another clock; the times of logging are used"
+                    f"{path}: the stamps of {name} are of another clock; the times of logging "
+                    "are used"
                 )
         units = {column: _unit_of(column) for column in columns}
         signals |= signals_of(name, t, columns, units)

@@ -56,7 +56,8 @@ WORDS = {  # unit as formats write it -> unit in expressions; "" is the SI unit
     "µs": "us",
 }
 NOT_MEASURED = set(  # words of set points, errors and properties of signals
-    "des desired target setpoint sp ref reference cmd command commanded error err innov innovation bias cov covariance "
+    "des desired target setpoint sp ref reference cmd command commanded error err innov "
+    "innovation bias cov covariance "
     "var variance std sd accuracy reset resets delta test ratio valid status flags timeout home origin".split()
 )
 PLACES = set("pos position local pose odom odometry location".split())
@@ -65,7 +66,8 @@ MOTIONS = set(
 )
 SATELLITES = set("gps gnss fix navsat rmc gga gll".split())
 OUTPUTS = set(
-    "rcou output outputs actuator actuators servo cmd command commanded thrust thruster thrusters throttle rudder "
+    "rcou output outputs actuator actuators servo cmd command commanded thrust thruster "
+    "thrusters throttle rudder "
     "steer steering motor motors pwm nozzle azimuth prop propeller rpm rps shaft esc helm delta jet".split()
 )
 SENSED = set("actual measured feedback fb telemetry esc state rsa sensed".split())

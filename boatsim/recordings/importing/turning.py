@@ -11,7 +11,8 @@ from boatsim.physics.base import Array
 from boatsim.recordings.importing.signal_classification import Guess
 
 MIN_CORRELATION = 0.3  # with the turning, of a signal that steers
-# By which the score of the helm (correlation with turning less that with speed) must exceed all others
+# By which the score of the helm (correlation with turning less that with speed) must exceed all
+# others
 MIN_LEAD = 0.2
 DELAYS = (0.0, 0.3, 0.6, 1.0, 1.5, 2.5, 4.0)  # [s] between helm and turning of small boats
 SPEED_WINDOW = 1.0  # [s] over which a speed is computed
@@ -83,7 +84,10 @@ def _speed(best: Mapping[str, Sequence[Guess]]) -> tuple[Array, Array]:
 
 
 def _followed(signals: Sequence[tuple[Guess, float]], t: Array, values: Array) -> float:
-    """Correlation of a weighted sum of signals with a signal that follows, at the best delay; 0 without data."""
+    """Correlation of a weighted sum of signals with a signal that follows, at the best delay.
+
+    0 without data.
+    """
     if len(t) < 2 or any(len(g.signal.t) < 2 for g, _ in signals):
         return 0.0
     begin = max(float(t[0]), *(float(np.nanmin(g.signal.t)) for g, _ in signals)) + DELAYS[-1]

@@ -1,4 +1,7 @@
-"""Reader of ArduPilot's `.BIN`: self-describing messages; the log's parameters give the functions of outputs."""
+"""Reader of ArduPilot's `.BIN`: self-describing messages.
+
+The log's parameters give the functions of outputs.
+"""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -59,7 +62,10 @@ STICK, OUTPUT = "pilot's stick", "output"
 
 
 class _Formats(dict[int, Any]):
-    """Formats of messages by number. A format without length is refused, for the library would loop endlessly."""
+    """Formats of messages by number.
+
+    A format without length is refused, for the library would loop endlessly.
+    """
 
     def __setitem__(self, number: int, format: Any) -> None:
         if format.len <= 0:

@@ -14,7 +14,10 @@ MAX_CHUNK = 256_000_000  # [bytes] of a chunk when it is unpacked
 
 
 def read(path: Path) -> Log:
-    """Return all numbers of all topics in ROS messages or JSON: `/odom.pose.pose.position.x`. Raises BadInput."""
+    """Return all numbers of all topics in ROS messages or JSON: `/odom.pose.pose.position.x`.
+
+    Raises BadInput.
+    """
     try:
         import lz4.frame  # noqa: F401  # a dependency of mcap
         import mcap.stream_reader  # noqa: F401
@@ -105,7 +108,8 @@ def _decoder(
     if channel.message_encoding == "json":
         return _numbers_of_json
     remarks.append(
-        f"{path}: {channel.topic} is not read: its messages are {' '.join(encoding).strip() or 'unknown'}"
+        f"{path}: {channel.topic} is not read: its messages are "
+        f"{' '.join(encoding).strip() or 'unknown'}"
     )
     return None
 

@@ -1,4 +1,7 @@
-"""Reader of NMEA 0183: sentences of instruments; the time of day of one holds for the sentences after it."""
+"""Reader of NMEA 0183: sentences of instruments.
+
+The time of day of one holds for the sentences after it.
+"""
 
 import re
 from collections.abc import Callable
@@ -45,7 +48,10 @@ DAY = 86400.0  # [s]
 
 
 def read(path: Path) -> Log:
-    """Return the numbers of sentences about motion and drives: `RMC.latitude`, `HDT.heading`. Raises BadInput."""
+    """Return the numbers of sentences about motion and drives: `RMC.latitude`, `HDT.heading`.
+
+    Raises BadInput.
+    """
     try:
         import pynmea2
     except ImportError as error:
@@ -53,7 +59,8 @@ def read(path: Path) -> Log:
     if path.stat().st_size > MAX_TEXT_BYTES:
         raise file_error(
             path,
-            f"has {path.stat().st_size:,} bytes; at most {MAX_TEXT_BYTES:,} of text are read: cut the log",
+            f"has {path.stat().st_size:,} bytes; at most {MAX_TEXT_BYTES:,} of text are read: "
+            "cut the log",
         )
     lines = path.read_bytes().decode("ascii", "replace").splitlines()
     kept, bad = _sentences(path, lines, pynmea2.parse)
@@ -70,11 +77,13 @@ def read(path: Path) -> Log:
     if counted is None:
         raise file_error(
             path,
-            "no sentence has a time (GGA, RMC, GLL, or a logger's stamp in front); a time is needed",
+            "no sentence has a time (GGA, RMC, GLL, or a logger's stamp in front); a time is "
+            "needed",
         )
     if counted:
         remarks.append(
-            f"{path}: {counted} of {len(t)} sentences have no time; each has the time of the last sentence "
+            f"{path}: {counted} of {len(t)} sentences have no time; each has the time of the "
+            "last sentence "
             "with one, several of one name are spread evenly"
         )
     return Log(path, _signals(kept, t), "NED", tuple(remarks))

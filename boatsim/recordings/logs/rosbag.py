@@ -99,7 +99,8 @@ def _fill(path: Path, bag: Any, topics: dict[str, Topic], remarks: list[str]) ->
                 topics[connection.topic].add(when * 1e-9, bytes(data), room)
             except ValueError as error:
                 remarks.append(
-                    f"{path}: messages of {connection.topic} that can not be read are left out ({error})"
+                    f"{path}: messages of {connection.topic} that can not be read are left out "
+                    f"({error})"
                 )
 
 

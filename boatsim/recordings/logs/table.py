@@ -149,7 +149,10 @@ def _head(path: Path) -> _Head:
 
 
 def _read_fast(path: Path, head: _Head) -> dict[str, Array] | None:
-    """The columns of a table, read by native code; None if some rows differ from the header in length."""
+    """The columns of a table, read by native code.
+
+    None if some rows differ from the header in length.
+    """
     import pyarrow as pa
     from pyarrow import csv as arrow
 
@@ -193,7 +196,8 @@ def _read_line_by_line(path: Path, head: _Head) -> tuple[dict[str, Array], tuple
     if path.stat().st_size > MAX_TEXT_BYTES:
         raise file_error(
             path,
-            f"has rows that differ from its header, and {path.stat().st_size:,} bytes; at most {MAX_TEXT_BYTES:,} of such a "
+            f"has rows that differ from its header, and {path.stat().st_size:,} bytes; at most "
+            f"{MAX_TEXT_BYTES:,} of such a "
             "table are read",
         )
     lines = enumerate(_text(path, path.read_bytes()).splitlines())

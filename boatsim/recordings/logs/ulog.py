@@ -67,7 +67,10 @@ class _ProgressingFile:
 
 
 def read(path: Path) -> Log:
-    """Return all numbers of all topics: `vehicle_local_position.x`, `actuator_outputs.output[0]`. Raises BadInput."""
+    """Return all numbers of all topics: `vehicle_local_position.x`, `actuator_outputs.output[0]`.
+
+    Raises BadInput.
+    """
     try:
         from pyulog import ULog
     except ImportError as error:

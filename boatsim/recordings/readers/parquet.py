@@ -45,7 +45,10 @@ def read(path: Path) -> Raw:
 
 
 def _check(path: Path, about: "FileMetaData") -> None:
-    """Check the size by the metadata, for repeated values are compressed in the file. Raises BadInput."""
+    """Check the size by the metadata, for repeated values are compressed in the file.
+
+    Raises BadInput.
+    """
     check_shape(path, about.num_columns)
     check_shape(path, about.num_columns, about.num_rows * about.num_columns)
     groups = map(about.row_group, range(about.num_row_groups))
@@ -53,7 +56,10 @@ def _check(path: Path, about: "FileMetaData") -> None:
 
 
 def _cells(column: "ChunkedArray") -> list[object]:
-    """Cells of a column that is not a column of plain numbers; "" where empty, texts cut to the length of numbers."""
+    """Cells of a column that is not a column of plain numbers.
+
+    "" where empty, texts cut to the length of numbers.
+    """
     cells: list[object] = []
     for chunk in column.chunks:
         if hasattr(chunk, "dictionary"):

@@ -34,7 +34,9 @@ REFUSED = 3  # exit code of the child process when it prints the reason
 
 
 def read(path: Path) -> Raw:
-    """Return the table of a run's `.rrd`, t_s first; a signal is nan in rows in which it was not logged.
+    """Return the table of a run's `.rrd`, t_s first.
+
+    A signal is nan in rows in which it was not logged.
 
     Raises:
         BadInput: If the file is damaged, too large or not of a run.
@@ -63,7 +65,10 @@ def read(path: Path) -> Raw:
 
 
 def child() -> None:
-    """Read the file in the child process. `sys.argv` has the path of the `.rrd` and of the table to write."""
+    """Read the file in the child process.
+
+    `sys.argv` has the path of the `.rrd` and of the table to write.
+    """
     path, table = map(Path, sys.argv[2:])
     try:
         columns = columns_of(path)
