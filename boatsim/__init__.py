@@ -1,4 +1,4 @@
-"""boatsim: small-boat motion and control on MuJoCo, and diagnosis of simulations against recordings.
+"""boatsim: small-boat motion and control on MuJoCo, and diagnosis of models from recordings.
 
 `load_vessel`, `load_scenario`, `run`, `sweep`, `read`, `diagnose` and `replay` are the Python
 equivalents of the commands. `Vessel`, `Scenario`, `Recording`, `Diagnosis`, `Run` and `Sweep` are

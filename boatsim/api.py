@@ -1,4 +1,4 @@
-"""Python interface: build or load vessels, run scenarios, read recordings, diagnose and replay them, run sweeps.
+"""Python interface: vessels, scenarios, runs, recordings, diagnoses, replays and sweeps.
 
 Everything is available as `boatsim.NAME` and imported at first use. Units are SI and radians, axes
 are SNAME, as in files. Input that can not be used raises `boatsim.errors.BadInput` with a message
@@ -109,7 +109,7 @@ class Diagnosis:
 
     @property
     def parameters(self) -> dict[str, dict[str, Parameter]]:
-        """Parameters of the identified effects: effect -> parameter -> value and standard deviation."""
+        """Parameters of the identified effects: effect -> parameter -> value and sd."""
         found: dict[str, dict[str, Parameter]] = {}
         for effect in self.answer["effects"]:
             entries = effect["parameters"].items()
@@ -118,7 +118,7 @@ class Diagnosis:
 
     @property
     def skill(self) -> dict[str, float]:
-        """Reduction of the error on held-out data, for "position", "heading" and "roll" where they are recorded.
+        """Reduction of the error on held-out data, for "position", "heading" and "roll".
 
         It is 1 - rms of the patched vessel / rms of the recalibrated one: 0 is no improvement, 1 a
         perfect model.
@@ -136,7 +136,7 @@ class Diagnosis:
         return skill
 
     def write(self, folder: Name) -> None:
-        """Write the files of `boatsim diagnose`: report.html, report.md, diagnosis.json, patched.toml, diagnosis.rrd.
+        """Write report.html, report.md, diagnosis.json, patched.toml and diagnosis.rrd.
 
         Args:
             folder: Folder of the files; it is created if needed.

@@ -23,7 +23,7 @@ class BadInput(BoatsimError):
 
 
 class BadPhysics(BoatsimError):
-    """A model that can not be simulated: its mass matrix is not positive definite or its state is not finite."""
+    """A model that can not be simulated: its mass matrix or its state is not valid."""
 
 
 def unknown_name(what: str, found: str, allowed: Iterable[str]) -> str:

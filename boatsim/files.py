@@ -1,4 +1,4 @@
-"""Reading of TOML files with checks by pydantic models, and writing of files that are complete or absent."""
+"""Reading of TOML files with checks by pydantic models, and atomic writing of files."""
 
 import os
 import re
@@ -69,7 +69,7 @@ def read_toml(path: Path) -> dict[str, Value]:
 
 
 def _check_sizes(content: Mapping[str, Value]) -> None:
-    """Raises RecursionError for too deep nesting, ValueError for an integer of more than 64 bits."""
+    """Raise RecursionError for too deep nesting, ValueError for integers beyond 64 bits."""
     pending: list[tuple[str, object, int]] = [("", content, 0)]
     while pending:
         key, value, depth = pending.pop()

@@ -51,7 +51,7 @@ class Stop:
 
 @contextmanager
 def deferred_signals() -> Iterator[Stop]:
-    """Defer signals until the block exits, so that a run stops after a step and its files are complete.
+    """Defer signals until the block exits, so that a run stops after a complete step.
 
     The block sets `stop.finishing = True` when it stops calling `stop`. A nested block is a part of
     the outer one. Outside the main thread nothing changes.
@@ -105,7 +105,7 @@ def raise_on_signals() -> None:
 
 
 def signal_received() -> bool:
-    """Return whether a signal has arrived, also if a library caught or replaced its KeyboardInterrupt."""
+    """Return whether a signal has arrived, also if a library caught its KeyboardInterrupt."""
     return _received
 
 
@@ -119,7 +119,7 @@ def _interrupt(number: int, frame: FrameType | None) -> None:
 
 
 def _raise_lost_interrupt(unraisable: "sys.UnraisableHookArgs") -> None:
-    """Raise a KeyboardInterrupt again that was lost in a callback of native code, such as the compiler's."""
+    """Raise a KeyboardInterrupt again that was lost in a callback of native code."""
     if not _received or not issubclass(unraisable.exc_type, KeyboardInterrupt):
         sys.__unraisablehook__(unraisable)
     elif hasattr(signal, "setitimer"):

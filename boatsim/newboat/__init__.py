@@ -1,1 +1,1 @@
-"""A boat from what its owner knows: its vessel file, a drawing, a first scenario, and its coefficients from a log."""
+"""New boats: vessel file, hull drawing and scenario from particulars, coefficients from logs."""

@@ -1,4 +1,4 @@
-"""Fit of the coefficients of a boat from particulars to its logs, with validation on held-out parts.
+"""Fit of the coefficients of a new boat to its logs, with validation on held-out parts.
 
 The first two thirds of each log are fitted, the last third is held out. A few candidate effects are
 tested besides the coefficients, and kept if the evidence increases enough: effects of the boat

@@ -173,7 +173,7 @@ def _effects(boat: Particulars) -> Iterator[str]:
 
 
 def service(boat: Particulars) -> float:
-    """Return the speed [m/s] to which the rudder coefficients belong: service speed, or top speed if that is less."""
+    """Return the speed of the rudder coefficients [m/s]: service speed, at most top speed."""
     easy = resistance.service_speed(boat.hull)
     return easy if boat.speed is None else min(easy, boat.speed)
 
@@ -257,7 +257,7 @@ def _manoeuvring(boat: Particulars) -> Iterator[str]:
 
 
 def steering(boat: Particulars) -> dict[str, float]:
-    """Return the command per rad of helm: of the rudder, else of thrusters that turn, else by differential thrust."""
+    """Return the commands per rad of helm: of rudder, turned thrusters or differential thrust."""
     if boat.rudder is not None:
         return {"rudder_rad": 1.0}
     turning = {steer_channel(n): -1.0 if m.x <= 0 else 1.0 for n, m in boat.named() if m.turns}

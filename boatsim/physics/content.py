@@ -1,4 +1,4 @@
-"""Content by name: vessels, controllers, scenarios and effects are files whose name is the name of the content.
+"""Content by name: vessels, controllers, scenarios and effects are files with their names.
 
 A name is searched for in the library, then in the folder of the file that uses it, then in the
 folders of the user's own content. Content is data, which is read, or a Python file, which `trust`
@@ -43,7 +43,7 @@ USER_FOLDERS = {
 
 @cache
 def root() -> Path:
-    """Return the folder of models/, controllers/ and scenarios/: in an installed package, or the repository."""
+    """Return the folder of models/, controllers/ and scenarios/."""
     package = Path(__file__).parents[1]
     packed = package / "_content"
     return packed if packed.is_dir() else package.parent
@@ -73,7 +73,7 @@ def _package(kind: str) -> Path:
 
 @cache
 def _effect_files() -> dict[str, str]:
-    """Name of every effect of the library -> its file, which may define several effects over one law.
+    """Name of every effect of the library -> its file.
 
     The names are read from the text, so that none of the files is imported.
     """
@@ -85,7 +85,7 @@ def _effect_files() -> dict[str, str]:
 
 
 def user_names(kind: str) -> list[str]:
-    """Return the names of the content of a kind that the user's folders add to those of the library."""
+    """Return the names of content of a kind that the user's folders add to the library."""
     found: set[str] = set()
     for folder in trust.content() if kind in USER_FOLDERS else ():
         inside = folder / USER_FOLDERS[kind]
@@ -143,7 +143,7 @@ def find(kind: str, name: str, base_folder: Path | None = None) -> Path:
 
 
 def _by_path(kind: str, name: str, base_folder: Path | None) -> Path | None:
-    """The file of a path, or of the bare name of a controller in the folder of the file that names it."""
+    """The file of a path, or of a controller's name in the folder of the naming file."""
     suffix = ".py" if kind == "controller" else ".toml"
     path = (base_folder or Path()) / name
     if path.suffix == suffix and path.is_file():
@@ -213,7 +213,7 @@ def _cases(path: Path, _modified_ns: int) -> tuple[str, ...]:
 
 
 def module_at(path: Path, name: str) -> ModuleType:
-    """Import a file under a module name, or return the module of that name if it was imported before.
+    """Import a file under a module name, or return the module of that name.
 
     Args:
         path: The Python file.
@@ -257,7 +257,7 @@ def snake_case(name: str) -> str:
 
 
 def module_of(kind: str, name: str) -> ModuleType:
-    """Return the module of this package that defines an effect, a measure, a sensor, a reader or a log format."""
+    """Return the module of this package that defines content of a kind."""
     file = _effect_files()[name] if kind == "effect" else name
     return importlib.import_module(f"boatsim.{PACKAGES[kind]}.{file}")
 
@@ -313,7 +313,7 @@ def _user_file(kind: str, name: str, base_folder: Path | None) -> Path:
 
 
 def address(effect: type) -> str:
-    """Return the name of an effect class of the library, or the absolute path of the file of another."""
+    """Return the name of an effect class of the library, or the path of the file of another."""
     if effect.__module__.startswith("boatsim.physics.effects."):
         return snake_case(effect.__name__)
     return str(Path(sys.modules[effect.__module__].__file__ or "").resolve())

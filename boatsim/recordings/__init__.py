@@ -1,1 +1,1 @@
-"""Recordings: tables of named signals with notes, read from the formats in `readers/` and converted from logs."""
+"""Recordings: tables of named signals with notes, from files or converted from logs."""

@@ -1,4 +1,4 @@
-"""Limits of the size of recordings, which are checked before a file is read and memory is allocated.
+"""Limits of the size of recordings, which are checked before memory is allocated.
 
 A log of 10 h at 50 Hz with 25 columns has 45 million cells.
 """

@@ -122,7 +122,7 @@ class NotesFile:
 
 
 def notes_for(recording: Path) -> NotesFile:
-    """Return the notes of a recording, from the `recording.toml` in its folder or the nearest folder above it.
+    """Return the notes of a recording, from the nearest `recording.toml` above it.
 
     Args:
         recording: File of the recording.
@@ -140,7 +140,7 @@ def notes_for(recording: Path) -> NotesFile:
 
 
 def _own_folders(folder: Path) -> Iterator[Path]:
-    """The folder of a recording and those above it, up to the user's home or the root of a repository.
+    """The folder of a recording and those above it, up to home or root of a repository.
 
     The search ends below a folder that all users may write to, such as /tmp, for its files may be
     of other users.

@@ -1,4 +1,4 @@
-"""Tables as readers return them: columns of numbers, and the row of the first cell that is not a number."""
+"""Tables as readers return them: columns of numbers, with the first invalid cells."""
 
 from collections import Counter
 from collections.abc import Sequence

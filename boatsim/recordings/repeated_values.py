@@ -9,7 +9,7 @@ MIN_REGULAR_SHARE = 0.8
 
 
 def repeated_rows(fixes: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """Return which rows (N,) repeat the values (N, C) of the row before, if new values come at a regular period."""
+    """Return the rows (N,) that repeat values (N, C), if new values come at a regular period."""
     new = np.append(True, (np.diff(fixes, axis=0) != 0.0).any(axis=1))
     gaps = np.diff(np.flatnonzero(new))
     none = np.zeros(len(fixes), dtype=np.bool_)

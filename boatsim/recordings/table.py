@@ -222,7 +222,7 @@ def read(
 def read_unchecked(
     path: Path, columns: Mapping[str, str] | None = None
 ) -> tuple[Recording, Mapping[str, Expression]]:
-    """Return a recording without checks of its values: times may stand still, angles may be in degrees.
+    """Return a recording without checks of its values; angles may be in degrees.
 
     Args:
         path: File of the recording.
@@ -300,7 +300,7 @@ def _raw(path: Path) -> Raw:
 def _renamed(
     raw: Raw, of_vessel: Mapping[str, str], of_notes: Mapping[str, str]
 ) -> tuple[Raw, Mapping[str, Expression], tuple[str, ...]]:
-    """The table with names of signals, their expressions, and a remark on columns of the notes that do not exist.
+    """The table with names of signals, their expressions, and a remark on unknown columns.
 
     A mapping of the vessel whose column does not exist is ignored; one of the notes with a misspelt
     column is an error.
@@ -387,7 +387,7 @@ def _check_cells(raw: Raw, needed: list[str]) -> None:
 def allowed_gaps(
     columns: Mapping[str, Array],
 ) -> dict[str, "np.ndarray[tuple[int], np.dtype[np.bool_]]"]:
-    """Return the rows (N,) in which each pose and rate may be empty, because it is not measured there.
+    """Return the rows (N,) in which each pose and rate may be empty.
 
     A signal that is empty in many rows is measured less often than rows are written. Other signals
     may be empty in the rows that exist for such a signal. Any other empty cell is a mistake in the
@@ -462,7 +462,7 @@ def _check_limits(raw: Raw, channels: Mapping[str, tuple[float, float]]) -> None
 
 
 def _signals(raw: Raw, needed: list[str]) -> tuple[dict[str, Array], list[str]]:
-    """The signals with headings unwrapped, and the names of columns that a diagnosis does not use."""
+    """The signals with unwrapped headings, and the names of columns that are not used."""
     ignored = [n for n in raw.columns if n not in needed and not RUN_COLUMN.match(n)]
     signals: dict[str, Array] = {}
     for name, values in raw.columns.items():

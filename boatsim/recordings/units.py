@@ -63,7 +63,7 @@ def _in_degrees(columns: Mapping[str, Array]) -> dict[str, int]:
 def _measured(
     columns: Mapping[str, Array], name: str
 ) -> tuple[NDArray[np.int64], Array, Array, dict[str, Array]]:
-    """Rows in which a column has values: their numbers, times, values, and the columns without gaps there."""
+    """Rows with values of a column: numbers, times, values, and columns without gaps there."""
     rows = np.flatnonzero(np.isfinite(columns[name]))
     there = {n: v[rows] for n, v in columns.items()}
     return rows, there["t_s"], there[name], {n: v for n, v in there.items() if np.isfinite(v).all()}
@@ -107,7 +107,7 @@ def heading_in_degrees(t: Array, psi: Array, signals: Mapping[str, Array]) -> in
 
 
 def rate_in_degrees(t: Array, rate: Array, angle: Array | None) -> int | None:
-    """Return the row that shows that a rate (N,) is in degrees per second while its angle is in radians, else None."""
+    """Return a row that shows that a rate (N,) is in degrees per second, else None."""
     largest = int(np.argmax(np.abs(rate)))
     if angle is not None:
         ratio = _ratio(np.unwrap(angle), _turned(t, rate))
@@ -117,7 +117,7 @@ def rate_in_degrees(t: Array, rate: Array, angle: Array | None) -> int | None:
 
 
 def roll_in_degrees(t: Array, phi: Array, rate: Array | None) -> int | None:
-    """Return the row of the largest roll (N,) if it or its ratio to the rate shows that it is in degrees, else None."""
+    """Return a row that shows that a roll (N,) is in degrees, None if it is in radians."""
     largest = int(np.argmax(np.abs(phi)))
     against_rate = math.nan if rate is None else _ratio(_turned(t, rate), phi)
     return largest if abs(phi[largest]) > MAX_ROLL or _near(against_rate, DEGREES) else None
@@ -151,7 +151,7 @@ def _ratio(known: Array, asked: Array) -> float:
 
 
 def _follows_course(t: Array, psi: Array, x: Array, y: Array) -> bool:
-    """Whether the heading agrees with the course made good if it is in degrees, and does not if it is in radians."""
+    """Whether the heading agrees with the course if in degrees, but not if in radians."""
     rows = _rows_in(t, 1.0)
     dx, dy = x[rows:] - x[:-rows], y[rows:] - y[:-rows]
     course, bow = np.arctan2(dy, dx), psi[rows // 2 : rows // 2 + len(dx)]
@@ -166,13 +166,13 @@ def _wrapped(angle: Array) -> Array:
 
 
 def _scatter(steps: Array) -> float:
-    """Standard deviation of a heading [rad] from second differences, robust to a few outliers and wraps."""
+    """Standard deviation of a heading [rad] from second differences, robust to outliers."""
     second = np.abs(np.diff(_wrapped(steps)))
     return 1.48 * float(np.median(second)) / math.sqrt(6.0)
 
 
 def _sustained_turning(t: Array, psi: Array) -> float:
-    """Rate of turning [rad/s] that a quarter of the recording exceeds, over half a second to average the noise."""
+    """Rate of turning over half a second [rad/s] that a quarter of the recording exceeds."""
     rows = _rows_in(t, 0.5)
     smooth = np.unwrap(psi)
     return float(np.percentile(np.abs(smooth[rows:] - smooth[:-rows]) / (t[rows:] - t[:-rows]), 75))

@@ -1,4 +1,4 @@
-"""Vessels: the schema of a vessel.toml, the `Vessel` dataclass, its channel bindings, and loading from files."""
+"""Vessels: file schema, the `Vessel` dataclass, its channel bindings, and loading."""
 
 from boatsim.physics.vessel.bindings import check_bindings
 from boatsim.physics.vessel.effect_tables import effect_from_table, effect_name

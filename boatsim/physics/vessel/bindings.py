@@ -79,7 +79,7 @@ class Bindings:
 
     @cached_property
     def held(self) -> tuple[str, ...]:
-        """Names of the signals of the laws: actuators, cosines and sines of angles, then the same of readings."""
+        """Signals of laws: actuators, cosines and sines of angles, then the same of readings."""
         return (
             *self.actuators,
             *_parts_of(self.angles),
@@ -89,7 +89,7 @@ class Bindings:
 
     @cached_property
     def sums(self) -> Mapping[str, tuple[str, ...]]:
-        """Role -> names of the actuators that share it, for roles of several: their sum is a signal, the `thrust`."""
+        """Role of several actuators -> their names; their sum is a signal of described laws."""
         sums: dict[str, tuple[str, ...]] = {}
         for role in self.roles.values():
             names = tuple(name for name in self.actuators if self.roles[name] == role)
@@ -156,7 +156,7 @@ class Bindings:
         return [e.name for e in self.effects if name in (e.name, type(e).idea())]
 
     def effects_of(self, idea: str) -> list[Effect]:
-        """Return all effects of a type, and those that declare a conversion to it, in the order of the file."""
+        """Return all effects of a type and those with a conversion to it, in their order."""
         return [e for e in self.effects if type(e).idea() == idea or hasattr(type(e), f"as_{idea}")]
 
     @staticmethod
@@ -180,12 +180,12 @@ class Bindings:
         return bound
 
     def carriers(self, effect: Effect) -> list[Effect]:
-        """Return the effects at which an effect acts, such as the thrusters of a prop walk: those it names, else all."""
+        """Return the effects at which an effect acts, such as the thrusters of a prop walk."""
         carriers = self.effects_of(type(effect).per_instance_of)
         return [e for e in carriers if not effect.on or e.name in effect.on]
 
     def targets(self, effect: Effect) -> tuple[str, ...]:
-        """Return the actuators that a channel effect acts on: those it names, else all in its role."""
+        """Return the actuators that a channel effect acts on: named ones, else all in its role."""
         if not isinstance(effect, Channel):
             return ()
         if effect.on:
@@ -196,7 +196,7 @@ class Bindings:
         return tuple(name for name in self.actuators if self.roles[name] in roles)
 
     def feeding_command(self, effect: Effect, actuator: str) -> str | None:
-        """Return the command in `fed_by` that feeds an actuator through a channel effect, None where there is none."""
+        """Return the command that feeds an actuator through a channel effect, None without one."""
         if not isinstance(effect, Channel) or actuator not in effect.on:
             return None
         return dict(zip(effect.on, effect.fed_by, strict=False)).get(actuator)

@@ -38,7 +38,7 @@ def effect_name(table: Mapping[str, object]) -> str:
 
 
 def table_of(effect: Effect) -> dict[str, object]:
-    """Return the [[effect]] table of an effect: its type, and all specified values that differ from the defaults.
+    """Return the [[effect]] table of an effect: its type and all values that are not defaults.
 
     Parameters in `effect.filled` are left out: a rule computes them when the vessel is loaded.
     """

@@ -89,7 +89,7 @@ def merged_loads(
 def with_effect_tables(
     vessel: Vessel, tables: Sequence[Mapping[str, object]], folder: Path, label: str
 ) -> Vessel:
-    """Return the vessel with the effects of [[effect]] tables added, each completed by those before it.
+    """Return the vessel with the effects of [[effect]] tables added in their order.
 
     Args:
         vessel: The vessel.

@@ -21,7 +21,7 @@ def check_known(names: Sequence[str], loads: Loads, label: str) -> None:
 
 
 def check_compatible(names: Sequence[str], loads: Loads, label: str) -> None:
-    """Check that no two load conditions change one value, for the result would depend on their order.
+    """Check that no two load conditions set one value differently.
 
     Raises:
         BadInput: With the two load conditions and the value.
@@ -37,7 +37,7 @@ def check_compatible(names: Sequence[str], loads: Loads, label: str) -> None:
 def conflicts(
     first: Mapping[str, object], second: Mapping[str, object]
 ) -> dict[str, tuple[object, object]]:
-    """Return the values that two load conditions set differently: key ("body.mass") -> both values."""
+    """Return the keys ("body.mass") that two load conditions set differently -> both values."""
     flat_first, flat_second = _flat(first), _flat(second)
     shared = [key for key in flat_first if key in flat_second]
     return {
@@ -62,7 +62,7 @@ def _flat(table: Mapping[str, object]) -> dict[str, object]:
 def overlaid(
     raw: Mapping[str, object], changes: Mapping[str, object], label: str
 ) -> dict[str, object]:
-    """Return the content of a vessel file with the values of a load condition or of [set] in place of its own.
+    """Return the content of a vessel file with the values of a load condition or of [set].
 
     Args:
         raw: Content of the vessel file.

@@ -1,4 +1,4 @@
-"""The `Vessel` dataclass: a vessel in one load condition, built from a file or from effects in Python."""
+"""The `Vessel` dataclass: a vessel in one load condition, from a file or from Python."""
 
 import dataclasses
 from collections.abc import Mapping, Sequence
@@ -274,7 +274,7 @@ class Vessel(Bindings):
         return changed._rebuilt(effects)
 
     def with_measured(self, values: Mapping[str, float]) -> Self:
-        """Return the vessel with other values of measured channels, which hold where no recording has them.
+        """Return the vessel with other neutral values of measured channels.
 
         Raises:
             BadInput: For a channel that the vessel does not measure.
@@ -310,7 +310,7 @@ class Vessel(Bindings):
         return changed
 
     def _with_change(self, change: Change, value: float) -> Self:
-        """Return the vessel with one number changed, and with it all filled-in numbers that follow it."""
+        """Return the vessel with one number changed, and all filled-in numbers that follow it."""
         changed = self
         if change.owner == "body":
             new = change.of(getattr(self.body, change.key), value)
@@ -339,7 +339,7 @@ class Vessel(Bindings):
         return effect.having({**values, "filled": effect.filled - set(values)})
 
     def _rebuilt(self, effects: Sequence[Effect | Mapping[str, object]]) -> Self:
-        """Return the vessel with these effects, each completed by those before it, and all checks done."""
+        """Return the vessel with these effects, each completed by those before it, and check it."""
         vessel = dataclasses.replace(self, effects=())
         for effect in map(self._effect, effects):
             if effect.filled:
@@ -387,7 +387,7 @@ class Vessel(Bindings):
         return limits | dict.fromkeys(self.measured, (-inf, inf))
 
     def save(self, folder: Path | str) -> Self:
-        """Write the vessel, in its present load condition, as a vessel.toml that `load_vessel` reads.
+        """Write the vessel in its present load condition as a vessel.toml.
 
         A vessel from a file keeps the hull of its folder by `based_on`. For a vessel without a hull
         file a plain hull.xml is written, unless the folder has one. Load conditions of the file are
@@ -436,7 +436,7 @@ class Vessel(Bindings):
         return plain | table | {"effect": self._effect_tables()}
 
     def _effect_tables(self) -> list[dict[str, object]]:
-        """Tables of the effects, with each filled-in parameter that the rules would not compute again."""
+        """Tables of the effects, with filled-in parameters that rules would not reproduce."""
         tables = []
         vessel = dataclasses.replace(self, effects=())
         for effect in self.effects:

@@ -1,4 +1,4 @@
-"""Conversion of times in logs to seconds: since the start or since 1970, in s, ms, us or ns, or as dates."""
+"""Conversion of times in logs to seconds, from numbers or dates."""
 
 import re
 from collections.abc import Mapping, Sequence

@@ -224,7 +224,7 @@ def _drop_repeats(work: _Work) -> None:
 
 
 def _clock(work: _Work) -> tuple[Array, float]:
-    """Times (N,) of the rows [s] of the log's clock, and the largest distance of a sample from its row [s].
+    """Times (N,) of the rows [s], and the largest distance of a sample from its row [s].
 
     The rows are the samples of the fastest signal and those of others at other times, or evenly
     spaced at the rate of the map.
@@ -306,7 +306,7 @@ def _remark_held(work: _Work, rows: Array) -> None:
 def _complete_rows(
     work: _Work, rows: Array, signals: dict[str, Array]
 ) -> tuple[Array, dict[str, Array]]:
-    """Remove rows without a command, and rows in which a pose is missing that is measured in the others.
+    """Remove rows without a command, and rows in which a pose or rate is lost.
 
     A column that is empty in many rows is measured less often; one that is empty in a few rows has
     lost samples.

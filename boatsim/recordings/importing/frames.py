@@ -1,4 +1,4 @@
-"""Conversion of positions and attitudes to x north, y east, heading clockwise and SNAME body axes."""
+"""Conversion of positions and attitudes to north, east and SNAME body axes."""
 
 import re
 from collections.abc import Mapping
@@ -34,7 +34,7 @@ def local(latitude: Array, longitude: Array, origin: tuple[float, float]) -> tup
 
 
 def radii(latitude: float) -> tuple[float, float]:
-    """Return the radii of curvature of WGS 84 [m] along the meridian, M, and across it, N, at a latitude [rad]."""
+    """Return the radii of curvature M and N of WGS 84 [m] at a latitude [rad]."""
     squared = FLATTENING * (2.0 - FLATTENING)  # of the first eccentricity
     w = 1.0 - squared * np.sin(latitude) ** 2
     across = SEMI_MAJOR / np.sqrt(w)
@@ -52,7 +52,7 @@ def angles(w: Array, x: Array, y: Array, z: Array) -> tuple[Array, Array, Array]
 
 
 def with_angles(signals: Mapping[str, Signal]) -> dict[str, Signal]:
-    """Return all signals, with roll, pitch and yaw of each quaternion added: `q.yaw`, `orientation.yaw`.
+    """Return all signals, with roll, pitch and yaw of each quaternion added: `q.yaw`.
 
     The parts of a quaternion are named by letters, or numbered from the real part.
     """

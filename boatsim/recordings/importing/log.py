@@ -1,4 +1,4 @@
-"""Logs as they were written: many signals, each with its own times, with the units that the format gives."""
+"""Logs: many signals, each with its own times and the unit that the format gives."""
 
 import os
 import sys
@@ -94,7 +94,7 @@ def damaged(path: Path, what: str, error: BaseException) -> BadInput:
 
 @contextmanager
 def quiet() -> Iterator[None]:
-    """Suppress the output of a library, also of its native code, because the reader reports errors in one line."""
+    """Suppress the output of a library, also of its native code."""
     for stream in (sys.stdout, sys.stderr):
         stream.flush()
     kept = [os.dup(number) for number in (1, 2)]
@@ -189,7 +189,7 @@ def rate_of(t: Array) -> float:
 
 
 def numbered(names: Sequence[tuple[str, int]]) -> dict[tuple[str, int], str]:
-    """Return the names of streams by (name, instance): the first is GPS, the others are GPS[1] and so on."""
+    """Return the name of each (name, instance) of streams: GPS, GPS[1] and so on."""
     first: dict[str, int] = {}
     for name, instance in names:
         first[name] = min(instance, first.get(name, instance))

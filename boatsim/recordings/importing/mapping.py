@@ -1,4 +1,4 @@
-"""The map from a log to a recording: the signal and unit of each column, in a TOML file that the user checks."""
+"""The map from a log to a recording: the signal and unit of each column, in a TOML file."""
 
 from collections.abc import Mapping
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""Proposal of a map for a log, as a text that the user saves and checks, and the list of the signals."""
+"""Proposal of a map for a log, and the list of its signals."""
 
 import re
 from collections.abc import Collection, Mapping, Sequence
@@ -114,7 +114,7 @@ def proposal(
     dof: Sequence[str] = (),
     stated: Mapping[str, str] | None = None,
 ) -> str:
-    """Return the text of a map: the most probable signal of each column, with the others in comments.
+    """Return the text of a map: the most probable signals, with others in comments.
 
     Args:
         log: The log.
@@ -290,7 +290,7 @@ def _chosen(
     moving: Sequence[Guess],
     turning: Turning,
 ) -> dict[str, tuple[Guess, str]]:
-    """Signals of the channels by name, by their effect on the motion, or by order, and what the user must check."""
+    """Signals of the channels by name, motion or order, and what the user must check."""
     found = {n: (g, "") for n, g in _matched(drives, moving).items()}
     left = [g for g in moving if g not in [h for h, _ in found.values()]]
     helms = [d for d in drives if d.name not in found and _steers(d)]
@@ -314,7 +314,7 @@ def _helms(
     measured: Sequence[Guess],
     turning: Turning,
 ) -> dict[str, tuple[Guess, str]]:
-    """Signals of channels that steer: the only one with a name, one that the turning follows, or a measured one."""
+    """Signals of channels that steer: by name, by the turning, or a measured angle."""
     if named:
         return {d.name: (named[0], "; CHECK: one helm is used for all") for d in helms}
     if steers := turning.helm([g for g in left if _fits(helms[0], g)]):

@@ -50,7 +50,7 @@ def samples(t: Array, values: Array) -> Samples:
 
 
 def clock(base: Array, others: Sequence[Samples], near: float) -> Array:
-    """Return the times (N,) of the rows [s]: those of `base`, and of samples of others farther than `near` [s] from them."""
+    """Return the times (N,) of rows [s]: `base`, and samples farther than `near` [s] from it."""
     rows = base
     for given in others:
         t = given.t[(given.t >= base[0] - near) & (given.t <= base[-1] + near)]

@@ -15,8 +15,10 @@ from boatsim.recordings.importing.log import MAX_SIGNALS, Log, Room, Signal, sig
 
 # Type of number -> letter of `struct` and size; char is one byte, signed or not, time is two words
 NUMBERS = {
-    "bool": ("?", 1), "byte": ("b", 1), "char": ("B", 1), "int8": ("b", 1), "uint8": ("B", 1), "int16": ("h", 2),
-    "uint16": ("H", 2), "int32": ("i", 4), "uint32": ("I", 4), "int64": ("q", 8), "uint64": ("Q", 8),
+    "bool": ("?", 1), "byte": ("b", 1), "char": ("B", 1), "int8": ("b", 1),
+    "uint8": ("B", 1), "int16": ("h", 2),
+    "uint16": ("H", 2), "int32": ("i", 4), "uint32": ("I", 4), "int64": ("q", 8),
+    "uint64": ("Q", 8),
     "float32": ("f", 4), "float64": ("d", 8),
 }  # fmt: skip
 STAMP = {"time": ("uint32", "uint32"), "duration": ("int32", "int32")}  # of ROS 1
@@ -87,7 +89,7 @@ class Topic:
 
 
 def definitions(text: str, root: str) -> dict[str, list[Part]]:
-    """Return the fields of a message and of the messages in it, by name, from its concatenated definitions.
+    """Return the fields of a message and of the messages in it, by name of the message.
 
     Args:
         text: The definitions.

@@ -1,4 +1,4 @@
-"""Classification of the signals of a log by name, unit and range, with rules that hold for all vessels and logs."""
+"""Classification of the signals of a log by name, unit and range, with general rules."""
 
 import re
 from collections.abc import Sequence
@@ -58,17 +58,20 @@ WORDS = {  # unit as formats write it -> unit in expressions; "" is the SI unit
 NOT_MEASURED = set(  # words of set points, errors and properties of signals
     "des desired target setpoint sp ref reference cmd command commanded error err innov "
     "innovation bias cov covariance "
-    "var variance std sd accuracy reset resets delta test ratio valid status flags timeout home origin".split()
+    "var variance std sd accuracy reset resets delta test ratio "
+    "valid status flags timeout home origin".split()
 )
 PLACES = set("pos position local pose odom odometry location".split())
 MOTIONS = set(
-    "velocity vel twist linear angular speed acc accel acceleration mag orientation quat force torque".split()
+    "velocity vel twist linear angular speed acc accel "
+    "acceleration mag orientation quat force torque".split()
 )
 SATELLITES = set("gps gnss fix navsat rmc gga gll".split())
 OUTPUTS = set(
     "rcou output outputs actuator actuators servo cmd command commanded thrust thruster "
     "thrusters throttle rudder "
-    "steer steering motor motors pwm nozzle azimuth prop propeller rpm rps shaft esc helm delta jet".split()
+    "steer steering motor motors pwm nozzle azimuth prop "
+    "propeller rpm rps shaft esc helm delta jet".split()
 )
 SENSED = set("actual measured feedback fb telemetry esc state rsa sensed".split())
 STICKS = set("rcin joy stick joystick manual pilot".split())
@@ -96,7 +99,8 @@ SUPERFLUOUS = set(
     "data value raw filtered est estimate estimated meas measured".split()
 )  # words at the end of names without meaning here
 OTHER = set(
-    "alt roll pitch yaw lat lon error err curr current volt voltage temp temperature vel power".split()
+    "alt roll pitch yaw lat lon error err curr current volt "
+    "voltage temp temperature vel power".split()
 )
 NUMBERED = {
     "n",
@@ -134,7 +138,7 @@ class Guess:
 
 
 def tokens_of(name: str) -> list[str]:
-    """Return the words of a name in lower case, with numbers separate: ATT.DesYaw -> att, des, yaw; motor1 -> motor, 1."""
+    """Return the words and numbers of a name in lower case: ATT.DesYaw1 -> att, des, yaw, 1."""
     parted = re.sub(
         r"(?<=[a-z])(?=[A-Z])|(?<=[A-Za-z])(?=\d)|(?<=\d)(?=[A-Za-z])", " ", name
     ).lower()
@@ -211,7 +215,7 @@ def guess(name: str, signal: Signal, log: Log, channels: Sequence[str] = ()) -> 
 
 
 def _angle(column: str, signal: Signal, tokens: frozenset[str], word: str) -> tuple[str, str]:
-    """Unit of an angle or its rate, by the range where name and format have none, and the assumption."""
+    """Unit of an angle or its rate, by the range if it is unknown, and the assumption."""
     if (
         not column.endswith(("_rad", "_radps"))
         or signal.unit
@@ -236,7 +240,7 @@ def _word(name: str, signal: Signal) -> str:
 def _degrees(
     name: str, signal: Signal, column: str, tokens: frozenset[str], score: float
 ) -> Guess | None:
-    """Classification of a latitude or longitude in degrees, 1e-7 degrees or radians, by unit and range."""
+    """Classification of a latitude or longitude, with its unit by name and range."""
     largest = float(np.nanmax(np.abs(signal.values)))
     if signal.unit == "rad" or "rad" in tokens:
         return Guess(name, signal, column, "", score, "", tokens)
@@ -321,7 +325,7 @@ def _turn(end: str, tokens: frozenset[str]) -> str | None:
 
 
 def side_of(tokens: frozenset[str]) -> str:
-    """Return "port", "starboard" or "" by the words of a name, or by single letters if there is no word."""
+    """Return "port", "starboard" or "" by the words or single letters of a name."""
     for sides in (SIDES, LETTERS):
         for token in sorted(tokens):
             if token in sides:

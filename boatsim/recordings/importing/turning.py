@@ -1,4 +1,4 @@
-"""Correlation of outputs with the motion in a log: turning follows a helm, speed follows a throttle.
+"""Correlation of outputs with the motion in a log: turning follows a helm.
 
 The sign of the correlation shows to which side a positive helm turns the vessel.
 """
@@ -47,7 +47,7 @@ class Turning:
                 return
 
     def by(self, *signals: tuple[Guess, float]) -> float:
-        """Return the correlation of a weighted sum of signals with the turning after it, at the best delay.
+        """Return the correlation of a weighted sum of signals with the turning, at the best delay.
 
         1: all turning to starboard follows it; 0 where there is no data.
         """

@@ -28,8 +28,10 @@ SUFFIXES = (".bin",)
 # Letter of a FMT message -> numpy type and factor (libraries/AP_Logger/LogStructure.h); arrays and
 # texts have no factor
 LETTERS: dict[str, tuple[str, float | None]] = {
-    "a": ("V64", None), "b": ("i1", 1.0), "B": ("u1", 1.0), "g": ("f2", 1.0), "h": ("i2", 1.0), "H": ("u2", 1.0),
-    "i": ("i4", 1.0), "I": ("u4", 1.0), "f": ("f4", 1.0), "d": ("f8", 1.0), "n": ("V4", None), "N": ("V16", None),
+    "a": ("V64", None), "b": ("i1", 1.0), "B": ("u1", 1.0), "g": ("f2", 1.0),
+    "h": ("i2", 1.0), "H": ("u2", 1.0),
+    "i": ("i4", 1.0), "I": ("u4", 1.0), "f": ("f4", 1.0), "d": ("f8", 1.0),
+    "n": ("V4", None), "N": ("V16", None),
     "Z": ("V64", None), "c": ("i2", 0.01), "C": ("u2", 0.01), "e": ("i4", 0.01), "E": ("u4", 0.01),
     "L": ("i4", 1e-7), "M": ("u1", 1.0), "q": ("i8", 1.0), "Q": ("u8", 1.0),
 }  # fmt: skip

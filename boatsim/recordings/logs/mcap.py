@@ -1,4 +1,4 @@
-"""Reader of MCAP files of ROS 2 and Foxglove, sequentially, so that a cut file is read as far as it goes."""
+"""Reader of MCAP files of ROS 2 and Foxglove; a cut file is read up to its end."""
 
 import json
 from collections.abc import Callable, Iterator

@@ -92,7 +92,7 @@ def read(path: Path) -> Log:
 def _sentences(
     path: Path, lines: list[str], parse: "Callable[..., Any]"
 ) -> tuple[list[tuple[float | None, str, dict[str, float]]], int]:
-    """Time (None without one), name and numbers of every sentence, and the number of other lines."""
+    """Time or None, name and numbers of every sentence, and the number of other lines."""
     found: list[tuple[float | None, str, dict[str, float]]] = []
     room, bad = Room(path), 0
     stamped, clock = any(_stamp(line) is not None for line in lines[:50]), _Clock()
@@ -120,7 +120,7 @@ def _sentences(
 
 
 class _Clock:
-    """Time of day that continues after midnight, and the first midnight once a sentence has the date."""
+    """Time of day that continues after midnight, and the first midnight if it is known."""
 
     def __init__(self) -> None:
         self.last, self.days, self.midnight = -1.0, 0.0, 0.0

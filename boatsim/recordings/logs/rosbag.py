@@ -1,4 +1,4 @@
-"""Reader of bags of ROS 1 (`.bag`) and ROS 2 (the folder with `metadata.yaml`, or the `.db3` in it)."""
+"""Reader of bags of ROS 1 (`.bag`) and ROS 2 (a folder, or the `.db3` in it)."""
 
 from bz2 import BZ2Decompressor
 from collections.abc import Callable

@@ -1,4 +1,4 @@
-"""Reader of tables: Parquet, and CSV with commas, semicolons, tabs or bars, comments, and a row of units."""
+"""Reader of tables: Parquet, and CSV with any separator, comments and units."""
 
 import csv
 import re

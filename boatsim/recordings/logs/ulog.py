@@ -1,4 +1,4 @@
-"""Reader of PX4's ULog: self-describing topics, with times in microseconds since the start of the autopilot."""
+"""Reader of PX4's ULog: self-describing topics, times in us since the autopilot's start."""
 
 import re
 from pathlib import Path
@@ -48,7 +48,7 @@ PULSES = re.compile(r"actuator_outputs|input_rc")  # topics with pulses [us]
 
 
 class _ProgressingFile:
-    """A file that raises EOFError without progress, for the library loops endlessly at a damaged end."""
+    """A file that raises EOFError without progress, for the library loops at a damaged end."""
 
     def __init__(self, file: IO[bytes]) -> None:
         self._file, self._furthest, self._without_progress = file, 0, 0

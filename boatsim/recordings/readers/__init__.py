@@ -1,1 +1,1 @@
-"""File formats of recordings, one module per format with `read(path) -> Raw`, named by the suffix of the file."""
+"""File formats of recordings: modules with `read(path) -> Raw`, named by the suffix."""

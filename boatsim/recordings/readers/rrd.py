@@ -1,4 +1,4 @@
-"""Reader of the `.rrd` of runs of boatsim: every column is a series of scalars under `signals/` on one time line.
+"""Reader of the `.rrd` of runs: columns are scalars under `signals/` on one time line.
 
 The file is read in a child process, for rerun's native code ends its process on a damaged file.
 """
