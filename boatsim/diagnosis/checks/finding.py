@@ -14,6 +14,7 @@ from boatsim.recordings.table import Recording
 
 Kind = Literal["fault", "mended", "limit"]
 LOG_NOT_BOAT = "probably your log, not your boat"
+PLANAR_POSE = ("x_m", "y_m", "psi_rad")
 MAX_LISTED = 5  # places that the text of a finding lists
 # units that are written into recording.toml by name instead of as a number
 UNITS_BY_NAME = ("deg", "percent", "ms", "us", "ns", "rpm", "rev")

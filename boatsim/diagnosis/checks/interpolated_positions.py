@@ -3,13 +3,12 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from boatsim.diagnosis.checks.finding import MAX_LISTED, Finding
+from boatsim.diagnosis.checks.finding import MAX_LISTED, PLANAR_POSE, Finding
 from boatsim.diagnosis.config import ChecksConfig
 from boatsim.physics.base import Array
 from boatsim.physics.vessel import Vessel
 from boatsim.recordings.table import Recording
 
-POSE = ("x_m", "y_m", "psi_rad")
 # largest second difference of a straight line in units of the last digit: three rounded values
 ROUNDED_DIGITS = 2.1
 MAX_DECIMALS = 7
@@ -60,7 +59,7 @@ def interpolated_rows(recording: Recording, config: ChecksConfig) -> NDArray[np.
     """
     n = len(recording)
     rejected = np.zeros(n, dtype=np.bool_)
-    columns = [recording[c] for c in POSE if c in recording.signals]
+    columns = [recording[c] for c in PLANAR_POSE if c in recording.signals]
     complete = np.isfinite(columns).all()
     if n < config.interpolation_min_rows or len(columns) < 2 or not complete:
         return rejected

@@ -5,7 +5,7 @@ Such a velocity has another sign or unit, a delay, or belongs to another point o
 
 import numpy as np
 
-from boatsim.diagnosis.checks.finding import Change, Finding
+from boatsim.diagnosis.checks.finding import PLANAR_POSE, Change, Finding
 from boatsim.diagnosis.config import ChecksConfig
 from boatsim.diagnosis.priors import froude_time
 from boatsim.physics.base import Array
@@ -13,7 +13,6 @@ from boatsim.physics.vessel import Vessel
 from boatsim.recordings.expression import UNITS
 from boatsim.recordings.table import Recording
 
-POSE = ("x_m", "y_m", "psi_rad")
 RATES = ("u_mps", "v_mps", "r_radps")
 SPEED_UNITS = ("kn", "kmh", "cmps")
 
@@ -31,7 +30,7 @@ def check_recorded_rates(
     Returns:
         Findings "velocity_sign", "velocity_unit", "velocity_late" and "velocity_elsewhere".
     """
-    for name in POSE:
+    for name in PLANAR_POSE:
         if name not in recording.signals or not np.isfinite(recording[name]).all():
             return []
     half = _half_window(recording, vessel, config)
@@ -59,7 +58,7 @@ def _rates_of_poses(recording: Recording, k: int) -> dict[str, Array]:
     """Rates u, v, r (N - 2 k,) by central differences over k rows on either side."""
     rows = np.arange(k, len(recording) - k)
     span = recording.t[rows + k] - recording.t[rows - k]
-    dx, dy, dpsi = ((recording[n][rows + k] - recording[n][rows - k]) / span for n in POSE)
+    dx, dy, dpsi = ((recording[n][rows + k] - recording[n][rows - k]) / span for n in PLANAR_POSE)
     psi = _moving_average(recording["psi_rad"], k)[rows]
     c = np.cos(psi)
     s = np.sin(psi)

@@ -11,7 +11,13 @@ from operator import itemgetter
 import numpy as np
 
 from boatsim.diagnosis.checks.course_over_ground import heading_offset
-from boatsim.diagnosis.checks.finding import Change, apply_to_all, changed_columns, scaled
+from boatsim.diagnosis.checks.finding import (
+    PLANAR_POSE,
+    Change,
+    apply_to_all,
+    changed_columns,
+    scaled,
+)
 from boatsim.diagnosis.config import ChecksConfig
 from boatsim.diagnosis.priors import froude_time
 from boatsim.physics.base import Array
@@ -20,7 +26,6 @@ from boatsim.recordings.notes import unit_of
 from boatsim.recordings.table import Recording
 
 PLANAR_DOF = {"surge", "sway", "yaw"}
-POSE = ("x_m", "y_m", "psi_rad")
 QUARTER_TURNS = (pi / 2.0, pi, -pi / 2.0)
 MIRRORED_Y = (Change("y_m", "y_m", -1.0),)
 MIRRORED_HEADING = (Change("psi_rad", "psi_rad", -1.0), Change("r_radps", "r_radps", -1.0))
@@ -109,7 +114,7 @@ def heading_disagrees_with_course(
 def _have_planar_poses(recordings: Sequence[Recording], vessel: Vessel) -> bool:
     if not set(vessel.dof) >= PLANAR_DOF:
         return False
-    return all(set(POSE) <= r.signals.keys() for r in recordings)
+    return all(set(PLANAR_POSE) <= r.signals.keys() for r in recordings)
 
 
 def _axes(
@@ -153,7 +158,7 @@ def _mean_drift_angle(recordings: Sequence[Recording], vessel: Vessel) -> tuple[
     total = 0.0 + 0.0j
     distance = 0.0
     for recording in recordings:
-        x, y, psi = itemgetter(*POSE)(recording.signals)
+        x, y, psi = itemgetter(*PLANAR_POSE)(recording.signals)
         known = np.isfinite(x) & np.isfinite(y) & np.isfinite(psi)
         t = recording.t[known]
         z = x[known] + 1j * y[known]

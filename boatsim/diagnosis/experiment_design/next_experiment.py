@@ -32,7 +32,7 @@ from boatsim.physics.base import Array
 from boatsim.physics.content import vessel_address
 from boatsim.physics.vessel import Vessel
 
-DERIVATIVE_STEP = 0.05  # posterior standard deviations
+POSTERIOR_STEP = 0.05  # [posterior sd] for numerical derivatives
 SCENARIO_STEP = 0.02  # [s] integration step of the scenario for a hull of 1.2 m
 NOTHING = "nothing"  # name of the rival in which no candidate acts
 
@@ -295,9 +295,9 @@ def _refit(
         U = np.empty((len(about.whitened), len(xi)))
         for j in range(len(xi)):
             moved = xi.copy()
-            moved[j] += DERIVATIVE_STEP
+            moved[j] += POSTERIOR_STEP
             changed = recording.whitened(values(moved), on, best.levels, about)
-            U[:, j] = (changed - about.whitened) / DERIVATIVE_STEP
+            U[:, j] = (changed - about.whitened) / POSTERIOR_STEP
         return U
 
     xi = np.zeros(len(model.theta))

@@ -10,7 +10,7 @@ from boatsim.diagnosis.locate.smoothing import LatentForce, joint_information
 from boatsim.physics.base import Array
 
 # share of its information that a shape must retain next to others, a guard against rounding
-MIN_INFORMATION = 1e-9
+MIN_INFORMATION_SHARE = 1e-9
 
 
 @dataclass(frozen=True)
@@ -83,12 +83,12 @@ class ScoreStatistics:
         inner = self.information[np.ix_(b, b)]
         cross = self.information[np.ix_(a, b)]
         targets = np.column_stack([cross.T, self.score[b]])
-        solution = np.linalg.lstsq(inner, targets, rcond=MIN_INFORMATION)[0]
+        solution = np.linalg.lstsq(inner, targets, rcond=MIN_INFORMATION_SHARE)[0]
         own = self.information[np.ix_(a, a)]
         remaining = own - cross @ solution[:, :-1]
         score = self.score[a] - cross @ solution[:, -1]
         # shapes that are neither zero nor combinations of the others
-        free = np.diag(remaining) > MIN_INFORMATION * np.diag(own)
+        free = np.diag(remaining) > MIN_INFORMATION_SHARE * np.diag(own)
         factors = np.zeros(len(a))
         if not free.any():
             return ScoreTest(factors, 1.0, np.zeros(len(self.squares)))

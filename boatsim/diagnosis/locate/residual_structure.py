@@ -20,7 +20,7 @@ from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.physics.base import Array
 
 # share of the largest information on an axis below which a feature is ignored as rounding
-MIN_INFORMATION = 1e-9
+MIN_FEATURE_INFORMATION = 1e-9
 CONSTANT = "nothing, it is constant"
 SINCE_START = "the time since the beginning"
 WITHIN = "time: it acts in"
@@ -91,7 +91,7 @@ def find_structure(problem: Problem, fit: Fit) -> Structure:
         own = {key: i for key, i in information.items() if key[0] == axis}
         largest = max(own.values())
         for key, i in own.items():
-            if i > MIN_INFORMATION * largest:
+            if i > MIN_FEATURE_INFORMATION * largest:
                 gains[key] = 0.5 * scores[key] ** 2 / i
     if not gains:
         return Structure(axes[0], CONSTANT, 0.0, 1.0, 0, False)
