@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 
 from boatsim.diagnosis import pipeline
 from boatsim.diagnosis.config import Given, from_settings
+from boatsim.diagnosis.loading import open_recording
 from boatsim.diagnosis.replay import joined, replayed
 from boatsim.diagnosis.report import output_files
 from boatsim.diagnosis.report.schema import Answer
@@ -308,7 +309,7 @@ def read(path: Name, vessel: Name | None = None, load: Names = ()) -> Recording:
     file = Path(path)
     if vessel is None and not notes_for(file).notes.vessel:
         return table.read(file)
-    return pipeline.open_recording(file, None if vessel is None else str(vessel), _names(load))[0]
+    return open_recording(file, None if vessel is None else str(vessel), _names(load))[0]
 
 
 def diagnose(
@@ -391,7 +392,7 @@ def replay(
     >>> sorted(simulated.signals)
     ['psi_rad', 'segment', 'x_m', 'y_m']
     """
-    opened, boat = pipeline.open_recording(
+    opened, boat = open_recording(
         Path(recording), None if vessel is None else str(vessel), _names(load)
     )
     return joined(replayed(opened, boat, horizon))

@@ -9,7 +9,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from boatsim.cli import diagnosis as commands
-from boatsim.diagnosis import pipeline
+from boatsim.diagnosis import loading
 from boatsim.errors import BadInput
 from boatsim.physics import vessel
 from boatsim.physics.base import Course, motion
@@ -91,7 +91,7 @@ def test_a_minus_in_a_vessels_columns_flips_the_sign(tmp_path: Path) -> None:
 
 def test_without_a_vessel_the_line_says_that_there_is_none(tmp_path: Path) -> None:
     with pytest.raises(BadInput, match=r"run_900\.csv: no vessel given"):
-        pipeline.open_recording(recorded(tmp_path), None, [])
+        loading.open_recording(recorded(tmp_path), None, [])
 
 
 def test_more_of_the_channel_called_left_turns_the_blueboat_to_port(tmp_path: Path) -> None:
@@ -168,7 +168,7 @@ def test_an_idle_propeller_and_one_at_rest_lack_nothing() -> None:
 
 def test_the_usv_of_no_mass_turns_to_the_side_whose_thruster_pushes_less() -> None:
     boat = vessel.load("twin_usv")
-    seen, _ = pipeline.open_recording(DATA / "sin.csv", "twin_usv", [])
+    seen, _ = loading.open_recording(DATA / "sin.csv", "twin_usv", [])
     assert boat.columns.get("pwm_left_us", "pwm_left_us") == "pwm_left_us"
     smooth = np.ones(20) / 20
     turning = np.convolve(np.gradient(seen["psi_rad"], seen.t), smooth, "same")

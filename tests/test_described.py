@@ -13,7 +13,8 @@ from pushed_boat import BOAT, Late, Missing, sail
 
 from boatsim.diagnosis.candidates import composed, library_for
 from boatsim.diagnosis.filter import map_recording
-from boatsim.diagnosis.pipeline import Diagnosis, diagnose_recordings
+from boatsim.diagnosis.loading import Loaded
+from boatsim.diagnosis.pipeline import Diagnosis, diagnose_loaded
 from boatsim.diagnosis.report import patched_vessel
 from boatsim.errors import BadInput
 from boatsim.physics import content, terms, vessel
@@ -156,7 +157,7 @@ def nothing(t: float, y: Array, command: Array) -> Array:
 def diagnosed(*causes: Missing, late: Late | None = None) -> Diagnosis:
     """Of recordings under these causes, the last one kept unseen."""
     runs = [sail(f"run_{i + 1}", 40 + i, cause, late=late)[0] for i, cause in enumerate(causes)]
-    return diagnose_recordings(runs[:-1], runs[-1:], {None: BOAT}, "the last")
+    return diagnose_loaded(Loaded(runs[:-1], runs[-1:], {None: BOAT}, "the last"))
 
 
 def halved(found: Diagnosis, signal: str) -> bool:

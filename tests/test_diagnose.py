@@ -11,11 +11,10 @@ from scipy.linalg import expm
 from scipy.stats import multivariate_normal
 
 from boatsim.cli import diagnosis as commands
-from boatsim.diagnosis import pipeline
+from boatsim.diagnosis import loading, pipeline
 from boatsim.diagnosis.candidates import library_for
 from boatsim.diagnosis.filter import NoiseLevels, map_recording, prior_levels, segments
 from boatsim.diagnosis.problem import froude_scale
-from boatsim.diagnosis.report import before_after
 from boatsim.diagnosis.report.answer import key_of
 from boatsim.errors import BadInput
 from boatsim.physics import vessel
@@ -56,7 +55,7 @@ def test_filter_and_smoother_equal_the_dense_gaussian_of_the_same_linear_model()
     F = expm(A * h)
     F[2, 2] = np.exp(-h / 1.5)
     Q = np.diag([0.0, 0.0, 9.0 * (1 - F[2, 2] ** 2)])
-    P0 = found.spread.copy()
+    P0 = found.initial.covariance.copy()
     P0[0, 0], P0[2, 2] = 1e-6, 9.0
     n = len(rec)
     big = np.zeros((3 * n, 3 * n))
@@ -331,7 +330,7 @@ def test_practice_trials_are_named_exactly(name):
 
 def test_a_single_run_keeps_its_middle_third_unseen():
     rec = recorded("single", 5)
-    fitted, held_out, note = before_after.split([rec], [])
+    fitted, held_out, note = loading.split([rec], [])
     assert [len(r) for r in (*fitted, *held_out)] == pytest.approx([80, 80, 80], abs=2)
     assert held_out[0].t[0] > fitted[0].t[-1] - 0.2 and fitted[1].t[0] > held_out[0].t[-1]
     assert "middle third" in note

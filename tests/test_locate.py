@@ -28,7 +28,7 @@ from boatsim.diagnosis.locate.smoothing import (
 )
 from boatsim.diagnosis.noise_levels import fit_time_constant
 from boatsim.diagnosis.problem import Problem
-from boatsim.diagnosis.search.evidence import UNKNOWN, left_over
+from boatsim.diagnosis.search.evidence import left_over
 from boatsim.diagnosis.search.ranking import baseline
 from boatsim.physics import vessel
 from boatsim.physics.base import Array
@@ -402,7 +402,7 @@ def test_a_force_below_the_tolerated_one_is_seen_by_what_it_goes_with(
     problem, found = laid(*runs)
     seen = find_structure(problem, found)
     assert seen.axis == axis and goes_with in seen.goes_with and seen.p_value < 1e-3
-    assert left_over(problem, found) < UNKNOWN  # whose rms alone would pass
+    assert left_over(problem, found) < DEFAULT.select.unknown_gain  # whose rms alone would pass
 
 
 def test_stretches_are_told_by_the_clock_of_the_recording() -> None:

@@ -16,7 +16,9 @@ from typer.testing import CliRunner
 from boatsim.cli.commands import app
 from boatsim.diagnosis.checks.finding import Change, apply_changes, column_lines
 from boatsim.diagnosis.checks.position_jumps import jump_rows
-from boatsim.diagnosis.pipeline import check, diagnose, vessel_for
+from boatsim.diagnosis.loading import vessel_for
+from boatsim.diagnosis.log_check import check_files
+from boatsim.diagnosis.pipeline import diagnose
 from boatsim.errors import BadInput
 from boatsim.physics import vessel
 from boatsim.physics.base import Array
@@ -57,7 +59,7 @@ def files(folder: Path, logs: Sequence[Columns]) -> list[Path]:
 
 
 def found_in(paths: Sequence[Path], name: str = "trial_boat") -> list[Mapping[str, Any]]:
-    found, refused = check(paths, name)
+    found, refused = check_files(paths, name)
     assert not refused or any(found.values()), refused
     return [e for entries in found.values() for e in entries if e["kind"] != "limit"]
 
@@ -190,7 +192,7 @@ def test_nothing_is_advised_that_the_boat_can_not_do(tmp_path: Path) -> None:
     for name in boat.commands:
         log[name] = np.abs(log[name])
     path = files(tmp_path, [log])[0]
-    told = [e for e in check([path], "blueboat")[0][path] if e["kind"] == "limit"]
+    told = [e for e in check_files([path], "blueboat")[0][path] if e["kind"] == "limit"]
     assert "never_astern" in {e["name"] for e in told}
     assert not any("steer" in f"{e['evidence']} {e.get('remedy')}" for e in told)
 

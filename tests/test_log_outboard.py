@@ -11,7 +11,7 @@ from typer.testing import CliRunner
 
 from boatsim.cli.commands import app
 from boatsim.diagnosis.checks.course_over_ground import heading_offset
-from boatsim.diagnosis.pipeline import check
+from boatsim.diagnosis.log_check import check_files
 from boatsim.physics import vessel as vessels
 from boatsim.physics.base import Array
 from boatsim.physics.vessel import Vessel
@@ -57,7 +57,7 @@ def sailed(boat: Vessel, share: float = 1.0, current: complex = 0.0) -> Columns:
 
 def found_in(log: Columns, boat: Vessel, folder: Path) -> list[Mapping[str, Any]]:
     write(log, folder / "run.csv")
-    found, refused = check([folder / "run.csv"], str(Path(str(boat.file)).parent))
+    found, refused = check_files([folder / "run.csv"], str(Path(str(boat.file)).parent))
     assert not refused, refused
     return [e for entries in found.values() for e in entries if e["kind"] == "fault"]
 

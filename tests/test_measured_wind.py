@@ -14,7 +14,7 @@ from scipy.integrate import solve_ivp
 from boatsim.diagnosis.candidates import library_for
 from boatsim.diagnosis.experiment_design.manoeuvres import available_manoeuvres, driven_commands
 from boatsim.diagnosis.filter import map_recording
-from boatsim.diagnosis.pipeline import open_recording
+from boatsim.diagnosis.loading import open_recording
 from boatsim.errors import BadInput
 from boatsim.physics import vessel
 from boatsim.physics.base import Array, motion

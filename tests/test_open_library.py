@@ -7,7 +7,7 @@ import pytest
 
 from boatsim.diagnosis import pipeline
 from boatsim.diagnosis.priors import assumed_disturbance, sensed_noise
-from boatsim.diagnosis.search.evidence import price, together
+from boatsim.diagnosis.search.evidence import combined_gain, required_gain
 from boatsim.diagnosis.search.generalization import grew, misfit
 from boatsim.physics import vessel
 from boatsim.recordings.table import Recording
@@ -71,8 +71,8 @@ def test_twenty_entries_that_explain_nothing_change_no_verdict(tmp_path: Path) -
 
 
 def test_the_price_of_an_effect_grows_with_the_number_tried_and_look_alikes_pay_together() -> None:
-    assert price(60) - price(20) == pytest.approx(np.log(3.0))
-    assert together([5.0, 5.0, -np.inf]) == pytest.approx(5.0 + np.log(2.0))
+    assert required_gain(60) - required_gain(20) == pytest.approx(np.log(3.0))
+    assert combined_gain([5.0, 5.0, -np.inf]) == pytest.approx(5.0 + np.log(2.0))
 
 
 def test_an_error_has_grown_where_it_is_beyond_its_scatter_and_five_percent() -> None:

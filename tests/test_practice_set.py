@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from boatsim.diagnosis.pipeline import open_recording
+from boatsim.diagnosis.loading import open_recording
 from validation.practice import hulls
 from validation.practice.make import Trial, evidence, make, sailed, trials
 from validation.practice.plans import PLANS

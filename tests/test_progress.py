@@ -17,7 +17,7 @@ DATA = Path(__file__).parent / "data"
 TRIAL = [DATA / "trials" / "T002" / f"run_{i}.csv" for i in (1, 2)]
 STAGES = (
     "reading",
-    "looking at the log",
+    "checking the log",
     "fitting",
     "screening 39 entries",
     "selecting",

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from test_report import MODELS, described, nothing, planar, rolling, unknown
 
-from boatsim.diagnosis.report import before_after
+from boatsim.diagnosis.loading import in_order
 from boatsim.diagnosis.report import page as report
 from boatsim.diagnosis.report.animation import FRAMES, LONGEST_ANIMATION
 from boatsim.diagnosis.report.findings import Findings, FreeRun, Missing
@@ -224,20 +224,9 @@ def test_every_line_can_be_read_back_with_its_quantity_and_unit(tmp_path):
 
 
 def test_parts_of_one_run_come_in_the_order_of_time():
-    class Part:
-        def __init__(self, name: str, begin: float) -> None:
-            self.name, self.times = name, np.array([begin, begin + 1.0])
-
-    thirds = [
-        Part("run (first third)", 0.0),
-        Part("run (last third)", 2.0),
-        Part("run (middle third)", 1.0),
-    ]
-    assert [p.name for p in before_after.in_time(thirds)] == [
-        f"run ({n} third)" for n in ("first", "middle", "last")
-    ]
-    whole = [Part("run_2", 5.0), Part("run_1", 0.0), Part("run_3", 3.0)]
-    assert before_after.in_time(whole) == whole
+    thirds = [f"run ({n} third)" for n in ("first", "last", "middle")]
+    assert in_order(thirds, [0.0, 2.0, 1.0]) == [0, 2, 1]
+    assert in_order(["run_2", "run_1", "run_3"], [5.0, 0.0, 3.0]) == [0, 1, 2]
 
 
 MEAN = {"sway": {"mean": -0.21, "sd": 0.02, "unit": "N", "share_of_full_thrust": 0.105}}

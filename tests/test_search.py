@@ -9,9 +9,8 @@ from pushed_boat import laid, push, sail
 from boatsim.diagnosis.filter import FilterPass
 from boatsim.diagnosis.fit import fit
 from boatsim.diagnosis.problem import FilterPasses, Fit, Problem
-from boatsim.diagnosis.search.candidate_sets import Sets
-from boatsim.diagnosis.search.evidence import worth
-from boatsim.diagnosis.search.pruning import there
+from boatsim.diagnosis.search.candidate_sets import CandidateSets
+from boatsim.diagnosis.search.evidence import gain_by_curvature
 from boatsim.diagnosis.search.screening import Linearisation, recheck, screen
 from boatsim.physics.base import Array
 
@@ -80,10 +79,13 @@ def test_a_member_is_worth_less_than_its_curvature_says_and_what_does_nothing_li
     looks = screen(problem, base, ["weak_reverse", "steady_force"])
     found = fit(problem, looks["weak_reverse"])
     assert (
-        worth(found, "weak_reverse") > found.evidence - base.evidence > 100.0
+        gain_by_curvature(found, "weak_reverse") > found.evidence - base.evidence > 100.0
     )  # the latent force takes its place
     both = fit(problem, screen(problem, found, ["steady_force"])["steady_force"])
-    assert worth(both, "steady_force") < 10.0 and worth(both, "nothing of the kind") == 0.0
+    assert (
+        gain_by_curvature(both, "steady_force") < 10.0
+        and gain_by_curvature(both, "nothing of the kind") == 0.0
+    )
 
 
 @pytest.mark.parametrize("least_sd, acts", [(0.001, True), (0.25, False)])
@@ -103,4 +105,4 @@ def test_an_effect_acts_where_recordings_tell_a_number_of_it_whatever_they_leave
     found = replace(
         base, effects=("planing_lag",), free=free, theta=theta, covariance=np.diag(sd**2)
     )
-    assert there(Sets(problem, ("planing_lag",), base), found, "planing_lag") is acts
+    assert acts(CandidateSets(problem, ("planing_lag",), base), found, "planing_lag") is acts

@@ -26,7 +26,7 @@ from boatsim.cli import app, trust_prompt
 from boatsim.cli.exits import LONGEST, complain, words
 from boatsim.cli.run_many import plan
 from boatsim.diagnosis.candidates import library_for
-from boatsim.diagnosis.pipeline import vessel_for
+from boatsim.diagnosis.loading import vessel_for
 from boatsim.drive.driver_input import PATIENCE, Hands, Sticks
 from boatsim.drive.server import LARGEST as MESSAGE
 from boatsim.drive.server import STRANGE, TAKEN, Server

@@ -12,7 +12,7 @@ import pytest
 from alike import slow
 from scipy.integrate import solve_ivp
 
-from boatsim.diagnosis import pipeline
+from boatsim.diagnosis import loading, pipeline
 from boatsim.diagnosis.command_range import channels_of
 from boatsim.errors import BadInput
 from boatsim.physics import particulars, vessel
@@ -511,7 +511,7 @@ def test_a_rudder_counted_to_port_is_turned_and_said_so(tmp_path: Path) -> None:
     theirs = {**run.signals, "delta_rad": -run["delta_rad"]}
     recording.write_csv(replace(run, signals=theirs), tmp_path / "theirs.csv")
     ours, said = (
-        pipeline.open_recording(tmp_path / f"{n}.csv", "kvlcc2", ())[0] for n in ("ours", "theirs")
+        loading.open_recording(tmp_path / f"{n}.csv", "kvlcc2", ())[0] for n in ("ours", "theirs")
     )
     assert said["delta_rad"] == pytest.approx(ours["delta_rad"]) and not ours.remarks
     assert said.remarks[-1].endswith(
@@ -525,11 +525,11 @@ def test_the_scale_of_a_recording_picks_the_vessel_or_is_refused(tmp_path: Path)
         replace(run, signals={**run.signals, "n_rps": np.full(len(run), 1.5)}), tmp_path / "run.csv"
     )
     (tmp_path / "recording.toml").write_text('vessel = "kvlcc2"\nscale = 1.0\n')
-    assert pipeline.open_recording(tmp_path / "run.csv", None, ())[1].name == "kvlcc2_full_scale"
+    assert loading.open_recording(tmp_path / "run.csv", None, ())[1].name == "kvlcc2_full_scale"
     with pytest.raises(
         BadInput,
         match="scale = 1, but kvlcc2 is at scale 45.714; the vessel at that scale is kvlcc2_f",
     ):
-        pipeline.open_recording(tmp_path / "run.csv", "kvlcc2", ())
+        loading.open_recording(tmp_path / "run.csv", "kvlcc2", ())
     (tmp_path / "recording.toml").write_text('vessel = "kvlcc2"\nscale = 45.714\n')
-    assert pipeline.open_recording(tmp_path / "run.csv", None, ())[1].name == "kvlcc2"
+    assert loading.open_recording(tmp_path / "run.csv", None, ())[1].name == "kvlcc2"

@@ -11,10 +11,16 @@ from boatsim.diagnosis.fit import fit
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.diagnosis.search import generalization
 from boatsim.diagnosis.search import validation as asked
-from boatsim.diagnosis.search.candidate_sets import Sets
-from boatsim.diagnosis.search.pruning import beside
+from boatsim.diagnosis.search.candidate_sets import CandidateSets
+from boatsim.diagnosis.search.pruning import compare_rivals
 from boatsim.diagnosis.search.screening import screen
-from boatsim.diagnosis.search.validation import foretold, lawful, refuted, stood_for, told
+from boatsim.diagnosis.search.validation import (
+    deterministic_replacement,
+    distinguish,
+    predicted,
+    refuted_effect,
+    remove_dwarfed,
+)
 from boatsim.physics.base import Array
 
 Laid = tuple[Problem, Fit, Fit, list[MappedRecording]]
@@ -37,8 +43,8 @@ def weak() -> Laid:
     )
 
 
-def sets_of(problem: Problem, base: Fit, *fits: Fit) -> Sets:
-    sets = Sets(problem, ("weak_reverse", "steady_force", "wave_forcing"), base)
+def sets_of(problem: Problem, base: Fit, *fits: Fit) -> CandidateSets:
+    sets = CandidateSets(problem, ("weak_reverse", "steady_force", "wave_forcing"), base)
     sets.fits |= {frozenset(f.effects): f for f in fits}
     return sets
 
@@ -54,12 +60,12 @@ def test_a_look_alike_by_which_unseen_runs_are_foreseen_worse_is_none(
 ) -> None:
     problem, base, found, held_out = weak
     sets, rival = sets_of(problem, base, found), as_likely(problem, base, found, name)
-    one = beside("weak_reverse", found, base, {name: rival})
+    one = compare_rivals("weak_reverse", found, base, {name: rival})
     assert one.tied_with == (name,) and one.probability < 0.5
-    (sure,) = told(sets, found, [one], held_out)
+    (sure,) = distinguish(sets, found, [one], held_out)
     assert not sure.tied_with and sure.probability > 0.99 and not sure.rivals
-    (kept,) = told(sets, found, [one], [])
-    assert kept.tied_with == (name,)  # nothing unseen, nothing told
+    (kept,) = distinguish(sets, found, [one], [])
+    assert kept.tied_with == (name,)  # nothing unseen, nothing distinguish
 
 
 def test_a_law_by_which_unseen_runs_are_foreseen_better_takes_the_place_of_its_look_alike(
@@ -68,17 +74,19 @@ def test_a_law_by_which_unseen_runs_are_foreseen_better_takes_the_place_of_its_l
     problem, base, found, held_out = weak
     wrong = as_likely(problem, base, found, "steady_force")
     sets = sets_of(problem, base, found, wrong)
-    one = beside("steady_force", wrong, base, {"weak_reverse": found})
-    assert lawful(sets, wrong, [one], held_out) is found and sets.banned == {"steady_force"}
+    one = compare_rivals("steady_force", wrong, base, {"weak_reverse": found})
+    assert deterministic_replacement(sets, wrong, [one], held_out) is found and sets.banned == {
+        "steady_force"
+    }
 
 
 def test_a_look_alike_that_foresees_as_much_stays_one(weak: Laid) -> None:
     problem, base, found, held_out = weak
     sets, twin = sets_of(problem, base, found), replace(found, evidence=found.evidence - 1.0)
-    one = beside("weak_reverse", found, base, {"steady_force": twin})
-    (kept,) = told(sets, found, [one], held_out)
+    one = compare_rivals("weak_reverse", found, base, {"steady_force": twin})
+    (kept,) = distinguish(sets, found, [one], held_out)
     assert kept.tied_with == ("steady_force",)
-    assert lawful(sets, found, [one], held_out) is None and not sets.banned
+    assert deterministic_replacement(sets, found, [one], held_out) is None and not sets.banned
 
 
 def test_beside_what_nothing_explains_only_what_unseen_runs_ask_for_is_stood_for(
@@ -91,8 +99,8 @@ def test_beside_what_nothing_explains_only_what_unseen_runs_ask_for_is_stood_for
     )  # as if nothing took any of it away
     much, none = replace(found, levels=levels), replace(base, levels=levels)
     sets = sets_of(problem, none, much)
-    assert stood_for(sets, much, held_out) is much and not sets.banned
-    assert stood_for(sets, much, []) is none and sets.banned == {"weak_reverse"}
+    assert remove_dwarfed(sets, much, held_out) is much and not sets.banned
+    assert remove_dwarfed(sets, much, []) is none and sets.banned == {"weak_reverse"}
 
 
 def test_free_runs_of_a_boat_that_runs_away_have_grown() -> None:
@@ -115,26 +123,29 @@ def said(problem: Problem, found: Fit, factor: float) -> Fit:
 def test_an_effect_by_which_unseen_runs_become_unlikelier_does_not_carry_over(weak: Laid) -> None:
     problem, base, found, held_out = weak
     sets = sets_of(problem, base, found)
-    one = beside("weak_reverse", found, base, {})
-    assert refuted(sets, found, [one], held_out) == ""
+    one = compare_rivals("weak_reverse", found, base, {})
+    assert refuted_effect(sets, found, [one], held_out) == ""
     wrong = said(problem, found, 1.5)  # stronger astern, where it is weaker
     assert (
-        refuted(sets, wrong, [one], held_out) == "weak_reverse"
-        and refuted(sets, wrong, [one], []) == ""
+        refuted_effect(sets, wrong, [one], held_out) == "weak_reverse"
+        and refuted_effect(sets, wrong, [one], []) == ""
     )
 
 
 def test_what_all_recordings_together_hardly_ask_for_is_not_named(weak: Laid) -> None:
-    """A factor next to one gains nothing on unseen runs: on the fitted ones it must then gain its whole price."""
+    """A factor next to one gains nothing on unseen runs: on the fitted ones it must then gain its whole required_gain."""
     problem, base, found, held_out = weak
     own = dict(zip(((f.effect, f.name) for f in base.free), base.theta, strict=True))
     theta = np.array([own.get((f.effect, f.name), 0.999) for f in found.free])
     little = replace(found, theta=theta, levels=base.levels, evidence=base.evidence + 2.5)
     sets = sets_of(problem, base, little)
-    one = beside("weak_reverse", little, base, {})
-    assert sets.price > 2.6 and refuted(sets, little, [one], held_out) == "weak_reverse"
+    one = compare_rivals("weak_reverse", little, base, {})
     assert (
-        refuted(sets, little, [replace(one, shared=sets.price + 20.0)], held_out) == ""
+        sets.required_gain > 2.6 and refuted_effect(sets, little, [one], held_out) == "weak_reverse"
+    )
+    assert (
+        refuted_effect(sets, little, [replace(one, shared=sets.required_gain + 20.0)], held_out)
+        == ""
     )  # with its look-alikes
 
 
@@ -146,21 +157,21 @@ def test_what_unseen_runs_say_of_a_law_hangs_little_on_how_rough_the_water_was_b
         sets_of(problem, base),
         replace(found, levels=replace(found.levels, force=5.0 * found.levels.force)),
     )
-    by_law = foretold(sets, found, held_out) - foretold(sets, said(problem, found, 1.0), held_out)
-    assert abs(foretold(sets, rough, held_out) - foretold(sets, found, held_out)) < 0.2 * by_law
+    by_law = predicted(sets, found, held_out) - predicted(sets, said(problem, found, 1.0), held_out)
+    assert abs(predicted(sets, rough, held_out) - predicted(sets, found, held_out)) < 0.2 * by_law
 
 
 def test_a_rival_that_is_behind_on_the_fitted_runs_only_is_a_look_alike(weak: Laid) -> None:
     problem, base, found, held_out = weak
     wrong = said(problem, found, 0.9)
-    gap = foretold(sets_of(problem, base), found, held_out) - foretold(
+    gap = predicted(sets_of(problem, base), found, held_out) - predicted(
         sets_of(problem, base), wrong, held_out
     )
     assert gap > 6.0
     rival = replace(
         found, evidence=wrong.evidence - gap
     )  # as far behind there as it is ahead on the unseen run
-    one = beside("weak_reverse", wrong, base, {"steady_force": rival})
+    one = compare_rivals("weak_reverse", wrong, base, {"steady_force": rival})
     assert not one.tied_with
-    (all_told,) = told(sets_of(problem, base, wrong), wrong, [one], held_out)
+    (all_told,) = distinguish(sets_of(problem, base, wrong), wrong, [one], held_out)
     assert all_told.tied_with == ("steady_force",)

@@ -34,9 +34,9 @@ from boatsim.diagnosis import priors
 from boatsim.diagnosis.candidates import library_for
 from boatsim.diagnosis.config import DEFAULT
 from boatsim.diagnosis.filter import axes_of, map_recording, prior_levels, shared_noise
+from boatsim.diagnosis.loading import open_recording
 from boatsim.diagnosis.locate.missing_force import missing_force
 from boatsim.diagnosis.locate.regions import Region, regions
-from boatsim.diagnosis.pipeline import open_recording
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.diagnosis.search.ranking import baseline
 from boatsim.physics.base import Array

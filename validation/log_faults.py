@@ -13,7 +13,8 @@ from pathlib import Path
 
 import numpy as np
 
-from boatsim.diagnosis.pipeline import check, diagnose
+from boatsim.diagnosis.log_check import check_files
+from boatsim.diagnosis.pipeline import diagnose
 from boatsim.diagnosis.priors import froude_time
 from boatsim.errors import BadInput
 from boatsim.physics import vessel as vessels
@@ -190,7 +191,7 @@ def judged(
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "run.csv"
         write(fault.apply(columns, boat) if fault else columns, path)
-        found, refused = check([path], boat.name)
+        found, refused = check_files([path], boat.name)
         names = [e["name"] for e in found[path] if e["kind"] != "limit"]
         named = bool(fault) and bool(set(names) & set(fault.named if fault else ()))
         if named or names or refused or not ask or not fault:

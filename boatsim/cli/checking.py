@@ -6,7 +6,7 @@ from pathlib import Path
 from boatsim.cli.exits import Exit, complain, say, words
 from boatsim.diagnosis.checks.entry import entry_text
 from boatsim.diagnosis.checks.finding import LOG_NOT_BOAT
-from boatsim.diagnosis.pipeline import check
+from boatsim.diagnosis.log_check import check_files
 from boatsim.errors import printable
 
 CLEAN = "nothing is wrong with this log that could be found"
@@ -14,7 +14,7 @@ CLEAN = "nothing is wrong with this log that could be found"
 
 def check_logs(runs: list[Path], vessel: str | None, load: list[str]) -> int:
     """Print the findings of each file; 0 where there are none. Raises BadInput."""
-    found, refused = check(runs, vessel, load)
+    found, refused = check_files(runs, vessel, load)
     for path, entries in found.items():
         wrong = [e for e in entries if e["kind"] != "limit"]
         faults = any(e["kind"] == "fault" for e in entries)

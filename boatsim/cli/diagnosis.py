@@ -13,9 +13,12 @@ from boatsim.cli.progress import reporting
 from boatsim.diagnosis.checks.entry import entry_text
 from boatsim.diagnosis.config import from_settings
 from boatsim.diagnosis.free_runs import FreeRun, errors, free_runs
-from boatsim.diagnosis.pipeline import NEXT, Diagnosis, hint, open_recording
+from boatsim.diagnosis.loading import open_recording
+from boatsim.diagnosis.log_check import correction_hint
+from boatsim.diagnosis.pipeline import Diagnosis
 from boatsim.diagnosis.pipeline import diagnose as analyse
 from boatsim.diagnosis.replay import as_written, columns, replayed
+from boatsim.diagnosis.report.answer import NEXT_SCENARIO
 from boatsim.diagnosis.report.output_files import write
 from boatsim.diagnosis.report.sentences import printed
 from boatsim.errors import BadInput
@@ -55,7 +58,7 @@ def diagnose(
                 config=config,
             )
         except BadInput as error:
-            raise BadInput(f"{error}{hint(runs, hold_out, vessel, load)}") from None
+            raise BadInput(f"{error}{correction_hint(runs, hold_out, vessel, load)}") from None
         told("writing the report", WRITING)
         full = _unwritten(found, out)
     faults = [e for e in found.findings.answer.get("log", []) if e["kind"] == "fault"]
@@ -67,7 +70,7 @@ def diagnose(
     if full:  # which does not cost the answer
         say(printed(found.findings))
         raise full
-    plan = [NEXT] if found.plan else []
+    plan = [NEXT_SCENARIO] if found.plan else []
     files = ["report.html", "report.md", "diagnosis.json", "patched.toml", *plan, "diagnosis.rrd"]
     say([*printed(found.findings), f"written to {out}: {', '.join(files)}"])
     return 0

@@ -23,7 +23,7 @@ from boatsim.diagnosis.checks.initial_actuator_state import with_initial_actuato
 from boatsim.diagnosis.filter import map_recording, prior_levels
 from boatsim.diagnosis.fit import converge
 from boatsim.diagnosis.free_runs import errors, free_runs
-from boatsim.diagnosis.pipeline import open_recording
+from boatsim.diagnosis.loading import open_recording
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.diagnosis.report import patched_vessel
 from boatsim.diagnosis.search.ranking import baseline

@@ -6,7 +6,7 @@ from functools import cache
 from pathlib import Path
 
 from boatsim.cli.exits import FAULTS, words
-from boatsim.diagnosis.pipeline import vessel_for
+from boatsim.diagnosis.loading import vessel_for
 from boatsim.physics import vessel
 from boatsim.recordings import table
 from boatsim.recordings.importing.convert import convert

@@ -14,7 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
-from boatsim.diagnosis import pipeline, priors
+from boatsim.diagnosis import loading, pipeline, priors
 from boatsim.diagnosis.correlation_time import with_correlation_time
 from boatsim.diagnosis.filter import MappedRecording, map_recording, segments, shared_noise
 from boatsim.diagnosis.fit import converge, fit
@@ -92,7 +92,7 @@ class LeftOut:
 
 def left_out(found: Diagnosis, runs: dict[str, Path]) -> list[LeftOut]:
     """Each run judged by a model chosen without its group and fitted without it; one compiled program serves all."""
-    whole = [pipeline.open_recording(path, VESSEL, ())[0] for path in runs.values()]
+    whole = [loading.open_recording(path, VESSEL, ())[0] for path in runs.values()]
     stated, rate = shared_noise(found.vessel, whole), priors.rate(found.vessel)
     tracks = [map_recording(run.thinned(rate), found.problem.program, stated) for run in whole]
     recorded = dict(zip((t.name for t in tracks), whole, strict=True))

@@ -17,12 +17,13 @@ from pathlib import Path
 
 import numpy as np
 
-from boatsim.diagnosis import pipeline, priors
+from boatsim.diagnosis import loading, pipeline, priors
 from boatsim.diagnosis.checks.position_outliers import drop_position_outliers
 from boatsim.diagnosis.coordinate_search import maximize
 from boatsim.diagnosis.filter import MappedRecording, segments, shared_noise
 from boatsim.diagnosis.fit import converge, fit
 from boatsim.diagnosis.free_runs import FreeRun, errors, free_runs
+from boatsim.diagnosis.loading import Loaded
 from boatsim.diagnosis.pipeline import Diagnosis
 from boatsim.diagnosis.problem import Fit, FreeParameter, Problem
 from boatsim.physics.base import Array
@@ -433,10 +434,10 @@ def opened(
     completed: Callable[[str, Recording], Recording] = as_recorded,
 ) -> tuple[dict[str, Opened], Vessel]:
     """Every run, thinned, once what there is beside it is laid there."""
-    boat = pipeline.vessel_for(next(iter(runs.values())), vessel, ())
+    boat = loading.vessel_for(next(iter(runs.values())), vessel, ())
     rate, found = priors.rate(boat), {}
     for name, path in runs.items():
-        recording = completed(name, pipeline.open_recording(path, vessel, ())[0])
+        recording = completed(name, loading.open_recording(path, vessel, ())[0])
         parts = [r.thinned(rate) for r in sound(recording, path, SHORTEST)]
         found[name] = Opened(drop_position_outliers(recording.thinned(rate), boat), parts)
     return found, boat
@@ -449,7 +450,7 @@ def diagnosed(recordings: Mapping[str, Opened], boat: Vessel) -> Diagnosis:
     held_out = [some[n].whole for n in UNSEEN]
     boats = {r.path: boat for r in (*fitted, *held_out)}
     note = f"{', '.join(UNSEEN)}; of the others the longest stretch without a leap, {WINDOW:g} s at most"
-    return pipeline.diagnose_recordings(fitted, held_out, boats, note, horizon=HORIZON)
+    return pipeline.diagnose_loaded(Loaded(fitted, held_out, boats, note, horizon=HORIZON))
 
 
 def print_named(found: Diagnosis) -> None:
@@ -476,7 +477,7 @@ def main() -> None:
     stated = shared_noise(boat, [r for one in recordings.values() for r in one.stretches])
 
     def laid(some: Sequence[Recording]) -> list[MappedRecording]:
-        return [found.laid(r, stated) for r in some]
+        return [found.map_recording(r, stated) for r in some]
 
     tracks = {n: laid(one.stretches) for n, one in recordings.items()}
     fitted = {n: some for n, some in tracks.items() if n.startswith(FITTED)}

@@ -92,7 +92,7 @@ def main() -> None:
     stated = shared_noise(boat, [r for one in recordings.values() for r in one.stretches])
     fitted = [r for n, one in recordings.items() if n.startswith(FITTED) for r in one.stretches]
     judged = [one.whole for n, one in recordings.items() if n.startswith(JUDGED)]
-    problem = found.problem.on([found.laid(r, stated) for r in fitted])
+    problem = found.problem.on([found.map_recording(r, stated) for r in fitted])
     fits = {"nominal": found.ranking.nominal}
     fits |= {
         n: converge(problem, getattr(found.ranking, at))
@@ -101,7 +101,7 @@ def main() -> None:
     for f, x in zip(fits["recalibrated"].free, fits["recalibrated"].theta, strict=True):
         if f.effect == "measured_wind":
             print(f"  how the hull takes the measured wind: {f.name} x {x:.2f}")
-    tracks = [found.laid(r, stated) for r in judged]
+    tracks = [found.map_recording(r, stated) for r in judged]
     concealed = json.loads(KEPT.read_text(encoding="utf-8")) if KEPT.is_file() else {}
     print_against(free_runs(problem, fits, tracks, HORIZON), concealed)
     print(f"\n{time.perf_counter() - begin:.0f} s")

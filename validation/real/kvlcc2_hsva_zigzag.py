@@ -7,12 +7,11 @@ Z_20_05; then each of the ten runs is left out once, with the couplings kept and
 
 from collections.abc import Mapping
 
-from boatsim.diagnosis import pipeline, priors
+from boatsim.diagnosis import loading, pipeline, priors
 from boatsim.diagnosis.filter import MappedRecording
 from boatsim.diagnosis.fit import converge, gauss_newton
 from boatsim.diagnosis.free_runs import errors, free_runs
 from boatsim.diagnosis.pipeline import Diagnosis
-from boatsim.diagnosis.report import before_after
 from validation.real.common import report, runs_of, table
 
 NAME = "kvlcc2_hsva_zigzag"
@@ -38,7 +37,7 @@ def print_unseen(found: Diagnosis, goals: Mapping[str, float] = GOALS) -> None:
     rows = []
     for family, goal in goals.items():
         what, factor = UNITS[family]
-        nominal, before, after = (held_out[family][m] * factor for m in before_after.MODELS)
+        nominal, before, after = (held_out[family][m] * factor for m in MODELS)
         rows.append(
             [
                 what,
@@ -127,8 +126,8 @@ def main() -> None:
     print_unseen(found)
     print_couplings(found)
     rate = priors.rate(found.vessel)
-    opened = [pipeline.open_recording(path, None, ())[0].thinned(rate) for path in runs.values()]
-    print_left_out(found, [found.laid(r) for r in opened])
+    opened = [loading.open_recording(path, None, ())[0].thinned(rate) for path in runs.values()]
+    print_left_out(found, [found.map_recording(r) for r in opened])
 
 
 if __name__ == "__main__":

@@ -10,11 +10,11 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from boatsim.diagnosis import pipeline, priors
+from boatsim.diagnosis import loading, pipeline, priors
+from boatsim.diagnosis.evaluation import models
 from boatsim.diagnosis.filter import MappedRecording
 from boatsim.diagnosis.pipeline import Diagnosis
 from boatsim.diagnosis.problem import Fit
-from boatsim.diagnosis.report.before_after import fits_of
 from boatsim.physics.base import Array
 from validation.real.common import report, runs_of, table
 
@@ -46,9 +46,7 @@ def print_circle(
     found: Diagnosis, circle: MappedRecording, goals: Mapping[str, float], header: str = "goal"
 ) -> None:
     """The turning circle kept unseen, against the goals for speed and yaw rate."""
-    nominal, before, after = (
-        turn(found, f, circle) for f in fits_of(found.problem, found.ranking).values()
-    )
+    nominal, before, after = (turn(found, f, circle) for f in models(found.ranking).values())
     rows = [
         [
             what,
@@ -78,8 +76,8 @@ def main() -> None:
     runs = runs_of(NAME)
     found = pipeline.diagnose([runs[n] for n in FITTED], [runs[UNSEEN]], horizon=HORIZON)
     report(found, NAME)
-    recording, boat = pipeline.open_recording(runs[UNSEEN], None, ())
-    circle = found.laid(recording.thinned(priors.rate(boat)))
+    recording, boat = loading.open_recording(runs[UNSEEN], None, ())
+    circle = found.map_recording(recording.thinned(priors.rate(boat)))
     print_circle(found, circle, GOALS, f"goal (and <= {SHARE})")
     speed = circle.measured[circle.times <= DURATION, circle.signals.index("u_mps")]
     kept = float(np.sqrt(np.mean((speed - speed[0]) ** 2)))

@@ -12,15 +12,16 @@ from pathlib import Path
 
 import numpy as np
 
-from boatsim.diagnosis import pipeline, priors
+from boatsim.diagnosis import loading, pipeline, priors
 from boatsim.diagnosis.checks.position_outliers import drop_position_outliers
+from boatsim.diagnosis.evaluation import MODELS, models
 from boatsim.diagnosis.filter import MappedRecording
 from boatsim.diagnosis.fit import converge, gauss_newton
 from boatsim.diagnosis.free_runs import errors, free_runs
+from boatsim.diagnosis.loading import Loaded
 from boatsim.diagnosis.noise_levels import fit_force, force_prior
 from boatsim.diagnosis.pipeline import Diagnosis
 from boatsim.diagnosis.problem import Fit, Problem
-from boatsim.diagnosis.report.before_after import MODELS, fits_of
 from boatsim.errors import BadInput, unknown_name
 from boatsim.physics.base import Array
 from boatsim.recordings.table import Recording
@@ -76,9 +77,9 @@ def swings(found: Diagnosis, run: Recording) -> dict[str, list[float]]:
     rows = at[len(COUNT)] + 1 if len(at) > len(COUNT) else len(run)
     delta, at = run["delta_rad"][:rows], at[: len(COUNT)]
     out = {"recorded": overshoots(run["psi_rad"][:rows], delta, at)}
-    laid = found.laid(run)
+    laid = found.map_recording(run)
     heading = int(laid.codes[laid.signals.index("psi_rad")])
-    for name, fit in fits_of(found.problem, found.ranking).items():
+    for name, fit in models(found.ranking).items():
         values, on = (
             found.problem.values(laid, fit.free, fit.theta),
             found.problem.program.switches(fit.effects),
@@ -151,7 +152,7 @@ def print_left(found: Diagnosis) -> None:
 
 def opened(runs: dict[str, Path], vessel: str) -> dict[str, Recording]:
     """Recordings as the diagnosis takes them."""
-    read = {n: pipeline.open_recording(path, vessel, ()) for n, path in runs.items()}
+    read = {n: loading.open_recording(path, vessel, ()) for n, path in runs.items()}
     thin = {
         n: drop_position_outliers(r.thinned(min(RATE, priors.rate(b))), b)
         for n, (r, b) in read.items()
@@ -166,9 +167,11 @@ def diagnosed(
     runs: dict[str, Recording], held_out: Sequence[str], vessel: str, horizon: float
 ) -> Diagnosis:
     """What the model leaves out of the recordings that are not kept unseen."""
-    boats = {r.path: pipeline.vessel_for(r.path, vessel, ()) for r in runs.values() if r.path}
+    boats = {r.path: loading.vessel_for(r.path, vessel, ()) for r in runs.values() if r.path}
     fitted, kept = [r for n, r in runs.items() if n not in held_out], [runs[n] for n in held_out]
-    return pipeline.diagnose_recordings(fitted, kept, boats, ", ".join(held_out), horizon=horizon)
+    return pipeline.diagnose_loaded(
+        Loaded(fitted, kept, boats, ", ".join(held_out), horizon=horizon)
+    )
 
 
 # ---- the two tanks
@@ -218,7 +221,7 @@ def print_room(
 
 def of_hsva(found: Diagnosis, runs: dict[str, Recording]) -> None:
     """All runs are zig-zags."""
-    held_out = [found.laid(runs[n]) for n in hsva.UNSEEN]
+    held_out = [found.map_recording(runs[n]) for n in hsva.UNSEEN]
 
     def judged(fit: Fit) -> Errors:
         off = errors(free_runs(found.problem, {"": fit}, held_out, hsva.HORIZON))
@@ -231,7 +234,7 @@ def of_hsva(found: Diagnosis, runs: dict[str, Recording]) -> None:
 
 def of_marin(found: Diagnosis, runs: dict[str, Recording]) -> None:
     """Zig-zags, and the circle on which they are judged."""
-    circle = found.laid(runs[marin.UNSEEN])
+    circle = found.map_recording(runs[marin.UNSEEN])
 
     def judged(fit: Fit) -> Errors:
         return dict(zip(marin.GOALS, marin.turn(found, fit, circle).tolist(), strict=True))

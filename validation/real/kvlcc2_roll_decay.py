@@ -13,14 +13,15 @@ from pathlib import Path
 
 import numpy as np
 
-from boatsim.diagnosis import pipeline, priors
+from boatsim.diagnosis import loading, pipeline, priors
+from boatsim.diagnosis.evaluation import MODELS, models
 from boatsim.diagnosis.filter import MappedRecording
 from boatsim.diagnosis.fit import converge
 from boatsim.diagnosis.free_runs import errors, free_runs
+from boatsim.diagnosis.loading import Loaded
 from boatsim.diagnosis.pipeline import Diagnosis
 from boatsim.diagnosis.problem import Fit, Problem
-from boatsim.diagnosis.report import before_after
-from boatsim.diagnosis.search.evidence import price
+from boatsim.diagnosis.search.evidence import required_gain
 from boatsim.diagnosis.search.ranking import Ranking, rank
 from boatsim.diagnosis.search.screening import screen
 from boatsim.physics.base import Array
@@ -42,7 +43,7 @@ Table = tuple[str, list[str], Rows]
 
 def opened(name: str) -> tuple[Recording, Vessel]:
     """A release as the diagnosis reads it."""
-    recording, vessel = pipeline.open_recording(DATA / f"{name}.csv", None, ())
+    recording, vessel = loading.open_recording(DATA / f"{name}.csv", None, ())
     return replace(recording.thinned(priors.rate(vessel)), name=name), vessel
 
 
@@ -62,8 +63,8 @@ def by_windows(whole: Recording, vessel: Vessel) -> Diagnosis:
     """Windows of 20 s, every second one unseen; the rest at the end is left out."""
     parts = cut_windows(whole)
     note = f"every second window of {WINDOW:g} s"
-    return pipeline.diagnose_recordings(
-        parts[::2], parts[1::2], {whole.path: vessel}, note, horizon=HORIZON
+    return pipeline.diagnose_loaded(
+        Loaded(parts[::2], parts[1::2], {whole.path: vessel}, note, horizon=HORIZON)
     )
 
 
@@ -72,7 +73,9 @@ def by_thirds(whole: Recording, vessel: Vessel, held_out: int = 1) -> Diagnosis:
     parts = thirds(whole)
     kept = parts.pop(held_out)
     note = kept.name
-    return pipeline.diagnose_recordings(parts, [kept], {whole.path: vessel}, note, horizon=HORIZON)
+    return pipeline.diagnose_loaded(
+        Loaded(parts, [kept], {whole.path: vessel}, note, horizon=HORIZON)
+    )
 
 
 def thirds(whole: Recording) -> list[Recording]:
@@ -158,7 +161,7 @@ def polar_errors(
 
 def laid_on(found: Diagnosis, parts: Sequence[Recording]) -> list[MappedRecording]:
     """Recordings on the program of a diagnosis."""
-    return [found.laid(p) for p in parts]
+    return [found.map_recording(p) for p in parts]
 
 
 def error_rows(
@@ -260,13 +263,10 @@ def pair(value: float, sd: float) -> str:
 def carried_over(at_rest: Diagnosis, whole: Recording) -> Rows:
     """The boats fitted at zero speed on the release at speed, which they have not seen."""
     (laid,) = laid_on(at_rest, [whole])
-    problem, fits = at_rest.problem, before_after.fits_of(at_rest.problem, at_rest.ranking)
+    problem, fits = at_rest.problem, models(at_rest.ranking)
     stretches = free_runs(problem, fits, [laid], float(np.ptp(laid.times)))
     rms = errors(stretches)["roll_rms_rad"]
-    return [
-        [m, f"{rms[m] * DEG:.3f}", f"{rms[m] / rms['recalibrated']:.2f}"]
-        for m in before_after.MODELS
-    ]
+    return [[m, f"{rms[m] * DEG:.3f}", f"{rms[m] / rms['recalibrated']:.2f}"] for m in MODELS]
 
 
 # Tables
@@ -278,9 +278,7 @@ def last_third(found: Diagnosis, whole: Recording) -> tuple[Rows, Ranking]:
     (tail,) = laid_on(found, thirds(whole)[2:])
     alone = Problem([tail], found.problem.ambient, found.problem.uncertainty)
     ranking = rank(alone, found.problem.program.entries)
-    fits = before_after.fits_of(found.problem, found.ranking) | {
-        "linear, fitted here": ranking.recalibrated
-    }
+    fits = models(found.ranking) | {"linear, fitted here": ranking.recalibrated}
     fits |= {
         f"{n}, fitted here": with_effects(alone, ranking.recalibrated, [n]) for n in ranking.first
     }
@@ -298,7 +296,7 @@ def split_table(splits: Mapping[str, Diagnosis]) -> Table:
         rows.append(
             [
                 name,
-                *(f"{rms[m] * DEG:.4f}" for m in before_after.MODELS),
+                *(f"{rms[m] * DEG:.4f}" for m in MODELS),
                 f"{ratio(found):.3f}",
                 goal,
             ]
@@ -318,7 +316,7 @@ def tables(splits: Mapping[str, Diagnosis], releases: Sequence[Recording]) -> li
     errors += error_rows(middle, of_thirds, laid_on(middle, thirds(whole)[1:2]), "middle third")
     header = ["window", "mean envelope [deg]", "recorded", *fits]
     tail, ranking = last_third(middle, whole)
-    best, enough = max(ranking.first.values()), price(len(ranking.first))
+    best, enough = max(ranking.first.values()), required_gain(len(ranking.first))
     return [
         split_table(splits),
         (

@@ -23,6 +23,7 @@ from scipy.signal import resample_poly
 
 from boatsim.diagnosis import pipeline
 from boatsim.diagnosis.filter import MappedRecording, map_recording
+from boatsim.diagnosis.loading import Loaded
 from boatsim.diagnosis.locate.residual_structure import find_structure
 from boatsim.diagnosis.pipeline import Diagnosis
 from boatsim.diagnosis.problem import Fit, Problem
@@ -179,7 +180,7 @@ def diagnosed(whole: Recording, boat: Vessel) -> Diagnosis:
     """What the linear oscillator lacks, by stretches of the training data."""
     fitted, held_out = ([part(whole, *rows) for rows in parts] for parts in (FITTED, UNSEEN))
     note = ", ".join(r.name for r in held_out)
-    return pipeline.diagnose_recordings(fitted, held_out, {whole.path: boat}, note)
+    return pipeline.diagnose_loaded(Loaded(fitted, held_out, {whole.path: boat}, note))
 
 
 # ---- the exam
@@ -189,7 +190,7 @@ def laid_on(found: Diagnosis, test: Recording) -> MappedRecording:
     """A set on the program of a diagnosis: all of the input, and of the displacement the first rows alone."""
     shown = test["phi_rad"].copy()
     shown[START:] = np.nan
-    return found.laid(replace(test, signals={**test.signals, "phi_rad": shown}))
+    return found.map_recording(replace(test, signals={**test.signals, "phi_rad": shown}))
 
 
 def simulated(problem: Problem, laid: MappedRecording, f: Fit) -> Array:

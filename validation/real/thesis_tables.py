@@ -31,8 +31,8 @@ from typing import Any
 
 import numpy as np
 
+from boatsim.diagnosis.config import DEFAULT
 from boatsim.diagnosis.fit import ParameterSpace, log_prior
-from boatsim.diagnosis.search.pruning import ALIKE
 from boatsim.physics.base import Array
 from validation.real.common import table
 from validation.real.thesis_runs import TESTS, WINDY, Bench, Knob
@@ -520,7 +520,11 @@ def run(bench: Bench, fitted: Fit) -> dict[str, float]:
 def alike(found: Ranking, name: str) -> dict[str, tuple[float, Fit]]:
     """Look-alikes of a named effect: what they gain over it in its place, and the fit, best first."""
     gains = {n: (f.evidence - found.best.evidence, f) for n, f in found.rivals[name].items()}
-    return {n: x for n, x in sorted(gains.items(), key=lambda item: -item[1][0]) if x[0] > -ALIKE}
+    return {
+        n: x
+        for n, x in sorted(gains.items(), key=lambda item: -item[1][0])
+        if x[0] > -DEFAULT.select.alike
+    }
 
 
 def balance(fitted: Fit) -> float:

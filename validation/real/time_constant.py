@@ -11,9 +11,10 @@ from pathlib import Path
 
 import numpy as np
 
-from boatsim.diagnosis import pipeline, priors
+from boatsim.diagnosis import loading, priors
 from boatsim.diagnosis.candidates import library_for
-from boatsim.diagnosis.correlation_time import STEPS, correlation_time, halves_errors
+from boatsim.diagnosis.config import DEFAULT
+from boatsim.diagnosis.correlation_time import correlation_time, halves_errors
 from boatsim.diagnosis.filter import map_recording, prior_levels, shared_noise
 from boatsim.diagnosis.problem import Problem
 from boatsim.diagnosis.search.ranking import selection
@@ -31,7 +32,7 @@ VESSELS = {blueboat_lake.NAME: blueboat_lake.VESSEL}  # the others' recordings n
 
 def problem_of(paths: list[Path], vessel: str | None) -> Problem:
     """The question of a diagnosis of some recordings."""
-    opened = [pipeline.open_recording(path, vessel, ()) for path in paths]
+    opened = [loading.open_recording(path, vessel, ()) for path in paths]
     boat, first = opened[0][1], opened[0][0]
     program = Program(boat, library_for(boat).compiled)
     stated = shared_noise(boat, [first])
@@ -49,7 +50,8 @@ def main() -> None:
         problem = problem_of(paths, VESSELS.get(name))
         _, chosen = selection(problem, problem.program.entries)
         usual, taken = problem.ambient.time_constant, correlation_time(problem, chosen)
-        ladder = [usual * 2.0**step for step in range(-STEPS, STEPS + 1)]
+        steps = DEFAULT.fit.correlation_time_steps
+        ladder = [usual * 2.0**step for step in range(-steps, steps + 1)]
         errors = [float(np.exp(np.mean(np.log(halves_errors(problem, chosen, x))))) for x in ladder]
         rows = [
             [f"{x:.2g}", f"{e:.4g}", "*" if x == taken else ""]

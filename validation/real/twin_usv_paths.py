@@ -7,9 +7,9 @@ The middle third is kept unseen. Prints what was found, how strong at most is wh
 import numpy as np
 
 from boatsim.diagnosis import pipeline
+from boatsim.diagnosis.evaluation import MODELS
 from boatsim.diagnosis.free_runs import errors
 from boatsim.diagnosis.pipeline import Diagnosis
-from boatsim.diagnosis.report import before_after
 from validation.real.common import report, runs_of, table
 
 NAME, VESSEL = "twin_usv_paths", "twin_usv"
@@ -26,7 +26,7 @@ def print_unseen(found: Diagnosis) -> None:
         ("position_rms_m", "position [m]", 1.0),
         ("heading_rms_rad", "heading [deg]", 57.29578),
     ):
-        nominal, before, after = (off[family][m] * factor for m in before_after.MODELS)
+        nominal, before, after = (off[family][m] * factor for m in MODELS)
         rows.append(
             [what, f"{nominal:.3f}", f"{before:.3f}", f"{after:.3f}", f"{after / before:.2f}"]
         )

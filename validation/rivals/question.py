@@ -16,7 +16,7 @@ from boatsim.diagnosis.candidates import called, library_for
 from boatsim.diagnosis.checks.position_outliers import drop_position_outliers
 from boatsim.diagnosis.checks.repeated_positions import drop_repeated_positions
 from boatsim.diagnosis.filter import map_recording, prior_levels, shared_noise
-from boatsim.diagnosis.pipeline import open_recording
+from boatsim.diagnosis.loading import open_recording
 from boatsim.diagnosis.problem import Fit, FreeParameter, Problem
 from boatsim.diagnosis.report import patched_vessel
 from boatsim.diagnosis.report.answer import key_of

@@ -26,7 +26,7 @@ from boatsim.diagnosis.experiment_design.simulated_manoeuvre import (
 from boatsim.diagnosis.filter import FilterPass, MappedRecording
 from boatsim.diagnosis.problem import Fit, Problem, froude_scale
 from boatsim.diagnosis.report.schema import NextEntry
-from boatsim.diagnosis.search.pruning import Named
+from boatsim.diagnosis.search.pruning import IdentifiedEffect
 from boatsim.diagnosis.search.ranking import Ranking
 from boatsim.physics.base import Array
 from boatsim.physics.content import vessel_address
@@ -224,7 +224,7 @@ def _quoted(text: str) -> str:
     return '"' + text.replace("\\", "\\\\").replace('"', '\\"') + '"'
 
 
-def other_effects(named: Named) -> list[str]:
+def other_effects(named: IdentifiedEffect) -> list[str]:
     """Return the rivals that are another effect, not the same one on another actuator."""
     return [rival for rival in named.rivals if called(rival) != called(named.name)]
 

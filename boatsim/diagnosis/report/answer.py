@@ -1,104 +1,119 @@
-"""The answer file of a diagnosis: verdict, effects with their parameters, where, limits, fit."""
+"""Composes the answer of a diagnosis, the content of diagnosis.json."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
 
 from boatsim.control.base import wrap
 from boatsim.diagnosis.candidates import called
-from boatsim.diagnosis.config import as_plain
-from boatsim.diagnosis.free_runs import FreeRun, errors
+from boatsim.diagnosis.checks.entry import column_sources, log_entry
+from boatsim.diagnosis.checks.finding import LOG_NOT_BOAT, Finding
+from boatsim.diagnosis.config import AnswerConfig, as_plain
+from boatsim.diagnosis.evaluation import Evaluation
+from boatsim.diagnosis.experiment_design import next_experiment
+from boatsim.diagnosis.loading import Loaded
 from boatsim.diagnosis.locate import missing_force as locate
 from boatsim.diagnosis.locate.regions import regions
 from boatsim.diagnosis.locate.residual_structure import Structure
 from boatsim.diagnosis.problem import Fit, Problem
+from boatsim.diagnosis.question import Question
+from boatsim.diagnosis.report.assumptions import excluded_candidates, rules_entry
 from boatsim.diagnosis.report.described_terms import described_entries
+from boatsim.diagnosis.report.formatting import capital, listed
 from boatsim.diagnosis.report.schema import (
     Acting,
     Answer,
     CandidateEntry,
     EffectEntry,
     FitEntry,
-    NextEntry,
+    LogEntry,
     ParameterEntry,
     StructureEntry,
+    UnknownEntry,
+    WhereEntry,
 )
 from boatsim.diagnosis.report.sentences import sentence
-from boatsim.diagnosis.search.pruning import Named
+from boatsim.diagnosis.search.pruning import IdentifiedEffect
 from boatsim.diagnosis.search.ranking import Ranking
 from boatsim.physics.base import Channel, Effect
 from boatsim.physics.vessel import Vessel
 from boatsim.version import version
 
-ONE_SIDED_95 = 1.645  # [sd]
-# nature's law is never quite the entry's: an sd holds this share of what was found [rad for
-# directions]
-SHAPE = 0.05
-AT_BOUND = 1e-3  # of a bound: a value this near to it is at it
-TOLD = 0.5  # a fitted sd above this share of the prior one means that the data say nothing
+NEXT_SCENARIO = "next.toml"  # scenario of the next experiment, in the folder of the answer
 
 
 def compose(
+    loaded: Loaded,
+    question: Question,
+    findings: Sequence[Finding],
     problem: Problem,
     ranking: Ranking,
-    forces: Sequence[locate.MissingForce],
-    left: Sequence[locate.MissingForce],
-    stretches: Sequence[FreeRun],
-    held_out: Sequence[str],
-    horizon: float,
-    wanted: NextEntry,
+    evaluation: Evaluation,
+    plan: next_experiment.Plan | None,
+    seconds: float,
 ) -> Answer:
-    """diagnosis.json as a dictionary, without the seconds; `wanted` is what it says of the next experiment."""
-    effects = [_effect(problem, ranking.best, n) for n in ranking.named]
-    verdict = (
-        "ambiguous"
-        if any(e["tied_with"] for e in effects)
-        else "named"
-        if effects
-        else "nothing_missing"
-    )
-    laws = described_entries(ranking.description, problem.program.vessel)
-    verdict = ("described" if laws else "unknown") if ranking.unknown else verdict
+    """Return the content of diagnosis.json.
+
+    Args:
+        loaded: Recordings and vessels.
+        question: Candidates and held-out recordings.
+        findings: Findings of the log quality checks.
+        problem: Recordings and priors, with the correlation time that was chosen.
+        ranking: Result of the selection, with its description.
+        evaluation: Free runs and unexplained forces.
+        plan: The next experiment; None if no manoeuvre would add evidence.
+        seconds: Duration of the diagnosis [s].
+    """
+    vessel = problem.program.vessel
+    effects = [_effect(problem, ranking.best, one) for one in ranking.named]
+    formulas = described_entries(ranking.description, vessel)
+    limits = {called(name): _limits(problem, f, name) for name, f in ranking.last.items()}
     answer: Answer = {
-        "verdict": verdict,
+        "verdict": _verdict(ranking, effects, bool(formulas)),
         "sentence": "",
-        "seconds": 0.0,
+        "seconds": round(seconds, 3),
         "version": version(),
         "effects": effects,
-        "unknown": {
-            "flag": ranking.unknown,
-            "gain_nats": round(ranking.left_over, 3),
-            "told_from_nats": round(ranking.told_from, 3),
-        },
-        "described": laws,
+        "unknown": _unknown(problem, ranking, evaluation),
+        "described": formulas,
         "candidates": _candidates(ranking),
-        "upper_limits": {
-            called(name): _limits(problem, fitted, name) for name, fitted in ranking.last.items()
-        },
-        "where": {
-            "axes": locate.strength(problem, forces),
-            "intervals": [
-                {"run": i.run, "from_s": i.from_s, "to_s": i.to_s, "axis": i.axis}
-                for i in locate.intervals(problem, forces)
-            ],
-            "region": [
-                {"variable": r.variable, "statement": r.statement, "p_value": r.p_value}
-                for r in regions(problem, ranking.recalibrated)
-            ],
-        },
-        "fit": _fit(stretches, held_out, horizon),
-        "next_experiment": wanted,
+        "upper_limits": limits,
+        "where": _where(problem, ranking, evaluation),
+        "fit": _fit(evaluation, [mapped.name for mapped in question.held_out]),
+        "next_experiment": next_experiment.plan_entry(plan, NEXT_SCENARIO),
         "patch": "patched.toml",
+        "mean_left": dict(evaluation.mean_force),
+        "tried": sorted({called(name) for name in question.candidates}),
+        "left_out": excluded_candidates(question),
+        "facts": dict(problem.recordings[0].facts),
+        "rules": rules_entry(problem, len(question.candidates)),
+        "log": _log(loaded, findings),
         "config": as_plain(problem.config),
     }
-    if ranking.unknown:
-        answer["unknown"]["rest"] = locate.strength(problem, left)
-    if ranking.structure.significant:
-        answer["unknown"]["structure"] = _structure(ranking.structure)
-    answer["sentence"] = sentence(
-        answer, meanings(problem.program.candidates, problem.program.vessel)
-    )
+    verdict = sentence(answer, meanings(problem.program.candidates, vessel))
+    answer["sentence"] = _with_log_first(verdict, findings, problem)
     return answer
+
+
+def _verdict(ranking: Ranking, effects: Sequence[EffectEntry], described: bool) -> str:
+    if ranking.unknown:
+        return "described" if described else "unknown"
+    if any(effect["tied_with"] for effect in effects):
+        return "ambiguous"
+    return "named" if effects else "nothing_missing"
+
+
+def _unknown(problem: Problem, ranking: Ranking, evaluation: Evaluation) -> UnknownEntry:
+    entry: UnknownEntry = {
+        "flag": ranking.unknown,
+        "gain_nats": round(ranking.left_over, 3),
+        "told_from_nats": round(ranking.told_from, 3),
+    }
+    if ranking.unknown:
+        entry["rest"] = locate.strength(problem, evaluation.remaining)
+    if ranking.structure.significant:
+        entry["structure"] = _structure(ranking.structure)
+    return entry
 
 
 def _structure(found: Structure) -> StructureEntry:
@@ -111,49 +126,98 @@ def _structure(found: Structure) -> StructureEntry:
     }
 
 
+def _where(problem: Problem, ranking: Ranking, evaluation: Evaluation) -> WhereEntry:
+    """Axes, intervals and regions in which a force is missing."""
+    entry: WhereEntry = {
+        "axes": locate.strength(problem, evaluation.missing),
+        "intervals": [],
+        "region": [],
+    }
+    for i in locate.intervals(problem, evaluation.missing):
+        entry["intervals"].append(
+            {"run": i.run, "from_s": i.from_s, "to_s": i.to_s, "axis": i.axis}
+        )
+    for r in regions(problem, ranking.recalibrated):
+        entry["region"].append(
+            {"variable": r.variable, "statement": r.statement, "p_value": r.p_value}
+        )
+    return entry
+
+
+def _log(loaded: Loaded, findings: Sequence[Finding]) -> list[LogEntry]:
+    """Entries of what is wrong with the recordings themselves."""
+    by_file = {str(path): vessel for path, vessel in loaded.vessels.items()}
+    entries = []
+    for finding in findings:
+        vessel = by_file.get(finding.run, loaded.vessel)
+        entries.append(log_entry(finding, column_sources(finding.run, vessel)))
+    return entries
+
+
+def _with_log_first(verdict: str, findings: Sequence[Finding], problem: Problem) -> str:
+    """The verdict after the findings that certainly concern the whole log."""
+    config = problem.config.checks
+    certain = [finding.description for finding in findings if finding.invalidates_log(config)]
+    if not certain:
+        return verdict
+    rest = f"{verdict[:1].lower()}{verdict[1:]}"
+    return f"{capital(LOG_NOT_BOAT)}: {listed(certain)}. Taken as it is: {rest}"
+
+
 def meanings(candidates: Iterable[Effect], vessel: Vessel) -> dict[str, str]:
-    """What each entry says, by name, and each of its parameters and ratios, by "entry.parameter" as in the answer."""
-    there = [(called(e.name), type(e)) for e in candidates]
-    fitted = (
-        (entry, name, p) for entry, kind in there for name, p in kind.params().items() if p.fit
-    )
-    ratios = (
-        (called(e.name), key, words)
-        for e in candidates
-        for key, (_, words) in e.ratios(vessel).items()
-    )
-    of_parameters = {f"{n}.{key_of(name, p.unit)}": p.words for n, name, p in fitted}
-    return (
-        {n: k.words for n, k in there}
-        | of_parameters
-        | {f"{n}.{key}": words for n, key, words in ratios}
-    )
+    """Return the meaning of each candidate by name, and of its parameters by "effect.parameter".
+
+    Args:
+        candidates: Candidate effects.
+        vessel: Vessel whose numbers some ratios refer to.
+    """
+    found, parameters = dict[str, str](), dict[str, str]()
+    for effect in candidates:
+        name, kind = called(effect.name), type(effect)
+        found[name] = kind.words
+        for key, param in kind.params().items():
+            if param.fit:
+                parameters[f"{name}.{key_of(key, param.unit)}"] = param.words
+    for effect in candidates:
+        for key, (_, words) in effect.ratios(vessel).items():
+            parameters[f"{called(effect.name)}.{key}"] = words
+    return found | parameters
 
 
 def key_of(name: str, unit: str) -> str:
-    """Parameter name with its unit: force in N -> force_N, north in m/s -> north_mps, a ratio stays as it is."""
+    """Return the key of a parameter: force in N is force_N, north in m/s is north_mps.
+
+    Args:
+        name: Name of the parameter.
+        unit: Its unit; "" for a ratio, whose key is its name.
+    """
     suffix = unit.replace("1/", "per").replace("/", "p").replace("^", "").replace(" ", "")
     return f"{name}_{suffix}" if suffix else name
 
 
-def _fit(stretches: Sequence[FreeRun], held_out: Sequence[str], horizon: float) -> FitEntry:
-    """Errors of the free runs; that in roll only where it was recorded."""
-    found = errors(stretches)
+def _fit(evaluation: Evaluation, held_out: Sequence[str]) -> FitEntry:
+    """Errors of the free runs; that of roll only where it was recorded."""
+    errors = evaluation.errors
     fit: FitEntry = {
-        "horizon_s": horizon,
+        "horizon_s": evaluation.horizon,
         "held_out": list(held_out),
-        "position_rms_m": found.get("position_rms_m", {}),
-        "heading_rms_rad": found.get("heading_rms_rad", {}),
+        "position_rms_m": dict(errors.get("position_rms_m", {})),
+        "heading_rms_rad": dict(errors.get("heading_rms_rad", {})),
     }
-    if "roll_rms_rad" in found:
-        fit["roll_rms_rad"] = found["roll_rms_rad"]
+    if "roll_rms_rad" in errors:
+        fit["roll_rms_rad"] = dict(errors["roll_rms_rad"])
     return fit
 
 
-def _effect(problem: Problem, best: Fit, named: Named) -> EffectEntry:
+def _effect(problem: Problem, best: Fit, named: IdentifiedEffect) -> EffectEntry:
+    """Entry of an identified effect."""
     effect = next(e for e in problem.program.candidates if e.name == named.name)
-    kind = type(effect)
+    kind, config = type(effect), problem.config.answer
     acting: Acting = {"on": list(effect.on)} if effect.on else {}
+    parameters = {}
+    for name in _own(best, effect):
+        key = key_of(name, kind.params()[name].unit)
+        parameters[key] = _parameter(best, effect, name, config)
     return {
         "name": called(named.name),
         **acting,
@@ -161,114 +225,116 @@ def _effect(problem: Problem, best: Fit, named: Named) -> EffectEntry:
         "probability": round(named.probability, 4),
         "gain_nats": round(named.gain, 2),
         "words": _words(best, effect),
-        "tied_with": [called(n) for n in named.tied_with],
-        "parameters": {
-            key_of(f.name, kind.params()[f.name].unit): _parameter(best, effect, f.name)
-            for f in best.free
-            if f.effect == named.name and not f.relative
-        }
-        | _ratios(problem.program.vessel, best, effect),
+        "tied_with": [called(name) for name in named.tied_with],
+        "parameters": parameters | _ratios(problem, best, effect),
     }
 
 
-def _ratios(vessel: Vessel, best: Fit, effect: Effect) -> dict[str, ParameterEntry]:
-    """What its parameters come to where recordings tell no more than a ratio."""
-    own = {f.name: f for f in best.free if f.effect == effect.name and not f.relative}
-    fitted = {n: best.value(effect.name, n)[0] for n in own}
+def _own(best: Fit, effect: Effect) -> list[str]:
+    """Names of the fitted parameters of an effect."""
+    return [f.name for f in best.free if f.effect == effect.name and not f.relative]
 
-    def ratios(name: str, step: float) -> dict[str, tuple[float, str]]:
-        moved = np.clip(fitted[name] + step, own[name].low, own[name].high)
-        return effect.having(fitted | {name: float(moved)}).ratios(vessel)
+
+def _ratios(problem: Problem, best: Fit, effect: Effect) -> dict[str, ParameterEntry]:
+    """Ratios of parameters, where recordings determine no more than that."""
+    vessel, config = problem.program.vessel, problem.config.answer
+    own = {f.name: f for f in best.free if f.effect == effect.name and not f.relative}
+    fitted = {name: best.value(effect.name, name)[0] for name in own}
+
+    def moved(name: str, step: float) -> Mapping[str, tuple[float, str]]:
+        value = np.clip(fitted[name] + step, own[name].low, own[name].high)
+        return effect.having(fitted | {name: float(value)}).ratios(vessel)
 
     found = effect.having(fitted).ratios(vessel)
     variance = dict.fromkeys(found, 0.0)
-    for name in fitted if found else ():
-        sd = _parameter(best, effect, name)["sd"]
-        low, high = ratios(name, -0.5 * sd), ratios(name, 0.5 * sd)
-        variance = {key: v + (high[key][0] - low[key][0]) ** 2 for key, v in variance.items()}
-    return {
-        key: {"value": x, "sd": float(np.sqrt(variance[key])), "unit": ""}
-        for key, (x, _) in found.items()
-    }
+    if found:
+        for name in fitted:
+            sd = _parameter(best, effect, name, config)["sd"]
+            low, high = moved(name, -0.5 * sd), moved(name, 0.5 * sd)
+            for key in variance:
+                variance[key] += (high[key][0] - low[key][0]) ** 2
+    entries: dict[str, ParameterEntry] = {}
+    for key, (value, _) in found.items():
+        entries[key] = {"value": value, "sd": float(np.sqrt(variance[key])), "unit": ""}
+    return entries
 
 
 def _words(best: Fit, effect: Effect) -> str:
-    """What an effect says; the other way round where what it takes away was added."""
+    """Meaning of an effect; of its opposite where its factor is above 1."""
     kind = type(effect)
-    strength = next((f for f in best.free if f.effect == effect.name and not f.relative), None)
-    above = (
-        strength is not None
-        and kind.words_above
-        and best.value(effect.name, strength.name)[0] > 1.0
-    )
-    words = kind.words_above if above else kind.words
+    words, own = kind.words, _own(best, effect)
+    if own and kind.words_above and best.value(effect.name, own[0])[0] > 1.0:
+        words = kind.words_above
     if isinstance(effect, Channel) and effect.other_side:
-        words += (
-            ", in the actuator and not in its command"
-            if kind.stage < 0
-            else ", already in the command"
-        )
+        if kind.stage < 0:
+            return f"{words}, in the actuator and not in its command"
+        return f"{words}, already in the command"
     return words
 
 
-def told_sd(best: Fit, effect: Effect, name: str) -> float:
-    """Standard deviation of a fitted parameter, with what a law that is only nearly right may shift it by."""
-    kind, (value, sd) = type(effect), best.value(effect.name, name)
-    about = kind.params()[name]
-    if name in (kind.strength or kind.params()):
-        strength = min(
-            abs(value - about.absent), abs(value) or np.inf
-        )  # some laws are absent at "very fast"
-        return float(np.hypot(sd, SHAPE * strength))
-    return float(np.hypot(sd, SHAPE)) if about.unit == "rad" else sd
+def reported_sd(best: Fit, effect: Effect, name: str, config: AnswerConfig) -> float:
+    """Return the standard deviation of a parameter, with the error of a law that is nearly right.
 
-
-def _parameter(best: Fit, effect: Effect, name: str) -> ParameterEntry:
-    """Value, sd and unit of a fitted parameter; angles within half a turn."""
+    Args:
+        best: A fit.
+        effect: One of its effects.
+        name: Name of the parameter.
+        config: Size of that error.
+    """
     kind = type(effect)
-    about = kind.params()[name]
+    value, sd = best.value(effect.name, name)
+    param = kind.params()[name]
+    if name in (kind.strength or kind.params()):
+        # some laws are absent at an infinite value
+        strength = min(abs(value - param.absent), abs(value) or np.inf)
+        return float(np.hypot(sd, config.law_error * strength))
+    return float(np.hypot(sd, config.law_error)) if param.unit == "rad" else sd
+
+
+def _parameter(best: Fit, effect: Effect, name: str, config: AnswerConfig) -> ParameterEntry:
+    """Value, sd and unit of a fitted parameter; angles within half a turn."""
+    param = type(effect).params()[name]
     value, _ = best.value(effect.name, name)
-    sd = told_sd(best, effect, name)
-    shown = wrap(value) if about.unit == "rad" else value
-    entry: ParameterEntry = {"value": shown, "sd": sd, "unit": about.unit}
-    bounds = next((f.low, f.high) for f in best.free if f.effect == effect.name and f.name == name)
-    ends = [end for end in bounds if end != about.absent]
-    if any(abs(value - end) <= AT_BOUND * abs(end) for end in ends):
-        entry["at_bound"] = True
+    entry: ParameterEntry = {
+        "value": wrap(value) if param.unit == "rad" else value,
+        "sd": reported_sd(best, effect, name, config),
+        "unit": param.unit,
+    }
+    free = next(f for f in best.free if f.effect == effect.name and f.name == name)
+    for end in (free.low, free.high):
+        if end != param.absent and abs(value - end) <= config.at_bound * abs(end):
+            entry["at_bound"] = True
     return entry
 
 
 def _candidates(ranking: Ranking) -> list[CandidateEntry]:
-    """Every entry tried alone, best first, with its probability against the others and against nothing."""
+    """Every candidate alone, best first, with its probability against the others and none."""
     names = sorted(ranking.first, key=lambda n: -ranking.first[n])
     gains = np.array([0.0, *(ranking.first[n] for n in names)])
     weights = np.exp(gains - gains.max())
     weights /= weights.sum()
-    found: dict[str, CandidateEntry] = {}  # of an idea that was tried in two places the better one
-    for n, g, w in zip(names, gains[1:], weights[1:], strict=True):
+    found: dict[str, CandidateEntry] = {}  # of an idea that was tested in two places the better one
+    for name, gain, weight in zip(names, gains[1:], weights[1:], strict=True):
         entry: CandidateEntry = {
-            "name": called(n),
-            "gain_nats": round(float(g), 2),
-            "probability": round(float(w), 4),
+            "name": called(name),
+            "gain_nats": round(float(gain), 2),
+            "probability": round(float(weight), 4),
         }
-        found.setdefault(called(n), entry)
+        found.setdefault(called(name), entry)
     return list(found.values())
 
 
 def _limits(problem: Problem, fitted: Fit, name: str) -> dict[str, float]:
-    """How far each parameter can be from not acting at all, at 95 %."""
-    kind = _kind(problem, name)
+    """Upper limits (95 %) of the distance of each parameter from zero effect."""
+    config = problem.config.answer
+    kind = next(type(e) for e in problem.program.candidates if e.name == name)
     params = kind.params()
-    out = {}
+    limits = {}
     for f in fitted.free:
         if f.effect != name or f.relative or f.name not in (kind.strength or params):
             continue
         value, sd = fitted.value(name, f.name)
-        if sd < TOLD * f.sd:  # otherwise the limit would only be the prior's
-            strength = abs(value - params[f.name].absent) + ONE_SIDED_95 * sd
-            out[key_of(f.name, params[f.name].unit)] = float(f"{strength:.3g}")
-    return out
-
-
-def _kind(problem: Problem, name: str) -> type[Effect]:
-    return next(type(e) for e in problem.program.candidates if e.name == name)
+        if sd < config.limit_share * f.sd:
+            limit = abs(value - params[f.name].absent) + config.limit_quantile * sd
+            limits[key_of(f.name, params[f.name].unit)] = float(f"{limit:.3g}")
+    return limits

@@ -1,29 +1,38 @@
-"""Adds the candidates and the assumptions of a diagnosis to its answer."""
+"""Entries of the answer on the candidates that were tested and on what was assumed."""
 
-from collections.abc import Sequence
-
-from boatsim.diagnosis.candidates import Library, called
+from boatsim.diagnosis.candidates import called
 from boatsim.diagnosis.filter import axes_of
 from boatsim.diagnosis.locate.missing_force import FORCE_UNITS
 from boatsim.diagnosis.locate.nominal_forces import full_thrust
 from boatsim.diagnosis.problem import Problem
-from boatsim.diagnosis.report.schema import AmbientEntry, Answer, LeftOutEntry, RulesEntry
-from boatsim.diagnosis.search.evidence import price
+from boatsim.diagnosis.question import Question
+from boatsim.diagnosis.report.schema import AmbientEntry, LeftOutEntry, RulesEntry
+from boatsim.diagnosis.search.evidence import required_gain
+
+BY_USER = "--without"  # reason for a candidate that the user excluded
 
 
-def add(answer: Answer, problem: Problem, library: Library, tried: Sequence[str]) -> None:
-    """Put it into the answer; entries of the library that are not among those tried the user took out."""
-    taken_out = {n: "--without" for n in library.tried if n not in tried}
-    reasons = dict(library.left_out) | taken_out
-    by_idea = {called(n): why for n, why in sorted(reasons.items())}
-    left_out: list[LeftOutEntry] = [{"name": n, "reason": why} for n, why in by_idea.items()]
-    answer["tried"] = sorted({called(n) for n in tried})
-    answer["left_out"] = left_out
-    answer["facts"] = dict(problem.recordings[0].facts)
-    answer["rules"] = _rules(problem, len(tried))
+def excluded_candidates(question: Question) -> list[LeftOutEntry]:
+    """Return the candidates that were not tested, with the reasons.
+
+    Args:
+        question: The candidates of the diagnosis.
+    """
+    reasons = dict(question.library.left_out)
+    for name in question.library.tried:
+        if name not in question.candidates:
+            reasons[name] = BY_USER
+    by_idea = {called(name): why for name, why in sorted(reasons.items())}
+    return [{"name": name, "reason": why} for name, why in by_idea.items()]
 
 
-def _rules(problem: Problem, number_tried: int) -> RulesEntry:
+def rules_entry(problem: Problem, tested: int) -> RulesEntry:
+    """Return the numbers that were assumed before the data.
+
+    Args:
+        problem: Recordings and priors.
+        tested: Number of candidates that were tested.
+    """
     vessel, levels = problem.program.vessel, problem.ambient
     thrust = full_thrust(problem.recordings[0])
     ambient: dict[str, AmbientEntry] = {}
@@ -35,6 +44,6 @@ def _rules(problem: Problem, number_tried: int) -> RulesEntry:
         "ambient": ambient,
         "time_constant_s": float(f"{levels.time_constant:.3g}"),
         "horizon_s": problem.horizon,
-        "effect_gain_nats": round(price(number_tried), 2),
+        "effect_gain_nats": round(required_gain(tested, problem.config.select), 2),
         "overridden": dict(vessel.diagnosis.reasons),
     }

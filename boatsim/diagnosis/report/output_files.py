@@ -9,8 +9,9 @@ import numpy as np
 from boatsim.atomic_folder import atomic_folder
 from boatsim.diagnosis.experiment_design.next_experiment import scenario_text
 from boatsim.diagnosis.free_runs import FreeRun
-from boatsim.diagnosis.pipeline import NEXT, Diagnosis
+from boatsim.diagnosis.pipeline import Diagnosis
 from boatsim.diagnosis.report import page, patched_vessel
+from boatsim.diagnosis.report.answer import NEXT_SCENARIO
 from boatsim.diagnosis.report.findings import Findings, Missing
 from boatsim.diagnosis.report.sentences import MODELS
 from boatsim.errors import BadPhysics
@@ -47,11 +48,13 @@ def write(found: Diagnosis, out: Path) -> None:
         )
         (new / "patched.toml").write_text(patched, encoding="utf-8")
         if found.plan is not None:
-            (new / NEXT).write_text(scenario_text(found.plan, found.vessel), encoding="utf-8")
+            (new / NEXT_SCENARIO).write_text(
+                scenario_text(found.plan, found.vessel), encoding="utf-8"
+            )
         overlay(found, new / "diagnosis.rrd")
         (new / "diagnosis.json").write_text(answer, encoding="utf-8")
     if found.plan is None:
-        (out / NEXT).unlink(missing_ok=True)  # of an earlier diagnosis
+        (out / NEXT_SCENARIO).unlink(missing_ok=True)  # of an earlier diagnosis
 
 
 def overlay(found: Diagnosis, path: Path) -> None:

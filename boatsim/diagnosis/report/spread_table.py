@@ -8,7 +8,7 @@ from tomlkit.items import Table
 
 from boatsim.diagnosis.filter import BODY
 from boatsim.diagnosis.problem import Fit, FreeParameter, Problem
-from boatsim.diagnosis.report.answer import told_sd
+from boatsim.diagnosis.report.answer import reported_sd
 
 DIGITS = 6  # significant
 
@@ -57,7 +57,7 @@ def _sd(problem: Problem, found: Fit, j: int) -> float:
     free = found.free[j]
     for effect in problem.program.candidates:
         if effect.name == free.effect and not free.relative and not type(effect).described:
-            return told_sd(found, effect, free.name)
+            return reported_sd(found, effect, free.name, problem.config.answer)
     return float(np.sqrt(max(found.covariance[j, j], 0.0)))
 
 

@@ -1,1 +1,1 @@
-"""Which entries of the library the data ask for."""
+"""Selects the candidate effects that the recordings require."""

@@ -1,4 +1,4 @@
-"""Sets of suspects: the fit of each, made once, and how every other suspect does on top of it."""
+"""Fits of sets of candidates, each computed once, and the screening of further candidates."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -9,18 +9,24 @@ from boatsim import progress
 from boatsim.diagnosis.candidates import called
 from boatsim.diagnosis.fit import converge, fit, gauss_newton, remove_effect
 from boatsim.diagnosis.problem import Fit, Problem
-from boatsim.diagnosis.search.evidence import UNKNOWN, front, left_over, price, told_from
-from boatsim.diagnosis.search.screening import add_effect, hand_over, recheck, screen, starts
+from boatsim.diagnosis.search.evidence import (
+    front,
+    left_over,
+    required_gain,
+    unknown_threshold,
+)
+from boatsim.diagnosis.search.screening import all_starts, recheck, screen, starts
 from boatsim.physics.base import Unsteady
 
-# [nats] that a look lies below the set it is on top of, from which it went wrong: numbers cost less
-ASTRAY = 8.0
-SCREENING = (0.2, 0.5)  # of a ranking, by experience, is the first look at all
-MANY = 6  # suspects on top of a set that are fitted in full at most
+SCREENING = (0.2, 0.5)  # of a selection, by experience, is the first screening
+CALM_STEPS = 4  # Gauss-Newton steps of a refit with the assumed levels
+START_STEPS = 2  # Gauss-Newton steps from each starting point of a candidate
+
+Set = frozenset[str]  # names of the effects of a fit
 
 
-class Sets:
-    """Fits of sets of suspects."""
+class CandidateSets:
+    """Cache of the fits of candidate sets, and what has been decided about single candidates."""
 
     def __init__(
         self,
@@ -29,177 +35,216 @@ class Sets:
         base: Fit,
         report: progress.Report = progress.silent,
     ) -> None:
-        self.problem, self.candidates, self.base, self.report = problem, candidates, base, report
+        """Create an empty cache.
+
+        Args:
+            problem: Recordings and priors.
+            candidates: Names of the candidates that are tested.
+            base: The recalibrated vessel without candidates.
+            report: Receives the progress.
+        """
+        self.problem = problem
         self.config = problem.config
-        self.fits: dict[frozenset[str], Fit] = {frozenset(): base}
-        self.promised: dict[frozenset[str], float] = {}
-        self.looks: dict[frozenset[str], dict[str, Fit]] = {}
-        self.kept: set[tuple[frozenset[str], str]] = (
-            set()
-        )  # looks that were compared with what the filter says,
-        self.full: set[tuple[frozenset[str], str]] = set()  # and followed by a fit in full
+        self.candidates = candidates
+        self.base = base
+        self.report = report
+        self.fits: dict[Set, Fit] = {frozenset(): base}
+        self.promised: dict[Set, float] = {}  # evidence that a screening promised
+        self.screenings: dict[Set, dict[str, Fit]] = {}
+        # screenings of a candidate on top of a set that were computed again with the full filter
+        self.rechecked: set[tuple[Set, str]] = set()
+        self.fitted_in_full: set[tuple[Set, str]] = set()
         self.banned: set[str] = set()
-        self.vouched: set[str] = (
-            set()
-        )  # members without which sets foretell unseen recordings worse, free runs say
-        self.random = {e.name for e in problem.program.candidates if type(e).random}
-        self.unsteady = {
-            e.name for e in problem.program.candidates if isinstance(e, Unsteady)
-        }  # of them, forces
-        self.price = price(len(candidates))
+        # effects without which held-out recordings are predicted worse, as free runs show
+        self.supported: set[str] = set()
+        every = problem.program.candidates
+        self.random = {e.name for e in every if type(e).random}
+        self.unsteady = {e.name for e in every if isinstance(e, Unsteady)}  # stochastic forces
+        self.required_gain = required_gain(len(candidates), self.config.select)
 
     def explained(self, best: Fit) -> float:
-        """Nats that the laws of a set gain over the recalibrated vessel, without what is random beside them.
+        """Return the evidence of the deterministic effects of a set [nats].
 
-        A random force or error has no shape that nature's could differ from: it explains no law's remainder away.
+        A stochastic force or error has no shape that could differ from nature's.
+
+        Args:
+            best: A fit.
         """
         laws = best
-        for name in (
-            n for n in best.effects if n in self.random
-        ):  # in their order, not that of hashes
-            laws = self.without(laws, name)
+        for name in best.effects:
+            if name in self.random:
+                laws = self.without(laws, name)
         return float(laws.evidence - self.base.evidence)
 
     def converged(self, start: Fit) -> Fit:
-        """The fit of a set, kept: made from `start` unless it was made before from one no worse."""
+        """Return the fit of a set, computed unless there is one from a start that was no worse.
+
+        Args:
+            start: Start of the fit.
+        """
         key = frozenset(start.effects)
         known, promised = self.fits.get(key), self.promised.get(key, -np.inf)
-        if (
-            known is None
-            or start.evidence > max(known.evidence, promised) + self.config.fit.refit_gain
-        ):
-            self.promised[key] = (
-                start.evidence
-            )  # a look may promise more than a fit keeps, but once only
-            found = converge(self.problem, start)
-            if known is not None and found.evidence > known.evidence + self.config.fit.refit_gain:
+        settled = self.config.fit.refit_gain
+        if known is not None and not start.evidence > max(known.evidence, promised) + settled:
+            return known
+        self.promised[key] = start.evidence  # a screening may promise too much, but only once
+        found = converge(self.problem, start)
+        if known is not None:
+            if found.evidence > known.evidence + settled:
                 self.forget(key)
-            self.fits[key] = max(found, known or found, key=lambda f: f.evidence)
-        return self.fits[key]
+            found = max(found, known, key=lambda f: f.evidence)
+        self.fits[key] = found
+        return found
 
-    def trusted(self, found: Fit) -> Fit:
-        """A fit that leaves much over, or a better one begun as if it explained everything.
+    def refit_in_calm(self, found: Fit) -> Fit:
+        """Return a fit, or a better one that started with the assumed disturbance levels.
 
-        Where the water may push as hard as it did without an effect, the effect is not asked for all that it can do.
+        If the latent force may be as large as it was without an effect, the effect is not required
+        to explain all that it can.
+
+        Args:
+            found: A fit of a set.
         """
-        if left_over(self.problem, found) < UNKNOWN:
+        config, problem = self.config, self.problem
+        if left_over(problem, found) < config.select.unknown_gain:
             return found
-        calm = replace(
-            found.levels, force=np.minimum(found.levels.force, self.problem.ambient.force)
-        )
-        begun = gauss_newton(
-            self.problem,
-            replace(found, levels=calm, evidence=-np.inf),
-            4,
-            self.config.fit.refit_gain,
-        )
-        other = converge(self.problem, begun) if np.isfinite(begun.evidence) else begun
-        if not other.evidence > found.evidence + self.config.fit.refit_gain:
+        force = np.minimum(found.levels.force, problem.ambient.force)
+        calm = replace(found.levels, force=force)
+        start = replace(found, levels=calm, evidence=-np.inf)
+        other = gauss_newton(problem, start, CALM_STEPS, config.fit.refit_gain)
+        if np.isfinite(other.evidence):
+            other = converge(problem, other)
+        if not other.evidence > found.evidence + config.fit.refit_gain:
             return found
         key = frozenset(found.effects)
         self.forget(key)
         self.fits[key] = other
         return other
 
-    def forget(self, key: frozenset[str]) -> None:
-        """What was looked at on top of a set was compared with a fit that was not its best: look again."""
-        self.looks.pop(key, None)
-        self.kept = {x for x in self.kept if x[0] != key}
-        self.full = {x for x in self.full if x[0] != key}
+    def forget(self, key: Set) -> None:
+        """Forget the screenings on top of a set, which were compared with a fit that was too poor.
+
+        Args:
+            key: Names of the effects of the set.
+        """
+        self.screenings.pop(key, None)
+        self.rechecked = {pair for pair in self.rechecked if pair[0] != key}
+        self.fitted_in_full = {pair for pair in self.fitted_in_full if pair[0] != key}
 
     def without(self, best: Fit, name: str) -> Fit:
-        """The fit of a set without one of its members."""
+        """Return the fit of a set without one of its effects.
+
+        Args:
+            best: A fit.
+            name: Name of one of its effects.
+        """
         return self.converged(remove_effect(self.problem, best, name))
 
-    def tried(self, best: Fit, among: Sequence[str] = ()) -> dict[str, Fit]:
-        """Other candidates on top of a set, all or `among` some, less those found to mislead."""
-        return {n: f for n, f in self.looked(best, among).items() if n not in self.banned}
+    def tested(self, best: Fit, among: Sequence[str] = ()) -> dict[str, Fit]:
+        """Return `screened` without candidates that were refuted."""
+        return {n: f for n, f in self.screened(best, among).items() if n not in self.banned}
 
-    def looked(self, best: Fit, among: Sequence[str] = ()) -> dict[str, Fit]:
-        """Other candidates on top of a set: a quick look at all, or `among` some, those in front fitted in full."""
+    def screened(self, best: Fit, among: Sequence[str] = ()) -> dict[str, Fit]:
+        """Return the screenings of other candidates on top of a set, the best ones fitted in full.
+
+        Args:
+            best: A fit.
+            among: Names of candidates; none: all of them.
+
+        Returns:
+            The cached fits by name, which may contain further candidates.
+        """
         key = frozenset(best.effects)
-        known = self.looks.setdefault(key, {})
+        known = self.screenings.setdefault(key, {})
         ideas = {called(n) for n in best.effects}
         rest = [n for n in among or self.candidates if called(n) not in ideas and n not in known]
         if rest:
-            known |= screen(
-                self.problem, best, rest, self._screened if len(self.looks) == 1 else None
-            )
+            report = self._report_screening if len(self.screenings) == 1 else None
+            known |= screen(self.problem, best, rest, report)
         allowed = {n: f for n, f in known.items() if n not in self.banned}
-        if not among and all(f.evidence < best.evidence + self.price for f in allowed.values()):
-            allowed |= self._looked_again(best, allowed)
+        least = best.evidence + self.required_gain
+        if not among and all(f.evidence < least for f in allowed.values()):
+            allowed |= self._recheck_failed(best, allowed)
             known |= allowed
         fits = 0
-        while (
-            fits < MANY
-        ):  # a look may promise too much: what is in front then is judged anew after each fit
-            hopeful = {n: f for n, f in allowed.items() if f.evidence > best.evidence}
-            ahead = [n for n in front(hopeful, best) if (key, n) not in self.full]
+        # a screening may promise too much: the front is determined again after each full fit
+        while fits < self.config.select.most_full_fits:
+            promising = {n: f for n, f in allowed.items() if f.evidence > best.evidence}
+            ahead = front(promising, best, self.config.select)
+            ahead = [n for n in ahead if (key, n) not in self.fitted_in_full]
             if not ahead:
                 break
-            name, look = ahead[0], known[ahead[0]]
-            honest = (
-                look
-                if (key, name) in self.kept or name in self.random
-                else recheck(self.problem, best, look)
-            )
-            self.kept.add((key, name))
-            if honest is look:
-                self.full.add((key, name))
+            name = ahead[0]
+            found = known[name]
+            if (key, name) not in self.rechecked and name not in self.random:
+                found = recheck(self.problem, best, found)
+            self.rechecked.add((key, name))
+            if found is known[name]:
+                self.fitted_in_full.add((key, name))
                 fits += 1
-                honest = self.fitted(best, name, look)
-            allowed[name] = known[name] = honest
+                found = self.fit_in_full(best, name, found)
+            allowed[name] = known[name] = found
         return known
 
-    def _screened(self, share: float) -> None:
-        progress.part(self.report, *SCREENING)(f"screening {len(self.candidates)} entries", share)
+    def _report_screening(self, share: float) -> None:
+        stage = f"screening {len(self.candidates)} entries"
+        progress.part(self.report, *SCREENING)(stage, share)
 
-    def _looked_again(self, best: Fit, allowed: Mapping[str, Fit]) -> dict[str, Fit]:
-        """Where much is left over that no look promised to explain: those that went wrong, followed by the filter.
+    def _recheck_failed(self, best: Fit, allowed: Mapping[str, Fit]) -> dict[str, Fit]:
+        """Fit candidates whose screening failed, where much remains that no other one explains.
 
-        An effect may come in only as another makes way, as a current beside a wind that had stood for both.
+        An effect may be added only as another one is removed, for example a current and a wind that
+        explained both.
         """
-        key = frozenset(best.effects)
-        wrong = [
-            n
-            for n, f in allowed.items()
-            if f.evidence < best.evidence - ASTRAY and (key, n) not in self.kept
-        ]
-        if not wrong or left_over(self.problem, best) < told_from(self.explained(best)):
+        config, key = self.config, frozenset(best.effects)
+        worst = best.evidence - config.select.screening_failure
+        failed = []
+        for name, found in allowed.items():
+            if found.evidence < worst and (key, name) not in self.rechecked:
+                failed.append(name)
+        threshold = unknown_threshold(config.select, self.explained(best)) if failed else np.inf
+        if not failed or left_over(self.problem, best) < threshold:
             return {}
-        self.kept |= {(key, n) for n in wrong}
-        return {
-            n: gauss_newton(
-                self.problem,
-                allowed[n],
-                self.config.select.recheck_steps,
-                self.config.fit.refit_gain,
-            )
-            for n in wrong
-        }
+        self.rechecked |= {(key, name) for name in failed}
+        steps, enough = config.select.recheck_steps, config.fit.refit_gain
+        return {n: gauss_newton(self.problem, allowed[n], steps, enough) for n in failed}
 
-    def fitted(self, best: Fit, name: str, look: Fit) -> Fit:
-        """A candidate fitted in full from its quick look; where that leaves much over, from the best of its starts."""
-        found = fit(self.problem, look)
-        effect = next(e for e in self.problem.program.candidates if e.name == name)
-        begun = starts(self.problem, effect)
-        if len(begun) == 1 or type(effect).random or left_over(self.problem, found) < UNKNOWN:
+    def fit_in_full(self, best: Fit, name: str, screening: Fit) -> Fit:
+        """Return a candidate on top of a set fitted in full.
+
+        Where that leaves much unexplained, the best of its starting points is used.
+
+        Args:
+            best: A fit.
+            name: Name of the candidate.
+            screening: Its screening.
+        """
+        problem = self.problem
+        found = fit(problem, screening)
+        effect = next(e for e in problem.program.candidates if e.name == name)
+        single = len(starts(problem, effect)) == 1 or type(effect).random
+        if single or left_over(problem, found) < self.config.select.unknown_gain:
             return found
-        others = [hand_over(add_effect(self.problem, best, name, s), effect) for s in begun]
-        other = max(
-            (gauss_newton(self.problem, o, 2, self.config.fit.refit_gain) for o in others),
-            key=lambda f: f.evidence,
-        )
-        return max(found, fit(self.problem, other), key=lambda f: f.evidence)
+        enough = self.config.fit.refit_gain
+        others = []
+        for start in all_starts(problem, best, effect):
+            others.append(gauss_newton(problem, start, START_STEPS, enough))
+        other = max(others, key=lambda f: f.evidence)
+        return max(found, fit(problem, other), key=lambda f: f.evidence)
 
-    def hopeful(self, best: Fit) -> list[str]:
-        """Candidates that may gain on top of a set: those that gained on top of one that it contains.
+    def promising(self, best: Fit) -> list[str]:
+        """Return the candidates that may gain on top of a set.
 
-        None where no such set was looked at, as at the beginning of a second pass: all are looked at then.
+        They are those that gained on top of a set which it contains. None are returned where no such
+        set was screened; all candidates are screened then.
+
+        Args:
+            best: A fit.
         """
         key = frozenset(best.effects)
-        looks = {k: x for k, x in self.looks.items() if k <= key}
-        gained = {
-            n for k, x in looks.items() for n, f in x.items() if f.evidence > self.fits[k].evidence
-        }
+        gained = set()
+        for other, found in self.screenings.items():
+            if other <= key:
+                least = self.fits[other].evidence
+                gained |= {n for n, f in found.items() if f.evidence > least}
         return [n for n in self.candidates if n in gained]

@@ -1,67 +1,95 @@
-"""What evidence says: the price of an effect, its worth, and what the latent force still has to explain."""
+"""Evidence: what an effect must gain, what it gains, and what the latent force still explains."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
 
+from boatsim.diagnosis.config import DEFAULT, SelectConfig
 from boatsim.diagnosis.problem import Fit, Problem
 
-# log of the odds, seven to one, at which an effect is named, where each of those tried is as likely
-# before
-ODDS = 2.0
-CLOSE = 5.0  # candidates this near to the first [nats] are fitted in full,
-HALF = 0.5  # and those with this share of its gain
-UNKNOWN = 6.0  # [nats] it must gain for the cause to lie outside the library,
-INEXACT = 0.05  # and so much of what was explained: nature's laws are never quite the entries'
 
+def required_gain(number: int, config: SelectConfig = DEFAULT.select) -> float:
+    """Return the evidence that an effect must gain, together with its look-alikes [nats].
 
-def price(number: int) -> float:
-    """Nats that an effect must gain, its look-alikes counted in, where so many were tried.
+    Before the data each candidate is as likely as another, and one of them as likely as none.
 
-    Before the data each is as likely as another, and one of them as likely to be there as none.
+    Args:
+        number: Number of candidates that are tested.
+        config: Odds that are required.
     """
-    return ODDS + float(np.log(max(number, 1)))
+    return config.odds + float(np.log(max(number, 1)))
 
 
-def told_from(explained: float, inexact: float = INEXACT) -> float:
-    """Nats left over from which something is missing that the library has not, where its entries explained so many."""
-    return UNKNOWN + inexact * max(explained, 0.0)
+def unknown_threshold(
+    config: SelectConfig, explained: float, model_error: float | None = None
+) -> float:
+    """Return the unexplained evidence from which a cause outside the candidates is reported [nats].
+
+    Args:
+        config: Settings of the selection.
+        explained: Evidence that identified effects explain [nats].
+        model_error: Share of it that their laws may be off by; None: the usual one.
+    """
+    share = config.model_error if model_error is None else model_error
+    return config.unknown_gain + share * max(explained, 0.0)
 
 
-def together(gains: Sequence[float]) -> float:
-    """Nats that one of several entries gains, whichever: the evidence that any is there, but for how many there are."""
+def combined_gain(gains: Sequence[float]) -> float:
+    """Return the evidence that any of several effects acts, whichever, up to their number [nats].
+
+    Args:
+        gains: Evidence of each [nats].
+    """
     return float(np.logaddexp.reduce(np.array(gains, dtype=float)))
 
 
-def worth(best: Fit, name: str) -> float:
-    """Nats that a member gains by the curvature at a fit: half the square of its distance from not acting, in sds.
+def gain_by_curvature(best: Fit, name: str) -> float:
+    """Return the evidence of an effect by the curvature at a fit [nats].
 
-    That is far more than it gains where the latent force may take its place, which a curvature knows nothing of.
+    This is half the squared distance from zero effect in standard deviations. It is far too large
+    where the latent force may replace the effect, which a curvature does not show.
+
+    Args:
+        best: A fit.
+        name: Name of one of its effects.
     """
     own = [i for i, f in enumerate(best.free) if f.effect == name and not f.relative]
+    if not own:
+        return 0.0
     off = best.theta[own] - np.array([best.free[i].mean for i in own])
-    return (
-        0.5 * float(off @ np.linalg.solve(best.covariance[np.ix_(own, own)], off)) if own else 0.0
-    )
+    return 0.5 * float(off @ np.linalg.solve(best.covariance[np.ix_(own, own)], off))
 
 
-def front(tried: Mapping[str, Fit], base: Fit) -> list[str]:
-    """Candidates that may yet turn out the best, the best first: a quick look leaves out what the force levels take."""
-    gains = {n: f.evidence - base.evidence for n, f in tried.items()}
+def front(fits: Mapping[str, Fit], base: Fit, config: SelectConfig = DEFAULT.select) -> list[str]:
+    """Return the candidates that may still be the best, the best first.
+
+    A screening omits what a refit of the noise levels changes.
+
+    Args:
+        fits: Fits of candidates by name.
+        base: The fit on top of which they were added.
+        config: Distances from the best candidate.
+    """
+    gains = {n: f.evidence - base.evidence for n, f in fits.items()}
     order = sorted(gains, key=lambda n: -gains[n])
-    reach = max(CLOSE, HALF * gains[order[0]]) if order else 0.0
-    return [n for n in order if gains[n] > gains[order[0]] - reach]
+    if not order:
+        return []
+    best = gains[order[0]]
+    distance = max(config.near_front, config.front_share * best)
+    return [n for n in order if gains[n] > best - distance]
 
 
 def left_over(problem: Problem, best: Fit) -> float:
-    """Nats that the latent force gains beyond the tolerated level: what nothing in the library explains."""
+    """Return the evidence that the latent force gains beyond the assumed level [nats].
+
+    Args:
+        problem: Recordings and priors.
+        best: A fit.
+    """
+    factor = problem.config.locate.disturbance_factor
     on = problem.program.switches(best.effects)
-    held = replace(
-        best.levels,
-        force=np.minimum(
-            best.levels.force, problem.config.locate.disturbance_factor * problem.ambient.force
-        ),
-    )
+    force = np.minimum(best.levels.force, factor * problem.ambient.force)
+    held = replace(best.levels, force=force)
     free = problem.log_likelihood(best.free, best.theta, on, best.levels)
     return free - problem.log_likelihood(best.free, best.theta, on, held)

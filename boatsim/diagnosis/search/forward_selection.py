@@ -1,4 +1,4 @@
-"""Forward selection: suspects added one by one, each time the one by which the evidence rises most."""
+"""Forward selection: adds the candidates one by one, each time the one that gains most evidence."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -7,65 +7,79 @@ import numpy as np
 
 from boatsim.diagnosis.candidates import called
 from boatsim.diagnosis.problem import Fit
-from boatsim.diagnosis.search.candidate_sets import Sets
-from boatsim.diagnosis.search.evidence import together, worth
+from boatsim.diagnosis.search.candidate_sets import CandidateSets
+from boatsim.diagnosis.search.evidence import combined_gain, gain_by_curvature
 
-MOST = 8  # effects in one answer: further ones would have next to no data of their own
-SELECTING, SLOWER = (
-    (0.5, 0.8),
-    0.7,
-)  # of a ranking, by experience; what is left to select after each further member
-LAWFUL = 0.5  # share of the gain of a random force from which a law is taken in its place
-# prices that an effect is worth by the curvature at a fit, from where it stays without a fit
-# without it
-CLEAR = 40.0
-# of what the others explain, below which an effect may be what their laws are off by
-SLIGHT = 0.025
+# shares of the work of a selection, by experience: at its begin and end, and what remains of it
+# after each further effect
+BEGIN = 0.5
+END = 0.8
+REMAINS = 0.7
 
 
-def selected(sets: Sets, best: Fit) -> Fit:
-    """The best set from one on: suspects added one by one, earlier ones dropped that a newer one makes needless."""
-    for _ in range(2 * MOST):  # additions and prunings together
-        tried = sets.tried(best)
-        _tell(sets, best)
-        if not tried or len(best.effects) == MOST:
+def selected(sets: CandidateSets, best: Fit) -> Fit:
+    """Return the best set on top of another one.
+
+    Earlier effects that a newer one makes unnecessary are removed.
+
+    Args:
+        sets: Fits of candidate sets.
+        best: The start.
+    """
+    config = sets.config.select
+    for _ in range(2 * config.most_effects):  # additions and removals
+        tested = sets.tested(best)
+        _report(sets, best)
+        if not tested or len(best.effects) == config.most_effects:
             break
-        laws = {n: f for n, f in tried.items() if n not in sets.random}
-        if _gained(laws, best) > max(sets.price, LAWFUL * _gained(tried, best)):
-            tried = laws  # a random force can stand for a law, a law hardly for it
-        if _gained(tried, best) < max(sets.price, SLIGHT * sets.explained(best)):
+        laws = {n: f for n, f in tested.items() if n not in sets.random}
+        share = config.deterministic_share * _gain(tested, best)
+        if _gain(laws, best) > max(sets.required_gain, share):
+            tested = laws  # a stochastic force can replace a law, a law hardly replaces it
+        slight = config.slight_share * sets.explained(best)
+        if _gain(tested, best) < max(sets.required_gain, slight):
             break
-        name = max(tried, key=lambda n: tried[n].evidence)
-        further = _pruned(sets, sets.trusted(sets.converged(tried[name])))
+        name = max(tested, key=lambda n: tested[n].evidence)
+        converged = sets.refit_in_calm(sets.converged(tested[name]))
+        further = _without_unnecessary(sets, converged)
         if set(further.effects) == set(best.effects):
-            break  # the newest made way again
+            break  # the newest one was removed again
         best = further
     return best
 
 
-def _tell(sets: Sets, best: Fit) -> None:
-    """What is the best so far."""
-    names, gain = ", ".join(map(called, best.effects)), best.evidence - sets.base.evidence
-    done = SELECTING[1] - (SELECTING[1] - SELECTING[0]) * SLOWER ** len(best.effects)
+def _report(sets: CandidateSets, best: Fit) -> None:
+    """Report the best set so far."""
+    names = ", ".join(map(called, best.effects))
+    done = END - (END - BEGIN) * REMAINS ** len(best.effects)
+    gain = best.evidence - sets.base.evidence
     sets.report("selecting", done, f"best so far: {names} ({gain:.0f} nats)" if names else "")
 
 
-def begun(sets: Sets, other: Fit) -> Fit:
-    """The set of a fit to the same recordings with other levels, fitted anew."""
+def restart(sets: CandidateSets, other: Fit) -> Fit:
+    """Return the effects of a fit with other noise levels, fitted again.
+
+    Args:
+        sets: Fits of candidate sets.
+        other: A fit to the same recordings.
+    """
     return sets.converged(replace(other, levels=sets.base.levels, evidence=-np.inf))
 
 
-def _gained(tried: Mapping[str, Fit], best: Fit) -> float:
-    """Nats that one of several entries gains on top of a set, whichever."""
-    return together([f.evidence - best.evidence for f in tried.values()]) if tried else -np.inf
+def _gain(fits: Mapping[str, Fit], best: Fit) -> float:
+    """Evidence that any of several candidates gains on top of a set."""
+    if not fits:
+        return -np.inf
+    return combined_gain([f.evidence - best.evidence for f in fits.values()])
 
 
-def _pruned(sets: Sets, best: Fit) -> Fit:
-    """Without the earlier effects that the newest one has made needless."""
+def _without_unnecessary(sets: CandidateSets, best: Fit) -> Fit:
+    """The set without earlier effects that the newest one makes unnecessary."""
+    keep = sets.config.select.keep_factor * sets.required_gain
     for name in best.effects[:-1]:
-        if worth(best, name) > CLEAR * sets.price:
+        if gain_by_curvature(best, name) > keep:
             continue
         without = sets.without(best, name)
-        if without.evidence > best.evidence - sets.price:
+        if without.evidence > best.evidence - sets.required_gain:
             best = without
     return best

@@ -1,43 +1,62 @@
-"""Whether an explanation carries over: free runs over recordings that no fit has seen."""
+"""Compares free runs of models over recordings that no fit has used."""
 
 from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from boatsim.diagnosis.config import DEFAULT, ValidateConfig
 from boatsim.diagnosis.free_runs import FAMILIES, FreeRun, mean_square
 
-FEWEST = 3  # free runs from which their scatter is known
-WORSE = 1.05  # ratio of rms errors from which they have grown
+Squares = Mapping[str, Sequence[float]]  # mean square error of each free run by family of signals
 
 
-def squares(stretches: Sequence[FreeRun], model: str) -> dict[str, list[float]]:
-    """Mean square error of each free run over which anything was recorded, by family of signals."""
+def squares(runs: Sequence[FreeRun], model: str) -> dict[str, list[float]]:
+    """Return the mean square error of each free run, by family of signals.
+
+    Args:
+        runs: Free runs; those over which nothing was recorded are omitted.
+        model: Name of the model.
+    """
     found: dict[str, list[float]] = {}
     for family, signals in FAMILIES.items():
-        for s in stretches:
-            recorded = s.channels["recorded"]
-            off = [s.channels[model][n] - recorded[n] for n in signals if n in recorded]
-            if any(np.isfinite(recorded[n]).any() for n in signals if n in recorded):
-                found.setdefault(family, []).append(mean_square(off))
+        for run in runs:
+            recorded = run.channels["recorded"]
+            own = [recorded[name] for name in signals if name in recorded]
+            if any(np.isfinite(values).any() for values in own):
+                error = mean_square(run.deviations(model, signals))
+                found.setdefault(family, []).append(error)
     return found
 
 
 def grew(
-    before: Mapping[str, Sequence[float]], after: Mapping[str, Sequence[float]], sure: float
+    before: Squares, after: Squares, sure: float, config: ValidateConfig = DEFAULT.validate
 ) -> bool:
-    """Whether the error of any family grew, by so many standard errors of its mean over the runs."""
+    """Whether the error of any family of signals has grown.
+
+    Args:
+        before: Mean square errors of a model.
+        after: Those of another model over the same free runs.
+        sure: Number of standard errors of the mean by which it must grow.
+        config: Fewest free runs, and the ratio by which it must grow, too.
+    """
     for family, old in before.items():
-        if len(old) < FEWEST or not np.isfinite(old).all():
+        if len(old) < config.fewest_runs or not np.isfinite(old).all():
             continue
         rise = np.array(after[family]) - np.array(old)
-        if not np.isfinite(rise).all():  # the boat runs away
+        if not np.isfinite(rise).all():  # the simulated boat diverges
             return True
         scatter = sure * rise.std(ddof=1) / np.sqrt(len(rise))
-        if rise.mean() > max(scatter, (WORSE**2 - 1.0) * np.mean(old)):
+        if rise.mean() > max(scatter, (config.worse**2 - 1.0) * np.mean(old)):
             return True
     return False
 
 
-def misfit(found: Mapping[str, Sequence[float]], per: Mapping[str, Sequence[float]]) -> float:
-    """Geometric mean over the families of the mean square errors, in those of another model."""
-    return float(np.exp(np.mean([np.log(np.mean(found[f]) / np.mean(per[f])) for f in found])))
+def misfit(found: Squares, reference: Squares) -> float:
+    """Return the geometric mean over the families of the ratio of mean square errors.
+
+    Args:
+        found: Mean square errors of a model.
+        reference: Those of the model that it is compared with.
+    """
+    ratios = [np.log(np.mean(found[family]) / np.mean(reference[family])) for family in found]
+    return float(np.exp(np.mean(ratios)))

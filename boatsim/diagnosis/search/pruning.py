@@ -1,4 +1,4 @@
-"""Which members of a set are named: what each gains on top of the others, and how its rivals do in its place."""
+"""Prunes effects with insufficient evidence, and compares the others with their rivals."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -8,174 +8,213 @@ import numpy as np
 from boatsim.diagnosis.candidates import REORDERED, called
 from boatsim.diagnosis.fit import log_prior
 from boatsim.diagnosis.problem import Fit
-from boatsim.diagnosis.search.candidate_sets import Sets
-from boatsim.diagnosis.search.evidence import HALF, UNKNOWN, front, left_over, together, told_from
-from boatsim.diagnosis.search.forward_selection import SLIGHT, selected
+from boatsim.diagnosis.search.candidate_sets import CandidateSets
+from boatsim.diagnosis.search.evidence import (
+    combined_gain,
+    front,
+    left_over,
+    unknown_threshold,
+)
+from boatsim.diagnosis.search.forward_selection import selected
 
-ALIKE = 3.0  # [nats] entries this close to the winner are its look-alikes
-RIVALS = 3  # fitted in the place of what was named
-TOLD = 0.1  # of what was allowed before the data, within which they tell a parameter
-SURE, SURE_RANDOM = 1.0, 2.0  # sds from not acting at which an effect acts
-WORTH = 4.0  # [nats] that an effect must gain by itself
-# of what two explain together, which each explains alone where they are much alike
-ALIKE_SHARE = 0.5
+MOST_TIED = 3  # look-alikes that are reported of an effect
 
 
 @dataclass(frozen=True)
-class Named:
-    """An effect the data call for."""
+class IdentifiedEffect:
+    """An effect that the recordings require, and the rivals that could take its place."""
 
     name: str
-    gain: float  # [nats] on top of the others named
-    shared: (
-        float  # [nats] that it and its rivals gain together: that one of them is there, whichever
-    )
+    gain: float  # [nats] on top of the other effects
+    shared: float  # [nats] that one of it and its rivals gains, whichever
     probability: float
-    tied_with: tuple[str, ...]  # look-alikes, at most three
-    rivals: Mapping[str, Fit]  # fits with the next best suspects in its place
+    tied_with: tuple[str, ...]  # names of its look-alikes
+    rivals: Mapping[str, Fit]  # fits with the best other candidates in its place
 
 
-def settled(sets: Sets, best: Fit) -> tuple[Fit, tuple[Named, ...]]:
-    """The set without members that gain too little on top of the others, and what is to be said of the rest.
+def prune(sets: CandidateSets, best: Fit) -> tuple[Fit, tuple[IdentifiedEffect, ...]]:
+    """Remove effects with insufficient evidence.
 
-    A member in whose place another does better makes way for it, unless that leads back to where it was.
+    An effect in whose place another one is better is replaced, unless that leads back to a set that
+    was examined before.
+
+    Args:
+        sets: Fits of candidate sets.
+        best: A fit.
+
+    Returns:
+        The pruned set, and its effects with their statistics.
     """
-    seen = set()
+    examined = set()
     while True:
-        seen.add(frozenset(best.effects))
-        named = tuple(_named(sets, best, n) for n in best.effects)
-        rivals = [(n.name, r, f) for n in named for r, f in n.rivals.items()]
-        fair = [r for r in rivals if r[0] in sets.random or r[1] not in sets.random]
-        better = [
-            f
-            for name, rival, f in fair
-            if f.evidence > best.evidence + _ahead(name, rival, sets.config.fit.refit_gain)
-        ]
-        further = selected(sets, max(better, key=lambda f: f.evidence)) if better else best
-        if frozenset(further.effects) not in seen:
+        examined.add(frozenset(best.effects))
+        named = tuple(_identified(sets, best, name) for name in best.effects)
+        better = _better_rivals(sets, best, named)
+        further = best
+        if better:
+            further = selected(sets, max(better, key=lambda f: f.evidence))
+        if frozenset(further.effects) not in examined:
             best = further
             continue
-        little = [n for n in named if _little(sets, best, n) or _mends(sets, best, n)]
-        calm = [n for n in named if n not in little and not _foreseen(sets, best, n)]
-        if not little and not calm:
+        weak = [n for n in named if _too_weak(sets, best, n) or _corrects_shape(sets, best, n)]
+        calming = [n for n in named if n not in weak and not _predicts(sets, best, n)]
+        if not weak and not calming:
             return best, named
-        out = min(little + calm, key=lambda n: n.gain)
-        if out in calm:
-            sets.banned.add(out.name)
-        best = sets.without(best, out.name)
+        removed = min(weak + calming, key=lambda n: n.gain)
+        if removed in calming:
+            sets.banned.add(removed.name)
+        best = sets.without(best, removed.name)
 
 
-def _ahead(name: str, rival: str, settled: float) -> float:
-    """Nats by which a rival must be ahead: on the other side of an actuator than usual only where recordings tell."""
-    if name.removeprefix(REORDERED) == rival.removeprefix(REORDERED):
-        return -ALIKE if name.startswith(REORDERED) else ALIKE
-    return settled
+def _better_rivals(
+    sets: CandidateSets, best: Fit, named: tuple[IdentifiedEffect, ...]
+) -> list[Fit]:
+    """Fits with a rival in the place of an effect that are clearly better."""
+    better = []
+    for one in named:
+        for rival, found in one.rivals.items():
+            fair = one.name in sets.random or rival not in sets.random
+            if fair and found.evidence > best.evidence + _lead(sets, one.name, rival):
+                better.append(found)
+    return better
 
 
-def _little(sets: Sets, best: Fit, named: Named) -> bool:
-    """Whether a member gains too little to be named."""
-    slight = SLIGHT * (sets.explained(best) - named.gain)
-    return (
-        named.gain < max(WORTH, slight)
-        or named.shared < sets.price
-        or not there(sets, best, named.name)
-    )
+def _lead(sets: CandidateSets, name: str, rival: str) -> float:
+    """Evidence by which a rival must be ahead.
 
-
-def _mends(sets: Sets, best: Fit, named: Named) -> bool:
-    """Whether a member but mends the shape of another: each alone explains most of what both do, together little more.
-
-    A square and a cube of one speed may both be asked for where nature's law is neither.
+    Whether an effect acts before or after an actuator's lag deviates from the usual order only if
+    the recordings show it.
     """
-    if named.gain > told_from(sets.explained(best)):
+    alike = sets.config.select.alike
+    if name.removeprefix(REORDERED) == rival.removeprefix(REORDERED):
+        return -alike if name.startswith(REORDERED) else alike
+    return sets.config.fit.refit_gain
+
+
+def _too_weak(sets: CandidateSets, best: Fit, named: IdentifiedEffect) -> bool:
+    """Whether an effect gains too little."""
+    config = sets.config.select
+    slight = config.slight_share * (sets.explained(best) - named.gain)
+    if named.gain < max(config.least_gain, slight) or named.shared < sets.required_gain:
+        return True
+    return not acts(sets, best, named.name)
+
+
+def _corrects_shape(sets: CandidateSets, best: Fit, named: IdentifiedEffect) -> bool:
+    """Whether an effect only corrects the shape of another one.
+
+    Each alone then explains most of what both explain. A square and a cube of one speed may both
+    seem to be required where nature's law is neither.
+    """
+    config = sets.config.select
+    if named.gain > unknown_threshold(config, sets.explained(best)):
         return False
     alone = sets.without(best, named.name)
     for other in alone.effects:
         neither, instead = sets.without(alone, other), sets.without(best, other)
         both = best.evidence - neither.evidence
-        alike = min(alone.evidence, instead.evidence) - neither.evidence > ALIKE_SHARE * both
-        if alike and named.gain < told_from(both):
+        least = min(alone.evidence, instead.evidence) - neither.evidence
+        if least > config.alike_share * both and named.gain < unknown_threshold(config, both):
             return True
     return False
 
 
-def _foreseen(sets: Sets, best: Fit, named: Named) -> bool:
-    """Whether a member makes what was recorded likelier, sensors and water as noisy with it as without.
+def _predicts(sets: CandidateSets, best: Fit, named: IdentifiedEffect) -> bool:
+    """Whether an effect makes the recording more likely with the noise levels held.
 
-    What it gains besides is that less was to be expected: more damping keeps the hull still where nothing moves it, and
-    forgets the sooner how a recording began. In calm water that is no merit of a law. Where an unsteady force
-    acts, which takes up what a law foresaw, the water is not calm.
+    Otherwise it only gains because less motion is expected: more damping keeps the hull still where
+    nothing moves it, and forgets the initial state sooner. In calm water that is no merit of a law.
+    Where a stochastic force acts, which absorbs what a law predicts, the water is not calm.
     """
-    problem, seen = sets.problem, []
-    if (
-        named.name in sets.random
-        or sets.unsteady & set(best.effects)
-        or left_over(problem, best) > UNKNOWN
-    ):
+    problem, config, found = sets.problem, sets.config.select, []
+    rough = sets.unsteady & set(best.effects)
+    if named.name in sets.random or rough or left_over(problem, best) > config.unknown_gain:
         return True
-    for found in (best, sets.without(best, named.name)):
-        on = problem.program.switches(found.effects)
-        passes = problem.filter(found.free, found.theta, on, best.levels)
-        likelihood = passes.log_likelihood - passes.log_density
-        seen.append(likelihood + log_prior(found.free, found.theta))
-    return not seen[0] - seen[1] < WORTH
+    for one in (best, sets.without(best, named.name)):
+        on = problem.program.switches(one.effects)
+        passes = problem.filter(one.free, one.theta, on, best.levels)
+        residual = passes.log_likelihood - passes.log_density
+        found.append(residual + log_prior(one.free, one.theta))
+    return not found[0] - found[1] < config.least_gain
 
 
-def there(sets: Sets, best: Fit, name: str) -> bool:
-    """Whether an effect is more than a standard deviation from not acting: if not, only the search gained by it.
+def acts(sets: CandidateSets, best: Fit, name: str) -> bool:
+    """Whether an effect is clearly away from zero effect.
 
-    Of a random one more than two: sizes lie on one side of zero, where the search alone makes something of nothing.
-    It acts too where recordings tell, to within `TOLD` of what was allowed, another of its parameters than those which
-    are zero without it: a craft that never comes near the speed from which it planes shows by how much it is held back,
-    not that speed. (The rhythm of a random force is told by what little of it there seems to be.)
+    A stochastic force must be further away: its size is positive, so that a search finds some in
+    pure noise. An effect acts, too, if the recordings determine one of its parameters that has no
+    meaning without it. A craft that never reaches its planing speed shows by how much it is slowed,
+    but not that speed. (The frequency of a stochastic force is determined by any trace of it.)
+
+    Args:
+        sets: Fits of candidate sets.
+        best: A fit.
+        name: Name of one of its effects.
     """
+    config = sets.config.select
     kind = next(type(e) for e in sets.problem.program.candidates if e.name == name)
     own = {f.name: f for f in best.free if f.effect == name and not f.relative}
-    params, found = kind.params(), {n: best.value(name, n) for n in own}
+    params = kind.params()
     strength = [n for n in own if n in (kind.strength or params)]
-    sure = SURE_RANDOM if kind.random else SURE
-    return (
-        not strength
-        or any(abs(found[n][0] - params[n].absent) > sure * found[n][1] for n in strength)
-        or not kind.random
-        and any(found[n][1] < TOLD * own[n].sd for n in own if n not in strength)
-    )
+    if not strength:
+        return True
+    sure = config.certainty_stochastic if kind.random else config.certainty
+    for parameter in strength:
+        value, sd = best.value(name, parameter)
+        if abs(value - params[parameter].absent) > sure * sd:
+            return True
+    if kind.random:
+        return False
+    for parameter, free in own.items():
+        narrow = best.value(name, parameter)[1] < config.determined_share * free.sd
+        if parameter not in strength and narrow:
+            return True
+    return False
 
 
-def _named(sets: Sets, best: Fit, name: str) -> Named:
-    """Gain of one effect on top of the others, and how its rivals do in its place."""
+def _identified(sets: CandidateSets, best: Fit, name: str) -> IdentifiedEffect:
+    """Evidence of one effect on top of the others, and of its rivals in its place."""
+    config = sets.config.select
     without = sets.without(best, name)
     gain = best.evidence - without.evidence
-    tried = sets.tried(without, [n for n in sets.hopeful(without) if n != name])
-    others = {n: f for n, f in tried.items() if n not in best.effects}
-    ahead = {n: others[n] for n in front(others, without)[:RIVALS]}
-    key = frozenset(without.effects)
-    poor = {
-        n
-        for n, f in ahead.items()
-        if (key, n) in sets.full and f.evidence < without.evidence + HALF * gain
-    }
-    return beside(
-        name, best, without, {n: f if n in poor else sets.converged(f) for n, f in ahead.items()}
-    )
+    tested = sets.tested(without, [n for n in sets.promising(without) if n != name])
+    others = {n: f for n, f in tested.items() if n not in best.effects}
+    key, rivals = frozenset(without.effects), {}
+    for rival in front(others, without, config)[: config.most_rivals]:
+        found = others[rival]
+        poor = found.evidence < without.evidence + config.front_share * gain
+        if not poor or (key, rival) not in sets.fitted_in_full:
+            found = sets.converged(found)
+        rivals[rival] = found
+    return compare_rivals(sets, name, best, without, rivals)
 
 
-def beside(name: str, best: Fit, without: Fit, rivals: Mapping[str, Fit]) -> Named:
-    """What is to be said of a member of a set, given the fit without it and those of its rivals in its place."""
+def compare_rivals(
+    sets: CandidateSets, name: str, best: Fit, without: Fit, rivals: Mapping[str, Fit]
+) -> IdentifiedEffect:
+    """Return the statistics of an effect.
+
+    Args:
+        sets: Fits of candidate sets.
+        name: Name of the effect.
+        best: A fit with it.
+        without: The fit without it.
+        rivals: Fits with other candidates in its place.
+    """
     gain = best.evidence - without.evidence
     gains = {n: f.evidence - without.evidence for n, f in rivals.items()}
     weights = np.exp(np.array([0.0, gain, *gains.values()]) - max(gain, 0.0, *gains.values()))
-    same = np.array(
-        [False, True, *(called(n) == called(name) for n in gains)]
-    )  # on either side of an actuator
+    # the same effect on the other side of an actuator's lag counts as this one
+    same = np.array([False, True, *(called(n) == called(name) for n in gains)])
     order = sorted(gains, key=lambda n: -gains[n])
-    tied = tuple(n for n in order if gains[n] > gain - ALIKE and called(n) != called(name))[:3]
+    close = gain - sets.config.select.alike
+    tied = [n for n in order if gains[n] > close and called(n) != called(name)]
     probability = float(weights[same].sum() / weights.sum())
-    return Named(
+    return IdentifiedEffect(
         name,
         gain,
-        together([gain, *gains.values()]),
+        combined_gain([gain, *gains.values()]),
         probability,
-        tied,
+        tuple(tied[:MOST_TIED]),
         {n: rivals[n] for n in order},
     )

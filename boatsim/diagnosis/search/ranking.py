@@ -1,7 +1,8 @@
-"""Names what is missing: every suspect fitted in the filter, scored by evidence, selected forward, pruned backward."""
+"""The select stage: forward selection by evidence, pruning, and decisions by held-out recordings."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 from boatsim.diagnosis.covariance_inflation import inflate_covariance
 from boatsim.diagnosis.description import Description
@@ -10,37 +11,48 @@ from boatsim.diagnosis.fit import converge, gauss_newton
 from boatsim.diagnosis.locate.residual_structure import Structure, find_structure
 from boatsim.diagnosis.noise_levels import fit_noise
 from boatsim.diagnosis.problem import Fit, Problem
-from boatsim.diagnosis.search.candidate_sets import Sets
-from boatsim.diagnosis.search.energy_balance import braking, waves_of
-from boatsim.diagnosis.search.evidence import left_over, told_from
-from boatsim.diagnosis.search.forward_selection import begun, selected
-from boatsim.diagnosis.search.pruning import Named, settled
-from boatsim.diagnosis.search.validation import lawful, misled, missed, refuted, stood_for, told
+from boatsim.diagnosis.search.candidate_sets import CandidateSets
+from boatsim.diagnosis.search.energy_balance import braking_force, oscillating_force
+from boatsim.diagnosis.search.evidence import left_over, unknown_threshold
+from boatsim.diagnosis.search.forward_selection import restart, selected
+from boatsim.diagnosis.search.pruning import IdentifiedEffect, prune
+from boatsim.diagnosis.search.validation import (
+    carries_over_less,
+    deterministic_replacement,
+    distinguish,
+    misleading_effect,
+    refuted_effect,
+    remove_dwarfed,
+)
 from boatsim.physics.described_laws import Described
 from boatsim.progress import Report, silent
 
-JUDGING = 0.8  # of a ranking is done when it begins, by experience
-# of what a random force gains, from which it but stands for a law that is left over beside it
-LEFT_OF_IT = 0.25
-ALONG = 0.02  # of what was explained: that much less is told of a force that goes with something
+JUDGING = 0.8  # share of the work, by experience, that is done when held-out recordings decide
+
+
+class Baseline(NamedTuple):
+    """The vessel as written, and with its own coefficients refitted."""
+
+    nominal: Fit  # with noise and force levels fitted
+    recalibrated: Fit
 
 
 @dataclass(frozen=True)
 class Ranking:
-    """What selection found."""
+    """Result of the selection: identified effects, the evidence of all candidates, and what remains."""
 
     nominal: Fit  # the vessel as written, noise and force levels fitted
     recalibrated: Fit  # the nominal structure with its own coefficients refitted
     best: Fit
-    named: tuple[Named, ...]
-    first: dict[str, float]  # gain of every suspect alone over the recalibrated nominal [nats]
-    last: dict[str, Fit]  # every suspect not named, on top of the best set
-    left_over: float  # [nats] that a force beyond the tolerated one gains after the best set
-    structure: Structure  # what goes best with the force left over
-    explained: (
-        float  # [nats] that the laws of the best set gain, of which something besides is told from
-    )
-    description: Description | None = None  # of what is left over, where something is
+    named: tuple[IdentifiedEffect, ...]
+    first: dict[str, float]  # [nats] that each candidate alone gains over the recalibrated vessel
+    last: dict[str, Fit]  # each candidate that is not identified, on top of the best set
+    left_over: float  # [nats] that a force beyond the assumed level gains after the best set
+    structure: Structure  # what that force correlates with most
+    explained: float  # [nats] that the deterministic effects of the best set gain
+    told_from: float  # [nats] of `left_over` from which something is missing besides
+    structured: bool  # whether that force, however weak, clearly correlates with something
+    description: Description | None = None  # symbolic description of it
 
     @property
     def adds(self) -> bool:
@@ -49,25 +61,14 @@ class Ranking:
 
     @property
     def laws(self) -> Mapping[str, Described]:
-        """The described laws that the best fit adds, by name."""
+        """Described terms that the best fit adds, by name."""
         return self.description.effects() if self.description else {}
 
     @property
     def unknown(self) -> bool:
-        """Whether something is left that no entry of the library explains."""
-        return (
-            self.description is not None or bool(self.left_over > self.told_from) or self.structured
-        )
-
-    @property
-    def structured(self) -> bool:
-        """Whether what is left over, however weak, goes with something."""
-        return told_apart(self.structure, float(self.best.evidence - self.recalibrated.evidence))
-
-    @property
-    def told_from(self) -> float:
-        """What must be left over [nats] for something to be missing besides: a law is never quite that of its entry."""
-        return told_from(self.explained)
+        """Whether something remains that no candidate explains."""
+        described = self.description is not None
+        return described or bool(self.left_over > self.told_from) or self.structured
 
 
 def rank(
@@ -76,88 +77,132 @@ def rank(
     held_out: Sequence[MappedRecording] = (),
     begin: Fit | None = None,
     report: Report = silent,
+    base: Baseline | None = None,
 ) -> Ranking:
-    """Forward selection over the candidates, the incumbent converged before each comparison, members exchanged.
+    """Select the candidates that the recordings require.
 
-    It begins with nothing, or with the set of another fit. Where far more stays unexplained than an effect explains, it
-    is not stood for; nor is one by which free runs over `unseen` recordings get worse, or by which these become
-    unlikelier. They decide between look-alikes.
+    Candidates are added one by one, each time after the present set has converged, and members are
+    exchanged. An effect is removed if far more remains unexplained than it explains, if free runs
+    over held-out recordings get worse by it, or if it makes these less likely. Held-out recordings
+    decide between look-alikes.
+
+    Args:
+        problem: Recordings and priors.
+        candidates: Names of the candidates that are tested.
+        held_out: Held-out recordings.
+        begin: Fit whose effects are the start; None: start without effects.
+        report: Receives the progress.
+        base: Fits of the vessel without candidates; None: fit them.
+
+    Returns:
+        The identified effects with the evidence of all candidates.
     """
     report("fitting the vessel as written")
-    nominal, recalibrated = baseline(problem)
-    sets = Sets(problem, candidates, recalibrated, report)
-    best, named = settled(sets, selected(sets, begun(sets, begin) if begin else recalibrated))
-    while (stood := stood_for(sets, best, held_out)) is not best:
-        best, named = settled(sets, stood)
+    nominal, recalibrated = base or baseline(problem)
+    sets = CandidateSets(problem, candidates, recalibrated, report)
+    start = restart(sets, begin) if begin else recalibrated
+    best, named = prune(sets, selected(sets, start))
+    while True:
+        fewer = remove_dwarfed(sets, best, held_out)
+        if fewer is best:
+            break
+        best, named = prune(sets, fewer)
     report("judging what is left over", JUDGING)
     best, named = _judged(sets, best, named, held_out)
-    left, goes = left_over(problem, best), find_structure(problem, best)
-    while (waves := waves_of(sets, best)) and _stands_for_a_law(sets, best, waves, goes):
+    remaining, correlated = left_over(problem, best), find_structure(problem, best)
+    while True:
+        waves = oscillating_force(sets, best)
+        if not waves or not _replaces_law(sets, best, waves, correlated):
+            break
         sets.banned.add(waves)
-        best, named = _judged(
-            sets, *settled(sets, selected(sets, sets.without(best, waves))), held_out
-        )
-        left, goes = left_over(problem, best), find_structure(problem, best)
-    named = told(sets, best, named, held_out)
-    first = {n: f.evidence - sets.base.evidence for n, f in sets.looked(sets.base).items()}
-    last = sets.looked(best)
-    for name in sets.banned & last.keys():  # what was found to mislead is no hint
+        pruned = prune(sets, selected(sets, sets.without(best, waves)))
+        best, named = _judged(sets, *pruned, held_out)
+        remaining, correlated = left_over(problem, best), find_structure(problem, best)
+    named = distinguish(sets, best, named, held_out)
+    alone = {n: f.evidence - sets.base.evidence for n, f in sets.screened(sets.base).items()}
+    last = sets.screened(best)
+    for name in sets.banned & last.keys():  # an effect that was refuted is no hint
         last[name] = replace(last[name], evidence=min(last[name].evidence, best.evidence))
     explained = sets.explained(best)
+    inflated = inflate_covariance(problem, best)
     return Ranking(
         nominal,
         sets.base,
-        inflate_covariance(problem, best),
+        inflated,
         named,
-        first,
+        alone,
         last,
-        left,
-        goes,
+        remaining,
+        correlated,
         explained,
+        told_from=unknown_threshold(problem.config.select, explained),
+        structured=_clear(sets, correlated, float(inflated.evidence - sets.base.evidence)),
     )
 
 
 def _judged(
-    sets: Sets, best: Fit, named: tuple[Named, ...], held_out: Sequence[MappedRecording]
-) -> tuple[Fit, tuple[Named, ...]]:
-    """The set without what physics or unseen recordings speak against, laws in place of what but sways like them."""
-    while named and (worse := braking(sets, best) or misled(sets, best, held_out)):
+    sets: CandidateSets,
+    best: Fit,
+    named: tuple[IdentifiedEffect, ...],
+    held_out: Sequence[MappedRecording],
+) -> tuple[Fit, tuple[IdentifiedEffect, ...]]:
+    """The set without effects that physics or held-out recordings refute."""
+    while named:
+        worse = braking_force(sets, best) or misleading_effect(sets, best, held_out)
+        if not worse:
+            break
         sets.banned.add(worse)
-        best, named = settled(sets, selected(sets, sets.without(best, worse)))
-    while named and (worse := refuted(sets, best, named, held_out)):
+        best, named = prune(sets, selected(sets, sets.without(best, worse)))
+    while named:
+        worse = refuted_effect(sets, best, named, held_out)
+        if not worse:
+            break
         sets.banned.add(worse)
-        without = settled(sets, selected(sets, sets.without(best, worse)))
-        if missed(
-            sets, best, without[0], held_out
-        ):  # what came in its place carries over less than it did
-            sets.banned.remove(worse)
-            sets.vouched.add(worse)
-            continue
-        return _judged(sets, *without, held_out)
-    while law := lawful(sets, best, named, held_out):
-        best, named = settled(sets, selected(sets, law))
-    return best, named
+        without = prune(sets, selected(sets, sets.without(best, worse)))
+        if not carries_over_less(sets, best, without[0], held_out):
+            return _judged(sets, *without, held_out)
+        sets.banned.remove(worse)  # what replaced it holds less well for held-out recordings
+        sets.supported.add(worse)
+    while True:
+        law = deterministic_replacement(sets, best, named, held_out)
+        if law is None:
+            return best, named
+        best, named = prune(sets, selected(sets, law))
 
 
-def _stands_for_a_law(sets: Sets, best: Fit, waves: str, goes: Structure) -> bool:
-    """Whether a random force leaves over a good part of what it gains, which goes with a motion, command or heading."""
+def _replaces_law(sets: CandidateSets, best: Fit, waves: str, correlated: Structure) -> bool:
+    """Whether a stochastic force leaves a good part of its gain correlated with the motion."""
     gain = float(best.evidence - sets.without(best, waves).evidence)
-    explained = float(best.evidence - sets.base.evidence)
-    return goes.is_effect and told_apart(goes, explained) and goes.gain > LEFT_OF_IT * gain
+    clear = _clear(sets, correlated, float(best.evidence - sets.base.evidence))
+    enough = correlated.gain > sets.config.select.remaining_share * gain
+    return correlated.is_effect and clear and enough
 
 
-def told_apart(goes: Structure, explained: float) -> bool:
-    """Whether what is left over by a set that explained so many nats, however weak, goes with something."""
-    return goes.significant and goes.gain > told_from(explained, ALONG)
+def _clear(sets: CandidateSets, correlated: Structure, explained: float) -> bool:
+    """Whether the force that remains, however weak, clearly correlates with something."""
+    config = sets.config.select
+    threshold = unknown_threshold(config, explained, config.structure_error)
+    return correlated.significant and correlated.gain > threshold
 
 
 def selection(problem: Problem, candidates: tuple[str, ...]) -> tuple[Fit, Fit]:
-    """The recalibrated nominal and the best set on top of it, and no more: for cross-validation."""
+    """Return the recalibrated vessel and the best set on top of it, for cross-validation.
+
+    Args:
+        problem: Recordings and priors.
+        candidates: Names of the candidates that are tested.
+    """
     _, recalibrated = baseline(problem)
-    return recalibrated, selected(Sets(problem, candidates, recalibrated), recalibrated)
+    return recalibrated, selected(CandidateSets(problem, candidates, recalibrated), recalibrated)
 
 
-def baseline(problem: Problem) -> tuple[Fit, Fit]:
-    """The vessel as written with noise and force levels fitted, and recalibrated: its own coefficients refitted."""
+def baseline(problem: Problem) -> Baseline:
+    """Return the vessel as written with its noise levels fitted, and recalibrated.
+
+    Args:
+        problem: Recordings and priors.
+    """
+    config = problem.config.fit
     nominal = fit_noise(problem, problem.nominal())
-    return nominal, converge(problem, gauss_newton(problem, nominal, 4, 0.1))
+    start = gauss_newton(problem, nominal, config.first_steps, config.step_gain)
+    return Baseline(nominal, converge(problem, start))

@@ -1,4 +1,4 @@
-"""What recordings that no fit has seen say of a set: which of its members mislead there, what is no look-alike."""
+"""Decisions by held-out recordings: effects that they refute, and look-alikes that they distinguish."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -6,193 +6,281 @@ from dataclasses import replace
 import numpy as np
 
 from boatsim.diagnosis.filter import MappedRecording
-from boatsim.diagnosis.free_runs import free_runs
+from boatsim.diagnosis.free_runs import FreeRun, free_runs
 from boatsim.diagnosis.noise_levels import fit_force, force_prior
 from boatsim.diagnosis.problem import Fit
 from boatsim.diagnosis.search import generalization
-from boatsim.diagnosis.search.candidate_sets import Sets
-from boatsim.diagnosis.search.evidence import left_over, told_from
-from boatsim.diagnosis.search.forward_selection import SLIGHT
-from boatsim.diagnosis.search.pruning import ALIKE, Named, beside
+from boatsim.diagnosis.search.candidate_sets import CandidateSets
+from boatsim.diagnosis.search.evidence import left_over, unknown_threshold
+from boatsim.diagnosis.search.generalization import Squares
+from boatsim.diagnosis.search.pruning import IdentifiedEffect, compare_rivals
 
-SURE = 2.0  # standard errors by which unseen errors must grow,
-# and where it is but between look-alikes, or one is a random force, which foretells nothing
-SURE_BETWEEN = 1.65
-# where something is left over: an effect with which this share of the force is left is not stood
-# for
-DWARFED = 0.9
+Recordings = Sequence[MappedRecording]
 
 
-def misled(sets: Sets, best: Fit, held_out: Sequence[MappedRecording]) -> str:
-    """The effect without which free runs over unseen recordings are best, if with all they are worse than with none."""
-    problem, horizon = sets.problem, _horizon(sets, held_out)
-    fits = {"none": sets.base, "all": best} | {n: sets.without(best, n) for n in best.effects}
-    first = free_runs(problem, {n: fits[n] for n in ("none", "all")}, held_out, horizon)
-    none = generalization.squares(first, "none")
-    sure = SURE_BETWEEN if sets.random & set(best.effects) else SURE
-    if not none or not generalization.grew(none, generalization.squares(first, "all"), sure):
+def misleading_effect(sets: CandidateSets, best: Fit, held_out: Recordings) -> str:
+    """Return the effect to remove if free runs are clearly worse with all effects than with none.
+
+    Args:
+        sets: Fits of candidate sets.
+        best: A fit.
+        held_out: Held-out recordings.
+
+    Returns:
+        Name of the effect without which they are best, or "".
+    """
+    config = sets.config.validate
+    without = {name: sets.without(best, name) for name in best.effects}
+    runs = _free_runs(sets, {"none": sets.base, "all": best}, held_out)
+    none = generalization.squares(runs, "none")
+    stochastic = sets.random & set(best.effects)
+    sure = config.certainty_alike if stochastic else config.certainty
+    if not none or not _grew(sets, none, generalization.squares(runs, "all"), sure):
         return ""
-    rest = free_runs(problem, {n: fits[n] for n in best.effects}, held_out, horizon)
-    return min(
-        best.effects, key=lambda n: generalization.misfit(generalization.squares(rest, n), none)
-    )
+    runs = _free_runs(sets, without, held_out)
+    misfits = {}
+    for name in best.effects:
+        misfits[name] = generalization.misfit(generalization.squares(runs, name), none)
+    return min(best.effects, key=lambda name: misfits[name])
 
 
-def refuted(
-    sets: Sets, best: Fit, named: Sequence[Named], held_out: Sequence[MappedRecording]
+def refuted_effect(
+    sets: CandidateSets, best: Fit, named: Sequence[IdentifiedEffect], held_out: Recordings
 ) -> str:
-    """The effect by which unseen recordings become unlikelier than without it, if clearly so: it does not carry over.
+    """Return an effect that does not hold for held-out recordings, or "".
 
-    Or by which all recordings together gain less, its look-alikes counted in, than its price and what the laws of the
-    others may be off by. That asks of each row what the rows before foretell. Free runs over them must not ask for it
-    all the same, as they may where unseen recordings go beyond the fitted ones.
+    Either these become clearly less likely by it, or all recordings together gain less by it and its
+    look-alikes than is required and than the laws of the other effects may be off by. The likelihood
+    compares each row with the rows before. Free runs over held-out recordings must not require the
+    effect all the same, as they may where these go beyond the fitted ones.
+
+    Args:
+        sets: Fits of candidate sets.
+        best: A fit.
+        named: Its effects.
+        held_out: Held-out recordings.
     """
     if not held_out:
         return ""
-    whole, rest = foretold(sets, best, held_out), {n: sets.without(best, n) for n in best.effects}
-    gains = {n: whole - foretold(sets, f, held_out) for n, f in rest.items()}
-    unlikelier = {n for n in gains if gains[n] < -told_from(sets.explained(best))}
-    others = {n.name: SLIGHT * max(sets.explained(best) - n.gain, 0.0) for n in named}
-    little = {n.name for n in named if n.shared + gains[n.name] < sets.price + others[n.name]}
-    unlikelier, little = unlikelier - sets.vouched, little - sets.vouched
-    if not unlikelier | little:
-        return ""
-    fits = {"": best, **{n: rest[n] for n in rest if n in unlikelier | little}}
-    stretches = free_runs(sets.problem, fits, held_out, _horizon(sets, held_out))
-    as_named = generalization.squares(stretches, "")
-    if not as_named:
-        return min(unlikelier, key=lambda n: gains[n], default="")
-    misfits = {
-        n: generalization.misfit(generalization.squares(stretches, n), as_named)
-        for n in unlikelier | little
-    }
-    needless = sorted(n for n, misfit in misfits.items() if misfit < generalization.WORSE**2)
-    return min(needless, key=lambda n: gains[n], default="")
-
-
-def missed(sets: Sets, before: Fit, after: Fit, held_out: Sequence[MappedRecording]) -> bool:
-    """Whether free runs over unseen recordings get worse by what became of a set without one of its members."""
-    stretches = free_runs(
-        sets.problem, {"before": before, "after": after}, held_out, _horizon(sets, held_out)
-    )
-    was, now = (
-        generalization.squares(stretches, "before"),
-        generalization.squares(stretches, "after"),
-    )
-    return bool(was) and not generalization.misfit(now, was) < generalization.WORSE**2
-
-
-def foretold(sets: Sets, found: Fit, held_out: Sequence[MappedRecording]) -> float:
-    """Log likelihood [nats] of unseen recordings by a fit to others, the water as rough as it is there."""
-    problem = sets.problem.on(held_out)
-    there = fit_force(problem, found)
-    on = problem.program.switches(there.effects)
-    return problem.log_likelihood(there.free, there.theta, on, there.levels) + force_prior(
-        problem, there.levels
-    )
-
-
-def with_unseen(
-    sets: Sets, best: Fit, rivals: Mapping[str, Fit], held_out: Sequence[MappedRecording]
-) -> dict[str, Fit]:
-    """Rivals of a member of a set with the evidence that they have beside it on all recordings, unseen ones too."""
-    own = foretold(sets, best, held_out)
-    if not np.isfinite(own):  # the boat runs away
-        return dict(rivals)
-    return {
-        n: replace(f, evidence=f.evidence + foretold(sets, f, held_out) - own)
-        for n, f in rivals.items()
-    }
-
-
-def lawful(
-    sets: Sets, best: Fit, named: Sequence[Named], held_out: Sequence[MappedRecording]
-) -> Fit | None:
-    """A set with a law in the place of a random force, or of a law much like it, if unseen recordings ask for it.
-
-    Free runs over them must get clearly better by it, or all recordings together be clearly likelier. What makes way,
-    such as a random force, which foretells nothing and fits whatever sways, is then found to mislead.
-    """
-    horizon = _horizon(sets, held_out, generalization.FEWEST)
+    whole = predicted(sets, best, held_out)
+    without = {name: sets.without(best, name) for name in best.effects}
+    gains = {name: whole - predicted(sets, f, held_out) for name, f in without.items()}
+    threshold = unknown_threshold(sets.config.select, sets.explained(best))
+    doubtful = {name for name, gain in gains.items() if gain < -threshold}
+    unlikely = doubtful - sets.supported
+    little = set()
     for one in named:
-        least = best.evidence - ALIKE
+        others = max(sets.explained(best) - one.gain, 0.0)
+        least = sets.required_gain + sets.config.select.slight_share * others
+        if one.shared + gains[one.name] < least:
+            little.add(one.name)
+    doubtful = unlikely | (little - sets.supported)
+    if not doubtful:
+        return ""
+    fits = {"": best} | {name: f for name, f in without.items() if name in doubtful}
+    runs = _free_runs(sets, fits, held_out)
+    with_all = generalization.squares(runs, "")
+    if not with_all:
+        return min(unlikely, key=lambda name: gains[name], default="")
+    unnecessary = []
+    for name in sorted(doubtful):
+        misfit = generalization.misfit(generalization.squares(runs, name), with_all)
+        if misfit < sets.config.validate.worse**2:
+            unnecessary.append(name)
+    return min(unnecessary, key=lambda name: gains[name], default="")
+
+
+def carries_over_less(sets: CandidateSets, before: Fit, after: Fit, held_out: Recordings) -> bool:
+    """Whether free runs over held-out recordings are worse by one fit than by another.
+
+    Args:
+        sets: Fits of candidate sets.
+        before: The fit that they are compared with.
+        after: The fit that replaces it.
+        held_out: Held-out recordings.
+    """
+    runs = _free_runs(sets, {"before": before, "after": after}, held_out)
+    old = generalization.squares(runs, "before")
+    if not old:
+        return False
+    new = generalization.squares(runs, "after")
+    return not generalization.misfit(new, old) < sets.config.validate.worse**2
+
+
+def predicted(sets: CandidateSets, found: Fit, held_out: Recordings) -> float:
+    """Return the log likelihood of held-out recordings by a fit to others [nats].
+
+    The level of the latent force is fitted to them.
+
+    Args:
+        sets: Fits of candidate sets.
+        found: A fit.
+        held_out: Held-out recordings.
+    """
+    problem = sets.problem.on(held_out)
+    refitted = fit_force(problem, found)
+    on = problem.program.switches(refitted.effects)
+    likelihood = problem.log_likelihood(refitted.free, refitted.theta, on, refitted.levels)
+    return likelihood + force_prior(problem, refitted.levels)
+
+
+def with_held_out(
+    sets: CandidateSets, best: Fit, rivals: Mapping[str, Fit], held_out: Recordings
+) -> dict[str, Fit]:
+    """Return rivals of an effect with their evidence on all recordings, held-out ones included.
+
+    Args:
+        sets: Fits of candidate sets.
+        best: The fit with the effect.
+        rivals: Fits with other candidates in its place.
+        held_out: Held-out recordings.
+    """
+    own = predicted(sets, best, held_out)
+    if not np.isfinite(own):  # the simulated boat diverges
+        return dict(rivals)
+    found = {}
+    for name, rival in rivals.items():
+        evidence = rival.evidence + predicted(sets, rival, held_out) - own
+        found[name] = replace(rival, evidence=evidence)
+    return found
+
+
+def deterministic_replacement(
+    sets: CandidateSets, best: Fit, named: Sequence[IdentifiedEffect], held_out: Recordings
+) -> Fit | None:
+    """Replace a stochastic force, or a look-alike, by a deterministic effect if held-out data prefer it.
+
+    Free runs over held-out recordings must get clearly better by it, or all recordings together must
+    become clearly more likely.
+
+    Args:
+        sets: Fits of candidate sets; an effect that is replaced is added to those refuted.
+        best: A fit.
+        named: Its effects.
+        held_out: Held-out recordings.
+
+    Returns:
+        The fit with the replacement; None if there is none.
+    """
+    clearly = best.evidence + sets.config.select.alike
+    for one in named:
+        least = best.evidence - sets.config.select.alike
         if one.name in sets.random:
-            least = sets.without(best, one.name).evidence + sets.price
-        laws = {n: f for n, f in one.rivals.items() if n not in sets.random and f.evidence > least}
+            least = sets.without(best, one.name).evidence + sets.required_gain
+        laws = {}
+        for name, rival in one.rivals.items():
+            if name not in sets.random and rival.evidence > least:
+                laws[name] = rival
         if not laws:
             continue
-        stretches = free_runs(sets.problem, {"": best, **laws}, held_out, horizon)
-        as_named = generalization.squares(stretches, "")
-        ahead = {
-            n
-            for n, f in with_unseen(sets, best, laws, held_out).items()
-            if f.evidence > best.evidence + ALIKE
-        }
-        ahead |= {
-            n
-            for n in laws
-            if generalization.grew(generalization.squares(stretches, n), as_named, SURE_BETWEEN)
-        }
-        better = [f for n, f in laws.items() if n in ahead]
+        fewest = sets.config.validate.fewest_runs
+        runs = _free_runs(sets, {"": best, **laws}, held_out, fewest)
+        with_effect = generalization.squares(runs, "")
+        everything = with_held_out(sets, best, laws, held_out)
+        better = []
+        for name, law in laws.items():
+            better_runs = _grew_alike(sets, generalization.squares(runs, name), with_effect)
+            if everything[name].evidence > clearly or better_runs:
+                better.append(law)
         if better:
             sets.banned.add(one.name)
             return max(better, key=lambda f: f.evidence)
     return None
 
 
-def told(
-    sets: Sets, best: Fit, named: Sequence[Named], held_out: Sequence[MappedRecording]
-) -> tuple[Named, ...]:
-    """What is named, told from its rivals by all recordings: by evidence, and by unseen free runs that get worse."""
-    horizon, found = _horizon(sets, held_out, generalization.FEWEST), []
+def distinguish(
+    sets: CandidateSets, best: Fit, named: Sequence[IdentifiedEffect], held_out: Recordings
+) -> tuple[IdentifiedEffect, ...]:
+    """Return identified effects with only those rivals that held-out recordings do not refute.
+
+    Rivals are refuted by their evidence on all recordings, and by free runs that get clearly worse.
+
+    Args:
+        sets: Fits of candidate sets.
+        best: A fit.
+        named: Its effects.
+        held_out: Held-out recordings.
+    """
+    fewest, found = sets.config.validate.fewest_runs, []
+    least = best.evidence - sets.config.select.alike
     for one in named:
-        rivals = with_unseen(sets, best, one.rivals, held_out)
-        least = best.evidence - ALIKE
-        alike = {n: f for n, f in rivals.items() if max(f.evidence, one.rivals[n].evidence) > least}
-        stretches = free_runs(sets.problem, {"": best, **alike}, held_out, horizon) if alike else []
-        as_named = generalization.squares(stretches, "")
-        worse = {
-            n
-            for n in alike
-            if generalization.grew(as_named, generalization.squares(stretches, n), SURE_BETWEEN)
-        }
-        rest = {n: f for n, f in rivals.items() if n not in worse}
-        found.append(beside(one.name, best, sets.without(best, one.name), rest))
+        rivals = with_held_out(sets, best, one.rivals, held_out)
+        alike = {}
+        for name, rival in rivals.items():
+            if max(rival.evidence, one.rivals[name].evidence) > least:
+                alike[name] = rival
+        runs: Sequence[FreeRun] = ()
+        if alike:
+            runs = _free_runs(sets, {"": best, **alike}, held_out, fewest)
+        with_effect = generalization.squares(runs, "")
+        for name in alike:
+            if _grew_alike(sets, with_effect, generalization.squares(runs, name)):
+                del rivals[name]
+        without = sets.without(best, one.name)
+        found.append(compare_rivals(sets, one.name, best, without, rivals))
     return tuple(found)
 
 
-def stood_for(sets: Sets, best: Fit, held_out: Sequence[MappedRecording]) -> Fit:
-    """A set without those members, found to mislead, that may but stand for a part of what nothing explains.
+def remove_dwarfed(sets: CandidateSets, best: Fit, held_out: Recordings) -> Fit:
+    """Remove effects that may only explain a small part of a force that remains unexplained.
 
-    Much is left over, they take next to nothing of that force away, and unseen recordings do not ask for them either:
-    free runs over these get no worse without them all.
+    Much remains, they reduce the latent force by almost nothing, and free runs over held-out
+    recordings get no worse without any of them.
+
+    Args:
+        sets: Fits of candidate sets; effects that are removed are added to those refuted.
+        best: A fit.
+        held_out: Held-out recordings.
+
+    Returns:
+        The same object if no effect is removed.
     """
+    config = sets.config.validate
     whole: dict[str, list[float]] = {}
-    while not left_over(sets.problem, best) < told_from(sets.explained(best)):
-        rest = {n: sets.without(best, n) for n in best.effects}
-        little = [
-            n for n, f in rest.items() if np.min(best.levels.force / f.levels.force) > DWARFED
-        ]
+    while True:
+        remaining = left_over(sets.problem, best)
+        if remaining < unknown_threshold(sets.config.select, sets.explained(best)):
+            return best
+        without = {name: sets.without(best, name) for name in best.effects}
+        little = []
+        for name, fewer in without.items():
+            if np.min(best.levels.force / fewer.levels.force) > config.unexplained_share:
+                little.append(name)
         if little:
-            fits = {n: rest[n] for n in little} | ({} if whole else {"": best})
-            stretches = free_runs(
-                sets.problem, fits, held_out, _horizon(sets, held_out, generalization.FEWEST)
-            )
-            whole = whole or generalization.squares(stretches, "")
-            little = [
-                n
-                for n in little
-                if not generalization.grew(whole, generalization.squares(stretches, n), SURE)
-            ]
+            fits = {name: without[name] for name in little}
+            if not whole:
+                fits[""] = best
+            runs = _free_runs(sets, fits, held_out, config.fewest_runs)
+            whole = whole or generalization.squares(runs, "")
+            kept = little
+            little = []
+            for name in kept:
+                squares = generalization.squares(runs, name)
+                if not _grew(sets, whole, squares, config.certainty):
+                    little.append(name)
         if not little:
-            break
-        name = max(little, key=lambda n: rest[n].evidence)
-        sets.banned.add(name)
-        best = rest[name]
-    return best
+            return best
+        removed = max(little, key=lambda name: without[name].evidence)
+        sets.banned.add(removed)
+        best = without[removed]
 
 
-def _horizon(sets: Sets, held_out: Sequence[MappedRecording], parts: int = 1) -> float:
-    """Length [s] of free runs: the usual one, unless the longest recording holds not so many of them."""
-    longest = max((float(np.ptp(t.times)) for t in held_out), default=0.0)
-    return min(sets.problem.horizon, longest / parts)
+def _grew(sets: CandidateSets, before: Squares, after: Squares, sure: float) -> bool:
+    """Whether the errors of free runs have grown by some standard errors."""
+    return generalization.grew(before, after, sure, sets.config.validate)
+
+
+def _grew_alike(sets: CandidateSets, before: Squares, after: Squares) -> bool:
+    """The same with the certainty that decides between look-alikes."""
+    return _grew(sets, before, after, sets.config.validate.certainty_alike)
+
+
+def _free_runs(
+    sets: CandidateSets, fits: Mapping[str, Fit], held_out: Recordings, parts: int = 1
+) -> list[FreeRun]:
+    """Free runs of fits over held-out recordings.
+
+    They have the usual length, unless the longest recording does not hold that many of them.
+    """
+    longest = max((float(np.ptp(mapped.times)) for mapped in held_out), default=0.0)
+    return free_runs(sets.problem, fits, held_out, min(sets.problem.horizon, longest / parts))

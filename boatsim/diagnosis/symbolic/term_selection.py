@@ -12,7 +12,7 @@ import numpy as np
 from boatsim.diagnosis.filter import MappedRecording
 from boatsim.diagnosis.fit import converge, fit, gauss_newton, remove_effect
 from boatsim.diagnosis.problem import Fit, Problem
-from boatsim.diagnosis.search.evidence import price
+from boatsim.diagnosis.search.evidence import required_gain
 from boatsim.diagnosis.symbolic.grammar import neighbours, terms
 from boatsim.diagnosis.symbolic.slots import free_slot, write_term
 from boatsim.diagnosis.symbolic.term_forces import FittedRecording, fitted_recordings
@@ -76,7 +76,9 @@ def select_terms(
         term, found = _refined(problem, formula, trial, everywhere)
         found = converge(problem, found)
         gained = formula.fit.evidence - best.evidence
-        required = max(price(len(ordered)), config.select.slight_share * gained)
+        required = max(
+            required_gain(len(ordered), config.select), config.select.slight_share * gained
+        )
         if found.evidence - formula.fit.evidence < required:
             break
         extended = Formula(found, formula.terms | {trial.slot: term})

@@ -7,6 +7,7 @@ import tomlkit
 
 from boatsim.diagnosis import pipeline
 from boatsim.diagnosis.candidates import called
+from boatsim.diagnosis.loading import Loaded
 from boatsim.diagnosis.pipeline import Diagnosis
 from boatsim.diagnosis.report import patched_vessel
 from boatsim.physics.base import Release
@@ -22,7 +23,7 @@ ROUNDS = 3  # of patching a vessel with what is still named with it
 def diagnosed(laid: Laid) -> Diagnosis:
     """What the vessel leaves out of some recordings."""
     boats = {r.path: laid.vessel for r in (*laid.fitted, *laid.held_out)}
-    return pipeline.diagnose_recordings(laid.fitted, laid.held_out, boats, "one recording")
+    return pipeline.diagnose_loaded(Loaded(laid.fitted, laid.held_out, boats, "one recording"))
 
 
 def causes_of(found: Diagnosis) -> list[Cause]:

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from boatsim.diagnosis import pipeline, priors
+from boatsim.diagnosis import loading, priors
 from boatsim.diagnosis.checks.position_outliers import drop_position_outliers
 from boatsim.diagnosis.checks.repeated_positions import drop_repeated_positions
 from boatsim.physics.base import Effect
@@ -68,7 +68,7 @@ def planar(
         runs, boats = [], []
         for run, seconds in (*fitted.items(), *held_out.items()):
             path = RECORDINGS / name / "runs" / f"{run}.csv"
-            whole, boat = pipeline.open_recording(path, patched or vessel, ())
+            whole, boat = loading.open_recording(path, patched or vessel, ())
             altered = alter(whole.between(whole.t[0], whole.t[0] + seconds))
             rate = min(priors.rate(boat), hertz or priors.rate(boat))
             thin = drop_position_outliers(drop_repeated_positions(altered.thinned(rate)), boat)
@@ -100,7 +100,7 @@ def _release(
     cut: Callable[[Recording], list[Recording]],
     held_out: slice,
 ) -> Laid:
-    whole, boat = pipeline.open_recording(kvlcc2_roll_decay.DATA / f"{name}.csv", patched, ())
+    whole, boat = loading.open_recording(kvlcc2_roll_decay.DATA / f"{name}.csv", patched, ())
     parts = cut(replace(alter(whole).thinned(priors.rate(boat)), name=name))
     apart = parts[held_out]
     return Laid([p for p in parts if all(p is not q for q in apart)], apart, boat)
@@ -117,7 +117,7 @@ def esso(patched: str | None, alter: Alteration) -> Laid:
     boat: Vessel | None = None
     for run in (*ESSO_FITTED, *ESSO_UNSEEN):
         path = RECORDINGS / ESSO / "runs" / f"{run}.csv"
-        whole, boat = pipeline.open_recording(path, vessel, ())
+        whole, boat = loading.open_recording(path, vessel, ())
         stretches = esso_osaka_pond.sound(whole, path, esso_osaka_pond.SHORTEST)
         longest = max(stretches, key=lambda r: float(r.t[-1] - r.t[0]))
         part = alter(longest.between(longest.t[0], longest.t[0] + ESSO_LONGEST))

@@ -1,0 +1,121 @@
+"""The validate stage: free runs of the models over recordings, and the force that stays unexplained."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from boatsim.diagnosis.filter import MappedRecording
+from boatsim.diagnosis.fit import gauss_newton
+from boatsim.diagnosis.free_runs import FreeRun, errors, free_runs
+from boatsim.diagnosis.loading import in_order
+from boatsim.diagnosis.locate.mean_force import mean_residual_force
+from boatsim.diagnosis.locate.missing_force import MissingForce, missing_force, residual_force
+from boatsim.diagnosis.problem import Fit, Problem
+from boatsim.diagnosis.report.schema import MeanEntry
+from boatsim.diagnosis.search.ranking import Ranking
+
+# models that are compared, and the nominal one refitted to a part of the data alone
+MODELS = ("nominal", "recalibrated", "patched")
+ALONE = "alone"
+
+
+@dataclass(frozen=True)
+class PartErrors:
+    """Rms errors of free runs over one part of the data, for one family of signals."""
+
+    name: str  # of the recording
+    fitted: bool  # else held out
+    family: str
+    rms: Mapping[str, float]  # by model: those of `MODELS`, and `ALONE`
+
+
+@dataclass(frozen=True)
+class Evaluation:
+    """Free runs over held-out recordings, errors part by part, and unexplained forces."""
+
+    horizon: float  # [s] of the free runs
+    free_runs: tuple[FreeRun, ...]  # over held-out recordings
+    errors: Mapping[str, Mapping[str, float]]  # of these: family -> model -> rms
+    parts: tuple[PartErrors, ...]  # of all recordings; none where the patch adds nothing
+    # names of fitted recordings that the nominal model, fitted to each alone, explains as well
+    uninformative: tuple[str, ...]
+    missing: tuple[MissingForce, ...]  # force missing on the recalibrated vessel, by recording
+    remaining: tuple[MissingForce, ...]  # force missing on the patched vessel
+    mean_force: Mapping[str, MeanEntry]  # mean force that stays in the patched vessel, by axis
+
+
+def models(ranking: Ranking) -> dict[str, Fit]:
+    """Return the fits that are compared, by the names of `MODELS`.
+
+    Args:
+        ranking: Result of the selection.
+    """
+    fits = (ranking.nominal, ranking.recalibrated, ranking.best)
+    return dict(zip(MODELS, fits, strict=True))
+
+
+def evaluate(problem: Problem, ranking: Ranking, held_out: Sequence[MappedRecording]) -> Evaluation:
+    """Evaluate the models of a selection on all recordings.
+
+    Args:
+        problem: Recordings and priors.
+        ranking: Result of the selection, with its description.
+        held_out: Held-out recordings, at least one.
+    """
+    horizon = problem.horizon
+    longest = max(float(np.ptp(mapped.times)) for mapped in held_out)
+    if longest < horizon:
+        horizon = min(horizon, float(f"{longest:.3g}"))
+    everything = _in_order([*problem.recordings, *held_out])
+    missing = missing_force(problem, ranking.recalibrated, everything)
+    remaining = residual_force(problem, ranking.best, everything)
+    fits = models(ranking)
+    runs = free_runs(problem, fits, held_out, horizon)
+    parts = _by_part(problem, fits, everything, horizon) if ranking.adds else ()
+    return Evaluation(
+        horizon,
+        tuple(runs),
+        errors(runs),
+        parts,
+        _uninformative(parts, problem.config.validate.alone_share),
+        tuple(missing),
+        tuple(remaining),
+        mean_residual_force(problem, ranking.best, everything),
+    )
+
+
+def _in_order(recordings: Sequence[MappedRecording]) -> list[MappedRecording]:
+    """Recordings as they were given, the thirds of a single one in order of time."""
+    names = [mapped.name for mapped in recordings]
+    order = in_order(names, [float(mapped.times[0]) for mapped in recordings])
+    return [recordings[i] for i in order]
+
+
+def _by_part(
+    problem: Problem,
+    fits: Mapping[str, Fit],
+    recordings: Sequence[MappedRecording],
+    horizon: float,
+) -> tuple[PartErrors, ...]:
+    """Errors of free runs over each recording, also of the nominal model fitted to it alone."""
+    config, found = problem.config.fit, list[PartErrors]()
+    for mapped in recordings:
+        own = Problem([mapped], problem.ambient, problem.uncertainty, config=problem.config)
+        alone = gauss_newton(own, fits["recalibrated"], config.part_steps, config.step_gain)
+        runs = free_runs(problem, {**fits, ALONE: alone}, [mapped], horizon)
+        fitted = any(mapped is one for one in problem.recordings)
+        for family, rms in errors(runs).items():
+            found.append(PartErrors(mapped.name, fitted, family, rms))
+    return tuple(found)
+
+
+def _uninformative(parts: Sequence[PartErrors], share: float) -> tuple[str, ...]:
+    """Fitted recordings of which the nominal model, fitted to each alone, explains as much."""
+    explained: dict[str, bool] = {}
+    for part in parts:
+        if part.fitted:
+            least = share * min(part.rms[ALONE], part.rms["recalibrated"])
+            enough = part.rms["patched"] >= least
+            explained[part.name] = explained.get(part.name, True) and enough
+    return tuple(name for name, enough in explained.items() if enough)

@@ -1,0 +1,249 @@
+"""The load stage: reads recordings with their vessel, cleans them, and holds some of them out."""
+
+import os
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+import numpy as np
+
+from boatsim.diagnosis.checks import data_cleaning, run_checks
+from boatsim.diagnosis.checks.finding import Finding
+from boatsim.diagnosis.config import DEFAULT, DiagnosisConfig
+from boatsim.errors import BadInput
+from boatsim.files import Value
+from boatsim.physics import vessel as vessels
+from boatsim.physics.vessel import Vessel
+from boatsim.progress import Report, silent
+from boatsim.recordings.notes import notes_for
+from boatsim.recordings.table import Recording, read
+
+THIRDS = ("first", "middle", "last")
+MOST_FOLDERS = 8  # in front of a file's name that may distinguish it from others
+
+
+@dataclass(frozen=True)
+class Request:
+    """What a user asks of a diagnosis."""
+
+    runs: Sequence[Path]  # recordings to fit
+    hold_out: Sequence[Path] = ()  # recordings for validation
+    vessel: str | None = None  # None: that of the recordings' notes
+    load: Sequence[str] = ()  # load conditions
+    library: Sequence[str] = ()  # further candidate effects, by name or file
+    without: Sequence[str] = ()  # candidate effects that are excluded
+    horizon: float | None = None  # [s] length of free runs; None: the usual one
+    facts: Mapping[str, Value] = field(default_factory=dict)  # where the notes do not state them
+
+
+@dataclass(frozen=True)
+class Loaded:
+    """Recordings that are cleaned and divided into fitted and held-out ones, with their vessels."""
+
+    fitted: Sequence[Recording]
+    held_out: Sequence[Recording]
+    vessels: Mapping[Path | None, Vessel]  # by the file of a recording
+    note: str  # which recordings are held out, in words
+    library: Sequence[str] = ()
+    without: Sequence[str] = ()
+    horizon: float | None = None
+    findings: Sequence[Finding] = ()  # of the checks of single recordings
+    remarks: tuple[str, ...] = ()  # what was read and not used
+
+    @property
+    def vessel(self) -> Vessel:
+        """Vessel of the first recording."""
+        return self.vessels[self.fitted[0].path]
+
+
+def load(request: Request, report: Report = silent, config: DiagnosisConfig = DEFAULT) -> Loaded:
+    """Read, check and clean the recordings of a request, and hold some of them out.
+
+    Args:
+        request: Files and options.
+        report: Receives the progress.
+        config: Settings of the diagnosis.
+
+    Raises:
+        BadInput: A file cannot be used.
+    """
+    paths = [*request.runs, *request.hold_out]
+    _check_distinct(paths)
+    opened: list[tuple[Recording, Vessel]] = []
+    count = f"{len(paths)} recording{'' if len(paths) == 1 else 's'}"
+    for i, path in enumerate(paths):
+        report(f"reading {count}", i / len(paths))
+        recording, vessel = open_recording(path, request.vessel, request.load, config)
+        facts = {**request.facts, **recording.notes.facts}
+        notes = replace(recording.notes, facts=facts)
+        opened.append((replace(recording, notes=notes), vessel))
+    report("checking the log", 1.0)
+    check_same_vessel([vessel for _, vessel in opened])
+    duration = data_cleaning.total_duration([recording for recording, _ in opened])
+    findings, cleaned = list[Finding](), list[Recording]()
+    for (recording, vessel), name in zip(opened, _distinct_names(paths), strict=True):
+        clean = data_cleaning.clean_recording(recording, vessel, duration, config)
+        findings += run_checks.check_recording(recording, clean, vessel, config.checks)
+        cleaned.append(replace(clean, name=name))
+    first = len(request.runs)
+    fitted, held_out, note = split(cleaned[:first], cleaned[first:])
+    return Loaded(
+        fitted,
+        held_out,
+        {recording.path: vessel for recording, vessel in opened},
+        note,
+        request.library,
+        request.without,
+        request.horizon,
+        findings,
+        tuple(dict.fromkeys(remark for clean in cleaned for remark in clean.remarks)),
+    )
+
+
+def vessel_for(
+    path: Path,
+    vessel: str | None,
+    load_conditions: Sequence[str],
+    config: DiagnosisConfig = DEFAULT,
+) -> Vessel:
+    """Return the vessel of a recording.
+
+    Args:
+        path: File of the recording.
+        vessel: Name on the command line; None: that of the recording's notes.
+        load_conditions: Names of load conditions.
+        config: Settings of the diagnosis.
+
+    Raises:
+        BadInput: No vessel is named, or it cannot be loaded, or its model scale is another one.
+    """
+    file = notes_for(path)
+    notes, name, base_folder = file.notes, vessel, None
+    if vessel is None:
+        name, base_folder = notes.vessel, file.folder
+    if not path.exists():
+        raise BadInput(f"{path}: there is no such file")
+    if not name:
+        raise BadInput(
+            f"{path}: no vessel given; name one with --vessel or in a recording.toml beside it"
+        )
+    conditions = load_conditions or notes.load
+    try:
+        found = vessels.load(name, conditions, notes.settings, base_folder=base_folder)
+    except BadInput as error:
+        by_notes = not vessel or notes.settings or (notes.load and not load_conditions)
+        where = f"{path} by its recording.toml: " if by_notes else ""
+        raise BadInput(f"{where}{error}") from None
+    wanted, tolerance = notes.scale, config.load.scale_tolerance
+    if wanted is None or found.scale is None or abs(wanted / found.scale - 1.0) < tolerance:
+        return found
+    alike = [n for n, scale in found.scales.items() if abs(wanted / scale - 1.0) < tolerance]
+    if vessel or not alike:
+        hint = f"; the vessel at that scale is {alike[0]}" if alike else ""
+        raise BadInput(
+            f"{path}: scale = {wanted:g}, but {found.name} is at scale {found.scale:g}{hint}"
+        )
+    return vessels.load(alike[0], conditions, notes.settings)
+
+
+def open_recording(
+    path: Path,
+    vessel: str | None,
+    load_conditions: Sequence[str],
+    config: DiagnosisConfig = DEFAULT,
+) -> tuple[Recording, Vessel]:
+    """Return a recording, read with the column names and command limits of its vessel.
+
+    Args:
+        path: File of the recording.
+        vessel: Name of the vessel; None: that of the recording's notes.
+        load_conditions: Names of load conditions.
+        config: Settings of the diagnosis.
+
+    Raises:
+        BadInput: The file or its vessel cannot be used.
+    """
+    found = vessel_for(path, vessel, load_conditions, config)
+    recording = read(path, found.limits(), found.columns)
+    return data_cleaning.prepare_recording(recording, found, config.checks), found
+
+
+def split(
+    recordings: Sequence[Recording], hold_out: Sequence[Recording]
+) -> tuple[list[Recording], list[Recording], str]:
+    """Divide recordings into fitted and held-out ones.
+
+    If none is specified, the last recording is held out, or the middle third of a single one: the end
+    of a decay would be nearly linear and test nothing.
+
+    Args:
+        recordings: Recordings to fit.
+        hold_out: Recordings to hold out.
+
+    Returns:
+        Fitted recordings, held-out recordings, and a note that names the latter.
+    """
+    if hold_out:
+        return list(recordings), list(hold_out), ", ".join(r.name for r in hold_out)
+    if len(recordings) > 1:
+        last = recordings[-1]
+        note = f"the last recording, {last.name}, because none was specified"
+        return list(recordings[:-1]), [last], note
+    whole = recordings[0]
+    begin, end = float(whole.t[0]), float(whole.t[-1])
+    a, b = (float(begin + share * (end - begin)) for share in (1 / 3, 2 / 3))
+    half = 0.5 * float(np.median(np.diff(whole.t)))
+    parts = (whole.between(begin, a), whole.between(a + half, b), whole.between(b + half, end))
+    first, middle, last = (
+        replace(part, name=_third(whole.name, which))
+        for part, which in zip(parts, THIRDS, strict=True)
+    )
+    note = f"the middle third of the only recording, {a:.1f} to {b:.1f} s"
+    return [first, last], [middle], note
+
+
+def in_order(names: Sequence[str], starts: Sequence[float]) -> list[int]:
+    """Return the order of recordings: as given, but the thirds of a single one in order of time.
+
+    Args:
+        names: Names of the recordings.
+        starts: Time of the first row of each [s].
+    """
+    whole = names[0].removesuffix(_third("", THIRDS[0]))
+    if set(names) == {_third(whole, which) for which in THIRDS}:
+        return sorted(range(len(names)), key=lambda i: starts[i])
+    return list(range(len(names)))
+
+
+def _third(name: str, which: str) -> str:
+    return f"{name} ({which} third)"
+
+
+def check_same_vessel(found: Sequence[Vessel]) -> None:
+    """Check that recordings are of one vessel.
+
+    Raises:
+        BadInput: They are of several ones.
+    """
+    if len({(vessel.file, vessel.dof) for vessel in found}) > 1:
+        names = ", ".join(sorted({vessel.name for vessel in found}))
+        raise BadInput(f"recordings of different vessels: {names}")
+
+
+def _check_distinct(paths: Sequence[Path]) -> None:
+    """Raise BadInput for a file that is given twice: a held-out recording must not be fitted."""
+    seen: set[str] = set()
+    for path in paths:
+        real = os.path.realpath(path)
+        if real in seen:
+            raise BadInput(f"{path}: given twice; a recording is either fitted or held out, once")
+        seen.add(real)
+
+
+def _distinct_names(paths: Sequence[Path]) -> list[str]:
+    """The stems of files, with as many folders in front as distinguish them."""
+    for depth in range(1, MOST_FOLDERS + 1):
+        short = ["/".join(path.resolve().with_suffix("").parts[-depth:]) for path in paths]
+        if len(set(short)) == len(short):
+            return short
+    return [str(path) for path in paths]

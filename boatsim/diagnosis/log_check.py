@@ -1,0 +1,124 @@
+"""Checks recordings without diagnosing them: what is wrong with each file."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from boatsim.diagnosis.checks import data_cleaning, run_checks
+from boatsim.diagnosis.checks.entry import column_sources, log_entry, on_one_line
+from boatsim.diagnosis.checks.finding import LOG_NOT_BOAT, Finding
+from boatsim.diagnosis.checks.hypothesis_test import compare_reinterpretations
+from boatsim.diagnosis.config import DEFAULT, DiagnosisConfig
+from boatsim.diagnosis.loading import Loaded, check_same_vessel, vessel_for
+from boatsim.diagnosis.question import pose
+from boatsim.diagnosis.report.schema import LogEntry
+from boatsim.errors import BadInput
+from boatsim.physics.vessel import Vessel
+from boatsim.recordings.table import Recording, read
+
+
+@dataclass(frozen=True)
+class _Checked:
+    """Findings of one file, and its recording if that may be mapped to the vessel."""
+
+    findings: tuple[Finding, ...] = ()
+    recording: Recording | None = None
+    refused: BadInput | None = None
+
+
+def check_files(
+    runs: Sequence[Path],
+    vessel: str | None = None,
+    load_conditions: Sequence[str] = (),
+    config: DiagnosisConfig = DEFAULT,
+) -> tuple[dict[Path, list[LogEntry]], list[BadInput]]:
+    """Return what is wrong with each of some files.
+
+    A file whose table is at fault is not mapped to its vessel.
+
+    Args:
+        runs: Files of recordings.
+        vessel: Name of the vessel; None: that of the recordings' notes.
+        load_conditions: Names of load conditions.
+        config: Settings of the diagnosis.
+
+    Returns:
+        Entries by file, and the errors of files that cannot be read.
+
+    Raises:
+        BadInput: No vessel is named, or several.
+    """
+    vessels: dict[Path | None, Vessel] = {}
+    for path in runs:
+        vessels[path] = vessel_for(path, vessel, load_conditions, config)
+    check_same_vessel(list(vessels.values()))
+    checked = [_check_file(path, vessels[path], config) for path in runs]
+    findings = [finding for one in checked for finding in one.findings]
+    refused = [one.refused for one in checked if one.refused]
+    usable = [one.recording for one in checked if one.recording]
+    if usable:
+        try:
+            question = pose(Loaded(usable, (), vessels, ""), config)
+            compared = compare_reinterpretations(usable, question.map_recording, question.problem)
+            findings += [replace(f, run=str(usable[0].path)) for f in compared]
+        except BadInput as error:
+            refused.append(error)
+    entries: dict[Path, list[LogEntry]] = {path: [] for path in runs}
+    for path in runs:
+        for finding in findings:
+            if finding.run == str(path):
+                sources = column_sources(finding.run, vessels[path])
+                entries[path].append(log_entry(finding, sources))
+    return entries, refused
+
+
+def _check_file(path: Path, vessel: Vessel, config: DiagnosisConfig) -> _Checked:
+    """Check one file."""
+    table: list[Finding] = []
+    try:
+        table = list(run_checks.check_table(path, vessel, config.checks))
+        recording = read(path, vessel.limits(), vessel.columns)
+        opened = data_cleaning.prepare_recording(recording, vessel, config.checks)
+    except BadInput as error:
+        return _Checked(tuple(table), refused=None if table else error)
+    duration = data_cleaning.total_duration([opened])
+    cleaned = data_cleaning.clean_recording(opened, vessel, duration, config)
+    findings = (
+        *table,
+        *run_checks.check_recording(opened, cleaned, vessel, config.checks),
+        *run_checks.check_identifiability(opened, vessel, config.checks),
+    )
+    return _Checked(findings, None if table else replace(cleaned, name=str(path)))
+
+
+def correction_hint(
+    runs: Sequence[Path],
+    hold_out: Sequence[Path],
+    vessel: str | None,
+    load_conditions: Sequence[str],
+    config: DiagnosisConfig = DEFAULT,
+) -> str:
+    """Return the correction of the first file that is refused, for an error message.
+
+    Args:
+        runs: Files of recordings.
+        hold_out: Files of held-out recordings.
+        vessel: Name of the vessel; None: that of the recordings' notes.
+        load_conditions: Names of load conditions.
+        config: Settings of the diagnosis.
+
+    Returns:
+        Lines for its recording.toml; "" if no correction is known.
+    """
+    for path in (*runs, *hold_out):
+        try:
+            own = vessel_for(path, vessel, load_conditions, config)
+            findings = run_checks.check_table(path, own, config.checks)
+        except BadInput:
+            return ""
+        for finding in findings:
+            entry = log_entry(finding, column_sources(finding.run, own))
+            if entry["lines"]:
+                name, lines = entry["name"].replace("_", " "), on_one_line(entry["lines"])
+                return f"; {LOG_NOT_BOAT}: {name}, write into recording.toml {lines}"
+    return ""

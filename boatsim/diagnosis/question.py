@@ -1,0 +1,126 @@
+"""Maps loaded recordings to one compiled program with all candidate effects."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from boatsim.diagnosis import priors
+from boatsim.diagnosis.candidates import (
+    Library,
+    less,
+    library_for,
+    with_stated_errors,
+    without_ruled_out,
+)
+from boatsim.diagnosis.checks.initial_actuator_state import with_initial_actuators
+from boatsim.diagnosis.config import DEFAULT, DiagnosisConfig
+from boatsim.diagnosis.filter import (
+    MappedRecording,
+    NoiseLevels,
+    map_recording,
+    prior_levels,
+    relative_noise,
+    shared_noise,
+)
+from boatsim.diagnosis.loading import Loaded
+from boatsim.diagnosis.locate import nominal_forces
+from boatsim.diagnosis.problem import Problem, check_uncertainty
+from boatsim.physics.program import Program
+from boatsim.physics.vessel import Vessel
+from boatsim.recordings.table import Recording
+
+
+@dataclass(frozen=True)
+class RecordingMapper:
+    """Maps recordings to the programs of their vessels, with shared noise levels."""
+
+    programs: Mapping[Path | None, Program]  # by the file of a recording
+    noise: Mapping[str, float]  # sensor noise that all recordings share, by family
+    levels: NoiseLevels
+    config: DiagnosisConfig
+
+    def __call__(
+        self, recording: Recording, noise_ratio: Mapping[str, float] | None = None
+    ) -> MappedRecording:
+        """Return a recording mapped to the program of its vessel.
+
+        Args:
+            recording: A recording of one of the vessels.
+            noise_ratio: Its noise in shared levels, by family.
+        """
+        program = self.programs[recording.path]
+        mapped = map_recording(recording, program, self.noise, noise_ratio, self.config)
+        return with_initial_actuators(mapped, self.levels, self.config.checks)
+
+
+@dataclass(frozen=True)
+class Question:
+    """The estimation problem of a diagnosis: fitted and held-out recordings, and candidates."""
+
+    problem: Problem
+    held_out: tuple[MappedRecording, ...]
+    map_recording: Callable[[Recording], MappedRecording]
+    library: Library
+    candidates: tuple[str, ...]  # names of the effects that are tested
+
+
+def pose(loaded: Loaded, config: DiagnosisConfig = DEFAULT) -> Question:
+    """Return the estimation problem of loaded recordings.
+
+    Args:
+        loaded: Fitted and held-out recordings with their vessels.
+        config: Settings of the diagnosis.
+
+    Raises:
+        BadInput: A column is missing, or a level or an uncertainty cannot be used.
+    """
+    first, vessel = loaded.fitted[0], loaded.vessel
+    facts = first.notes.facts
+    columns = sorted({column for recording in loaded.fitted for column in recording.signals})
+    libraries, programs = dict[Path | None, Library](), dict[Path | None, Program]()
+    for path, own in loaded.vessels.items():
+        known = with_stated_errors(without_ruled_out(own, facts), facts)
+        libraries[path] = library_for(known, loaded.library, facts, columns)
+        programs[path] = Program(known, libraries[path].compiled)
+    levels = prior_levels(vessel, loaded.fitted, config)
+    noise = shared_noise(vessel, loaded.fitted, config)
+    mapper = RecordingMapper(programs, noise, levels, config)
+    fitted = [mapper(recording) for recording in loaded.fitted]
+    held_out = []
+    for recording in loaded.held_out:
+        ratio = relative_noise(vessel, loaded.fitted, recording, config)
+        held_out.append(mapper(recording, ratio))
+    uncertainty = _uncertainty(loaded, vessel, config)
+    problem = Problem(fitted, levels, uncertainty, loaded.horizon, config)
+    library = libraries[first.path]
+    candidates = less(library, loaded.without)
+    return Question(problem, tuple(held_out), mapper, library, candidates)
+
+
+def _uncertainty(loaded: Loaded, vessel: Vessel, config: DiagnosisConfig) -> dict[str, float]:
+    """Relative prior sd of coefficients by kind. Raises BadInput."""
+    uncertainty = priors.uncertainty(vessel, config.load)
+    where = f"{vessel.file.parent.name}/{vessel.file.name}: diagnosis"
+    check_uncertainty(vessel, uncertainty, where)
+    for recording in (*loaded.fitted, *loaded.held_out):
+        specified = recording.notes.coefficient_uncertainty
+        where = f"{recording.path or recording.name} by its recording.toml"
+        check_uncertainty(loaded.vessels[recording.path], specified, where)
+    return uncertainty | loaded.fitted[0].notes.coefficient_uncertainty
+
+
+def compile_program(problem: Problem) -> None:
+    """Compile the program of a problem, or load it, by calling what a diagnosis calls.
+
+    Args:
+        problem: Recordings and priors.
+    """
+    nominal, on = problem.nominal(), problem.program.switches()
+    mapped = problem.recordings[0]
+    values = problem.values(mapped, nominal.free, nominal.theta)
+    mapped.free_runs(values, on, problem.ambient, float(np.ptp(mapped.times)))
+    rest = np.zeros((1, 2 * problem.program.module.NQ))
+    held = nominal_forces.actuator_states(mapped)[:1]
+    nominal_forces.body_forces(mapped, rest, held, mapped.values)
