@@ -11,6 +11,7 @@ from boatsim.diagnosis.fit import fit
 from boatsim.diagnosis.problem import FilterPasses, Fit, Problem
 from boatsim.diagnosis.search.candidate_sets import CandidateSets
 from boatsim.diagnosis.search.evidence import gain_by_curvature
+from boatsim.diagnosis.search.pruning import acts
 from boatsim.diagnosis.search.screening import Linearisation, recheck, screen
 from boatsim.physics.base import Array
 
@@ -88,9 +89,9 @@ def test_a_member_is_worth_less_than_its_curvature_says_and_what_does_nothing_li
     )
 
 
-@pytest.mark.parametrize("least_sd, acts", [(0.001, True), (0.25, False)])
+@pytest.mark.parametrize("least_sd, expected", [(0.001, True), (0.25, False)])
 def test_an_effect_acts_where_recordings_tell_a_number_of_it_whatever_they_leave_of_its_strength(
-    weak: tuple[Problem, Fit], least_sd: float, acts: bool
+    weak: tuple[Problem, Fit], least_sd: float, expected: bool
 ) -> None:
     """A craft that never comes near the speed from which it planes: how far it is held back is seen, the speed not."""
     problem, base = weak
@@ -105,4 +106,4 @@ def test_an_effect_acts_where_recordings_tell_a_number_of_it_whatever_they_leave
     found = replace(
         base, effects=("planing_lag",), free=free, theta=theta, covariance=np.diag(sd**2)
     )
-    assert acts(CandidateSets(problem, ("planing_lag",), base), found, "planing_lag") is acts
+    assert acts(CandidateSets(problem, ("planing_lag",), base), found, "planing_lag") is expected

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from boatsim.diagnosis.candidates import REORDERED, called
+from boatsim.diagnosis.config import DEFAULT, SelectConfig
 from boatsim.diagnosis.fit import log_prior
 from boatsim.diagnosis.problem import Fit
 from boatsim.diagnosis.search.candidate_sets import CandidateSets
@@ -186,20 +187,24 @@ def _identified(sets: CandidateSets, best: Fit, name: str) -> IdentifiedEffect:
         if not poor or (key, rival) not in sets.fitted_in_full:
             found = sets.converged(found)
         rivals[rival] = found
-    return compare_rivals(sets, name, best, without, rivals)
+    return compare_rivals(name, best, without, rivals, config)
 
 
 def compare_rivals(
-    sets: CandidateSets, name: str, best: Fit, without: Fit, rivals: Mapping[str, Fit]
+    name: str,
+    best: Fit,
+    without: Fit,
+    rivals: Mapping[str, Fit],
+    config: SelectConfig = DEFAULT.select,
 ) -> IdentifiedEffect:
     """Return the statistics of an effect.
 
     Args:
-        sets: Fits of candidate sets.
         name: Name of the effect.
         best: A fit with it.
         without: The fit without it.
         rivals: Fits with other candidates in its place.
+        config: Distance within which rivals are look-alikes.
     """
     gain = best.evidence - without.evidence
     gains = {n: f.evidence - without.evidence for n, f in rivals.items()}
@@ -207,7 +212,7 @@ def compare_rivals(
     # the same effect on the other side of an actuator's lag counts as this one
     same = np.array([False, True, *(called(n) == called(name) for n in gains)])
     order = sorted(gains, key=lambda n: -gains[n])
-    close = gain - sets.config.select.alike
+    close = gain - config.alike
     tied = [n for n in order if gains[n] > close and called(n) != called(name)]
     probability = float(weights[same].sum() / weights.sum())
     return IdentifiedEffect(

@@ -217,7 +217,7 @@ def distinguish(
             if _grew_alike(sets, with_effect, generalization.squares(runs, name)):
                 del rivals[name]
         without = sets.without(best, one.name)
-        found.append(compare_rivals(sets, one.name, best, without, rivals))
+        found.append(compare_rivals(one.name, best, without, rivals, sets.config.select))
     return tuple(found)
 
 

@@ -1,0 +1,84 @@
+"""Each stage of a diagnosis, called alone on one small recording of one vessel."""
+
+from dataclasses import FrozenInstanceError, replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from pushed_boat import BOAT, push, sail
+
+from boatsim.diagnosis import loading, pipeline
+from boatsim.diagnosis.config import DEFAULT
+from boatsim.diagnosis.evaluation import MODELS
+from boatsim.diagnosis.loading import Loaded, Request
+from boatsim.diagnosis.question import Question, pose
+from boatsim.diagnosis.report.answer import compose
+from boatsim.diagnosis.search.ranking import Baseline
+from boatsim.errors import BadInput
+from boatsim.physics.base import Array
+from boatsim.recordings.table import write_csv
+
+ONLY = "weak_reverse"  # the candidate that is tested
+FAST = replace(DEFAULT, load=replace(DEFAULT.load, row_rate=4.0))
+
+
+def weak_astern(t: float, y: Array, command: Array) -> Array:
+    """A third of the thrust astern is missing."""
+    return np.asarray(-0.33 * push(np.minimum(command[:2], 0.0), command[2:]))
+
+
+@pytest.fixture(scope="module")
+def loaded(tmp_path_factory: pytest.TempPathFactory) -> Loaded:
+    path = tmp_path_factory.mktemp("stages") / "run.csv"
+    write_csv(sail("run", 7, weak_astern)[0], path)
+    return loading.load(Request([path], vessel=BOAT.name), config=FAST)
+
+
+@pytest.fixture(scope="module")
+def question(loaded: Loaded) -> Question:
+    return replace(pose(loaded, FAST), candidates=(ONLY,))
+
+
+@pytest.fixture(scope="module")
+def base(question: Question) -> Baseline:
+    return pipeline.fit(question)
+
+
+def test_load_holds_out_the_middle_third_of_a_single_recording(loaded: Loaded) -> None:
+    assert [len(part) for part in (loaded.fitted, loaded.held_out)] == [2, 1]
+    assert "middle third" in loaded.note
+    assert loaded.vessel.name == BOAT.name
+    with pytest.raises(FrozenInstanceError):
+        loaded.note = ""  # type: ignore[misc]
+    path = Path(str(loaded.fitted[0].path))
+    with pytest.raises(BadInput, match="given twice"):
+        loading.load(Request([path], [path], vessel=BOAT.name))
+
+
+def test_check_finds_nothing_wrong_with_a_sound_recording(
+    loaded: Loaded, question: Question
+) -> None:
+    assert not [f for f in pipeline.check(loaded, question) if f.kind == "fault"]
+
+
+def test_fit_recalibrates_the_vessel(base: Baseline) -> None:
+    assert base.recalibrated.evidence > base.nominal.evidence
+    assert not base.recalibrated.effects
+
+
+def test_later_stages_take_the_results_of_earlier_ones(
+    loaded: Loaded, question: Question, base: Baseline
+) -> None:
+    selection = pipeline.select(question, base, loaded)
+    assert selection.ranking.recalibrated is base.recalibrated
+    assert set(selection.ranking.first) == {ONLY}
+    ranking = replace(pipeline.describe(question, selection), description=None)
+    evaluation = pipeline.validate(question, selection, ranking)
+    assert set(MODELS) <= set(evaluation.free_runs[0].channels)
+    plan = pipeline.plan(selection, ranking)
+    problem = selection.problem
+    answer = compose(loaded, question, (), problem, ranking, evaluation, plan, 1.0)
+    assert answer["tried"] == [ONLY]
+    assert answer["fit"]["held_out"] == [mapped.name for mapped in question.held_out]
+    assert answer["config"]["load.row_rate"] == 4.0
+    assert answer["seconds"] == 1.0
