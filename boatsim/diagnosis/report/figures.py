@@ -37,7 +37,7 @@ def missing_figures(
         parts = []
         for m in shared:
             parts += [m.force[axis] + BAND * m.sd[axis], m.force[axis] - BAND * m.sd[axis]]
-        largest = max(float(np.nanmax(np.abs(v))) for v in parts)
+        largest = float(np.nanmax(np.abs(np.concatenate(parts))))
         unit, factor = handy(shared[0].unit[axis], largest)
         scales[axis] = limits([factor * v for v in parts]), unit, factor
     drawn = []
@@ -223,8 +223,8 @@ def _error_panel(runs: Sequence[FreeRun], signal: str) -> Panel:
     errors, largest = {}, {}
     for model in models_in(runs[0]):
         errors[model] = [error_of(r, model, signal) for r in runs]
-        largest[model] = max(float(np.nanmax(np.abs(e), initial=0.0)) for e in errors[model])
-    others = max((v for m, v in largest.items() if m != "nominal"), default=0.0)
+        largest[model] = float(np.nanmax(np.abs(np.concatenate(errors[model])), initial=0.0))
+    others = max(largest.get("recalibrated", 0.0), largest.get("patched", 0.0))
     cut_off = bool(others) and largest.get("nominal", 0.0) > OFF_SCALE * others
     kept = [m for m in errors if m != "nominal" or not cut_off]
     words, si = ("position", "m")

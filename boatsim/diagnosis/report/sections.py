@@ -3,7 +3,7 @@
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from itertools import groupby
+from itertools import groupby, repeat
 
 import numpy as np
 
@@ -175,7 +175,7 @@ def _about_deviations(f: Findings, effect: EffectEntry) -> str:
     """Return what the printed standard deviations include."""
     law_error = f.setting("answer.law_error")
     direction = ""
-    if any(p["unit"] == "rad" for p in effect["parameters"].values()):
+    if "rad" in [p["unit"] for p in effect["parameters"].values()]:
         direction = f" ({math.degrees(law_error):.1f}° of a direction)"
     return (
         "± is one standard deviation. In addition to the uncertainty from noise it includes "
@@ -268,11 +268,9 @@ def _coefficient(axis: str, term: TermEntry) -> str:
 
 
 def _assumptions(f: Findings) -> Iterator[Block]:
-    lines = []
-    for line in assumptions(f.answer):
-        lines.append(("", capital(f"{line}.")))
+    lines = [f"{capital(line)}." for line in assumptions(f.answer)]
     if lines:
-        yield Items(tuple(lines))
+        yield Items(tuple(zip(repeat(""), lines)))
 
 
 def _where(f: Findings) -> Iterator[Block]:
@@ -477,8 +475,8 @@ def _ranking(f: Findings) -> Iterator[Block]:
                 f.words.get(name, ""),
             ]
         )
-    gains = [c["gain_nats"] for c in candidates]
-    bars = tuple(max(0.0, gain) / max(*gains, 1e-9) for gain in gains)
+    gains = np.array([c["gain_nats"] for c in candidates])
+    bars = tuple((np.maximum(gains, 0.0) / max(gains.max(), 1e-9)).tolist())
     caption = (
         "Each candidate effect tested alone. The log Bayes factor compares the recalibrated vessel "
         "with and without the candidate. For an identified effect it differs from the value above, "
@@ -634,7 +632,7 @@ def _limitations(f: Findings) -> Iterator[Block]:
         )
     lines += map(readable, f.remarks)
     if lines:
-        yield Items(tuple(("", line) for line in lines))
+        yield Items(tuple(zip(repeat(""), lines)))
 
 
 def _files(f: Findings) -> Iterator[Block]:

@@ -5,7 +5,7 @@ every width, in light and dark and on paper. The script of the page reads the va
 pointer back from the lines.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from html import escape
 from itertools import chain, pairwise
@@ -122,18 +122,17 @@ def stacked(panels: Sequence[Panel]) -> str:
 
 def _panel(p: Panel, numbered: bool) -> str:
     """Return label, drawing and numbers of a panel."""
-    places = [float(i) for i in range(len(p.names))] or ticks(*p.x, 6)
-    across = [(v, (v - p.x[0]) / (p.x[1] - p.x[0])) for v in places]
-    heights = [(v, (v - p.y[0]) / (p.y[1] - p.y[0])) for v in ticks(*p.y, 5)]
+    places = list(map(float, range(len(p.names)))) or ticks(*p.x, 6)
+    across, heights = _shares(p.x, places), _shares(p.y, ticks(*p.y, 5))
     marks = []
-    for v, share in heights:
+    for v, share in heights.items():
         marks.append(f'<span class="y" style="bottom:{100 * share:.1f}%">{_tick(v)}</span>')
     look, below = "plot", ""
     if numbered:
         look, below = "plot numbered", f'<p class="along">{escape(p.x_label)}</p>'
-        for v, share in across:
+        for v, share in across.items():
             marks.append(f'<span class="x" style="left:{100 * share:.1f}%">{_name(p, v)}</span>')
-    drawing = _drawing(p, [share for _, share in across], [share for _, share in heights])
+    drawing = _drawing(p, across.values(), heights.values())
     return (
         f'<p class="across">{escape(p.title)}</p><div class="{look}" style="--shape:{p.shape:g}" '
         f'data-x="{p.x[0]:.9g} {p.x[1]:.9g}" data-y="{p.y[0]:.9g} {p.y[1]:.9g}" '
@@ -143,14 +142,23 @@ def _panel(p: Panel, numbered: bool) -> str:
     )
 
 
-def _drawing(p: Panel, across: Sequence[float], heights: Sequence[float]) -> str:
+def _shares(limits: tuple[float, float], values: Sequence[float]) -> dict[float, float]:
+    """Return the position of each value between the limits, as a share of their distance."""
+    low, high = limits
+    return {v: (v - low) / (high - low) for v in values}
+
+
+def _drawing(p: Panel, across: Iterable[float], heights: Iterable[float]) -> str:
     """Return the paths of a panel, with a grid at these shares of width and height."""
     paths = []
     for begin, end in p.flags:
         paths.append(f'<path class="flag" d="{_shaded(p, begin, end)}"/>')
-    grid = [f"M0 {GRID * (1 - share):.0f}H{GRID}" for share in heights]
-    grid += [f"M{GRID * share:.0f} 0V{GRID}" for share in across]
-    paths.append(f'<path class="grid" d="{"".join(grid)}"/>')
+    grid = ""
+    for share in heights:
+        grid += f"M0 {GRID * (1 - share):.0f}H{GRID}"
+    for share in across:
+        grid += f"M{GRID * share:.0f} 0V{GRID}"
+    paths.append(f'<path class="grid" d="{grid}"/>')
     if p.y[0] < 0.0 < p.y[1] and p.shape == TIMES:
         zero = GRID * p.y[1] / (p.y[1] - p.y[0])
         paths.append(f'<path class="zero" d="M0 {zero:.0f}H{GRID}"/>')
@@ -160,8 +168,11 @@ def _drawing(p: Panel, across: Sequence[float], heights: Sequence[float]) -> str
         paths.append(_dots(p, dots))
     for box in p.boxes:
         paths.append(_boxed(p, box))
-    for look in dict.fromkeys(line.look for line in p.lines):
-        pieces = _pieces([line for line in p.lines if line.look == look])
+    curves: dict[str, list[Line]] = {}
+    for line in p.lines:
+        curves.setdefault(line.look, []).append(line)
+    for lines in curves.values():
+        pieces = _pieces(lines)
         most = POINTS
         if len(pieces) > 1:
             most = max(FEWEST_POINTS, 2 * POINTS // len(pieces))
@@ -267,7 +278,10 @@ def ticks(low: float, high: float, most: int) -> list[float]:
     """Return about `most` round numbers within limits."""
     rough = (high - low) / most
     power = 10.0 ** np.floor(np.log10(rough))
-    step = float(power * next(s for s in (1.0, 2.0, 5.0, 10.0) if s * power >= rough * (1 - 1e-9)))
+    step = float(10.0 * power)
+    for factor in (5.0, 2.0, 1.0):
+        if factor * power >= rough * (1 - 1e-9):
+            step = float(power * factor)
     first, last = int(np.ceil(low / step - 1e-9)), int(np.floor(high / step + 1e-9))
     return [float(k * step) for k in range(first, last + 1)]
 
