@@ -1,23 +1,25 @@
 "use strict";
-// Values under the pointer, read back from the lines that are drawn, and the replay. Nothing is fetched.
-const GRID = 2000, NEAR = 60;
+// Shows the values under the pointer, which it reads back from the drawn lines, and plays the replay.
+// It fetches nothing.
+const GRID = 2000; // units of a drawing along each edge, as in svg_plots.py
+const SNAP = 60; // largest distance of the pointer from a point, in these units
 
 function quantity(title) {
   const unit = /\[([^\]]*)\]/.exec(title);
   return [title.split(/[[,;]/)[0].trim(), unit ? unit[1] : ""];
 }
-function told(value, span, unit) {
+function formatted(value, span, unit) {
   const digits = Math.max(0, Math.min(6, 3 - Math.ceil(Math.log10(span || 1))));
   return value.toFixed(digits).replace(/^-(?=[0.]*$)/, "").replace("-", "\u2212") + (unit.startsWith("\u00b0") ? "" : "\u00a0") + unit;
 }
 function element(kind, look, text) {
-  const made = document.createElement(kind);
-  made.className = look;
-  if (text) made.textContent = text;
-  return made;
+  const created = document.createElement(kind);
+  created.className = look;
+  if (text) created.textContent = text;
+  return created;
 }
 
-// What is under the pointer -------------------------------------------------------------------------------------------
+// Values under the pointer -------------------------------------------------------------------------------------------
 
 function points(path) {
   if (!path.points) {
@@ -46,8 +48,8 @@ function readable(plot) {
   tip.hidden = hair.hidden = true;
   plot.append(hair, tip);
   const value = (p, axis) => axis === "x"
-    ? told(x0 + (x1 - x0) * p.x / GRID, x1 - x0, across[1])
-    : told(y1 - (y1 - y0) * p.y / GRID, y1 - y0, up[1]);
+    ? formatted(x0 + (x1 - x0) * p.x / GRID, x1 - x0, across[1])
+    : formatted(y1 - (y1 - y0) * p.y / GRID, y1 - y0, up[1]);
   function show(event) {
     const box = plot.getBoundingClientRect();
     const px = GRID * (event.clientX - box.left) / box.width, py = GRID * (event.clientY - box.top) / box.height;
@@ -56,17 +58,17 @@ function readable(plot) {
     const from = timed
       ? p => Math.hypot(p.x - px, (p.y - py) * box.height / box.width)
       : p => Math.abs(p.x - px);
-    const under = nearest(all, from, NEAR);
+    const under = nearest(all, from, SNAP);
     tip.hidden = !under;
     hair.hidden = !under || timed;
     if (!under) return;
-    const head = timed ? told(under.t, 100, "s") : `${up[0]}, ${across[0]} ${value(under, "x")}`;
+    const head = timed ? formatted(under.t, 100, "s") : `${up[0]}, ${across[0]} ${value(under, "x")}`;
     tip.replaceChildren(element("div", "at", head));
     for (const name of new Set(all.map(p => p.name))) {
-      const p = nearest(all.filter(p => p.name === name), p => Math.abs(p.t - under.t), timed ? 2 : NEAR / 2);
+      const p = nearest(all.filter(p => p.name === name), p => Math.abs(p.t - under.t), timed ? 2 : SNAP / 2);
       if (!p || p.y <= -GRID || p.y >= 2 * GRID) continue;
-      const said = timed ? `${up[0]} ${value(p, "y")}, ${across[0]} ${value(p, "x")}` : value(p, "y");
-      tip.append(element("div", p.look, `${name} ${said}`));
+      const words = timed ? `${up[0]} ${value(p, "y")}, ${across[0]} ${value(p, "x")}` : value(p, "y");
+      tip.append(element("div", p.look, `${name} ${words}`));
     }
     hair.style.left = `${100 * under.x / GRID}%`;
     tip.style.left = px < GRID / 2 ? `calc(${100 * px / GRID}% + 12px)` : "auto";
@@ -119,12 +121,12 @@ function replayed(stage) {
       hulls[i].setAttribute("d", `M${corners.join("L")}Z`);
       return [x, y];
     });
-    const said = film.boats.map((boat, i) => {
+    const words = film.boats.map((boat, i) => {
       if (!places[i]) return "";
-      if (!film.plan) return `${boat.look} ${told(places[i][1], y1 - y0, film.unit)}`;
+      if (!film.plan) return `${boat.look} ${formatted(places[i][1], y1 - y0, film.unit)}`;
       return i && places[0] ? `${boat.look} ${distance(Math.hypot(places[i][0] - places[0][0], places[i][1] - places[0][1]))} off` : "";
     });
-    output.textContent = [told(time, 100, "s"), ...said.filter(Boolean)].join(" \u00b7 ");
+    output.textContent = [formatted(time, 100, "s"), ...words.filter(Boolean)].join(" \u00b7 ");
     slider.value = time;
   }
   function play(on) {
