@@ -610,12 +610,16 @@ EVENT = {"statement": "a push at 3 s of run_1", "carries_over": False}
 @pytest.mark.parametrize(
     ("effects", "described", "text"),
     [
-        ([], [LAW], "A side force of 2 N."),
-        ([], [EVENT, EVENT], "A push at 3 s of run_1. A push at 3 s of run_1."),
+        ([], [LAW], "The model lacks a side force of 2 N."),
+        (
+            [],
+            [EVENT, EVENT],
+            "The model lacks a push at 3 s of run_1. The model lacks a push at 3 s of run_1.",
+        ),
         (
             [DAMPED],
             [LAW],
-            "The model leaves out one effect: damping grows. In addition, a side force of 2 N.",
+            "The model leaves out one effect: damping grows. In addition, the model lacks a side force of 2 N.",
         ),
         (
             [LATE],
@@ -626,7 +630,7 @@ EVENT = {"statement": "a push at 3 s of run_1", "carries_over": False}
         (
             [DAMPED],
             [EVENT, LAW, EVENT],
-            "The model leaves out one effect: damping grows. In addition, a side force of 2 N. "
+            "The model leaves out one effect: damping grows. In addition, the model lacks a side force of 2 N. "
             "2 events of single runs remain, the first is a push at 3 s of run_1.",
         ),
     ],

@@ -7,7 +7,6 @@ from itertools import groupby, repeat
 
 import numpy as np
 
-from boatsim.diagnosis.config import DEFAULT, Plain, as_plain
 from boatsim.diagnosis.free_runs import FreeRun
 from boatsim.diagnosis.report import figures, svg_plots
 from boatsim.diagnosis.report.blocks import (
@@ -184,14 +183,9 @@ def _about_deviations(f: Findings, effect: EffectEntry) -> str:
     )
 
 
-def _setting(f: Findings, name: str) -> Plain:
-    """Value of a setting with which the diagnosis was made."""
-    return f.answer.get("config", as_plain(DEFAULT))[name]
-
-
 def _unexplained(f: Findings) -> Iterator[Block]:
     """Yield the formulas for what no candidate explains, and the evidence for an unknown cause."""
-    unknown = f.answer["unknown"]
+    unknown, factor = f.answer["unknown"], f.setting("locate.disturbance_factor")
     yield from _formulas(f)
     if not f.answer["described"]:
         facts = evidence(unknown["gain_nats"])
@@ -199,8 +193,8 @@ def _unexplained(f: Findings) -> Iterator[Block]:
     if unknown["gain_nats"] > unknown["told_from_nats"]:
         yield Text(
             "Even with all identified effects, the recordings require an additional random force of "
-            f"more than {_setting(f, 'locate.disturbance_factor'):g} times the assumed disturbance level "
-            f"({evidence(unknown['gain_nats'])}). Such a force is reported from "
+            f"more than {factor:g} times the assumed disturbance level. The evidence for it is a "
+            f"{evidence(unknown['gain_nats'])}. Such a force is reported from "
             f"{nats(unknown['told_from_nats'])} nats on. This threshold increases with the evidence "
             "that the identified effects explain, because their laws are never exact. The section on "
             "the missing force shows where and when the force acts."
@@ -257,7 +251,7 @@ def _formulas(f: Findings) -> Iterator[Block]:
             "recorded": "recorded",
         }
         yield Figures(svg_plots.legend(looks), drawn)
-        yield Text("The curves end at the largest recorded values. Do not extrapolate the formula.")
+        yield Text("The formula is valid only within the recorded range of these quantities.")
 
 
 def _coefficient(axis: str, term: TermEntry) -> str:
@@ -482,7 +476,7 @@ def _ranking(f: Findings) -> Iterator[Block]:
         "with and without the candidate. For an identified effect it differs from the value above, "
         "which is computed in the presence of all other identified effects. The probability assumes "
         "that exactly one of these candidates is missing, or none. The probabilities add up to "
-        "100 %, so that only the strongest of several missing effects has a high probability"
+        "100 %, so that only the strongest of several missing effects has a high probability."
     )
     header = [
         "candidate",
@@ -525,7 +519,7 @@ def _limits(f: Findings) -> Iterator[Block]:
         return
     caption = (
         "With 95 % confidence each effect is weaker than this. The limit of a factor or fraction is "
-        "its distance from the value in the vessel file"
+        "its distance from the value in the vessel file."
     )
     header, folded = ["candidate", "at most", "meaning"], f.answer["verdict"] != "nothing_missing"
     yield without_empty(Table(caption, header, rows, (1, 2), folded=folded, aside=True))
@@ -564,8 +558,9 @@ def _next(f: Findings) -> Iterator[Block]:
     if not wanted:
         if f.answer["effects"]:
             yield Text(
-                f"None of the manoeuvres considered is expected to add more than {_setting(f, 'plan.min_gain'):g} nat of "
-                "evidence on the identified effects and their rivals."
+                "None of the manoeuvres considered is expected to add more than "
+                f"{f.setting('plan.min_gain'):g} nat of evidence on the identified effects and their "
+                "rivals."
             )
         return
     scenario = wanted["scenario"]

@@ -130,11 +130,15 @@ def counted(count: int, noun: str) -> str:
 
 def _formulas(answer: Answer, effects_precede: bool) -> list[str]:
     """Return statements on the formulas: those that generalize first, further events as a count."""
-    general = [d["statement"] for d in answer["described"] if d["carries_over"]][:MOST_NUMBERS]
-    events = [d["statement"] for d in answer["described"] if not d["carries_over"]]
+    general, events = [], []
+    for law in answer["described"]:
+        if law["carries_over"]:
+            general.append(f"the model lacks {law['statement']}")
+        else:
+            events.append(law["statement"])
     if not (general or effects_precede):
-        return events[:MOST_NUMBERS]
-    statements = list(general)
+        return [f"the model lacks {event}" for event in events[:MOST_NUMBERS]]
+    statements = general[:MOST_NUMBERS]
     if len(events) == 1:
         statements.append(f"one event of a single run remains: {events[0]}")
     elif events:
