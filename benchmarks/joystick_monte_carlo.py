@@ -15,8 +15,8 @@ from pathlib import Path
 import numpy as np
 
 import boatsim
-from boatsim.cli.progress import counting
-from boatsim.cli.show import printed
+from boatsim.cli.metric_table import print_rows
+from boatsim.cli.progress import report_campaign
 from boatsim.diagnosis.report.svg_plots import ticks
 from boatsim.physics.signals import Array
 from boatsim.sweeps.keys import Value
@@ -66,7 +66,7 @@ def main(arguments: list[str] | None = None) -> int:
     )
     given = parser.parse_args(arguments)
     told = [name for names in NORMS.values() for name in names]
-    with counting() as report:
+    with report_campaign() as report:
         done = boatsim.sweep(
             SCENARIOS,
             VARIED,
@@ -80,7 +80,7 @@ def main(arguments: list[str] | None = None) -> int:
             report=report,
         )
     rows, lost = _rows(done)
-    printed(f"{SECOND} beside {FIRST}: sizes of the norms on {given.runs} boats", HEAD, rows, 2)
+    print_rows(f"{SECOND} beside {FIRST}: sizes of the norms on {given.runs} boats", HEAD, rows, 2)
     print(
         f"{SECOND} is not lower on most boats, or the mean difference is not below 0 with 95 %, in:"
     )

@@ -33,14 +33,14 @@ from boatsim.simulate.run import run as simulate
 from boatsim.simulate.run_files import run_into_folder
 from boatsim.simulate.run_options import RunOptions
 from boatsim.simulate.scenario import Scenario as Scenario
-from boatsim.sweeps.axes import axis_of
-from boatsim.sweeps.designs import Kind as Design
-from boatsim.sweeps.execute import swept
+from boatsim.sweeps.axes import make_axis
+from boatsim.sweeps.designs import Design
+from boatsim.sweeps.execute import run_plan
 from boatsim.sweeps.indices import Index, indices
 from boatsim.sweeps.keys import Value
-from boatsim.sweeps.plan import plan
+from boatsim.sweeps.plan import make_plan
 from boatsim.sweeps.results import Results
-from boatsim.sweeps.sampled_keys import draw_of
+from boatsim.sweeps.sampled_keys import make_sampled_key
 from boatsim.sweeps.summary import Pair, Spread, pairs, spreads
 
 # Name of shipped content, or path of a file or folder
@@ -446,10 +446,10 @@ def sweep(
     """
     axes = []
     for key, values in (vary or {}).items():
-        axes.append(axis_of(key, values if isinstance(values, str) else list(values)))
-    draws = [draw_of(key, law) for key, law in (draw or {}).items()]
-    made = plan(_names(scenarios), axes, draws, runs, seed, design)
-    return Sweep(*swept(made, Path(out), jobs, ray, _names(norms), report), Path(out))
+        axes.append(make_axis(key, values if isinstance(values, str) else list(values)))
+    draws = [make_sampled_key(key, law) for key, law in (draw or {}).items()]
+    made = make_plan(_names(scenarios), axes, draws, runs, seed, design)
+    return Sweep(*run_plan(made, Path(out), jobs, ray, _names(norms), report), Path(out))
 
 
 def _paths(names: Names) -> list[Path]:

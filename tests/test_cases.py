@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from boatsim.cli.run_many import plan
+from boatsim.cli.run_many import plan_runs
 from boatsim.errors import BadInput
 from boatsim.physics.content import find, names
 from boatsim.simulate import scenario
@@ -114,11 +114,11 @@ def test_a_folder_a_pattern_and_a_file_stand_for_their_scenarios(tmp_path: Path)
 
 def test_cases_run_into_folders_of_their_own_names(tmp_path: Path) -> None:
     file = write(tmp_path / "mine.toml", HEAD + '[[case]]\nname = "one"\n[[case]]\nname = "two"\n')
-    assert [t.folder for t in plan([str(file)], tmp_path, None)] == [
+    assert [t.task.folder for t in plan_runs([str(file)], tmp_path, None)] == [
         tmp_path / "one",
         tmp_path / "two",
     ]
-    assert [t.name for t in plan(["joystick_boat/yaw_[12]"], tmp_path, None)] == [
+    assert [t.task.name for t in plan_runs(["joystick_boat/yaw_[12]"], tmp_path, None)] == [
         "joystick_boat/yaw_1",
         "joystick_boat/yaw_2",
     ]
@@ -193,4 +193,4 @@ def test_a_pattern_that_nothing_is_like_is_one_line() -> None:
     with pytest.raises(
         BadInput, match=r"no scenario is like 'joystick_boat/swy_\*' \(they are in catamaran, "
     ):
-        plan(["joystick_boat/swy_*"], None, None)
+        plan_runs(["joystick_boat/swy_*"], None, None)

@@ -18,9 +18,10 @@ from typer.testing import CliRunner
 
 from boatsim import __version__
 from boatsim.cli import app
-from boatsim.cli.run_many import plan
+from boatsim.cli.run_many import plan_runs
 from boatsim.physics import content
 from boatsim.recordings import table as recording
+from boatsim.sweeps.diagnoses import DiagnosisOptions
 
 FIELDS = {
     "value",
@@ -127,16 +128,16 @@ def test_norms_json_agrees_with_recording_csv(sway: tuple[Path, Any]) -> None:
 def test_scenarios_of_one_name_do_not_share_a_folder() -> None:
     """Neither in one command nor in two."""
     both = ["kynoc/half_speed", "eastward_ho/half_speed"]
-    alone = [plan([name], None, None)[0].folder for name in both]
+    alone = [plan_runs([name], None, None)[0].task.folder for name in both]
     assert (
         alone
-        == [task.folder for task in plan(both, None, None)]
+        == [run.task.folder for run in plan_runs(both, None, None)]
         == [Path("out") / name for name in both]
     )
-    assert [t.folder for t in plan(both, Path("dir"), None)] == [
+    assert [t.task.folder for t in plan_runs(both, Path("dir"), None)] == [
         Path("dir") / name for name in both
     ]
-    assert plan(both[:1], Path("dir"), None)[0].folder == Path("dir")
+    assert plan_runs(both[:1], Path("dir"), None)[0].task.folder == Path("dir")
 
 
 def test_camera_csv_is_a_recording_that_knows_its_boat(tmp_path: Path) -> None:
@@ -325,13 +326,15 @@ def test_options_of_a_diagnosis_reach_it(monkeypatch: pytest.MonkeyPatch) -> Non
     assert asked == [
         (
             [a, Path("b.csv")],
-            [Path("c.csv")],
-            "trial_boat",
-            load,
+            DiagnosisOptions(
+                hold_out=("c.csv",),
+                vessel="trial_boat",
+                load=tuple(load),
+                library=("wind", "own.py"),
+                without=("current",),
+                horizon=3.0,
+            ),
             out,
-            ["wind", "own.py"],
-            ["current"],
-            3.0,
         ),
         (a, "trial_boat", load, 6.0, out),
         (a, "trial_boat", load, 4.0, out),

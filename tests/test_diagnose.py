@@ -25,6 +25,7 @@ from boatsim.recordings.table import Notes, Recording
 from boatsim.simulate import scenario
 from boatsim.simulate.engine import Engine
 from boatsim.simulate.run_files import run_into_folder
+from boatsim.sweeps.diagnoses import DiagnosisOptions
 
 DATA = Path(__file__).parent / "data"
 DECAY = DATA / "kvlcc2_roll_decay" / "decay_0kn_run2.csv"
@@ -468,7 +469,11 @@ def test_own_vessel_and_own_library_file_give_a_patched_boat_that_replays(folder
     own.write_text(WEED)
     without = ["cubic_damping", "quadratic_damping"]
     code = commands.diagnose(
-        [DECAY], [], str(mine / "vessel.toml"), [], tmp_path / "out", [str(own)], without
+        [DECAY],
+        DiagnosisOptions(
+            vessel=str(mine / "vessel.toml"), library=(str(own),), without=tuple(without)
+        ),
+        tmp_path / "out",
     )
     assert code == 0 and "roll_weed" in capsys.readouterr().out
     (tmp_path / "elsewhere").mkdir()

@@ -1,4 +1,4 @@
-"""Many recordings, each diagnosed by itself: none costs another, and what is done is not done again."""
+"""Many recordings, each diagnose_all by itself: none costs another, and what is done is not done again."""
 
 import json
 import shutil
@@ -11,8 +11,8 @@ from pyarrow import parquet
 import boatsim
 from boatsim.cli.sweeping import diagnose_each
 from boatsim.errors import BadInput
-from boatsim.sweeps.diagnoses import Asked, diagnosed, folders_of, recordings
-from boatsim.sweeps.workers.in_process import here
+from boatsim.sweeps.diagnoses import DiagnosisOptions, diagnose_all, find_recordings, output_folders
+from boatsim.sweeps.workers.in_process import run_here
 from boatsim.sweeps.workers.processes import Processes
 
 WRONG = "t_s,x_m\n0,0\n1,nonsense\n"
@@ -34,21 +34,21 @@ def test_a_folder_stands_for_the_recordings_in_it_and_runs_for_what_the_camera_s
     ):
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / name).touch()
-    found = recordings([tmp_path / "logs", tmp_path / "runs"])
+    found = find_recordings([tmp_path / "logs", tmp_path / "runs"])
     assert [str(p.relative_to(tmp_path)) for p in found] == [
         "logs/a.parquet",
         "logs/b.csv",
         "runs/one/camera.csv",
     ]
-    assert folders_of(found) == ["logs/a", "logs/b", "runs/one"]
-    assert folders_of([tmp_path / "x.csv", tmp_path / "x.parquet"]) == ["x.csv", "x.parquet"]
+    assert output_folders(found) == ["logs/a", "logs/b", "runs/one"]
+    assert output_folders([tmp_path / "x.csv", tmp_path / "x.parquet"]) == ["x.csv", "x.parquet"]
 
 
 @pytest.mark.parametrize("given", ["empty", "nowhere.csv"])
 def test_what_holds_no_recording_is_one_line(tmp_path: Path, given: str) -> None:
     (tmp_path / "empty").mkdir()
     with pytest.raises(BadInput, match=given):
-        recordings([tmp_path / given])
+        find_recordings([tmp_path / given])
 
 
 def test_recordings_that_can_not_be_read_are_told_and_end_nothing(
@@ -57,7 +57,7 @@ def test_recordings_that_can_not_be_read_are_told_and_end_nothing(
     for name in ("a", "b"):
         (tmp_path / f"{name}.csv").write_text(WRONG)
     out = tmp_path / "out"
-    assert diagnose_each([tmp_path], Asked(vessel="joystick_boat"), out, 1, None) == 0
+    assert diagnose_each([tmp_path], DiagnosisOptions(vessel="joystick_boat"), out, 1, None) == 0
     found = table(out)
     assert found["recording"] == [str(tmp_path / "a.csv"), str(tmp_path / "b.csv")]
     assert all("a.csv" in why or "b.csv" in why for why in found["failure"])
@@ -67,19 +67,19 @@ def test_recordings_that_can_not_be_read_are_told_and_end_nothing(
 def test_what_is_done_is_not_done_again(tmp_path: Path) -> None:
     log, out = tmp_path / "a.csv", tmp_path / "out"
     log.write_text(WRONG)
-    diagnosed([log], Asked(vessel="joystick_boat"), out, here)
+    diagnose_all([log], DiagnosisOptions(vessel="joystick_boat"), out, run_here)
     before = (out / "diagnoses.parquet").read_bytes(), (out / "journal.jsonl").read_bytes()
 
     def nobody(*_: object) -> Any:
         raise AssertionError
 
-    diagnosed([log], Asked(vessel="joystick_boat"), out, nobody)
+    diagnose_all([log], DiagnosisOptions(vessel="joystick_boat"), out, nobody)
     assert (
         (out / "diagnoses.parquet").read_bytes(),
         (out / "journal.jsonl").read_bytes(),
     ) == before
     with pytest.raises(BadInput, match='asked vessel is "joystick_boat", not "otter"'):
-        diagnosed([log], Asked(vessel="otter"), out, nobody)
+        diagnose_all([log], DiagnosisOptions(vessel="otter"), out, nobody)
 
 
 @pytest.mark.slow
@@ -88,8 +88,8 @@ def test_each_is_diagnosed_as_it_would_be_alone_and_cut_off_ends_with_the_same_b
 ) -> None:
     for name in ("sway_1", "sway_2"):
         boatsim.run(f"joystick_boat/{name}_as_published", out=tmp_path / "runs" / name)
-    paths, out = recordings([tmp_path / "runs"]), tmp_path / "out"
-    diagnosed(paths, Asked(), out, Processes(2))
+    paths, out = find_recordings([tmp_path / "runs"]), tmp_path / "out"
+    diagnose_all(paths, DiagnosisOptions(), out, Processes(2))
     found = table(out)
     assert found["verdict"] == ["named", "named"] and found["causes"] == ["weak_reverse"] * 2
     for value, sd in zip(
@@ -108,5 +108,5 @@ def test_each_is_diagnosed_as_it_would_be_alone_and_cut_off_ends_with_the_same_b
     lines = (out / "journal.jsonl").read_bytes().splitlines(keepends=True)
     (cut / "journal.jsonl").write_bytes(b"".join(lines[:2]))
     (cut / "diagnoses.parquet").unlink()
-    diagnosed(paths, Asked(), cut, here)
+    diagnose_all(paths, DiagnosisOptions(), cut, run_here)
     assert (cut / "diagnoses.parquet").read_bytes() == (out / "diagnoses.parquet").read_bytes()

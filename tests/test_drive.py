@@ -20,9 +20,9 @@ from hypothesis import strategies as st
 from typer.testing import CliRunner
 
 from boatsim.cli import app
-from boatsim.drive.background_tasks import aside
+from boatsim.drive.background_tasks import background_listener
 from boatsim.drive.clock import Clock
-from boatsim.drive.driver_input import DEAD, PATIENCE, Hands, Sticks, live
+from boatsim.drive.driver_input import DEAD, PATIENCE, Hands, Sticks, beyond_dead_zone
 from boatsim.drive.stick_mapping import dials_of
 from boatsim.drive.task import Task
 from boatsim.errors import BadInput
@@ -84,9 +84,14 @@ def test_a_page_that_falls_silent_holds_no_sticks() -> None:
 
 @given(ways)
 def test_a_stick_is_dead_about_the_middle_and_whole_at_its_ends(way: float) -> None:
-    assert (live(way) == 0.0) if abs(way) < DEAD else (live(way) * way >= 0.0)
-    assert abs(live(way)) <= 1.0 and live(1.0) == -live(-1.0) == 1.0
-    assert live(-way) == -live(way)
+    assert (
+        (beyond_dead_zone(way) == 0.0) if abs(way) < DEAD else (beyond_dead_zone(way) * way >= 0.0)
+    )
+    assert (
+        abs(beyond_dead_zone(way)) <= 1.0
+        and beyond_dead_zone(1.0) == -beyond_dead_zone(-1.0) == 1.0
+    )
+    assert beyond_dead_zone(-way) == -beyond_dead_zone(way)
 
 
 # What they set
@@ -176,14 +181,14 @@ def boatsim(*arguments: object):
     ("given_", "said"),
     [
         (["joystik_boat"], "did you mean 'joystick_boat'?"),
-        (["joystick_boat", "--controller", "zigzag"], "steers by itself"),
-        (["joystick_boat", "--controller", "l1_thesis"], "steers by itself"),
+        (["joystick_boat", "--controller", "zigzag"], "takes no goals"),
+        (["joystick_boat", "--controller", "l1_thesis"], "takes no goals"),
         (["joystick_boat", "--controller", "pd_heading"], "sets throttle"),
         (["joystick_boat", "--scenario", "brth"], "did you mean 'joystick_boat/berth'?"),
-        (["joystick_boat", "--scenario", "otter/turn"], "is of otter, not of joystick_boat"),
-        (["joystick_boat", "--scenario", "joystick_boat"], "one can be driven"),
+        (["joystick_boat", "--scenario", "otter/turn"], "is for otter, not for joystick_boat"),
+        (["joystick_boat", "--scenario", "joystick_boat"], "name one"),
         (["joystick_boat", "--load", "heavi"], "heav"),
-        (["catamaran", "--controller", "waypoint"], "is steered by x_m, y_m; sticks give"),
+        (["catamaran", "--controller", "waypoint"], "takes the goals x_m, y_m; the sticks"),
         (["joystick_boat", "--seconds", "0"], "--seconds"),
     ],
 )
@@ -258,7 +263,7 @@ def test_what_is_handed_aside_arrives_whole_and_in_order_and_never_holds_up() ->
         gate.wait(10.0)
         came.append(piece)
 
-    with aside(slow, 0.01) as put:
+    with background_listener(slow, 0.01) as put:
         for begin in range(0, 100, 5):
             put(rows(begin, begin + 5))
         assert not came  # all handed over while the first still waits
@@ -270,7 +275,7 @@ def test_what_goes_wrong_aside_ends_the_run() -> None:
     def full(piece: Recording) -> None:
         raise OSError("no room")
 
-    with pytest.raises(OSError, match="no room"), aside(full, 0.01) as put:
+    with pytest.raises(OSError, match="no room"), background_listener(full, 0.01) as put:
         put(rows(0, 5))
 
 
@@ -419,7 +424,7 @@ def test_a_port_that_is_taken_is_one_line(tmp_path: Path) -> None:
         port = taken.getsockname()[1]
         done = boatsim("drive", "otter", "--port", port, "--out", tmp_path / "out")
     assert done.exit_code == 2 and done.stderr.count("\n") == 1
-    assert f"port {port}: " in done.stderr and "without --port" in done.stderr
+    assert f"port {port}: " in done.stderr and "omit --port" in done.stderr
 
 
 def test_nobody_waits_for_ever_where_the_package_is_missing(

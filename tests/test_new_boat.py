@@ -230,7 +230,7 @@ def test_all_that_has_a_name_can_be_shown() -> None:
     ):
         result = CliRunner().invoke(app, ["show", name])
         assert result.exit_code == 0, result.output
-        assert "to paste:" in result.output
+        assert "example:" in result.output
 
 
 def test_an_effect_says_what_is_fitted_and_what_rules_it_out() -> None:
@@ -243,7 +243,7 @@ def test_an_effect_says_what_is_fitted_and_what_rules_it_out() -> None:
 
 def test_an_example_of_an_effect_can_be_pasted() -> None:
     lines = CliRunner().invoke(app, ["show", "weak_reverse"]).output.splitlines()
-    pasted = "\n".join(line.strip() for line in lines[lines.index("to paste:") + 1 :])
+    pasted = "\n".join(line.strip() for line in lines[lines.index("example:") + 1 :])
     [table] = tomllib.loads(pasted)["effect"]
     assert vessel.load("blueboat", extra=[table]).effect("weak_reverse") is not None
 

@@ -81,7 +81,7 @@ def test_every_bad_file_is_listed_and_the_good_ones_run(folder: Path) -> None:
         "bad.toml",
         "worse.toml",
     ]
-    assert "as pinned" in result.stdout
+    assert "as baseline" in result.stdout
 
 
 def test_new_and_missing_scenarios_differ(folder: Path) -> None:
@@ -102,7 +102,7 @@ def test_a_file_that_can_not_be_read_keeps_its_pins(folder: Path) -> None:
 def test_a_missed_guard_differs_though_it_is_pinned(folder: Path) -> None:
     (folder / "sway.toml").write_text(SCENARIO + "[norms.sway_error_rms]\nguard = [0.0, 1e-9]\n")
     result = boatsim("test", folder, "--pin")
-    assert result.exit_code == 1 and "outside its guard" in result.stdout
+    assert result.exit_code == 1 and "outside its regression band" in result.stdout
 
 
 def test_junit_counts_its_cases_and_json_says_what_the_table_does(folder: Path) -> None:
@@ -128,8 +128,8 @@ def test_junit_counts_its_cases_and_json_says_what_the_table_does(folder: Path) 
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        (["nowhere"], "nowhere: is no folder"),
-        ([".", "--seeds", "3"], "needs --pin"),
+        (["nowhere"], "nowhere is not a folder"),
+        ([".", "--seeds", "3"], "only with --pin"),
         (["."], "no scenario"),
     ],
 )

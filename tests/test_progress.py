@@ -51,7 +51,7 @@ def test_a_diagnosis_says_its_stages_in_their_order_each_once_and_none_on_stdout
 def test_a_stage_that_comes_back_is_told_once_and_the_first_with_the_second(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    with progress.reporting() as report:
+    with progress.report_stages() as report:
         report("reading", 0.0)
         assert capsys.readouterr().err == ""
         for stage in ("selecting", "judging", "selecting", "judging", "writing"):
@@ -112,7 +112,7 @@ def test_a_log_that_is_imported_says_its_stages(tmp_path: Path) -> None:
     log = DATA / "logs" / "table.csv"
     assert boatsim("import", log, "--propose", tmp_path / "map.toml").exit_code == 0
     done = boatsim("import", log, "--map", tmp_path / "map.toml", "--out", tmp_path / "run.csv")
-    told = ["reading the log", "putting its signals on one clock", "writing the recording"]
+    told = ["reading the log", "resampling the signals to one time base", "writing the recording"]
     assert done.exit_code == 0 and lines(done.stderr) == told, done.stderr
 
 
@@ -166,9 +166,9 @@ def test_the_bar_makes_way_for_a_question(monkeypatch: pytest.MonkeyPatch) -> No
             seen.append("asked")
             return "y\n"
 
-    monkeypatch.setattr(progress, "_now", Bars())
+    monkeypatch.setattr(progress, "_active", Bars())
     monkeypatch.setattr(trust_prompt.sys, "stdin", Answer())
-    assert trust_prompt._asked(Path("mine")) and seen == ["stop", "asked", "start"]
+    assert trust_prompt._ask(Path("mine")) and seen == ["stop", "asked", "start"]
 
 
 def test_a_part_of_the_work_is_told_as_its_share_of_the_whole() -> None:

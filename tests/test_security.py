@@ -23,8 +23,8 @@ from pyarrow import parquet
 from typer.testing import CliRunner
 
 from boatsim.cli import app, trust_prompt
-from boatsim.cli.exits import LONGEST, complain, words
-from boatsim.cli.run_many import plan
+from boatsim.cli.exits import LONGEST, one_line, print_error
+from boatsim.cli.run_many import plan_runs
 from boatsim.diagnosis.candidates import library_for
 from boatsim.diagnosis.loading import vessel_for
 from boatsim.drive.driver_input import PATIENCE, Hands, Sticks
@@ -157,7 +157,7 @@ def test_2_content_runs_and_its_names_resolve(tmp_path: Path) -> None:
             content.load_class("effect", "thruster").__module__
             == "boatsim.physics.effects.thruster"
         )
-        assert plan(["calm/still"], None, None)[0].name == "calm/still"
+        assert plan_runs(["calm/still"], None, None)[0].task.name == "calm/still"
     assert "no such folder" in refused(boatsim("list", "--content", tmp_path / "none"))
 
 
@@ -194,7 +194,7 @@ def test_4_a_person_at_a_terminal_is_asked_once(
 
 
 def test_4_nobody_is_asked_without_a_terminal() -> None:
-    assert not trust_prompt._there()  # as tests run
+    assert not trust_prompt._is_interactive()  # as tests run
 
 
 def test_5_a_file_that_the_user_names_runs(tmp_path: Path) -> None:
@@ -387,7 +387,7 @@ def test_13_a_damaged_cache_is_built_again(
 def test_14_what_steers_a_terminal_is_shown_as_an_escape(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    complain("a\x1b[2Jb\u202ec\u200bd\udcffe\nf")
+    print_error("a\x1b[2Jb\u202ec\u200bd\udcffe\nf")
     assert capsys.readouterr().err == "boatsim: a\\x1b[2Jb\\u202ec\\u200bd\\udcffe\\nf\n"
     assert printable("Königsberg, 5 °") == "Königsberg, 5 °"
 
@@ -403,7 +403,7 @@ def test_14_an_ascii_terminal_gets_escapes(tmp_path: Path) -> None:
 
 
 def test_15_a_line_is_not_too_long(capsys: pytest.CaptureFixture[str]) -> None:
-    complain(words(BadInput(f"{'a' * 4000}: first {'b' * 4000} last")))
+    print_error(one_line(BadInput(f"{'a' * 4000}: first {'b' * 4000} last")))
     line = capsys.readouterr().err
     assert (
         len(line) == LONGEST + 1 and line.startswith("boatsim: aaa") and line.endswith("bbb last\n")

@@ -160,7 +160,7 @@ def test_two_scenarios_side_by_side_differ_in_their_names(
         Path(f"{name}.toml").write_text(SCENARIO.replace("0.7", pole))
     result = boatsim("run", "slow.toml", "quick.toml", "--side-by-side")
     assert result.exit_code == 0 and (Path("out") / "compare.rrd").is_file()
-    assert re.search(r"norm\s*┃\s*is\s*┃\s*slow\s*┃\s*quick", result.stdout)
+    assert re.search(r"metric\s*┃\s*kind\s*┃\s*slow\s*┃\s*quick", result.stdout)
     assert boatsim("run", "slow.toml", *PAIR[:2], *PAIR[:2]).exit_code == 2
 
 

@@ -22,14 +22,14 @@ from boatsim.errors import BadInput
 from boatsim.simulate.cases import content
 from boatsim.simulate.run import run
 from boatsim.simulate.scenario import Scenario, from_table
-from boatsim.sweeps.axes import axis
-from boatsim.sweeps.designs import shares
-from boatsim.sweeps.execute import swept
+from boatsim.sweeps.axes import parse_axis
+from boatsim.sweeps.designs import design_matrix
+from boatsim.sweeps.execute import run_plan
 from boatsim.sweeps.indices import bootstrap, sobol
 from boatsim.sweeps.journal import Journal
-from boatsim.sweeps.keys import laid, slots, target
-from boatsim.sweeps.plan import plan
-from boatsim.sweeps.sampled_keys import draw
+from boatsim.sweeps.keys import find_slots, parse_target, set_values
+from boatsim.sweeps.plan import make_plan
+from boatsim.sweeps.sampled_keys import parse_sampled_key
 from boatsim.sweeps.workers.processes import Processes
 
 SHORT = """
@@ -62,9 +62,9 @@ def short(tmp_path: Path) -> str:
 
 def changed(scenario: str, key: str, value: bool | int | float | str) -> Scenario:
     said, place = content(scenario)
-    wanted = target(key)
-    told, at = slots(said, place, wanted)
-    return from_table(laid(told, place, at, wanted.how, value), place)
+    wanted = parse_target(key)
+    told, at = find_slots(said, place, wanted)
+    return from_table(set_values(told, place, at, wanted.operation, value), place)
 
 
 # Keys
@@ -140,19 +140,19 @@ def test_a_table_can_be_left_out() -> None:
     [
         ("fan_wnd.speed", 1, "key 'fan_wnd' does not exist; did you mean 'fan_wind'?"),
         ("fan_wind.sped", 1, "did you mean 'speed'?"),
-        ("fan_wind", 1, "say which of its values: speed, toward"),
+        ("fan_wind", 1, "add one of its parameters: speed, toward"),
         ("fan_wind.speed", 99, "allowed 0 to 40 m/s"),
         ("load", "hevy", "did you mean 'heavy'?"),
         ("controller.use", "l1_joistick", "did you mean 'l1_joystick'?"),
         ("controller.poel", 1, "did you mean 'pole'?"),
         ("start.xx", 1, "did you mean 'x'?"),
-        ("goal.3.sway_mps", 1, "there are 2, counted from 1"),
-        ("goal.surge_mps", 1, "say of which"),
+        ("goal.3.sway_mps", 1, "the scenario has 2, counted from 1"),
+        ("goal.surge_mps", 1, "name one"),
         ("duratoin", 1, "did you mean 'duration'?"),
-        ("load+", "heavy", "no number is stated there"),
+        ("load+", "heavy", "no number is specified"),
         ("port.x+", "heavy", "no number"),
-        ("", 1, "empty"),
-        ("a..b", 1, "names with dots"),
+        ("", 1, "separated by dots"),
+        ("a..b", 1, "separated by dots"),
     ],
 )
 def test_a_key_or_value_that_can_not_be_is_one_line(
@@ -178,7 +178,7 @@ def test_a_key_or_value_that_can_not_be_is_one_line(
     ],
 )
 def test_an_axis_is_a_range_or_a_list(text: str, values: tuple[object, ...]) -> None:
-    assert axis(text).values == values
+    assert parse_axis(text).values == values
 
 
 @pytest.mark.parametrize(
@@ -198,7 +198,7 @@ def test_an_axis_is_a_range_or_a_list(text: str, values: tuple[object, ...]) -> 
 )
 def test_an_axis_that_can_not_be_is_refused(text: str) -> None:
     with pytest.raises(BadInput, match="--vary"):
-        axis(text)
+        parse_axis(text)
 
 
 @pytest.mark.parametrize(
@@ -213,12 +213,17 @@ def test_an_axis_that_can_not_be_is_refused(text: str) -> None:
     ],
 )
 def test_a_draw_has_the_distribution_that_it_states(law: str, same: Any) -> None:
-    u = shares("latin", ["a.b"], 500, 1)[:, 0]
-    assert stats.kstest(draw(f"a.b={law}").at(u), same.cdf).statistic < 1 / 500 + 1e-9
+    u = design_matrix("latin", ["a.b"], 500, 1)[:, 0]
+    assert (
+        stats.kstest(parse_sampled_key(f"a.b={law}").quantiles(u), same.cdf).statistic
+        < 1 / 500 + 1e-9
+    )
 
 
 def test_a_choice_is_made_as_often_of_each() -> None:
-    found = draw("load=choice(light,heavy)").at(shares("latin", ["load"], 100, 0)[:, 0])
+    found = parse_sampled_key("load=choice(light,heavy)").quantiles(
+        design_matrix("latin", ["load"], 100, 0)[:, 0]
+    )
     assert found.count("light") == found.count("heavy") == 50
 
 
@@ -241,18 +246,20 @@ def test_a_choice_is_made_as_often_of_each() -> None:
 )
 def test_a_draw_that_can_not_be_is_refused(law: str) -> None:
     with pytest.raises(BadInput, match="--draw"):
-        draw(f"a.b={law}")
+        parse_sampled_key(f"a.b={law}")
 
 
 def test_a_latin_hypercube_has_one_value_in_each_stratum_of_each_quantity() -> None:
-    found = shares("latin", ["a", "b", "c"], 64, 5)
+    found = design_matrix("latin", ["a", "b", "c"], 64, 5)
     assert (np.sort(np.floor(found * 64), axis=0) == np.arange(64)[:, None]).all()
     assert abs(stats.spearmanr(found[:, 0], found[:, 1]).statistic) < 0.4
 
 
 @pytest.mark.parametrize("kind", ["random", "latin"])
 def test_a_further_quantity_leaves_the_others_as_they_were(kind: Any) -> None:
-    assert (shares(kind, ["b"], 20, 3)[:, 0] == shares(kind, ["a", "b"], 20, 3)[:, 1]).all()
+    assert (
+        design_matrix(kind, ["b"], 20, 3)[:, 0] == design_matrix(kind, ["a", "b"], 20, 3)[:, 1]
+    ).all()
 
 
 # Runs
@@ -341,7 +348,7 @@ def test_scenarios_side_by_side_share_their_draws(short: str, tmp_path: Path) ->
             "start.x is given twice",
         ),
         ({"norms": "x_m_ing"}, "did you mean 'x_m_inf'?"),
-        ({"design": "sobol", "draw": {"start.x": "uniform(0,1)"}}, "two --draw or more"),
+        ({"design": "sobol", "draw": {"start.x": "uniform(0,1)"}}, "or more, not 1"),
         (
             {
                 "design": "sobol",
@@ -453,7 +460,7 @@ def test_an_interruption_keeps_what_there_is_and_the_same_command_goes_on(
 def test_a_folder_that_somebody_is_at_work_in_is_refused(tmp_path: Path) -> None:
     with Journal(tmp_path, {"of": "one"}) as journal:
         journal.add(3, {"failure": None})
-        with pytest.raises(BadInput, match="another command is at work"):
+        with pytest.raises(BadInput, match="another command uses this folder"):
             Journal(tmp_path, {"of": "one"})
     with Journal(tmp_path, {"of": "one"}) as again:
         assert again.done == {3: {"run": 3, "failure": None}}
@@ -492,9 +499,15 @@ def test_a_folder_of_another_sweep_is_refused_in_a_line(short: str, tmp_path: Pa
 
 
 def test_processes_and_this_one_give_the_same_table(short: str, tmp_path: Path) -> None:
-    made = plan([short], [axis("load=light,heavy")], [draw("fan_wind.speed=uniform(0,1)")], 5, 0)
+    made = make_plan(
+        [short],
+        [parse_axis("load=light,heavy")],
+        [parse_sampled_key("fan_wind.speed=uniform(0,1)")],
+        5,
+        0,
+    )
     for name, jobs in (("one", 1), ("two", 2)):
-        swept(made, tmp_path / name, jobs)
+        run_plan(made, tmp_path / name, jobs)
     assert (tmp_path / "one" / "sweep.parquet").read_bytes() == (
         tmp_path / "two" / "sweep.parquet"
     ).read_bytes()
@@ -527,7 +540,7 @@ def blocks(
     law: Callable[..., np.ndarray], ends: Sequence[tuple[float, float]], runs: int
 ) -> np.ndarray:
     """A function on Saltelli's design, in the order of its rows."""
-    u = shares("sobol", [f"x{k}" for k in range(len(ends))], runs, 0)
+    u = design_matrix("sobol", [f"x{k}" for k in range(len(ends))], runs, 0)
     x = [low + (high - low) * u[:, k] for k, (low, high) in enumerate(ends)]
     return law(*x).reshape(len(ends) + 2, runs)
 

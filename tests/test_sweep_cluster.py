@@ -11,10 +11,10 @@ from typing import Any
 import pytest
 
 from boatsim.errors import BadInput
-from boatsim.sweeps.axes import axis
-from boatsim.sweeps.execute import swept
-from boatsim.sweeps.plan import Plan, plan
-from boatsim.sweeps.sampled_keys import draw
+from boatsim.sweeps.axes import parse_axis
+from boatsim.sweeps.execute import run_plan
+from boatsim.sweeps.plan import Plan, make_plan
+from boatsim.sweeps.sampled_keys import parse_sampled_key
 
 ray = pytest.importorskip("ray")
 pytestmark = pytest.mark.slow
@@ -37,11 +37,11 @@ def cluster(monkeypatch: pytest.MonkeyPatch) -> Iterator[Any]:
 
 
 def study(runs: int) -> Plan:
-    steered = axis("controller.use=pid_autopilot,l1_joystick")
-    return plan(
+    steered = parse_axis("controller.use=pid_autopilot,l1_joystick")
+    return make_plan(
         ["joystick_boat/sway_1"],
         [steered],
-        [draw("weak_reverse.astern_factor=normal(0.7,0.05)")],
+        [parse_sampled_key("weak_reverse.astern_factor=normal(0.7,0.05)")],
         runs,
         0,
     )
@@ -59,16 +59,16 @@ def test_a_node_that_is_lost_costs_no_run_and_the_table_is_that_of_processes(
         if share > 0.3 and len(cluster.list_all_nodes()) == 2:
             cluster.remove_node(lost, allow_graceful=False)
 
-    _, whole = swept(study(40), tmp_path / "cluster", ray=cluster.address, report=report)
+    _, whole = run_plan(study(40), tmp_path / "cluster", ray=cluster.address, report=report)
     assert whole and len(cluster.list_all_nodes()) == 1
-    swept(study(40), tmp_path / "here", jobs=1)
+    run_plan(study(40), tmp_path / "here", jobs=1)
     one, other = (tmp_path / name / "sweep.parquet" for name in ("cluster", "here"))
     assert one.read_bytes() == other.read_bytes()
 
 
 def test_no_cluster_is_one_line(tmp_path: Path) -> None:
     with pytest.raises(BadInput, match="--ray auto: no cluster answers"):
-        swept(study(2), tmp_path / "out", ray="auto")
+        run_plan(study(2), tmp_path / "out", ray="auto")
 
 
 def test_a_command_that_is_killed_on_a_cluster_goes_on_in_processes(

@@ -1,4 +1,4 @@
-"""The command line: `boatsim run | import | list | margins | compare | replay | diagnose`."""
+"""Command line of boatsim: `boatsim run | test | sweep | drive | diagnose | ...`."""
 
 from boatsim.cli.commands import app, main
 

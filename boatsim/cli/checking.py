@@ -1,41 +1,52 @@
-"""What `boatsim check` does: recordings in, what is wrong with them out, before any physics is suspected."""
+"""Implementation of `boatsim check`: print the findings of the quality checks of recordings."""
 
 import sys
 from pathlib import Path
 
-from boatsim.cli.exits import Exit, complain, say, words
+from boatsim.cli.exits import Exit, one_line, print_error, print_lines
 from boatsim.diagnosis.checks.entry import entry_text
 from boatsim.diagnosis.checks.finding import LOG_NOT_BOAT
 from boatsim.diagnosis.log_check import check_files
 from boatsim.errors import printable
 
-CLEAN = "nothing is wrong with this log that could be found"
+NO_FINDINGS = "the checks found nothing wrong with this recording"
 
 
-def check_logs(runs: list[Path], vessel: str | None, load: list[str]) -> int:
-    """Print the findings of each file; 0 where there are none. Raises BadInput."""
-    found, refused = check_files(runs, vessel, load)
-    for path, entries in found.items():
-        wrong = [e for e in entries if e["kind"] != "limit"]
-        faults = any(e["kind"] == "fault" for e in entries)
+def print_checks(runs: list[Path], vessel: str | None, load: list[str]) -> int:
+    """Check recordings and print the findings of each.
+
+    Args:
+        runs: Recordings.
+        vessel: Nominal vessel; None for the one that recording.toml names.
+        load: Load conditions.
+
+    Returns:
+        Exit code: 0 without findings, 1 with findings, 2 if a recording cannot be read.
+
+    Raises:
+        BadInput: An argument is wrong.
+    """
+    findings, refused = check_files(runs, vessel, load)
+    any_finding = False
+    for path, entries in findings.items():
+        wrong = [entry for entry in entries if entry["kind"] != "limit"]
+        any_finding |= bool(wrong)
+        summary = NO_FINDINGS
+        if wrong:
+            summary = "a diagnosis corrects this automatically"
+        if any(entry["kind"] == "fault" for entry in wrong):
+            summary = LOG_NOT_BOAT
         if wrong or not refused:
-            say(
-                [
-                    f"{printable(str(path))}: {LOG_NOT_BOAT if faults else 'a diagnosis corrects this automatically' if wrong else CLEAN}"
-                ]
-            )
-        for e in wrong:
-            say(f"  {line}" for line in entry_text(e))
-        for e in entries:
-            if e["kind"] == "limit":
-                say([f"  can not be identified: {e['evidence']}: {e.get('remedy', '')}"])
+            print_lines([f"{printable(str(path))}: {summary}"])
+        for entry in wrong:
+            print_lines(f"  {line}" for line in entry_text(entry))
+        for entry in entries:
+            if entry["kind"] == "limit":
+                remedy = entry.get("remedy", "")
+                print_lines([f"  cannot be identified: {entry['evidence']}: {remedy}"])
     for error in refused:
-        complain(words(error))
+        print_error(one_line(error))
     sys.stdout.flush()
     if refused:
         return Exit.BAD_INPUT
-    return (
-        Exit.MISSED
-        if any(e["kind"] != "limit" for entries in found.values() for e in entries)
-        else Exit.MET
-    )
+    return Exit.MISSED if any_finding else Exit.MET

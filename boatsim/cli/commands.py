@@ -1,4 +1,7 @@
-"""The commands and their options; what they do is imported when they are called, so that `--help` is quick."""
+"""Typer definitions of all commands and their options.
+
+Each command imports its implementation when it is called, so that `boatsim --help` answers quickly.
+"""
 
 import functools
 import os
@@ -11,22 +14,29 @@ from typing import Annotated, Any, Literal, NoReturn, ParamSpec
 import typer
 from typer.core import TyperGroup
 
-from boatsim.cli.exits import FAULTS, Exit, any_terminal, complain, say, words
-from boatsim.cli.trust_prompt import asking
+from boatsim.cli.exits import (
+    FAULTS,
+    Exit,
+    escape_unencodable,
+    one_line,
+    print_error,
+    print_lines,
+)
+from boatsim.cli.trust_prompt import trusted_content
 from boatsim.errors import BadInput
 from boatsim.interruption import raise_on_signals, signal_received
 from boatsim.quiet import exit_on_signals
 from boatsim.version import version as installed
 
 P = ParamSpec("P")
-PINNED_SEEDS = 5
-UsageError: Any = (
-    typer.BadParameter.__base__
-)  # of all mistakes on the command line typer gives a name to this one only
+BASELINE_SEEDS = 5  # enough runs for a range of a metric, at five times the cost of one run
+# Base class of all command-line errors; Typer exports only its subclass BadParameter.
+UsageError: Any = typer.BadParameter.__base__
+MOST_SPEED = 1e6  # times real time; a larger value is a mistake
 
 
-class OneLine(TyperGroup):
-    """The program as a whole: a mistake on its command line is one line too, and no arguments ask for help."""
+class OneLineGroup(TyperGroup):
+    """Command group that reports usage errors in one line and prints the help by default."""
 
     def main(
         self,
@@ -35,54 +45,68 @@ class OneLine(TyperGroup):
         *_: object,
         **__: object,
     ) -> NoReturn:
-        """Run the program and leave with its exit code."""
-        given = list(sys.argv[1:] if args is None else args)
-        any_terminal()
+        """Run the program and exit with its exit code.
+
+        Args:
+            args: Command-line arguments; None for those of the process.
+            prog_name: Name of the program in the help texts.
+        """
+        if args is None:
+            args = sys.argv[1:]
+        escape_unencodable()
         try:
-            code = super().main(given or ["--help"], prog_name, standalone_mode=False)
+            code = super().main(list(args) or ["--help"], prog_name, standalone_mode=False)
         except UsageError as error:
-            asked = error.ctx.command_path if error.ctx else "boatsim"
-            complain(f"{' '.join(error.format_message().split()).rstrip('.')}; see {asked} --help")
+            command = "boatsim"
+            if error.ctx:
+                command = error.ctx.command_path
+            message = " ".join(error.format_message().split()).rstrip(".")
+            print_error(f"{message}; see {command} --help")
             code = Exit.BAD_INPUT
         sys.exit(code)
 
 
 app = typer.Typer(
     name="boatsim",
-    cls=OneLine,
-    help="Small-boat motion and control on MuJoCo, and what a simulation of a real boat has left out.",
+    cls=OneLineGroup,
+    help="Simulate small boats on MuJoCo, test controllers, find the physics that a model lacks.",
     add_completion=False,
     pretty_exceptions_enable=False,
     rich_markup_mode=None,
 )
 
 Runs = Annotated[
-    list[Path], typer.Argument(metavar="RUN", help="Recordings: .csv, .parquet or our own .rrd.")
+    list[Path],
+    typer.Argument(metavar="RUN", help="Recordings: .csv, .parquet, or .rrd of boatsim."),
 ]
 OneRun = Annotated[
-    Path, typer.Argument(metavar="RUN", help="A recording: .csv, .parquet or our own .rrd.")
+    Path, typer.Argument(metavar="RUN", help="A recording: .csv, .parquet, or .rrd of boatsim.")
 ]
 VesselName = Annotated[
     str | None,
     typer.Option(
-        "--vessel", metavar="NAME|FOLDER|FILE", help="Nominal vessel, instead of recording.toml's."
+        "--vessel",
+        metavar="NAME|FOLDER|FILE",
+        help="Nominal vessel [default: the one in recording.toml].",
     ),
 ]
 
 
-def _folder(given: str | Path) -> Path:
-    if not str(given) or "\0" in str(given):
-        raise typer.BadParameter(f"{str(given)!r}; allowed is the name of a folder")
-    return Path(given)
+def _parse_folder(text: str | Path) -> Path:
+    if not str(text) or "\0" in str(text):
+        raise typer.BadParameter(f"{str(text)!r} is not the name of a folder")
+    return Path(text)
 
 
-def _speed(given: str | float) -> float:
+def _parse_speed(text: str | float) -> float:
+    if text == "max":
+        return 0.0
     try:
-        speed = 0.0 if given == "max" else float(given)
+        speed = float(text)
     except ValueError:
         speed = -1.0
-    if not 0.0 <= speed < 1e6:
-        raise typer.BadParameter(f"{given!r}; allowed are 0 or more, times real time, and max")
+    if not 0.0 <= speed < MOST_SPEED:
+        raise typer.BadParameter(f"{text!r} is neither a factor of real time (0 or more) nor max")
     return speed
 
 
@@ -96,75 +120,88 @@ Content = Annotated[
     typer.Option(
         "--content",
         metavar="DIR",
-        help="A folder of your own content, trusted to run; may be repeated.",
+        help="Folder of your own effects, vessels, ...; its Python files may run. Repeatable.",
     ),
 ]
 Jobs = Annotated[
     int | None,
-    typer.Option(min=1, metavar="N", help="At the same time [default: one for each processor]."),
+    typer.Option(min=1, metavar="N", help="Parallel processes [default: one per processor]."),
 ]
 Ray = Annotated[
     str | None,
     typer.Option(
-        "--ray", metavar="auto|ADDRESS", help="On this Ray cluster instead; needs boatsim[ray]."
+        "--ray", metavar="auto|ADDRESS", help="Use this Ray cluster instead; needs boatsim[ray]."
     ),
 ]
 Trusted = Annotated[
     bool,
-    typer.Option("--trust", help="Let the Python files run that lie beside the files named here."),
+    typer.Option("--trust", help="Run Python files in the folders of the files given here."),
 ]
 
 
-def guarded(command: Callable[P, int | None]) -> Callable[P, None]:
-    """The command with its result as exit code; what goes wrong is one line."""
+def exits_with_code(command: Callable[P, int | None]) -> Callable[P, None]:
+    """Decorate a command so that it exits with the code it returns and prints errors in one line.
+
+    Args:
+        command: Function of a command; it returns its exit code, or None for 0.
+
+    Returns:
+        The function that Typer calls.
+    """
 
     @functools.wraps(command)
-    def guard(*args: P.args, **options: P.kwargs) -> None:
-        raise typer.Exit(_code(lambda: command(*args, **options) or 0))
+    def wrapper(*args: P.args, **options: P.kwargs) -> None:
+        raise typer.Exit(_exit_code(lambda: command(*args, **options) or 0))
 
-    return guard
+    return wrapper
 
 
-def _code(command: Callable[[], int]) -> int:
-    """Exit code of a command, its error printed."""
+def _exit_code(command: Callable[[], int]) -> int:
+    """Call a command; print its error, if any, and return the exit code."""
     try:
         return command()
     except FAULTS as error:
-        complain(words(error))
+        print_error(one_line(error))
         return Exit.BAD_INPUT
     except KeyboardInterrupt:
-        complain("interrupted")
+        print_error("interrupted")
         return Exit.INTERRUPTED
     except MemoryError:
-        complain(
-            "this needs more memory than there is; a shorter recording, or a longer step or `log`, needs less"
+        print_error(
+            "out of memory; use a shorter recording, a longer step or a longer interval `log`"
         )
         return Exit.BAD_INPUT
     except Exception as error:
-        if signal_received():  # in the middle of something that could not take it, such as numba
-            complain("interrupted")
+        if (
+            signal_received()
+        ):  # The interruption came inside code that turns it into another error (numba).
+            print_error("interrupted")
             return Exit.INTERRUPTED
         if not type(error).__module__.startswith("numba."):
             raise
-        complain(
-            f"the law of an effect can not be compiled: {_said(error)}; a law takes floats and allocates nothing"
+        print_error(
+            f"numba cannot compile an effect: {_numba_message(error)}; the function of an effect "
+            "takes floats and allocates no memory"
         )
         return Exit.BAD_INPUT
 
 
-def _said(error: Exception) -> str:
-    """What numba says of a law: the first place that it names, and the first line that says something."""
-    lines = [" ".join(line.split()) for line in str(error).splitlines()]
-    said = next(
-        (line.rstrip(":") for line in lines if line and not line.startswith("Failed in")),
-        type(error).__name__,
-    )
-    place = re.search(r'File "([^"]+)", line (\d+)', str(error))
-    return f"{Path(place[1]).name}:{place[2]}: {said}" if place else said
+def _numba_message(error: Exception) -> str:
+    """The first source location in a numba error, and its first informative line."""
+    message = type(error).__name__
+    for line in str(error).splitlines():
+        words = " ".join(line.split())
+        if words and not words.startswith("Failed in"):
+            message = words.rstrip(":")
+            break
+    location = re.search(r'File "([^"]+)", line (\d+)', str(error))
+    if location:
+        return f"{Path(location[1]).name}:{location[2]}: {message}"
+    return message
 
 
-def _version(asked: bool) -> None:
-    if asked:
+def _print_version(requested: bool) -> None:
+    if requested:
         print(f"boatsim {installed()}")
         raise typer.Exit
 
@@ -174,223 +211,245 @@ def options(
     version: Annotated[
         bool,
         typer.Option(
-            "--version", callback=_version, is_eager=True, help="Print the version and leave."
+            "--version", callback=_print_version, is_eager=True, help="Print the version and exit."
         ),
     ] = False,
 ) -> None:
-    """Options of the program itself."""
+    """Options before the name of a command."""
 
 
 @app.command()
-@guarded
+@exits_with_code
 def run(
     scenarios: Annotated[
-        list[str], typer.Argument(metavar="SCENARIO", help="Names, folders, patterns, files.")
+        list[str],
+        typer.Argument(metavar="SCENARIO", help="Names, folders, patterns or files of scenarios."),
     ],
     out: Annotated[
         Path | None,
-        typer.Option(metavar="DIR", parser=_folder, help="Folder [default: out/VESSEL/SCENARIO]."),
+        typer.Option(
+            metavar="DIR",
+            parser=_parse_folder,
+            help="Output folder [default: out/VESSEL/SCENARIO].",
+        ),
     ] = None,
     jobs: Annotated[
-        int, typer.Option(min=1, metavar="N", help="Scenarios run at the same time.")
+        int, typer.Option(min=1, metavar="N", help="Number of scenarios to run in parallel.")
     ] = 1,
     seed: Annotated[
-        int | None, typer.Option(min=0, metavar="N", help="Seed instead of the scenarios' own.")
+        int | None,
+        typer.Option(min=0, metavar="N", help="Random seed [default: that of each scenario]."),
     ] = None,
     live: Annotated[
-        bool, typer.Option("--live", help="Show the run in a rerun viewer, in real time.")
+        bool, typer.Option("--live", help="Show the run in real time in the Rerun viewer.")
     ] = False,
     serve: Annotated[
-        bool, typer.Option("--serve", help="Show it in a browser: rerun's web viewer.")
+        bool, typer.Option("--serve", help="Show the run in a browser (Rerun's web viewer).")
     ] = False,
     speed: Annotated[
         float | None,
         typer.Option(
-            metavar="X", parser=_speed, help="Times real time, with the two; 0 or max: no wait."
+            metavar="X",
+            parser=_parse_speed,
+            help="With --live or --serve: factor of real time; 0 or max for no limit.",
         ),
     ] = None,
     controller: Annotated[
         list[str] | None,
-        typer.Option(
-            metavar="NAME|FILE", help="Steer with this one; of several each runs, side by side."
-        ),
+        typer.Option(metavar="NAME|FILE", help="Use this controller; repeat to compare several."),
     ] = None,
     side_by_side: Annotated[
-        bool, typer.Option("--side-by-side", help="One table and one compare.rrd of all runs.")
+        bool,
+        typer.Option("--side-by-side", help="Write one table and one compare.rrd of all runs."),
     ] = False,
     content: Content = None,
     trust: Trusted = False,
 ) -> int:
-    """Run scenarios: recording.csv, norms.json, camera.csv, run.rrd, and a table of norms beside their bars."""
-    from boatsim.cli.run_many import Watched, run_all
+    """Run scenarios; print metrics; write recording.csv, norms.json, camera.csv and run.rrd."""
+    from boatsim.cli.run_many import ViewerOptions, run_all
 
     if speed is not None and not (live or serve):
-        raise BadInput(
-            f"--speed = {speed:g}: only a run that is shown is held back; give --live or --serve too"
-        )
-    watched = Watched(serve, 1.0 if speed is None else speed) if live or serve else None
-    several = controller or []
-    with asking(content, trust, [*scenarios, *several]):
-        return run_all(
-            scenarios, out, jobs, seed, watched, several, side_by_side or len(several) > 1
-        )
+        raise BadInput(f"--speed = {speed:g} applies only with --live or --serve")
+    viewer = None
+    if live or serve:
+        viewer = ViewerOptions(serve, 1.0 if speed is None else speed)
+    controllers = controller or []
+    with trusted_content(content, trust, [*scenarios, *controllers]):
+        side_by_side = side_by_side or len(controllers) > 1
+        return run_all(scenarios, out, jobs, seed, viewer, controllers, side_by_side)
 
 
 @app.command()
-@guarded
+@exits_with_code
 def drive(
-    vessel: Annotated[str, typer.Argument(metavar="VESSEL", help="A name, a folder or a file.")],
+    vessel: Annotated[
+        str, typer.Argument(metavar="VESSEL", help="Name, folder or file of a vessel.")
+    ],
     controller: Annotated[
         str | None,
         typer.Option(
             metavar="NAME|FILE",
-            help="Between sticks and thrusters [default: the scenario's, or none].",
+            help="Controller that follows the sticks [default: the scenario's, or none].",
         ),
     ] = None,
     scenario: Annotated[
         str | None,
         typer.Option(
-            metavar="NAME|FILE", help="Its water, wind, load and start [default: open water]."
+            metavar="NAME|FILE", help="Water, wind, load and start [default: open water]."
         ),
     ] = None,
     load: Load = None,
     seconds: Annotated[
         float,
-        typer.Option(min=0.1, max=86400.0, metavar="S", help="The run ends after so long [s]."),
+        typer.Option(min=0.1, max=86400.0, metavar="S", help="Duration of the run [s]."),
     ] = 3600.0,
     out: Annotated[
         Path | None,
         typer.Option(
-            metavar="DIR", parser=_folder, help="Folder [default: out/VESSEL/drive-TIME]."
+            metavar="DIR",
+            parser=_parse_folder,
+            help="Output folder [default: out/VESSEL/drive-TIME].",
         ),
     ] = None,
     open_: Annotated[
         bool | None,
         typer.Option(
-            "--open/--no-open", help="Open the page in a browser [default: with a screen]."
+            "--open/--no-open", help="Open the page in a browser [default: if there is a display]."
         ),
     ] = None,
     port: Annotated[
-        int, typer.Option(min=0, max=65535, metavar="N", help="Of the page; 0: any that is free.")
+        int,
+        typer.Option(min=0, max=65535, metavar="N", help="Port of the page; 0 for any free port."),
     ] = 0,
     live: Annotated[
-        bool, typer.Option("--live", help="Show the run in a rerun viewer too.")
+        bool, typer.Option("--live", help="Also show the run in the Rerun viewer.")
     ] = False,
     serve: Annotated[
-        bool, typer.Option("--serve", help="Show it in rerun's web viewer too.")
+        bool, typer.Option("--serve", help="Also show the run in Rerun's web viewer.")
     ] = False,
     content: Content = None,
     trust: Trusted = False,
 ) -> int:
-    """Drive a boat in real time, by gamepad, keyboard or mouse, on a page in the browser; recorded as any run."""
-    from boatsim.cli.driving import drive as driven
+    """Drive a boat in real time from a page in the browser (gamepad, keys, mouse); record it."""
+    from boatsim.cli.driving import drive_vessel
+    from boatsim.cli.run_many import ViewerOptions
+    from boatsim.drive.task import Task
 
-    with asking(content, trust, [vessel, controller, scenario]):
-        return driven(
-            vessel,
-            scenario,
-            controller,
-            _loads(load),
-            seconds,
-            out,
-            open_,
-            port,
-            live or serve,
-            serve,
-        )
+    with trusted_content(content, trust, [vessel, controller, scenario]):
+        task = Task(vessel, scenario, controller, _split_loads(load), seconds)
+        viewer = None
+        if live or serve:
+            viewer = ViewerOptions(serve)
+        return drive_vessel(task, out, open_, port, viewer)
 
 
 @app.command()
-@guarded
+@exits_with_code
 def sweep(
     scenarios: Annotated[
-        list[str], typer.Argument(metavar="SCENARIO", help="Names, folders, patterns, files.")
+        list[str],
+        typer.Argument(metavar="SCENARIO", help="Names, folders, patterns or files of scenarios."),
     ],
     vary: Annotated[
         list[str] | None,
         typer.Option(
-            metavar="KEY=A:B:N|KEY=X,Y,...", help="A direction of the grid; may be repeated."
+            metavar="KEY=A:B:N|KEY=X,Y,...", help="Axis of the parameter grid. Repeatable."
         ),
     ] = None,
     draw: Annotated[
         list[str] | None,
         typer.Option(
-            metavar="KEY=LAW(...)",
-            help="Drawn anew for each run: normal(mean,sd), ...; may be repeated.",
+            metavar="KEY=DISTRIBUTION(...)",
+            help="Parameter sampled for each run, such as normal(mean,sd). Repeatable.",
         ),
     ] = None,
     runs: Annotated[
-        int, typer.Option(min=1, metavar="N", help="Draws, the same at every point of the grid.")
+        int, typer.Option(min=1, metavar="N", help="Samples; the same at every grid point.")
     ] = 1,
-    latin: Annotated[bool, typer.Option("--latin", help="Draws as a Latin hypercube.")] = False,
+    latin: Annotated[bool, typer.Option("--latin", help="Sample by Latin hypercube.")] = False,
     sobol: Annotated[
         bool,
         typer.Option(
-            "--sobol", help="Saltelli's design and Sobol indices: N (D + 2) runs a point."
+            "--sobol",
+            help="Sobol sensitivity indices by Saltelli's design: N (D + 2) runs per grid point.",
         ),
     ] = False,
     seed: Annotated[
-        int, typer.Option(min=0, metavar="N", help="Of all that is drawn, noise too.")
+        int,
+        typer.Option(min=0, metavar="N", help="Random seed of parameter samples and sensor noise."),
     ] = 0,
     norm: Annotated[
         list[str] | None,
-        typer.Option(metavar="NAME", help="Print and draw this one, not all; may be repeated."),
+        typer.Option(metavar="NAME", help="Show only this metric in the report. Repeatable."),
     ] = None,
     out: Annotated[
-        Path, typer.Option(metavar="DIR", parser=_folder, help="Folder of the sweep.")
+        Path, typer.Option(metavar="DIR", parser=_parse_folder, help="Output folder of the sweep.")
     ] = Path("out/sweep"),
     jobs: Jobs = None,
     ray: Ray = None,
     content: Content = None,
     trust: Trusted = False,
 ) -> int:
-    """Run scenarios over a grid and over draws: sweep.parquet, report.html; the same command goes on where it ended."""
-    from boatsim.cli.sweeping import sweep as carry_out
+    """Run scenarios over a parameter grid and random samples; write sweep.parquet and report.html.
+
+    An interrupted sweep continues when the same command is given again.
+    """
+    from boatsim.cli.sweeping import SweepOptions, run_sweep
 
     if latin and sobol:
-        raise BadInput("--latin and --sobol are two designs; choose one")
-    with asking(content, trust, scenarios):
-        kind: Literal["random", "latin", "sobol"] = (
-            "sobol" if sobol else "latin" if latin else "random"
-        )
-        return carry_out(
-            scenarios, vary or [], draw or [], runs, kind, seed, out, jobs, ray, norm or []
-        )
+        raise BadInput("--latin and --sobol exclude each other; choose one")
+    design: Literal["random", "latin", "sobol"] = "random"
+    if latin:
+        design = "latin"
+    if sobol:
+        design = "sobol"
+    options = SweepOptions(vary or [], draw or [], runs, design, seed)
+    with trusted_content(content, trust, scenarios):
+        return run_sweep(scenarios, options, out, jobs, ray, norm or [])
 
 
 @app.command()
-@guarded
+@exits_with_code
 def test(
     folder: Annotated[
-        Path, typer.Argument(metavar="FOLDER", parser=_folder, help="With scenarios in it.")
+        Path,
+        typer.Argument(
+            metavar="FOLDER", parser=_parse_folder, help="Folder of scenarios (*.toml)."
+        ),
     ],
     pin: Annotated[
-        bool, typer.Option("--pin", help="Write FOLDER/pins.toml: the norms as they are now.")
+        bool,
+        typer.Option("--pin", help="Write the present metrics as baselines to FOLDER/pins.toml."),
     ] = False,
     seeds: Annotated[
         int | None,
         typer.Option(
-            min=1, metavar="N", help="Seeds whose range is a pin's tolerance [default: 5]."
+            min=1,
+            metavar="N",
+            help="With --pin: seeds whose range gives the tolerance [default: 5].",
         ),
     ] = None,
     junit: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="Write JUnit XML, for CI.")
+        Path | None, typer.Option(metavar="FILE", help="Also write JUnit XML.")
     ] = None,
     json: Annotated[bool, typer.Option("--json", help="Print JSON instead of the table.")] = False,
     content: Content = None,
     trust: Trusted = False,
 ) -> int:
-    """Run a folder's scenarios and compare their norms with their pins; leaves with 1 if anything differs."""
-    from boatsim.cli.testing import regress
+    """Run the scenarios of a folder and compare their metrics with the baselines in pins.toml.
+
+    The exit code is 1 if a metric differs from its baseline or lies outside its regression band.
+    """
+    from boatsim.cli.testing import run_regression
 
     if seeds and not pin:
-        raise BadInput("--seeds says over how many seeds pins are drawn; it needs --pin")
-    with asking(content, trust, [folder]):
-        return regress(folder, pin, seeds or PINNED_SEEDS, junit, json)
+        raise BadInput("--seeds applies only with --pin")
+    with trusted_content(content, trust, [folder]):
+        return run_regression(folder, pin, seeds or BASELINE_SEEDS, junit, json)
 
 
 @app.command()
-@guarded
+@exits_with_code
 def manoeuvre(
     name: Annotated[
         str,
@@ -400,121 +459,130 @@ def manoeuvre(
         ),
     ],
     vessel: Annotated[
-        str, typer.Option("--vessel", metavar="NAME|FOLDER|FILE", help="What does it.")
+        str, typer.Option("--vessel", metavar="NAME|FOLDER|FILE", help="Vessel that performs it.")
     ],
     load: Load = None,
     angle: Annotated[
         float | None,
-        typer.Option(metavar="DEG", help="Helm angle, heel of a roll decay; negative to port."),
+        typer.Option(metavar="DEG", help="Helm angle, or heel of a roll decay; negative to port."),
     ] = None,
     heading: Annotated[
         float | None,
         typer.Option(
-            metavar="DEG", help="Zig-zag: heading that reverses the helm [default: angle]."
+            metavar="DEG", help="Zig-zag: heading change that reverses the helm [default: angle]."
         ),
     ] = None,
     speed: Annotated[
-        float | None, typer.Option(min=1e-3, metavar="M/S", help="Where the approach begins.")
+        float | None, typer.Option(min=1e-3, metavar="M/S", help="Approach speed.")
     ] = None,
     out: Annotated[
-        Path | None, typer.Option(metavar="DIR", parser=_folder, help="Folder for the files.")
+        Path | None, typer.Option(metavar="DIR", parser=_parse_folder, help="Output folder.")
     ] = None,
     content: Content = None,
     trust: Trusted = False,
 ) -> int:
-    """Run a standard manoeuvre of a vessel: its figures beside the limits of the IMO, and the files of a run."""
+    """Run a standard manoeuvre; compare its figures with the limits of IMO MSC.137(76)."""
     from boatsim.cli.run_many import run_manoeuvre
     from boatsim.simulate.manoeuvre import scenario_of
 
-    with asking(content, trust, [vessel]):
-        made = scenario_of(name, vessel, _loads(load), angle, speed, heading)
-        return run_manoeuvre(made, out or Path("out") / f"{made.vessel.name}_{name}")
+    with trusted_content(content, trust, [vessel]):
+        scenario = scenario_of(name, vessel, _split_loads(load), angle, speed, heading)
+        return run_manoeuvre(scenario, out or Path("out") / f"{scenario.vessel.name}_{name}")
 
 
 @app.command("list")
-@guarded
+@exits_with_code
 def list_(
     kind: Annotated[
         Literal["vessels", "controllers", "effects", "sensors", "measures", "scenarios"] | None,
-        typer.Argument(help="Only these."),
+        typer.Argument(help="Kind of content [default: all kinds]."),
     ] = None,
     like: Annotated[
         str | None,
-        typer.Argument(metavar="LIKE", help="Only names with this in them, or a pattern."),
+        typer.Argument(
+            metavar="LIKE", help="Only names that contain this text or match this pattern."
+        ),
     ] = None,
     content: Content = None,
 ) -> None:
-    """List vessels, controllers, effects, measures and scenarios, a line each."""
-    from boatsim.cli.show import listing
+    """List the vessels, controllers, effects, sensors, measures and scenarios, one per line."""
+    from boatsim.cli.catalogue import list_content
 
-    with asking(content):
-        say(listing(kind, like))
+    with trusted_content(content):
+        print_lines(list_content(kind, like))
 
 
 @app.command()
-@guarded
+@exits_with_code
 def show(
     name: Annotated[
         str,
         typer.Argument(
             metavar="NAME",
-            help="An effect, controller, vessel, measure, sensor or scenario; a folder.",
+            help="Name or file of an effect, controller, measure, sensor, vessel or scenario.",
         ),
     ],
     content: Content = None,
     trust: Trusted = False,
 ) -> None:
-    """Say what something is: its parameters with unit, bounds, default and source, and an example to paste."""
-    from boatsim.cli.about import about
+    """Describe an effect, vessel, ...: parameters (unit, range, default), source, example."""
+    from boatsim.cli.catalogue import describe
 
-    with asking(content, trust, [name]):
-        say(about(name))
+    with trusted_content(content, trust, [name]):
+        print_lines(describe(name))
 
 
 @app.command()
-@guarded
+@exits_with_code
 def margins(
     controller: Annotated[str, typer.Argument(help="Name of a controller, or its .py file.")],
     content: Content = None,
 ) -> None:
-    """Print L1 norm, crossover, phase margin and delay margin of a controller's feedback channels."""
-    from boatsim.control import margins as found
+    """Print L1 norm, crossover frequency, phase and delay margin of a controller."""
+    from boatsim.control import margins as control_margins
     from boatsim.physics.content import load_class
 
-    with asking(content):
-        print(found.text(found.table(load_class("controller", controller, named=True)())))
+    with trusted_content(content):
+        made = load_class("controller", controller, named=True)()
+        print(control_margins.text(control_margins.table(made)))
 
 
 @app.command()
-@guarded
+@exits_with_code
 def compare(
     run: OneRun,
     out: Annotated[
         Path,
-        typer.Option(metavar="DIR", parser=_folder, help="Folder for compare.csv and compare.rrd."),
+        typer.Option(metavar="DIR", parser=_parse_folder, help="Output folder."),
     ] = Path("out/compare"),
     vessel: VesselName = None,
     load: Load = None,
     scenario: Annotated[
         str | None,
-        typer.Option(metavar="NAME|FILE", help="Simulate this, not the recorded commands."),
+        typer.Option(
+            metavar="NAME|FILE",
+            help="Compare with a run of this scenario, not with the recorded commands.",
+        ),
     ] = None,
     content: Content = None,
     trust: Trusted = False,
 ) -> int:
-    """Compare a recording with a simulation of its commands, under the effects of its scenario, or of a scenario."""
+    """Compare a recording with a simulation of its commands, or with a run of a scenario.
+
+    The simulation includes the effects of the scenario that the recording names.
+    """
     from boatsim.cli import diagnosis as commands
 
-    with asking(content, trust, [run, vessel, scenario]):
-        return commands.compare(run, vessel, _loads(load), scenario, out)
+    with trusted_content(content, trust, [run, vessel, scenario]):
+        return commands.compare(run, vessel, _split_loads(load), scenario, out)
 
 
 @app.command()
-@guarded
+@exits_with_code
 def replay(
     run: OneRun,
     out: Annotated[
-        Path, typer.Option(metavar="DIR", parser=_folder, help="Folder for replay.csv.")
+        Path, typer.Option(metavar="DIR", parser=_parse_folder, help="Output folder.")
     ] = Path("out/replay"),
     vessel: VesselName = None,
     load: Load = None,
@@ -524,41 +592,41 @@ def replay(
     content: Content = None,
     trust: Trusted = False,
 ) -> int:
-    """Simulate a recording in free runs, each driven by the recorded commands alone."""
+    """Simulate a recording in free runs driven by the recorded commands; print the rms errors."""
     from boatsim.cli import diagnosis as commands
 
-    with asking(content, trust, [run, vessel]):
-        return commands.replay(run, vessel, _loads(load), horizon, out)
+    with trusted_content(content, trust, [run, vessel]):
+        return commands.replay(run, vessel, _split_loads(load), horizon, out)
 
 
 @app.command()
-@guarded
+@exits_with_code
 def diagnose(
     runs: Runs,
     out: Annotated[
         Path,
-        typer.Option(
-            metavar="DIR", parser=_folder, help="Folder for report.html and the other files."
-        ),
+        typer.Option(metavar="DIR", parser=_parse_folder, help="Output folder."),
     ] = Path("out/diagnosis"),
     hold_out: Annotated[
         list[Path] | None,
-        typer.Option(metavar="RUN", help="Judge the result on this one, unseen; may be repeated."),
+        typer.Option(metavar="RUN", help="Recording used only to validate the result. Repeatable."),
     ] = None,
     vessel: VesselName = None,
     load: Load = None,
     library: Annotated[
         list[str] | None,
-        typer.Option(metavar="NAME|FILE", help="Try this effect too; may be repeated."),
+        typer.Option(metavar="NAME|FILE", help="Also test this effect as a candidate. Repeatable."),
     ] = None,
     without: Annotated[
         list[str] | None,
-        typer.Option(metavar="NAME", help="Do not try this effect; may be repeated."),
+        typer.Option(metavar="NAME", help="Do not test this effect. Repeatable."),
     ] = None,
     horizon: Annotated[
         float | None,
         typer.Option(
-            min=0.1, metavar="S", help="Length of each free run [s], if not the usual one."
+            min=0.1,
+            metavar="S",
+            help="Length of each free run [s] [default: from the vessel's size].",
         ),
     ] = None,
     settings: Annotated[
@@ -566,13 +634,14 @@ def diagnose(
         typer.Option(
             "--set",
             metavar="KEY=VALUE",
-            help="Change a setting of the diagnosis, such as select.odds=3; may be repeated.",
+            help="Change a setting of the diagnosis, such as select.odds=3. Repeatable.",
         ),
     ] = None,
     each: Annotated[
         bool,
         typer.Option(
-            "--each", help="Each recording by itself, folders for those in them: diagnoses.parquet."
+            "--each",
+            help="Diagnose each recording (or all in a folder) separately: diagnoses.parquet.",
         ),
     ] = False,
     jobs: Jobs = None,
@@ -580,33 +649,41 @@ def diagnose(
     content: Content = None,
     trust: Trusted = False,
 ) -> int:
-    """Say which physics a vessel's model leaves out of recordings of the real one."""
+    """Identify the physical effects that the model of a vessel lacks, from recordings.
+
+    Settings of the method are changed with --set; boatsim/diagnosis/config.py lists them with unit,
+    default and reason, and diagnosis.json holds the values used.
+    """
     from boatsim.cli import diagnosis as commands
     from boatsim.diagnosis.config import from_settings
+    from boatsim.sweeps.diagnoses import DiagnosisOptions
 
-    held, own, left_out = hold_out or [], library or [], without or []
-    changed = dict(map(_assignment, settings or []))
-    from_settings(changed)  # a mistake in a setting ends the command before anything is read
+    held_out = hold_out or []
+    changed = dict(map(_split_setting, settings or []))
+    from_settings(changed)  # Report a mistake in a setting before reading any recording.
     if not each and (jobs is not None or ray is not None):
         raise BadInput(
-            "--jobs and --ray are for many recordings, each diagnosed by itself; give --each too"
+            "--jobs and --ray apply only with --each, which diagnoses recordings separately"
         )
-    with asking(content, trust, [*runs, *held, vessel]):
+    options = DiagnosisOptions(
+        hold_out=tuple(map(str, held_out)),
+        vessel=vessel,
+        load=tuple(_split_loads(load)),
+        library=tuple(library or ()),
+        without=tuple(without or ()),
+        horizon=horizon,
+        settings=tuple(changed.items()),
+    )
+    with trusted_content(content, trust, [*runs, *held_out, vessel]):
         if each:
             from boatsim.cli.sweeping import diagnose_each
-            from boatsim.sweeps.diagnoses import Asked
 
-            names = tuple(map(str, held)), vessel, tuple(_loads(load)), tuple(own), tuple(left_out)
-            return diagnose_each(
-                runs, Asked(*names, horizon, tuple(changed.items())), out, jobs, ray
-            )
-        return commands.diagnose(
-            runs, held, vessel, _loads(load), out, own, left_out, horizon, changed
-        )
+            return diagnose_each(runs, options, out, jobs, ray)
+        return commands.diagnose(runs, options, out)
 
 
 @app.command()
-@guarded
+@exits_with_code
 def check(
     runs: Runs,
     vessel: VesselName = None,
@@ -614,130 +691,156 @@ def check(
     content: Content = None,
     trust: Trusted = False,
 ) -> int:
-    """Say what is wrong with recordings before physics is suspected; leaves with 1 if anything is."""
-    from boatsim.cli.checking import check_logs
+    """Check the quality of recordings before a diagnosis; exit with 1 if a check fails."""
+    from boatsim.cli.checking import print_checks
 
-    with asking(content, trust, [*runs, vessel]):
-        return check_logs(runs, vessel, _loads(load))
+    with trusted_content(content, trust, [*runs, vessel]):
+        return print_checks(runs, vessel, _split_loads(load))
 
 
 @app.command("import")
-@guarded
+@exits_with_code
 def import_(
     log: Annotated[
         Path,
         typer.Argument(
             metavar="LOG",
-            help="ArduPilot .BIN, ROS .mcap, .bag, .db3, PX4 .ulg, NMEA .nmea, .csv, ...",
+            help="Log: ArduPilot .BIN, ROS .mcap, .bag, .db3, PX4 .ulg, NMEA .nmea, .csv, ...",
         ),
     ],
     out: Annotated[
         Path | None, typer.Option(metavar="RUN.csv", help="Recording to write; needs --map.")
     ] = None,
     map: Annotated[
-        Path | None, typer.Option(metavar="MAP.toml", help="Which signal is which column.")
+        Path | None,
+        typer.Option(
+            metavar="MAP.toml", help="Map from signals of the log to columns of a recording."
+        ),
     ] = None,
     propose: Annotated[
-        Path | None, typer.Option(metavar="MAP.toml", help="Write the proposed map to this file.")
+        Path | None, typer.Option(metavar="MAP.toml", help="Write a proposed map to this file.")
     ] = None,
     vessel: VesselName = None,
     load: Load = None,
     content: Content = None,
     trust: Trusted = False,
 ) -> int:
-    """Turn a log into a recording by a map; without one, list its signals and propose a map."""
+    """Convert a log to a recording with a map; without a map, list its signals and propose one."""
     from boatsim.cli.importing import import_log
 
-    with asking(content, trust, [vessel]):
-        return import_log(log, out, map, propose, vessel, _loads(load))
+    with trusted_content(content, trust, [vessel]):
+        return import_log(log, out, map, propose, vessel, _split_loads(load))
 
 
 @app.command()
-@guarded
+@exits_with_code
 def new(
     folder: Annotated[
-        Path, typer.Argument(metavar="FOLDER", parser=_folder, help="Of the new boat, called so.")
+        Path,
+        typer.Argument(
+            metavar="FOLDER",
+            parser=_parse_folder,
+            help="New folder; its name is the name of the boat.",
+        ),
     ],
-    length: Annotated[float, typer.Option(metavar="M", help="Length of the waterline [m].")],
-    beam: Annotated[float, typer.Option(metavar="M", help="Beam overall [m].")],
-    mass: Annotated[float, typer.Option(metavar="KG", help="Mass with all on board [kg].")],
+    length: Annotated[float, typer.Option(metavar="M", help="Waterline length [m].")],
+    beam: Annotated[float, typer.Option(metavar="M", help="Overall beam [m].")],
+    mass: Annotated[float, typer.Option(metavar="KG", help="Mass including payload [kg].")],
     thruster: Annotated[
         list[str] | None,
         typer.Option(
             metavar="X,Y[,MAX_N[,ASTERN_N]]",
-            help="A fixed thruster, ahead and to starboard of the mass centre [m]; may be repeated.",
+            help="Fixed thruster: position forward and to starboard of the CG [m]. Repeatable.",
         ),
     ] = None,
     steered: Annotated[
         list[str] | None,
         typer.Option(
             metavar="X,Y[,MAX_N[,ASTERN_N]]",
-            help="A thruster that turns, an outboard; may be repeated.",
+            help="Steerable thruster, such as an outboard. Repeatable.",
         ),
     ] = None,
     rudder: Annotated[
         str | None,
         typer.Option(
-            metavar="X[,AREA]", help="A rudder, ahead of the mass centre [m], its area [m^2]."
+            metavar="X[,AREA]", help="Rudder: position forward of the CG [m], area [m^2]."
         ),
     ] = None,
     draught: Annotated[
-        float | None, typer.Option(metavar="M", help="[m] [default: what carries the mass].")
+        float | None,
+        typer.Option(metavar="M", help="Draught [m] [default: from the displacement]."),
     ] = None,
-    hulls: Annotated[int, typer.Option(min=1, max=2, help="2 for a catamaran.")] = 1,
+    hulls: Annotated[
+        int, typer.Option(min=1, max=2, help="Number of hulls; 2 for a catamaran.")
+    ] = 1,
     speed: Annotated[
-        float | None, typer.Option(metavar="M/S", help="Reached at full thrust [m/s].")
+        float | None, typer.Option(metavar="M/S", help="Top speed at full thrust [m/s].")
     ] = None,
     thrust: Annotated[
         float | None,
-        typer.Option(metavar="N", help="Full thrust of each thruster that states none [N]."),
+        typer.Option(metavar="N", help="Full thrust of each thruster without MAX_N [N]."),
     ] = None,
     from_log: Annotated[
         list[Path] | None,
         typer.Option(
             "--from-log",
             metavar="RUN",
-            help="Fit the coefficients to this recording; may be repeated.",
+            help="Fit the coefficients to this recording. Repeatable.",
         ),
     ] = None,
-    force: Annotated[
-        bool, typer.Option("--force", help="Write over a folder that is there.")
-    ] = False,
+    force: Annotated[bool, typer.Option("--force", help="Overwrite an existing folder.")] = False,
 ) -> int:
-    """Make a boat from its particulars: a vessel file with every number's rule, a drawing, a first scenario."""
-    from boatsim.cli.newboat import new_boat
+    """Create a vessel from its main particulars.
+
+    The folder gets vessel.toml with the rule behind every number, a hull drawing and a scenario.
+    """
+    from boatsim.cli.newboat import create_boat
     from boatsim.newboat.particulars import particulars
 
-    name, driven, turned = folder.resolve().name, thruster or [], steered or []
-    boat = particulars(
-        name, length, beam, mass, driven, turned, rudder, draught, hulls, speed, thrust
+    main_particulars = particulars(
+        folder.resolve().name,
+        length,
+        beam,
+        mass,
+        thruster or [],
+        steered or [],
+        rudder,
+        draught,
+        hulls,
+        speed,
+        thrust,
     )
-    return new_boat(folder, boat, from_log or [], force)
+    return create_boat(folder, main_particulars, from_log or [], force)
 
 
-def _assignment(text: str) -> tuple[str, str]:
-    """Split "key=value". Raises BadInput."""
+def _split_setting(text: str) -> tuple[str, str]:
+    """Split "key=value"; raises BadInput."""
     key, equals, value = text.partition("=")
     if not equals:
         raise BadInput(f"--set {text}: write KEY=VALUE, such as select.odds=3")
     return key.strip(), value.strip()
 
 
-def _loads(given: list[str] | None) -> list[str]:
-    return [name.strip() for text in given or [] for name in text.split(",") if name.strip()]
+def _split_loads(options: list[str] | None) -> list[str]:
+    """Load conditions of all --load options, each a list separated by commas."""
+    names = ",".join(options or []).split(",")
+    return list(filter(None, map(str.strip, names)))
 
 
 def main() -> None:
-    """The program from here on; leaves with its exit code. A kill and a terminal that closes are as Ctrl-C is."""
+    """Run the program and exit with its exit code.
+
+    SIGTERM and SIGHUP end it in the same way as Ctrl-C.
+    """
     raise_on_signals()
     try:
         app()
-    except SystemExit as leaving:
+    except SystemExit as error:
         exit_on_signals()
         if not signal_received():
             raise
-        # Python takes a Ctrl-C that passed through code of its own making for one that nobody
-        # handled
+        # After an interruption that Python code has handled, the interpreter would still exit with
+        # the code of an unhandled Ctrl-C. os._exit keeps the code of the command.
         for stream in (sys.stdout, sys.stderr):
             stream.flush()
-        os._exit(int(leaving.code or 0))
+        os._exit(int(error.code or 0))

@@ -1,14 +1,15 @@
-"""Several runs side by side: one table of their norms, and one log with all boats, beside the folders of the runs."""
+"""Comparison of several runs: one table of their metrics, and compare.rrd with all boats."""
 
 import os
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import chain, count
+from itertools import chain, compress, count
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from boatsim.cli.show import reasons, value
+from boatsim.cli.exits import print_lines
+from boatsim.cli.metric_table import format_value, print_table, reasons
 from boatsim.errors import printable
 from boatsim.files import replacing
 
@@ -16,165 +17,178 @@ if TYPE_CHECKING:
     from boatsim.simulate.evaluation import MetricEntry, RunEntry
     from boatsim.view.rerun_log import Boat
 
-UNCUT = 10_000  # [columns] wider than any table
-BEST, MISSED = "*", "!"  # behind a value
+BEST, MISSED = "*", "!"  # marks behind a value
 
 
 @dataclass(frozen=True)
-class Done:
-    """A run that is over."""
+class FinishedRun:
+    """A run that is finished.
 
-    given: str  # scenario, as the user wrote it
-    controller: str | None  # in place of its own
+    Attributes:
+        scenario: Scenario as the user wrote it.
+        controller: Controller in place of the scenario's own; None for that one.
+        folder: Output folder.
+        content: Content of norms.json.
+    """
+
+    scenario: str
+    controller: str | None
     folder: Path
-    content: "RunEntry"  # of norms.json
+    content: "RunEntry"
 
 
-def compare(runs: Sequence[Done]) -> None:
-    """Print the table and write compare.rrd into the innermost folder that holds those of the runs."""
+def compare_runs(runs: Sequence[FinishedRun]) -> None:
+    """Print one table of all runs and write compare.rrd into their innermost common folder.
+
+    Args:
+        runs: Finished runs.
+    """
     if not runs:
         return
     heads = _heads(runs)
-    _print(heads, runs)
+    rows = _rows(runs)
+    _print(heads, runs, rows)
     folder = Path(os.path.commonpath([run.folder.absolute() for run in runs]))
-    path = Path(os.path.relpath(folder if len(runs) > 1 else folder.parent)) / "compare.rrd"
-    _write(path, heads, runs)
-    print("\n".join(printable(f"written to {run.folder}") for run in runs))
-    print(printable(f"all boats: {path}"))
+    if len(runs) == 1:
+        folder = folder.parent
+    path = Path(os.path.relpath(folder)) / "compare.rrd"
+    _write_log(path, heads, runs, rows)
+    print_lines(printable(f"written to {run.folder}") for run in runs)
+    print_lines([printable(f"all boats: {path}")])
 
 
-def _heads(runs: Sequence[Done]) -> list[tuple[str, ...]]:
-    """What tells the runs apart: scenario, controller, or both."""
-    found = [
-        (run.content["scenario"].rpartition("/")[2], Path(run.content["controller"]).stem)
-        for run in runs
-    ]
-    if len({scenario for scenario, _ in found}) < len({run.content["scenario"] for run in runs}):
-        found = [
-            (run.content["scenario"], controller)
-            for run, (_, controller) in zip(runs, found, strict=True)
-        ]
-    several = [len(set(part)) > 1 for part in zip(*found, strict=True)]
-    if not any(several):
-        return list(found)
-    return [
-        tuple(part for part, differs in zip(head, several, strict=True) if differs)
-        for head in found
-    ]
+def _heads(runs: Sequence[FinishedRun]) -> list[tuple[str, ...]]:
+    """Heading of each run: scenario, controller or both, whichever differ between runs."""
+    scenarios = [run.content["scenario"] for run in runs]
+    short = [name.rpartition("/")[2] for name in scenarios]
+    if len(set(short)) == len(set(scenarios)):
+        scenarios = short
+    controllers = [Path(run.content["controller"]).stem for run in runs]
+    heads = list(zip(scenarios, controllers, strict=True))
+    differs = [len(set(scenarios)) > 1, len(set(controllers)) > 1]
+    if not any(differs):
+        return list(heads)
+    return [tuple(compress(head, differs)) for head in heads]
 
 
-def _rows(runs: Sequence[Done]) -> list[list[str]]:
-    """Norm with its unit, what it is, and a cell for each run that has it, the best marked where lower is better."""
-    asked = dict.fromkeys(
-        (name, e["unit"]) for run in runs for name, e in run.content["norms"].items()
-    )
+def _rows(runs: Sequence[FinishedRun]) -> list[list[str]]:
+    """Metric with unit, its kind, and a cell for each run; the lowest value is marked."""
+    metrics: dict[tuple[str, str], None] = {}
+    for run in runs:
+        metrics |= dict.fromkeys((name, e["unit"]) for name, e in run.content["norms"].items())
     scenarios = [run.content["scenario"] for run in runs]
     rows = []
-    for name, unit in asked:
-        entries = [
-            e if (e := run.content["norms"].get(name)) and e["unit"] == unit else None
-            for run in runs
-        ]
+    for name, unit in metrics:
+        entries: list[MetricEntry | None] = []
+        kind = ""
+        for run in runs:
+            entry = run.content["norms"].get(name)
+            if entry is not None and entry["unit"] == unit:
+                entries.append(entry)
+                kind = kind or entry["kind"]
+            else:
+                entries.append(None)
         best = _best(scenarios, entries)
-        cells = [_cell(entry, number in best) for number, entry in enumerate(entries)]
-        kind = next(e["kind"] for e in entries if e)
+        cells = [_cell(entry, index in best) for index, entry in enumerate(entries)]
         rows.append([f"{name} [{unit}]" if unit else name, kind, *cells])
     return rows
 
 
 def _best(scenarios: Sequence[str], entries: Sequence["MetricEntry | None"]) -> set[int]:
-    """Which runs have the lowest value, of each scenario that is there several times, else of all.
+    """Indices of the runs with the lowest value, per scenario if one scenario was run repeatedly.
 
-    Lower is better of what is an error's size; a mean, a time or a place may be wanted as it is.
+    Lower is better only for the size of an error, not for a mean, a time or a position.
     """
-    kinds = {e["kind"] for e in entries if e}
+    kinds = {entry["kind"] for entry in entries if entry}
     if kinds & {"", "mean"}:
         return set()
-    apart = any(scenarios.count(s) > 1 for s in scenarios)
-    found: set[int] = set()
-    for scenario in dict.fromkeys(scenarios) if apart else [None]:
-        there = {
-            i: float(f"{e['value']:.4g}")  # as it is printed
-            for i, e in enumerate(entries)
-            if e and e["value"] is not None and scenario in (None, scenarios[i])
-        }
-        if len(set(there.values())) > 1:
-            found |= {i for i, x in there.items() if x == min(there.values())}
-    return found
+    per_scenario = len(set(scenarios)) < len(scenarios)
+    groups: dict[str, dict[int, float]] = {}
+    for index, entry in enumerate(entries):
+        if entry and entry["value"] is not None:
+            group = groups.setdefault(scenarios[index] if per_scenario else "", {})
+            group[index] = float(f"{entry['value']:.4g}")  # as it is printed
+    best: set[int] = set()
+    for values in groups.values():
+        lowest = min(values.values())
+        if max(values.values()) > lowest:
+            best.update(index for index, value in values.items() if value == lowest)
+    return best
 
 
 def _cell(entry: "MetricEntry | None", best: bool) -> str:
     if entry is None:
         return ""
-    plain = value({**entry, "unit": ""})
-    return f"{plain} {BEST if best else ' '}{MISSED if entry['ok'] is False else ' '}"
+    plain = format_value({**entry, "unit": ""})
+    missed = MISSED if entry["ok"] is False else " "
+    return f"{plain} {BEST if best else ' '}{missed}"
 
 
-def _print(heads: Sequence[tuple[str, ...]], runs: Sequence[Done]) -> None:
+def _print(
+    heads: Sequence[tuple[str, ...]], runs: Sequence[FinishedRun], rows: Sequence[Sequence[str]]
+) -> None:
     from rich.console import Console
     from rich.table import Table
     from rich.text import Text
 
-    rows = _rows(runs)
     table = Table(title=Text(printable(_title(runs))), pad_edge=False)
-    for heading in ("norm", "is"):
+    for heading in ("metric", "kind"):
         table.add_column(heading, no_wrap=True)
     for head in heads:
         table.add_column(Text("\n".join(map(printable, head))), justify="right", no_wrap=True)
     for row in rows:
         table.add_row(*(Text(printable(cell), "bold" if BEST in cell else "") for cell in row))
+    print_table(table)
+    used = " ".join(chain.from_iterable(row[2:] for row in rows))
+    marks = {BEST: "the best, where lower is better", MISSED: "outside its regression band"}
+    legend = "; ".join(f"{mark} {words}" for mark, words in marks.items() if mark in used)
+    entries = {}
+    for head, run in zip(heads, runs, strict=True):
+        for name, entry in run.content["norms"].items():
+            entries[f"{'/'.join(head)}: {name}"] = entry
     console = Console()
-    if not console.is_terminal:  # nothing is cut in a file
-        wide = console.options.update(max_width=UNCUT)
-        console = Console(width=max(console.width, console.measure(table, options=wide).maximum))
-    console.print(table)
-    used = " ".join(cell for row in rows for cell in row[2:])
-    marks = {BEST: "the best, where lower is better", MISSED: "outside its guard"}
-    said = [f"{mark} {words}" for mark, words in marks.items() if mark in used]
-    every = {
-        f"{'/'.join(head)}: {n}": e
-        for head, run in zip(heads, runs, strict=True)
-        for n, e in run.content["norms"].items()
-    }
-    for line in [*(["; ".join(said)] if said else []), *reasons(every)]:
+    for line in filter(None, [legend, *reasons(entries)]):
         console.print(Text(printable(line)), soft_wrap=True)
 
 
-def _title(runs: Sequence[Done]) -> str:
-    """What all of them share."""
-    parts = [{run.content[key] for run in runs} for key in ("scenario", "controller")]
-    seeds = {run.content["seed"] for run in runs}
-    same = [part.pop() for part in parts if len(part) == 1]
-    return (
-        ", ".join([*map(str, same), *(f"seed {s}" for s in seeds if len(seeds) == 1)])
-        or "side by side"
-    )
+def _title(runs: Sequence[FinishedRun]) -> str:
+    """Scenario, controller and seed that all runs share."""
+    shared = []
+    for key, prefix in (("scenario", ""), ("controller", ""), ("seed", "seed ")):
+        values = {str(run.content[key]) for run in runs}  # type: ignore[literal-required]
+        if len(values) == 1:
+            shared.append(f"{prefix}{values.pop()}")
+    return ", ".join(shared) or "side by side"
 
 
-def _write(path: Path, heads: Sequence[tuple[str, ...]], runs: Sequence[Done]) -> None:
-    """compare.rrd, read back from the folders of the runs."""
+def _write_log(
+    path: Path,
+    heads: Sequence[tuple[str, ...]],
+    runs: Sequence[FinishedRun],
+    rows: Sequence[Sequence[str]],
+) -> None:
+    """Write compare.rrd from the recordings in the folders of the runs."""
     from boatsim.view.rerun_log import log_side_by_side
 
-    names = _apart([re.sub(r"\W", "_", "_".join(head)) for head in heads])
-    markdown = ["| norm | is | " + " | ".join(names) + " |", "|:---|:---|" + "---:|" * len(names)]
-    markdown += ["| " + " | ".join(cell.strip() for cell in row) + " |" for row in _rows(runs)]
+    names = _make_unique([re.sub(r"\W", "_", "_".join(head)) for head in heads])
+    markdown = f"| metric | kind | {' | '.join(names)} |\n|:---|:---|" + "---:|" * len(names) + "\n"
+    for row in rows:
+        markdown += f"| {' | '.join(map(str.strip, row))} |\n"
     with replacing(path) as temporary:
-        log_side_by_side(
-            temporary, dict(zip(names, _boats(runs), strict=True)), "\n".join(markdown) + "\n"
-        )
+        log_side_by_side(temporary, dict(zip(names, _boats(runs), strict=True)), markdown)
 
 
-def _apart(names: Sequence[str]) -> list[str]:
-    """Names with a number behind one that is there before it."""
-    found: list[str] = []
+def _make_unique(names: Sequence[str]) -> list[str]:
+    """Names with a number appended to those that occur earlier in the list."""
+    unique: list[str] = []
     for name in names:
-        numbered = chain([name], (f"{name}_{number}" for number in count(2)))
-        found.append(next(n for n in numbered if n not in found))
-    return found
+        numbered = chain([name], map(f"{name}_{{}}".format, count(2)))
+        unique.append(next(one for one in numbered if one not in unique))
+    return unique
 
 
-def _boats(runs: Sequence[Done]) -> "list[Boat]":
-    """Their logs with the water they lie in; goals once for each scenario."""
+def _boats(runs: Sequence[FinishedRun]) -> "list[Boat]":
+    """Recording and scene of each run; the goals of a scenario belong to its first run."""
     from boatsim.recordings.table import read
     from boatsim.simulate import world
     from boatsim.simulate.controllers import steered
@@ -184,16 +198,17 @@ def _boats(runs: Sequence[Done]) -> "list[Boat]":
 
     logs = [read(run.folder / "recording.csv") for run in runs]
     names = [run.content["scenario"] for run in runs]
-    found: list[Boat] = []
-    for number, (run, log) in enumerate(zip(runs, logs, strict=True)):
-        scenario = steered(run.given, run.controller)
-        boat, walls = scenario.vessel, scenario.file.tank
-        tank = world.Tank(**walls.model_dump()) if walls else None
-        scene = (
-            scene_from(world.build(boat, tank), boat, tank)
-            if tank
-            else water.around(boat, {"all": logs})
-        )
-        goals = f"goal of {scenario.name}" if len(set(names)) > 1 else "goal"
-        found.append(Boat(log, scene, goals if names.index(names[number]) == number else ""))
-    return found
+    boats: list[Boat] = []
+    for index, (run, log) in enumerate(zip(runs, logs, strict=True)):
+        scenario = steered(run.scenario, run.controller)
+        vessel = scenario.vessel
+        if scenario.file.tank:
+            tank = world.Tank(**scenario.file.tank.model_dump())
+            scene = scene_from(world.build(vessel, tank), vessel, tank)
+        else:
+            scene = water.around(vessel, {"all": logs})
+        goals = ""
+        if names.index(names[index]) == index:
+            goals = f"goal of {scenario.name}" if len(set(names)) > 1 else "goal"
+        boats.append(Boat(log, scene, goals))
+    return boats

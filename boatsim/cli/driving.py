@@ -1,13 +1,14 @@
-"""`boatsim drive`: a run in real time whose sticks are a page in the browser."""
+"""Implementation of `boatsim drive`: a run in real time, steered from a page in the browser."""
 
 import time
 import webbrowser
 from contextlib import ExitStack
 from pathlib import Path
+from statistics import median_high
 
-from boatsim.cli import show
-from boatsim.cli.exits import Exit, complain, remark
-from boatsim.cli.run_many import warn_of_limits, watching
+from boatsim.cli.exits import Exit, print_error, print_note
+from boatsim.cli.metric_table import print_metrics
+from boatsim.cli.run_many import ViewerOptions, open_viewer, report_saturation
 from boatsim.drive.driver_input import Hands
 from boatsim.drive.server import Server
 from boatsim.drive.session import Session, folder_name
@@ -18,55 +19,62 @@ from boatsim.view.run_observers import rerun_observers
 from boatsim.view.viewer import display
 
 
-def drive(
-    vessel: str,
-    scenario: str | None,
-    controller: str | None,
-    load: list[str],
-    seconds: float,
-    out: Path | None,
-    browser: bool | None,
-    port: int,
-    watched: bool,
-    served: bool,
+def drive_vessel(
+    task: Task, out: Path | None, browser: bool | None, port: int, viewer: ViewerOptions | None
 ) -> int:
-    """Drive until somebody ends it, print the norms and how well it kept time, return the exit code."""
-    task = Task(vessel, scenario, controller, load, seconds)
+    """Drive a vessel until the user stops, then print metrics and timing.
+
+    Args:
+        task: Vessel, scenario and controller.
+        out: Output folder; None for one named after the vessel and the time.
+        browser: Whether to open the page in a browser; None to open it if there is a display.
+        port: Port of the page; 0 for any free port.
+        viewer: Viewer that also shows the run; None for none.
+
+    Returns:
+        Exit code.
+    """
     folder = out or folder_name(task.vessel.name, time.time())
-    with ExitStack() as until_done:
-        server = until_done.enter_context(Server(Hands(), port))
-        to = until_done.enter_context(watching(served)) if watched else None
-        session = Session(task, server, remark, to is not None)
-        remark(f"drive in a browser, on this machine: {server.address}")
-        if display() if browser is None else browser:
+    with ExitStack() as stack:
+        server = stack.enter_context(Server(Hands(), port))
+        address = None
+        if viewer:
+            address = stack.enter_context(open_viewer(viewer.serve))
+        session = Session(task, server, print_note, address is not None)
+        print_note(f"drive in a browser on this machine: {server.address}")
+        if browser or (browser is None and display()):
             webbrowser.open(server.address)
-        observers = rerun_observers(to)
-        driven = task.in_folder(folder)
-        content = run_into_folder(folder, driven, observers=observers, steering=session).to_json()
+        observers = rerun_observers(address)
+        scenario = task.in_folder(folder)
+        done = run_into_folder(folder, scenario, observers=observers, steering=session)
+        content = done.to_json()
         server.farewell({"folder": str(folder)})
-    return _told(content, folder, session)
+    return _print_result(content, folder, session)
 
 
-def _told(content: RunEntry, folder: Path, session: Session) -> int:
-    """The end of it, in words."""
-    show.norms(content, folder)
-    warn_of_limits(content)
-    clock, latencies = session.clock, sorted(session.latencies)
+def _print_result(content: RunEntry, folder: Path, session: Session) -> int:
+    print_metrics(content, folder)
+    report_saturation(content)
+    clock = session.clock
     print(
-        f"{clock.periods} control periods, {clock.late} begun late; the latest {1e3 * clock.worst:.1f} ms behind time"
+        f"{clock.periods} control periods, {clock.late} of them late; "
+        f"largest delay {1e3 * clock.worst:.1f} ms"
     )
-    if latencies:
-        middle, last = (1e3 * latencies[i] for i in (len(latencies) // 2, -1))
+    if session.latencies:
+        middle = 1e3 * median_high(session.latencies)
+        largest = 1e3 * max(session.latencies)
         print(
-            f"from stick to log {middle:.0f} ms (median of {len(latencies)}), at most {last:.0f} ms"
+            f"delay from stick to log {middle:.0f} ms (median of {len(session.latencies)}), "
+            f"at most {largest:.0f} ms"
         )
-    if session.again:
-        print(f"again, without hands: boatsim run {folder / FILE}")
+    if session.replayable:
+        print(f"to repeat the run without sticks: boatsim run {folder / FILE}")
     else:
-        complain(
-            f"{folder / FILE}: so many goals fit no file of ours; it says all but them, and can not go again"
+        print_error(
+            f"{folder / FILE}: the goals of the run are too many for a scenario file; "
+            "the file lacks them and cannot repeat the run"
         )
     if not content["complete"]:
-        complain("interrupted; what was logged is kept")
+        print_error("interrupted; what was logged is kept")
         return Exit.INTERRUPTED
     return Exit.MET

@@ -1,4 +1,4 @@
-"""What is to be said of an effect, controller, measure or sensor: for `boatsim show` and for the pages of the site."""
+"""Description of an effect, controller, measure or sensor, for `boatsim show` and for the site."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, fields
@@ -10,127 +10,160 @@ from typing import Any
 from boatsim.physics import content
 from boatsim.physics.base import Channel, Effect, Param
 
-CLASSES = ("effect", "controller", "measure", "sensor")
-PASTED = {  # how each stands in a file
+# Kinds of content that are classes, with the table in which each is used.
+TABLES = {
     "effect": "[[effect]]",
     "controller": "[controller]",
     "measure": "[measure]",
     "sensor": "[[sensor]]",
 }
+CLASSES = tuple(TABLES)
+MOST_IN_EXAMPLE = 6  # parameters of an example; more would hide the ones that matter
+OPEN_ENDED = -1e9  # lower bound of a parameter whose range says nothing
 
 
 @dataclass(frozen=True)
 class Entry:
-    """One of them, in words."""
+    """Description of one class of content.
+
+    Attributes:
+        name: Name by which files refer to it.
+        words: One line about it.
+        doc: Lines of its docstring, if it holds more than `words`.
+        facts: Label and text of further facts: source, metrics, channels, what excludes it.
+        parameters: Rows of a table: parameter, default, range, whether it is fitted (of an effect),
+            description; the first row holds the headings.
+        example: Lines of its table in a file.
+    """
 
     name: str
     words: str
-    doc: tuple[str, ...]  # lines of its docstring, where that says more than the words
-    said: tuple[tuple[str, str], ...]  # what, and the text of it: source, norms, what rules it out
-    numbers: tuple[
-        tuple[str, ...], ...
-    ]  # parameter, default, allowed, of effects fitted, what; the head first
-    paste: tuple[str, ...]  # the table as it stands in a file
+    doc: tuple[str, ...]
+    facts: tuple[tuple[str, str], ...]
+    parameters: tuple[tuple[str, ...], ...]
+    example: tuple[str, ...]
 
 
-def entry(kind: str, name: str) -> Entry:
-    """What there is to say of one, by its name or the path of its file. Raises BadInput."""
-    made = content.load_class(kind, name, named=True)
-    called = Path(name).stem
-    params: dict[str, Param] = made.params() if hasattr(made, "params") else {}
-    doc = getdoc(made) or ""
-    told = doc.splitlines() if doc.partition("\n")[0].rstrip(".") != made.words else []
+def class_entry(kind: str, name: str) -> Entry:
+    """Return the description of an effect, controller, measure or sensor.
+
+    Args:
+        kind: One of CLASSES.
+        name: Its name, or the path of its file.
+
+    Raises:
+        BadInput: There is none of that name.
+    """
+    cls = content.load_class(kind, name, named=True)
+    own_name = Path(name).stem
+    params: dict[str, Param] = {}
+    defaults: dict[str, Any] = {}
+    if hasattr(cls, "params"):
+        params = cls.params()
+    if params:
+        defaults = {field.name: field.default for field in fields(cls)}
+    doc = (getdoc(cls) or "").splitlines()
+    if doc and doc[0].rstrip(".") == cls.words:
+        doc = []
     return Entry(
-        called,
-        made.words,
-        tuple(told),
-        tuple(_said(made)),
-        tuple(_numbers(made, params)),
-        tuple(_paste(kind, called, made, params)),
+        own_name,
+        cls.words,
+        tuple(doc),
+        tuple(_facts(cls)),
+        tuple(_parameter_rows(cls, params, defaults)),
+        tuple(_example(TABLES[kind], own_name, cls, params, defaults)),
     )
 
 
-def _said(made: type[Any]) -> Iterator[tuple[str, str]]:
-    """What its class says of itself beside numbers."""
-    if text := getattr(made, "source", ""):
+def _facts(cls: type[Any]) -> Iterator[tuple[str, str]]:
+    """Label and text of the facts that a class declares."""
+    if text := getattr(cls, "source", ""):
         yield "source", text
-    if issubclass(made, Effect):
-        yield from _said_of_effect(made)
-    units = getattr(made, "units", None)
-    if units:
-        yield "norms", ", ".join(f"{n} [{u}]" if u else n for n, u in units.items())
-    if goals := getattr(made, "goals", ()):
+    if issubclass(cls, Effect):
+        yield from _effect_facts(cls)
+    if units := getattr(cls, "units", None):
+        yield "metrics", ", ".join(f"{n} [{u}]" if u else n for n, u in units.items())
+    if goals := getattr(cls, "goals", ()):
         yield "goals", ", ".join(goals)
 
 
-def _said_of_effect(made: type[Effect]) -> Iterator[tuple[str, str]]:
-    """How it shows, what it acts on, and what keeps it from acting."""
-    if made.shown_by:
-        yield "shows in", made.shown_by
-    for role, said in made.roles.items():
-        left_out = "" if said.fixed is None else f"; {said.fixed:g} if left out"
-        yield f"on.{role}", f"{said.words} [{said.unit}]{left_out}"
-    if issubclass(made, Channel) and made.acts_on:
-        yield "acts on", f"commands of {made.acts_on.replace('|', ' or ')}"
-    if made.per_instance_of:
-        yield "acts on each", made.per_instance_of
-    if made.needs:
-        yield "needs", f"{' and '.join(made.needs)} free"
-    if made.ruled_out_by:
-        facts = (
-            f"{fact} = {_toml(value)}"
-            for fact, values in made.ruled_out_by.items()
-            for value in values
-        )
-        yield "ruled out by", " or ".join(facts)
-    if made.facts:
-        yield "needs the facts", ", ".join(made.facts)
-    if made.confounded_with:
-        yield "only on request", f"looks the same as {' or '.join(made.confounded_with)}"
+def _effect_facts(cls: type[Effect]) -> Iterator[tuple[str, str]]:
+    """Signs of an effect in recordings, its channels, and what excludes it."""
+    if cls.shown_by:
+        yield "shows in", cls.shown_by
+    for role, port in cls.roles.items():
+        default = "" if port.fixed is None else f"; {port.fixed:g} if omitted"
+        yield f"on.{role}", f"{port.words} [{port.unit}]{default}"
+    if issubclass(cls, Channel) and cls.acts_on:
+        yield "acts on", f"commands of {cls.acts_on.replace('|', ' or ')}"
+    if cls.rides:
+        yield "extends", cls.rides
+    if cls.needs:
+        yield "needs", f"degrees of freedom {' and '.join(cls.needs)}"
+    if cls.ruled_out_by:
+        excluding = []
+        for fact, values in cls.ruled_out_by.items():
+            excluding += [f"{fact} = {_toml(value)}" for value in values]
+        yield "ruled out by", " or ".join(excluding)
+    if cls.facts:
+        yield "needs the facts", ", ".join(cls.facts)
+    if cls.told_by:
+        yield "only on request", f"looks the same as {' or '.join(cls.told_by)}"
 
 
 def _toml(value: object) -> str:
     return str(value).lower() if isinstance(value, bool) else f'"{value}"'
 
 
-def _numbers(made: type[Any], params: dict[str, Param]) -> Iterator[tuple[str, ...]]:
-    """A row for each parameter, and the head before the first."""
-    nominal = {f.name: f.default for f in fields(made)} if params else {}
-    shown = {
-        n: p for n, p in params.items() if p.low != -1e9 or p.unit or p.fit
-    }  # else it stands for a word
-    fits = issubclass(made, Effect)
-    if shown:
-        yield "parameter", "default", "allowed", *(["fitted"] if fits else []), "what"
-    for name, p in shown.items():
-        default = f"{_default(nominal[name], p)} {p.unit}".rstrip()
-        yield name, default, f"{p.low:g} to {p.high:g}", *([_fitted(p)] if fits else []), p.words
+def _parameter_rows(
+    cls: type[Any], params: dict[str, Param], defaults: dict[str, Any]
+) -> Iterator[tuple[str, ...]]:
+    """Headings, then a row for each parameter that is a number."""
+    fits = issubclass(cls, Effect)
+    numbers = {}
+    for name, param in params.items():
+        if param.low != OPEN_ENDED or param.unit or param.fit:
+            numbers[name] = param
+    if numbers:
+        fitted = ("fitted",) if fits else ()
+        yield "parameter", "default", "allowed", *fitted, "what"
+    for name, param in numbers.items():
+        default = f"{_default(defaults[name], param)} {param.unit}".rstrip()
+        fitted = (_fitted(param),) if fits else ()
+        yield name, default, f"{param.low:g} to {param.high:g}", *fitted, param.words
 
 
-def _fitted(p: Param) -> str:
-    """Whether a diagnosis fits a parameter: as what is missing, or as a coefficient that is never known exactly."""
-    return "yes" if p.fit else f"as {p.calibrates}" if p.calibrates else ""
+def _fitted(param: Param) -> str:
+    """Whether a diagnosis fits a parameter: of a candidate effect, or of the nominal model."""
+    if param.fit:
+        return "yes"
+    return f"as {param.calibrates}" if param.calibrates else ""
 
 
-def _default(value: Any, p: Param) -> str:
-    if isinstance(value, int | float) and not isnan(value):
+def _is_number(value: Any) -> bool:
+    return isinstance(value, int | float) and not isnan(value)
+
+
+def _default(value: Any, param: Param) -> str:
+    if _is_number(value):
         return f"{value:g}"
-    return f"= {p.follows.removesuffix('?')}" if p.follows else "by rule or 0"
+    if param.follows:
+        return f"= {param.follows.removesuffix('?')}"
+    return "by rule or 0"
 
 
-def _paste(kind: str, name: str, made: type[Any], params: dict[str, Param]) -> Iterator[str]:
-    """The table as it stands in a file."""
-    yield PASTED[kind]
+def _example(
+    table: str, name: str, cls: type[Any], params: dict[str, Param], defaults: dict[str, Any]
+) -> Iterator[str]:
+    """Lines of its table in a file."""
+    yield table
     yield f'use = "{name}"'
-    if issubclass(made, Effect) and made.roles:
-        bound = ", ".join(
-            f'{role} = "CHANNEL"' for role, said in made.roles.items() if said.fixed is None
-        )
+    if issubclass(cls, Effect) and cls.roles:
+        required = [role for role, port in cls.roles.items() if port.fixed is None]
+        bound = ", ".join(f'{role} = "CHANNEL"' for role in required)
         yield f"on = {{ {bound} }}"
-    nominal = {f.name: f.default for f in fields(made)} if params else {}
-    fitted = [n for n, p in params.items() if p.fit or p.calibrates] or list(params)
-    for n in fitted[:6]:
-        value = nominal[n]
-        if isinstance(value, int | float) and not isnan(value):
-            unit = params[n].unit
-            yield f"{n} = {value!r}{f'  # [{unit}]' if unit else ''}"
+    fitted = [key for key, param in params.items() if param.fit or param.calibrates]
+    for key in (fitted or list(params))[:MOST_IN_EXAMPLE]:
+        if _is_number(defaults[key]):
+            unit = f"  # [{params[key].unit}]" if params[key].unit else ""
+            yield f"{key} = {defaults[key]!r}{unit}"

@@ -1,4 +1,4 @@
-"""How the program ends: one exit code, and one line for what went wrong."""
+"""Exit codes of the program, and functions that print errors, notes and results."""
 
 import sys
 from collections.abc import Iterable
@@ -8,48 +8,65 @@ from io import TextIOWrapper
 from boatsim.errors import BoatsimError, printable
 from boatsim.quiet import CODE
 
-LONGEST = 300  # characters of a line of ours, its head and its end kept
+LONGEST = 300  # characters of a printed error or note; the middle of a longer one is cut
 
 
 class Exit(IntEnum):
-    """Exit codes; of several runs the highest counts."""
+    """Exit codes of a command; several runs exit with the highest of theirs."""
 
-    MET = 0  # done, all bars met
-    MISSED = 1  # a bar missed
+    MET = 0  # finished, all regression bands met
+    MISSED = 1  # a metric lies outside its band, or a check found something
     BAD_INPUT = 2
     INTERRUPTED = CODE
 
 
-FAULTS = (
-    BoatsimError,
-    OSError,
-)  # what a user can put right; anything else is a defect and keeps its traceback
+# Errors that a user can correct. Any other exception is a defect and keeps its traceback.
+FAULTS = (BoatsimError, OSError)
 
 
-def words(error: BaseException) -> str:
-    """What one of FAULTS says, in one line."""
-    if isinstance(error, OSError) and error.strerror:
-        return f"{error.filename}: {error.strerror}" if error.filename else error.strerror
-    return " ".join(str(error).split())
+def one_line(error: BaseException) -> str:
+    """Return the message of an error in one line.
+
+    Args:
+        error: An instance of one of FAULTS.
+    """
+    if not isinstance(error, OSError) or not error.strerror:
+        return " ".join(str(error).split())
+    if error.filename:
+        return f"{error.filename}: {error.strerror}"
+    return error.strerror
 
 
-def complain(message: str) -> None:
-    """One line to stderr."""
+def print_error(message: str) -> None:
+    """Print an error in one line to stderr.
+
+    Args:
+        message: What is wrong.
+    """
     print(printable(f"boatsim: {message}", LONGEST), file=sys.stderr)
 
 
-def remark(message: str) -> None:
-    """One line to stderr about what was read and not used."""
+def print_note(message: str) -> None:
+    """Print a note in one line to stderr, such as input that was ignored.
+
+    Args:
+        message: The note.
+    """
     print(printable(f"note: {message}", LONGEST), file=sys.stderr)
 
 
-def say(lines: Iterable[str]) -> None:
-    """Lines of a result to stdout."""
-    print("\n".join(printable(part) for line in lines for part in line.split("\n")))
+def print_lines(lines: Iterable[str]) -> None:
+    """Print lines of a result to stdout.
+
+    Args:
+        lines: Lines, in which control characters are escaped.
+    """
+    text = "\n".join(lines)
+    print("\n".join(map(printable, text.split("\n"))))
 
 
-def any_terminal() -> None:
-    """Let stdout and stderr take any character, written as an escape where their encoding lacks it."""
+def escape_unencodable() -> None:
+    """Let stdout and stderr write characters that their encoding lacks as escapes."""
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")

@@ -1,10 +1,10 @@
-"""What `boatsim import` does: a log's signals and a map proposed for them, or with a map a recording."""
+"""Implementation of `boatsim import`: propose a map for a log, or convert a log with a map."""
 
 from collections.abc import Sequence
 from pathlib import Path
 
-from boatsim.cli.exits import remark, say
-from boatsim.cli.progress import reporting
+from boatsim.cli.exits import print_lines, print_note
+from boatsim.cli.progress import report_stages
 from boatsim.errors import BadInput, printable
 from boatsim.files import replacing
 from boatsim.physics import vessel as vessels
@@ -16,6 +16,8 @@ from boatsim.recordings.importing.mapping import read_map
 from boatsim.recordings.importing.mapping_proposal import Drive, listing, proposal
 from boatsim.recordings.table import read, write_csv
 
+CONVERTING, WRITING = 0.6, 0.8  # shares of the work done when these stages start, by experience
+
 
 def import_log(
     log: Path,
@@ -25,102 +27,108 @@ def import_log(
     vessel: str | None,
     load: Sequence[str],
 ) -> int:
-    """List and propose, or convert. Raises BadInput."""
+    """List the signals of a log and propose a map, or convert the log with a map.
+
+    Args:
+        log: Log of an autopilot, a ROS recording, ...
+        out: Recording to write; needed with `map`.
+        map: Map from signals of the log to columns; None to propose one.
+        propose: File for the proposed map; None to print it.
+        vessel: Vessel of the log; None if unknown.
+        load: Load conditions of the vessel.
+
+    Returns:
+        Exit code.
+
+    Raises:
+        BadInput: A file or an argument is wrong.
+    """
     if map is None:
-        return _show(_opened(log), propose, out, vessel, load)
+        with report_stages() as report:
+            report("reading the log")
+            opened = open_log(log)
+        return _propose_map(opened, propose, out, vessel, load)
     if propose:
         raise BadInput("--propose writes a map, --map reads one; give one of them")
     if out is None:
-        raise BadInput(f"{log}: with --map a recording is written; say where with --out run.csv")
+        raise BadInput(f"{log}: --map converts the log; name the recording with --out run.csv")
     if out.suffix.lower() != ".csv":
-        raise BadInput(f"--out {out}: a recording is written as CSV; call it .csv")
-    if any(out.resolve() == given.resolve() for given in (log, map)):
-        raise BadInput(f"--out {out}: that is what is read; give another name")
+        raise BadInput(f"--out {out}: recordings are written as CSV; use a name ending in .csv")
+    if out.resolve() in (log.resolve(), map.resolve()):
+        raise BadInput(f"--out {out} would overwrite the input; give another name")
     return _convert(log, out, map, vessel, load)
 
 
-def _opened(path: Path) -> Log:
-    with reporting() as told:
-        told("reading the log")
-        return open_log(path)
-
-
-def _show(
+def _propose_map(
     log: Log, propose: Path | None, out: Path | None, vessel: str | None, load: Sequence[str]
 ) -> int:
-    boat = vessels.load(vessel, load) if vessel else None
-    drives = (
-        [Drive(n, low, high, _turns(boat, n)) for n, (low, high) in boat.limits().items()]
-        if boat
-        else []
-    )
-    text = proposal(log, vessel, drives, boat.dof if boat else (), boat.columns if boat else None)
-    _say(log.remarks)
-    say(listing(log))
-    if propose:
-        with replacing(propose) as temporary:
-            temporary.write_text(text, encoding="utf-8")
-        then = f"boatsim import {log.path} --map {propose} --out {out or 'run.csv'}"
-        say(["", printable(f"written to {propose}: check every line, then: {then}")])
+    if vessel:
+        boat = vessels.load(vessel, load)
+        drives = []
+        for channel, (low, high) in boat.limits().items():
+            drives.append(Drive(channel, low, high, _turn_direction(boat, channel)))
+        text = proposal(log, vessel, drives, boat.dof, boat.columns)
     else:
-        say(
-            [
-                "",
-                "A map for it, which --propose map.toml writes; nothing is converted without --map:",
-                "",
-                text.rstrip(),
-            ]
-        )
+        text = proposal(log, vessel, [], (), None)
+    _print_notes(log.remarks)
+    print_lines(listing(log))
+    if propose is None:
+        introduction = "Proposed map (--propose map.toml writes it; --map map.toml converts):"
+        print_lines(["", introduction, "", text.rstrip()])
+        return 0
+    with replacing(propose) as temporary:
+        temporary.write_text(text, encoding="utf-8")
+    command = f"boatsim import {log.path} --map {propose} --out {out or 'run.csv'}"
+    print_lines(["", printable(f"written to {propose}: check every line, then: {command}")])
     return 0
 
 
-def _turns(boat: Vessel, channel: str) -> int:
-    """Which way what is positive turns a boat: 1 to starboard, -1 to port, 0 where its file does not say."""
-    said = {"starboard": 1.0, "port": -1.0, "": boat.manoeuvring.steer.get(channel, 0.0)}[
-        boat.commands[channel].turns
-    ]
-    return (said > 0.0) - (said < 0.0)
+def _turn_direction(boat: Vessel, channel: str) -> int:
+    """Turn that a positive command causes: 1 starboard, -1 port, 0 unknown."""
+    turns = boat.commands[channel].turns
+    if turns:
+        return {"starboard": 1, "port": -1}[turns]
+    steer = boat.manoeuvring.steer.get(channel, 0.0)
+    return (steer > 0.0) - (steer < 0.0)
 
 
 def _convert(path: Path, out: Path, map: Path, vessel: str | None, load: Sequence[str]) -> int:
-    found = read_map(map)
-    name = vessel or found.vessel
+    mapping = read_map(map)
+    name = vessel or mapping.vessel
     boat = vessels.load(name, load) if name else None
     limits = boat.limits() if boat else {}
-    with reporting() as told:
-        told("reading the log")
+    with report_stages() as report:
+        report("reading the log")
         log = open_log(path)
-        told("putting its signals on one clock", 0.6)
-        recording = convert(log, found, str(map), limits)
-        told("writing the recording", 0.8)
+        report("resampling the signals to one time base", CONVERTING)
+        recording = convert(log, mapping, str(map), limits)
+        report("writing the recording", WRITING)
         write_csv(recording, out)
-    _say(recording.remarks)
+    _print_notes(recording.remarks)
     span = f"{len(recording)} rows over {recording.t[-1]:.6g} s"
-    say([printable(f"written to {out}: {span}; {', '.join(recording.signals)}")])
+    print_lines([printable(f"written to {out}: {span}; {', '.join(recording.signals)}")])
     if boat is not None:
-        _note(out, boat, position_fix(found))
+        _write_vessel(out, boat, position_fix(mapping))
     try:
         read(out, limits, boat.columns if boat else None)
     except BadInput as error:
-        _say([f"a diagnosis would refuse it: {error}"])
+        print_note(f"a diagnosis would refuse this recording: {error}")
     return 0
 
 
-def _note(out: Path, boat: Vessel, fix: str | None) -> None:
-    """Say of which vessel it is, in a recording.toml beside it; one that is there is left alone."""
-    file, text = out.parent / "recording.toml", notes_of(out, vessel_address(boat.file), fix)
+def _write_vessel(out: Path, boat: Vessel, fix: str | None) -> None:
+    """Write the vessel of a recording to recording.toml in its folder; keep an existing file."""
+    file = out.parent / "recording.toml"
+    text = notes_of(out, vessel_address(boat.file), fix)
     if file.exists():
-        _say(
-            [
-                f"{file} is there and left as it is; for this recording it should say: {' / '.join(text.splitlines())}"
-            ]
-        )
+        lines = " / ".join(text.splitlines())
+        print_note(f"{file} exists and is kept; for this recording it should contain: {lines}")
         return
     with replacing(file) as temporary:
         temporary.write_text(text, encoding="utf-8")
-    say([printable(f"written to {file}: {boat.name}")])
+    print_lines([printable(f"written to {file}: {boat.name}")])
 
 
-def _say(remarks: Sequence[str]) -> None:
-    for line in remarks:
-        remark(line)
+def _print_notes(notes: Sequence[str]) -> None:
+    for note in notes:
+        print_note(note)

@@ -1,40 +1,62 @@
-"""What `boatsim new` does: particulars in, the folder of a boat out, all of it or nothing."""
+"""Implementation of `boatsim new`: write the folder of a vessel from its main particulars."""
 
 from pathlib import Path
 
 from boatsim.atomic_folder import atomic_folder
-from boatsim.cli.exits import say
-from boatsim.cli.progress import reporting
+from boatsim.cli.exits import print_lines
+from boatsim.cli.progress import report_stages
 from boatsim.errors import BadInput
 from boatsim.newboat.particulars import Particulars
 from boatsim.newboat.write import VESSEL, files
 
 
-def new_boat(folder: Path, boat: Particulars, logs: list[Path], force: bool) -> int:
-    """Write vessel.toml, hull.xml and turn.toml into `folder`, the first fitted to `logs` where there are any."""
+def create_boat(folder: Path, boat: Particulars, logs: list[Path], force: bool) -> int:
+    """Write vessel.toml, hull.xml and turn.toml into a folder, all of them or none.
+
+    Args:
+        folder: New folder.
+        boat: Main particulars.
+        logs: Recordings to fit the coefficients of the vessel to; may be empty.
+        force: Whether an existing folder may be overwritten.
+
+    Returns:
+        Exit code.
+
+    Raises:
+        BadInput: The folder exists, or a recording cannot be used.
+    """
     if folder.exists() and not force:
-        raise BadInput(f"{folder}: is there already; --force writes a new boat over it")
+        raise BadInput(f"{folder} exists already; --force overwrites it")
+    texts = files(boat)
     lines: list[str] = []
     with atomic_folder(folder) as new:
-        for name, text in files(boat).items():
+        for name, text in texts.items():
             (new / name).write_text(text, encoding="utf-8")
         if logs:
-            from boatsim.newboat import from_log
-
-            with reporting() as told:
-                found = from_log.fitted(new / VESSEL, logs, report=told)
-            lines += from_log.in_words(found)
-            if found.better:
-                (new / VESSEL).write_text(from_log.text(found, logs), encoding="utf-8")
-            else:
-                lines.append(
-                    "the fit does worse than the rules on what it has not seen: the rules are kept; see the log"
-                )
-    say(
+            lines = _fit_coefficients(new / VESSEL, logs)
+    print_lines(
         [
             *lines,
-            f"written to {folder}: {', '.join(files(boat))}",
-            f"next: boatsim show {folder}, boatsim run {folder / 'turn.toml'}, boatsim diagnose RUN --vessel {folder}",
+            f"written to {folder}: {', '.join(texts)}",
+            f"next: boatsim show {folder}, boatsim run {folder / 'turn.toml'}, "
+            f"boatsim diagnose RUN --vessel {folder}",
         ]
     )
     return 0
+
+
+def _fit_coefficients(vessel: Path, logs: list[Path]) -> list[str]:
+    """Fit the coefficients of a vessel file to recordings; return the result in words."""
+    from boatsim.newboat import from_log
+
+    with report_stages() as report:
+        found = from_log.fitted(vessel, logs, report=report)
+    lines = from_log.in_words(found)
+    if found.better:
+        vessel.write_text(from_log.text(found, logs), encoding="utf-8")
+    else:
+        lines.append(
+            "the fitted coefficients predict held-out data worse than the estimates: "
+            "the estimates are kept"
+        )
+    return lines

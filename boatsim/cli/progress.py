@@ -1,4 +1,4 @@
-"""How far a command has come: a bar with the time left on a terminal, a line for each stage elsewhere; on stderr."""
+"""Progress of a command on stderr: a bar with the time left on a terminal, else lines of text."""
 
 import sys
 from collections.abc import Callable, Iterator, Sequence
@@ -12,75 +12,99 @@ from boatsim.progress import Report
 if TYPE_CHECKING:
     from rich.progress import Progress
 
-SELDOM = 10.0  # [s] between two lines of many tasks
-Reached = Callable[
-    [int, float], None
-]  # told of runs: which of them, and the simulated time it has reached [s]
+LINE_INTERVAL = 10.0  # [s] between two lines of a campaign, so that a log of it stays short
+SMALLEST_SHARE = 0.05  # of the work, below which an estimate of the time left is unreliable
+SHORTEST_TIME = 1.0  # [s] of work, below which an estimate of the time left is unreliable
+# Called with the index of a run and the simulated time it has reached [s].
+RunReport = Callable[[int, float], None]
+
+_active: "Progress | None" = None  # bar on the terminal, which a question interrupts
 
 
 @contextmanager
-def reporting() -> Iterator[Report]:
-    """Shows what is reported within the block."""
+def report_stages() -> Iterator[Report]:
+    """Show the stages of a computation within the block: a bar, or one line per stage.
+
+    Yields:
+        Function to call with the stage, the share of the work done, and a detail.
+    """
     if sys.stderr.isatty():
         with _bar() as report:
             yield report
     else:
-        yield _lines()
+        yield _report_lines()
 
 
-def _lines() -> Report:
-    """A line to stderr for each stage as it begins; that of the first, in which input is refused, with the second."""
-    told: list[str] = []
+def _report_lines() -> Report:
+    """Report that prints each stage once, the first together with the second.
+
+    Wrong input is refused in the first stage, and then only the error is printed.
+    """
+    stages: list[str] = []
 
     def report(stage: str, share: float = 0.0, detail: str = "") -> None:
-        if stage in told:  # it comes back to selecting once what was left over is judged
+        if stage in stages:  # The selection of effects is repeated after the validation.
             return
-        told.append(stage)
-        for line in told if len(told) == 2 else told[-1:] if len(told) > 2 else ():
-            say(line)
+        stages.append(stage)
+        if len(stages) == 2:
+            print_progress(stages[0])
+        if len(stages) > 1:
+            print_progress(stage)
 
     return report
 
 
 @contextmanager
-def counting() -> Iterator[Report]:
-    """Shows how far many tasks are within the block: the bar on a terminal, elsewhere a line now and then."""
+def report_campaign() -> Iterator[Report]:
+    """Show the progress of many tasks within the block: a bar, or a line every few seconds.
+
+    Yields:
+        Function to call with the stage, the share of the tasks done, and a detail.
+    """
     if sys.stderr.isatty():
         with _bar() as bar:
             yield bar
         return
-    begun, told = monotonic(), monotonic() - SELDOM
+    start = monotonic()
+    last_line = start - LINE_INTERVAL
 
     def report(stage: str, share: float = 0.0, detail: str = "") -> None:
-        nonlocal told
-        if monotonic() - told >= SELDOM or share >= 1.0:
-            told = monotonic()
-            left = time_left(told - begun, share) if share < 1.0 else ""
-            say(f"{detail or stage}{f', {left}' if left else ''}")
+        nonlocal last_line
+        if monotonic() - last_line < LINE_INTERVAL and share < 1.0:
+            return
+        last_line = monotonic()
+        line = detail or stage
+        left = time_left(last_line - start, share)
+        if left and share < 1.0:
+            line = f"{line}, {left}"
+        print_progress(line)
 
     yield report
 
 
-def say(line: str) -> None:
-    """A line of progress to stderr."""
+def print_progress(line: str) -> None:
+    """Print a line of progress to stderr.
+
+    Args:
+        line: The line.
+    """
     print(printable(f"progress: {line}"), file=sys.stderr, flush=True)
 
 
 @contextmanager
 def _bar() -> Iterator[Report]:
-    """A bar of the whole with what is being done, the time taken and, as far as it can be told, the time left."""
+    """Progress bar with the present stage, the elapsed time and the time left."""
     from rich.console import Console
     from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
     from rich.table import Column
 
     left = TextColumn("{task.fields[left]}", markup=False, table_column=Column(no_wrap=True))
     rest = Column(ratio=1, no_wrap=True, overflow="ellipsis")
-    what = TextColumn("{task.description}", markup=False, table_column=rest)
     bars = Progress(
         BarColumn(20),
         TimeElapsedColumn(),
         left,
-        what,
+        TextColumn("{task.description}", markup=False, table_column=rest),
         console=Console(stderr=True),
         transient=True,
         expand=True,
@@ -88,32 +112,32 @@ def _bar() -> Iterator[Report]:
     row = bars.add_task("", total=1.0, left="")
 
     def report(stage: str, share: float = 0.0, detail: str = "") -> None:
-        said, taken = (
-            printable(f"{stage}: {detail}" if detail else stage),
-            bars.tasks[row].elapsed or 0.0,
-        )
+        words = f"{stage}: {detail}" if detail else stage
+        elapsed = bars.tasks[row].elapsed or 0.0
         done = max(share, bars.tasks[row].completed)
-        bars.update(row, description=said, completed=done, left=time_left(taken, done))
+        bars.update(
+            row, description=printable(words), completed=done, left=time_left(elapsed, done)
+        )
 
-    with _shown(bars):
+    with _activate(bars):
         yield report
 
 
 @contextmanager
-def _shown(bars: "Progress") -> Iterator[None]:
-    global _now
+def _activate(bars: "Progress") -> Iterator[None]:
+    global _active
     with bars:
-        _now = bars
+        _active = bars
         try:
             yield
         finally:
-            _now = None
+            _active = None
 
 
 @contextmanager
-def set_aside() -> Iterator[None]:
-    """The bars, if there are any, make way for a question."""
-    bars = _now
+def pause_progress() -> Iterator[None]:
+    """Remove the progress bar, if there is one, within the block."""
+    bars = _active
     if bars:
         bars.stop()
     try:
@@ -124,23 +148,36 @@ def set_aside() -> Iterator[None]:
 
 
 def time_left(elapsed: float, share: float) -> str:
-    """In words, from the time [s] that a share of the work took; nothing while that says little."""
-    if share < 0.05 or elapsed < 1.0:
+    """Return the estimated time left in words, or "" where an estimate is unreliable.
+
+    Args:
+        elapsed: Time that the share of the work has taken [s].
+        share: Share of the work done, 0 to 1.
+    """
+    if share < SMALLEST_SHARE or elapsed < SHORTEST_TIME:
         return ""
     seconds = elapsed * (1.0 - share) / share
     if seconds < 1.0:
         return "nearly done"
-    return f"about {seconds / 60:.0f} min left" if seconds >= 90 else f"about {seconds:.0f} s left"
+    if seconds >= 90:
+        return f"about {seconds / 60:.0f} min left"
+    return f"about {seconds:.0f} s left"
 
 
 @contextmanager
-def running(tasks: Sequence[tuple[str, float]], several: bool = True) -> Iterator[Reached]:
-    """Progress of runs (name, simulated time [s]): bars on a terminal, elsewhere a line as each begins.
+def report_runs(tasks: Sequence[tuple[str, float]], several: bool = True) -> Iterator[RunReport]:
+    """Show the progress of runs within the block: bars, or one line as each run starts.
 
-    Of a single one there is no line, unless it is none of `several` that might have been.
+    Args:
+        tasks: Name and simulated duration [s] of each run.
+        several: Whether the command accepts several runs; if so, a single run gets no line.
+
+    Yields:
+        Function to call with the index of a run and the simulated time it has reached [s].
     """
     if not sys.stderr.isatty():
-        yield _begun(tasks) if len(tasks) > 1 or not several else lambda number, t: None
+        silent = several and len(tasks) == 1
+        yield _ignore if silent else _report_starts(tasks)
         return
     from rich.console import Console
     from rich.progress import (
@@ -151,52 +188,50 @@ def running(tasks: Sequence[tuple[str, float]], several: bool = True) -> Iterato
         TimeRemainingColumn,
     )
 
-    clock = TextColumn("{task.completed:.0f} of {task.total:.0f} s simulated")
-    columns = (
+    bars = Progress(
         TextColumn("{task.description}", markup=False),
         BarColumn(),
-        clock,
+        TextColumn("{task.completed:.0f} of {task.total:.0f} s simulated"),
         TimeElapsedColumn(),
-    )
-    bars = Progress(
-        *columns,
         TimeRemainingColumn(),
         TextColumn("left"),
         console=Console(stderr=True),
         transient=True,
     )
     many = len(tasks) > 1
-    every = bars.add_task(
-        f"all {len(tasks)} runs", total=sum(duration for _, duration in tasks), visible=many
-    )
-    rows = [
-        bars.add_task(name, total=duration, visible=not many, start=False)
-        for name, duration in tasks
-    ]
+    total = sum(duration for _, duration in tasks)
+    all_runs = bars.add_task(f"all {len(tasks)} runs", total=total, visible=many)
+    rows = []
+    for name, duration in tasks:
+        rows.append(bars.add_task(name, total=duration, visible=not many, start=False))
 
-    def report(number: int, t: float) -> None:
-        if t > 0.0 and not bars.tasks[rows[number]].started:
-            bars.start_task(rows[number])
-        bars.update(rows[number], completed=t, visible=not many or 0.0 < t < tasks[number][1])
-        bars.update(every, completed=sum(bars.tasks[row].completed for row in rows))
+    def report(index: int, t: float) -> None:
+        row = rows[index]
+        if t > 0.0 and not bars.tasks[row].started:
+            bars.start_task(row)
+        running = 0.0 < t < tasks[index][1]
+        bars.update(row, completed=t, visible=running or not many)
+        bars.update(all_runs, completed=sum(bars.tasks[one].completed for one in rows))
 
-    with _shown(bars):
+    with _activate(bars):
         yield report
 
 
-def _begun(tasks: Sequence[tuple[str, float]]) -> Reached:
-    there: set[int] = set()
+def _ignore(index: int, t: float) -> None:
+    """Report nothing."""
 
-    def report(number: int, t: float) -> None:
-        if number not in there and t > 0.0:
-            there.add(number)
-            say(
-                f"{len(there)} of {len(tasks)}: {tasks[number][0]}"
-                if len(tasks) > 1
-                else f"running {tasks[0][0]}"
-            )
+
+def _report_starts(tasks: Sequence[tuple[str, float]]) -> RunReport:
+    started: set[int] = set()
+
+    def report(index: int, t: float) -> None:
+        if index in started or t <= 0.0:
+            return
+        started.add(index)
+        name = tasks[index][0]
+        if len(tasks) > 1:
+            print_progress(f"{len(started)} of {len(tasks)}: {name}")
+        else:
+            print_progress(f"running {name}")
 
     return report
-
-
-_now: "Progress | None" = None

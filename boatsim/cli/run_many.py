@@ -1,12 +1,14 @@
-"""Runs scenarios one after another or in processes of their own, with a progress bar and one exit code for all."""
+"""Runs scenarios one after another or in parallel processes, with progress and one exit code."""
 
 import os
+from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, replace
 from functools import partial
+from itertools import chain
 from multiprocessing import get_context, parent_process
 from multiprocessing.sharedctypes import SynchronizedArray
 from multiprocessing.synchronize import Event
@@ -14,8 +16,9 @@ from pathlib import Path
 from threading import Lock, Thread
 from typing import NamedTuple
 
-from boatsim.cli import comparing, progress, show
-from boatsim.cli.exits import FAULTS, Exit, complain, remark, words
+from boatsim.cli import comparing, progress
+from boatsim.cli.exits import FAULTS, Exit, one_line, print_error, print_note
+from boatsim.cli.metric_table import print_metrics
 from boatsim.errors import BadInput
 from boatsim.interruption import ignored_signals, signal_received
 from boatsim.physics import trust
@@ -26,53 +29,73 @@ from boatsim.simulate.real_time_pace import Pace
 from boatsim.simulate.run_options import LIVE_REFRESH, RunOptions
 from boatsim.simulate.scenario import Scenario
 
-POLL = 0.1  # [s] between two looks at the processes
-PATIENCE = 60.0  # [s] for a run to be written whose watcher is gone
+POLL = 0.1  # [s] between two updates of the progress of parallel runs
+SAVE_TIMEOUT = 60.0  # [s] for a worker to save its run after the parent process has ended
 
 
 @dataclass(frozen=True)
 class Task:
-    """One scenario to run; plain values, so that it can be sent to a process."""
+    """One scenario to run; it holds plain values, so that it can be sent to a process.
 
-    given: str  # name or path as the user wrote it
+    Attributes:
+        address: Name or path of the scenario.
+        name: Name of the scenario.
+        duration: Largest simulated duration [s].
+        folder: Output folder.
+        seed: Random seed; None for the scenario's own.
+        controller: Controller in place of the scenario's own, by name or path.
+    """
+
+    address: str
     name: str
-    duration: float  # [s] at most
+    duration: float
     folder: Path
     seed: int | None
-    controller: str | None = None  # in place of the scenario's own, by name or path
+    controller: str | None = None
 
 
-class Planned(NamedTuple):
-    """A task and its scenario, which a run in this process need not load again."""
+class PlannedRun(NamedTuple):
+    """A task with its scenario, which a run in this process need not load again."""
 
     task: Task
     scenario: Scenario
 
 
 @dataclass(frozen=True)
-class Watched:
-    """That somebody watches the runs."""
+class ViewerOptions:
+    """How a run is shown while it is simulated.
 
-    serve: bool  # in a browser, not in a window
-    speed: float  # times real time; 0: as fast as can be
+    Attributes:
+        serve: Whether it is shown in a browser, not in a window.
+        speed: Factor of real time; 0 for no limit.
+    """
+
+    serve: bool
+    speed: float = 1.0
 
 
 @dataclass(frozen=True)
 class Outcome:
-    """What became of a task."""
+    """Result of a task.
+
+    Attributes:
+        task: The task.
+        content: Content of norms.json; None if the run has written no files.
+        error: Why the run failed; None if it did not.
+    """
 
     task: Task
-    content: RunEntry | None = None  # of norms.json; None: there are no files
+    content: RunEntry | None = None
     error: str | None = None
 
     @property
     def code(self) -> Exit:
-        """How this one ended."""
+        """Exit code."""
         if self.content is None:
             return Exit.BAD_INPUT if self.error else Exit.INTERRUPTED
         if not self.content["complete"]:
             return Exit.INTERRUPTED
-        missed = any(norm["ok"] is False for norm in self.content["norms"].values())
+        missed = any(metric["ok"] is False for metric in self.content["norms"].values())
         return Exit.MISSED if missed else Exit.MET
 
 
@@ -81,206 +104,268 @@ def run_all(
     out: Path | None,
     jobs: int,
     seed: int | None,
-    watched: Watched | None = None,
+    viewer: ViewerOptions | None = None,
     controllers: Sequence[str] = (),
     side_by_side: bool = False,
 ) -> int:
-    """Run scenarios, each with each of the controllers if there are any, print their norms, return the exit code.
+    """Run scenarios with each of the controllers and print their metrics.
 
-    `side_by_side` is one table of all of them, and one log. All are checked before any runs; raises BadInput.
+    All scenarios are loaded before the first one runs.
+
+    Args:
+        names: Scenarios as the user wrote them.
+        out: Output folder; None for one per scenario below out/.
+        jobs: Number of parallel processes.
+        seed: Random seed; None for those of the scenarios.
+        viewer: Viewer that shows the runs; None for none.
+        controllers: Controllers in place of the scenarios' own; may be empty.
+        side_by_side: Whether to print one table of all runs and write compare.rrd.
+
+    Returns:
+        The highest exit code of the runs.
+
+    Raises:
+        BadInput: A scenario, a controller or a combination of options is wrong.
     """
-    planned = plan(names, out, seed, controllers)
+    planned = plan_runs(names, out, seed, controllers)
     tasks = [task for task, _ in planned]
     jobs = min(jobs, len(tasks))
-    if watched and jobs > 1:
-        raise BadInput("--live and --serve show one run at a time; leave --jobs away")
-    with ExitStack() as until_done:
-        to = until_done.enter_context(watching(watched.serve)) if watched else None
-        report = until_done.enter_context(progress.running([(t.name, t.duration) for t in tasks]))
-        speed = watched.speed if watched and to else 0.0
-        outcomes = (
-            _in_processes(tasks, jobs, report) if jobs > 1 else _in_turn(planned, report, to, speed)
-        )
-    for outcome in outcomes:
-        if outcome.error:
-            complain(outcome.error)
-        elif outcome.content:
-            if not side_by_side:
-                show.norms(outcome.content, outcome.task.folder)
-            warn_of_limits(outcome.content)
-    if side_by_side:
-        done = [
-            (o.task.given, o.task.controller, o.task.folder, o.content)
-            for o in outcomes
-            if o.content
-        ]
-        comparing.compare([comparing.Done(*one) for one in done])
-    if any(outcome.code == Exit.INTERRUPTED for outcome in outcomes):
-        kept = any(outcome.content for outcome in outcomes)
-        complain(
-            "interrupted; what was logged is kept"
-            if kept
-            else "interrupted before anything was logged"
-        )
+    if viewer and jobs > 1:
+        raise BadInput("--live and --serve show one run at a time; omit --jobs")
+    with ExitStack() as stack:
+        address = None
+        if viewer:
+            address = stack.enter_context(open_viewer(viewer.serve))
+        report = stack.enter_context(progress.report_runs([(t.name, t.duration) for t in tasks]))
+        if jobs > 1:
+            outcomes = _run_parallel(tasks, jobs, report)
+        else:
+            speed = viewer.speed if viewer and address else 0.0
+            outcomes = _run_in_turn(planned, report, address, speed)
+    _print_outcomes(outcomes, side_by_side)
     return max(outcome.code for outcome in outcomes)
 
 
+def _print_outcomes(outcomes: Sequence[Outcome], side_by_side: bool) -> None:
+    finished = []
+    for outcome in outcomes:
+        task = outcome.task
+        if outcome.error:
+            print_error(outcome.error)
+        elif outcome.content:
+            if not side_by_side:
+                print_metrics(outcome.content, task.folder)
+            report_saturation(outcome.content)
+        if outcome.content:
+            run = comparing.FinishedRun(task.address, task.controller, task.folder, outcome.content)
+            finished.append(run)
+    if side_by_side:
+        comparing.compare_runs(finished)
+    if any(outcome.code == Exit.INTERRUPTED for outcome in outcomes):
+        if finished:
+            print_error("interrupted; what was logged is kept")
+        else:
+            print_error("interrupted before anything was logged")
+
+
 @contextmanager
-def watching(serve: bool) -> Iterator[str | None]:
-    """Address of a viewer for the block; where there is none it is said at once, and what there is instead."""
+def open_viewer(serve: bool) -> Iterator[str | None]:
+    """Open a viewer for the block; print an error if it cannot be shown.
+
+    Args:
+        serve: Whether to show it in a browser, not in a window.
+
+    Yields:
+        Address to which a run sends its data; None without a viewer.
+    """
     from boatsim.view.viewer import HERE, PAGE, shown
 
     with shown(serve) as viewer:
         if viewer is None:
-            complain(
-                "no viewer can be shown (is there a display?), and the run goes on unseen; with --serve, not --live, "
-                f"a browser shows it at http://{HERE}:{PAGE}"
+            print_error(
+                "no viewer can be shown (is there a display?); the run continues without one. "
+                f"With --serve in place of --live a browser shows it at http://{HERE}:{PAGE}"
             )
         elif viewer.page:
-            remark(f"watch in a browser, on this machine: {viewer.page}")
+            print_note(f"watch in a browser on this machine: {viewer.page}")
         yield viewer.to if viewer else None
 
 
 def run_manoeuvre(scenario: Scenario, folder: Path) -> int:
-    """Run a standard manoeuvre and print its figures; the limits beside them are a yardstick, not a test."""
+    """Run a standard manoeuvre and print its figures beside the IMO limits.
+
+    A missed limit does not change the exit code: the limits are for large ships.
+
+    Args:
+        scenario: Scenario of the manoeuvre.
+        folder: Output folder.
+
+    Returns:
+        Exit code.
+    """
     from boatsim.simulate.run_files import run_into_folder
     from boatsim.view.run_observers import rerun_observers
 
-    with progress.running([(scenario.name, scenario.file.duration)], several=False) as report:
-        options = RunOptions(progress=lambda t: report(0, t))
+    tasks = [(scenario.name, scenario.file.duration)]
+    with progress.report_runs(tasks, several=False) as report:
+        options = RunOptions(progress=partial(report, 0))
         content = run_into_folder(folder, scenario, options, rerun_observers()).to_json()
-    show.norms(content, folder)
-    warn_of_limits(content)
+    print_metrics(content, folder)
+    report_saturation(content)
     return Exit.MET if content["complete"] else Exit.INTERRUPTED
 
 
-def warn_of_limits(content: RunEntry) -> None:
-    """One line if a channel was sent more than it takes."""
-    if found := content["saturated_steps"]:
-        where = ", ".join(f"{name} in {count}" for name, count in found.items())
-        complain(
-            f"{content['scenario']}: more was sent than the vessel takes, and limited: {where} of "
-            f"{content['steps']} steps (sent_... in recording.csv)"
+def report_saturation(content: RunEntry) -> None:
+    """Print one line if commands were limited to the range of their channels.
+
+    Args:
+        content: Content of norms.json.
+    """
+    if saturated := content["saturated_steps"]:
+        steps = ", ".join(f"{name} in {count}" for name, count in saturated.items())
+        print_error(
+            f"{content['scenario']}: commands beyond the range of the vessel were limited: {steps} "
+            f"of {content['steps']} steps (sent_... in recording.csv)"
         )
 
 
-def plan(
+def plan_runs(
     names: Sequence[str], out: Path | None, seed: int | None, controllers: Sequence[str] = ()
-) -> list[Planned]:
-    """What to run and where its files go, from names that may be wrong."""
-    stems = [Path(c).stem for c in controllers]
-    if twice := next((c for c in stems if stems.count(c) > 1), None):
-        raise BadInput(f"--controller {twice} is given twice; both would write to the same folder")
-    several = len(controllers) > 1
-    names = [one for given in names for one in meant(given)]
-    steering: Sequence[str | None] = controllers or [None]
-    loaded = [[steered(name, c) for c in steering] for name in names]
-    folders = _folders([s[0].name for s in loaded], out)
-    return [
-        Planned(
-            Task(
-                given,
-                s.name,
-                s.file.duration,
-                folder / Path(c).stem if several and c else folder,
-                seed,
-                c,
-            ),
-            s,
-        )
-        for given, many, folder in zip(names, loaded, folders, strict=True)
-        for s, c in zip(many, steering, strict=True)
-    ]
+) -> list[PlannedRun]:
+    """Load scenarios and return the runs to perform.
+
+    Args:
+        names: Scenarios as the user wrote them.
+        out: Output folder; None for one per scenario below out/.
+        seed: Random seed; None for those of the scenarios.
+        controllers: Controllers in place of the scenarios' own; may be empty.
+
+    Raises:
+        BadInput: A scenario or controller is wrong, or two runs would share an output folder.
+    """
+    if repeated := _first_repeated([Path(controller).stem for controller in controllers]):
+        raise BadInput(f"--controller {repeated} is given twice; both would write to one folder")
+    addresses = list(chain.from_iterable(map(meant, names)))
+    choices: Sequence[str | None] = controllers or [None]
+    loaded: list[list[Scenario]] = []
+    for address in addresses:
+        loaded.append([steered(address, choice) for choice in choices])
+    folders = _folders([variants[0].name for variants in loaded], out)
+    planned = []
+    for address, variants, folder in zip(addresses, loaded, folders, strict=True):
+        for scenario, choice in zip(variants, choices, strict=True):
+            own = folder
+            if choice and len(controllers) > 1:
+                own = folder / Path(choice).stem
+            duration = scenario.file.duration
+            task = Task(address, scenario.name, duration, own, seed, choice)
+            planned.append(PlannedRun(task, scenario))
+    return planned
+
+
+def _first_repeated(names: Sequence[str]) -> str | None:
+    """The first name that occurs more than once."""
+    for name, count in Counter(names).items():
+        if count > 1:
+            return name
+    return None
 
 
 def _folders(names: Sequence[str], out: Path | None) -> list[Path]:
-    """DIR for one scenario, DIR/vessel/case for each of several; out/vessel/case without a DIR."""
+    """DIR for one scenario, DIR/vessel/case for each of several; DIR is out/ by default."""
     if out and len(names) == 1:
         return [out]
-    if len(set(names)) < len(names):
-        twice = next(name for name in names if names.count(name) > 1)
-        raise BadInput(f"scenario {twice!r} is named twice; both would write to the same folder")
+    if repeated := _first_repeated(names):
+        raise BadInput(f"scenario {repeated!r} is named twice; both would write to one folder")
     return [(out or Path("out")) / name for name in names]
 
 
-def carry_out(
+def run_task(
     task: Task,
-    told: Callable[[float], None],
+    report: Callable[[float], None],
     scenario: Scenario | None = None,
     viewer: str | None = None,
     speed: float = 0.0,
 ) -> Outcome:
-    """Run one task and return its outcome, which may be an error.
+    """Run one task and write its files.
 
     Args:
         task: The task.
-        told: Receives the simulated time [s].
-        scenario: The task's scenario, where it is loaded already.
-        viewer: Address of a viewer that shows the run.
-        speed: Simulated time by real time; 0: as fast as possible.
+        report: Function to call with the simulated time [s].
+        scenario: Its scenario; None to load it.
+        viewer: Address of a viewer; None for none.
+        speed: Factor of real time; 0 for no limit.
+
+    Returns:
+        The outcome, also of a run that failed or was interrupted.
     """
     try:
         from boatsim.simulate.run_files import run_into_folder
         from boatsim.view.run_observers import rerun_observers
 
-        options = RunOptions(seed=task.seed, progress=told)
+        options = RunOptions(seed=task.seed, progress=report)
         if speed > 0.0:
             options = replace(options, pace=Pace(speed), refresh=LIVE_REFRESH)
-        found = scenario or steered(task.given, task.controller)
-        done = run_into_folder(task.folder, found, options, rerun_observers(viewer))
+        scenario = scenario or steered(task.address, task.controller)
+        done = run_into_folder(task.folder, scenario, options, rerun_observers(viewer))
         return Outcome(task, done.to_json())
     except FAULTS as error:
-        return Outcome(task, error=f"{task.name}: {words(error)}")
+        return Outcome(task, error=f"{task.name}: {one_line(error)}")
     except KeyboardInterrupt:
         return Outcome(task)
 
 
-def _in_turn(
-    planned: Sequence[Planned], report: progress.Reached, viewer: str | None, speed: float
+def _run_in_turn(
+    planned: Sequence[PlannedRun], report: progress.RunReport, viewer: str | None, speed: float
 ) -> list[Outcome]:
     outcomes: list[Outcome] = []
-    for number, (task, scenario) in enumerate(planned):
-        if signal_received():  # while the files of the one before were written
+    for index, (task, scenario) in enumerate(planned):
+        if (
+            signal_received()
+        ):  # The interruption came while the files of the previous run were written.
             outcomes.append(Outcome(task))
             break
-        outcomes.append(carry_out(task, partial(report, number), scenario, viewer, speed))
-        report(number, task.duration)
+        outcomes.append(run_task(task, partial(report, index), scenario, viewer, speed))
+        report(index, task.duration)
         if outcomes[-1].code == Exit.INTERRUPTED:
             break
     return outcomes
 
 
-# Several processes: a signal is heeded by this one only, which asks the others to stop; they end
-# with it -------------
+# Parallel runs. Only the parent process handles signals. It asks the workers to stop, and they end
+# when it ends.
 
 
-def _in_processes(tasks: Sequence[Task], jobs: int, report: progress.Reached) -> list[Outcome]:
-    context = get_context("spawn")  # a fork would copy MuJoCo's and rerun's threads half alive
-    with ignored_signals():  # processes inherit it, the one that looks after shared memory too
-        stop, reached = context.Event(), context.Array("d", len(tasks))
-    with ProcessPoolExecutor(jobs, context, _begin, (stop, reached, trust.now())) as pool:
+def _run_parallel(tasks: Sequence[Task], jobs: int, report: progress.RunReport) -> list[Outcome]:
+    # A forked process would inherit locks of the threads of MuJoCo and Rerun.
+    context = get_context("spawn")
+    with ignored_signals():  # Child processes inherit ignored signals.
+        stop = context.Event()
+        reached = context.Array("d", len(tasks))
+    arguments = (stop, reached, trust.now())
+    with ProcessPoolExecutor(jobs, context, _start_worker, arguments) as pool:
         with ignored_signals():
-            futures = [pool.submit(_work, number, task) for number, task in enumerate(tasks)]
+            futures = [pool.submit(_run_in_worker, i, task) for i, task in enumerate(tasks)]
         while True:
             try:
-                _watch(futures, tasks, reached, report)
-                return [_result(task, future) for task, future in zip(tasks, futures, strict=True)]
+                _wait(futures, tasks, reached, report)
+                return list(map(_result, tasks, futures))
             except KeyboardInterrupt:
                 stop.set()
 
 
-def _watch(
+def _wait(
     futures: Sequence[Future[Outcome]],
     tasks: Sequence[Task],
     reached: "SynchronizedArray[float]",
-    report: progress.Reached,
+    report: progress.RunReport,
 ) -> None:
-    """Report until all are done."""
+    """Report progress until all runs are finished."""
     waiting = True
     while waiting:
         waiting = bool(wait(futures, timeout=POLL).not_done)
-        for number, (task, future) in enumerate(zip(tasks, futures, strict=True)):
-            report(number, task.duration if future.done() else reached[number])
+        for index, (task, future) in enumerate(zip(tasks, futures, strict=True)):
+            report(index, task.duration if future.done() else reached[index])
 
 
 def _result(task: Task, future: Future[Outcome]) -> Outcome:
@@ -290,8 +375,8 @@ def _result(task: Task, future: Future[Outcome]) -> Outcome:
         return Outcome(task, error=f"{task.name}: its process was killed (out of memory?)")
 
 
-def _begin(stop: Event, reached: "SynchronizedArray[float]", trusted: trust.Trust) -> None:
-    """First thing in a new process: what it shares with the one that watches, and may run what that one may."""
+def _start_worker(stop: Event, reached: "SynchronizedArray[float]", trusted: trust.Trust) -> None:
+    """Set up a worker process with the shared state and the trusted folders of its parent."""
     global _stop, _reached
     trust.adopt(trusted)
     _stop, _reached = stop, reached
@@ -299,24 +384,22 @@ def _begin(stop: Event, reached: "SynchronizedArray[float]", trusted: trust.Trus
 
 
 def _end_with_parent() -> None:
-    """Once the process that watches is gone, killed perhaps: what runs here is kept as far as it is, and that is it."""
-    if watcher := parent_process():
-        watcher.join()
+    """End this process when its parent has ended, after the present run has been saved."""
+    if parent := parent_process():
+        parent.join()
         _stop.set()
-        _at_work.acquire(timeout=PATIENCE)
+        _at_work.acquire(timeout=SAVE_TIMEOUT)
         os._exit(Exit.INTERRUPTED)
 
 
-def _work(number: int, task: Task) -> Outcome:
-    """One task in a process of its own."""
-
-    def told(t: float) -> None:
-        _reached[number] = t
+def _run_in_worker(index: int, task: Task) -> Outcome:
+    def report(t: float) -> None:
+        _reached[index] = t
         if _stop.is_set():
             raise KeyboardInterrupt
 
     with _at_work:
-        return Outcome(task) if _stop.is_set() else carry_out(task, told)
+        return Outcome(task) if _stop.is_set() else run_task(task, report)
 
 
 _stop: Event

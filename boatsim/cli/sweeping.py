@@ -1,100 +1,150 @@
-"""What `boatsim sweep` and `boatsim diagnose --each` do: many tasks into one folder, one table of them printed."""
+"""Implementation of `boatsim sweep` and `boatsim diagnose --each`: campaigns of many tasks."""
 
+from collections import Counter
 from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import islice
 from pathlib import Path
 
-from boatsim.cli.exits import Exit, complain, say
-from boatsim.cli.progress import counting
-from boatsim.cli.show import printed
+from boatsim.cli.exits import Exit, print_error, print_lines
+from boatsim.cli.metric_table import print_rows
+from boatsim.cli.progress import report_campaign
 from boatsim.sweeps import diagnoses
-from boatsim.sweeps.axes import axis
-from boatsim.sweeps.designs import Kind
-from boatsim.sweeps.execute import backend, swept
+from boatsim.sweeps.axes import parse_axis
+from boatsim.sweeps.designs import Design
+from boatsim.sweeps.execute import choose_backend, run_plan
 from boatsim.sweeps.journal import Entry
-from boatsim.sweeps.plan import plan
+from boatsim.sweeps.plan import make_plan
 from boatsim.sweeps.results import Results
-from boatsim.sweeps.sampled_keys import draw
-from boatsim.sweeps.text_tables import once, tables
+from boatsim.sweeps.sampled_keys import parse_sampled_key
+from boatsim.sweeps.text_tables import blank_repeats, tables
 
-MOST = 60  # lines of a table on a terminal
-REASONS = 5  # reasons of failed runs that are told
+MOST_ROWS = 60  # of a table on a terminal; report.html has all rows
+MOST_REASONS = 5  # of failed runs that are printed, the most frequent first
 
 
-def sweep(
+@dataclass(frozen=True)
+class SweepOptions:
+    """What varies in a sweep.
+
+    Attributes:
+        vary: Axes of the grid, `KEY=VALUES`.
+        draw: Sampled quantities, `KEY=DISTRIBUTION(...)`.
+        runs: Samples at each grid point.
+        design: Sampling design.
+        seed: Random seed of samples and sensor noise.
+    """
+
+    vary: Sequence[str]
+    draw: Sequence[str]
+    runs: int
+    design: Design
+    seed: int
+
+
+def run_sweep(
     scenarios: Sequence[str],
-    vary: Sequence[str],
-    drawn: Sequence[str],
-    runs: int,
-    kind: Kind,
-    seed: int,
+    options: SweepOptions,
     out: Path,
     jobs: int | None,
     ray: str | None,
-    norms: Sequence[str] = (),
+    metrics: Sequence[str] = (),
 ) -> int:
-    """Carry out a sweep, or go on with it, and print what its runs say together."""
-    made = plan(
-        scenarios, [axis(text) for text in vary], [draw(text) for text in drawn], runs, seed, kind
-    )
-    with counting() as report:
-        found, whole = swept(made, out, jobs, ray, norms, report)
-    _tell(found, out)
-    if not whole:
-        complain(
-            f"interrupted after {len(found.numbers)} of {made.count} runs; the same command goes on"
-        )
-        return Exit.INTERRUPTED
-    return Exit.MET
+    """Start or continue a sweep and print its statistics.
+
+    Args:
+        scenarios: Scenarios as the user wrote them.
+        options: What varies.
+        out: Output folder.
+        jobs: Parallel processes; None for one per processor.
+        ray: Address of a Ray cluster; None for this machine.
+        metrics: Metrics to show; empty for all.
+
+    Returns:
+        Exit code.
+
+    Raises:
+        BadInput: An argument is wrong.
+    """
+    axes = list(map(parse_axis, options.vary))
+    sampled = list(map(parse_sampled_key, options.draw))
+    plan = make_plan(scenarios, axes, sampled, options.runs, options.seed, options.design)
+    with report_campaign() as report:
+        results, complete = run_plan(plan, out, jobs, ray, metrics, report)
+    _print_results(results, out)
+    if complete:
+        return Exit.MET
+    done = len(results.numbers)
+    print_error(f"interrupted after {done} of {plan.count} runs; the same command continues")
+    return Exit.INTERRUPTED
 
 
-def _tell(found: Results, out: Path) -> None:
-    for table in tables(found):
-        printed(table.title, table.head, once(table)[:MOST], table.left)
-        if len(table.rows) > MOST:
-            say([f"{len(table.rows) - MOST} lines more: report.html has them"])
-    if failed := int(found.failed.sum()):
-        say([f"{failed} of {len(found.numbers)} runs failed:"])
-        say(f"  {count} times: {why}" for why, count in list(found.reasons.items())[:REASONS])
-    say([f"written to {out}: sweep.parquet, report.html"])
+def _print_results(results: Results, out: Path) -> None:
+    for table in tables(results):
+        print_rows(table.title, table.head, blank_repeats(table)[:MOST_ROWS], table.left)
+        if len(table.rows) > MOST_ROWS:
+            print_lines([f"{len(table.rows) - MOST_ROWS} more rows are in report.html"])
+    if failed := int(results.failed.sum()):
+        print_lines([f"{failed} of {len(results.numbers)} runs failed:"])
+        for reason, count in islice(results.reasons.items(), MOST_REASONS):
+            print_lines([f"  {count} times: {reason}"])
+    print_lines([f"written to {out}: sweep.parquet, report.html"])
 
 
 def diagnose_each(
-    given: Sequence[Path], asked: diagnoses.Asked, out: Path, jobs: int | None, ray: str | None
+    inputs: Sequence[Path],
+    options: diagnoses.DiagnosisOptions,
+    out: Path,
+    jobs: int | None,
+    ray: str | None,
 ) -> int:
-    """Diagnose recordings one by one, or go on with it, and print what was found in each."""
-    paths = diagnoses.recordings(given)
-    with counting() as report:
-        done = diagnoses.diagnosed(paths, asked, out, backend(jobs, ray), report)
-    names = [str(path) for path in paths]
-    rows = [
-        [names[n], e.get("verdict", "failed"), _causes(e) if e["failure"] is None else e["failure"]]
-        for n, e in done.entries.items()
-    ]
-    printed("Each recording by itself", ["recording", "verdict", "causes"], rows[:MOST], 3)
-    if len(rows) > MOST:
-        say([f"{len(rows) - MOST} more: {diagnoses.NAME} has them"])
-    verdicts = [row[1] for row in rows]
-    say([", ".join(f"{verdict} {verdicts.count(verdict)}" for verdict in dict.fromkeys(verdicts))])
-    say([f"written to {out}: {diagnoses.NAME}, and a folder for each recording"])
-    if not done.whole:
-        complain(
-            f"interrupted after {len(rows)} of {len(paths)} recordings; the same command goes on"
-        )
-        return Exit.INTERRUPTED
-    return Exit.MET
+    """Start or continue separate diagnoses of recordings and print the result of each.
+
+    Args:
+        inputs: Recordings, and folders of recordings.
+        options: Options of each diagnosis.
+        out: Output folder.
+        jobs: Parallel processes; None for one per processor.
+        ray: Address of a Ray cluster; None for this machine.
+
+    Returns:
+        Exit code.
+
+    Raises:
+        BadInput: An argument is wrong.
+    """
+    paths = diagnoses.find_recordings(inputs)
+    with report_campaign() as report:
+        done = diagnoses.diagnose_all(paths, options, out, choose_backend(jobs, ray), report)
+    rows = []
+    for number, entry in done.entries.items():
+        causes = entry["failure"]
+        if causes is None:
+            causes = _format_causes(entry)
+        rows.append([str(paths[number]), entry.get("verdict", "failed"), causes])
+    print_rows("Separate diagnoses", ["recording", "verdict", "causes"], rows[:MOST_ROWS], 3)
+    if len(rows) > MOST_ROWS:
+        print_lines([f"{len(rows) - MOST_ROWS} more rows are in {diagnoses.NAME}"])
+    verdicts = Counter(row[1] for row in rows)
+    print_lines([", ".join(f"{verdict} {count}" for verdict, count in verdicts.items())])
+    print_lines([f"written to {out}: {diagnoses.NAME}, and a folder for each recording"])
+    if done.complete:
+        return Exit.MET
+    print_error(
+        f"interrupted after {len(rows)} of {len(paths)} recordings; the same command continues"
+    )
+    return Exit.INTERRUPTED
 
 
-def _causes(entry: Entry) -> str:
-    """What was named, with the values found."""
-    said = []
+def _format_causes(entry: Entry) -> str:
+    """Identified effects with the values and standard deviations of their parameters."""
+    values = entry["values"]
+    parts = []
     for cause in entry["causes"]:
-        own = {
-            k.removeprefix(f"{cause}."): v
-            for k, v in entry["values"].items()
-            if k.startswith(f"{cause}.")
-        }
-        numbers = [
-            f"{k} {v[0]:.4g} ± {own[f'{k} sd'][0]:.2g}" for k, v in own.items() if f"{k} sd" in own
-        ]
-        said.append(f"{cause}: {', '.join(numbers)}")
-    return "; ".join(said)
+        numbers = []
+        for key, (value, *_) in values.items():
+            if key.startswith(f"{cause}.") and f"{key} sd" in values:
+                name = key.removeprefix(f"{cause}.")
+                numbers.append(f"{name} {value:.4g} ± {values[f'{key} sd'][0]:.2g}")
+        parts.append(f"{cause}: {', '.join(numbers)}")
+    return "; ".join(parts)

@@ -1,15 +1,16 @@
-"""What `boatsim test` does: every scenario of a folder is run, and its norms are held against their pins and guards."""
+"""Implementation of `boatsim test`: compare the metrics of scenarios with baselines and bands."""
 
 import json
 import xml.etree.ElementTree as xml
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 from time import monotonic
 
-from boatsim.cli import progress, show
-from boatsim.cli.exits import FAULTS, Exit, complain, words
+from boatsim.cli import progress
+from boatsim.cli.exits import FAULTS, Exit, one_line, print_error
+from boatsim.cli.metric_table import format_value
 from boatsim.errors import BadInput, printable
 from boatsim.files import replacing
 from boatsim.simulate import baselines
@@ -22,52 +23,77 @@ from boatsim.simulate.scenario import Scenario, load
 
 @dataclass(frozen=True)
 class Case:
-    """What became of one scenario; of a file that is no scenario, why."""
+    """Result of one scenario.
 
-    name: str  # file, or file:case
-    runs: Sequence[Mapping[str, Metric]] = ()  # norms with its own seed, then with further ones
-    pins: Mapping[str, Baseline] | None = None  # None: it has none
+    Attributes:
+        name: `file`, or `file:case`.
+        runs: Metrics with the scenario's own seed, then with the following seeds.
+        baseline: Baselines of its metrics; None if it has none.
+        error: Why it cannot be run; "" if it can.
+        seconds: Wall time [s].
+    """
+
+    name: str
+    runs: Sequence[Mapping[str, Metric]] = ()
+    baseline: Mapping[str, Baseline] | None = None
     error: str = ""
     seconds: float = 0.0
 
     @property
-    def norms(self) -> Mapping[str, Metric]:
-        """Those with its own seed."""
+    def metrics(self) -> Mapping[str, Metric]:
+        """Metrics with the scenario's own seed."""
         return self.runs[0] if self.runs else {}
 
     @property
     def faults(self) -> list[str]:
-        """A line for all that is not as it was, and for guards that are not met."""
+        """A line for each metric that misses its band or differs from its baseline."""
         if self.error:
             return []
-        bars = {n: show.value(x.to_json()) for n, x in self.norms.items() if x.ok is False}
-        missed = [f"{name} is {value}, outside its guard" for name, value in bars.items()]
-        return [
-            *missed,
-            *(
-                ["has no baseline"]
-                if self.pins is None
-                else baselines.differences(self.pins, self.norms)
-            ),
-        ]
+        lines = []
+        for name, metric in self.metrics.items():
+            if metric.ok is False:
+                value = format_value(metric.to_json())
+                lines.append(f"{name} is {value}, outside its regression band")
+        if self.baseline is None:
+            return [*lines, "has no baseline"]
+        return [*lines, *baselines.differences(self.baseline, self.metrics)]
 
     @property
     def code(self) -> Exit:
-        """How it ended."""
-        return Exit.BAD_INPUT if self.error else Exit.MISSED if self.faults else Exit.MET
+        """Exit code."""
+        if self.error:
+            return Exit.BAD_INPUT
+        return Exit.MISSED if self.faults else Exit.MET
 
 
-def regress(folder: Path, pin: bool, seeds: int, junit: Path | None, as_json: bool) -> int:
-    """Run all scenarios of a folder, compare or pin their norms, print a summary. Raises BadInput."""
+def run_regression(folder: Path, pin: bool, seeds: int, junit: Path | None, as_json: bool) -> int:
+    """Run all scenarios of a folder and compare their metrics with baselines, or write these.
+
+    Args:
+        folder: Folder with scenarios.
+        pin: Whether to write the metrics as new baselines.
+        seeds: Number of seeds from which the tolerance of a baseline follows.
+        junit: File for the results as JUnit XML; None for none.
+        as_json: Whether to print JSON in place of the table.
+
+    Returns:
+        Exit code.
+
+    Raises:
+        BadInput: The folder or its baselines cannot be read.
+    """
     if not folder.is_dir():
-        raise BadInput(f"{folder}: is no folder; give one with scenarios (*.toml) in it")
-    kept = baselines.read(folder)
-    cases = _run_all(folder, kept, seeds if pin else 1)
+        raise BadInput(f"{folder} is not a folder; give a folder with scenarios (*.toml)")
+    stored = baselines.read(folder)
+    known = stored.scenario if stored else {}
+    cases = _run_all(folder, known, seeds if pin else 1)
     if pin:
-        cases = _pin(folder, kept, cases, seeds)
-    elif kept:
-        there = {case.name for case in cases} | _unread(cases, kept)
-        cases += [Case(name, pins=own) for name, own in kept.scenario.items() if name not in there]
+        cases = _write_baselines(folder, known, cases, seeds)
+    else:
+        present = {case.name for case in cases} | _unreadable(cases, known)
+        for name, own in known.items():
+            if name not in present:
+                cases.append(Case(name, baseline=own))
     if junit:
         _write_junit(folder, cases, junit)
     if as_json:
@@ -76,100 +102,85 @@ def regress(folder: Path, pin: bool, seeds: int, junit: Path | None, as_json: bo
         _print(folder, cases)
     for case in cases:
         if case.error:
-            complain(case.error if case.name in case.error else f"{case.name}: {case.error}")
+            named = case.name in case.error
+            print_error(case.error if named else f"{case.name}: {case.error}")
     return max(case.code for case in cases)
 
 
-def _run_all(folder: Path, kept: BaselinesFile | None, seeds: int) -> list[Case]:
-    """All cases of all files, those that can not be read too."""
-    found: list[Case] = []
+def _run_all(folder: Path, known: Mapping[str, Mapping[str, Baseline]], seeds: int) -> list[Case]:
+    """Run all cases of all files; files that cannot be read are cases with an error."""
+    cases: list[Case] = []
     ready: list[tuple[str, Scenario]] = []
     for path in files_of(folder):
         try:
-            ready += [(one.removeprefix(f"{path.parent}/"), load(one)) for one in meant(str(path))]
+            for address in meant(str(path)):
+                ready.append((address.removeprefix(f"{path.parent}/"), load(address)))
         except FAULTS as error:
-            found.append(Case(path.name, error=words(error)))
-    with progress.running(
-        [(name, seeds * scenario.file.duration) for name, scenario in ready]
-    ) as report:
-        for number, (name, scenario) in enumerate(ready):
-            own = kept.scenario.get(name) if kept else None
-            found.append(_run(name, scenario, own, seeds, partial(report, number)))
-    return sorted(found, key=lambda case: case.name)
+            cases.append(Case(path.name, error=one_line(error)))
+    durations = [(name, seeds * scenario.file.duration) for name, scenario in ready]
+    with progress.report_runs(durations) as report:
+        for index, (name, scenario) in enumerate(ready):
+            case = _run_case(name, scenario, seeds, partial(report, index))
+            cases.append(replace(case, baseline=known.get(name)))
+    return sorted(cases, key=lambda case: case.name)
 
 
-def _run(
-    name: str,
-    scenario: Scenario,
-    own: Mapping[str, Baseline] | None,
-    seeds: int,
-    report: Callable[[float], None],
-) -> Case:
-    """One scenario with its own seed and those after it."""
-    begun, runs = monotonic(), []
+def _run_case(name: str, scenario: Scenario, seeds: int, report: Callable[[float], None]) -> Case:
+    """Run one scenario with its own seed and the following ones."""
+    start = monotonic()
+    runs = []
     try:
         for k in range(seeds):
-            before = k * scenario.file.duration
-            done = run(
-                scenario, scenario.file.seed + k, progress=partial(_report_later, report, before)
-            )
+            offset = partial(_report_later, report, k * scenario.file.duration)
+            done = run(scenario, scenario.file.seed + k, progress=offset)
             if not done.complete:
                 raise KeyboardInterrupt
             runs.append(all_metrics(done))
     except FAULTS as error:
-        return Case(name, pins=own, error=words(error), seconds=monotonic() - begun)
-    return Case(name, runs, own, seconds=monotonic() - begun)
+        return Case(name, error=one_line(error), seconds=monotonic() - start)
+    return Case(name, runs, seconds=monotonic() - start)
 
 
-def _unread(cases: Sequence[Case], kept: BaselinesFile | None) -> set[str]:
-    """Scenarios with pins whose file can not be read: they are not gone."""
-    bad = [case.name for case in cases if case.error]
-    return {
-        name
-        for name in (kept.scenario if kept else ())
-        if any(name.startswith(f"{b}:") for b in bad)
-    }
+def _unreadable(cases: Sequence[Case], known: Mapping[str, Mapping[str, Baseline]]) -> set[str]:
+    """Scenarios with baselines whose file cannot be read; their baselines stay."""
+    prefixes = tuple(f"{case.name}:" for case in cases if case.error)
+    return {name for name in known if name.startswith(prefixes)}
 
 
-def _pin(folder: Path, kept: BaselinesFile | None, cases: Sequence[Case], seeds: int) -> list[Case]:
-    """Write what was found; of a scenario that can not be run the old pins stay. Returns the cases as pinned."""
-    was = kept.scenario if kept else {}
-    stay = {case.name for case in cases if case.error} | _unread(cases, kept)
-    new = {name: dict(norms) for name, norms in was.items() if name in stay}
-    new |= {case.name: baselines.baselines_of(case.runs) for case in cases if not case.error}
+def _write_baselines(
+    folder: Path, known: Mapping[str, Mapping[str, Baseline]], cases: Sequence[Case], seeds: int
+) -> list[Case]:
+    """Write new baselines; those of scenarios that cannot be run stay. Return the new cases."""
+    kept = {case.name for case in cases if case.error} | _unreadable(cases, known)
+    new = {name: dict(metrics) for name, metrics in known.items() if name in kept}
+    for case in cases:
+        if not case.error:
+            new[case.name] = baselines.baselines_of(case.runs)
+    text = baselines.to_toml(BaselinesFile(seeds=seeds, scenario=new))
     with replacing(folder / baselines.FILE) as temporary:
-        temporary.write_text(
-            baselines.to_toml(BaselinesFile(seeds=seeds, scenario=new)), encoding="utf-8"
-        )
-    return [Case(c.name, c.runs, new.get(c.name), c.error, c.seconds) for c in cases]
+        temporary.write_text(text, encoding="utf-8")
+    return [replace(case, baseline=new.get(case.name)) for case in cases]
 
 
 def _print(folder: Path, cases: Sequence[Case]) -> None:
-    """One row a scenario, and below it a line for each fault."""
+    """Print a row for each scenario, then a line for each fault."""
     from rich.console import Console
     from rich.table import Table
     from rich.text import Text
 
     table = Table(title=Text(printable(str(folder))), pad_edge=False)
-    for heading, justify in (
-        ("scenario", "left"),
-        ("norms", "right"),
-        ("faults", "right"),
-        ("", "left"),
-    ):
-        table.add_column(heading, justify="right" if justify == "right" else "left", no_wrap=True)
+    table.add_column("scenario", no_wrap=True)
+    table.add_column("metrics", justify="right", no_wrap=True)
+    table.add_column("faults", justify="right", no_wrap=True)
+    table.add_column("", no_wrap=True)
     states = {
-        Exit.MET: "as pinned",
+        Exit.MET: "as baseline",
         Exit.MISSED: "[bold red]DIFFERS[/]",
-        Exit.BAD_INPUT: "[bold red]CAN NOT RUN[/]",
+        Exit.BAD_INPUT: "[bold red]CANNOT RUN[/]",
     }
     for case in cases:
-        table.add_row(
-            Text(printable(case.name)),
-            f"{len(case.norms)}",
-            f"{len(case.faults)}",
-            states[case.code],
-        )
+        counts = str(len(case.metrics)), str(len(case.faults))
+        table.add_row(Text(printable(case.name)), *counts, states[case.code])
     console = Console()
     console.print(table)
     for case in cases:
@@ -178,63 +189,57 @@ def _print(folder: Path, cases: Sequence[Case]) -> None:
 
 
 def _as_json(folder: Path, cases: Sequence[Case]) -> dict[str, object]:
-    """What --json prints; the same for the same files."""
-    return {
-        "folder": str(folder),
-        "exit": max(case.code for case in cases),
-        "scenarios": [
+    """Content that --json prints; it is the same for the same scenarios."""
+    scenarios = []
+    for case in cases:
+        metrics = {}
+        for name, metric in case.metrics.items():
+            pin = (case.baseline or {}).get(name)
+            metrics[name] = {**metric.to_json(), "pin": pin.model_dump() if pin else None}
+        scenarios.append(
             {
                 "scenario": case.name,
                 "exit": case.code,
                 "error": case.error or None,
                 "faults": case.faults,
-                "norms": {
-                    name: _entry(norm, (case.pins or {}).get(name))
-                    for name, norm in case.norms.items()
-                },
+                "norms": metrics,
             }
-            for case in cases
-        ],
-    }
-
-
-def _entry(norm: Metric, pin: Baseline | None) -> dict[str, object]:
-    """A norm as norms.json has it, beside its pin."""
-    return {**norm.to_json(), "pin": pin.model_dump() if pin else None}
+        )
+    worst = max(case.code for case in cases)
+    return {"folder": str(folder), "exit": worst, "scenarios": scenarios}
 
 
 def _write_junit(folder: Path, cases: Sequence[Case], path: Path) -> None:
-    """The same as JUnit XML, a test case a scenario."""
-    counts = {
-        "tests": len(cases),
-        "failures": sum(case.code == Exit.MISSED for case in cases),
-        "errors": sum(case.code == Exit.BAD_INPUT for case in cases),
-    }
+    """Write the results as JUnit XML, one test case for each scenario."""
+    codes = [case.code for case in cases]
     total = {
-        **{key: str(count) for key, count in counts.items()},
-        "time": f"{sum(c.seconds for c in cases):.3f}",
+        "tests": str(len(cases)),
+        "failures": str(codes.count(Exit.MISSED)),
+        "errors": str(codes.count(Exit.BAD_INPUT)),
+        "time": f"{sum(case.seconds for case in cases):.3f}",
     }
+    suite_name = printable(folder.resolve().name)
     top = xml.Element("testsuites", {"name": "boatsim", **total})
-    suite = xml.SubElement(top, "testsuite", {"name": printable(folder.resolve().name), **total})
+    suite = xml.SubElement(top, "testsuite", {"name": suite_name, **total})
     for case in cases:
         about = {
-            "classname": printable(folder.resolve().name),
+            "classname": suite_name,
             "name": printable(case.name),
             "time": f"{case.seconds:.3f}",
         }
         entry = xml.SubElement(suite, "testcase", about)
         if case.error:
-            xml.SubElement(
-                entry, "error", message=printable(case.error), type="BadInput"
-            ).text = printable(case.error)
+            message = printable(case.error)
+            xml.SubElement(entry, "error", message=message, type="BadInput").text = message
         elif case.faults:
-            lines = [printable(line) for line in case.faults]
-            xml.SubElement(entry, "failure", message=lines[0], type="Norm").text = "\n".join(lines)
+            lines = list(map(printable, case.faults))
+            failure = xml.SubElement(entry, "failure", message=lines[0], type="Norm")
+            failure.text = "\n".join(lines)
     xml.indent(top)
     with replacing(path) as temporary:
         xml.ElementTree(top).write(temporary, encoding="utf-8", xml_declaration=True)
 
 
 def _report_later(report: Callable[[float], None], offset: float, t: float) -> None:
-    """Report the simulated time `t` [s] of one of several runs, with that of earlier runs added."""
+    """Report the simulated time `t` [s] of one of several runs, after those before it."""
     report(offset + t)

@@ -1,46 +1,64 @@
-"""Whose Python files a command may run: what its options say, else whoever sits at the terminal."""
+"""Permission to run Python files of a user: from command-line options, or asked on a terminal."""
 
 import sys
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
-from boatsim.cli.progress import set_aside
+from boatsim.cli.progress import pause_progress
 from boatsim.errors import printable
 
 
 @contextmanager
-def asking(
+def trusted_content(
     content: Sequence[Path] | None = None,
     trust: bool = False,
-    given: Sequence[str | Path | None] = (),
+    arguments: Sequence[str | Path | None] = (),
 ) -> Iterator[None]:
-    """Trust the folders of `--content`, and with `--trust` those in which the files lie that the command line names.
+    """Add the content folders of the user, and trust their Python files within the block.
 
-    Anything else is asked for once on a terminal, and refused where there is none. Raises BadInput.
+    For Python files in any other folder the user is asked once on a terminal; without a terminal
+    they are refused.
+
+    Args:
+        content: Folders of the option --content.
+        trust: Whether the folders of the files in `arguments` are trusted too (option --trust).
+        arguments: Files, folders or names given on the command line.
+
+    Raises:
+        BadInput: A folder does not exist.
     """
     from boatsim.physics.trust import trusting
 
-    beside = [folder for name in given if name and trust for folder in _folder_of(str(name))]
-    with trusting(*(content or ()), allowed=beside, ask=_asked if _there() else None):
+    allowed: list[Path] = []
+    if trust:
+        for argument in filter(None, map(str, filter(None, arguments))):
+            allowed += _folder_of(argument)
+    ask = _ask if _is_interactive() else None
+    with trusting(*(content or ()), allowed=allowed, ask=ask):
         yield
 
 
-def _folder_of(given: str) -> list[Path]:
-    """Folder of a file of the command line, or the folder that it names; none for the name of something."""
-    path = Path(given.rpartition(":")[0] if ".toml:" in given else given)
+def _folder_of(argument: str) -> list[Path]:
+    """The folder of a file or the folder itself; nothing for the name of an item."""
+    file = argument
+    if ".toml:" in argument:
+        file = argument.rpartition(":")[0]
+    path = Path(file)
     if path.is_dir():
         return [path]
-    return [path.resolve().parent] if path.is_file() else []
+    if path.is_file():
+        return [path.resolve().parent]
+    return []
 
 
-def _there() -> bool:
-    """Whether somebody reads the question and can answer it."""
+def _is_interactive() -> bool:
+    """Whether a question can be asked on a terminal."""
     return bool(sys.stdin and sys.stderr and sys.stdin.isatty() and sys.stderr.isatty())
 
 
-def _asked(folder: Path) -> bool:
-    question = f"boatsim: data name Python files in {printable(str(folder))}. Run them? [y/N] "
-    with set_aside():
+def _ask(folder: Path) -> bool:
+    question = f"boatsim: a file names Python files in {printable(str(folder))}. Run them? [y/N] "
+    with pause_progress():
         print(question, end="", file=sys.stderr, flush=True)
         return sys.stdin.readline().strip().lower() in ("y", "yes")

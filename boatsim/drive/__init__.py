@@ -1,1 +1,1 @@
-"""A run in real time with somebody's hands on the sticks: a page in the browser, and what keeps it safe and on time."""
+"""Runs in real time, steered by a driver from a page in the browser."""

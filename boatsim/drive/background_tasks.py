@@ -1,4 +1,4 @@
-"""What takes its time, such as files, goes on beside a run and never holds it up."""
+"""Hands log rows to a slow consumer in a thread, so that writing files never delays a run."""
 
 import threading
 from collections.abc import Iterator
@@ -10,41 +10,48 @@ from boatsim.simulate.run_options import Listener
 
 
 @contextmanager
-def aside(listen: Listener, every: float) -> Iterator[Listener]:
-    """A listener that hands rows over to this one, in a thread of its own, every so many seconds; all by the end.
+def background_listener(listen: Listener, interval: float) -> Iterator[Listener]:
+    """Call a listener in a thread at intervals, the last time at the end of the block.
 
-    What goes wrong there is raised where the next rows come from, or at the end.
+    An error of the listener is raised when the next rows arrive, or at the end of the block.
+
+    Args:
+        listen: Listener that is called in the thread.
+        interval: Time between two calls [s].
+
+    Yields:
+        Listener that returns at once.
     """
     rows: SimpleQueue[Recording] = SimpleQueue()
-    over = threading.Event()
-    wrong: list[BaseException] = []
+    finished = threading.Event()
+    errors: list[BaseException] = []
 
-    def work() -> None:
+    def run() -> None:
         try:
-            while not over.wait(every):
+            while not finished.wait(interval):
                 _hand_over(rows, listen)
             _hand_over(rows, listen)
         except BaseException as error:
-            wrong.append(error)
+            errors.append(error)
 
     def put(more: Recording) -> None:
-        if wrong:
-            raise wrong.pop()
+        if errors:
+            raise errors.pop()
         rows.put(more)
 
-    thread = threading.Thread(target=work, name="files")
+    thread = threading.Thread(target=run, name="files")
     thread.start()
     try:
         yield put
     finally:
-        over.set()
+        finished.set()
         thread.join()
-    if wrong:
-        raise wrong.pop()
+    if errors:
+        raise errors.pop()
 
 
 def _hand_over(rows: SimpleQueue[Recording], listen: Listener) -> None:
-    """All that is there by now, as one piece."""
+    """Pass all waiting rows to the listener as one recording."""
     pieces: list[Recording] = []
     try:
         while True:

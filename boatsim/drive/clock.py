@@ -1,34 +1,55 @@
-"""Keeps a run at the pace of the clock and counts the control periods that began late."""
+"""Keeps a run at real time and counts the control periods that start late."""
 
 import time
 from collections.abc import Callable
 
 from boatsim.simulate.real_time_pace import Pace
 
-LATE = 0.5  # share of a period by which its control may begin behind its time
+# Delay, as a share of the control period, from which a control step counts as late: beyond half a
+# period the commands belong to the next period rather than to their own.
+LATE = 0.5
 
 
 class Clock(Pace):
-    """Real time for a controller with a period [s]."""
+    """Pace of real time for a controller.
+
+    Attributes:
+        period: Control period [s].
+        periods: Number of control periods so far.
+        late: Number of periods that started late.
+        worst: Largest delay of the start of a period [s].
+        began: Unix time at simulated time 0 [s]; None before the run.
+    """
 
     def __init__(self, period: float) -> None:
+        """Create a clock.
+
+        Args:
+            period: Control period [s].
+        """
         super().__init__(1.0)
         self.period = period
-        self.late = self.periods = 0  # how many began late, and how many there were
-        self.worst = 0.0  # [s] behind its time
-        self.began: float | None = None  # when the simulated time 0 was [s since 1970]
-        self._due = period  # the first control comes before the clock begins
+        self.periods = 0
+        self.late = 0
+        self.worst = 0.0
+        self.began: float | None = None
+        self._due = period  # The first control step comes before the clock starts.
 
     def wait(self, t: float, stop: Callable[[], bool] = bool) -> None:
-        """Return when `t` [s] is due; where control is due too, see how late it is."""
+        """Wait until a simulated time is due, and measure the delay of a control step due then.
+
+        Args:
+            t: Simulated time [s].
+            stop: Returns whether to stop waiting.
+        """
         if self.began is None:
             self.began = time.time() - t
-        before = self.behind(t)  # one that is far behind sets the clock back
+        before = self.behind(t)  # before `wait` resets a clock that is far behind
         super().wait(t, stop)
         if t < self._due - 1e-9:
             return
         self._due += self.period
-        behind = max(before, self.behind(t))
+        delay = max(before, self.behind(t))
         self.periods += 1
-        self.late += behind > LATE * self.period
-        self.worst = max(self.worst, behind)
+        self.late += delay > LATE * self.period
+        self.worst = max(self.worst, delay)

@@ -1,65 +1,100 @@
-"""Whose hands are on the sticks: what they ask for, and when nobody's are."""
+"""Stick positions from the page, and whether a driver holds the sticks."""
 
 import time
 from collections.abc import Callable
 from typing import NamedTuple
 
-PATIENCE = 0.3  # [s] without a message after which nobody holds the sticks
-DEAD = 0.08  # share of a stick's way about its middle that counts as none
-STEPS = 100  # of a stick's way to one side: a hand that is still leaves the goals still
+# Silence after which the driver counts as absent [s]; the page sends every 50 ms.
+PATIENCE = 0.3
+DEAD = 0.08  # half-width of the dead zone about the middle; sticks do not return exactly to it
+STEPS = 100  # resolution of a stick to one side, so that a hand at rest keeps its goals constant
 
 
 class Sticks(NamedTuple):
-    """How far the sticks are pushed, -1 to 1."""
+    """Stick deflections from -1 to 1.
 
-    surge: float = 0.0  # ahead
-    sway: float = 0.0  # to starboard
-    yaw: float = 0.0  # clockwise
+    Attributes:
+        surge: Positive ahead.
+        sway: Positive to starboard.
+        yaw: Positive clockwise.
+    """
+
+    surge: float = 0.0
+    sway: float = 0.0
+    yaw: float = 0.0
+
+
+class _Message(NamedTuple):
+    """The latest message of the page."""
+
+    sticks: Sticks = Sticks()
+    moved: float = (
+        -1.0
+    )  # time at which the sticks were last moved, clock of the page [s since 1970]
+    received: float = 0.0  # time of arrival, clock of this object [s]
 
 
 class Hands:
-    """The latest word from the page, written by the server's thread and read by that of the physics.
+    """The latest stick positions, written by the thread of the server and read by the simulation.
 
-    Sticks that were let go count again once they have been in the middle: nothing starts up by itself.
+    Sticks that were released count again only after they have been in the middle, so that no boat
+    starts unexpectedly.
     """
 
     def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
+        """Create the state without a driver.
+
+        Args:
+            clock: Returns the time [s].
+        """
         self._clock = clock
-        self._word = (
-            Sticks(),
-            -1.0,
-            0.0,
-        )  # sticks, when they were last moved by the page's clock [s], when we heard it
-        self._away = "nobody has taken the sticks"  # why; "" while somebody holds them
+        self._message = _Message()
+        self._away = "no driver has taken the sticks"
 
     def move(self, sticks: Sticks, moved: float) -> None:
-        """A message from the page; `moved` [s since 1970] is when the sticks came to where they are."""
-        self._word = sticks, moved, self._clock()
-        if all(abs(x) <= DEAD for x in sticks):
+        """Store a message of the page.
+
+        Args:
+            sticks: Stick deflections.
+            moved: Time at which the sticks came to these deflections [s since 1970].
+        """
+        self._message = _Message(sticks, moved, self._clock())
+        if max(map(abs, sticks)) <= DEAD:
             self._away = ""
 
     def let_go(self, why: str) -> None:
-        """Nobody holds them from now on."""
+        """Note that the driver has released the sticks.
+
+        Args:
+            why: The reason; a reason deferred_signals earlier is kept.
+        """
         self._away = self._away or why
 
     @property
     def away(self) -> str:
-        """Why nobody holds the sticks, "" while somebody does."""
-        if not self._away and self._clock() - self._word[2] > PATIENCE:
+        """Why no driver holds the sticks; "" while one does."""
+        if not self._away and self._clock() - self._message.received > PATIENCE:
             self.let_go(f"no message for {PATIENCE:g} s")
         return self._away
 
     @property
     def moved(self) -> float:
-        """When the sticks came to where they are [s since 1970], by the page's clock."""
-        return self._word[1]
+        """Time at which the sticks were last moved, by the clock of the page [s since 1970]."""
+        return self._message.moved
 
     def sticks(self) -> Sticks | None:
-        """Where they are, without the dead zone about the middle; None: nobody holds them."""
-        return None if self.away else Sticks(*map(live, self._word[0]))
+        """Return the deflections beyond the dead zone; None while no driver holds the sticks."""
+        if self.away:
+            return None
+        return Sticks(*map(beyond_dead_zone, self._message.sticks))
 
 
-def live(way: float) -> float:
-    """A stick's way from the end of its dead zone, in steps."""
-    beyond = max(abs(way) - DEAD, 0.0) / (1.0 - DEAD)
-    return round(STEPS * min(beyond, 1.0)) / STEPS * (1.0 if way > 0.0 else -1.0)
+def beyond_dead_zone(deflection: float) -> float:
+    """Return a deflection measured from the end of the dead zone, rounded to STEPS.
+
+    Args:
+        deflection: Deflection from -1 to 1.
+    """
+    beyond = max(abs(deflection) - DEAD, 0.0) / (1.0 - DEAD)
+    sign = 1.0 if deflection > 0.0 else -1.0
+    return round(STEPS * min(beyond, 1.0)) / STEPS * sign

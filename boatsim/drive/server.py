@@ -1,4 +1,4 @@
-"""The page and its socket, on this machine alone: a token in the address, one driver at a time, in a thread."""
+"""Web server of the page: local only, with a token in the address, for one driver at a time."""
 
 import asyncio
 import hmac
@@ -20,22 +20,31 @@ from boatsim.drive.driver_input import Hands, Sticks
 from boatsim.errors import BoatsimError
 
 HERE = "127.0.0.1"
-LARGEST = 1024  # bytes of a message from the page
-FAREWELL = 2.0  # [s] for the page to hear how it ended
-TAKEN, STRANGE = (
-    4001,
-    4002,
-)  # codes of a socket that is closed: somebody drives already; not a message of our page
+LARGEST = 1024  # bytes of a message from the page; its messages have less than 200
+FAREWELL = 2.0  # [s] for the page to receive the result of the run
+# Close codes of the socket: another page drives already; a message is not one of this page.
+TAKEN, STRANGE = 4001, 4002
 NEEDED = 'driving needs the package websockets: pip install "boatsim[drive]"'
 
 
 class Server:
-    """Serves the page for the block; what it hears goes to `hands`."""
+    """Serves the page within a `with` block.
+
+    Attributes:
+        hands: Receives the stick positions.
+        ended: Whether the driver has ended the run.
+        port: Port of the page, within the block.
+    """
 
     def __init__(self, hands: Hands, port: int = 0) -> None:
-        """At a port of this machine, 0: any that is free; its block raises BoatsimError for one that can not be had.
+        """Create a server; its block raises BoatsimError if the port cannot be used.
 
-        Raises BoatsimError where the package is missing that it is made of.
+        Args:
+            hands: Receives the stick positions.
+            port: Port on this machine; 0 for any free port.
+
+        Raises:
+            BoatsimError: The package websockets is not installed.
         """
         try:
             import websockets.asyncio.server as sockets
@@ -57,47 +66,55 @@ class Server:
             self.port = self._up.result()
         except OSError as error:
             raise BoatsimError(
-                f"port {self._wanted}: {os.strerror(error.errno or 0)}; without --port one is found"
+                f"port {self._wanted}: {os.strerror(error.errno or 0)}; omit --port for a free one"
             ) from None
         return self
 
     def __exit__(self, kind: object, error: BaseException | None, trace: object) -> None:
         if error is not None:
-            self.farewell(
-                {
-                    "wrong": str(error)
-                    if isinstance(error, BoatsimError)
-                    else "the terminal says why"
-                }
-            )
+            message = "the terminal shows the error"
+            if isinstance(error, BoatsimError):
+                message = str(error)
+            self.farewell({"wrong": message})
         self._loop.call_soon_threadsafe(self._over.set)
         self._thread.join(FAREWELL + 1.0)
 
     @property
     def address(self) -> str:
-        """Where a browser looks."""
+        """Address of the page."""
         return f"http://{HERE}:{self.port}/{self._token}/"
 
     def greet(self, hello: Mapping[str, object]) -> None:
-        """What does not change: the boat, its water, its dials."""
+        """Send what does not change during the run.
+
+        Args:
+            hello: Vessel, basin and dials.
+        """
         self._hello = json.dumps({"hello": hello})
         self._wake()
 
     def show(self, frame: Mapping[str, object]) -> None:
-        """The latest state; a page that is slow misses some."""
+        """Send the latest state; a slow page receives only some of the states.
+
+        Args:
+            frame: The state.
+        """
         self._frame = json.dumps({"frame": frame})
         self._wake()
 
     def farewell(self, last: Mapping[str, object]) -> None:
-        """How it ended."""
+        """Send the result of the run.
+
+        Args:
+            last: Output folder, or the error.
+        """
         self._last = json.dumps({"over": last})
         self._wake()
 
-    # In the server's thread
-    # -----------------------------------------------------------------------------------------
+    # Methods below run in the thread of the server.
 
     def _wake(self) -> None:
-        with suppress(RuntimeError):  # a loop that is closed
+        with suppress(RuntimeError):  # The loop is closed.
             self._loop.call_soon_threadsafe(lambda: self._news.set())
 
     def _work(self) -> None:
@@ -116,7 +133,7 @@ class Server:
             self._drive,
             HERE,
             self._wanted,
-            process_request=self._asked,
+            process_request=self._respond,
             max_size=LARGEST,
             compression=None,
             server_header=None,
@@ -130,28 +147,32 @@ class Server:
                 with suppress(TimeoutError):
                     await asyncio.wait_for(self._driver.wait_closed(), FAREWELL)
 
-    def _asked(self, connection: Any, request: Any) -> Any:
-        """Answer of a request: the page, nothing here, or None where the socket is let in."""
+    def _respond(self, connection: Any, request: Any) -> Any:
+        """Response to a request: the page, an error, or None to open the socket."""
         own = f"{HERE}:{self._up.result()}"
         place, _, rest = request.path.removeprefix("/").partition("/")
-        if request.headers.get_all("Host") != [
-            own
-        ]:  # another name for this machine: a page of somebody's, rebound
+        # Another host name may belong to a foreign page that was rebound to this address.
+        if request.headers.get_all("Host") != [own]:
             return connection.respond(421, f"this is http://{own}\n")
         if not hmac.compare_digest(place.encode(), self._token.encode()):
             return connection.respond(
-                403, "the address lacks its token; it is printed where boatsim drive runs\n"
+                403, "the address lacks its token; boatsim drive prints the full address\n"
             )
         if rest == "socket":
             mine = request.headers.get_all("Origin") == [f"http://{own}"]
-            return None if mine else connection.respond(403, "not from the page of this server\n")
+            return (
+                None
+                if mine
+                else connection.respond(403, "this request is not from the page of this server\n")
+            )
         if rest or request.headers.get("Upgrade"):
-            return connection.respond(404, "only the page is here\n")
-        return self._served(connection.respond(200, self._page), own)
+            return connection.respond(404, "there is only the page\n")
+        return self._page_response(connection.respond(200, self._page), own)
 
-    def _served(self, answer: Any, own: str) -> Any:
-        """The page with what it is allowed: its own script and style, its own socket, nothing else."""
-        policy = f"default-src 'none'; script-src {_hash(self._page, 'script')}; style-src {_hash(self._page, 'style')}"
+    def _page_response(self, answer: Any, own: str) -> Any:
+        """The page with a policy that allows its own script, style and socket only."""
+        script, style = _hash(self._page, "script"), _hash(self._page, "style")
+        policy = f"default-src 'none'; script-src {script}; style-src {style}"
         policy += f"; connect-src ws://{own}; img-src data:; base-uri 'none'; form-action 'none'"
         del answer.headers["Content-Type"]
         for name, value in {
@@ -166,35 +187,35 @@ class Server:
         return answer
 
     async def _drive(self, socket: Any) -> None:
-        """One page from its opening to its end."""
+        """Serve one page from its opening to its closing."""
         if self._driver is not None:
-            await socket.close(TAKEN, "somebody drives already, in another page")
+            await socket.close(TAKEN, "another page drives this boat already")
             return
         self._driver = socket
-        speaking = asyncio.ensure_future(self._speak(socket))
+        sending = asyncio.ensure_future(self._send(socket))
         try:
             async for message in socket:
-                if not self._hear(message):
+                if not self._receive(message):
                     await socket.close(STRANGE, "not a message of this page")
-        except Exception as error:  # a connection that is lost has many names
+        except Exception as error:  # A lost connection raises one of several errors.
             if type(error).__module__.partition(".")[0] != "websockets":
                 raise
         finally:
             self.hands.let_go("page closed")
             self._driver = None
-            speaking.cancel()
+            sending.cancel()
 
-    def _hear(self, message: str | bytes) -> bool:
-        """Take a message; whether it is one of the page's."""
+    def _receive(self, message: str | bytes) -> bool:
+        """Process a message; return whether it has the form of the page's messages."""
         try:
-            said = json.loads(message)
-            if said == {"end": True}:
+            data = json.loads(message)
+            if data == {"end": True}:
                 self.ended = True
-            elif said == {"hidden": True}:
+            elif data == {"hidden": True}:
                 self.hands.let_go("page hidden")
             else:
-                surge, sway, yaw = map(float, said["sticks"])
-                sticks, moved = Sticks(surge, sway, yaw), float(said["moved"])
+                surge, sway, yaw = map(float, data["sticks"])
+                sticks, moved = Sticks(surge, sway, yaw), float(data["moved"])
                 if not all(isfinite(x) and abs(x) <= 1.0 for x in sticks) or not isfinite(moved):
                     return False
                 self.hands.move(sticks, moved)
@@ -202,8 +223,8 @@ class Server:
             return False
         return True
 
-    async def _speak(self, socket: Any) -> None:
-        """Greet it, then send the latest frame whenever there is one."""
+    async def _send(self, socket: Any) -> None:
+        """Send the greeting, then the latest frame whenever it has changed."""
         greeted = sent = ""
         while not self._last:
             if greeted != self._hello:
@@ -219,7 +240,7 @@ class Server:
 
 
 def _hash(page: str, part: str) -> str:
-    """What the policy calls the page's own script or style."""
+    """Hash by which the policy allows the script or style of the page."""
     found = search(rf"<{part}>(.*?)</{part}>", page, DOTALL)
     assert found, part
     return f"'sha256-{b64encode(sha256(found[1].encode()).digest()).decode()}'"

@@ -1,11 +1,11 @@
-"""One run under somebody's hands: what they ask for at every instant, what the page is shown, what is kept of it."""
+"""One run steered by a driver: goals from the sticks, frames for the page, facts for the files."""
 
 import time
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 
-from boatsim.drive.background_tasks import aside
+from boatsim.drive.background_tasks import background_listener
 from boatsim.drive.clock import Clock
 from boatsim.drive.server import Server
 from boatsim.drive.task import FILE, Task
@@ -17,51 +17,65 @@ from boatsim.simulate.run_options import LIVE_REFRESH, REFRESH, Listener
 from boatsim.simulate.scenario import OFF
 from boatsim.simulate.tracking_errors import Tally
 
-FRAME = 0.04  # [s] between two pictures
-WAIT = 0.05  # [s] between two looks whether somebody is there
-
-NOBODY: Mapping[str, float] = {OFF: 1.0}
+FRAME = 0.04  # [s] between two frames of the page: 25 a second look smooth
+WAIT = 0.05  # [s] between two checks whether a driver has taken the sticks
+NO_DRIVER: Mapping[str, float] = {OFF: 1.0}  # goal while no driver holds the sticks
 
 
 class Session:
-    """Steers a run by what the page says, and shows it there."""
+    """Steers a run from the page and shows it there.
+
+    Attributes:
+        task: The task.
+        server: Server of the page.
+        hands: Stick positions.
+        clock: Real-time clock.
+        replayable: Whether the scenario file of the run holds all goals.
+        latencies: Delays from a stick to the log [s].
+    """
 
     def __init__(
-        self, task: Task, server: Server, told: Callable[[str], None], watched: bool = False
+        self, task: Task, server: Server, notify: Callable[[str], None], watched: bool = False
     ) -> None:
-        """`told` gets a line when the sticks are let go or taken; `watched`: a viewer wants rows more often."""
+        """Create a session.
+
+        Args:
+            task: The task.
+            server: Server of the page.
+            notify: Function to call with a line when the sticks are released or taken.
+            watched: Whether a viewer also shows the run and needs rows more often.
+        """
         self.task, self.server, self.hands = task, server, server.hands
         self.clock = self.pace = Clock(task.scenario.controller.period)
         self.refresh = FRAME
-        self._told = told
-        self._every = LIVE_REFRESH if watched else REFRESH
+        self._notify = notify
+        self._interval = LIVE_REFRESH if watched else REFRESH
         self._tally = Tally()
         self._goals: list[tuple[float, Mapping[str, float] | None]] = []
-        self._goal: Mapping[str, float] = NOBODY
-        self._at, self._heading, self._end = -1.0, task.scenario.file.start.psi, 0.0
-        self._away: list[str] = []  # when the sticks were let go, and why
+        self._goal: Mapping[str, float] = NO_DRIVER
+        self._at = -1.0
+        self._heading = task.scenario.file.start.psi
+        self._end = 0.0
+        self._away: list[str] = []  # time and reason of each release of the sticks
         self._moved = -1.0
-        self.again = True  # whether its file holds all goals
-        self.latencies: list[float] = []  # [s] from a stick to the log
-
-    # What a run asks of it
-    # ------------------------------------------------------------------------------------------
+        self.replayable = True
+        self.latencies: list[float] = []
 
     def start(self, engine: Engine | OpenWater, stop: Callable[[], bool]) -> None:
         """Show the vessel and wait until a driver has taken the sticks.
 
         Args:
-            engine: The engine of the run.
-            stop: Whether to give up.
+            engine: Engine of the run.
+            stop: Returns whether the run is interrupted.
 
         Raises:
-            KeyboardInterrupt: If `stop` returns True.
+            KeyboardInterrupt: The run is interrupted.
         """
         self._painter = Painter(engine, self.task.dials, self.task.scenario)
         self.server.greet(self._painter.hello())
         while self.hands.away and not self.server.ended and not stop():
             time.sleep(WAIT)
-        if stop():  # nothing has begun
+        if stop():  # The run has not started.
             raise KeyboardInterrupt
 
     def finished(self) -> bool:
@@ -69,31 +83,41 @@ class Session:
         return self.server.ended
 
     def goal_at(self, t: float) -> Mapping[str, float]:
-        """What the hands ask for at time t [s]; the same for whoever asks again."""
+        """Return the goals at a time; a repeated call returns the same goals.
+
+        Args:
+            t: Simulated time [s].
+        """
         if t > self._at:
             dt, self._at = t - max(self._at, 0.0), t
-            self._ask(t, dt)
+            self._update_goal(t, dt)
         return self._goal
 
     @contextmanager
     def listening(self, listen: Listener) -> Iterator[Listener]:
-        """A listener that shows the rows and hands them on, without waiting for the files."""
-        with aside(listen, self._every) as files:
+        """Show log rows on the page and pass them to a slow listener in a thread.
 
-            def seen(rows: Recording) -> None:
+        Args:
+            listen: Listener that writes files.
+
+        Yields:
+            Listener that returns at once.
+        """
+        with background_listener(listen, self._interval) as files:
+
+            def show(rows: Recording) -> None:
                 self._tally.add(rows)
-                self._heading, self._end = float(rows["psi_rad"][-1]), float(rows.t[-1])
-                self.server.show(
-                    self._painter.frame(
-                        rows, self._tally.norms(), self.clock, self.hands, self.latency
-                    )
-                )
+                self._heading = float(rows["psi_rad"][-1])
+                self._end = float(rows.t[-1])
+                metrics = self._tally.norms()
+                frame = self._painter.frame(rows, metrics, self.clock, self.hands, self.latency)
+                self.server.show(frame)
                 files(rows)
 
-            yield seen
+            yield show
 
     def facts(self) -> Mapping[str, object]:
-        """For recording.toml: what nobody can tell from the log."""
+        """Return facts for recording.toml that the log does not hold."""
         return {
             "driven": True,
             "sticks_let_go": self._away,
@@ -105,40 +129,45 @@ class Session:
         }
 
     def files(self) -> Mapping[str, str]:
-        """The scenario by which the run goes again, as far as it has come."""
+        """Return the files that repeat the run so far without a driver: name -> text."""
         end = self._end or self.task.scenario.file.duration
         whole = self.task.toml(self._goals, end)
-        self.again = whole is not None
+        self.replayable = whole is not None
         return {FILE: whole or self.task.toml([], end) or ""}
-
-    # ----------------------------------------------------------------------------------------------------------------
 
     @property
     def latency(self) -> float | None:
-        """Of the last stick [s]."""
+        """Delay from the last stick movement to the log [s]; None before the first."""
         return self.latencies[-1] if self.latencies else None
 
-    def _ask(self, t: float, dt: float) -> None:
+    def _update_goal(self, t: float, dt: float) -> None:
         sticks, moved = self.hands.sticks(), self.hands.moved
+        goal = NO_DRIVER
         if sticks is None:
             self.task.dials.let_go()
-        goal = NOBODY if sticks is None else self.task.dials.goal(sticks, dt, self._heading)
+        else:
+            goal = self.task.dials.goal(sticks, dt, self._heading)
         if goal != self._goal or not self._goals:
-            self._note(t, goal, moved)
+            self._change_goal(t, goal, moved)
 
-    def _note(self, t: float, goal: Mapping[str, float], moved: float) -> None:
-        """Another goal than before: it will be in the log and in the scenario's file."""
-        if goal is NOBODY:
+    def _change_goal(self, t: float, goal: Mapping[str, float], moved: float) -> None:
+        """Store a new goal for the log and for the scenario file."""
+        if goal is NO_DRIVER:
             self._away.append(f"{t:.2f} s: {self.hands.away}")
-            self._told(f"t = {t:.2f} s: {self.hands.away}; commands are neutral")
-        elif self._goal is NOBODY and self._away:
-            self._told(f"t = {t:.2f} s: the sticks are taken again")
-        if moved > self._moved and NOBODY not in (goal, self._goal):
+            self._notify(f"t = {t:.2f} s: {self.hands.away}; commands are neutral")
+        elif self._goal is NO_DRIVER and self._away:
+            self._notify(f"t = {t:.2f} s: a driver has taken the sticks again")
+        if moved > self._moved and NO_DRIVER not in (goal, self._goal):
             self.latencies.append(time.time() - moved)
         self._goal, self._moved = goal, moved
-        self._goals.append((t, None if goal is NOBODY else goal))
+        self._goals.append((t, None if goal is NO_DRIVER else goal))
 
 
 def folder_name(vessel: str, now: float) -> Path:
-    """Where a run goes that can not be driven again by hand: a folder of its own, by the clock."""
+    """Return the output folder of a run, named after the local time to be unique.
+
+    Args:
+        vessel: Name of the vessel.
+        now: Unix time [s].
+    """
     return Path("out") / vessel / time.strftime("drive-%Y%m%d-%H%M%S", time.localtime(now))

@@ -1,4 +1,4 @@
-"""From sticks to what they set: a controller's goals, or where it passes commands on, the channels themselves."""
+"""Maps sticks to the goals of a controller, or to command channels that it passes on."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -12,149 +12,201 @@ from boatsim.physics.signals import STATE, follower
 from boatsim.physics.vessel import ManoeuvringTable, Vessel
 from boatsim.simulate.manoeuvre import approach, athwart, handled
 
-FROUDE = 0.15  # of a hull that is still slow, where nothing tells its speed
-ASIDE = 0.2  # sway over surge speed, of a vessel whose controller says nothing of it
-RADIUS = 2.0  # [lengths] of the turn at full speed, the same
-DIGITS = 6  # of a goal: a file of many stays small
+# Defaults for a vessel whose files and controller specify no largest goals.
+FROUDE = 0.15  # Froude number of the largest speed: well below hull speed
+SWAY_SHARE = 0.2  # largest sway speed as a share of the surge speed
+RADIUS = 2.0  # [L] radius of the turn at full speed
+LARGEST_YAW_RATE = 0.25 * pi  # [rad/s]
+GRAVITY = 9.81  # [m/s^2]
+DIGITS = 6  # decimals of a goal, so that a scenario file of many goals stays small
 HEADING = "psi_rad"
 
 
 class Dial(NamedTuple):
-    """What one stick does to one goal or channel."""
+    """Effect of one stick on one goal or channel.
+
+    Attributes:
+        key: Goal or channel.
+        stick: Field of `Sticks`.
+        low: Value added to the neutral value with the stick at -1.
+        high: Value added to the neutral value with the stick at 1.
+    """
 
     key: str
-    stick: str  # of `Sticks`
-    low: float  # added to its neutral value with the stick at -1
-    high: float  # the same at 1
+    stick: str
+    low: float
+    high: float
 
     def at(self, sticks: Sticks) -> float:
-        """What it adds."""
-        way: float = getattr(sticks, self.stick)
-        return way * self.high if way > 0.0 else -way * self.low
+        """Return the value added to the neutral value.
+
+        Args:
+            sticks: Stick deflections.
+        """
+        deflection: float = getattr(sticks, self.stick)
+        if deflection > 0.0:
+            return deflection * self.high
+        return -deflection * self.low
 
 
 @dataclass
 class Dials:
-    """All that the sticks set. A heading is turned: its dial says how fast [rad/s]."""
+    """All goals and channels that the sticks set.
+
+    The dial of a heading sets its rate of change [rad/s].
+
+    Attributes:
+        dials: Effects of the sticks.
+        neutral: Neutral value of every goal and channel.
+        limits: Range of every channel.
+    """
 
     dials: tuple[Dial, ...]
-    neutral: Mapping[str, float]  # of every key
-    limits: Mapping[str, tuple[float, float]]  # of those that are channels
-    _heading: float | None = field(default=None, init=False)  # [rad] asked for
+    neutral: Mapping[str, float]
+    limits: Mapping[str, tuple[float, float]]
+    _heading: float | None = field(default=None, init=False)  # [rad] present heading goal
 
     @property
     def keys(self) -> list[str]:
-        """Goals and channels that they set."""
+        """Names of the goals and channels."""
         return list(self.neutral)
 
     def goal(self, sticks: Sticks, dt: float, heading: float) -> dict[str, float]:
-        """Goals under these sticks, `dt` [s] after the last ones, of a boat on this heading [rad]."""
+        """Return the goals of stick deflections.
+
+        Args:
+            sticks: Stick deflections.
+            dt: Time since the previous goals [s].
+            heading: Present heading of the vessel [rad].
+        """
         found = dict(self.neutral)
         for dial in self.dials:
             found[dial.key] += dial.at(sticks)
         if HEADING in found:
             before = heading if self._heading is None else self._heading
             self._heading = found[HEADING] = wrap(before + dt * found[HEADING])
-        within = {
-            key: clip(value, *self.limits.get(key, (value, value))) for key, value in found.items()
-        }
-        return {key: round(value, DIGITS) for key, value in within.items()}
+        for key, value in found.items():
+            low, high = self.limits.get(key, (value, value))
+            found[key] = round(clip(value, low, high), DIGITS)
+        return found
 
     def let_go(self) -> None:
-        """The next goals begin from the heading the boat is then on."""
+        """Start the next heading goal from the heading of the vessel at that time."""
         self._heading = None
 
 
 def dials_of(vessel: Vessel, controller: Controller, name: str) -> Dials:
-    """The dials of a vessel under a controller of this name. Raises BadInput for one that no stick can steer."""
+    """Return the dials of a vessel under a controller.
+
+    Args:
+        vessel: The vessel.
+        controller: The controller.
+        name: Name of the controller, for messages.
+
+    Raises:
+        BadInput: The sticks cannot steer the controller.
+    """
     goals = type(controller).goals
     if not goals and not type(controller).passes_on:
-        raise BadInput(f"controller {name} steers by itself; it leaves nothing to the sticks")
+        raise BadInput(f"controller {name} takes no goals; the sticks cannot steer it")
     if not vessel.commands:
-        raise BadInput(f"{vessel.name} takes no commands; there is nothing to drive")
+        raise BadInput(f"{vessel.name} has no command channels; it cannot be driven")
     if not goals:
-        return _of_channels(vessel, _mixed(vessel, handled(vessel)))
-    table = _handled(vessel)
-    held = [d for d in _mixed(vessel, table) if d.key in goals]
-    found = [*_of_motion(vessel, table, controller.largest_goals(), goals), *held]
+        return _with_channels(vessel, _channel_dials(vessel, handled(vessel)))
+    table = _manoeuvring_table(vessel)
+    held = [d for d in _channel_dials(vessel, table) if d.key in goals]
+    found = [*_motion_dials(vessel, table, controller.largest_goals(), goals), *held]
     if not found:
         raise BadInput(
-            f"controller {name} is steered by {', '.join(goals)}; sticks give speeds, turning, heading or commands"
+            f"controller {name} takes the goals {', '.join(goals)}; the sticks set speeds, turning "
+            "heading or commands"
         )
-    return _of_channels(vessel, found)
+    return _with_channels(vessel, found)
 
 
-def _of_channels(vessel: Vessel, dials: Sequence[Dial]) -> Dials:
-    """With the neutral value and the range of those that are channels."""
-    taken = vessel.commands
-    keys = dict.fromkeys(d.key for d in dials)
-    neutral = {key: taken[key].neutral if key in taken else 0.0 for key in keys}
-    return Dials(
-        tuple(dials),
-        neutral,
-        {key: (taken[key].low, taken[key].high) for key in keys if key in taken},
-    )
+def _with_channels(vessel: Vessel, dials: Sequence[Dial]) -> Dials:
+    """Dials with the neutral values and the ranges of channels."""
+    neutral = {}
+    limits = {}
+    for dial in dials:
+        channel = vessel.commands.get(dial.key)
+        neutral[dial.key] = channel.neutral if channel else 0.0
+        if channel:
+            limits[dial.key] = (channel.low, channel.high)
+    return Dials(tuple(dials), neutral, limits)
 
 
-def _handled(vessel: Vessel) -> ManoeuvringTable:
-    """How it is driven and steered, as far as that can be told."""
+def _manoeuvring_table(vessel: Vessel) -> ManoeuvringTable:
+    """Channels that drive and steer the vessel, as far as they are known."""
     try:
         return handled(vessel)
     except BadInput:
         return vessel.manoeuvring
 
 
-def _of_motion(
-    vessel: Vessel, table: ManoeuvringTable, stated: Mapping[str, float], goals: Sequence[str]
+def _motion_dials(
+    vessel: Vessel, table: ManoeuvringTable, specified: Mapping[str, float], goals: Sequence[str]
 ) -> list[Dial]:
-    """Dials of the goals that are speeds, turning rates or a heading."""
+    """Dials of goals that are speeds, turning rates or a heading."""
     axes = {
         s.column: s.axis
         for s in STATE
         if s.axis in Sticks._fields and (s.rate or s.column == HEADING)
     }
-    found = []
+    found: list[Dial] = []
     for key in goals:
         axis = axes.get(follower(key) or "")
         if axis is None or axis not in vessel.dof:
             continue
-        full = stated[key] if key in stated else _full(replace(vessel, manoeuvring=table))[axis]
-        forward_only = axis == "surge" and not table.astern and key not in stated
-        found.append(Dial(key, axis, 0.0 if forward_only else -full, full))
+        if key in specified:
+            full = specified[key]
+            low = -full
+        else:
+            full = _default_goals(replace(vessel, manoeuvring=table))[axis]
+            forward_only = axis == "surge" and not table.astern
+            low = 0.0 if forward_only else -full
+        found.append(Dial(key, axis, low, full))
     return found
 
 
-def _full(vessel: Vessel) -> dict[str, float]:
-    """Largest goals [m/s, rad/s] of a vessel whose controller states none: by the speed that it reaches."""
+def _default_goals(vessel: Vessel) -> dict[str, float]:
+    """Largest goals [m/s, rad/s] from the top speed, for a controller that specifies none."""
     try:
         speed = approach(vessel)
     except BadInput:
-        speed = FROUDE * sqrt(9.81 * vessel.length)
+        speed = FROUDE * sqrt(GRAVITY * vessel.length)
     return {
         "surge": speed,
-        "sway": ASIDE * speed,
-        "yaw": min(speed / (RADIUS * vessel.length), 0.25 * pi),
+        "sway": SWAY_SHARE * speed,
+        "yaw": min(speed / (RADIUS * vessel.length), LARGEST_YAW_RATE),
     }
 
 
-def _mixed(vessel: Vessel, table: ManoeuvringTable) -> list[Dial]:
-    """Channels by hand, each stick to the end of their range: what drives it ahead, what pushes aside, what steers."""
-    taken = vessel.commands
+def _channel_dials(vessel: Vessel, table: ManoeuvringTable) -> list[Dial]:
+    """Dials of the channels for surge, yaw and sway; a full stick gives the end of a range."""
+    channels = vessel.commands
     found: list[Dial] = []
     for name, ahead in table.ahead.items():
-        room, back = _room(vessel, name, ahead), table.astern.get(name, taken[name].neutral)
+        room, back = _room(vessel, name, ahead), table.astern.get(name, channels[name].neutral)
         found.append(Dial(name, "surge", _room(vessel, name, back), room))
     for name, per_rad in table.steer.items():
-        ends = [_room(vessel, name, taken[name].neutral + side * per_rad) for side in (-1.0, 1.0)]
+        ends = [
+            _room(vessel, name, channels[name].neutral + side * per_rad) for side in (-1.0, 1.0)
+        ]
         found.append(Dial(name, "yaw", *ends))
     for name, share in athwart(vessel).items():
-        if name in taken and name not in table.steer:
-            ends = [_room(vessel, name, taken[name].neutral + side * share) for side in (-1.0, 1.0)]
+        if name in channels and name not in table.steer:
+            ends = [
+                _room(vessel, name, channels[name].neutral + side * share) for side in (-1.0, 1.0)
+            ]
             found.append(Dial(name, "sway", *ends))
     return found
 
 
 def _room(vessel: Vessel, channel: str, towards: float) -> float:
-    """How far a channel can be moved from its neutral value towards another one; 0 where they are the same."""
+    """Distance from the neutral value of a channel to its end in the direction of another value."""
     c = vessel.commands[channel]
-    return 0.0 if towards == c.neutral else (c.high if towards > c.neutral else c.low) - c.neutral
+    if towards == c.neutral:
+        return 0.0
+    end = c.high if towards > c.neutral else c.low
+    return end - c.neutral

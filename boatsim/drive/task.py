@@ -1,4 +1,4 @@
-"""What is driven: a vessel in open water or in the water of a scenario, and the file by which the run goes again."""
+"""Task of a driver: a vessel in open water or in a scenario, and the file that repeats the run."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -14,11 +14,13 @@ from boatsim.simulate.cases import Place, content, meant
 from boatsim.simulate.scenario import OFF, Scenario, from_table
 
 FILE = "scenario.toml"
-LONGEST = 3600.0  # [s] of a run that nobody ends
-SHORTEST = 1.01e-4  # [s] of a step, with which any controller can be made
-STEP = 0.02  # [s] of physics, or the controller's period where that is shorter
-PASSED_ON = "open_loop"  # hands on the channels themselves
-ASKED = (
+LONGEST = 3600.0  # [s] duration of a run that the driver does not end
+# Step [s] for loading a scenario before its own step is known; it divides any control period.
+SHORTEST = 1.01e-4
+STEP = 0.02  # [s] largest integration step; shorter if the control period is
+PASSED_ON = "open_loop"  # controller that passes the sticks to the channels
+# Keys of a scenario that define its own task.
+TASK_KEYS = (
     "goal",
     "until",
     "measure",
@@ -26,12 +28,19 @@ ASKED = (
     "noise_widens_guards",
     "check",
     "duration",
-)  # a scenario's own task
-Goals = Sequence[tuple[float, Mapping[str, float] | None]]  # from when [s], None: nobody's hands
+)
+# Goals and the time [s] from which each applies; None while no driver holds the sticks.
+Goals = Sequence[tuple[float, Mapping[str, float] | None]]
 
 
 class Task:
-    """A scenario to be driven, what the sticks set in it, and what it says."""
+    """A scenario to drive.
+
+    Attributes:
+        vessel: The vessel.
+        dials: Goals or channels that the sticks set.
+        scenario: The scenario.
+    """
 
     def __init__(
         self,
@@ -41,93 +50,121 @@ class Task:
         load: Sequence[str] = (),
         seconds: float = LONGEST,
     ) -> None:
-        """By names as on the command line. Raises BadInput."""
-        said, place = _around(vessel, scenario, load)
-        said |= {"controller": _steering(said.get("controller"), controller), "duration": seconds}
-        made = from_table({"step": SHORTEST, **said}, place)
-        self.vessel, use = made.vessel, str(made.file.controller["use"])
-        said = {"step": min(STEP, made.controller.period), **said}
-        said["about"] = f"{made.vessel.name} driven by hand" + (
-            f", in {place.name}." if scenario else "."
-        )
-        self.dials: Dials = dials_of(made.vessel, made.controller, Path(use).stem)
-        self._said = said
+        """Load a task.
+
+        Args:
+            vessel: Name, folder or file of the vessel.
+            scenario: Scenario that sets water, wind and start; None for open water.
+            controller: Controller; None for that of the scenario, or none.
+            load: Load conditions.
+            seconds: Largest duration [s].
+
+        Raises:
+            BadInput: A name is wrong, or the sticks cannot steer the controller.
+        """
+        table, place = _environment(vessel, scenario, load)
+        table["controller"] = _controller_table(table.get("controller"), controller)
+        table["duration"] = seconds
+        loaded = from_table({"step": SHORTEST, **table}, place)
+        self.vessel = loaded.vessel
+        use = str(loaded.file.controller["use"])
+        self.dials: Dials = dials_of(self.vessel, loaded.controller, Path(use).stem)
+        self._table = {"step": min(STEP, loaded.controller.period), **table}
+        water = f", in {place.name}" if scenario else ""
+        self._table["about"] = f"{self.vessel.name} driven by hand{water}."
         self.scenario: Scenario = replace(
-            from_table({**said, "goal": [{**self.dials.neutral}]}, place),
-            name=f"{made.vessel.name}/drive",
+            from_table({**self._table, "goal": [{**self.dials.neutral}]}, place),
+            name=f"{self.vessel.name}/drive",
             address="",
         )
 
     def in_folder(self, folder: Path) -> Scenario:
-        """The scenario as it is found again in the folder of its run."""
+        """Return the scenario with the address of its file in an output folder.
+
+        Args:
+            folder: Output folder.
+        """
         return replace(self.scenario, address=str(folder.resolve() / FILE))
 
     def toml(self, goals: Goals, duration: float) -> str | None:
-        """Its file with the goals that hands have asked for; None where no file of ours may be so large."""
-        said = {k: v for k, v in self._said.items() if k != "goal"}
-        head = tomlkit.dumps({**said, "duration": duration})
+        """Return the text of a scenario file that repeats a run.
+
+        Args:
+            goals: Goals of the run.
+            duration: Duration of the run [s].
+
+        Returns:
+            TOML text; None if it is larger than a scenario file may be.
+        """
+        table = {key: value for key, value in self._table.items() if key != "goal"}
+        head = tomlkit.dumps({**table, "duration": duration})
         rows = "".join(f"  {_row(t, goal)},\n" for t, goal in goals)
-        own, _, tables = head.partition(
-            "\n["
-        )  # an array of a file itself stands in front of its tables
-        text = f"{own.rstrip()}\ngoal = [\n{rows}]\n" + (f"\n[{tables}" if tables else "")
+        # The goals are a top-level array, which must precede the first table.
+        top, _, tables = head.partition("\n[")
+        text = f"{top.rstrip()}\ngoal = [\n{rows}]\n"
+        if tables:
+            text += f"\n[{tables}"
         return text if len(text.encode()) <= MAX_TOML_BYTES else None
 
 
 def _row(t: float, goal: Mapping[str, float] | None) -> str:
-    said = (
-        f"{OFF} = true"
-        if goal is None
-        else ", ".join(f"{key} = {value!r}" for key, value in goal.items())
-    )
-    return f"{{ from = {round(t, 9)!r}, {said} }}"
+    values = f"{OFF} = true"
+    if goal is not None:
+        values = ", ".join(f"{key} = {value!r}" for key, value in goal.items())
+    return f"{{ from = {round(t, 9)!r}, {values} }}"
 
 
-def _around(
+def _environment(
     vessel: str, scenario: str | None, load: Sequence[str]
 ) -> tuple[dict[str, Value], Place]:
-    """What is said of boat and water: by a scenario, of which the task is left out, or open water."""
+    """Table of vessel, water and wind: those of a scenario without its own task, or open water."""
     path = find("vessel", vessel)
     if scenario is None:
-        aboard: dict[str, Value] = {
+        table: dict[str, Value] = {
             "vessel": _vessel(vessel, path),
             "load": list(load),
             "sensors": {"ideal": True},
         }
-        return aboard, Place(Path("drive"))
-    said, place = content(_meant(vessel, scenario))
-    given = said.get("vessel")
+        return table, Place(Path("drive"))
+    own, place = content(_find_scenario(vessel, scenario))
+    name = own.get("vessel")
     if (
-        not isinstance(given, str)
-        or find("vessel", given, place.path.parent).resolve() != path.resolve()
+        not isinstance(name, str)
+        or find("vessel", name, place.path.parent).resolve() != path.resolve()
     ):
-        raise BadInput(f"--scenario {scenario} is of {given}, not of {vessel}")
-    kept = {key: value for key, value in said.items() if key not in ASKED}
-    return {**kept, **({"load": list(load)} if load else {})}, place
+        raise BadInput(f"--scenario {scenario} is for {name}, not for {vessel}")
+    table = {key: value for key, value in own.items() if key not in TASK_KEYS}
+    if load:
+        table["load"] = list(load)
+    return table, place
 
 
 def _vessel(name: str, path: Path) -> str:
-    """A vessel as a file says it that may lie anywhere."""
+    """Name of a vessel of the library, or its absolute path."""
     return name if name in names("vessel") else str(path.resolve())
 
 
-def _meant(vessel: str, scenario: str) -> str:
-    """A scenario by its name, by that of the vessel's own (berth), or by its file. Raises BadInput."""
+def _find_scenario(vessel: str, scenario: str) -> str:
+    """Address of a scenario given by name, by its name for this vessel, or by file."""
     own = f"{vessel}/{scenario}"
     if own in names("scenario"):
         return own
     found = meant(scenario)
     if len(found) > 1:
         raise BadInput(
-            f"--scenario {scenario} names {len(found)}: {', '.join(found[:3])} ...; one can be driven"
+            f"--scenario {scenario} matches {len(found)}: {', '.join(found[:3])} ...; name one"
         )
     return found[0]
 
 
-def _steering(own: Value, controller: str | None) -> Mapping[str, Value]:
-    """The [controller] table: the one named, else the scenario's own, else hands on the channels."""
+def _controller_table(own: Value, controller: str | None) -> Mapping[str, Value]:
+    """The [controller] table: the given one, the scenario's, or one that passes commands on."""
     if controller is None:
-        return own if isinstance(own, Mapping) else {"use": PASSED_ON}
+        if isinstance(own, Mapping):
+            return own
+        return {"use": PASSED_ON}
     load_class("controller", controller, named=True)
     use = controller if controller in names("controller") else str(find("controller", controller))
-    return own if isinstance(own, Mapping) and own.get("use") == use else {"use": use}
+    if isinstance(own, Mapping) and own.get("use") == use:
+        return own
+    return {"use": use}

@@ -1,4 +1,4 @@
-"""What the page is shown: once the boat, its water and its dials, then the state of each moment."""
+"""Data of the page: first the vessel, its basin and its dials, then a state for each frame."""
 
 from collections.abc import Mapping
 from math import isfinite
@@ -20,14 +20,21 @@ MOTION = ("x_m", "y_m", "psi_rad", "u_mps", "v_mps", "r_radps")
 
 
 class Painter:
-    """Turns rows of a run's log into what its page draws."""
+    """Converts rows of the log of a run into the data of its page."""
 
     def __init__(self, engine: Engine | OpenWater, dials: Dials, scenario: Scenario) -> None:
+        """Create a painter.
+
+        Args:
+            engine: Engine of the run.
+            dials: Goals or channels that the sticks set.
+            scenario: The scenario.
+        """
         self._scene = scene_from(engine.model, scenario.vessel, engine.tank)
         self._dials, self._scenario = dials, scenario
 
     def hello(self) -> dict[str, object]:
-        """What does not change."""
+        """Return what does not change during the run."""
         scene, file = self._scene, self._scenario.file
         return {
             "vessel": scene.vessel,
@@ -45,9 +52,9 @@ class Painter:
         }
 
     def _dial(self, key: str) -> dict[str, object]:
-        """A goal or channel: between which values, and which signal shows what became of it."""
-        mine = [d for d in self._dials.dials if d.key == key]
-        ends = [self._dials.neutral[key] + x for d in mine for x in (d.low, d.high)]
+        """A goal or channel with its range, its unit and the sticks that set it."""
+        own = [d for d in self._dials.dials if d.key == key]
+        ends = [self._dials.neutral[key] + x for d in own for x in (d.low, d.high)]
         follows = follower(key)
         channel = key in self._scenario.vessel.commands
         low, high = self._dials.limits.get(key, (min(ends), max(ends)))
@@ -58,7 +65,7 @@ class Painter:
             "unit": unit_of(key),
             "channel": channel,
             "turning": follows == HEADING,
-            "sticks": sorted({d.stick for d in mine}),
+            "sticks": sorted({d.stick for d in own}),
         }
 
     def frame(
@@ -69,7 +76,15 @@ class Painter:
         hands: Hands,
         latency: float | None,
     ) -> dict[str, object]:
-        """The state at the end of these rows."""
+        """Return the state at the end of rows of the log.
+
+        Args:
+            rows: Rows of the log.
+            norms: Errors of the goals so far.
+            clock: Clock of the run.
+            hands: Stick positions.
+            latency: Delay from the last stick movement to the log [s]; None if unknown.
+        """
         now = {name: float(values[-1]) for name, values in rows.signals.items()}
         return {
             "t": round(float(rows.t[-1]), 3),
@@ -89,10 +104,15 @@ class Painter:
         }
 
     def _goal(self, key: str, now: Mapping[str, float]) -> list[float | None]:
-        """What is asked for, and what is reached: of a channel the command that is sent, and the one that acts."""
-        channel = key in self._scenario.vessel.commands
-        asked = now.get(f"sent_{key}" if channel else f"goal_{key}")
-        reached = now.get(key) if channel else now.get(follower(key) or "")
+        """Goal and value reached; of a channel the command sent and the command that acts."""
+        if key in self._scenario.vessel.commands:
+            wanted, reached = now.get(f"sent_{key}"), now.get(key)
+        else:
+            wanted, reached = now.get(f"goal_{key}"), now.get(follower(key) or "")
         if reached is not None and follower(key) == HEADING:
             reached = wrap(reached)
-        return [x if x is not None and isfinite(x) else None for x in (asked, reached)]
+        return [_finite_or_none(wanted), _finite_or_none(reached)]
+
+
+def _finite_or_none(value: float | None) -> float | None:
+    return value if value is not None and isfinite(value) else None

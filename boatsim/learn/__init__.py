@@ -1,6 +1,6 @@
-"""Tasks for learning: Gymnasium environments of one boat and of many; importing this makes their ids known.
+"""Gymnasium environments of one boat and of many boats; importing the package registers them.
 
-`gymnasium.make("boatsim.learn:boatsim/Berth-v0")` imports it by itself. Needs `pip install "boatsim[gym]"`.
+`gymnasium.make("boatsim.learn:boatsim/Berth-v0")` imports the package. It needs `pip install "boatsim[gym]"`.
 """
 
 from importlib.util import find_spec

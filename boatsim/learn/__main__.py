@@ -1,11 +1,11 @@
-"""What the registered environments take and show: python -m boatsim.learn."""
+"""Prints actions and observations of the registered environments: python -m boatsim.learn."""
 
 from boatsim.learn import registration
 from boatsim.learn.environment_options import TASKS, play
 
 
 def main() -> None:
-    """Print actions and observations of each id."""
+    """Print actions and observations of each environment."""
     for name in registration.ids():
         told = registration.says(name)
         game = play(n=1, **told)

@@ -1,7 +1,8 @@
-"""What a learner moves: thrust and angle of the drives, each meaningful by itself, none of them twice.
+"""Actions of a learner: thrusts and angles of the drives of a vessel.
 
-They follow from a vessel's channels and the roles that laws take them in. A channel that only adds to what a raw
-command already gives is left alone; drives that mirror each other move together and against each other.
+The actions follow from the channels of a vessel and the roles in which its effects use them. A
+channel that only adds to a raw command gets no action. Drives that mirror each other get common and
+differential actions.
 """
 
 from collections.abc import Iterator, Sequence

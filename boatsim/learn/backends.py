@@ -1,4 +1,4 @@
-"""Where boats move: many at once on the compiled batch, or one on MuJoCo in its tank."""
+"""Interface of the simulators of a task: many boats in a compiled batch, or one on MuJoCo."""
 
 from typing import Protocol
 
@@ -11,25 +11,25 @@ Boats = NDArray[np.int64]  # numbers of boats
 
 
 class World(Protocol):
-    """What a task needs of a simulator; `boatsim.simulate.batch.Batch` is one."""
+    """Simulator of n boats; `boatsim.simulate.batch.Batch` is one."""
 
     @property
     def states(self) -> Array:
-        """(n, 2 NQ) present states."""
+        """Present states (n, 2 NQ)."""
 
     def advance(self, commands: ArrayLike, steps: int = 1) -> None:
-        """Steps with commands (n, C) held."""
+        """Advance by integration steps with constant commands (n, C)."""
 
     def reset(
         self, states: ArrayLike, commands: ArrayLike | None = None, boats: ArrayLike | None = None
     ) -> None:
-        """Put boats at states."""
+        """Set the states of boats."""
 
     def assign(self, vessel: ArrayLike, boats: ArrayLike | None = None) -> None:
-        """Make boats the vessel of that number."""
+        """Assign vessels to boats by their numbers."""
 
     def set(self, parameter: str, values: ArrayLike, boats: ArrayLike | None = None) -> None:
-        """Give boats other values of "effect.parameter"."""
+        """Set the values of "effect.parameter" of boats."""
 
     def get(self, parameter: str) -> Array:
-        """(n,) values of "effect.parameter"."""
+        """Return the values (n,) of "effect.parameter"."""

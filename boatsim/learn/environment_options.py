@@ -1,4 +1,4 @@
-"""The arguments of all environments, and the play that they make."""
+"""Arguments of all environments, and the simulation that they define."""
 
 from collections.abc import Mapping, Sequence
 from typing import TypedDict, Unpack
@@ -20,7 +20,7 @@ TASKS: Mapping[str, type[Task]] = {
 
 
 class Told(TypedDict, total=False):
-    """What an environment may be told."""
+    """Optional arguments of an environment."""
 
     vessel: str  # by name or path, a patched.toml too
     scenario: str  # in its place: vessel, load, set values and effects are this one's
@@ -36,7 +36,17 @@ class Told(TypedDict, total=False):
 
 
 def play(task: str, n: int, world: Made | None = None, **told: Unpack[Told]) -> Play:
-    """N boats at a task. Raises BadInput for what is unknown or does not fit, in one line."""
+    """Return a simulation of n boats at a task.
+
+    Args:
+        task: Name of the task.
+        n: Number of boats.
+        world: Creates the simulator; None for a compiled batch in open water.
+        told: Further arguments, see `Told`.
+
+    Raises:
+        BadInput: An argument is unknown or wrong.
+    """
     if task not in TASKS:
         raise BadInput(unknown_name("task", task, TASKS))
     if unknown := [key for key in told if key not in Told.__annotations__]:
@@ -51,15 +61,15 @@ def play(task: str, n: int, world: Made | None = None, **told: Unpack[Told]) -> 
 
 
 def _boats(told: Told) -> tuple[Variation, Tank | None]:
-    """What varies of the vessel that is named, or of a scenario's, and the scenario's tank."""
+    """Variation of the given vessel, or of that of a scenario, and the tank of the scenario."""
     if "scenario" in told:
         if clash := [key for key in ("load", "effects") if key in told]:
-            raise BadInput(f"scenario and {clash[0]} are both told; a scenario says its own")
+            raise BadInput(f"scenario and {clash[0]} are both given; a scenario has its own")
         file = scenarios.load(told["scenario"]).file
         varied = variation(file.vessel, file.load, file.effect, told.get("vary"), file.set)
         return varied, Tank(**file.tank.model_dump()) if file.tank else None
     if "vessel" not in told:
-        raise BadInput("say which boat: vessel = its name, or scenario")
+        raise BadInput("give a boat: vessel = its name, or scenario")
     return variation(
         told["vessel"], told.get("load", ()), told.get("effects", ()), told.get("vary")
     ), None

@@ -1,4 +1,4 @@
-"""Numbers drawn by lot for an episode: they depend on its seed alone, not on which boats it is played beside."""
+"""Random numbers of episodes; they depend only on the seed of the episode, not on other boats."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,18 +12,28 @@ FIRST, SECOND = np.uint64(0xBF58476D1CE4E5B9), np.uint64(0x94D049BB133111EB)
 
 
 def _mixed(z: Seeds) -> Seeds:
-    """G. Steele et al., SplitMix, OOPSLA 2014."""
+    """Mixing function of SplitMix (Steele et al., OOPSLA 2014)."""
     z = (z ^ (z >> np.uint64(30))) * FIRST
     z = (z ^ (z >> np.uint64(27))) * SECOND
     return z ^ (z >> np.uint64(31))
 
 
 def episode(seeds: Seeds, number: Seeds) -> Seeds:
-    """Seeds (k,) of the episodes of those numbers that begin after a reset with the given seeds."""
+    """Return the seeds (k,) of episodes after a reset.
+
+    Args:
+        seeds: Seeds (k,) of the reset.
+        number: Numbers (k,) of the episodes since the reset.
+    """
     return _mixed(_mixed(seeds * STRIDE + STEP) + number * STEP)
 
 
 def shares(seeds: Seeds, count: int) -> Array:
-    """(k, count) numbers between 0 and 1, neither of them."""
+    """Return uniform random numbers (k, count) in the open interval from 0 to 1.
+
+    Args:
+        seeds: Seeds (k,).
+        count: Numbers for each seed.
+    """
     z = _mixed(seeds[:, None] * STRIDE + np.arange(1, count + 1, dtype=np.uint64) * STEP)
     return ((z >> np.uint64(11)).astype(float) + 0.5) / 9007199254740992.0  # 2^53

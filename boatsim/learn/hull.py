@@ -1,4 +1,4 @@
-"""What tasks measure a boat by: its length, its rectangle on the water, and how fast its drives can make it."""
+"""Sizes of a boat that scale a task: length, waterplane rectangle, and speed under full thrust."""
 
 from dataclasses import dataclass
 from math import sqrt
@@ -12,8 +12,8 @@ from boatsim.physics.vessel import Vessel
 from boatsim.simulate.compiled_engine import Twin
 
 GRAVITY = 9.81  # [m/s^2]
-ROW = 0.1  # Froude times sqrt(L/g) between two looks
-LONGEST = 4000  # looks until a boat is taken for one that does not get ahead
+ROW = 0.1  # time between two rows in sqrt(L/g)
+LONGEST = 4000  # rows after which a boat counts as one that does not move ahead
 
 
 class Motion(NamedTuple):
@@ -36,7 +36,11 @@ class Hulls(NamedTuple):
 
     @classmethod
     def of(cls, vessels: list[Vessel]) -> "Hulls":
-        """The rectangles of vessels."""
+        """Return the rectangles of vessels.
+
+        Args:
+            vessels: The vessels.
+        """
         lengths = np.array([v.length for v in vessels])
         to_transom = np.array([v.geometry.get("cg_from_transom", 0.5 * v.length) for v in vessels])
         return cls(
@@ -44,13 +48,17 @@ class Hulls(NamedTuple):
         )
 
     def at(self, index: Array) -> "Hulls":
-        """Those of these numbers."""
+        """Return the rectangles of boats.
+
+        Args:
+            index: Numbers of the vessels of the boats.
+        """
         return Hulls(self.ahead[index], self.aside[index], self.middle[index])
 
 
 @dataclass(frozen=True)
 class Scale:
-    """What a task states its tolerances and bounds in: sizes of the boat as its file has it."""
+    """Units of the tolerances and bounds of a task, from the vessel file."""
 
     length: float  # [m]
     beam: float  # [m]
@@ -58,7 +66,15 @@ class Scale:
 
 
 def scale_of(vessel: Vessel, full_ahead: Array) -> Scale:
-    """Scale of a vessel; `full_ahead` (C,) are its commands. Raises BadInput for one that does not get ahead."""
+    """Return the scale of a vessel.
+
+    Args:
+        vessel: The vessel.
+        full_ahead: Commands (C,) of full thrust ahead.
+
+    Raises:
+        BadInput: The vessel lacks a degree of freedom or does not move ahead.
+    """
     if not {"surge", "sway", "yaw"} <= set(vessel.dof):
         raise BadInput(f"{vessel.name} is not free in surge, sway and yaw, as a task must have it")
     row = ROW * sqrt(vessel.length / GRAVITY)
@@ -73,7 +89,11 @@ def scale_of(vessel: Vessel, full_ahead: Array) -> Scale:
 
 
 def columns(vessel: Vessel) -> list[int]:
-    """Where x, y, psi, u, v, r lie in a state of the vessel."""
+    """Return the indices of x, y, psi, u, v, r in a state of a vessel.
+
+    Args:
+        vessel: The vessel.
+    """
     free = [axis for axis in AXES if axis in vessel.dof]
     plane = [free.index(axis) for axis in ("surge", "sway", "yaw")]
     return [*plane, *(len(free) + i for i in plane)]

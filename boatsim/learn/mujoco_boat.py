@@ -1,4 +1,4 @@
-"""One boat on MuJoCo in its tank, in place of a batch: slower, but it feels walls."""
+"""Simulator of one boat on MuJoCo in a tank: slower than a batch, but with walls."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -13,10 +13,16 @@ from boatsim.simulate.world import Tank
 
 
 class Walled:
-    """A `World` of one boat. Its model is built anew when an episode makes it another boat."""
+    """A `World` of one boat; the model is rebuilt when an episode changes the vessel."""
 
     def __init__(self, vessels: Sequence[Vessel], step: float, tank: Tank) -> None:
-        """`step` [s] of the integration."""
+        """Create a simulator.
+
+        Args:
+            vessels: Vessels among which episodes choose.
+            step: Integration step [s].
+            tank: The tank.
+        """
         self.vessels, self.step, self.tank = list(vessels), step, tank
         self.vessel = self.vessels[0]
         self._engine: Engine | None = None

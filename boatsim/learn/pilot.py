@@ -1,4 +1,4 @@
-"""Controllers at a task: each boat steered by one of its own, which is told the truth of its motion."""
+"""Controllers at a task: each boat has its own controller, which receives its true motion."""
 
 from collections.abc import Callable, Mapping, Sequence
 from math import nan

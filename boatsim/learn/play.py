@@ -1,6 +1,6 @@
-"""Many boats at one task: what single and vector environments, controllers and tests all play.
+"""Simulation of many boats at one task, used by environments, controllers and tests.
 
-A boat in it does the same from the same seed, whatever it is played beside.
+The motion of a boat depends only on the seed of its episode, not on other boats.
 """
 
 from collections.abc import Callable, Sequence

@@ -1,4 +1,4 @@
-"""Tells Gymnasium of our environments."""
+"""Registers the environments with Gymnasium."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -13,12 +13,16 @@ VARY = "vary"  # of all ids
 
 
 def ids() -> list[str]:
-    """All that are registered."""
+    """Return the ids of all environments."""
     return [name for name in read_toml(IDS) if name != VARY]
 
 
 def says(name: str) -> dict[str, Any]:
-    """Arguments of an id."""
+    """Return the arguments of an environment.
+
+    Args:
+        name: Its id.
+    """
     said: dict[str, Mapping[str, Any]] = {
         k: v for k, v in read_toml(IDS).items() if isinstance(v, Mapping)
     }
@@ -26,7 +30,7 @@ def says(name: str) -> dict[str, Any]:
 
 
 def register() -> None:
-    """Every id of ids.toml, unless it is known already."""
+    """Register every id of ids.toml that is not registered yet."""
     for name in ids():
         if name not in gymnasium.registry:
             gymnasium.register(

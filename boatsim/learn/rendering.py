@@ -1,4 +1,4 @@
-"""What a play looks like: MuJoCo's picture of one of its boats."""
+"""Picture of the first boat of a simulation, rendered by MuJoCo."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,7 +19,7 @@ class Picture:
         self.physics = BoatPhysics(Engine(play.vessel, play.tank, play.period))
 
     def taken(self) -> NDArray[np.uint8]:
-        """(480, 640, 3) the boat as it lies now."""
+        """Return the present picture (480, 640, 3)."""
         m = {name: float(x[0]) for name, x in self.play.motion._asdict().items()}
         self.physics.engine.reset(
             State(**m),

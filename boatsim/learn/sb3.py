@@ -1,4 +1,4 @@
-"""The vector environment as stable-baselines3 takes it."""
+"""Vector environment for stable-baselines3."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -12,7 +12,7 @@ from boatsim.physics.signals import Array
 
 
 class BoatVecEnv(VecEnv):
-    """Wraps a `BoatVectorEnv` that begins anew in the same step; Monitor's return and length are in its infos."""
+    """Wraps a `BoatVectorEnv`; its infos hold the return and length of an episode as Monitor does."""
 
     def __init__(self, boats: BoatVectorEnv) -> None:
         """`boats` has `autoreset_mode="SameStep"`."""
@@ -58,7 +58,7 @@ class BoatVecEnv(VecEnv):
         return seen, reward.astype(np.float32), over, infos
 
     def close(self) -> None:
-        """Nothing is held."""
+        """Close the wrapped environment."""
         self.boats.close()
 
     def get_attr(self, attr_name: str, indices: Any = None) -> list[Any]:
@@ -76,9 +76,9 @@ class BoatVecEnv(VecEnv):
         return [getattr(self.boats, method_name)(*method_args, **method_kwargs)]
 
     def env_is_wrapped(self, wrapper_class: type[Any], indices: Any = None) -> list[bool]:
-        """None is wrapped."""
+        """Return False for each boat."""
         return [False] * len(list(self._get_indices(indices)))
 
     def get_images(self) -> Sequence[Any]:
-        """Many boats draw no pictures."""
+        """Return no pictures."""
         return []

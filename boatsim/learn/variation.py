@@ -1,4 +1,4 @@
-"""What differs from episode to episode: loads, numbers of effects, and how far off a diagnosis may be."""
+"""Variation between episodes: loads, parameters of effects, and the uncertainty of a diagnosis."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -21,7 +21,7 @@ LOAD = "load"
 
 
 class Variation:
-    """The boats of all loads, and what is drawn of their numbers when an episode begins."""
+    """Vessels of all loads, and the parameters that are sampled when an episode starts."""
 
     def __init__(
         self, boats: Sequence[Vessel], draws: Sequence[Draw], spread: Spread | None
@@ -31,7 +31,7 @@ class Variation:
 
     @property
     def shares(self) -> int:
-        """Numbers drawn by lot for an episode."""
+        """Number of random numbers that an episode needs."""
         return 1 + len(self.draws) + (len(self.spread.sd) if self.spread else 0)
 
     def begin(self, world: World, lots: Array, some: Boats) -> Array:
@@ -95,14 +95,14 @@ def _lacking(
     effects: Sequence[Mapping[str, object]],
     said: Mapping[str, object],
 ) -> list[str]:
-    """Effects that are to vary and that the vessel does not have."""
+    """Effects that vary and that the vessel lacks."""
     own = vessels.load(vessel, list(load), extra=list(effects))
     ideas = dict.fromkeys(key.partition(".")[0] for key in said if key not in BODY)
     return [idea for idea in ideas if own.effect(idea) is None]
 
 
 def _having(boat: Vessel, held: Mapping[str, float]) -> Vessel:
-    """The vessel with other numbers."""
+    """The vessel with other parameter values."""
     for key, x in held.items():
         if key in BODY:
             about = BODY[key][1]

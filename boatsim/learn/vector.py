@@ -1,4 +1,4 @@
-"""Many boats as one Gymnasium vector environment, all stepped in one call on all cores."""
+"""Gymnasium vector environment of many boats, simulated in one call on all cores."""
 
 from typing import Any, Unpack
 
@@ -38,7 +38,21 @@ class BoatVectorEnv(VectorEnv[Seen, NDArray[np.float32], Array]):
         max_episode_steps: int | None = None,
         **told: Unpack[Told],
     ) -> None:
-        """`threads` share the boats: as many as there are cores, unless told."""
+        """Create an environment.
+
+        Args:
+            task: Name of the task.
+            num_envs: Number of boats.
+            render_mode: Must be None.
+            normalised: Whether observations are divided by their bounds.
+            autoreset_mode: When finished episodes restart.
+            threads: Threads that share the boats; None for one per core.
+            max_episode_steps: Ignored; Gymnasium passes it.
+            told: Further arguments, see `Told`.
+
+        Raises:
+            BadInput: An argument is wrong.
+        """
         if render_mode is not None:
             raise BadInput("many boats draw no pictures; allowed is render_mode = None")
         self.mode = AutoresetMode(autoreset_mode)
@@ -101,7 +115,7 @@ class BoatVectorEnv(VectorEnv[Seen, NDArray[np.float32], Array]):
         return seen, done.reward, done.ended, done.late, info
 
     def _waited(self, done: Step, waiting: Boats) -> Step:
-        """Boats that were over begin instead: no reward, no end."""
+        """Restart boats whose episodes had ended; their step has no reward and no end."""
         self._begin(waiting)
         for row in (done.reward, done.ended, done.late):
             row[waiting] = 0
@@ -111,7 +125,7 @@ class BoatVectorEnv(VectorEnv[Seen, NDArray[np.float32], Array]):
         )
 
     def _told(self, done: Step) -> dict[str, Any]:
-        """Norms of what is over, each with its mask."""
+        """Metrics of finished episodes, each with its mask."""
         info: dict[str, Any] = {}
         for name, values in done.norms.items():
             info[name] = np.zeros(self.num_envs, dtype=values.dtype)

@@ -1,1 +1,1 @@
-"""What a scenario measures on its log: one measure a file, its name the file's name."""
+"""Metrics of a run, one set in each file; scenarios refer to a set by the name of its file."""

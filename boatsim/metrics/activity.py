@@ -1,4 +1,4 @@
-"""Activity: how much a command works."""
+"""Activity of a command channel: its largest value and the rms of its rate."""
 
 from dataclasses import dataclass
 from math import degrees
@@ -14,21 +14,21 @@ from boatsim.simulate.metric import MetricSet, rows_between
 
 @dataclass(frozen=True)
 class Activity(MetricSet):
-    """From `since` on; the rate is that between rows, so log every step where it matters."""
+    """Evaluates rows from `since` on; the rate is that between rows, so a coarse log lowers it."""
 
     words: ClassVar[str] = "largest value of a command and rms of its rate"
     units: ClassVar = {"peak": "", "rate_rms": ""}
 
     signal: str = "jet_rad"
-    since: float = param(0.0, low=0.0, high=1e6, unit="s", words="beginning of what is looked at")
+    since: float = param(0.0, low=0.0, high=1e6, unit="s", words="start of the evaluated interval")
 
     def unit(self, metric: str) -> str:
-        """That of the signal, angles in degrees; per second."""
+        """Return the unit of the signal, with degrees for angles; of the rate per second."""
         own = unit_of(self.signal).replace("rad", "deg")
         return own if metric == "peak" else f"{own or '1'}/s"
 
     def values(self, log: Recording) -> dict[str, float]:
-        """Both over the same rows."""
+        """Return peak and rms rate over the same rows."""
         rows = rows_between(log, self.since, least=2)
         y = (degrees(1.0) if unit_of(self.signal) == "rad" else 1.0) * log[self.signal][rows]
         rate = np.diff(y) / np.diff(log.t[rows])

@@ -1,4 +1,4 @@
-"""Arrival at a point: when, after what way, and how close a boat came that never got there."""
+"""Arrival at a point: time, distance travelled, and the closest approach."""
 
 from dataclasses import dataclass
 from typing import ClassVar
@@ -12,9 +12,9 @@ from boatsim.simulate.metric import MetricSet, first_crossing, rows_between, sur
 
 @dataclass(frozen=True)
 class Arrival(MetricSet):
-    """For a boat on its way to one point."""
+    """Evaluates a boat that travels to one point."""
 
-    words: ClassVar[str] = "time and way to a point, or how close a boat came"
+    words: ClassVar[str] = "time and distance to a point, and the closest approach"
     units: ClassVar = {
         "time": "s",
         "distance": "m",
@@ -26,30 +26,38 @@ class Arrival(MetricSet):
 
     x: float = param(0.0, low=-1e6, high=1e6, unit="m", words="the point, in start axes")
     y: float = param(0.0, low=-1e6, high=1e6, unit="m", words="the point, in start axes")
-    radius: float = param(2.5, low=0.0, high=1e4, unit="m", words="this close is there")
+    radius: float = param(
+        2.5, low=0.0, high=1e4, unit="m", words="distance from the point that counts as arrival"
+    )
     x_signal: str = "x_m"
     y_signal: str = "y_m"
 
     def why(self, metric: str, log: Recording) -> str:
-        """How close it came."""
+        """Return the closest approach, in words."""
         away = np.hypot(self.x - log[self.x_signal], self.y - log[self.y_signal])
-        closest = (
-            f"closest {np.nanmin(away):.4g}"
-            if np.isfinite(away).any()
-            else "its place was not recorded"
-        )
+        closest = "its position was not recorded"
+        if np.isfinite(away).any():
+            closest = f"closest {np.nanmin(away):.4g}"
         return f"never within {self.radius:.4g} m of the point: {closest}"
 
     def values(self, log: Recording) -> dict[str, float]:
-        """Time, integral of the surge speed and straight line until there; closest and last place of the whole run."""
+        """Return time, integral of the surge speed and straight-line distance up to the arrival.
+
+        The closest approach and the last position are those of the whole run.
+
+        Args:
+            log: Log of the run.
+        """
         rows_between(log)
         x, y = log[self.x_signal], log[self.y_signal]
         away = np.hypot(self.x - x, self.y - y)
         found = {"closest": float(away.min()), "end_x": float(x[-1]), "end_y": float(y[-1])}
         time = first_crossing(log.t, self.radius - away)
-        return found if time is None else found | {"time": time} | self._way(log, x, y, time)
+        if time is None:
+            return found
+        return found | {"time": time} | self._distances(log, x, y, time)
 
-    def _way(self, log: Recording, x: Array, y: Array, time: float) -> dict[str, float]:
+    def _distances(self, log: Recording, x: Array, y: Array, time: float) -> dict[str, float]:
         line = np.hypot(x - x[0], y - y[0])
         return {
             "distance": float(np.interp(time, log.t, surge_distance(log))),

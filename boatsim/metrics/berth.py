@@ -1,4 +1,4 @@
-"""Return to a berth the other way round: how far from the first place, on what other heading."""
+"""Return to a berth after half a turn: final distance and heading error, and wall contacts."""
 
 from dataclasses import dataclass
 from math import degrees, hypot, pi
@@ -13,13 +13,15 @@ from boatsim.simulate.metric import MetricSet, rows_between
 
 @dataclass(frozen=True)
 class Berth(MetricSet):
-    """For a boat that is to turn half round and come back."""
+    """Evaluates a boat that turns by 180 degrees and returns to its first position."""
 
-    words: ClassVar[str] = "distance and heading of a return to the berth, the other way round"
+    words: ClassVar[str] = (
+        "final distance and heading error of a return to the berth after half a turn"
+    )
     units: ClassVar = {"return_distance": "m", "return_heading": "deg", "wall_contacts": ""}
 
     def values(self, log: Recording) -> dict[str, float]:
-        """Distance of the CG from its first place, heading beside the half turn, steps with the hull at a wall."""
+        """Return distance of the CG from its first position, heading error, steps with contact."""
         rows_between(log)
         x, y, psi = (log[name][-1] - log[name][0] for name in ("x_m", "y_m", "psi_rad"))
         return {

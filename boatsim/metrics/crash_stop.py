@@ -1,4 +1,4 @@
-"""Crash stop: how far and how long a ship runs on after her engines went astern."""
+"""Crash stop: distances and time from full astern until the ship has stopped."""
 
 from dataclasses import dataclass
 from typing import ClassVar
@@ -12,7 +12,7 @@ from boatsim.simulate.metric import MetricSet, path_length, value_at
 
 @dataclass(frozen=True)
 class CrashStop(MetricSet):
-    """Until the ship has no way on; distances in lengths."""
+    """Evaluates the time until the surge speed is zero; distances are in ship lengths."""
 
     words: ClassVar[str] = "track, head and side reach and time of a crash stop"
     units: ClassVar = {
@@ -22,15 +22,17 @@ class CrashStop(MetricSet):
         "time_to_stop": "s",
     }
 
-    execute: float = param(0.0, low=0.0, high=1e6, unit="s", words="when the engines went astern")
-    length: float = param(1.0, low=0.001, high=1e3, unit="m", words="of the ship")
+    execute: float = param(0.0, low=0.0, high=1e6, unit="s", words="time of the order full astern")
+    length: float = param(1.0, low=0.001, high=1e3, unit="m", words="length of the ship")
 
     def why(self, metric: str, log: Recording) -> str:
-        """How fast she still was."""
-        return f"never stopped: still {log['u_mps'][log.t > self.execute].min(initial=log['u_mps'][-1]):.4g} m/s ahead"
+        """Return the lowest speed that was reached, in words."""
+        u = log["u_mps"]
+        slowest = u[log.t > self.execute].min(initial=u[-1])
+        return f"never stopped: lowest speed {slowest:.4g} m/s ahead"
 
     def values(self, log: Recording) -> dict[str, float]:
-        """None if she never stopped."""
+        """Return the stopping distances and time; none if the ship never stopped."""
         stopped = np.flatnonzero((log.t > self.execute) & (log["u_mps"] <= 0.0))
         if not len(stopped):
             return {}

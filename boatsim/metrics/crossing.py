@@ -1,4 +1,4 @@
-"""Crossing: when a signal passes a level."""
+"""Time at which a signal crosses a level."""
 
 from dataclasses import dataclass
 from typing import ClassVar
@@ -13,7 +13,7 @@ from boatsim.simulate.metric import MetricSet, why_not_reached
 
 @dataclass(frozen=True)
 class Crossing(MetricSet):
-    """The first time after `since`, either way, counted from there."""
+    """Evaluates the first crossing after `since`, up or down; the time counts from there."""
 
     words: ClassVar[str] = "time until a signal first passes a level"
     units: ClassVar = {"time": "s"}
@@ -21,23 +21,22 @@ class Crossing(MetricSet):
     signal: str = "u_mps"
     level: float = param(0.0, low=-1e9, high=1e9, unit="", words="in the signal's unit")
     since: float = param(
-        0.0, low=0.0, high=1e6, unit="s", words="time from which it is looked for and counted"
+        0.0, low=0.0, high=1e6, unit="s", words="start of the search, from which the time counts"
     )
 
     def why(self, metric: str, log: Recording) -> str:
-        """How near it came."""
+        """Return how close the signal came to the level, in words."""
         return why_not_reached(
             log[self.signal][log.t >= self.since - 1e-9], self.level, unit_of(self.signal)
         )
 
     def values(self, log: Recording) -> dict[str, float]:
-        """Interpolated between rows; nothing if the signal stays on one side."""
+        """Return the time, interpolated between rows; none without a crossing."""
         seen = log.t >= self.since - 1e-9
         t, above = log.t[seen] - self.since, log[self.signal][seen] - self.level
         passed = np.nonzero(above[:-1] * above[1:] <= 0.0)[0]
         if len(passed) == 0:
             return {}
         i = int(passed[0])
-        return {
-            "time": float(t[i] + (t[i + 1] - t[i]) * above[i] / (above[i] - above[i + 1] or 1.0))
-        }
+        drop = above[i] - above[i + 1] or 1.0
+        return {"time": float(t[i] + (t[i + 1] - t[i]) * above[i] / drop)}

@@ -1,4 +1,4 @@
-"""Holding a heading: how far the boat swings, how hard its steering works."""
+"""Course keeping: heading error and steering activity."""
 
 from dataclasses import dataclass
 from math import degrees
@@ -13,7 +13,7 @@ from boatsim.simulate.metric import MetricSet, rows_between
 
 @dataclass(frozen=True)
 class HeadingHold(MetricSet):
-    """Over the rows from `since` on, the heading against `target`, the steering about its own mean."""
+    """Evaluates rows from `since` on: heading against `target`, steering about its mean."""
 
     words: ClassVar[str] = (
         "mean, rms and largest heading error, rms of steering angle and of its rate"
@@ -27,12 +27,13 @@ class HeadingHold(MetricSet):
         "steering_rate_rms": "deg/s",
     }
 
-    steering: str = "delta_rad"  # command channel
+    # command channel
+    steering: str = "delta_rad"
     target: float = param(0.0, low=-100.0, high=100.0, unit="rad", words="heading to hold")
-    since: float = param(0.0, low=0.0, high=1e6, unit="s", words="beginning of what is looked at")
+    since: float = param(0.0, low=0.0, high=1e6, unit="s", words="start of the evaluated interval")
 
     def values(self, log: Recording) -> dict[str, float]:
-        """Each rms is about the mean; rates are central differences between rows of the log."""
+        """Return the metrics; each rms is about the mean, rates are central differences of rows."""
         rows = rows_between(log, self.since, least=2)
         off, angle = log["psi_rad"][rows] - self.target, log[self.steering][rows]
         rate = np.gradient(angle, log.t[rows])

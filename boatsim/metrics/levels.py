@@ -1,4 +1,4 @@
-"""Levels: where a signal comes to rest under commands that are held one after the other."""
+"""Levels: values of a signal at the ends of intervals with constant commands."""
 
 from dataclasses import dataclass
 from typing import ClassVar
@@ -8,30 +8,35 @@ from boatsim.recordings.notes import unit_of
 from boatsim.recordings.table import Recording
 from boatsim.simulate.metric import MetricSet, rows_between
 
-MOST = 12  # levels
+MOST_LEVELS = 12
 
 
 @dataclass(frozen=True)
 class Levels(MetricSet):
-    """The signal at the end of every interval of `every` s."""
+    """Evaluates the signal at the end of every interval of `every` s."""
 
     words: ClassVar[str] = "value of a signal at the end of each interval"
-    units: ClassVar = {f"level_{i}": "" for i in range(1, MOST + 1)}
+    units: ClassVar = {f"level_{i}": "" for i in range(1, MOST_LEVELS + 1)}
 
     signal: str = "u_mps"
     every: float = param(10.0, low=1e-3, high=1e6, unit="s", words="length of an interval")
 
     def unit(self, metric: str) -> str:
-        """That of the signal."""
+        """Return the unit of the signal."""
         return unit_of(self.signal)
 
     def why(self, metric: str, log: Recording) -> str:
-        """How many intervals there were."""
-        return f"the run ends at {log.t[-1]:.4g} s, after {int((log.t[-1] + 1e-6) / self.every)} intervals"
+        """Return the number of complete intervals, in words."""
+        complete = int((log.t[-1] + 1e-6) / self.every)
+        return f"the run ends at {log.t[-1]:.4g} s, after {complete} intervals"
 
     def values(self, log: Recording) -> dict[str, float]:
-        """Of as many whole intervals as the log has."""
+        """Return the level of each complete interval."""
         rows_between(log)
-        ends = [i * self.every for i in range(1, MOST + 1) if i * self.every <= log.t[-1] + 1e-6]
-        rows = [int(abs(log.t - end).argmin()) for end in ends]
-        return {f"level_{i}": float(log[self.signal][row]) for i, row in enumerate(rows, 1)}
+        found = {}
+        for i in range(1, MOST_LEVELS + 1):
+            end = i * self.every
+            if end <= log.t[-1] + 1e-6:
+                row = int(abs(log.t - end).argmin())
+                found[f"level_{i}"] = float(log[self.signal][row])
+        return found

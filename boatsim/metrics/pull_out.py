@@ -1,4 +1,7 @@
-"""Pull-out: what rate of turn is left after the helm was put midships; of a course-stable ship the same both ways."""
+"""Pull-out test: residual rates of turn after the helm is put midships.
+
+A ship with straight-line stability has the same residual rate after a turn to either side.
+"""
 
 from dataclasses import dataclass
 from typing import ClassVar
@@ -13,7 +16,7 @@ PARTS = ("first_turn", "after_first", "second_turn", "after_second")
 
 @dataclass(frozen=True)
 class PullOut(MetricSet):
-    """Rates of turn at the end of each of the four parts, positive to starboard."""
+    """Evaluates the rate of turn at the end of each of the four parts, positive to starboard."""
 
     words: ClassVar[str] = "rates of turn before and after the helm is put midships, both ways"
     units: ClassVar = {
@@ -22,14 +25,13 @@ class PullOut(MetricSet):
     }
 
     def why(self, metric: str, log: Recording) -> str:
-        """How many parts there were."""
+        """Return the number of helm changes, in words."""
         helm = log["reference_helm_rad"]
-        return (
-            f"the helm changed {int(np.count_nonzero(np.diff(helm)))} times; all four parts take 4"
-        )
+        changes = int(np.count_nonzero(np.diff(helm)))
+        return f"the helm changed {changes} times; the four parts need 4 changes"
 
     def values(self, log: Recording) -> dict[str, float]:
-        """Of the parts there were."""
+        """Return the rates of the parts that the run reached."""
         helm = log["reference_helm_rad"]
         if not helm.any():
             return {}

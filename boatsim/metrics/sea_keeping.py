@@ -1,4 +1,4 @@
-"""Keeping a course in waves: how much the ship yaws and rolls, and how hard its rudder works for that."""
+"""Course keeping in waves: rms of yaw, roll and rudder angle."""
 
 from dataclasses import dataclass
 from math import degrees
@@ -12,7 +12,7 @@ from boatsim.simulate.metric import MetricSet, rows_between
 
 @dataclass(frozen=True)
 class SeaKeeping(MetricSet):
-    """Root mean squares over the whole run, about zero: what a course keeper is to hold."""
+    """Evaluates root mean squares about zero over the whole run."""
 
     words: ClassVar[str] = "rms of yaw, roll and rudder angle in a seaway"
     units: ClassVar = {"yaw_rms": "deg", "roll_rms": "deg", "rudder_rms": "deg"}
@@ -22,14 +22,17 @@ class SeaKeeping(MetricSet):
     rudder: str = "rudder_rad"
 
     def values(self, log: Recording) -> dict[str, float]:
-        """The three norms; a signal that the log has not is left out."""
+        """Return the rms of each signal that the log holds."""
         rows_between(log)
         named = {"yaw_rms": self.heading, "roll_rms": self.roll, "rudder_rms": self.rudder}
-        return {
-            metric: rms(log, signal) for metric, signal in named.items() if signal in log.signals
-        }
+        return {norm: rms(log, signal) for norm, signal in named.items() if signal in log.signals}
 
 
 def rms(log: Recording, signal: str) -> float:
-    """Root mean square of an angle [deg]."""
+    """Return the root mean square of an angle [deg].
+
+    Args:
+        log: Log of the run.
+        signal: Column of the angle [rad].
+    """
     return degrees(float(np.sqrt(np.mean(log[signal] ** 2))))

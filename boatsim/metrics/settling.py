@@ -1,4 +1,4 @@
-"""Coming to rest on a course: when a signal first crosses it, when it stays, where it ends, how far it still swings."""
+"""Settling of an angle: first crossing, settling time, final value and remaining oscillation."""
 
 from dataclasses import dataclass
 from math import degrees, radians
@@ -15,10 +15,10 @@ from boatsim.simulate.metric import MetricSet, rows_between, why_not_reached
 
 @dataclass(frozen=True)
 class Settling(MetricSet):
-    """An angle after an offset or a kick, in the columns of Martin's calm-water tables (1993, appendix VI).
+    """Evaluates an angle after an offset or an impulse, as in Martin (1993), appendix VI.
 
-    The end is the mean over the time after `late`: what the source prints as final angle lies near zero for limit
-    cycles of 20 deg and more too, which no single last value would.
+    The final angle is the mean over the time after `late`: the source prints final angles near zero
+    also for limit cycles of 20 deg and more, whose last values would differ from zero.
     """
 
     words: ClassVar[str] = "first crossing, settling time, end and late extremes of an angle"
@@ -31,20 +31,21 @@ class Settling(MetricSet):
     }
 
     signal: str = "psi_rad"
-    target: float = param(0.0, low=-100.0, high=100.0, unit="rad", words="the angle to come to")
+    target: float = param(0.0, low=-100.0, high=100.0, unit="rad", words="target angle")
     band: float = param(
-        radians(0.25), low=0.0, high=10.0, unit="rad", words="settled this near the end"
+        radians(0.25), low=0.0, high=10.0, unit="rad", words="band about the final angle"
     )
-    late: float = param(300.0, low=0.0, high=86400.0, unit="s", words="the end begins")
+    late: float = param(300.0, low=0.0, high=86400.0, unit="s", words="start of the final interval")
 
     def why(self, metric: str, log: Recording) -> str:
-        """Where it ends, or that it is over too soon."""
+        """Return where the run ends, or how close the angle came to the target, in words."""
         if log.t[-1] - log.t[0] < self.late:
-            return f"the run ends at {log.t[-1] - log.t[0]:.4g} s, before {self.late:g} s, where its end begins"
+            end = log.t[-1] - log.t[0]
+            return f"the run ends at {end:.4g} s, before the final interval from {self.late:g} s"
         return why_not_reached(log[self.signal], self.target, unit_of(self.signal))
 
     def values(self, log: Recording) -> dict[str, float]:
-        """rise: first crossing once off the target; settling: last time out of the band; extremes about the end."""
+        """Return first crossing, last time outside the band, final angle, and extremes about it."""
         if self.signal not in log.signals:
             raise BadInput(unknown_name("settling: signal", self.signal, log.signals))
         rows_between(log)
@@ -59,6 +60,9 @@ class Settling(MetricSet):
             "lowest": degrees(end.min() - end.mean()),
             "highest": degrees(end.max() - end.mean()),
         }
-        away = np.maximum.accumulate(np.abs(x) > self.band)  # a start on the target is no crossing
+        # A start on the target is not a crossing.
+        away = np.maximum.accumulate(np.abs(x) > self.band)
         crossed = np.nonzero(away[:-1] & (x[:-1] * x[1:] < 0.0))[0]
-        return found | ({"rise": float(t[crossed[0] + 1])} if len(crossed) else {})
+        if len(crossed):
+            found["rise"] = float(t[crossed[0] + 1])
+        return found

@@ -1,4 +1,4 @@
-"""How soon, and after what way, a boat has reached a speed ahead."""
+"""Time and distance in which a boat reaches a surge speed."""
 
 from dataclasses import dataclass
 from typing import ClassVar
@@ -18,19 +18,19 @@ from boatsim.simulate.metric import (
 
 @dataclass(frozen=True)
 class SpeedReached(MetricSet):
-    """For a boat that starts slower than the speed asked for."""
+    """Evaluates a boat that starts below the target speed."""
 
-    words: ClassVar[str] = "time and way to a speed ahead, and the largest speed"
+    words: ClassVar[str] = "time and distance to a surge speed, and the top speed"
     units: ClassVar = {"time": "s", "distance": "m", "straight_line": "m", "top_speed": "m/s"}
 
-    speed: float = param(1.0, low=0.0, high=100.0, unit="m/s", words="surge speed asked for")
+    speed: float = param(1.0, low=0.0, high=100.0, unit="m/s", words="target surge speed")
 
     def why(self, metric: str, log: Recording) -> str:
-        """How fast it was."""
+        """Return the largest speed, in words."""
         return why_not_reached(log["u_mps"], self.speed, "m/s")
 
     def values(self, log: Recording) -> dict[str, float]:
-        """Time, integral of the surge speed and straight line until then; the largest surge speed of the run."""
+        """Return time, integral of the surge speed, straight-line distance, and top speed."""
         rows_between(log)
         found, u = {"top_speed": float(log["u_mps"].max())}, log["u_mps"]
         time = first_crossing(log.t, u - self.speed)

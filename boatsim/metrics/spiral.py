@@ -1,4 +1,7 @@
-"""Spiral: rates of turn at each helm angle on the way out and back; a ship that is not course-stable has two."""
+"""Spiral test: hysteresis loop of rate of turn over helm angle.
+
+A ship without straight-line stability has two rates of turn at the same small helm angle.
+"""
 
 from dataclasses import dataclass
 from typing import ClassVar
@@ -8,12 +11,12 @@ import numpy as np
 from boatsim.recordings.table import Recording
 from boatsim.simulate.metric import MetricSet, rows_between
 
-SAME = 1e-6  # [rad] between two helm angles that are one
+SAME_ANGLE = 1e-6  # [rad] difference of two helm angles that count as equal; rounding only
 
 
 @dataclass(frozen=True)
 class Spiral(MetricSet):
-    """The loop of the curve rate over helm angle."""
+    """Evaluates the loop of rate of turn over helm angle."""
 
     words: ClassVar[str] = (
         "height and width of the loop in the curve of rate of turn over helm angle"
@@ -26,27 +29,32 @@ class Spiral(MetricSet):
     }
 
     def why(self, metric: str, log: Recording) -> str:
-        """How far the helm got."""
+        """Return the last helm angle, in words."""
         last = np.degrees(log["reference_helm_rad"][-1])
         return f"the helm did not come back to its first angle: it ends at {last:.3g} deg"
 
     def values(self, log: Recording) -> dict[str, float]:
-        """Loop height at midships, width over all angles at which the two rates have opposite signs, two rates.
+        """Return loop height at midships, loop width, and two rates of turn.
 
-        None unless the helm came back to its first angle.
+        The width spans the angles at which the two rates have opposite signs. There are no metrics
+        unless the helm returned to its first angle.
+
+        Args:
+            log: Log of the run.
         """
         rows_between(log)
         helm = log["reference_helm_rad"]
         begin = int(np.argmax(helm != 0.0))
         ends = np.array(
-            [*(begin + np.flatnonzero(np.abs(np.diff(helm[begin:])) > SAME)), len(helm) - 1]
+            [*(begin + np.flatnonzero(np.abs(np.diff(helm[begin:])) > SAME_ANGLE)), len(helm) - 1]
         )
         angles, rates = helm[ends], np.degrees(log["r_radps"][ends])
-        if len(ends) < 3 or abs(angles[-1] - angles[0]) > SAME:
+        if len(ends) < 3 or abs(angles[-1] - angles[0]) > SAME_ANGLE:
             return {}
-        turn = int(np.argmax(np.abs(angles - angles[0])))  # where the helm lies over the other way
+        # The helm angle is reversed at the largest distance from the first angle.
+        turn = int(np.argmax(np.abs(angles - angles[0])))
         out, back = slice(0, turn + 1), slice(turn, len(ends))
-        both = sorted(a for a in angles[out] if np.abs(angles[back] - a).min() < SAME)
+        both = sorted(a for a in angles[out] if np.abs(angles[back] - a).min() < SAME_ANGLE)
         there = np.array([rates[out][np.argmin(np.abs(angles[out] - a))] for a in both])
         again = np.array([rates[back][np.argmin(np.abs(angles[back] - a))] for a in both])
         middle = int(np.argmin(np.abs(both)))

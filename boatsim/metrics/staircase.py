@@ -1,28 +1,31 @@
-"""Staircase: the responses to equal steps that follow each other, one norm for each."""
+"""Staircase: responses to a sequence of equal steps, with metrics for each step."""
 
 from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
 
-from boatsim.metrics.step_response import first
+from boatsim.metrics.step_response import rise_time, time_of_share
 from boatsim.physics.base import param
 from boatsim.recordings.notes import unit_of
 from boatsim.recordings.table import Recording
 from boatsim.simulate.metric import MetricSet, TooShort, rows_between
 
-MOST = 8  # steps of a staircase
+MOST_STEPS = 8
 
 
 @dataclass(frozen=True)
 class Staircase(MetricSet):
-    """Steps of `height` every `every` s from `bottom`, the first at `since`; a later one starts where it should."""
+    """Evaluates steps of `height` every `every` s from `bottom`, the first at `since`.
+
+    Each step is measured from the nominal end of the previous one.
+    """
 
     words: ClassVar[str] = (
-        "time to 95 % and from 10 to 90 % of each step of a staircase; worst overshoot and end error"
+        "time to 95 %, rise time, largest overshoot and end error of the steps of a staircase"
     )
     units: ClassVar = {
-        f"{what}_{i}": "s" for what in ("time_95", "rise") for i in range(1, MOST + 1)
+        f"{what}_{i}": "s" for what in ("time_95", "rise") for i in range(1, MOST_STEPS + 1)
     } | {
         "overshoot": "",
         "end_error": "",
@@ -33,17 +36,17 @@ class Staircase(MetricSet):
         0.0, low=-1e9, high=1e9, unit="", words="value before the first step, in the signal's unit"
     )
     height: float = param(
-        1.0, low=-1e9, high=1e9, unit="", words="of each step, in the signal's unit"
+        1.0, low=-1e9, high=1e9, unit="", words="height of each step, in the signal's unit"
     )
     since: float = param(0.0, low=0.0, high=1e6, unit="s", words="time of the first step")
     every: float = param(10.0, low=1e-3, high=1e6, unit="s", words="time between two steps")
 
     def unit(self, metric: str) -> str:
-        """Times in s, errors in the signal's unit."""
+        """Return s for times, the unit of the signal for errors."""
         return self.units[metric] or unit_of(self.signal)
 
     def why(self, metric: str, log: Recording) -> str:
-        """Whether there was such a step, and how much of it was made."""
+        """Return whether the run contains the step and which share of it was reached, in words."""
         number = int(metric.rpartition("_")[2]) if metric[-1].isdigit() else 1
         begin = self.since + (number - 1) * self.every
         rows = (log.t >= begin - 1e-9) & (log.t < begin + self.every - 1e-9)
@@ -56,9 +59,9 @@ class Staircase(MetricSet):
         return f"made at most {100.0 * done.max():.3g} % of step {number}"
 
     def values(self, log: Recording) -> dict[str, float]:
-        """Of as many whole steps as the log has; a time that is not reached is left out."""
+        """Return the metrics of each complete step; times that are not reached are missing."""
         rows_between(log, self.since)
-        count = min(MOST, int((log.t[-1] - self.since) / self.every + 1e-6))
+        count = min(MOST_STEPS, int((log.t[-1] - self.since) / self.every + 1e-6))
         if count < 1:
             return {}
         found: dict[str, float | None] = {}
@@ -69,11 +72,8 @@ class Staircase(MetricSet):
             if not rows.any():
                 raise TooShort(f"{log.name}: no rows from {begin:g} s on")
             t, done = log.t[rows] - begin, (log[self.signal][rows] - self.bottom) / self.height - i
-            tenth, most = first(t, done, 0.1), first(t, done, 0.9)
-            found[f"time_95_{i + 1}"] = first(t, done, 0.95)
-            found[f"rise_{i + 1}"] = (
-                most - tenth if most is not None and tenth is not None else None
-            )
+            found[f"time_95_{i + 1}"] = time_of_share(t, done, 0.95)
+            found[f"rise_{i + 1}"] = rise_time(t, done)
             worst["overshoot"] = max(worst["overshoot"], float(done.max() - 1.0) * abs(self.height))
             worst["end_error"] = max(worst["end_error"], abs(float(done[-1] - 1.0) * self.height))
         return {name: value for name, value in (found | worst).items() if value is not None}

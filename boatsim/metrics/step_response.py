@@ -1,4 +1,4 @@
-"""Step response: how a signal answers a step of what is wanted of it."""
+"""Step response: rise and settling times, overshoot and final error."""
 
 from dataclasses import dataclass
 from math import inf
@@ -11,12 +11,12 @@ from boatsim.recordings.notes import unit_of
 from boatsim.recordings.table import Recording
 from boatsim.simulate.metric import MetricSet, rows_between
 
-BAND = 0.05  # of the step: what counts as settled
+BAND = 0.05  # share of the step within which a signal counts as settled, the usual 5 % criterion
 
 
 @dataclass(frozen=True)
 class StepResponse(MetricSet):
-    """From the time of the step to `until`; the step leads from where the signal then is to `target`."""
+    """Evaluates `since` to `until`; the step leads from the value at `since` to `target`."""
 
     words: ClassVar[str] = "times of a step response, its overshoot and its end error"
     units: ClassVar = {
@@ -33,41 +33,46 @@ class StepResponse(MetricSet):
 
     signal: str = "psi_rad"
     target: float = param(
-        0.0, low=-1e9, high=1e9, unit="", words="value wanted, in the signal's unit"
+        0.0, low=-1e9, high=1e9, unit="", words="target value, in the signal's unit"
     )
     since: float = param(0.0, low=0.0, high=1e6, unit="s", words="time of the step")
     until: float = param(
-        0.0, low=0.0, high=1e6, unit="s", words="end of what is looked at; 0: of the log"
+        0.0, low=0.0, high=1e6, unit="s", words="end of the evaluated interval; 0: end of the log"
     )
 
     def unit(self, metric: str) -> str:
-        """The value at the end has the signal's unit."""
+        """Return the unit of a metric; the final value has that of the signal."""
         return unit_of(self.signal) if metric == "end" else self.units[metric]
 
     def why(self, metric: str, log: Recording) -> str:
-        """How much of the step it made."""
+        """Return which share of the step was reached, in words."""
         y = log[self.signal][rows_between(log, self.since, self.until or inf, least=2)]
         if y[0] == self.target:
-            return f"there is no step: it begins at its target, {self.target:.4g} {unit_of(self.signal)}".rstrip()
+            target = f"{self.target:.4g} {unit_of(self.signal)}".rstrip()
+            return f"there is no step: the signal starts at its target, {target}"
         done = (y - y[0]) / (self.target - y[0])
         if metric == "settle":
-            return f"ends {100.0 * abs(done[-1] - 1.0):.3g} % of the step off; settled is {100.0 * BAND:g} %"
+            error = 100.0 * abs(done[-1] - 1.0)
+            return f"final error {error:.3g} % of the step; settled means {100.0 * BAND:g} %"
         return f"made at most {100.0 * done.max():.3g} % of the step"
 
     def values(self, log: Recording) -> dict[str, float]:
-        """Times from the step on, interpolated between rows; `rise` from 10 to 90 %; errors in per cent of the step."""
+        """Return times from the step on, interpolated between rows, and errors in % of the step.
+
+        `rise` is the time from 10 to 90 %.
+
+        Args:
+            log: Log of the run.
+        """
         rows = rows_between(log, self.since, self.until or inf, least=2)
         t, y = log.t[rows] - self.since, log[self.signal][rows]
         if y[0] == self.target:  # no step
             return {"end": float(y[-1])}
         done = (y - y[0]) / (self.target - y[0])
-        found = {f"time_{share}": first(t, done, 0.01 * share) for share in (50, 90, 95)}
-        found["time_63"] = first(t, done, 1.0 - np.exp(-1.0))
-        begun = first(t, done, 0.1)
-        found["rise"] = (
-            found["time_90"] - begun if found["time_90"] is not None and begun is not None else None
-        )
-        found["settle"] = settled(t, done)
+        found = {f"time_{share}": time_of_share(t, done, 0.01 * share) for share in (50, 90, 95)}
+        found["time_63"] = time_of_share(t, done, 1.0 - np.exp(-1.0))
+        found["rise"] = rise_time(t, done)
+        found["settle"] = settling_time(t, done)
         errors = {
             "overshoot": 100.0 * float(max(done.max() - 1.0, 0.0)),
             "end_error": 100.0 * float(1.0 - done[-1]),
@@ -79,8 +84,14 @@ class StepResponse(MetricSet):
         )
 
 
-def first(t: Array, done: Array, share: float) -> float | None:
-    """When the signal first has this share of its step behind it."""
+def time_of_share(t: Array, done: Array, share: float) -> float | None:
+    """Return the time at which a signal first reaches a share of its step; None if it never does.
+
+    Args:
+        t: Times (N,) since the step [s].
+        done: Share of the step (N,) reached at these times.
+        share: The share.
+    """
     beyond = np.nonzero(done >= share)[0]
     if len(beyond) == 0:
         return None
@@ -88,8 +99,27 @@ def first(t: Array, done: Array, share: float) -> float | None:
     return float(np.interp(share, done[i - 1 : i + 1], t[i - 1 : i + 1]))
 
 
-def settled(t: Array, done: Array) -> float | None:
-    """When the signal last comes into the band about its target; none if it is outside at the end."""
+def rise_time(t: Array, done: Array) -> float | None:
+    """Return the time from 10 to 90 % of a step; None if the signal does not reach 90 %.
+
+    Args:
+        t: Times (N,) since the step [s].
+        done: Share of the step (N,) reached at these times.
+    """
+    tenth = time_of_share(t, done, 0.1)
+    most = time_of_share(t, done, 0.9)
+    if tenth is None or most is None:
+        return None
+    return most - tenth
+
+
+def settling_time(t: Array, done: Array) -> float | None:
+    """Return the time from which a signal stays in the band about its target; None if it does not.
+
+    Args:
+        t: Times (N,) since the step [s].
+        done: Share of the step (N,) reached at these times.
+    """
     outside = np.nonzero(abs(done - 1.0) > BAND)[0]
     if len(outside) == 0:
         return 0.0

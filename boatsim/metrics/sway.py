@@ -1,4 +1,4 @@
-"""Sway: how much a boat turns while it is to move sideways, from camera frames."""
+"""Sway manoeuvre: yaw rate, heading and surge of a boat that moves sideways, from camera frames."""
 
 from dataclasses import dataclass
 from typing import ClassVar
@@ -11,12 +11,12 @@ from boatsim.simulate.camera import Camera
 from boatsim.simulate.camera_metric import CameraFrames, CameraMetricSet, first_frame, mark_noise
 from boatsim.simulate.metric import why_not_reached
 
-REMAIN = 3  # averages there are at least
+FEWEST_AVERAGES = 3  # moving averages without which no rms is meaningful
 
 
 @dataclass(frozen=True)
 class Sway(CameraMetricSet):
-    """From the start to the first frame `distance` to starboard; the wanted yaw rate is none."""
+    """Evaluates the start to the first frame `distance` to starboard; the target is no yaw."""
 
     words: ClassVar[str] = (
         "yaw rate, heading and surge while a boat moves sideways, from camera frames"
@@ -32,21 +32,26 @@ class Sway(CameraMetricSet):
     }
 
     distance: float = param(
-        1.0, low=0.0, high=1e5, unit="m", words="way to starboard at which it ends"
+        1.0, low=0.0, high=1e5, unit="m", words="distance to starboard at which the evaluation ends"
     )
     averaged: float = param(
         10.0, low=1.0, high=1000.0, unit="", words="yaw rates in the moving average"
     )
 
     def why(self, metric: str, log: Recording) -> str:
-        """How far to starboard it came."""
+        """Return the distance to starboard that was reached, in words."""
         psi, dx, dy = log["psi_rad"][0], log["x_m"] - log["x_m"][0], log["y_m"] - log["y_m"][0]
-        return f"{why_not_reached(np.cos(psi) * dy - np.sin(psi) * dx, self.distance, 'm')} to starboard"
+        aside = np.cos(psi) * dy - np.sin(psi) * dx
+        return f"{why_not_reached(aside, self.distance, 'm')} to starboard"
 
     def from_frames(self, frames: CameraFrames) -> dict[str, float]:
-        """Yaw rates and heading as the camera has them, the rest as it was."""
+        """Return yaw rates and heading from the camera, other metrics from the simulation.
+
+        Args:
+            frames: Frames of the camera with the true motion.
+        """
         frame = first_frame(
-            frames.place[:, 1] >= self.distance, least=round(self.averaged) + REMAIN
+            frames.place[:, 1] >= self.distance, least=round(self.averaged) + FEWEST_AVERAGES
         )
         if frame is None:
             return {}
@@ -59,14 +64,24 @@ class Sway(CameraMetricSet):
         }
 
     def from_noise(self, frames: int, camera: Camera) -> dict[str, Array]:
-        """A heading that never changes."""
+        """Return the metrics of a constant heading with camera noise.
+
+        Args:
+            frames: Number of frames.
+            camera: The camera.
+        """
         still = np.zeros(frames)
         return self.yaw_rates(
             camera.pose(camera.seen(still, still, mark_noise(frames, camera)))[1], 1.0 / self.scored
         )
 
     def yaw_rates(self, psi: Array, dt: float) -> dict[str, Array]:
-        """Norms of the smoothed yaw rate e of headings psi (..., n) [rad] every dt [s]."""
+        """Return the metrics of the smoothed yaw rate e.
+
+        Args:
+            psi: Headings (..., n) [rad].
+            dt: Time between two headings [s].
+        """
         rate = np.degrees(np.diff(psi)) / dt
         e = np.lib.stride_tricks.sliding_window_view(rate, round(self.averaged), axis=-1).mean(-1)
         return {

@@ -1,4 +1,4 @@
-"""How still a boat keeps its heading while it sways, and the steering angle at which it settles."""
+"""Sway with constant heading: yaw rate, heading change, and the steering angle found."""
 
 from dataclasses import dataclass
 from math import sqrt
@@ -12,7 +12,7 @@ from boatsim.simulate.metric import MetricSet, rows_between
 
 @dataclass(frozen=True)
 class SwayHold(MetricSet):
-    """For a boat that is to move sideways without turning; the last half of the run counts as settled."""
+    """Evaluates a boat that moves sideways without turning; its second half counts as settled."""
 
     words: ClassVar[str] = (
         "yaw rate and heading during a sway, and the neutral steering angle found"
@@ -27,7 +27,7 @@ class SwayHold(MetricSet):
     angle: str = "steer_port_rad"
 
     def values(self, log: Recording) -> dict[str, float]:
-        """Largest yaw rate, its rms in the last half, largest heading change, mean angle in the last half."""
+        """Return extremes of the run, and rms yaw rate and mean angle of its second half."""
         rows_between(log)
         last = log.t >= 0.5 * (log.t[0] + log.t[-1])
         r, psi = np.degrees(log["r_radps"]), np.degrees(log["psi_rad"] - log["psi_rad"][0])

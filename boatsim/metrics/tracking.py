@@ -1,4 +1,4 @@
-"""Tracking: how far a signal is from the one it is to follow."""
+"""Tracking error of a signal against its reference."""
 
 from dataclasses import dataclass
 from math import degrees, inf
@@ -14,27 +14,30 @@ from boatsim.simulate.metric import MetricSet, rows_between
 
 @dataclass(frozen=True)
 class Tracking(MetricSet):
-    """From `since` to `until`. `reference` is another signal of the log; without one the reference is 0."""
+    """Evaluates `since` to `until`; `reference` is another signal of the log, 0 if empty."""
 
     words: ClassVar[str] = "rms and largest error of a signal against its reference"
     units: ClassVar = {"rms": "", "max": "", "rms_goal": "", "goal_error": ""}
 
     signal: str = "psi_rad"
     reference: str = ""
-    goal: str = ""  # a second reference: what the first one follows itself
-    since: float = param(0.0, low=0.0, high=1e6, unit="s", words="beginning of what is looked at")
-    until: float = param(0.0, low=0.0, high=1e6, unit="s", words="its end; 0: that of the log")
+    # a second reference, which the first one follows
+    goal: str = ""
+    since: float = param(0.0, low=0.0, high=1e6, unit="s", words="start of the evaluated interval")
+    until: float = param(
+        0.0, low=0.0, high=1e6, unit="s", words="end of the evaluated interval; 0: end of the log"
+    )
 
     def unit(self, metric: str) -> str:
-        """That of the signal, angles in degrees."""
+        """Return the unit of the signal, with degrees for angles."""
         return unit_of(self.signal).replace("rad", "deg")
 
     def why(self, metric: str, log: Recording) -> str:
-        """Norms against a goal need one."""
+        """Return why there are no errors against a goal."""
         return "" if self.goal else "the measure names no goal"
 
     def values(self, log: Recording) -> dict[str, float]:
-        """Rms and largest error; rms of the error against the goal, and that error's mean over the last second."""
+        """Return rms and largest error; against the goal rms and mean of the last second."""
         rows = rows_between(log, self.since, self.until or inf)
         scale = degrees(1.0) if unit_of(self.signal).startswith("rad") else 1.0
 

@@ -1,4 +1,4 @@
-"""Turning circle: advance, transfer, tactical diameter, and the steady turn at the end (ITTC 7.5-04-02-01)."""
+"""Turning circle: advance, transfer, tactical diameter and steady turn (ITTC 7.5-04-02-01)."""
 
 from dataclasses import dataclass
 from math import pi
@@ -13,7 +13,10 @@ from boatsim.simulate.metric import MetricSet, rows_between, value_at
 
 @dataclass(frozen=True)
 class TurningCircle(MetricSet):
-    """Distances in lengths, from where the helm was put over, along and across the approach course."""
+    """Evaluates distances in ship lengths along and across the approach course.
+
+    They count from the position at which the helm was put over.
+    """
 
     words: ClassVar[str] = (
         "advance, transfer, tactical diameter and steady turn of a turning circle"
@@ -29,25 +32,27 @@ class TurningCircle(MetricSet):
         "time_to_90": "s",
     }
 
-    execute: float = param(0.0, low=0.0, high=1e6, unit="s", words="when the helm was put over")
+    execute: float = param(
+        0.0, low=0.0, high=1e6, unit="s", words="time at which the helm is put over"
+    )
     course: float = param(
         -1.0,
         low=-1.0,
         high=1e6,
         unit="s",
-        words="when the ship was on the approach course; below 0: at execute",
+        words="time that defines the approach course; below 0: execute",
     )
-    length: float = param(1.0, low=0.001, high=1e3, unit="m", words="of the ship")
+    length: float = param(1.0, low=0.001, high=1e3, unit="m", words="length of the ship")
 
     def why(self, metric: str, log: Recording) -> str:
-        """How far it turned."""
-        asked = 90 if metric in ("advance", "transfer", "time_to_90") else 180
+        """Return the largest heading change, in words."""
+        needed = 90 if metric in ("advance", "transfer", "time_to_90") else 180
         line = self.execute if self.course < 0.0 else self.course
         turned = np.degrees(np.abs(log["psi_rad"] - value_at(log, line, "psi_rad")).max())
-        return f"never turned {asked} deg: at most {turned:.3g}"
+        return f"never turned {needed} deg: at most {turned:.3g}"
 
     def values(self, log: Recording) -> dict[str, float]:
-        """What the turn reached."""
+        """Return the metrics that the turn reached."""
         rows_between(log)
         line = self.execute if self.course < 0.0 else self.course
         psi0 = value_at(log, line, "psi_rad")
@@ -63,15 +68,15 @@ class TurningCircle(MetricSet):
         found = {}
         if turned.max() >= pi / 2:
             found = {
-                "advance": _when(pi / 2, turned, ahead) / self.length,
-                "transfer": side * _when(pi / 2, turned, aside) / self.length,
-                "time_to_90": _when(pi / 2, turned, log.t) - self.execute,
+                "advance": _value_at(pi / 2, turned, ahead) / self.length,
+                "transfer": side * _value_at(pi / 2, turned, aside) / self.length,
+                "time_to_90": _value_at(pi / 2, turned, log.t) - self.execute,
             }
         if turned.max() >= pi:
             u, v, r = (float(log[n][-1]) for n in ("u_mps", "v_mps", "r_radps"))
             speed = float(np.hypot(u, v))
             found |= {
-                "tactical_diameter": side * _when(pi, turned, aside) / self.length,
+                "tactical_diameter": side * _value_at(pi, turned, aside) / self.length,
                 "steady_radius": speed / abs(r) / self.length,
                 "steady_speed": speed,
                 "steady_rate": abs(float(np.degrees(r))),
@@ -80,8 +85,8 @@ class TurningCircle(MetricSet):
         return found
 
 
-def _when(angle: float, turned: np.ndarray, values: np.ndarray) -> float:
-    """Value at which the ship had turned by an angle for the first time, between the rows."""
+def _value_at(angle: float, turned: np.ndarray, values: np.ndarray) -> float:
+    """Value of a signal when the heading change first reaches an angle, interpolated."""
     i = int(np.argmax(turned >= angle))
     share = (angle - turned[i - 1]) / (turned[i] - turned[i - 1])
     return float(values[i - 1] + share * (values[i] - values[i - 1]))

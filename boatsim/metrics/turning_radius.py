@@ -1,4 +1,4 @@
-"""Radius of a turn while the thrust is on: from speed and yaw rate, and from the width of the track."""
+"""Radius of a turn under thrust, from speed and yaw rate and from the width of the track."""
 
 from dataclasses import dataclass
 from typing import ClassVar
@@ -11,7 +11,7 @@ from boatsim.simulate.metric import MetricSet
 
 @dataclass(frozen=True)
 class TurningRadius(MetricSet):
-    """For a boat that turns as tightly as it can."""
+    """Evaluates a turn while a signal is not zero."""
 
     words: ClassVar[str] = "radius of the tightest turn"
     units: ClassVar = {"radius": "m", "half_width": "m", "time": "s"}
@@ -19,11 +19,11 @@ class TurningRadius(MetricSet):
     while_on: str = "thrust_N"  # signal that is not zero during the turn
 
     def why(self, metric: str, log: Recording) -> str:
-        """It is looked at while something is on."""
-        return f"{self.while_on} is zero, or the boat does not turn, throughout"
+        """Return why there is no turn, in words."""
+        return f"{self.while_on} is always zero, or the boat does not turn"
 
     def values(self, log: Recording) -> dict[str, float]:
-        """Median of speed over yaw rate, half the extent of the track in y, and how long the turn took."""
+        """Return median of speed over yaw rate, half the extent of the track in y, and time."""
         on = (log[self.while_on] != 0.0) & (log["r_radps"] != 0.0)
         if not on.any():
             return {}

@@ -1,4 +1,4 @@
-"""Yaw: how true to its circle a mark stays while a boat turns once round on the spot, from camera frames."""
+"""Yaw manoeuvre: deviation of a mark from its circle in a turn on the spot, by camera."""
 
 from dataclasses import dataclass
 from math import pi
@@ -15,10 +15,10 @@ from boatsim.simulate.camera_metric import CameraFrames, CameraMetricSet, first_
 
 @dataclass(frozen=True)
 class Yaw(CameraMetricSet):
-    """From the start to the first frame after a full turn either way."""
+    """Evaluates the start to the first frame after a full turn to either side."""
 
     words: ClassVar[str] = (
-        "how far a mark strays from its circle in a full turn on the spot, from camera frames"
+        "deviation of a mark from its circle in a full turn on the spot, from camera frames"
     )
     units: ClassVar = {
         "position_inf": "m",
@@ -31,22 +31,33 @@ class Yaw(CameraMetricSet):
 
     mark: str = "bow"  # of the vessel or of [camera]
     radius: float = param(
-        1.0, low=0.0, high=1e4, unit="m", words="circle that the mark is to stay on"
+        1.0, low=0.0, high=1e4, unit="m", words="radius of the ideal circle of the mark"
     )
 
     def check(self, camera: Camera) -> None:
-        """And its mark is one that the camera follows."""
+        """Check the camera and that it follows the mark.
+
+        Args:
+            camera: The camera.
+
+        Raises:
+            BadInput: The camera does not follow the mark.
+        """
         super().check(camera)
         if self.mark not in camera.marks:
             raise BadInput(unknown_name("yaw: mark", self.mark, camera.marks))
 
     def why(self, metric: str, log: Recording) -> str:
-        """How far it turned."""
+        """Return the largest heading change, in words."""
         turned = np.degrees(np.abs(log["psi_rad"] - log["psi_rad"][0]).max())
         return f"never turned 360 deg: at most {turned:.3g}"
 
     def from_frames(self, frames: CameraFrames) -> dict[str, float]:
-        """Distances of the mark as the camera has them, the rest as it was."""
+        """Return deviations of the mark from the camera, other metrics from the simulation.
+
+        Args:
+            frames: Frames of the camera with the true motion.
+        """
         if not len(frames.t):
             return {}
         frame = first_frame(np.abs(frames.psi - frames.psi[0]) >= 2.0 * pi)
@@ -63,7 +74,12 @@ class Yaw(CameraMetricSet):
         }
 
     def from_noise(self, frames: int, camera: Camera) -> dict[str, Array]:
-        """A mark that goes once round its circle."""
+        """Return the metrics of an ideal turn with camera noise.
+
+        Args:
+            frames: Number of frames.
+            camera: The camera.
+        """
         angle, at = np.linspace(0.0, 2.0 * pi, frames), 2 * list(camera.marks).index(self.mark)
         shaken = camera.mark_sd * mark_noise(frames, camera)[..., at : at + 2]
         return self.distances(
@@ -71,10 +87,14 @@ class Yaw(CameraMetricSet):
         )
 
     def distances(self, mark: Array, turn: float) -> dict[str, Array]:
-        """Norms of the distance e of a mark (..., n, 2) [m] to one on the ideal circle.
+        """Return the metrics of the distance e of a mark to one on the ideal circle.
 
-        The circle has the first place of the mark straight ahead of its middle; the ideal mark goes once round it at a
-        constant rate in the sense of `turn`, +1 or -1.
+        The first position of the mark lies straight ahead of the centre of the circle. The ideal
+        mark moves once around it at a constant rate.
+
+        Args:
+            mark: Positions (..., n, 2) of the mark [m].
+            turn: Direction, +1 or -1.
         """
         angle = turn * np.linspace(0.0, 2.0 * pi, mark.shape[-2])
         ideal = self.radius * np.stack([np.cos(angle) - 1.0, np.sin(angle)], axis=-1)

@@ -1,4 +1,4 @@
-"""Zig-zag: overshoots, when they come, and the track to the first reversal of the helm (ITTC 7.5-04-02-01)."""
+"""Zig-zag test: overshoot angles, their times, and the first reversal (ITTC 7.5-04-02-01)."""
 
 from dataclasses import dataclass
 from typing import ClassVar
@@ -14,7 +14,7 @@ COUNT = ("first", "second", "third")
 
 @dataclass(frozen=True)
 class Zigzag(MetricSet):
-    """An overshoot is the largest heading after a reversal, less the heading at which the helm is reversed."""
+    """Evaluates overshoots: the largest heading after a reversal minus the reversal heading."""
 
     words: ClassVar[str] = "overshoots of a zig-zag and the track to the first reversal"
     units: ClassVar = {
@@ -25,29 +25,29 @@ class Zigzag(MetricSet):
     }
 
     execute: float = param(
-        0.0, low=0.0, high=1e6, unit="s", words="when the helm was first put over"
+        0.0, low=0.0, high=1e6, unit="s", words="time at which the helm is first put over"
     )
     heading: float = param(
-        0.175, low=0.001, high=3.0, unit="rad", words="heading change at which it is reversed"
+        0.175, low=0.001, high=3.0, unit="rad", words="heading change at which the helm is reversed"
     )
-    length: float = param(1.0, low=0.001, high=1e3, unit="m", words="of the ship")
+    length: float = param(1.0, low=0.001, high=1e3, unit="m", words="length of the ship")
 
     def why(self, metric: str, log: Recording) -> str:
-        """How often the helm was reversed, or how far she turned."""
+        """Return the number of reversals and the largest heading change, in words."""
         count = int((np.diff(np.sign(log["reference_helm_rad"])) != 0.0).sum()) - 1
         turned = np.degrees(np.abs(log["psi_rad"] - log["psi_rad"][0]).max())
-        return f"{max(count, 0)} reversals of the helm; the heading changed by at most {turned:.3g} deg"
+        reversals = f"{max(count, 0)} reversals of the helm"
+        return f"{reversals}; the heading changed by at most {turned:.3g} deg"
 
     def values(self, log: Recording) -> dict[str, float]:
-        """Of as many reversals as there were."""
+        """Return the overshoot of each completed reversal, and the time and track to the first."""
         rows_between(log)
         helm, psi = log["reference_helm_rad"], log["psi_rad"] - log["psi_rad"][0]
         reversals = 1 + np.flatnonzero(np.sign(helm[1:]) * np.sign(helm[:-1]) < 0.0)
         if not len(reversals):
             return {}
-        last = slice(
-            reversals[0] - 1, reversals[0] + 1
-        )  # rows between which the heading was reached
+        # rows between which the reversal heading was reached
+        last = slice(reversals[0] - 1, reversals[0] + 1)
         reached = float(np.interp(self.heading, np.sign(helm[last][0]) * psi[last], log.t[last]))
         travelled = np.interp([self.execute, reached], log.t, path_length(log))
         found = {

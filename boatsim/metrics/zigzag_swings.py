@@ -1,4 +1,4 @@
-"""Swings of a zig-zag with large headings: when the helm is reversed, and how far the craft turns, drifts and rolls."""
+"""Zig-zag with large heading changes: times of helm reversals, and extremes of the motion."""
 
 from dataclasses import dataclass
 from math import degrees
@@ -15,7 +15,7 @@ REVERSALS = 4
 
 @dataclass(frozen=True)
 class ZigzagSwings(MetricSet):
-    """The helm is the command channel `signal`; a craft that does not roll has no roll."""
+    """Evaluates the reversals of command channel `signal`; roll needs a craft that rolls."""
 
     words: ClassVar[str] = (
         "times of helm reversals and largest heading, yaw rate, roll, sway and speed of a zig-zag"
@@ -31,17 +31,17 @@ class ZigzagSwings(MetricSet):
     }
 
     signal: str = "jet_rad"
-    since: float = param(0.0, low=0.0, high=1e6, unit="s", words="beginning of what is looked at")
+    since: float = param(0.0, low=0.0, high=1e6, unit="s", words="start of the evaluated interval")
 
     def why(self, metric: str, log: Recording) -> str:
-        """How often the helm was reversed."""
+        """Return the number of reversals, in words."""
         if metric in ("roll", "heading", "yaw_rate"):
             return "this craft has no such motion"
         count = int((np.diff(np.sign(log[self.signal][rows_between(log, self.since)])) != 0).sum())
         return f"{count} reversals of {self.signal}"
 
     def values(self, log: Recording) -> dict[str, float]:
-        """Reversals the run gets as far as; the period is the mean of two half swings that follow the first."""
+        """Return times of the reversals, the mean period after the first one, and extremes."""
         rows = rows_between(log, self.since)
         t, helm = log.t[rows], log[self.signal][rows]
         at = t[1:][np.diff(np.sign(helm)) != 0] - self.since
@@ -49,11 +49,9 @@ class ZigzagSwings(MetricSet):
         if len(at) > 2:
             found["period"] = float(at[-1] - at[0]) / (len(at) - 1) * 2.0
         angles = {"heading": "psi_rad", "yaw_rate": "r_radps", "roll": "phi_rad"}
-        found |= {
-            n: degrees(float(np.abs(log[s][rows]).max()))
-            for n, s in angles.items()
-            if s in log.signals
-        }
+        for name, signal in angles.items():
+            if signal in log.signals:
+                found[name] = degrees(float(np.abs(log[signal][rows]).max()))
         u = log["u_mps"][rows]
         return found | {
             "sway": float(np.abs(log["v_mps"][rows]).max()),

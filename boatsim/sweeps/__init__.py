@@ -1,1 +1,1 @@
-"""Many runs of scenarios: grids and draws, in processes or on a cluster, one table of all of them."""
+"""Campaigns of runs: parameter grids and random samples, parallel or on a cluster, in one table."""

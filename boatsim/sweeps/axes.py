@@ -1,56 +1,90 @@
-"""What is varied from one grid point to the next: `KEY=0:0.5:11`, `KEY=0.01:1:5:log`, `KEY=light,heavy`."""
+"""Axes of a grid: `KEY=0:0.5:11`, `KEY=0.01:1:5:log` or `KEY=light,heavy`."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from math import isfinite
 
 import numpy as np
 
 from boatsim.errors import BadInput
-from boatsim.sweeps.keys import Target, Value, target
+from boatsim.sweeps.keys import Target, Value, parse_target
 
-MOST = 100_000  # values of one axis
+MOST_VALUES = 100_000  # of one axis; more is a mistake in the number
+SIGNIFICANT_DIGITS = 12  # of a value, so that 0.1 is not written as 0.10000000000000001
 
 
 @dataclass(frozen=True)
 class Axis:
-    """One direction of the grid."""
+    """One axis of the grid.
+
+    Attributes:
+        target: Key or keys that it changes.
+        values: Values along the axis.
+    """
 
     target: Target
     values: tuple[Value, ...]
 
     @property
-    def ranged(self) -> bool:
-        """Whether its values are numbers, which have an order and a distance."""
-        return all(
-            isinstance(value, int | float) and not isinstance(value, bool) for value in self.values
-        )
+    def is_numeric(self) -> bool:
+        """Whether all values are numbers."""
+        return all(map(is_number, self.values))
 
 
-def axis(text: str) -> Axis:
-    """The axis of an option. Raises BadInput."""
+def is_number(value: object) -> bool:
+    """Return whether a value is a number and not a truth value.
+
+    Args:
+        value: Any value.
+    """
+    return isinstance(value, int | float) and not isinstance(value, bool)
+
+
+def parse_axis(text: str) -> Axis:
+    """Return the axis of a command-line option.
+
+    Args:
+        text: `KEY=VALUES`.
+
+    Raises:
+        BadInput: The text is not an axis.
+    """
     key, sign, values = text.partition("=")
     if not sign or not key.strip() or not values.strip():
         raise BadInput(
-            f"--vary {text}: allowed is KEY=LOW:HIGH:COUNT, KEY=LOW:HIGH:COUNT:log or KEY=VALUE,VALUE,..."
+            f"--vary {text}: allowed is KEY=LOW:HIGH:COUNT, KEY=LOW:HIGH:COUNT:log or "
+            "KEY=VALUE,VALUE,..."
         )
-    return axis_of(key.strip(), values.strip())
+    return make_axis(key.strip(), values.strip())
 
 
-def axis_of(key: str, values: str | Sequence[Value]) -> Axis:
-    """The same of a key and its values, in an option's words or as they are. Raises BadInput."""
+def make_axis(key: str, values: str | Sequence[Value]) -> Axis:
+    """Return the axis of a key.
+
+    Args:
+        key: Key or keys, as `parse_target` takes them.
+        values: Values, or their text in a command-line option.
+
+    Raises:
+        BadInput: The values are wrong or repeat.
+    """
     if isinstance(values, str):
-        values = (
-            _range(key, values) if ":" in values else [value_of(part) for part in values.split(",")]
-        )
+        values = _parse_range(key, values) if ":" in values else parse_values(values)
     if not values or len(set(values)) < len(values):
-        raise BadInput(
-            f"--vary {key}: {len(values)} values, of which one is there twice; each makes its own runs"
-        )
-    return Axis(target(key), tuple(values))
+        raise BadInput(f"--vary {key}: {len(values)} values, of which two are equal")
+    return Axis(parse_target(key), tuple(values))
 
 
-def value_of(text: str) -> Value:
-    """A value as it is written: true, false, a number, else a text."""
+def parse_values(text: str) -> list[Value]:
+    """Return values separated by commas.
+
+    Args:
+        text: Values; each is true, false, a number, or else a text.
+    """
+    return list(map(_parse_value, text.split(",")))
+
+
+def _parse_value(text: str) -> Value:
     text = text.strip()
     if text in ("true", "false"):
         return text == "true"
@@ -62,28 +96,27 @@ def value_of(text: str) -> Value:
     return text
 
 
-def _range(key: str, text: str) -> list[Value]:
-    """LOW:HIGH:COUNT, both ends among the values."""
-    parts = [value_of(part) for part in text.split(":")]
+def _parse_range(key: str, text: str) -> list[Value]:
+    """Values of LOW:HIGH:COUNT or LOW:HIGH:COUNT:log, both ends included."""
+    parts = [_parse_value(part) for part in text.split(":")]
     log = len(parts) == 4 and parts[3] == "log"
-    numbers = parts[:3]
-    if len(parts) != 3 + log or not all(
-        isinstance(p, int | float) and np.isfinite(p) for p in numbers
-    ):
+    numbers = [part for part in parts[:3] if isinstance(part, int | float) and isfinite(part)]
+    if len(numbers) != 3 or len(parts) != 3 + log:
         raise BadInput(
-            f"--vary {key}={text}: allowed is LOW:HIGH:COUNT, such as 0:0.5:11, or LOW:HIGH:COUNT:log"
+            f"--vary {key}={text}: allowed is LOW:HIGH:COUNT, such as 0:0.5:11, or "
+            "LOW:HIGH:COUNT:log"
         )
-    low, high, count = (float(p) for p in numbers)
-    if count != int(count) or not 2 <= count <= MOST:
-        raise BadInput(f"--vary {key}={text}: COUNT = {count:g}; allowed are 2 to {MOST}")
+    low, high, count = map(float, numbers)
+    if count != int(count) or not 2 <= count <= MOST_VALUES:
+        raise BadInput(f"--vary {key}={text}: COUNT = {count:g}; allowed are 2 to {MOST_VALUES}")
     if low == high or (log and min(low, high) <= 0.0):
-        raise BadInput(
-            f"--vary {key}={text}: allowed are two different ends{', both above 0' if log else ''}"
-        )
-    found = np.geomspace(low, high, int(count)) if log else np.linspace(low, high, int(count))
-    whole = (
-        not log
-        and all(isinstance(p, int) for p in numbers)
-        and bool(np.all(found == np.round(found)))
-    )
-    return [int(x) if whole else float(f"{x:.12g}") for x in found]
+        both = ", both above 0" if log else ""
+        raise BadInput(f"--vary {key}={text}: allowed are two different ends{both}")
+    if log:
+        values = np.geomspace(low, high, int(count))
+    else:
+        values = np.linspace(low, high, int(count))
+        integers = all(isinstance(number, int) for number in numbers)
+        if integers and np.all(values == np.round(values)):
+            return list(map(int, values))
+    return [float(f"{value:.{SIGNIFICANT_DIGITS}g}") for value in values]

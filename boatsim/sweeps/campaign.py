@@ -1,4 +1,4 @@
-"""Many tasks in a folder: what is done stays done, what is left is handed out, what fails is told and ends nothing."""
+"""Campaign: many tasks in one folder; finished tasks are kept, and failures stop nothing."""
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
@@ -16,52 +16,83 @@ KILLED = "its process was killed (out of memory?)"
 
 @dataclass(frozen=True)
 class Outcome:
-    """What became of a campaign."""
+    """Result of a campaign.
 
-    entries: Mapping[int, Entry]  # by the number of the task, in that order
-    whole: bool  # False: it was interrupted
+    Attributes:
+        entries: Result of each finished task, by the number of the task in ascending order.
+        complete: Whether all tasks are finished.
+    """
+
+    entries: Mapping[int, Entry]
+    complete: bool
 
     @property
     def failed(self) -> int:
-        """How many tasks failed."""
+        """Number of tasks that failed."""
         return sum(entry["failure"] is not None for entry in self.entries.values())
 
 
-def carry_out(
-    folder: Path,
-    about: Mapping[str, Any],
-    count: int,
-    tasks: Iterable[Task],
-    work: Work,
-    backend: Backend,
-    what: str,
-    report: Report = silent,
-) -> Outcome:
-    """Carry out those of `count` tasks that are not done yet; no other campaign than `about` goes on with them.
+@dataclass(frozen=True)
+class Campaign:
+    """Tasks of one folder.
 
-    `what` is the word for several of them. An interruption keeps what is done. Raises BadInput and OSError.
+    Attributes:
+        folder: Folder with the journal of finished tasks.
+        about: Definition of the campaign; another one cannot continue in the folder.
+        count: Number of tasks.
+        tasks: Number and argument of each task.
+        work: Function that performs a task.
+        label: Word for several tasks, in progress messages.
     """
-    with Journal(folder, about) as journal, deferred_signals() as stop:
-        before, begun = len(journal.done), monotonic()
+
+    folder: Path
+    about: Mapping[str, Any]
+    count: int
+    tasks: Iterable[Task]
+    work: Work
+    label: str
+
+
+def run_campaign(campaign: Campaign, backend: Backend, report: Report = silent) -> Outcome:
+    """Perform the tasks of a campaign that are not finished yet.
+
+    After an interruption the results of all finished tasks are kept.
+
+    Args:
+        campaign: The campaign.
+        backend: Performs the tasks.
+        report: Function to call with the progress.
+
+    Raises:
+        BadInput: The folder belongs to another campaign, or is in use.
+        OSError: The journal cannot be written.
+    """
+    count = campaign.count
+    with Journal(campaign.folder, campaign.about) as journal, deferred_signals() as stop:
+        before = len(journal.done)
+        start = monotonic()
         failed = sum(entry["failure"] is not None for entry in journal.done.values())
-        left = (task for task in tasks if task[0] not in journal.done)
-        for number, entry in backend(work, left, stop) if before < count else ():
-            entry = entry if entry is not None else {"failure": KILLED}
+        pending = (task for task in campaign.tasks if task[0] not in journal.done)
+        results = backend(campaign.work, pending, stop) if before < count else ()
+        for number, result in results:
+            entry = {"failure": KILLED} if result is None else result
             journal.add(number, entry)
             failed += entry["failure"] is not None
-            done = len(journal.done) - before
-            rate = done / max(monotonic() - begun, 1e-9)
-            report(
-                what, done / (count - before), _told(len(journal.done), count, what, rate, failed)
-            )
+            done = len(journal.done)
+            rate = (done - before) / max(monotonic() - start, 1e-9)
+            detail = f"{done} of {count} {campaign.label}, {_format_rate(rate)}"
+            if failed:
+                detail = f"{detail}, {failed} failed"
+            report(campaign.label, (done - before) / (count - before), detail)
             if stop():
                 break
         stop.finishing = True
-        entries = {number: journal.done[number] for number in sorted(journal.done)}
+        entries = dict(sorted(journal.done.items()))
     return Outcome(entries, len(entries) == count)
 
 
-def _told(done: int, count: int, what: str, rate: float, failed: int) -> str:
-    """How far it has come, in words."""
-    often = f"{rate:.3g} a second" if rate >= 1.0 else f"{60.0 * rate:.3g} a minute"
-    return f"{done} of {count} {what}, {often}{f', {failed} failed' if failed else ''}"
+def _format_rate(rate: float) -> str:
+    """Tasks per unit of time; `rate` is in 1/s."""
+    if rate >= 1.0:
+        return f"{rate:.3g} a second"
+    return f"{60.0 * rate:.3g} a minute"

@@ -1,7 +1,8 @@
-"""Which draws are made: at random, as a Latin hypercube, or as Saltelli's design for sensitivity indices.
+"""Sampling designs: random, Latin hypercube, and Saltelli's design for sensitivity indices.
 
-A design is (N, D) shares between 0 and 1, a row for each run of a grid point, a column for each quantity. Random and
-Latin columns depend on the seed and on their own name alone, so that a further quantity leaves the others as they were.
+A design is an array (N, D) of probabilities between 0 and 1, a row for each run of a grid point and
+a column for each sampled quantity. Random and Latin columns depend only on the seed and on the name
+of their quantity, so that a further quantity leaves the other columns unchanged.
 """
 
 from collections.abc import Sequence
@@ -13,34 +14,44 @@ import numpy as np
 from boatsim.errors import BadInput
 from boatsim.physics.signals import Array
 
-Kind = Literal["random", "latin", "sobol"]
+Design = Literal["random", "latin", "sobol"]
 
 
-def shares(kind: Kind, names: Sequence[str], runs: int, seed: int) -> Array:
-    """(N, D), N = runs, or runs (D + 2) of Saltelli's design. Raises BadInput."""
-    if kind == "sobol":
+def design_matrix(design: Design, names: Sequence[str], runs: int, seed: int) -> Array:
+    """Return the probabilities (N, D) at which quantities are sampled.
+
+    Args:
+        design: Sampling design.
+        names: Names of the D quantities.
+        runs: Number of samples; of Saltelli's design rows of one block.
+        seed: Random seed.
+
+    Returns:
+        Array (N, D); N is `runs`, or `runs` (D + 2) of Saltelli's design.
+
+    Raises:
+        BadInput: Saltelli's design does not allow these numbers of runs or quantities.
+    """
+    if design == "sobol":
         return _saltelli(len(names), runs, seed)
-    columns = [
-        _column(kind, np.random.default_rng([seed, crc32(name.encode())]), runs) for name in names
-    ]
+    columns = [_column(design, name, runs, seed) for name in names]
     return np.column_stack(columns) if columns else np.empty((runs, 0))
 
 
-def _column(kind: Kind, rng: np.random.Generator, runs: int) -> Array:
-    if kind == "random":
+def _column(design: Design, name: str, runs: int, seed: int) -> Array:
+    rng = np.random.default_rng([seed, crc32(name.encode())])
+    if design == "random":
         return rng.random(runs)
     from scipy.stats import qmc
 
-    found: Array = qmc.LatinHypercube(1, rng=rng).random(runs)[:, 0]
-    return found
+    column: Array = qmc.LatinHypercube(1, rng=rng).random(runs)[:, 0]
+    return column
 
 
 def _saltelli(count: int, runs: int, seed: int) -> Array:
-    """Rows of A, then of B, then for each quantity those of A with its column from B (Saltelli et al. 2010)."""
+    """Rows of A, of B, and for each quantity of A with its column from B (Saltelli et al. 2010)."""
     if count < 2:
-        raise BadInput(
-            f"--sobol tells apart drawn quantities; it needs two --draw or more, not {count}"
-        )
+        raise BadInput(f"--sobol needs two sampled quantities (--draw) or more, not {count}")
     if runs < 2 or runs & (runs - 1):
         below = 1 << max(runs.bit_length() - 1, 1)
         raise BadInput(
@@ -54,11 +65,17 @@ def _saltelli(count: int, runs: int, seed: int) -> Array:
     return np.concatenate([first, second, *mixed])
 
 
-def seed_of(kind: Kind, seed: int, number: int) -> int:
-    """Seed of a run's noise: the same at every grid point, another for each draw.
+def noise_seed(design: Design, seed: int, number: int) -> int:
+    """Return the seed of the noise of a run: the same at every grid point.
 
-    Saltelli's design compares runs that differ in one quantity: there all have the same noise.
+    It differs between samples, except in Saltelli's design, which compares runs that differ in one
+    quantity only.
+
+    Args:
+        design: Sampling design.
+        seed: Random seed of the sweep.
+        number: Number of the sample.
     """
-    return int(
-        np.random.SeedSequence([seed, 0 if kind == "sobol" else number]).generate_state(1)[0]
-    )
+    if design == "sobol":
+        number = 0
+    return int(np.random.SeedSequence([seed, number]).generate_state(1)[0])

@@ -1,9 +1,10 @@
-"""Many recordings, each diagnosed by itself: a folder of answers for each, and one table of all."""
+"""Separate diagnoses of many recordings: a folder of results for each, and one table of all."""
 
 import os
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from hashlib import sha256
+from itertools import chain
 from json import dumps
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -14,156 +15,211 @@ from boatsim.diagnosis.report import output_files
 from boatsim.errors import BadInput, BoatsimError
 from boatsim.progress import Report, silent
 from boatsim.sweeps import table
-from boatsim.sweeps.campaign import Outcome, carry_out
+from boatsim.sweeps.campaign import Campaign, Outcome, run_campaign
 from boatsim.sweeps.journal import Entry
-from boatsim.sweeps.runs import reason
+from boatsim.sweeps.runs import failure_of
 from boatsim.sweeps.workers.base import Backend
 from boatsim.version import version
 
 NAME = "diagnoses.parquet"
-FILES = ("*.csv", "*.parquet", "*.rrd")
-OF_A_RUN = "camera.csv"  # what a diagnosis may see of a run of ours
-WHAT = "diagnoses"
+PATTERNS = ("*.csv", "*.parquet", "*.rrd")  # files that may be recordings
+OF_A_RUN = "camera.csv"  # the file of a boatsim run that holds only what a sensor can see
+LABEL = "diagnoses"
 FAMILIES = ("position_rms_m", "heading_rms_rad", "roll_rms_rad")
 
 
 @dataclass(frozen=True)
-class Asked:
-    """What each recording is asked, as `boatsim diagnose` has it."""
+class DiagnosisOptions:
+    """Options of `boatsim diagnose`.
+
+    Attributes:
+        hold_out: Recordings used only for validation.
+        vessel: Nominal vessel; None for the one that recording.toml names.
+        load: Load conditions.
+        library: Further candidate effects.
+        without: Candidate effects that are not tested.
+        horizon: Length of each free run [s]; None for the default of the vessel.
+        settings: Changed settings of the method, by dotted name.
+    """
 
     hold_out: tuple[str, ...] = ()
     vessel: str | None = None
     load: tuple[str, ...] = ()
     library: tuple[str, ...] = ()
     without: tuple[str, ...] = ()
-    horizon: float | None = None  # [s]
-    settings: tuple[tuple[str, str], ...] = ()  # changed, by dotted name
+    horizon: float | None = None
+    settings: tuple[tuple[str, str], ...] = ()
 
 
-class Told(NamedTuple):
-    """One diagnosis: plain values, so that it can be sent to a process or a node."""
+class DiagnosisTask(NamedTuple):
+    """One diagnosis; it holds plain values, so that it can be sent to a process or a node."""
 
     recording: str
-    asked: Asked
-    folder: str  # of its files
+    options: DiagnosisOptions
+    folder: str  # for its output files
 
 
-def recordings(given: Sequence[Path]) -> list[Path]:
-    """Files as they are, folders as the recordings in them: camera.csv of our own runs, else all of a known kind.
+def find_recordings(inputs: Sequence[Path]) -> list[Path]:
+    """Return files as they are, and of folders the recordings in them.
 
-    Raises BadInput.
+    Args:
+        inputs: Files, and folders with boatsim runs (camera.csv) or other recordings.
+
+    Raises:
+        BadInput: A folder holds no recording, a file is missing or given twice.
     """
-    found: list[Path] = []
-    for path in given:
-        inside = sorted(path.rglob(OF_A_RUN)) or sorted(
-            p for like in FILES for p in path.glob(like)
-        )
-        if path.is_dir() and not inside:
-            raise BadInput(f"{path}: there is no recording in this folder ({', '.join(FILES)})")
-        found += inside if path.is_dir() else [path]
-    if twice := next((path for path in found if found.count(path) > 1), None):
-        raise BadInput(f"{twice} is given twice")
-    if missing := next((path for path in found if not path.is_file()), None):
-        raise BadInput(f"{missing}: there is no such file")
-    return found
+    paths: list[Path] = []
+    for path in inputs:
+        if path.is_dir():
+            inside = sorted(path.rglob(OF_A_RUN))
+            if not inside:
+                inside = sorted(chain.from_iterable(map(path.glob, PATTERNS)))
+            if not inside:
+                raise BadInput(f"{path}: no recording in this folder ({', '.join(PATTERNS)})")
+            paths += inside
+        else:
+            paths.append(path)
+    for path in paths:
+        if paths.count(path) > 1:
+            raise BadInput(f"{path} is given twice")
+    for path in paths:
+        if not path.is_file():
+            raise BadInput(f"{path}: there is no such file")
+    return paths
 
 
-def diagnosed(
-    paths: Sequence[Path], asked: Asked, folder: Path, backend: Backend, report: Report = silent
+def diagnose_all(
+    paths: Sequence[Path],
+    options: DiagnosisOptions,
+    folder: Path,
+    backend: Backend,
+    report: Report = silent,
 ) -> Outcome:
-    """Diagnose each of the recordings, or go on with it; writes diagnoses.parquet into the folder.
+    """Start or continue the diagnoses of recordings; write diagnoses.parquet.
 
-    Raises BadInput and OSError.
+    Args:
+        paths: Recordings.
+        options: Options of each diagnosis.
+        folder: Output folder.
+        backend: Performs the diagnoses.
+        report: Function to call with the progress.
+
+    Raises:
+        BadInput: The folder belongs to another campaign.
+        OSError: A file cannot be written.
     """
-    names = folders_of(paths)
     about = {
         "boatsim": version(),
         "recordings": {str(p): sha256(p.read_bytes()).hexdigest()[:12] for p in paths},
-        "asked": asdict(asked),
+        "asked": asdict(options),
     }
-
-    def tasks() -> Iterator[tuple[int, Told]]:
-        for number, (path, name) in enumerate(zip(paths, names, strict=True)):
-            yield number, Told(str(path), asked, str(folder / name))
-
-    report(WHAT, 0.0, "beginning")
-    done = carry_out(folder, about, len(paths), tasks(), carried_out, backend, WHAT, report)
-    columns = columns_of(done, [str(path) for path in paths])
-    units = {
-        name: unit
-        for entry in done.entries.values()
-        for name, (_, unit) in entry.get("values", {}).items()
-    }
+    tasks = []
+    for path, name in zip(paths, output_folders(paths), strict=True):
+        tasks.append(DiagnosisTask(str(path), options, str(folder / name)))
+    report(LABEL, 0.0, "starting")
+    campaign = Campaign(folder, about, len(paths), enumerate(tasks), diagnose_task, LABEL)
+    done = run_campaign(campaign, backend, report)
+    units: dict[str, str] = {}
+    for entry in done.entries.values():
+        for name, (_, unit) in entry.get("values", {}).items():
+            units[name] = unit
+    columns = table_columns(done, list(map(str, paths)))
     table.write(columns, units, dumps(about, ensure_ascii=False), folder / NAME)
     return done
 
 
-def folders_of(paths: Sequence[Path]) -> list[str]:
-    """A folder for each recording's files, called as the recording is, from where all of them lie."""
+def output_folders(paths: Sequence[Path]) -> list[str]:
+    """Return a folder for the files of each diagnosis, named after the recording.
+
+    Args:
+        paths: Recordings; the folders repeat their structure below their common folder.
+    """
     real = [path.resolve() for path in paths]
-    home = os.path.commonpath([path.parent for path in real])
-    names = [Path(os.path.relpath(p, home)) for p in real]
-    short = [
-        str(n.parent if n.name == OF_A_RUN and len(n.parts) > 1 else n.with_suffix(""))
-        for n in names
-    ]
-    return [s if short.count(s) == 1 else str(n) for s, n in zip(short, names, strict=True)]
+    root = os.path.commonpath([path.parent for path in real])
+    full = [Path(os.path.relpath(path, root)) for path in real]
+    short = list(map(_without_suffix, full))
+    names = []
+    for name, path in zip(short, full, strict=True):
+        names.append(name if short.count(name) == 1 else str(path))
+    return names
 
 
-def carried_out(told: Told) -> Entry:
-    """Verdict, causes with their values, errors on unseen data; or why it failed."""
-    asked = told.asked
+def _without_suffix(path: Path) -> str:
+    """The folder of a boatsim run, or a file without its ending."""
+    if path.name == OF_A_RUN and len(path.parts) > 1:
+        return str(path.parent)
+    return str(path.with_suffix(""))
+
+
+def diagnose_task(task: DiagnosisTask) -> Entry:
+    """Diagnose one recording and write its files.
+
+    Args:
+        task: Recording, options and output folder.
+
+    Returns:
+        Verdict, identified effects with their values, and rms errors on held-out data; or only the
+        reason of a failure.
+    """
+    options = task.options
     try:
         found = pipeline.diagnose(
-            [Path(told.recording)],
-            [Path(path) for path in asked.hold_out],
-            asked.vessel,
-            asked.load,
-            asked.library,
-            asked.without,
-            asked.horizon,
-            config=from_settings(dict(asked.settings)),
+            [Path(task.recording)],
+            list(map(Path, options.hold_out)),
+            options.vessel,
+            options.load,
+            options.library,
+            options.without,
+            options.horizon,
+            config=from_settings(dict(options.settings)),
         )
-        output_files.write(found, Path(told.folder))
+        output_files.write(found, Path(task.folder))
     except BoatsimError as error:
-        return {"failure": reason(str(error))}
+        return failure_of(str(error))
     except Exception as error:
-        return {"failure": reason(f"{type(error).__name__}: {error}")}
+        return failure_of(f"{type(error).__name__}: {error}")
     answer = found.findings.answer
     values: dict[str, list[Any]] = {}
     for effect in answer["effects"]:
-        for name, p in effect["parameters"].items():
-            values[f"{effect['name']}.{name}"] = [p["value"], p["unit"]]
-            values[f"{effect['name']}.{name} sd"] = [p["sd"], p["unit"]]
-    fit: Mapping[str, Any] = answer["fit"]
-    rms = {
-        f"{family}.{model}": value
-        for family in FAMILIES
-        for model, value in (fit.get(family) or {}).items()
-    }
-    causes = [effect["name"] for effect in answer["effects"]]
+        for name, parameter in effect["parameters"].items():
+            key = f"{effect['name']}.{name}"
+            values[key] = [parameter["value"], parameter["unit"]]
+            values[f"{key} sd"] = [parameter["sd"], parameter["unit"]]
+    rms = {}
+    fit: dict[str, Any] = dict(answer["fit"])
+    for family in FAMILIES:
+        for model, value in (fit.get(family) or {}).items():
+            rms[f"{family}.{model}"] = value
     return {
         "failure": None,
         "verdict": answer["verdict"],
-        "causes": causes,
+        "causes": [effect["name"] for effect in answer["effects"]],
         "values": values,
         "rms": rms,
     }
 
 
-def columns_of(done: Outcome, paths: Sequence[str]) -> dict[str, list[Any]]:
-    """All of the table, a row for each recording that is done."""
+def table_columns(done: Outcome, paths: Sequence[str]) -> dict[str, list[Any]]:
+    """Return all columns of the table, a row for each finished recording.
+
+    Args:
+        done: Result of the campaign.
+        paths: Recordings by the number of their task.
+    """
     entries = list(done.entries.values())
-    values = dict.fromkeys(name for entry in entries for name in entry.get("values", {}))
-    errors = dict.fromkeys(name for entry in entries for name in entry.get("rms", {}))
-    return {
+    columns: dict[str, list[Any]] = {
         "recording": [paths[number] for number in done.entries],
         "verdict": [entry.get("verdict") for entry in entries],
         "causes": [", ".join(entry["causes"]) if "causes" in entry else None for entry in entries],
-        **{
-            name: [entry.get("values", {}).get(name, (None,))[0] for entry in entries]
-            for name in values
-        },
-        **{name: [entry.get("rms", {}).get(name) for entry in entries] for name in errors},
-        "failure": [entry["failure"] for entry in entries],
     }
+    parameters: dict[str, None] = {}
+    errors: dict[str, None] = {}
+    for entry in entries:
+        parameters |= dict.fromkeys(entry.get("values", ()))
+        errors |= dict.fromkeys(entry.get("rms", ()))
+    for name in parameters:
+        columns[name] = [entry.get("values", {}).get(name, (None,))[0] for entry in entries]
+    for name in errors:
+        columns[name] = [entry.get("rms", {}).get(name) for entry in entries]
+    columns["failure"] = [entry["failure"] for entry in entries]
+    return columns

@@ -1,4 +1,4 @@
-"""Carries out a plan: runs that are not done yet, the table of all, the report."""
+"""Executes the plan of a sweep: performs unfinished runs and writes the table and the report."""
 
 import os
 from collections.abc import Sequence
@@ -7,54 +7,65 @@ from pathlib import Path
 from boatsim.errors import BadInput, unknown_name
 from boatsim.progress import Report, silent
 from boatsim.sweeps import page
-from boatsim.sweeps.campaign import carry_out
+from boatsim.sweeps.campaign import Campaign, run_campaign
 from boatsim.sweeps.plan import Plan
 from boatsim.sweeps.results import Results
-from boatsim.sweeps.runs import carried_out
+from boatsim.sweeps.runs import perform_run
 from boatsim.sweeps.workers.base import Backend
-from boatsim.sweeps.workers.in_process import here
+from boatsim.sweeps.workers.in_process import run_here
 from boatsim.sweeps.workers.processes import Processes
 from boatsim.sweeps.workers.ray_cluster import Cluster
 
-RUNS = "runs"
+LABEL = "runs"
 
 
-def swept(
+def run_plan(
     plan: Plan,
     folder: Path,
     jobs: int | None = None,
     ray: str | None = None,
-    norms: Sequence[str] = (),
+    metrics: Sequence[str] = (),
     report: Report = silent,
 ) -> tuple[Results, bool]:
-    """The runs of a plan, and whether all are done; writes sweep.parquet and report.html into the folder.
+    """Perform the runs of a plan; write sweep.parquet and report.html.
 
-    `jobs` is how many run at the same time, None: one for each processor; `norms` are those told and drawn. Raises
-    BadInput and OSError.
+    Args:
+        plan: The plan.
+        folder: Output folder.
+        jobs: Parallel processes; None for one per processor.
+        ray: Address of a Ray cluster; None for this machine.
+        metrics: Metrics to show in the report; empty for all.
+        report: Function to call with the progress.
+
+    Returns:
+        Results of the finished runs, and whether all runs are finished.
+
+    Raises:
+        BadInput: A metric is unknown, a run cannot start, or the folder belongs to another sweep.
+        OSError: A file cannot be written.
     """
-    report(RUNS, 0.0, "beginning")
-    there = plan.rehearse()
-    if unknown := next((name for name in norms if name not in there), None):
-        raise BadInput(unknown_name("norm", unknown, there))
-    done = carry_out(
-        folder,
-        plan.about(),
-        plan.count,
-        plan.tasks(),
-        carried_out,
-        backend(jobs, ray),
-        RUNS,
-        report,
-    )
-    found = Results(plan, done.entries, tuple(norms))
-    found.write(folder)
-    page.write(found, folder)
-    return found, done.whole
+    report(LABEL, 0.0, "starting")
+    known = plan.rehearse()
+    for name in metrics:
+        if name not in known:
+            raise BadInput(unknown_name("metric", name, known))
+    campaign = Campaign(folder, plan.about(), plan.count, plan.tasks(), perform_run, LABEL)
+    done = run_campaign(campaign, choose_backend(jobs, ray), report)
+    results = Results(plan, done.entries, tuple(metrics))
+    results.write(folder)
+    page.write(results, folder)
+    return results, done.complete
 
 
-def backend(jobs: int | None, ray: str | None) -> Backend:
-    """Who carries out: a cluster where one is named, processes of this machine, or this one alone."""
+def choose_backend(jobs: int | None, ray: str | None) -> Backend:
+    """Return what performs the tasks: a cluster, processes, or this process.
+
+    Args:
+        jobs: Parallel processes; None for one per processor.
+        ray: Address of a Ray cluster; None for this machine.
+    """
     if ray:
         return Cluster(ray)
-    jobs = len(os.sched_getaffinity(0)) if jobs is None else jobs
-    return here if jobs == 1 else Processes(jobs)
+    if jobs is None:
+        jobs = len(os.sched_getaffinity(0))
+    return run_here if jobs == 1 else Processes(jobs)

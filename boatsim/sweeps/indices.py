@@ -1,7 +1,10 @@
-"""Which drawn quantity makes a norm spread: Sobol indices from Saltelli's design, with a bootstrap spread.
+"""Sobol sensitivity indices of metrics, from Saltelli's design, with bootstrap intervals.
 
-First order (Saltelli et al. 2010): the share of a norm's variance that goes with one quantity alone; total (Jansen
-1999): the share that would be left if all the others were known.
+The first-order index (Saltelli et al. 2010) is the share of a metric's variance that one quantity
+explains alone. The total index (Jansen 1999) is the share that would remain if all other quantities
+were known. The estimators are those of `scipy.stats.sobol_indices`, which however accepts only a
+power of two of rows and so cannot be used where rows with a missing metric are left out, nor on the
+bootstrap samples with the random numbers that published intervals are based on.
 """
 
 from typing import NamedTuple
@@ -12,19 +15,32 @@ from boatsim.physics.signals import Array
 from boatsim.sweeps.keys import Value
 from boatsim.sweeps.results import Results
 
-RESAMPLES = 400
-LOW, HIGH = 0.025, 0.975  # of the bootstrap
+RESAMPLES = 400  # of the bootstrap; the ends of a 95 % interval then vary by a few per cent
+LOW, HIGH = 0.025, 0.975  # quantiles of the bootstrap that bound the 95 % interval
 
 
 class Index(NamedTuple):
-    """One quantity's part in the variance of one norm at one grid point."""
+    """Sensitivity of one metric to one quantity at one grid point.
+
+    Attributes:
+        point: Values of the grid point.
+        norm: Name of the metric.
+        quantity: Key of the sampled quantity.
+        rows: Rows of the design in which all runs have the metric.
+        first: First-order index.
+        first_low: Lower end of its 95 % interval.
+        first_high: Upper end of its 95 % interval.
+        total: Total index.
+        total_low: Lower end of its 95 % interval.
+        total_high: Upper end of its 95 % interval.
+    """
 
     point: tuple[Value, ...]
     norm: str
     quantity: str
-    rows: int  # of the design, of those in which all runs have the norm
+    rows: int
     first: float
-    first_low: float  # 95 % interval
+    first_low: float
     first_high: float
     total: float
     total_low: float
@@ -32,44 +48,61 @@ class Index(NamedTuple):
 
 
 def sobol(blocks: Array) -> tuple[Array, Array]:
-    """First-order and total indices (D,) of values (D + 2, N) in the order of the design: A, B, then A with B's column.
+    """Return first-order and total indices (D,) each; nan where the values do not vary.
 
-    nan where the values do not vary.
+    Args:
+        blocks: Values (D + 2, N) of a metric in the order of the design: A, B, then for each
+            quantity A with its column from B.
     """
     a, b, mixed = blocks[0], blocks[1], blocks[2:]
     with np.errstate(invalid="ignore", divide="ignore"):
-        middle, variance = blocks[:2].mean(), blocks[:2].var()
-        first = ((b - middle) * (mixed - a)).mean(axis=1) / variance
+        mean = blocks[:2].mean()
+        variance = blocks[:2].var()
+        first = ((b - mean) * (mixed - a)).mean(axis=1) / variance
         total = 0.5 * ((a - mixed) ** 2).mean(axis=1) / variance
     return first, total
 
 
 def bootstrap(blocks: Array, seed: int) -> tuple[Array, Array]:
-    """(2, D) each: 95 % intervals of first-order and of total indices, rows of the design drawn anew."""
-    rng, rows = np.random.default_rng(seed), blocks.shape[1]
-    drawn = [sobol(blocks[:, rng.integers(0, rows, rows)]) for _ in range(RESAMPLES)]
-    first, total = (
-        np.quantile(np.array(part), (LOW, HIGH), axis=0) for part in zip(*drawn, strict=True)
-    )
+    """Return 95 % intervals (2, D) of the first-order and of the total indices.
+
+    Args:
+        blocks: Values (D + 2, N), as of `sobol`; rows of the design are resampled.
+        seed: Random seed.
+    """
+    rng = np.random.default_rng(seed)
+    rows = blocks.shape[1]
+    samples = [sobol(blocks[:, rng.integers(0, rows, rows)]) for _ in range(RESAMPLES)]
+    first, total = np.quantile(np.array(samples), (LOW, HIGH), axis=0).transpose(1, 0, 2)
     return first, total
 
 
 def indices(results: Results) -> list[Index]:
-    """Of every norm at every grid point, as far as its runs are done; nothing of another design than Saltelli's."""
+    """Return the indices of every metric at every grid point.
+
+    Args:
+        results: Results of a sweep.
+
+    Returns:
+        The indices; none if the sweep is not complete or not of Saltelli's design.
+    """
     plan = results.plan
-    if plan.kind != "sobol" or len(results.numbers) < plan.count:
+    if plan.design != "sobol" or len(results.numbers) < plan.count:
         return []
-    names, found = [draw.target.name for draw in plan.draws], list[Index]()
+    names = [sampled.target.name for sampled in plan.sampled]
+    found: list[Index] = []
     for number in range(len(plan.points)):
         point = plan.point(number)
-        for norm in results.told:
-            blocks = results.norm[norm][results.point == number].reshape(len(names) + 2, plan.runs)
-            whole = blocks[:, np.isfinite(blocks).all(axis=0)]
-            if whole.shape[1] < 2 or np.ptp(whole) == 0.0:
+        rows = results.point == number
+        for metric in results.selected:
+            blocks = results.metrics[metric][rows].reshape(len(names) + 2, plan.runs)
+            blocks = blocks[:, np.isfinite(blocks).all(axis=0)]
+            count = blocks.shape[1]
+            if count < 2 or np.ptp(blocks) == 0.0:
                 continue
-            first, total = sobol(whole)
-            of_first, of_total = bootstrap(whole, plan.seed)
-            for k, name in enumerate(names):
-                ends = first[k], *of_first[:, k], total[k], *of_total[:, k]
-                found.append(Index(point, norm, name, whole.shape[1], *map(float, ends)))
+            first, total = sobol(blocks)
+            first_ends, total_ends = bootstrap(blocks, plan.seed)
+            table = np.stack([first, *first_ends, total, *total_ends], axis=1)
+            for name, row in zip(names, table.tolist(), strict=True):
+                found.append(Index(point, metric, name, count, *row))
     return found

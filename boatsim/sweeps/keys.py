@@ -1,13 +1,14 @@
-"""What a dotted key means in a scenario: `fan_wind.speed`, `load`, `controller.use`, `start.x`, `goal.2.u_mps`.
+"""Dotted keys of a scenario: `fan_wind.speed`, `load`, `controller.use`, `start.x`, `goal.2.u_mps`.
 
-A key is looked up among the scenario's own tables, then its [[effect]]s, then the effects of its vessel, by name or all
-of one idea, then the library, whose effect is added with its defaults.
+A key is looked up first among the tables of the scenario, then among its [[effect]]s, then among
+the effects of its vessel (by name, or all of one kind), and last in the library, whose effect is
+then added with its defaults.
 """
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from math import isfinite
-from typing import Literal, NamedTuple, TypeAlias, get_args
+from typing import Literal, NamedTuple, TypeAlias
 
 from boatsim.errors import BadInput, unknown_name
 from boatsim.files import tables
@@ -18,222 +19,286 @@ from boatsim.simulate.cases import Place
 from boatsim.simulate.scenario import Scenario, ScenarioFile, from_table
 
 Value: TypeAlias = "bool | int | float | str"
-Said: TypeAlias = Mapping[str, object]  # all that a scenario says
-Steps: TypeAlias = "tuple[str | int, ...]"  # from the top of a scenario to one of its values
-How = Literal["", "+", "*"]  # in place of what is stated, on top of it, times it
+ScenarioTable: TypeAlias = Mapping[str, object]  # all keys of a scenario with their values
+KeyPath: TypeAlias = "tuple[str | int, ...]"  # keys and indices that lead to a value of a scenario
+Operation = Literal["", "+", "*"]  # replace the specified value, add to it, or multiply it
 
 OF_VESSEL = ("body", "geometry")  # tables of a vessel's file, which [set.body] changes
-NONE = "none"  # the value of a table that is left out
+NONE = "none"  # value that removes a table
 NOT_VARIED = ("about", "norms", "noise_widens_guards", "check")
 
 
 class Slot(NamedTuple):
-    """One value of a scenario, and what is stated there."""
+    """One value of a scenario.
 
-    steps: Steps
-    stated: float = 0.0  # where a change adds to it or multiplies it
+    Attributes:
+        path: Keys and indices that lead to it.
+        specified: Number that the scenario specifies, to which a change is added or applied.
+    """
+
+    path: KeyPath
+    specified: float = 0.0
 
 
 @dataclass(frozen=True)
 class Target:
-    """What one axis or one draw changes: one key, or several that take the same number."""
+    """What an axis or a sampled quantity changes.
+
+    Attributes:
+        keys: One key, or several that get the same value.
+        operation: How the value is applied.
+    """
 
     keys: tuple[str, ...]
-    how: How = ""
+    operation: Operation = ""
 
     @property
     def name(self) -> str:
-        """The column it has in the table."""
-        return f"{','.join(self.keys)}{self.how}"
+        """Name of its column in the table."""
+        return f"{','.join(self.keys)}{self.operation}"
 
 
-def target(text: str) -> Target:
-    """`fan_wind.speed`, `port.x,starboard.x+` (added to what is stated) or `body.mass*` (times it). Raises BadInput."""
-    how: How = next((sign for sign in get_args(How) if sign and text.endswith(sign)), "")
-    keys = tuple(key.strip() for key in text.removesuffix(how).split(","))
-    if wrong := next((key for key in keys if not all(key.split("."))), None):
-        raise BadInput(
-            f"key {wrong!r}; allowed are names with dots between them, such as fan_wind.speed"
-        )
-    if "" in keys:
-        raise BadInput(f"key {text!r} is empty; say what is changed, such as fan_wind.speed")
-    return Target(keys, how)
+def parse_target(text: str) -> Target:
+    """Return the target of a text.
 
+    Args:
+        text: `fan_wind.speed`, `port.x,starboard.x+` (value is added) or `body.mass*` (multiplied).
 
-def slots(said: Said, place: Place, wanted: Target) -> tuple[Said, list[Slot]]:
-    """The scenario with the effects that the keys add, and where the values stand. Raises BadInput."""
-    found: list[Slot] = []
-    for key in wanted.keys:
-        said, many = _found(said, place, key)
-        here = from_table(said, place) if wanted.how else None
-        found += [Slot(steps, _stated(here, steps, key) if here else 0.0) for steps in many]
-    return said, found
-
-
-def laid(said: Said, place: Place, at: Sequence[Slot], how: How, value: Value) -> Said:
-    """The scenario with a value at its places. Raises BadInput."""
-    for steps, stated in at:
-        if how and (isinstance(value, bool) or not isinstance(value, int | float)):
+    Raises:
+        BadInput: The text holds no key.
+    """
+    operation: Operation = ""
+    if text.endswith("+"):
+        operation = "+"
+    elif text.endswith("*"):
+        operation = "*"
+    keys = tuple(map(str.strip, text.removesuffix(operation).split(",")))
+    for key in keys:
+        if not all(key.split(".")):
             raise BadInput(
-                f"{value!r} is no number that can be {'added' if how == '+' else 'multiplied'}"
+                f"key {key!r}; allowed are names separated by dots, such as fan_wind.speed"
             )
-        new = (
-            stated + float(value) if how == "+" else stated * float(value) if how == "*" else value
-        )
-        if steps == ("load",):
-            said = {**said, "load": _loads(said, place, str(value))}
-        elif steps == ("controller", "use"):
-            said = {**said, "controller": _controller(said, str(value))}
-        elif value == NONE and len(steps) == 1:
-            said = {key: rest for key, rest in said.items() if key != steps[0]}
+    return Target(keys, operation)
+
+
+def find_slots(
+    table: ScenarioTable, place: Place, target: Target
+) -> tuple[ScenarioTable, list[Slot]]:
+    """Return the values of a scenario that a target changes.
+
+    Args:
+        table: The scenario.
+        place: Where it is stored.
+        target: What is changed.
+
+    Returns:
+        The scenario with the effects that the target adds, and the values.
+
+    Raises:
+        BadInput: A key does not exist, or no number is specified to which a value can be added.
+    """
+    slots: list[Slot] = []
+    for key in target.keys:
+        table, paths = _find_key(table, place, key)
+        if target.operation:
+            scenario = from_table(table, place)
+            slots += [Slot(path, _specified(scenario, path, key)) for path in paths]
         else:
-            said = _with(said, steps, new)
-    return said
+            slots += map(Slot, paths)
+    return table, slots
 
 
-def _found(said: Said, place: Place, key: str) -> tuple[Said, list[Steps]]:
+def set_values(
+    table: ScenarioTable, place: Place, slots: Sequence[Slot], operation: Operation, value: Value
+) -> ScenarioTable:
+    """Return a scenario with other values.
+
+    Args:
+        table: The scenario.
+        place: Where it is stored.
+        slots: Values to change.
+        operation: How the value is applied.
+        value: The value.
+
+    Raises:
+        BadInput: The value cannot be applied.
+    """
+    for path, specified in slots:
+        new = _apply(operation, specified, value)
+        if path == ("load",):
+            table = {**table, "load": _loads(table, place, str(value))}
+        elif path == ("controller", "use"):
+            table = {**table, "controller": _controller(table, str(value))}
+        elif value == NONE and len(path) == 1:
+            table = {key: rest for key, rest in table.items() if key != path[0]}
+        else:
+            table = _with_value(table, path, new)
+    return table
+
+
+def _apply(operation: Operation, specified: float, value: Value) -> Value:
+    """Replace, increase or multiply the specified number."""
+    if not operation:
+        return value
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        raise BadInput(f"{value!r} is not a number and cannot be applied with {operation}")
+    if operation == "+":
+        return specified + float(value)
+    return specified * float(value)
+
+
+def _find_key(table: ScenarioTable, place: Place, key: str) -> tuple[ScenarioTable, list[KeyPath]]:
     head, *rest = key.split(".")
-    if head in ("controller", "load") and not rest:
-        return said, [("controller", "use") if head == "controller" else ("load",)]
+    if head == "controller" and not rest:
+        return table, [("controller", "use")]
+    if head == "load" and not rest:
+        return table, [("load",)]
     if head == "goal":
-        return said, [_goal(said, rest)]
+        return table, [_goal(table, rest)]
     if head == "sensor":
-        return said, [("sensor", _listed(said, "sensor", rest[:1], key), *rest[1:])]
+        return table, [("sensor", _sensor_index(table, rest[:1], key), *rest[1:])]
     if head == "effect":
-        return _effect(said, place, rest, key)
-    if head == "measure" and isinstance(said.get("measure"), str) and rest:
-        return {**said, "measure": {"use": said["measure"]}}, [(head, *rest)]
+        return _find_effect(table, place, rest, key)
+    if head == "measure" and isinstance(table.get("measure"), str) and rest:
+        return {**table, "measure": {"use": table["measure"]}}, [(head, *rest)]
     if head in ScenarioFile.model_fields and head not in NOT_VARIED:
-        return said, [(head, *rest)]
+        return table, [(head, *rest)]
     if head in OF_VESSEL:
-        return said, [("set", head, *rest)]
-    return _effect(said, place, [head, *rest], key)
+        return table, [("set", head, *rest)]
+    return _find_effect(table, place, [head, *rest], key)
 
 
-def _effect(said: Said, place: Place, rest: Sequence[str], key: str) -> tuple[Said, list[Steps]]:
-    """Values of the scenario's effects, of the vessel's, or of one that is added from the library."""
+def _find_effect(
+    table: ScenarioTable, place: Place, rest: Sequence[str], key: str
+) -> tuple[ScenarioTable, list[KeyPath]]:
+    """Values of effects of the scenario, of the vessel, or of one added from the library."""
     name = rest[0] if rest else ""
     if len(rest) == 1 and name in names("effect"):
         kind: type[Effect] = load_class("effect", name)
-        raise BadInput(f"{key} is an effect; say which of its values: {', '.join(kind.params())}")
-    extra = [str(table.get("name", table.get("use"))) for table in tables(said.get("effect"))]
-    if name in extra:
-        return said, [("effect", extra.index(name), *rest[1:])]
-    own = from_table(said, place).vessel.names_of(name)
+        raise BadInput(f"{key} is an effect; add one of its parameters: {', '.join(kind.params())}")
+    effects = tables(table.get("effect"))
+    scenario_effects = [str(effect.get("name", effect.get("use"))) for effect in effects]
+    if name in scenario_effects:
+        return table, [("effect", scenario_effects.index(name), *rest[1:])]
+    vessel = from_table(table, place).vessel
+    own = vessel.names_of(name)
     if own:
-        return said, [("set", one, *rest[1:]) for one in own]
-    if name in all_names("effect"):
-        return {**said, "effect": [*tables(said.get("effect")), {"use": name}]}, [
-            ("effect", len(extra), *rest[1:])
-        ]
-    mine = [e.name for e in from_table(said, place).vessel.effects]
-    keys = [k for k in ScenarioFile.model_fields if k not in NOT_VARIED]
-    raise BadInput(
-        unknown_name("key", name, {*keys, *OF_VESSEL, *extra, *mine, *all_names("effect")})
-    )
+        return table, [("set", one, *rest[1:]) for one in own]
+    library = all_names("effect")
+    if name in library:
+        added = {**table, "effect": [*effects, {"use": name}]}
+        return added, [("effect", len(scenario_effects), *rest[1:])]
+    allowed = set(ScenarioFile.model_fields).difference(NOT_VARIED)
+    allowed |= {*OF_VESSEL, *scenario_effects, *library}
+    allowed |= {effect.name for effect in vessel.effects}
+    raise BadInput(unknown_name("key", name, allowed))
 
 
-def _goal(said: Said, rest: Sequence[str]) -> Steps:
-    """`goal.u_mps` is the only [[goal]] that says it, `goal.2.u_mps` that of the second."""
-    goals = tables(said.get("goal"))
+def _goal(table: ScenarioTable, rest: Sequence[str]) -> KeyPath:
+    """Path of `goal.u_mps`, the only [[goal]] with that key, or of `goal.2.u_mps`, the second."""
+    goals = tables(table.get("goal"))
     if rest and rest[0].isdigit():
         number = int(rest[0])
         if not 1 <= number <= len(goals):
             raise BadInput(
-                f"goal.{number}: there is no such [[goal]]; there are {len(goals)}, counted from 1"
+                f"goal.{number}: there is no such [[goal]]; the scenario has {len(goals)}, "
+                "counted from 1"
             )
         return ("goal", number - 1, *rest[1:])
     key = rest[0] if rest else ""
-    saying = [i for i, goal in enumerate(goals) if key in goal]
-    if not key or not goals or len(saying) > 1 or (not saying and len(goals) > 1):
-        there = [
-            f"goal.{i + 1}.{k}"
-            for i, goal in enumerate(goals)
-            for k in goal
-            if k in (key or k, "from")
-        ]
-        raise BadInput(f"goal.{key}: say of which [[goal]]; there are {', '.join(there) or 'none'}")
-    return ("goal", saying[0] if saying else 0, *rest)
+    having = [index for index, goal in enumerate(goals) if key in goal]
+    if key and len(having) == 1:
+        return ("goal", having[0], *rest)
+    if key and len(goals) == 1:
+        return ("goal", 0, *rest)
+    choices = []
+    for number, goal in enumerate(goals, 1):
+        choices += [f"goal.{number}.{k}" for k in goal if k in (key or k, "from")]
+    raise BadInput(
+        f"goal.{key}: name one [[goal]]; the scenario has {', '.join(choices) or 'none'}"
+    )
 
 
-def _listed(said: Said, what: str, name: Sequence[str], key: str) -> int:
-    """Number of the [[sensor]] that is meant."""
-    there = [str(table.get("use")) for table in tables(said.get(what))]
-    if not name or name[0] not in there:
-        raise BadInput(unknown_name(f"{key}: {what}", name[0] if name else "", there))
-    return there.index(name[0])
+def _sensor_index(table: ScenarioTable, name: Sequence[str], key: str) -> int:
+    """Index of a [[sensor]]."""
+    sensors = [str(sensor.get("use")) for sensor in tables(table.get("sensor"))]
+    if not name or name[0] not in sensors:
+        raise BadInput(unknown_name(f"{key}: sensor", name[0] if name else "", sensors))
+    return sensors.index(name[0])
 
 
-def _stated(scenario: Scenario, steps: Steps, key: str) -> float:
-    """The number that stands there now, a default too. Raises BadInput where there is none."""
-    head, *rest = steps
-    found = _of_effect(scenario, steps) if head in ("set", "effect") else None
+def _specified(scenario: Scenario, path: KeyPath, key: str) -> float:
+    """The number specified for a value, or its default; raises BadInput if it is not a number."""
+    head, *rest = path
+    found: object
     if head == "controller":
         found = getattr(scenario.controller, str(rest[-1]), None)
-    elif head not in ("set", "effect"):
-        found = _within(scenario.file.model_dump(), steps)
+    elif head in ("set", "effect"):
+        found = _effect_value(scenario, path)
+    else:
+        found = _value_at(scenario.file.model_dump(), path)
     if isinstance(found, bool) or not isinstance(found, int | float) or not isfinite(found):
-        raise BadInput(
-            f"{key}: no number is stated there that could be changed; say what it is to be"
-        )
+        raise BadInput(f"{key}: no number is specified that could be changed; give a new value")
     return float(found)
 
 
-def _of_effect(scenario: Scenario, steps: Steps) -> object:
-    """A value of an effect, or of the vessel's body."""
-    vessel, owner, last = scenario.vessel, steps[1], str(steps[-1])
+def _effect_value(scenario: Scenario, path: KeyPath) -> object:
+    """A parameter of an effect, or of the vessel's body."""
+    vessel = scenario.vessel
+    owner = path[1]
+    name = str(path[-1])
     if isinstance(owner, int):
         table = scenario.file.effect[owner]
         effect = vessel.effect(str(table.get("name", table["use"])))
-        # one that has changed the vessel's numbers, and is not there any more, has its defaults
-        return (
-            getattr(effect, last, None)
-            if effect
-            else table.get(last, getattr(_kind(table), last, None))
-        )
-    here = getattr(vessel, owner) if owner in OF_VESSEL else vessel.effect(owner)
-    return here.get(last) if isinstance(here, dict) else getattr(here, last, None)
+        if effect:
+            return getattr(effect, name, None)
+        # An effect that has changed the vessel's parameters is not among its effects any more.
+        kind: type[Effect] = load_class("effect", str(table["use"]))
+        return table.get(name, getattr(kind, name, None))
+    part = getattr(vessel, owner) if owner in OF_VESSEL else vessel.effect(owner)
+    return part.get(name) if isinstance(part, dict) else getattr(part, name, None)
 
 
-def _kind(table: Mapping[str, object]) -> type[Effect]:
-    found: type[Effect] = load_class("effect", str(table["use"]))
-    return found
-
-
-def _within(table: object, steps: Steps) -> object:
-    """What stands at some steps into tables and lists."""
-    for step in steps:
-        known_as = table.get(step) if isinstance(table, dict) else None
-        table = table[step] if isinstance(table, list) and isinstance(step, int) else known_as
+def _value_at(table: object, path: KeyPath) -> object:
+    """The value at a path into tables and lists."""
+    for step in path:
+        if isinstance(table, list) and isinstance(step, int):
+            table = table[step]
+        else:
+            table = table.get(step) if isinstance(table, dict) else None
     return table
 
 
-def _loads(said: Said, place: Place, value: str) -> list[str]:
-    """Loads of the scenario with others, `heavy` or `heavy+wide`, in place of those that exclude them."""
-    stated = said.get("load", [])
-    before = [str(one) for one in stated] if isinstance(stated, list) else []
-    more = [one.strip() for one in value.split("+") if one.strip()]
-    return vessels.merged_loads(str(said.get("vessel")), before, more, place.path.parent)
+def _loads(table: ScenarioTable, place: Place, value: str) -> list[str]:
+    """Loads of the scenario; `heavy` or `heavy+wide` replace those that they exclude."""
+    specified = table.get("load", [])
+    before = list(map(str, specified)) if isinstance(specified, list) else []
+    more = list(filter(None, map(str.strip, value.split("+"))))
+    return vessels.merged_loads(str(table.get("vessel")), before, more, place.path.parent)
 
 
-def _controller(said: Said, value: str) -> Mapping[str, object]:
-    """Another controller, with its defaults; where it is the scenario's own, its settings stay."""
-    load_class("controller", value, named=True)
-    use = value if value in names("controller") else str(find("controller", value))
-    own = said.get("controller")
-    return own if isinstance(own, dict) and own.get("use") == use else {"use": use}
+def _controller(table: ScenarioTable, name: str) -> Mapping[str, object]:
+    """A controller with its defaults; the scenario's own controller keeps its settings."""
+    load_class("controller", name, named=True)
+    use = name if name in names("controller") else str(find("controller", name))
+    own = table.get("controller")
+    if isinstance(own, dict) and own.get("use") == use:
+        return own
+    return {"use": use}
 
 
-def _with(table: object, steps: Steps, value: object) -> dict[str, object]:
+def _with_value(table: object, path: KeyPath, value: object) -> dict[str, object]:
     """A copy of a table with one value changed."""
-    head, *rest = steps
-    mine = dict(table) if isinstance(table, Mapping) else {}
+    head, *rest = path
+    copy = dict(table) if isinstance(table, Mapping) else {}
+    inner = copy.get(str(head))
     if not rest:
-        return {**mine, str(head): value}
-    inner = mine.get(str(head))
-    if isinstance(rest[0], int):
+        copy[str(head)] = value
+    elif isinstance(rest[0], int):
         items = list(inner) if isinstance(inner, list) else []
-        at = rest[0]
-        items[at] = _with(items[at], tuple(rest[1:]), value) if rest[1:] else value
-        return {**mine, str(head): items}
-    return {**mine, str(head): _with(inner, tuple(rest), value)}
+        index = rest[0]
+        items[index] = _with_value(items[index], tuple(rest[1:]), value) if rest[1:] else value
+        copy[str(head)] = items
+    else:
+        copy[str(head)] = _with_value(inner, tuple(rest), value)
+    return copy

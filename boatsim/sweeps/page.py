@@ -1,4 +1,4 @@
-"""The report of a sweep: one page with its tables, and every norm against what varied."""
+"""report.html of a sweep: its tables, and plots of every metric against what varied."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -8,22 +8,32 @@ import numpy as np
 from boatsim.diagnosis.report.blocks import Figures, Heading, Items, Section, Table
 from boatsim.diagnosis.report.html_page import rendered
 from boatsim.files import replacing
-from boatsim.sweeps.plots import groups, legend_of, pictures
+from boatsim.sweeps.keys import Value
+from boatsim.sweeps.plots import groups, legend_of, plot_metric
 from boatsim.sweeps.results import Results
-from boatsim.sweeps.text_tables import once, tables
+from boatsim.sweeps.text_tables import blank_repeats, format_values, tables
 
 NAME = "report.html"
 TEMPLATE = Path(__file__).parent / "templates" / "sweep.html.j2"
+MOST_VALUES = 6  # of an axis that are listed; of more the first two and the last
 
 
 def write(results: Results, folder: Path) -> None:
-    """report.html (one page, nothing fetched). Raises OSError."""
-    made = [section for section in _sections(results) if section.blocks]
+    """Write report.html, one page that loads nothing from elsewhere.
+
+    Args:
+        results: Results of a sweep.
+        folder: Output folder.
+
+    Raises:
+        OSError: The file cannot be written.
+    """
+    sections = [*_table_sections(results), _failures(results), *_plot_sections(results)]
+    sections = [section for section in sections if section.blocks]
+    facts = _facts(results)
+    page = rendered(TEMPLATE, title=_title(results), facts=facts, sections=sections)
     with replacing(folder / NAME) as temporary:
-        temporary.write_text(
-            rendered(TEMPLATE, title=_title(results), facts=_facts(results), sections=made),
-            encoding="utf-8",
-        )
+        temporary.write_text(page, encoding="utf-8")
 
 
 def _title(results: Results) -> str:
@@ -33,46 +43,60 @@ def _title(results: Results) -> str:
 
 
 def _facts(results: Results) -> list[tuple[str, str]]:
+    """Label and text of the facts at the head of the page."""
     plan = results.plan
-    axes = [f"{axis.target.name}: {', '.join(_short(axis.values))}" for axis in plan.axes]
-    draws = [f"{draw.target.name}: {draw}" for draw in plan.draws]
-    found = [
-        ("Varied", "; ".join(axes)),
-        ("Drawn", "; ".join(draws)),
-        ("Draws", f"{plan.runs}, {plan.kind}"),
-    ]
-    done = "" if len(results.numbers) == plan.count else f" (of {plan.count}: interrupted)"
-    failed = f"{int(results.failed.sum())} of {len(results.numbers)} runs{done}"
-    return [
-        (name, words)
-        for name, words in (*found, ("Seed", str(plan.seed)), ("Failed", failed))
-        if words
-    ]
+    axes = [f"{axis.target.name}: {', '.join(_shorten(axis.values))}" for axis in plan.axes]
+    sampled = [f"{one.target.name}: {one}" for one in plan.sampled]
+    done = len(results.numbers)
+    failed = f"{int(results.failed.sum())} of {done} runs"
+    if done < plan.count:
+        failed += f" (of {plan.count}: interrupted)"
+    facts = {
+        "Varied": "; ".join(axes),
+        "Sampled": "; ".join(sampled),
+        "Samples": f"{plan.runs}, {plan.design}",
+        "Seed": str(plan.seed),
+        "Failed": failed,
+    }
+    return [(label, text) for label, text in facts.items() if text]
 
 
-def _short(values: Sequence[object]) -> list[str]:
-    said = [f"{v:.6g}" if isinstance(v, float) else str(v) for v in values]
-    return said if len(said) <= 6 else [said[0], said[1], "...", said[-1]]
+def _shorten(values: Sequence[Value]) -> list[str]:
+    texts = format_values(values)
+    if len(texts) <= MOST_VALUES:
+        return texts
+    return [texts[0], texts[1], "...", texts[-1]]
 
 
-def _sections(results: Results) -> list[Section]:
-    made = [
-        Section(t.key, t.title, [Table("", t.head, once(t), tuple(range(t.left)))])
-        for t in tables(results)
-    ]
-    failed = [(f"{count} runs", why) for why, count in results.reasons.items()]
-    made.append(Section("failed", "Why runs failed", [Items(tuple(failed))] if failed else []))
-    several = len(results.plan.scenarios) > 1
+def _table_sections(results: Results) -> list[Section]:
+    sections = []
+    for table in tables(results):
+        block = Table("", table.head, blank_repeats(table), tuple(range(table.left)))
+        sections.append(Section(table.key, table.title, [block]))
+    return sections
+
+
+def _failures(results: Results) -> Section:
+    """Reasons of failed runs; a section without blocks if no run failed."""
+    section = Section("failed", "Why runs failed", [])
+    reasons = [(f"{count} runs", reason) for reason, count in results.reasons.items()]
+    if reasons:
+        section.blocks.append(Items(tuple(reasons)))
+    return section
+
+
+def _plot_sections(results: Results) -> list[Section]:
+    """Plots of the metrics, a section for each scenario."""
+    scenarios = results.plan.scenarios
     names = np.array([results.plan.points[number].scenario for number in results.point])
-    for number, scenario in enumerate(results.plan.scenarios):
-        section = Section(
-            f"norms-{number + 1}", scenario if several else "Norms against what varied"
-        )
-        among = names == scenario
-        for norm in results.told:
-            if drawn := pictures(results, norm, among):
-                section.blocks.extend(
-                    [Heading(norm), Figures(legend_of(groups(results, among)), drawn)]
-                )
-        made.append(section)
-    return made
+    sections = []
+    for number, scenario in enumerate(scenarios, 1):
+        title = scenario if len(scenarios) > 1 else "Metrics against what varied"
+        section = Section(f"norms-{number}", title)
+        rows = names == scenario
+        legend = legend_of(groups(results, rows))
+        for metric in results.selected:
+            if plots := plot_metric(results, metric, rows):
+                section.blocks.extend([Heading(metric), Figures(legend, plots)])
+        sections.append(section)
+    return sections

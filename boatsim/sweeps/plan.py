@@ -1,11 +1,11 @@
-"""What a sweep is: scenarios, a grid, draws that are the same at every point of it, and the runs that follow."""
+"""Plan of a sweep: scenarios, a grid, samples shared by all grid points, and the runs."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property
 from hashlib import sha256
-from itertools import product
+from itertools import chain, compress, product
 from json import dumps
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -20,190 +20,250 @@ from boatsim.simulate.evaluation import metric_names
 from boatsim.simulate.run import run
 from boatsim.simulate.scenario import from_table
 from boatsim.sweeps.axes import Axis
-from boatsim.sweeps.designs import Kind, seed_of, shares
-from boatsim.sweeps.keys import Said, Slot, Target, Value, laid, slots
-from boatsim.sweeps.runs import Told
-from boatsim.sweeps.sampled_keys import Draw
+from boatsim.sweeps.designs import Design, design_matrix, noise_seed
+from boatsim.sweeps.keys import ScenarioTable, Slot, Target, Value, find_slots, set_values
+from boatsim.sweeps.runs import RunTask
+from boatsim.sweeps.sampled_keys import SampledKey
 from boatsim.version import version
 
-MOST = 10_000_000  # runs
-BEGINNING = 2  # steps of a run in which it shows whether it can begin
+MOST_RUNS = 10_000_000  # more is a mistake in a number
+REHEARSED_STEPS = 2  # steps of a run that show whether it can start
 
 
 class Point(NamedTuple):
-    """A point of the grid: one scenario with the values varied, and where the drawn ones stand in it."""
+    """A point of the grid.
+
+    Attributes:
+        scenario: Name of the scenario.
+        values: Values of the axes.
+        table: The scenario with these values.
+        place: Where the scenario is stored.
+        slots: Values of the scenario that each sampled quantity changes.
+    """
 
     scenario: str
-    varied: tuple[Value, ...]
-    said: Said
+    values: tuple[Value, ...]
+    table: ScenarioTable
     place: Place
-    drawn: tuple[list[Slot], ...]
+    slots: tuple[list[Slot], ...]
 
 
 @dataclass(frozen=True)
 class Plan:
-    """All that decides what a sweep computes."""
+    """All that decides what a sweep computes.
 
-    scenarios: tuple[str, ...]  # as `meant` gives them
+    Attributes:
+        scenarios: Addresses of the scenarios.
+        axes: Axes of the grid.
+        sampled: Sampled quantities.
+        runs: Samples at each grid point; of Saltelli's design rows of one of its blocks.
+        seed: Random seed.
+        design: Sampling design.
+    """
+
+    scenarios: tuple[str, ...]
     axes: tuple[Axis, ...]
-    draws: tuple[Draw, ...]
-    runs: int  # of each point; of Saltelli's design rows of one of its blocks
+    sampled: tuple[SampledKey, ...]
+    runs: int
     seed: int
-    kind: Kind = "random"
+    design: Design = "random"
 
     @cached_property
     def points(self) -> tuple[Point, ...]:
-        """Scenario by scenario, the last axis fastest. Raises BadInput for keys and values that can not be."""
-        grid = list(product(*(axis.values for axis in self.axes)))
-        return tuple(self._point(name, values) for name in self.scenarios for values in grid)
+        """Grid points by scenario, the last axis fastest; raises BadInput for wrong keys."""
+        grid = product(*(axis.values for axis in self.axes))
+        return tuple(self._point(name, values) for name, values in product(self.scenarios, grid))
 
     @cached_property
-    def shares(self) -> Array:
-        """(N, D) of the draws at every point."""
-        return shares(self.kind, [d.target.name for d in self.draws], self.runs, self.seed)
+    def probabilities(self) -> Array:
+        """Design matrix (N, D) of the samples at every point."""
+        names = [one.target.name for one in self.sampled]
+        return design_matrix(self.design, names, self.runs, self.seed)
 
     @cached_property
-    def drawn(self) -> list[tuple[Value, ...]]:
-        """The values of each of the N draws."""
-        columns = [d.at(self.shares[:, k]) for k, d in enumerate(self.draws)]
-        return list(zip(*columns, strict=True)) if columns else [() for _ in range(self.runs)]
+    def samples(self) -> list[tuple[Value, ...]]:
+        """Values of the sampled quantities in each of the N samples."""
+        if not self.sampled:
+            return [()] * self.runs
+        columns = [
+            one.quantiles(p) for one, p in zip(self.sampled, self.probabilities.T, strict=True)
+        ]
+        return list(zip(*columns, strict=True))
 
     @property
     def count(self) -> int:
-        """Runs of all points."""
-        return len(self.points) * len(self.drawn)
+        """Number of runs."""
+        return len(self.points) * len(self.samples)
 
     @property
     def targets(self) -> list[Target]:
-        """What is varied, then what is drawn."""
-        return [*(axis.target for axis in self.axes), *(draw.target for draw in self.draws)]
+        """Targets of the axes, then of the sampled quantities."""
+        axes = [axis.target for axis in self.axes]
+        return [*axes, *(one.target for one in self.sampled)]
 
     @property
     def columns(self) -> list[str]:
-        """What is varied and drawn, as its columns are called."""
-        several = ["scenario"] if len(self.scenarios) > 1 else []
-        return [*several, *(target.name for target in self.targets)]
+        """Names of the columns of varied and sampled values."""
+        return [*self._scenario_column, *(target.name for target in self.targets)]
 
     @cached_property
-    def differ(self) -> list[str]:
-        """Those columns of the grid in which its points differ."""
-        several = ["scenario"] if len(self.scenarios) > 1 else []
-        return [*several, *(axis.target.name for axis in self.axes if len(axis.values) > 1)]
+    def differing(self) -> list[str]:
+        """Names of the columns in which grid points differ."""
+        axes = [axis.target.name for axis in self.axes if len(axis.values) > 1]
+        return [*self._scenario_column, *axes]
+
+    @property
+    def _scenario_column(self) -> list[str]:
+        return ["scenario"] if len(self.scenarios) > 1 else []
 
     def point(self, number: int) -> tuple[Value, ...]:
-        """In what a point of the grid differs from the others, by its number."""
-        at = self.points[number]
-        varied = (v for v, axis in zip(at.varied, self.axes, strict=True) if len(axis.values) > 1)
-        return (*((at.scenario,) if len(self.scenarios) > 1 else ()), *varied)
+        """Return the values of a grid point in the columns `differing`.
+
+        Args:
+            number: Number of the grid point.
+        """
+        point = self.points[number]
+        several = [len(self.scenarios) > 1, *(len(axis.values) > 1 for axis in self.axes)]
+        return tuple(compress((point.scenario, *point.values), several))
 
     def values(self, number: int) -> tuple[Value, ...]:
-        """What was varied and drawn in a run."""
-        point = self.points[number // len(self.drawn)]
-        several = (point.scenario,) if len(self.scenarios) > 1 else ()
-        return (*several, *point.varied, *self.drawn[number % len(self.drawn)])
+        """Return the values of a run in `columns`.
+
+        Args:
+            number: Number of the run.
+        """
+        point = self.points[number // len(self.samples)]
+        sample = self.samples[number % len(self.samples)]
+        scenario = (point.scenario,) if len(self.scenarios) > 1 else ()
+        return (*scenario, *point.values, *sample)
 
     def seed_of(self, number: int) -> int | None:
-        """The seed of a run; None where the seed itself is varied or drawn."""
+        """Return the noise seed of a run; None where the seed itself is varied or sampled.
+
+        Args:
+            number: Number of the run.
+        """
         if any("seed" in target.keys for target in self.targets):
             return None
-        return seed_of(self.kind, self.seed, number % len(self.drawn))
+        return noise_seed(self.design, self.seed, number % len(self.samples))
 
-    def tasks(self) -> Iterator[tuple[int, Told]]:
-        """Every run: its number, and what it is told."""
+    def tasks(self) -> Iterator[tuple[int, RunTask]]:
+        """Yield the number and the task of every run."""
         for number in range(self.count):
-            point = self.points[number // len(self.drawn)]
-            said = self._with_draws(point, self.drawn[number % len(self.drawn)])
-            yield number, Told(said, point.place, self.seed_of(number))
+            point = self.points[number // len(self.samples)]
+            table = self._with_sample(point, self.samples[number % len(self.samples)])
+            yield number, RunTask(table, point.place, self.seed_of(number))
 
     def rehearse(self) -> set[str]:
-        """Begin a run at the corners of the grid, all drawn values in their middle: it tells mistakes, and compiles.
+        """Start a run at each corner of the grid, with all sampled quantities at their medians.
 
-        Returns the names of the norms that runs can have. Raises BadInput.
+        This finds mistakes in keys and values, and compiles the vessels, before the sweep begins.
+
+        Returns:
+            Names of the metrics that runs can have.
+
+        Raises:
+            BadInput: A key or a value is wrong.
         """
-        there = set[str]()
-        middle = [d.at(np.array([0.5]))[0] for d in self.draws]
-        ends = [
-            {axis.values[0], axis.values[-1]} if axis.ranged else set(axis.values)
-            for axis in self.axes
-        ]
+        metrics: set[str] = set()
+        medians = [one.quantiles(np.array([0.5]))[0] for one in self.sampled]
         for point in self.points:
-            if all(value in some for value, some in zip(point.varied, ends, strict=True)):
-                scenario = from_table(self._with_draws(point, middle), point.place)
-                short = scenario.file.model_copy(
-                    update={"duration": BEGINNING * scenario.file.step}
-                )
-                with suppress(BadPhysics):  # that run's failure, and told there
-                    run(replace(scenario, file=short))
-                there |= metric_names(scenario)
-        return there
+            if not all(map(_is_corner, self.axes, point.values)):
+                continue
+            scenario = from_table(self._with_sample(point, medians), point.place)
+            duration = REHEARSED_STEPS * scenario.file.step
+            short = scenario.file.model_copy(update={"duration": duration})
+            with suppress(BadPhysics):  # A failure of that run, which its entry reports.
+                run(replace(scenario, file=short))
+            metrics |= metric_names(scenario)
+        return metrics
 
     def about(self) -> dict[str, Any]:
-        """What the sweep is, for whoever goes on with it: plain words, and what the files said when it began."""
+        """Return the definition of the sweep with digests of its files, for the journal."""
         return {
             "boatsim": version(),
             "scenarios": list(self.scenarios),
             "vary": {axis.target.name: list(axis.values) for axis in self.axes},
-            "draw": {draw.target.name: str(draw) for draw in self.draws},
+            "draw": {one.target.name: str(one) for one in self.sampled},
             "runs": self.runs,
-            "design": self.kind,
+            "design": self.design,
             "seed": self.seed,
             "files": _digests(self.points),
         }
 
     def _point(self, name: str, values: tuple[Value, ...]) -> Point:
-        said, place = content(name)
-        told: Said = said
+        own, place = content(name)
+        table: ScenarioTable = own
         for axis, value in zip(self.axes, values, strict=True):
-            told, at = slots(told, place, axis.target)
-            told = laid(told, place, at, axis.target.how, value)
-        drawn = []
-        for draw in self.draws:
-            told, at = slots(told, place, draw.target)
-            drawn.append(at)
-        return Point(name, values, told, place, tuple(drawn))
+            table, slots = find_slots(table, place, axis.target)
+            table = set_values(table, place, slots, axis.target.operation, value)
+        sampled = []
+        for one in self.sampled:
+            table, slots = find_slots(table, place, one.target)
+            sampled.append(slots)
+        return Point(name, values, table, place, tuple(sampled))
 
-    def _with_draws(self, point: Point, values: Sequence[Value]) -> Said:
-        said = point.said
-        for draw, at, value in zip(self.draws, point.drawn, values, strict=True):
-            said = laid(said, point.place, at, draw.target.how, value)
-        return said
+    def _with_sample(self, point: Point, values: Sequence[Value]) -> ScenarioTable:
+        table = point.table
+        for one, slots, value in zip(self.sampled, point.slots, values, strict=True):
+            table = set_values(table, point.place, slots, one.target.operation, value)
+        return table
 
 
-def plan(
+def _is_corner(axis: Axis, value: Value) -> bool:
+    """Whether a value is an end of an axis of numbers; every other value is a corner."""
+    return not axis.is_numeric or value in (axis.values[0], axis.values[-1])
+
+
+def make_plan(
     scenarios: Sequence[str],
     axes: Sequence[Axis],
-    draws: Sequence[Draw],
+    sampled: Sequence[SampledKey],
     runs: int,
     seed: int,
-    kind: Kind = "random",
+    design: Design = "random",
 ) -> Plan:
-    """The plan of names as a user writes them. Raises BadInput."""
-    names = [one for given in scenarios for one in meant(given)]
-    made = Plan(tuple(names), tuple(axes), tuple(draws), runs, seed, kind)
-    said = [*names, *(key for target in made.targets for key in target.keys)]
-    if twice := next((key for key in said if said.count(key) > 1), None):
-        raise BadInput(f"{twice} is given twice")
-    if made.count > MOST:
-        raise BadInput(f"{made.count} runs are more than {MOST}")
-    return made
+    """Return the plan of a sweep.
+
+    Args:
+        scenarios: Scenarios as a user writes them.
+        axes: Axes of the grid.
+        sampled: Sampled quantities.
+        runs: Samples at each grid point.
+        seed: Random seed.
+        design: Sampling design.
+
+    Raises:
+        BadInput: A scenario is unknown, a key repeats, or there are too many runs.
+    """
+    names = tuple(chain.from_iterable(map(meant, scenarios)))
+    plan = Plan(names, tuple(axes), tuple(sampled), runs, seed, design)
+    unique = [*names, *chain.from_iterable(target.keys for target in plan.targets)]
+    for name in unique:
+        if unique.count(name) > 1:
+            raise BadInput(f"{name} is given twice")
+    if plan.count > MOST_RUNS:
+        raise BadInput(f"{plan.count} runs are more than {MOST_RUNS}")
+    return plan
 
 
 def _digests(points: Sequence[Point]) -> dict[str, str]:
-    """Of what the scenarios say, and of the files of their vessels and controllers: a few characters each."""
+    """Digests of the scenarios and of the files of their vessels and controllers."""
     found: dict[str, str] = {}
     for point in points:
         if point.scenario not in found:
-            found[point.scenario] = _digest(dumps(content(point.scenario)[0], default=str).encode())
+            table = dumps(content(point.scenario)[0], default=str)
+            found[point.scenario] = _digest(table.encode())
         for path in _files(point):
             found.setdefault("/".join(path.parts[-2:]), _digest(path.read_bytes()))
     return found
 
 
 def _files(point: Point) -> Iterator[Path]:
-    """Those of its vessel and its controller."""
-    said, folder = point.said, point.place.path.parent
-    yield find("vessel", str(said["vessel"]), folder)
-    controller = said["controller"]
+    """Files of its vessel and its controller."""
+    folder = point.place.path.parent
+    yield find("vessel", str(point.table["vessel"]), folder)
+    controller = point.table["controller"]
     if isinstance(controller, Mapping):
         yield find("controller", str(controller["use"]), folder)
 

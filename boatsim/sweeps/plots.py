@@ -1,8 +1,9 @@
-"""Norms against what varied: lines with a band over ranges, boxes over lists, points over draws."""
+"""Plots of metrics against what varied: lines with bands over numbers, boxes over lists, points."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from itertools import product
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -12,154 +13,185 @@ from boatsim.sweeps.axes import Axis
 from boatsim.sweeps.results import Results
 from boatsim.sweeps.summary import CONTROLLER
 
-LOOKS = ("one", "two", "three", "four")
-BELOW = (0.05, 0.25, 0.5, 0.75, 0.95)
-ENDS = {0: "p5", 4: "p95"}  # those of BELOW that are lines where there are several bands
-MOST = 6  # drawn quantities that a norm is shown against, those that go with it most
-LETTERS = 14  # of a name below an axis
+STYLES = ("one", "two", "three", "four")  # classes of the style sheet, one for each controller
+QUANTILES = (0.05, 0.25, 0.5, 0.75, 0.95)
+ENDS = {0: "p5", 4: "p95"}  # indices of QUANTILES that are lines where several bands would overlap
+MOST_SAMPLED = 6  # sampled quantities plotted against a metric: those with the highest correlation
+LONGEST_LABEL = 14  # characters of a label below an axis
+BOX_WIDTH = 0.7  # share of the distance between two values of a list
 
 
 @dataclass(frozen=True)
 class Group:
-    """Runs of one controller, or all of them."""
+    """Runs of one controller, or all runs.
+
+    Attributes:
+        name: Name of the controller; "" for all runs.
+        style: Class of the style sheet.
+        rows: Mask (R,) of the runs.
+    """
 
     name: str
-    look: str
-    rows: Array  # (R,) which
+    style: str
+    rows: Array
 
 
-def groups(results: Results, among: Array) -> list[Group]:
-    """Runs by controller where several were varied, at most as many as there are looks."""
+class _Metric(NamedTuple):
+    """A metric to plot."""
+
+    values: Array  # (R,)
+    groups: Sequence[Group]
+    limits: tuple[float, float]
+    title: str
+
+
+def groups(results: Results, rows: Array) -> list[Group]:
+    """Return the runs by controller if several were varied, at most as many as there are styles.
+
+    Args:
+        results: Results of a sweep.
+        rows: Mask (R,) of the runs to use.
+    """
     if CONTROLLER not in results.plan.columns:
-        return [Group("", LOOKS[0], among)]
-    used = np.array([str(value) for value in results.varied(CONTROLLER)])
-    names = list(dict.fromkeys(used.tolist()))[: len(LOOKS)]
-    return [Group(n, look, among & (used == n)) for n, look in zip(names, LOOKS, strict=False)]
+        return [Group("", STYLES[0], rows)]
+    used = np.array(list(map(str, results.varied(CONTROLLER))))
+    names = dict.fromkeys(used.tolist())
+    found = []
+    for name, style in zip(names, STYLES, strict=False):
+        found.append(Group(name, style, rows & (used == name)))
+    return found
 
 
 def legend_of(found: Sequence[Group]) -> str:
-    """Which look is which controller."""
-    return legend({group.look: group.name for group in found}) if len(found) > 1 else ""
+    """Return the legend of the controllers as SVG; "" for one group.
+
+    Args:
+        found: Groups of runs.
+    """
+    if len(found) < 2:
+        return ""
+    return legend({group.style: group.name for group in found})
 
 
-def pictures(results: Results, norm: str, among: Array) -> list[str]:
-    """One norm of some of the runs (R,), against every axis, and the draws that go with it most."""
-    values, unit = results.norm[norm], results.units[norm]
-    seen = among & np.isfinite(values)
-    if not seen.any():
+def plot_metric(results: Results, name: str, rows: Array) -> list[str]:
+    """Return the plots of a metric against every axis and the most correlated sampled quantities.
+
+    Args:
+        results: Results of a sweep.
+        name: Name of the metric.
+        rows: Mask (R,) of the runs to use.
+
+    Returns:
+        SVG texts.
+    """
+    values, unit = results.metrics[name], results.units[name]
+    finite = rows & np.isfinite(values)
+    if not finite.any():
         return []
-    y, title = limits([values[seen]], zero=False), f"{norm} [{unit}]" if unit else norm
-    there = groups(results, seen)
-    made = [
-        _of_axis(results, axis, values, there, y, title)
-        for axis in results.plan.axes
-        if _told(axis, there)
-    ]
-    return made + [
-        _of_draw(name, x, rank, values, there, y, title)
-        for name, x, rank in _draws(results, values, seen)
-    ]
+    title = f"{name} [{unit}]" if unit else name
+    y = limits([values[finite]], zero=False)
+    metric = _Metric(values, groups(results, finite), y, title)
+    plots = []
+    for axis in results.plan.axes:
+        # The styles distinguish the controllers; they need no axis where something else varies.
+        by_style = axis.target.name == CONTROLLER and len(metric.groups) < 2
+        if len(axis.values) > 1 and not by_style:
+            plots.append(_plot_axis(results, axis, metric))
+    for quantity, x, correlation in _correlated(results, values, finite):
+        plots.append(_plot_sampled(quantity, x, correlation, metric))
+    return plots
 
 
-def _told(axis: Axis, there: Sequence[Group]) -> bool:
-    """Whether an axis is worth a picture: controllers are told by their looks, unless nothing else is there."""
-    return len(axis.values) > 1 and (axis.target.name != CONTROLLER or len(there) > 1)
-
-
-def _of_axis(
-    results: Results,
-    axis: Axis,
-    values: Array,
-    there: Sequence[Group],
-    y: tuple[float, float],
-    title: str,
-) -> str:
+def _plot_axis(results: Results, axis: Axis, metric: _Metric) -> str:
     name = axis.target.name
-    taken = results.varied(name)
-    if not axis.ranged:
-        return figure([_boxes(axis, taken, values, there, y, title)], f"{title} by {name}")
+    varied = results.varied(name)
+    title = metric.title
+    if not axis.is_numeric:
+        return figure([_boxes(axis, varied, metric)], f"{title} by {name}")
+    x = np.array(sorted(map(float, axis.values)))
+    numbers = np.array(varied, dtype=float)
     lines: list[Line] = []
     band = None
-    for group in there:
-        x, spread = _along(axis, taken, values, group.rows)
-        ends = [
-            Line(f"{group.look} end", x, spread[k], f"{group.name} {ENDS[k]}")
-            for k in ENDS
-            if len(there) > 1
-        ]
-        lines += [Line(group.look, x, spread[2], group.name or "median"), *ends]
-        band = (x, spread[0], spread[4]) if len(there) == 1 else None
-    across = float(min(axis.values)), float(max(axis.values))
-    return figure(
-        [Panel(title, tuple(lines), across, y, name, band, shape=2.0)], f"{title} over {name}"
-    )
+    for group in metric.groups:
+        spread = _quantiles(x, numbers, metric.values, group.rows)
+        lines.append(Line(group.style, x, spread[2], group.name or "median"))
+        if len(metric.groups) == 1:
+            band = (x, spread[0], spread[4])
+            continue
+        for k, label in ENDS.items():
+            lines.append(Line(f"{group.style} end", x, spread[k], f"{group.name} {label}"))
+    ends = (float(x[0]), float(x[-1]))
+    panel = Panel(title, tuple(lines), ends, metric.limits, name, band, shape=2.0)
+    return figure([panel], f"{title} over {name}")
 
 
-def _along(axis: Axis, taken: Sequence[Any], values: Array, rows: Array) -> tuple[Array, Array]:
-    """Values of an axis, and (5, X) what 5, 25, 50, 75 and 95 % of the runs there lie below."""
-    numbers = np.array(taken, dtype=float)
-    x = np.array(sorted(float(v) for v in axis.values))
-    spread = [
-        np.quantile(v, BELOW) if len(v := values[rows & (numbers == at)]) else np.full(5, np.nan)
-        for at in x
-    ]
-    return x, np.array(spread).T
+def _quantiles(x: Array, numbers: Array, values: Array, rows: Array) -> Array:
+    """QUANTILES (5, X) of a metric at each value of an axis, nan where no run has it."""
+    spread = np.full((len(QUANTILES), len(x)), np.nan)
+    for column, at in enumerate(x):
+        here = values[rows & (numbers == at)]
+        if len(here):
+            spread[:, column] = np.quantile(here, QUANTILES)
+    return spread
 
 
-def _boxes(
-    axis: Axis,
-    taken: Sequence[Any],
-    values: Array,
-    there: Sequence[Group],
-    y: tuple[float, float],
-    title: str,
-) -> Panel:
-    """A box for each value of a list, of several controllers side by side."""
-    own = axis.target.name == CONTROLLER
-    used, width = np.array([str(v) for v in taken]), 0.7 if own else 0.7 / len(there)
-    made = []
-    for at, value in enumerate(axis.values):
-        for k, group in enumerate(there):
-            rows = values[group.rows & (used == str(value))]
-            if len(rows):
-                place = at if own else at + width * (k - (len(there) - 1) / 2)
-                low, lower, half, upper, high = np.quantile(rows, BELOW).tolist()
-                made.append(Box(group.look, place, 0.8 * width, (low, lower, half, upper, high)))
-    names = tuple(
-        str(v) if len(str(v)) <= LETTERS else f"{str(v)[: LETTERS - 1]}…" for v in axis.values
-    )
+def _boxes(axis: Axis, varied: Sequence[Any], metric: _Metric) -> Panel:
+    """A box for each value of a list; those of several controllers stand side by side."""
+    count = len(metric.groups)
+    by_controller = axis.target.name == CONTROLLER
+    used = np.array(list(map(str, varied)))
+    width = BOX_WIDTH if by_controller else BOX_WIDTH / count
+    boxes = []
+    for (at, value), (k, group) in product(enumerate(axis.values), enumerate(metric.groups)):
+        here = metric.values[group.rows & (used == str(value))]
+        if len(here):
+            offset = 0.0 if by_controller else width * (k - (count - 1) / 2)
+            low, lower, middle, upper, high = np.quantile(here, QUANTILES).tolist()
+            ends = (low, lower, middle, upper, high)
+            boxes.append(Box(group.style, at + offset, 0.8 * width, ends))
+    labels = tuple(map(_shorten, map(str, axis.values)))
     across = (-0.6, len(axis.values) - 0.4)
-    return Panel(title, (), across, y, axis.target.name, shape=2.0, boxes=tuple(made), names=names)
+    return Panel(
+        metric.title,
+        (),
+        across,
+        metric.limits,
+        axis.target.name,
+        shape=2.0,
+        boxes=tuple(boxes),
+        names=labels,
+    )
 
 
-def _draws(results: Results, values: Array, seen: Array) -> list[tuple[str, Array, float]]:
-    """Drawn numbers (R,) with their rank correlation with a norm, the strongest first."""
+def _shorten(label: str) -> str:
+    if len(label) <= LONGEST_LABEL:
+        return label
+    return f"{label[: LONGEST_LABEL - 1]}…"
+
+
+def _correlated(results: Results, values: Array, finite: Array) -> list[tuple[str, Array, float]]:
+    """Sampled numbers (R,) with their rank correlation with a metric, the strongest first."""
     from scipy.stats import spearmanr
 
     found = []
-    for draw in results.plan.draws:
-        taken = results.varied(draw.target.name)
-        if all(isinstance(v, int | float) for v in taken) and seen.sum() > 2:
-            x = np.array(taken, dtype=float)
+    for sampled in results.plan.sampled:
+        name = sampled.target.name
+        varied = results.varied(name)
+        if finite.sum() < 3 or not all(isinstance(value, int | float) for value in varied):
+            continue
+        x = np.array(varied, dtype=float)
+        correlation = 0.0
+        if np.ptp(values[finite]) > 0.0:
             with np.errstate(invalid="ignore"):
-                rank = (
-                    0.0
-                    if np.ptp(values[seen]) == 0.0
-                    else float(spearmanr(x[seen], values[seen]).statistic)
-                )
-            found.append((draw.target.name, x, rank))
-    return sorted(found, key=lambda one: -abs(one[2]))[:MOST]
+                correlation = float(spearmanr(x[finite], values[finite]).statistic)
+        found.append((name, x, correlation))
+    return sorted(found, key=lambda one: -abs(one[2]))[:MOST_SAMPLED]
 
 
-def _of_draw(
-    name: str,
-    x: Array,
-    rank: float,
-    values: Array,
-    there: Sequence[Group],
-    y: tuple[float, float],
-    title: str,
-) -> str:
-    dots = tuple(Line(group.look, x[group.rows], values[group.rows], group.name) for group in there)
-    panel = Panel(title, (), limits([x], zero=False), y, name, shape=SQUARE, dots=dots)
-    return figure([panel], f"{title} over {name}, rank correlation {rank:.2f}")
+def _plot_sampled(name: str, x: Array, correlation: float, metric: _Metric) -> str:
+    dots = []
+    for group in metric.groups:
+        dots.append(Line(group.style, x[group.rows], metric.values[group.rows], group.name))
+    x_limits = limits([x], zero=False)
+    panel = Panel(metric.title, (), x_limits, metric.limits, name, shape=SQUARE, dots=tuple(dots))
+    return figure([panel], f"{metric.title} over {name}, rank correlation {correlation:.2f}")

@@ -1,5 +1,6 @@
-"""What a sweep gave, by columns: what was varied and drawn in each run, its seed, its norms, or why it failed."""
+"""Results of a sweep by columns: varied and sampled values, seed, metrics or reason of failure."""
 
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -19,95 +20,105 @@ NAME = "sweep.parquet"
 
 @dataclass(frozen=True)
 class Results:
-    """The runs of a plan that are done, in the order of their numbers."""
+    """The R finished runs of a plan, in the order of their numbers.
+
+    Attributes:
+        plan: The plan.
+        entries: Result of each run, by its number.
+        selection: Metrics to show; empty for all.
+    """
 
     plan: Plan
     entries: Mapping[int, Entry]
-    norms: tuple[str, ...] = ()  # that are told and drawn; none: all of them
+    selection: tuple[str, ...] = ()
 
     @cached_property
     def numbers(self) -> list[int]:
-        """Of the runs."""
+        """Numbers of the runs."""
         return list(self.entries)
 
     @cached_property
     def units(self) -> dict[str, str]:
-        """Norm -> unit, in the order in which runs have them."""
-        return {
-            name: unit
-            for entry in self.entries.values()
-            for name, (_, unit) in entry.get("norms", {}).items()
-        }
+        """Unit of each metric, in the order in which runs have them."""
+        found: dict[str, str] = {}
+        for entry in self.entries.values():
+            for name, (_, unit) in entry.get("norms", {}).items():
+                found[name] = unit
+        return found
 
     @property
-    def told(self) -> list[str]:
-        """Norms that are told and drawn; the table holds all."""
-        return [name for name in self.units if name in self.norms or not self.norms]
+    def selected(self) -> list[str]:
+        """Metrics to show; the table holds all."""
+        if not self.selection:
+            return list(self.units)
+        return [name for name in self.units if name in self.selection]
 
     @cached_property
     def point(self) -> Array:
-        """(R,) number of the grid point of each run."""
-        return np.array(self.numbers, dtype=int) // len(self.plan.drawn)
+        """Number of the grid point of each run (R,)."""
+        return np.array(self.numbers, dtype=int) // len(self.plan.samples)
 
     @cached_property
-    def draw(self) -> Array:
-        """(R,) number of the draw of each run: runs that share it share all that is drawn."""
-        return np.array(self.numbers, dtype=int) % len(self.plan.drawn)
+    def sample(self) -> Array:
+        """Number of the sample of each run (R,); runs with the same number share all samples."""
+        return np.array(self.numbers, dtype=int) % len(self.plan.samples)
 
     @cached_property
     def failed(self) -> Array:
-        """(R,) whether each run failed."""
-        return np.array(
-            [entry["failure"] is not None for entry in self.entries.values()], dtype=bool
-        )
+        """Whether each run failed (R,)."""
+        failures = [entry["failure"] is not None for entry in self.entries.values()]
+        return np.array(failures, dtype=bool)
 
     @cached_property
-    def norm(self) -> dict[str, Array]:
-        """(R,) by name: each norm of each run, nan where it has none."""
-        found: dict[str, Array] = {}
-        for name in self.units:
-            values = (
-                entry.get("norms", {}).get(name, (None,))[0] for entry in self.entries.values()
-            )
-            found[name] = np.array(
-                [np.nan if value is None else value for value in values], dtype=float
-            )
-        return found
+    def metrics(self) -> dict[str, Array]:
+        """Values (R,) of each metric, nan where a run has none."""
+        # A float array holds None as nan.
+        return {name: np.array(self._values_of(name), dtype=float) for name in self.units}
+
+    def _values_of(self, metric: str) -> list[float | None]:
+        return [entry.get("norms", {}).get(metric, (None,))[0] for entry in self.entries.values()]
 
     def varied(self, name: str) -> list[Any]:
-        """(R,) what a column of the plan was in each run."""
-        at = self.plan.columns.index(name)
-        return [self.plan.values(number)[at] for number in self.numbers]
+        """Return the values (R,) of a column of the plan.
+
+        Args:
+            name: Name of the column.
+        """
+        index = self.plan.columns.index(name)
+        return [self.plan.values(number)[index] for number in self.numbers]
 
     @property
     def reasons(self) -> dict[str, int]:
-        """Why runs failed, and how many of each, the most first."""
-        said = [entry["failure"] for entry in self.entries.values() if entry["failure"] is not None]
-        return dict(
-            sorted(((r, said.count(r)) for r in dict.fromkeys(said)), key=lambda pair: -pair[1])
-        )
+        """Reasons of failed runs with their numbers, the most frequent first."""
+        failures = [entry["failure"] for entry in self.entries.values()]
+        return dict(Counter(filter(None, failures)).most_common())
 
     def columns(self) -> dict[str, Sequence[Any]]:
-        """All of the table."""
-        values = [self.plan.values(number) for number in self.numbers]
-        entries = list(self.entries.values())
-        varied = {name: [row[k] for row in values] for k, name in enumerate(self.plan.columns)}
-        norms = {
-            name: [e.get("norms", {}).get(name, (None,))[0] for e in entries] for name in self.units
-        }
-        seeds = [self.plan.seed_of(number) for number in self.numbers]
-        return {
+        """Return all columns of the table."""
+        columns: dict[str, Sequence[Any]] = {
             "run": self.numbers,
             "point": self.point.tolist(),
-            "draw": self.draw.tolist(),
-            **varied,
-            **({"seed": seeds} if "seed" not in varied else {}),
-            **norms,
-            "guards_met": [e.get("met") for e in entries],
-            "failure": [e["failure"] for e in entries],
+            "draw": self.sample.tolist(),
         }
+        rows = list(map(self.plan.values, self.numbers))
+        for index, name in enumerate(self.plan.columns):
+            columns[name] = [row[index] for row in rows]
+        if "seed" not in self.plan.columns:
+            columns["seed"] = list(map(self.plan.seed_of, self.numbers))
+        for name in self.units:
+            columns[name] = self._values_of(name)
+        columns["guards_met"] = [entry.get("met") for entry in self.entries.values()]
+        columns["failure"] = [entry["failure"] for entry in self.entries.values()]
+        return columns
 
     def write(self, folder: Path) -> None:
-        """sweep.parquet. Raises OSError."""
+        """Write sweep.parquet.
+
+        Args:
+            folder: Output folder.
+
+        Raises:
+            OSError: The file cannot be written.
+        """
         about = dumps(self.plan.about(), ensure_ascii=False)
         table.write(self.columns(), self.units, about, folder / NAME)

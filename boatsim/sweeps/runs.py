@@ -1,4 +1,4 @@
-"""One run of a sweep: from what its scenario says to its norms, or the reason why there are none."""
+"""One run of a sweep: from the table of its scenario to its metrics or the reason of failure."""
 
 from collections.abc import Mapping
 from math import isfinite
@@ -12,46 +12,60 @@ from boatsim.simulate.run import run
 from boatsim.simulate.scenario import from_table
 from boatsim.sweeps.journal import Entry
 
-LONGEST = 300  # characters of a reason
+LONGEST_REASON = 300  # characters
 
 
-class Told(NamedTuple):
-    """What a run is told: plain values, so that it can be sent to a process or a node."""
+class RunTask(NamedTuple):
+    """One run; it holds plain values, so that it can be sent to a process or a node.
 
-    said: Mapping[str, Any]  # all that its scenario says
-    place: Place  # where it says so
-    seed: int | None  # None: the scenario's own
+    Attributes:
+        table: The scenario.
+        place: Where the scenario is stored.
+        seed: Random seed; None for the scenario's own.
+    """
+
+    table: Mapping[str, Any]
+    place: Place
+    seed: int | None
 
 
-def carried_out(told: Told) -> Entry:
-    """Norms by name, each with its unit, and whether all guards are met; or why it failed."""
+def perform_run(task: RunTask) -> Entry:
+    """Perform a run.
+
+    Args:
+        task: The run.
+
+    Returns:
+        Metrics with their units, and whether all regression bands are met; or only the reason of a
+        failure.
+    """
     try:
-        done = run(from_table(told.said, told.place), told.seed, progress=_ended)
+        done = run(from_table(task.table, task.place), task.seed, progress=_stop_if_interrupted)
         if not done.complete:
             raise KeyboardInterrupt
-        norms = all_metrics(done)
+        metrics = all_metrics(done)
     except BoatsimError as error:
-        return {"failure": reason(str(error))}
-    except Exception as error:  # of a controller, a law, a measure: this boat's, not the sweep's
-        return {"failure": reason(f"{type(error).__name__}: {error}")}
-    judged = [norm.ok for norm in norms.values() if norm.ok is not None]
-    return {
-        "failure": None,
-        "met": all(judged) if judged else None,
-        "norms": {name: [_finite(norm.value), norm.unit] for name, norm in norms.items()},
-    }
+        return failure_of(str(error))
+    except Exception as error:  # An error in a controller, an effect or a metric of the user.
+        return failure_of(f"{type(error).__name__}: {error}")
+    judged = [metric.ok for metric in metrics.values() if metric.ok is not None]
+    norms = {name: [_finite_or_none(m.value), m.unit] for name, m in metrics.items()}
+    return {"failure": None, "met": all(judged) if judged else None, "norms": norms}
 
 
-def _finite(value: float | None) -> float | None:
+def _finite_or_none(value: float | None) -> float | None:
     return value if value is not None and isfinite(value) else None
 
 
-def _ended(t: float) -> None:
-    """Ends a run that somebody wants to end."""
+def _stop_if_interrupted(t: float) -> None:
     if signal_received():
         raise KeyboardInterrupt
 
 
-def reason(text: str) -> str:
-    """Why something failed, as a table has it: one line, not too long."""
-    return " ".join(text.split())[:LONGEST]
+def failure_of(reason: str) -> Entry:
+    """Return the entry of a task that failed.
+
+    Args:
+        reason: Why; it is stored in one line and cut if it is long.
+    """
+    return {"failure": " ".join(reason.split())[:LONGEST_REASON]}

@@ -1,4 +1,4 @@
-"""What is drawn for each run: `KEY=normal(0.7, 0.05)` and other stated distributions."""
+"""Sampled quantities of a sweep: `KEY=normal(0.7, 0.05)` and other distributions."""
 
 import re
 from collections.abc import Callable, Sequence
@@ -6,116 +6,173 @@ from dataclasses import dataclass
 from math import isfinite
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from boatsim.errors import BadInput, unknown_name
 from boatsim.physics.signals import Array
-from boatsim.sweeps.axes import value_of
-from boatsim.sweeps.keys import Target, Value, target
+from boatsim.sweeps.axes import parse_values
+from boatsim.sweeps.keys import Target, Value, parse_target
 
 CALL = re.compile(r"(\w+)\s*\((.*)\)")
 
 
-class Law(NamedTuple):
-    """A distribution: what its numbers are called, whether they are right, and its quantiles."""
+class Distribution(NamedTuple):
+    """A distribution.
+
+    Attributes:
+        numbers: Names of its parameters.
+        fault: Function of the parameters that returns what is wrong with them, or "".
+        frozen: Function of `scipy.stats` and the parameters that returns the frozen distribution.
+    """
 
     numbers: tuple[str, ...]
-    wrong: Callable[..., str]  # what is wrong with them, or ""
-    made: Callable[..., Any]  # of scipy.stats and the numbers, a frozen distribution
+    fault: Callable[..., str]
+    frozen: Callable[..., Any]
 
 
-def _spread(middle: float, sd: float) -> str:
+def _positive_sd(mean: float, sd: float) -> str:
     return "" if sd > 0.0 else "its spread must be above 0"
 
 
-def _ends(low: float, high: float) -> str:
+def _ascending(low: float, high: float) -> str:
     return "" if low < high else "its low end must be below its high end"
 
 
-LAWS = {
-    "normal": Law(("mean", "sd"), _spread, lambda s, mean, sd: s.norm(mean, sd)),
-    "uniform": Law(("low", "high"), _ends, lambda s, low, high: s.uniform(low, high - low)),
-    "lognormal": Law(  # the spread is the standard deviation of its logarithm
+def _fault_of_lognormal(median: float, spread: float) -> str:
+    if median <= 0.0:
+        return "its median must be above 0"
+    return _positive_sd(median, spread)
+
+
+def _fault_of_truncated(mean: float, sd: float, low: float, high: float) -> str:
+    return _positive_sd(mean, sd) or _ascending(low, high)
+
+
+def _fault_of_triangular(low: float, mode: float, high: float) -> str:
+    if not low <= mode <= high:
+        return "its mode must lie between its ends"
+    return _ascending(low, high)
+
+
+def _fault_of_loguniform(low: float, high: float) -> str:
+    if low <= 0.0:
+        return "its low end must be above 0"
+    return _ascending(low, high)
+
+
+DISTRIBUTIONS = {
+    "normal": Distribution(("mean", "sd"), _positive_sd, lambda s, mean, sd: s.norm(mean, sd)),
+    "uniform": Distribution(
+        ("low", "high"), _ascending, lambda s, low, high: s.uniform(low, high - low)
+    ),
+    # The spread is the standard deviation of the logarithm.
+    "lognormal": Distribution(
         ("median", "spread"),
-        lambda median, spread: (
-            _spread(median, spread) or ("" if median > 0.0 else "its median must be above 0")
-        ),
+        _fault_of_lognormal,
         lambda s, median, spread: s.lognorm(spread, scale=median),
     ),
-    "truncated": Law(  # a normal one, what lies beyond the ends left out
+    "truncated": Distribution(
         ("mean", "sd", "low", "high"),
-        lambda mean, sd, low, high: _spread(mean, sd) or _ends(low, high),
+        _fault_of_truncated,
         lambda s, mean, sd, low, high: s.truncnorm((low - mean) / sd, (high - mean) / sd, mean, sd),
     ),
-    "triangular": Law(
+    "triangular": Distribution(
         ("low", "mode", "high"),
-        lambda low, mode, high: (
-            _ends(low, high) or ("" if low <= mode <= high else "its mode must lie between")
-        ),
+        _fault_of_triangular,
         lambda s, low, mode, high: s.triang((mode - low) / (high - low), low, high - low),
     ),
-    "loguniform": Law(
-        ("low", "high"),
-        lambda low, high: _ends(low, high) or ("" if low > 0.0 else "its low end must be above 0"),
-        lambda s, low, high: s.loguniform(low, high),
+    "loguniform": Distribution(
+        ("low", "high"), _fault_of_loguniform, lambda s, low, high: s.loguniform(low, high)
     ),
 }
 CHOICE = "choice"
 
 
 @dataclass(frozen=True)
-class Draw:
-    """One quantity that differs from run to run."""
+class SampledKey:
+    """A quantity that is sampled for each run.
+
+    Attributes:
+        target: Key or keys that it changes.
+        distribution: Name of the distribution, or CHOICE.
+        numbers: Parameters of the distribution; of a choice its values.
+    """
 
     target: Target
-    law: str
-    numbers: tuple[Value, ...]  # of the law; of a choice its values
+    distribution: str
+    numbers: tuple[Value, ...]
 
     def __str__(self) -> str:
-        return f"{self.law}({', '.join(str(n) for n in self.numbers)})"
+        return f"{self.distribution}({', '.join(map(str, self.numbers))})"
 
-    def at(self, shares: Array) -> list[Value]:
-        """The values that these shares (N,) of all draws, from 0 to 1, lie below."""
-        if self.law == CHOICE:
-            return [
-                self.numbers[min(int(u * len(self.numbers)), len(self.numbers) - 1)] for u in shares
-            ]
-        from scipy import stats  # takes half a second
+    def quantiles(self, probabilities: Array) -> list[Value]:
+        """Return the quantiles of the distribution.
 
-        found: list[Value] = LAWS[self.law].made(stats, *self.numbers).ppf(shares).tolist()
+        Args:
+            probabilities: Probabilities (N,) from 0 to 1.
+        """
+        if self.distribution == CHOICE:
+            last = len(self.numbers) - 1
+            indices = np.minimum((probabilities * len(self.numbers)).astype(int), last)
+            return [self.numbers[index] for index in indices.tolist()]
+        from scipy import stats  # its import takes half a second
+
+        frozen = DISTRIBUTIONS[self.distribution].frozen(stats, *self.numbers)
+        found: list[Value] = frozen.ppf(probabilities).tolist()
         return found
 
 
-def draw(text: str) -> Draw:
-    """The draw of an option. Raises BadInput."""
-    key, sign, law = text.partition("=")
+def parse_sampled_key(text: str) -> SampledKey:
+    """Return the sampled quantity of a command-line option.
+
+    Args:
+        text: `KEY=DISTRIBUTION(NUMBERS)`.
+
+    Raises:
+        BadInput: The text is not a sampled quantity.
+    """
+    key, sign, call = text.partition("=")
     if not sign or not key.strip():
         raise BadInput(
-            f"--draw {text}: allowed is KEY=LAW(NUMBERS), such as fan_wind.speed=uniform(0,0.5)"
+            f"--draw {text}: allowed is KEY=DISTRIBUTION(NUMBERS), such as "
+            "fan_wind.speed=uniform(0,0.5)"
         )
-    return draw_of(key.strip(), law.strip())
+    return make_sampled_key(key.strip(), call.strip())
 
 
-def draw_of(key: str, law: str) -> Draw:
-    """The same of a key and a law in an option's words. Raises BadInput."""
-    what, call = f"--draw {key}={law}", CALL.fullmatch(law)
-    if not call:
-        said = ", ".join(f"{name}({', '.join(one.numbers)})" for name, one in LAWS.items())
-        raise BadInput(f"{what}: allowed is {said}, {CHOICE}(one, another, ...)")
-    name, values = call[1], [value_of(part) for part in call[2].split(",")]
+def make_sampled_key(key: str, call: str) -> SampledKey:
+    """Return the sampled quantity of a key and a distribution.
+
+    Args:
+        key: Key or keys, as `parse_target` takes them.
+        call: `DISTRIBUTION(NUMBERS)`.
+
+    Raises:
+        BadInput: The distribution or its numbers are wrong.
+    """
+    option = f"--draw {key}={call}"
+    match = CALL.fullmatch(call)
+    if not match:
+        allowed = ", ".join(f"{n}({', '.join(d.numbers)})" for n, d in DISTRIBUTIONS.items())
+        raise BadInput(f"{option}: allowed is {allowed}, {CHOICE}(one, another, ...)")
+    name = match[1]
+    values = parse_values(match[2])
     if name == CHOICE:
         if len(values) < 2 or "" in values:
-            raise BadInput(f"{what}: a choice needs two values or more")
-        return Draw(target(key), name, tuple(values))
-    if name not in LAWS:
-        raise BadInput(f"{what}: {unknown_name('distribution', name, [*LAWS, CHOICE])}")
-    return Draw(target(key), name, _numbers(what, name, values))
+            raise BadInput(f"{option}: a choice needs two values or more")
+    elif name in DISTRIBUTIONS:
+        _check_numbers(option, name, values)
+    else:
+        names = [*DISTRIBUTIONS, CHOICE]
+        raise BadInput(f"{option}: {unknown_name('distribution', name, names)}")
+    return SampledKey(parse_target(key), name, tuple(values))
 
 
-def _numbers(what: str, name: str, values: Sequence[Value]) -> tuple[Value, ...]:
-    law = LAWS[name]
-    if len(values) != len(law.numbers) or not all(
-        isinstance(v, int | float) and isfinite(v) for v in values
-    ):
-        raise BadInput(f"{what}: {name} takes numbers: {', '.join(law.numbers)}")
-    if wrong := law.wrong(*values):
-        raise BadInput(f"{what}: {wrong} ({', '.join(law.numbers)})")
-    return tuple(values)
+def _check_numbers(option: str, name: str, values: Sequence[Value]) -> None:
+    distribution = DISTRIBUTIONS[name]
+    expected = ", ".join(distribution.numbers)
+    finite = [value for value in values if isinstance(value, int | float) and isfinite(value)]
+    if len(finite) < len(values) or len(values) != len(distribution.numbers):
+        raise BadInput(f"{option}: {name} takes numbers: {expected}")
+    if fault := distribution.fault(*values):
+        raise BadInput(f"{option}: {fault} ({expected})")

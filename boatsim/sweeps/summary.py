@@ -1,7 +1,7 @@
-"""What the runs of a sweep say together: spread of each norm at each grid point, and controllers compared in pairs."""
+"""Statistics of a sweep: spread of each metric, and controllers compared on the same samples."""
 
 from collections.abc import Sequence
-from math import sqrt
+from math import nan, sqrt
 from typing import NamedTuple
 
 import numpy as np
@@ -11,18 +11,32 @@ from boatsim.sweeps.keys import Value
 from boatsim.sweeps.results import Results
 
 CONTROLLER = "controller.use"
-SURE = 1.96  # standard errors about a mean within which 95 % lie
+# Standard errors on either side of a mean that hold 95 % of a normal distribution.
+TWO_SIDED_95 = 1.96
 
 
 class Spread(NamedTuple):
-    """One norm at one grid point."""
+    """Distribution of one metric at one grid point.
+
+    Attributes:
+        point: Values of the grid point.
+        norm: Name of the metric.
+        unit: Its unit.
+        runs: Number of runs.
+        failed: Number of runs that failed.
+        reached: Number of runs in which the metric has a value.
+        mean: Mean of the values.
+        p5: 5 % quantile.
+        p50: Median.
+        p95: 95 % quantile.
+    """
 
     point: tuple[Value, ...]
     norm: str
     unit: str
     runs: int
-    failed: int  # of these
-    reached: int  # runs in which it has a value
+    failed: int
+    reached: int
     mean: float
     p5: float
     p50: float
@@ -30,101 +44,129 @@ class Spread(NamedTuple):
 
 
 class Pair(NamedTuple):
-    """One norm of two controllers on the same boats, runs in which both have a value."""
+    """One metric of two controllers on the same samples, over runs in which both have a value.
 
-    point: tuple[Value, ...]  # all that was varied beside the controller
-    norm: str  # |norm| where it takes either sign: its size counts
+    Attributes:
+        point: Values of the grid point, without the controller.
+        norm: Name of the metric, |name| if it takes both signs and its absolute value is compared.
+        unit: Its unit.
+        first: First controller.
+        second: Second controller.
+        pairs: Number of pairs of runs.
+        of_first: Mean of the first controller.
+        of_second: Mean of the second controller.
+        difference: Mean of second minus first.
+        sure: Half-width of the 95 % confidence interval of the difference.
+        first_lower: Share of the pairs in which the first controller has the lower value.
+        second_lower: Share of the pairs in which the second controller has the lower value.
+    """
+
+    point: tuple[Value, ...]
+    norm: str
     unit: str
     first: str
     second: str
     pairs: int
-    of_first: float  # mean
+    of_first: float
     of_second: float
-    difference: float  # mean of second minus first
-    sure: (
-        float  # half the width of the interval about it that holds the true mean in 95 % of sweeps
-    )
-    first_lower: float  # share of the pairs
+    difference: float
+    sure: float
+    first_lower: float
     second_lower: float
 
 
 def spreads(results: Results) -> list[Spread]:
-    """Every norm at every grid point, those that no run of the point has left out."""
+    """Return the spread of every metric at every grid point where a run has a value of it.
+
+    Args:
+        results: Results of a sweep.
+    """
     found: list[Spread] = []
-    norms = {name: results.norm[name] for name in results.told}
     for point, rows in _points(results):
         failed = int(results.failed[rows].sum())
-        for name, values in norms.items():
-            there = values[rows][np.isfinite(values[rows])]
-            if len(there):
-                low, middle, high = np.quantile(there, (0.05, 0.5, 0.95)).tolist()
-                counts = (int(rows.sum()), failed, len(there))
-                found.append(
-                    Spread(
-                        point,
-                        name,
-                        results.units[name],
-                        *counts,
-                        float(there.mean()),
-                        low,
-                        middle,
-                        high,
-                    )
-                )
+        runs = int(rows.sum())
+        for name in results.selected:
+            values = results.metrics[name][rows]
+            values = values[np.isfinite(values)]
+            if len(values):
+                quantiles = np.quantile(values, (0.05, 0.5, 0.95)).tolist()
+                counts = (runs, failed, len(values))
+                mean = float(values.mean())
+                found.append(Spread(point, name, results.units[name], *counts, mean, *quantiles))
     return found
 
 
 def pairs(results: Results) -> list[Pair]:
-    """Controllers against the first one that was named, where several were varied, draw by draw."""
-    names = results.plan.differ
+    """Return the comparison of each controller with the first one, sample by sample.
+
+    Args:
+        results: Results of a sweep.
+
+    Returns:
+        The comparisons; none if the controller was not varied.
+    """
+    names = results.plan.differing
     if CONTROLLER not in names:
         return []
-    at = names.index(CONTROLLER)
+    column = names.index(CONTROLLER)
     rows_of = dict(_points(results))
-    steered = list(dict.fromkeys(point[at] for point in rows_of))
+    controllers = list(dict.fromkeys(point[column] for point in rows_of))
     found: list[Pair] = []
     for point, rows in rows_of.items():
-        if point[at] != steered[0]:
+        if point[column] != controllers[0]:
             continue
-        for other in steered[1:]:
-            beside = rows_of.get((*point[:at], other, *point[at + 1 :]))
-            if beside is not None:
-                found += _paired(
-                    results,
-                    (rows, beside),
-                    (str(steered[0]), str(other)),
-                    (*point[:at], *point[at + 1 :]),
-                )
+        before, after = point[:column], point[column + 1 :]
+        for other in controllers[1:]:
+            other_rows = rows_of.get((*before, other, *after))
+            if other_rows is not None:
+                steered = (str(controllers[0]), str(other))
+                found += _compare(results, (rows, other_rows), steered, (*before, *after))
     return found
 
 
-def _paired(
+def _compare(
     results: Results, rows: tuple[Array, Array], names: tuple[str, str], point: tuple[Value, ...]
 ) -> list[Pair]:
-    """Every norm that both have."""
+    """Comparison of every metric that both controllers have."""
     found: list[Pair] = []
-    common, one, other = np.intersect1d(*(results.draw[r] for r in rows), return_indices=True)
-    for name in results.told:
-        unit, values = results.units[name], results.norm[name]
-        first, second = values[rows[0]][one], values[rows[1]][other]
+    samples = results.sample[rows[0]], results.sample[rows[1]]
+    _, first_index, second_index = np.intersect1d(*samples, return_indices=True)
+    for name in results.selected:
+        values = results.metrics[name]
+        first = values[rows[0]][first_index]
+        second = values[rows[1]][second_index]
         both = np.isfinite(first) & np.isfinite(second)
         if not both.any():
             continue
         first, second = first[both], second[both]
-        signed = bool((np.concatenate([first, second]) < 0.0).any())
-        if signed:
+        label = name
+        if np.any(first < 0.0) or np.any(second < 0.0):
             first, second = np.abs(first), np.abs(second)
-        off = second - first
-        sure = SURE * float(off.std(ddof=1)) / sqrt(len(off)) if len(off) > 1 else float("nan")
-        shares = float((first < second).mean()), float((second < first).mean())
-        means = float(first.mean()), float(second.mean()), float(off.mean())
-        told = f"|{name}|" if signed else name
-        found.append(Pair(point, told, unit, *names, len(off), *means, sure, *shares))
+            label = f"|{name}|"
+        difference = second - first
+        count = len(difference)
+        half_width = nan
+        if count > 1:
+            half_width = TWO_SIDED_95 * float(difference.std(ddof=1)) / sqrt(count)
+        pair = Pair(
+            point,
+            label,
+            results.units[name],
+            *names,
+            pairs=count,
+            of_first=float(first.mean()),
+            of_second=float(second.mean()),
+            difference=float(difference.mean()),
+            sure=half_width,
+            first_lower=float((first < second).mean()),
+            second_lower=float((second < first).mean()),
+        )
+        found.append(pair)
     return found
 
 
 def _points(results: Results) -> Sequence[tuple[tuple[Value, ...], Array]]:
-    """Grid points that have runs, and which runs (R,) are theirs."""
+    """Grid points that have runs, each with the mask (R,) of its runs."""
     found = []
     for number in range(len(results.plan.points)):
         rows = results.point == number

@@ -1,4 +1,4 @@
-"""The table of a campaign: Parquet, a row for each task in the order of their numbers; same rows, same bytes."""
+"""Table of a campaign as Parquet, a row for each task; equal rows give equal bytes."""
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -13,32 +13,39 @@ Columns = Mapping[str, Sequence[Any]]
 
 
 def write(columns: Columns, units: Mapping[str, str], about: str, path: Path) -> None:
-    """Columns of numbers, texts or truths, None where there is nothing; `about` goes along as `boatsim`.
+    """Write a Parquet file.
 
-    A column's unit stands in its field's metadata. Raises OSError.
+    Args:
+        columns: Columns of numbers, texts or truth values; None where a value is missing.
+        units: Units of columns, stored in the metadata of their fields.
+        about: Definition of the campaign, stored as metadata `boatsim`.
+        path: The file.
+
+    Raises:
+        OSError: The file cannot be written.
     """
     import pyarrow as pa
     from pyarrow import parquet
 
-    fields = [
-        pa.field(n, _kind(values), metadata={"unit": units[n]} if n in units else None)
-        for n, values in columns.items()
-    ]
-    arrays = [
-        pa.array(values, field.type) for values, field in zip(columns.values(), fields, strict=True)
-    ]
-    made = pa.Table.from_arrays(arrays, schema=pa.schema(fields, {"boatsim": about}))
+    fields = []
+    arrays = []
+    for name, values in columns.items():
+        metadata = {"unit": units[name]} if name in units else None
+        field = pa.field(name, _type_of(values), metadata=metadata)
+        fields.append(field)
+        arrays.append(pa.array(values, field.type))
+    table = pa.Table.from_arrays(arrays, schema=pa.schema(fields, {"boatsim": about}))
     with replacing(path) as temporary:
-        parquet.write_table(made, temporary)
+        parquet.write_table(table, temporary)
 
 
-def _kind(values: Sequence[Any]) -> "pa.DataType":
-    """Type of a column: that which holds all its values."""
+def _type_of(values: Sequence[Any]) -> "pa.DataType":
+    """Type that holds all values of a column."""
     import pyarrow as pa
 
-    there = {type(value) for value in values if value is not None}
-    if there <= {bool} and there:
+    types = set(map(type, values)) - {type(None)}
+    if types == {bool}:
         return pa.bool_()
-    if there == {int}:
+    if types == {int}:
         return pa.int64()
-    return pa.float64() if there <= {int, float, bool} else pa.string()
+    return pa.float64() if types <= {int, float, bool} else pa.string()

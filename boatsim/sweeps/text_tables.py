@@ -1,4 +1,4 @@
-"""The tables of a sweep in words, as the command line prints them and its page shows them."""
+"""Tables of a sweep as text, for the terminal and for report.html."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -9,8 +9,16 @@ from boatsim.sweeps.results import Results
 
 
 @dataclass(frozen=True)
-class Rows:
-    """A table: its first `left` columns are words."""
+class TextTable:
+    """A table of text.
+
+    Attributes:
+        key: Identifier of its section in the report.
+        title: Title.
+        head: Headings of the columns.
+        rows: Cells of each row.
+        left: Number of columns, from the first, that hold words and not numbers.
+    """
 
     key: str
     title: str
@@ -19,107 +27,105 @@ class Rows:
     left: int
 
 
-def tables(found: Results) -> list[Rows]:
-    """Spread of the norms, controllers in pairs, Sobol indices: those of them that there are."""
-    names = found.plan.differ
-    rest = [name for name in names if name != summary.CONTROLLER]
-    made = [
-        _spreads(names, found),
-        *_pairs(rest, summary.pairs(found)),
-        _indices(names, indices.indices(found)),
+def tables(results: Results) -> list[TextTable]:
+    """Return the tables that have rows: spread of metrics, pairs of controllers, Sobol indices.
+
+    Args:
+        results: Results of a sweep.
+    """
+    names = results.plan.differing
+    others = [name for name in names if name != summary.CONTROLLER]
+    every_table = [
+        _spreads(names, results),
+        *_pairs(others, summary.pairs(results)),
+        _indices(names, indices.indices(results)),
     ]
-    return [table for table in made if table.rows]
+    return [table for table in every_table if table.rows]
 
 
-def _spreads(names: Sequence[str], found: Results) -> Rows:
-    spreads = summary.spreads(found)
-    if len(found.plan.drawn) == 1:
-        rows = [[*_cells(s.point), _named(s.norm, s.unit), number(s.mean)] for s in spreads]
-        return Rows(
-            "runs", "One run at each point", [*names, "norm", "value"], rows, len(names) + 1
-        )
-    rows = [
-        [
-            *_cells(s.point),
-            _named(s.norm, s.unit),
-            *map(number, (s.mean, s.p5, s.p50, s.p95)),
-            f"{s.reached} of {s.runs}",
+def _spreads(names: Sequence[str], results: Results) -> TextTable:
+    single = len(results.plan.samples) == 1
+    title, columns = "All runs", ["mean", "p5", "p50", "p95", "reached"]
+    if single:
+        title, columns = "One run at each point", ["value"]
+    rows = []
+    for s in summary.spreads(results):
+        numbers = [format_number(s.mean)]
+        if not single:
+            numbers += map(format_number, (s.p5, s.p50, s.p95))
+            numbers.append(f"{s.reached} of {s.runs}")
+        rows.append([*format_values(s.point), _with_unit(s.norm, s.unit), *numbers])
+    return TextTable("runs", title, [*names, "metric", *columns], rows, len(names) + 1)
+
+
+def _pairs(names: Sequence[str], pairs: Sequence[summary.Pair]) -> list[TextTable]:
+    """A table for each pair of controllers."""
+    rows: dict[tuple[str, str], list[list[str]]] = {}
+    for p in pairs:
+        row = [
+            *format_values(p.point),
+            _with_unit(p.norm, p.unit),
+            format_number(p.of_first),
+            format_number(p.of_second),
+            f"{p.difference:+.3g} ± {p.sure:.2g}",
+            f"{100 * p.first_lower:.0f} %",
+            f"{100 * p.second_lower:.0f} %",
+            str(p.pairs),
         ]
-        for s in spreads
-    ]
-    return Rows(
-        "runs",
-        "All runs",
-        [*names, "norm", "mean", "p5", "p50", "p95", "reached"],
-        rows,
-        len(names) + 1,
-    )
-
-
-def _pairs(names: Sequence[str], found: Sequence[summary.Pair]) -> list[Rows]:
-    made: list[Rows] = []
-    for first, second in dict.fromkeys((p.first, p.second) for p in found):
-        rows = [
-            [
-                *_cells(p.point),
-                _named(p.norm, p.unit),
-                number(p.of_first),
-                number(p.of_second),
-                f"{p.difference:+.3g} ± {p.sure:.2g}",
-                f"{100 * p.first_lower:.0f} %",
-                f"{100 * p.second_lower:.0f} %",
-                str(p.pairs),
-            ]
-            for p in found
-            if (p.first, p.second) == (first, second)
-        ]
-        head = [
-            *names,
-            "norm",
-            first,
-            second,
-            "difference",
-            f"{first} lower",
-            f"{second} lower",
-            "pairs",
-        ]
-        title = f"{second} beside {first}, on the same draws"
-        made.append(Rows(f"pairs-{len(made) + 1}", title, head, rows, len(names) + 1))
-    return made
-
-
-def _indices(names: Sequence[str], found: Sequence[indices.Index]) -> Rows:
-    rows = [
-        [
-            *_cells(i.point),
-            i.norm,
-            i.quantity,
-            f"{i.first:.2f} ({i.first_low:.2f} to {i.first_high:.2f})",
-            f"{i.total:.2f} ({i.total_low:.2f} to {i.total_high:.2f})",
-        ]
-        for i in found
-    ]
-    head = [*names, "norm", "quantity", "first order", "total"]
-    return Rows("sobol", "Sobol indices (95 % interval)", head, rows, len(names) + 2)
-
-
-def once(table: Rows) -> list[list[str]]:
-    """Its rows, what repeats in the columns of words told once."""
-    left, found = table.left - 1, list[list[str]]()
-    for number, row in enumerate(table.rows):
-        same = number > 0 and table.rows[number - 1][:left] == row[:left]
-        found.append([*([""] * left if same else row[:left]), *row[left:]])
+        rows.setdefault((p.first, p.second), []).append(row)
+    found: list[TextTable] = []
+    for number, (first, second) in enumerate(rows, 1):
+        lower = [f"{first} lower", f"{second} lower"]
+        head = [*names, "metric", first, second, "difference", *lower, "pairs"]
+        title = f"{second} compared with {first}, on the same samples"
+        own = rows[first, second]
+        found.append(TextTable(f"pairs-{number}", title, head, own, len(names) + 1))
     return found
 
 
-def number(value: float) -> str:
-    """As all tables print it."""
+def _indices(names: Sequence[str], found: Sequence[indices.Index]) -> TextTable:
+    rows = []
+    for i in found:
+        first = f"{i.first:.2f} ({i.first_low:.2f} to {i.first_high:.2f})"
+        total = f"{i.total:.2f} ({i.total_low:.2f} to {i.total_high:.2f})"
+        rows.append([*format_values(i.point), i.norm, i.quantity, first, total])
+    head = [*names, "metric", "quantity", "first order", "total"]
+    return TextTable("sobol", "Sobol indices (95 % interval)", head, rows, len(names) + 2)
+
+
+def blank_repeats(table: TextTable) -> list[list[str]]:
+    """Return the rows of a table, with the words that repeat the row above left blank.
+
+    Args:
+        table: The table.
+    """
+    left = table.left - 1
+    previous: list[str] | None = None
+    found = []
+    for row in table.rows:
+        words = row[:left]
+        found.append([*([""] * left if words == previous else words), *row[left:]])
+        previous = words
+    return found
+
+
+def format_number(value: float) -> str:
+    """Return a number as all tables print it.
+
+    Args:
+        value: The number.
+    """
     return f"{value:.4g}"
 
 
-def _cells(values: Sequence[Value]) -> list[str]:
-    return [f"{v:.6g}" if isinstance(v, float) else str(v) for v in values]
+def format_values(values: Sequence[Value]) -> list[str]:
+    """Return the texts of varied values.
+
+    Args:
+        values: Numbers, texts or truth values.
+    """
+    return [f"{value:.6g}" if isinstance(value, float) else str(value) for value in values]
 
 
-def _named(norm: str, unit: str) -> str:
-    return f"{norm} [{unit}]" if unit else norm
+def _with_unit(metric: str, unit: str) -> str:
+    return f"{metric} [{unit}]" if unit else metric

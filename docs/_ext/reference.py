@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from boatsim.cli import app as program
-from boatsim.cli.about import about
-from boatsim.cli.entry import CLASSES, entry
+from boatsim.cli.catalogue import describe
+from boatsim.cli.entry import CLASSES, class_entry
 from boatsim.physics import content
 from boatsim.simulate import cases
 
@@ -48,26 +48,26 @@ def pages() -> dict[str, str]:
 
 def _entry_page(kind: str, name: str) -> str:
     """An effect, controller, measure or sensor."""
-    one = entry(kind, name)
+    one = class_entry(kind, name)
     lines = [f"# {name}", "", f"{_sentence(one.words)}.", ""]
     lines += [_plain(line) for line in one.doc] + ([""] if one.doc else [])
-    lines += [f"- **{what}**: {_plain(text)}" for what, text in one.said] + (
-        [""] if one.said else []
+    lines += [f"- **{what}**: {_plain(text)}" for what, text in one.facts] + (
+        [""] if one.facts else []
     )
-    if one.numbers:
-        head, *rows = one.numbers
+    if one.parameters:
+        head, *rows = one.parameters
         lines += [
             _row(head),
             _row("---" for _ in head),
             *(_row(map(_plain, row)) for row in rows),
             "",
         ]
-    return "\n".join([*lines, "```toml", *one.paste, "```", ""])
+    return "\n".join([*lines, "```toml", *one.example, "```", ""])
 
 
 def _vessel_page(name: str) -> str:
     """What `boatsim show` prints of a vessel, but for the path of its file on the machine that builds."""
-    lines = about(name)
+    lines = describe(name)
     lines = lines[lines.index(f"{name}: vessel") + 1 :]
     words, *rest = lines[: lines.index("")] if "" in lines else lines
     rest = [line for line in rest if not line.startswith("  file: ")]

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
-from boatsim.cli.exits import FAULTS, words
+from boatsim.cli.exits import FAULTS, one_line
 from boatsim.diagnosis.loading import vessel_for
 from boatsim.physics import vessel
 from boatsim.recordings import table
@@ -37,7 +37,7 @@ class Reader:
         try:
             self.read(path)
         except FAULTS as error:
-            assert words(error).strip()
+            assert one_line(error).strip()
             return False
         return True
 

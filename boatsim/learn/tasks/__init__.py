@@ -1,1 +1,1 @@
-"""Tasks for a learner, one a file: where an episode begins, what is seen, what is rewarded, when it ends."""
+"""Tasks of a learner, one in each file: start, observations, reward and end of an episode."""

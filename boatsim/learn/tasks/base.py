@@ -1,4 +1,4 @@
-"""What a task is. All of it works on many boats at once: arrays have a row, or an entry, for each."""
+"""Base class of tasks; its methods work on arrays with a row or an entry for each boat."""
 
 from abc import abstractmethod
 from collections.abc import Sequence
@@ -48,7 +48,7 @@ class Task(Checked):
 
     @classmethod
     def idea(cls) -> str:
-        """File name, and the word by which it is asked for."""
+        """Return the name of the task, which is that of its file."""
         return snake_case(cls.__name__)
 
     def check(self, name: str, actions: Sequence[str]) -> None:
@@ -61,7 +61,11 @@ class Task(Checked):
 
     @abstractmethod
     def signals(self, scale: Scale) -> tuple[Signal, ...]:
-        """What is seen."""
+        """Return the observations.
+
+        Args:
+            scale: Scale of the vessel.
+        """
 
     def basin(self, scale: Scale) -> Tank:
         """Water and walls, for pictures and for MuJoCo: open water unless a task says otherwise."""

@@ -1,1 +1,1 @@
-"""Who carries out the tasks of a campaign, one way a file."""
+"""Backends that perform the tasks of a campaign, one in each file."""

@@ -1,22 +1,30 @@
-"""What every way to carry out tasks takes and gives."""
+"""Interface of the backends."""
 
 from collections.abc import Callable, Iterable, Iterator
 from typing import Any, Protocol
 
 from boatsim.sweeps.journal import Entry
 
-Work = Callable[
-    [Any], Entry
-]  # a function of a module, so that it can be sent; it catches what a run may raise
-Task = tuple[int, Any]  # number, and what the work is told
-POLL = 0.1  # [s] between two looks at whether somebody wants it to end
-TRIES = 2  # times a task is begun before it is taken for what kills its process
+# A function of a module, so that it can be sent to a process; it catches the errors of a task.
+Work = Callable[[Any], Entry]
+Task = tuple[int, Any]  # number, and argument of the work
+POLL = 0.1  # [s] between two checks whether the campaign is to stop
+MOST_ATTEMPTS = 2  # starts of a task before it counts as the one that kills its process
 
 
 class Backend(Protocol):
-    """Carries out tasks and gives what became of each as it ends, in any order; None where its process was killed."""
+    """Performs tasks."""
 
     def __call__(
         self, work: Work, tasks: Iterable[Task], stop: Callable[[], bool]
     ) -> Iterator[tuple[int, Entry | None]]:
-        """Ends early once `stop` says so; what is then under way does not count."""
+        """Yield the number and the result of each task as it finishes, in any order.
+
+        Args:
+            work: Function that performs a task.
+            tasks: The tasks.
+            stop: Returns whether to stop; tasks that are not finished then are dropped.
+
+        Yields:
+            Number and result; the result is None if the process of the task was killed.
+        """

@@ -1,4 +1,4 @@
-"""In this process, one task after the other."""
+"""Backend that performs the tasks in this process, one after the other."""
 
 from collections.abc import Callable, Iterable, Iterator
 
@@ -6,14 +6,23 @@ from boatsim.sweeps.journal import Entry
 from boatsim.sweeps.workers.base import Task, Work
 
 
-def here(
+def run_here(
     work: Work, tasks: Iterable[Task], stop: Callable[[], bool]
 ) -> Iterator[tuple[int, Entry | None]]:
-    """Carry out tasks."""
-    for number, told in tasks:
+    """Perform tasks; see `Backend`.
+
+    Args:
+        work: Function that performs a task.
+        tasks: The tasks.
+        stop: Returns whether to stop.
+
+    Yields:
+        Number and result of each task.
+    """
+    for number, argument in tasks:
         if stop():
             return
         try:
-            yield number, work(told)
-        except KeyboardInterrupt:  # a run that was ended early
+            yield number, work(argument)
+        except KeyboardInterrupt:  # The task was interrupted.
             return

@@ -1,10 +1,9 @@
-"""In processes of this machine. One that is killed costs its task a second try, not the campaign."""
+"""Backend of parallel processes; the task of a process that is killed is started once more."""
 
-from collections import deque
+from collections import Counter, deque
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import suppress
 from dataclasses import dataclass
-from itertools import chain
 from multiprocessing import get_context
 from multiprocessing.connection import Connection, wait
 from multiprocessing.context import SpawnProcess
@@ -12,92 +11,113 @@ from multiprocessing.context import SpawnProcess
 from boatsim.interruption import ignored_signals
 from boatsim.physics import trust
 from boatsim.sweeps.journal import Entry
-from boatsim.sweeps.workers.base import POLL, TRIES, Task, Work
+from boatsim.sweeps.workers.base import MOST_ATTEMPTS, POLL, Task, Work
 
-CONTEXT = get_context("spawn")  # a fork would copy MuJoCo's threads half alive
+# A forked process would inherit locks of the threads of MuJoCo.
+CONTEXT = get_context("spawn")
 
 
 @dataclass
 class Worker:
-    """A process and the task it has."""
+    """A process with its present task.
+
+    Attributes:
+        process: The process.
+        pipe: Connection to it.
+        task: Its present task.
+    """
 
     process: SpawnProcess
-    line: Connection
+    pipe: Connection
     task: Task
 
 
 @dataclass(frozen=True)
 class Processes:
-    """So many of them at the same time."""
+    """Backend of parallel processes.
+
+    Attributes:
+        jobs: Number of processes.
+    """
 
     jobs: int
 
     def __call__(
         self, work: Work, tasks: Iterable[Task], stop: Callable[[], bool]
     ) -> Iterator[tuple[int, Entry | None]]:
-        """Carry out tasks, each sent to a process as soon as it has nothing to do."""
-        again: deque[Task] = deque()
-        ahead, begun = chain(iter(tasks)), dict[int, int]()
-        there: list[Worker] = []
+        """Perform tasks; see `Backend`.
 
-        def following() -> Task | None:
-            task = again.popleft() if again else next(ahead, None)
+        Args:
+            work: Function that performs a task.
+            tasks: The tasks.
+            stop: Returns whether to stop.
+
+        Yields:
+            Number and result of each task.
+        """
+        pending = iter(tasks)
+        repeated: deque[Task] = deque()
+        attempts: Counter[int] = Counter()
+        workers: list[Worker] = []
+
+        def next_task() -> Task | None:
+            task = repeated.popleft() if repeated else next(pending, None)
             if task:
-                begun[task[0]] = begun.get(task[0], 0) + 1
+                attempts[task[0]] += 1
             return task
 
         try:
             while not stop():
-                while len(there) < self.jobs and (task := following()):
-                    there.append(_started(work, task))
-                if not there:
+                while len(workers) < self.jobs and (task := next_task()):
+                    workers.append(_start(work, task))
+                if not workers:
                     return
-                ready = wait([worker.line for worker in there], POLL)
-                for worker in [w for w in there if w.line in ready]:
+                ready = wait([worker.pipe for worker in workers], POLL)
+                for worker in [worker for worker in workers if worker.pipe in ready]:
                     number = worker.task[0]
                     try:
-                        yield number, worker.line.recv()
-                    except (EOFError, OSError):  # it is no more
-                        there.remove(worker)
+                        yield number, worker.pipe.recv()
+                    except (EOFError, OSError):  # The process has died.
+                        workers.remove(worker)
                         _end(worker)
-                        if begun[number] < TRIES:
-                            again.append(worker.task)
+                        if attempts[number] < MOST_ATTEMPTS:
+                            repeated.append(worker.task)
                         else:
                             yield number, None
                         continue
-                    if task := following():
+                    if task := next_task():
                         worker.task = task
-                        with suppress(OSError):  # told by the next look at it
-                            worker.line.send(task[1])
+                        with suppress(OSError):  # If the process has died, `recv` raises next.
+                            worker.pipe.send(task[1])
                     else:
-                        there.remove(worker)
+                        workers.remove(worker)
                         _end(worker)
         finally:
-            for worker in there:
+            for worker in workers:
                 _end(worker)
 
 
-def _started(work: Work, task: Task) -> Worker:
-    mine, its = CONTEXT.Pipe()
-    process = CONTEXT.Process(target=_serve, args=(its, work, trust.now()), daemon=True)
-    with ignored_signals():  # a signal is heeded by the one that hands out; the others end with it
+def _start(work: Work, task: Task) -> Worker:
+    own, other = CONTEXT.Pipe()
+    process = CONTEXT.Process(target=_serve, args=(other, work, trust.now()), daemon=True)
+    with ignored_signals():  # Only the parent process handles signals; the workers end with it.
         process.start()
-    its.close()
+    other.close()
     with suppress(OSError):
-        mine.send(task[1])
-    return Worker(process, mine, task)
+        own.send(task[1])
+    return Worker(process, own, task)
 
 
 def _end(worker: Worker) -> None:
-    worker.line.close()
+    worker.pipe.close()
     worker.process.kill()
     worker.process.join()
     worker.process.close()
 
 
-def _serve(line: Connection, work: Work, trusted: trust.Trust) -> None:
-    """All that a process does, until nobody is at the other end."""
+def _serve(pipe: Connection, work: Work, trusted: trust.Trust) -> None:
+    """Main function of a process: perform tasks until the other end of the pipe is closed."""
     trust.adopt(trusted)
     with suppress(EOFError, OSError):
         while True:
-            line.send(work(line.recv()))
+            pipe.send(work(pipe.recv()))

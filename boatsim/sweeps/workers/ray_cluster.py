@@ -1,4 +1,4 @@
-"""On a Ray cluster. A task whose node or process is lost is begun anew on another one."""
+"""Backend of a Ray cluster; a task whose node or process is lost is restarted on another one."""
 
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
@@ -9,60 +9,79 @@ from boatsim.physics import trust
 from boatsim.sweeps.journal import Entry
 from boatsim.sweeps.workers.base import POLL, Task, Work
 
-AHEAD = 2  # tasks handed out for each processor of the cluster
-NODES_LOST = 20  # times a task may lose its node or process before it counts as lost itself
+# Tasks submitted for each processor of the cluster, so that none waits for the next task.
+AHEAD = 2
+MOST_RESTARTS = 20  # of a task whose node or process is lost; nodes of a cluster may come and go
 
 
 @dataclass(frozen=True)
 class Cluster:
-    """A cluster that runs; boatsim is installed on each of its nodes."""
+    """Backend of a running cluster; boatsim is installed on each of its nodes.
 
-    address: str  # "auto": the one that this machine belongs to
+    Attributes:
+        address: Address of the cluster; "auto" for the one this machine belongs to.
+    """
+
+    address: str
 
     def __call__(
         self, work: Work, tasks: Iterable[Task], stop: Callable[[], bool]
     ) -> Iterator[tuple[int, Entry | None]]:
-        """Carry out tasks, a few for each processor at a time."""
+        """Perform tasks; see `Backend`.
+
+        Args:
+            work: Function that performs a task.
+            tasks: The tasks.
+            stop: Returns whether to stop.
+
+        Yields:
+            Number and result of each task.
+
+        Raises:
+            BadInput: There is no cluster at the address, or Ray is not installed.
+        """
         ray = _ray()
         try:
             ray.init(self.address, logging_level="error", log_to_driver=False)
         except (ConnectionError, RuntimeError, ValueError) as error:
-            said = " ".join(str(error).split())
+            reason = " ".join(str(error).split())
             raise BadInput(
-                f"--ray {self.address}: no cluster answers ({said}); `ray start --head` begins one"
+                f"--ray {self.address}: no cluster answers ({reason}); "
+                "`ray start --head` starts one"
             ) from None
         try:
-            yield from _carried_out(ray, work, tasks, stop)
+            yield from _perform(ray, work, tasks, stop)
         finally:
             ray.shutdown()
 
 
-def _carried_out(
+def _perform(
     ray: Any, work: Work, tasks: Iterable[Task], stop: Callable[[], bool]
 ) -> Iterator[tuple[int, Entry | None]]:
-    remote = ray.remote(num_cpus=1, max_retries=NODES_LOST)(_work)
-    trusted, ahead = trust.now(), iter(tasks)
-    under_way: dict[Any, Task] = {}
+    remote = ray.remote(num_cpus=1, max_retries=MOST_RESTARTS)(_work)
+    trusted = trust.now()
+    pending = iter(tasks)
+    running: dict[Any, Task] = {}
     while not stop():
         room = AHEAD * max(int(ray.cluster_resources().get("CPU", 1)), 1)
-        while len(under_way) < room and (task := next(ahead, None)):
-            under_way[remote.remote(work, task[1], trusted)] = task
-        if not under_way:
+        while len(running) < room and (task := next(pending, None)):
+            running[remote.remote(work, task[1], trusted)] = task
+        if not running:
             return
-        for done in ray.wait(list(under_way), num_returns=1, timeout=POLL)[0]:
-            number = under_way.pop(done)[0]
+        for done in ray.wait(list(running), num_returns=1, timeout=POLL)[0]:
+            number = running.pop(done)[0]
             try:
                 yield number, ray.get(done)
             except ray.exceptions.RayError as error:
                 if isinstance(error, ray.exceptions.RayTaskError):
-                    raise error.as_instanceof_cause() from None  # a defect
+                    raise error.as_instanceof_cause() from None  # an error in boatsim
                 yield number, None
 
 
-def _work(work: Work, told: Any, trusted: trust.Trust) -> Entry:
-    """One task, on whatever node."""
+def _work(work: Work, argument: Any, trusted: trust.Trust) -> Entry:
+    """Perform one task on a node."""
     trust.adopt(trusted)
-    return work(told)
+    return work(argument)
 
 
 def _ray() -> Any:

@@ -1,0 +1,207 @@
+"""Implementation of `boatsim list` and `boatsim show`: names and descriptions of all content."""
+
+from collections.abc import Sequence
+from dataclasses import fields
+from fnmatch import fnmatchcase
+from math import isnan
+from pathlib import Path
+
+from boatsim.cli.entry import CLASSES, class_entry
+from boatsim.errors import BadInput, unknown_name
+from boatsim.files import read_toml, tables
+from boatsim.physics import content, vessel
+from boatsim.physics.base import Effect
+from boatsim.physics.vessel import CommandChannel, Vessel
+from boatsim.simulate import cases
+
+LISTED_KINDS = ("vessels", "controllers", "effects", "sensors", "measures", "scenarios")
+
+
+def list_content(kind: str | None, like: str | None = None) -> list[str]:
+    """Return the lines of `boatsim list`: a heading per kind, then a name and its description.
+
+    Args:
+        kind: One of LISTED_KINDS; None for all of them.
+        like: Text that a name contains, or a pattern that it matches; None for all names.
+
+    Raises:
+        BadInput: No name is like `like`.
+    """
+    kinds = LISTED_KINDS if kind is None else (kind,)
+    lines: list[str] = []
+    every_name: list[str] = []
+    for plural in kinds:
+        one = plural.removesuffix("s")
+        names = content.all_names(one)
+        every_name += names
+        if like is not None:
+            names = [name for name in names if _is_like(name, like)]
+            if not names:
+                continue
+        if lines:
+            lines.append("")
+        lines.append(f"{plural}:")
+        width = max(map(len, names), default=0)
+        for name in names:
+            lines.append(f"  {name:{width}}  {_summary(one, name)}")
+    if like is not None and not lines:
+        what = "name" if kind is None else kind.removesuffix("s")
+        raise BadInput(unknown_name(what, like, every_name))
+    return lines
+
+
+def _is_like(name: str, like: str) -> bool:
+    if any(sign in like for sign in "*?["):
+        return fnmatchcase(name, like)
+    return like in name
+
+
+def _summary(kind: str, name: str) -> str:
+    """One line about an item."""
+    if kind == "scenario":
+        return str(cases.content(name)[0].get("about", ""))
+    if kind == "vessel":
+        return str(read_toml(content.find(kind, name)).get("about", ""))
+    return str(content.load_class(kind, name).words)
+
+
+def describe(name: str) -> list[str]:
+    """Return the lines of `boatsim show`: all items of a name, or the item of a file or folder.
+
+    Args:
+        name: Name of an item, a .py or .toml file, or the folder of a vessel.
+
+    Raises:
+        BadInput: There is no such item.
+    """
+    if not name:
+        raise BadInput("the name is empty; boatsim list prints all names")
+    if name.endswith(".py"):
+        return _class_lines("effect", name)
+    if name.endswith(".toml"):
+        if "freedoms" in read_toml(Path(name)):
+            return _vessel_lines(name)
+        return _scenario_lines(name)
+    found = []
+    for kind in CLASSES:
+        if name in content.all_names(kind):
+            found.append(_class_lines(kind, name))
+    if name in content.all_names("vessel") or (Path(name) / "vessel.toml").is_file():
+        found.append(_vessel_lines(name))
+    scenarios = content.all_names("scenario")
+    if name in scenarios or any(one.rpartition("/")[2] == name for one in scenarios):
+        found.append(_scenario_lines(name))
+    if not found:
+        every_name = set(scenarios).union(
+            content.all_names("vessel"), *map(content.all_names, CLASSES)
+        )
+        raise BadInput(unknown_name("name", name, every_name))
+    lines = found[0]
+    for more in found[1:]:
+        lines += ["", *more]
+    return lines
+
+
+def _class_lines(kind: str, name: str) -> list[str]:
+    """Description of an effect, controller, measure or sensor."""
+    item = class_entry(kind, name)
+    lines = [f"{item.name}: {kind}", f"  {item.words}"]
+    lines += [f"  {line}".rstrip() for line in item.doc]
+    lines += [f"  {label}: {text}" for label, text in item.facts]
+    lines += _align(item.parameters, "  ")
+    return [*lines, "example:", *(f"  {line}" for line in item.example)]
+
+
+def _vessel_lines(name: str) -> list[str]:
+    """Description of a vessel of the library or of a user's folder."""
+    boat = vessel.load(name)
+    body = boat.body
+    inertia = f"inertia in roll {body.roll_inertia:g} and yaw {body.yaw_inertia:g} kg m^2"
+    lines = [
+        f"{boat.name}: vessel",
+        f"  {boat.about}",
+        f"  source: {boat.source}",
+        f"  file: {boat.file}",
+        f"  length {boat.length:g} m, beam {boat.beam:g} m, draught {boat.draught:g} m; "
+        f"degrees of freedom: {', '.join(boat.dof)}",
+        f"  mass {body.mass:g} kg, {inertia}",
+    ]
+    if boat.commands:
+        lines.append("  channels:")
+        lines += _align([_channel_row(boat, n, c) for n, c in boat.commands.items()], "    ")
+    if boat.measured:
+        lines.append("  measured:")
+        lines += _align([(n, "", m.about) for n, m in boat.measured.items()], "    ")
+    lines.append("  effects:")
+    lines += map(_effect_line, boat.effects)
+    if boat.loads:
+        lines.append(f"  loads: {', '.join(boat.loads)}")
+    if uncertainty := boat.diagnosis.coefficient_uncertainty:
+        shares = ", ".join(f"{key} {100 * share:g} %" for key, share in uncertainty.items())
+        lines.append(f"  uncertainty: {shares}")
+    address = boat.name
+    file = boat.name
+    if content.vessel_address(boat.file).endswith(".toml"):  # the vessel of a user
+        address = name
+        file = name if name.endswith(".toml") else f"{name}/vessel.toml"
+    example = [f'  vessel = "{file}"', f"  boatsim diagnose RUN.csv --vessel {address}"]
+    return [*lines, "example:", *example]
+
+
+def _channel_row(boat: Vessel, name: str, channel: CommandChannel) -> tuple[str, str, str]:
+    """Name, range with unit, and description of a command channel."""
+    span = f"{channel.low:g} to {channel.high:g} {boat.unit(name)}".rstrip()
+    return name, span, channel.about
+
+
+def _align(rows: Sequence[Sequence[str]], indent: str) -> list[str]:
+    """Lines of a table whose columns are as wide as their longest cell."""
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    lines = []
+    for row in rows:
+        cells = map(str.ljust, row, widths)
+        lines.append(f"{indent}{'  '.join(cells)}".rstrip())
+    return lines
+
+
+def _effect_line(effect: Effect) -> str:
+    """Name of an effect, and its parameters that differ from their defaults, with units."""
+    kind = type(effect)
+    name = effect.name if effect.name == kind.idea() else f"{effect.name} ({kind.idea()})"
+    default = {field.name: field.default for field in fields(effect)}
+    cells = []
+    for key, param in kind.params().items():
+        value = getattr(effect, key)
+        if value != default[key] and not isnan(value):
+            cells.append(f"{key} = {value:.4g} {param.unit}".rstrip())
+    return f"    {name}: {', '.join(cells) or 'default values'}"
+
+
+def _scenario_lines(name: str) -> list[str]:
+    """Description of a scenario, with the values of the files it builds on."""
+    if name.endswith(".toml") and cases.cases(content.find("scenario", name)):
+        return [f"{Path(name).name}: scenarios", *(f"  {case}" for case in cases.meant(name))]
+    table, place = cases.content(name)
+    lines = [
+        f"{place.name}: scenario",
+        f"  {table.get('about', '')}".rstrip(),
+        f"  file: {place.path}",
+    ]
+    units = {"vessel": "", "load": "", "duration": " s", "step": " s", "seed": ""}
+    for key, unit in units.items():
+        if key in table:
+            value = table[key]
+            text = ", ".join(map(str, value)) if isinstance(value, list) else value
+            lines.append(f"  {key}: {text}{unit}")
+    for key in ("controller", "measure"):
+        inner = table.get(key)
+        if isinstance(inner, dict):
+            values = ", ".join(f"{k} = {v}" for k, v in inner.items() if k != "use")
+            lines.append(f"  {key}: {inner.get('use', '')}" + (f" ({values})" if values else ""))
+    if effects := [str(effect.get("use")) for effect in tables(table.get("effect"))]:
+        lines.append(f"  effects: {', '.join(effects)}")
+    metrics = table.get("norms")
+    if isinstance(metrics, dict) and metrics:
+        lines.append(f"  metrics: {', '.join(metrics)}")
+    address = name if name.endswith(".toml") else place.name
+    return [*lines, "example:", f"  boatsim run {address}", f'  base = "{address}"']

@@ -1,0 +1,159 @@
+"""Tables on the terminal: the metrics of a run with their bands, and plain tables of text."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Literal
+
+from boatsim.errors import printable
+
+if TYPE_CHECKING:
+    from rich.table import Table
+
+    from boatsim.simulate.evaluation import MetricEntry, RunEntry
+
+UNLIMITED_WIDTH = 10_000  # [columns] more than any table needs
+
+
+def print_metrics(run: "RunEntry", folder: Path) -> None:
+    """Print the metrics of a run, the meaning of their names, and why some have no value.
+
+    Args:
+        run: Content of norms.json.
+        folder: Output folder of the run.
+    """
+    from rich.console import Console
+    from rich.table import Table
+    from rich.text import Text
+
+    state = "" if run["complete"] else ", interrupted"
+    title = Text(printable(f"{run['scenario']}, {run['controller']}, seed {run['seed']}{state}"))
+    metrics = run["norms"]
+    table = Table(title=title, pad_edge=False)
+    for heading, justify in _columns(metrics.values()).items():
+        table.add_column(heading, justify=justify, no_wrap=True)
+    for name, metric in metrics.items():
+        cells = {"metric": printable(name), **_cells(metric)}
+        table.add_row(*(cells[str(column.header)] for column in table.columns))
+    console = Console()
+    console.print(table if metrics else title)
+    for line in [*meanings(metrics), *reasons(metrics), f"written to {folder}"]:
+        console.print(Text(printable(line)), soft_wrap=True)
+
+
+def _columns(metrics: Iterable["MetricEntry"]) -> dict[str, Literal["left", "right"]]:
+    """Headings with their alignment; a column of bands only if one of the metrics has one."""
+    columns: dict[str, Literal["left", "right"]] = {"metric": "left", "value": "right"}
+    metrics = list(metrics)
+    if any(metric["published"] is not None for metric in metrics):
+        columns |= {"published": "right", "verdict": "left"}
+    if any(metric["guard"] for metric in metrics):
+        columns |= {"band": "left", "met": "left"}
+    return columns
+
+
+def _cells(metric: "MetricEntry") -> dict[str, str]:
+    """Text of each cell of a metric's row, by heading."""
+    from boatsim.simulate.evaluation import MISSED, NO_TOLERANCE, REPRODUCED
+
+    # Short words, so that the table fits into 80 columns.
+    verdicts = {REPRODUCED: "same", MISSED: "[bold]differs[/]", NO_TOLERANCE: "unstated"}
+    met = {None: "", True: "[green]yes[/]", False: "[bold red]no[/]"}
+    published = metric["published"]
+    return {
+        "value": format_value(metric),
+        "published": "" if published is None else f"{published:.4g}",
+        "verdict": verdicts.get(metric["verdict"] or "", ""),
+        "band": _format_band(metric["guard"]),
+        "met": met[metric["ok"]],
+    }
+
+
+def format_value(metric: "MetricEntry") -> str:
+    """Return the value of a metric with its unit, or in two words why it has none.
+
+    Args:
+        metric: Entry of norms.json.
+    """
+    value = metric["value"]
+    if value is None:
+        return (metric["lacking"] or "not reached").partition(":")[0]
+    return f"{value:.4g} {metric['unit']}".rstrip()
+
+
+def meanings(metrics: Mapping[str, "MetricEntry"]) -> list[str]:
+    """Return a line that explains the endings of metric names that do not explain themselves.
+
+    Args:
+        metrics: Entries of norms.json by name.
+
+    Returns:
+        One line, or none.
+    """
+    kinds: dict[str, str] = {}
+    for name, metric in metrics.items():
+        ending = name.rpartition("_")[2]
+        if metric["kind"] not in ("", ending):
+            kinds.setdefault(metric["kind"], ending)
+    line = "; ".join(f"{ending}: {kind}" for kind, ending in kinds.items())
+    return [line] if line else []
+
+
+def reasons(metrics: Mapping[str, "MetricEntry"]) -> list[str]:
+    """Return a line for each reason why metrics have no value.
+
+    Args:
+        metrics: Entries of norms.json by name.
+    """
+    names: dict[str, list[str]] = {}
+    for name, metric in metrics.items():
+        if metric["lacking"] and ":" in metric["lacking"]:
+            names.setdefault(metric["lacking"], []).append(name)
+    return [f"{', '.join(affected)} {reason}" for reason, affected in names.items()]
+
+
+def _format_band(band: Sequence[float | None] | None) -> str:
+    low, high = band or (None, None)
+    if low is not None and high is not None:
+        return f"{low:.4g} to {high:.4g}"
+    if low is not None:
+        return f"at least {low:.4g}"
+    if high is not None:
+        return f"at most {high:.4g}"
+    return ""
+
+
+def print_rows(title: str, head: Sequence[str], rows: Sequence[Sequence[str]], left: int) -> None:
+    """Print a table of text.
+
+    Args:
+        title: Title above the table.
+        head: Headings of the columns.
+        rows: Cells of each row.
+        left: Number of columns, from the first, that are aligned to the left.
+    """
+    from rich.table import Table
+    from rich.text import Text
+
+    table = Table(title=Text(printable(title)), pad_edge=False)
+    for index, heading in enumerate(head):
+        side: Literal["left", "right"] = "left" if index < left else "right"
+        table.add_column(Text(printable(heading)), justify=side, no_wrap=True)
+    for row in rows:
+        table.add_row(*map(Text, map(printable, row)))
+    print_table(table)
+
+
+def print_table(table: "Table") -> None:
+    """Print a table; in a file no cell is cut, however wide the table is.
+
+    Args:
+        table: Table of rich.
+    """
+    from rich.console import Console
+
+    console = Console()
+    if not console.is_terminal:
+        options = console.options.update(max_width=UNLIMITED_WIDTH)
+        width = console.measure(table, options=options).maximum
+        console = Console(width=max(console.width, width))
+    console.print(table)
