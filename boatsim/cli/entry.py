@@ -96,8 +96,8 @@ def _effect_facts(cls: type[Effect]) -> Iterator[tuple[str, str]]:
         yield f"on.{role}", f"{port.words} [{port.unit}]{default}"
     if issubclass(cls, Channel) and cls.acts_on:
         yield "acts on", f"commands of {cls.acts_on.replace('|', ' or ')}"
-    if cls.rides:
-        yield "extends", cls.rides
+    if cls.per_instance_of:
+        yield "acts on each", cls.per_instance_of
     if cls.needs:
         yield "needs", f"degrees of freedom {' and '.join(cls.needs)}"
     if cls.ruled_out_by:
@@ -107,8 +107,8 @@ def _effect_facts(cls: type[Effect]) -> Iterator[tuple[str, str]]:
         yield "ruled out by", " or ".join(excluding)
     if cls.facts:
         yield "needs the facts", ", ".join(cls.facts)
-    if cls.told_by:
-        yield "only on request", f"looks the same as {' or '.join(cls.told_by)}"
+    if cls.confounded_with:
+        yield "only on request", f"looks the same as {' or '.join(cls.confounded_with)}"
 
 
 def _toml(value: object) -> str:
