@@ -65,7 +65,9 @@ def diagnose(runs: list[Path], options: DiagnosisOptions, out: Path) -> int:
                 config=from_settings(dict(options.settings)),
             )
         except BadInput as error:
-            raise BadInput(f"{error}{correction_hint(runs, held_out, options.vessel, load)}") from None
+            raise BadInput(
+                f"{error}{correction_hint(runs, held_out, options.vessel, load)}"
+            ) from None
         report("writing the report", WRITING)
         write_error = None
         try:
