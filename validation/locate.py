@@ -2,8 +2,8 @@
 
 TRIALS/Txxx/ holds run_1.csv, run_2.csv, answer.json and missing_force_1.csv, missing_force_2.csv: the force missing on
 the vessel as written (body axes, 1 s averages) at times t_s. Each trial's noise is fitted, its coefficients are
-recalibrated, and the force that `diagnose.locate.forces` finds, an average over 1 s too, is compared sample by sample,
-one sample per time and axis:
+recalibrated, and the force that `boatsim.diagnosis.locate.missing_force` finds, an average over 1 s too, is compared
+sample by sample, one sample per time and axis:
 
 inside     share of samples at which the true force lies within 2 sd of the found one, the mean over trials
 flagged    samples at which zero lies outside the 2-sd band of the found force
