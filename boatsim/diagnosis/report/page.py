@@ -5,6 +5,7 @@ from pathlib import Path
 
 from boatsim.diagnosis.checks.finding import LOG_NOT_BOAT
 from boatsim.diagnosis.report.blocks import Section, as_text, safe
+from boatsim.diagnosis.report.described_terms import what_of
 from boatsim.diagnosis.report.findings import Findings
 from boatsim.diagnosis.report.formatting import capital, listed, plain
 from boatsim.diagnosis.report.html_page import TEMPLATES, rendered
@@ -16,7 +17,7 @@ from boatsim.files import replacing
 VERDICTS = {  # verdict of the answer -> words at the top of the report
     "named": "Effect identified",
     "ambiguous": "Effect identified, with look-alikes",
-    "described": "Cause outside the candidates, described by a formula",
+    "described": "Described by a formula",
     "unknown": "Cause outside the candidates",
     "nothing_missing": "Nothing missing",
 }
@@ -89,12 +90,17 @@ def markdown(findings: Findings, sections: Sequence[Section]) -> str:
 
 
 def _headline(f: Findings) -> str:
-    """Return the sentence of the answer, or only the names of the effects where it is long."""
+    """Return the sentence of the answer, or only names of effects and forces where it is long."""
     whole = _sentence(f)
     if _log_problem(f):
         return f"{whole.partition('. ')[0]}."
     names = [plain(e["name"]) for e in f.answer["effects"]]
-    if len(whole) <= LONGEST_HEADLINE or not names:
+    if len(whole) <= LONGEST_HEADLINE:
+        return whole
+    if not names and f.answer["described"]:
+        forces = dict.fromkeys(what_of(law["axis"]) for law in f.answer["described"])
+        return f"{capital(listed(forces))} that no candidate effect explains."
+    if not names:
         return whole
     rest = ""
     if f.answer["unknown"]["flag"]:
