@@ -150,7 +150,7 @@ def test_a_table_can_be_left_out() -> None:
         ("goal.surge_mps", 1, "name one"),
         ("duratoin", 1, "did you mean 'duration'?"),
         ("load+", "heavy", "no number is specified"),
-        ("port.x+", "heavy", "no number"),
+        ("port.x+", "heavy", "not a number"),
         ("", 1, "separated by dots"),
         ("a..b", 1, "separated by dots"),
     ],
