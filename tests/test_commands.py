@@ -13,7 +13,7 @@ from boatsim.cli import app
 from boatsim.diagnosis.filter import map_recording
 from boatsim.errors import BadInput
 from boatsim.physics import vessel
-from boatsim.physics.commands import taken_row, taken_rows
+from boatsim.physics.commands import clipped_row, clipped_rows
 from boatsim.physics.content import load_class, names
 from boatsim.physics.program import Program
 from boatsim.physics.vessel import Vessel
@@ -78,7 +78,7 @@ def boatsim(*arguments: object) -> Any:
 
 
 def test_nothing_leaves_its_range(boat: Vessel) -> None:
-    assert taken_row(boat, WILD).tolist() == [100.0, -100.0, 3.2, 0.0]
+    assert clipped_row(boat, WILD).tolist() == [100.0, -100.0, 3.2, 0.0]
 
 
 def test_rows_of_a_recording_are_limited_and_what_it_lacks_is_neutral(tmp_path: Path) -> None:
@@ -86,7 +86,7 @@ def test_rows_of_a_recording_are_limited_and_what_it_lacks_is_neutral(tmp_path: 
         "steer_starboard_rad = { low", "steer_starboard_rad = { neutral = 0.5, low"
     )
     own = vessel.load(str(written(tmp_path, "test_boat", text)))
-    rows = taken_rows(
+    rows = clipped_rows(
         own, {"thrust_port_N": np.array([1.0, 500.0]), "sent_thrust_port_N": np.full(2, 7.0)}, 2
     )
     assert rows.tolist() == [[1.0, 0.0, 0.0, 0.5], [100.0, 0.0, 0.0, 0.5]]
@@ -95,7 +95,7 @@ def test_rows_of_a_recording_are_limited_and_what_it_lacks_is_neutral(tmp_path: 
 @pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf])
 def test_a_command_that_is_not_finite_is_refused(boat: Vessel, value: float) -> None:
     for way in (
-        lambda: taken_row(boat, {"steer_port_rad": value}),
+        lambda: clipped_row(boat, {"steer_port_rad": value}),
         lambda: Engine(boat).command({"steer_port_rad": value}),
     ):
         with pytest.raises(
@@ -142,13 +142,13 @@ def test_a_boat_left_alone_stays_where_it_is() -> None:
 @pytest.mark.parametrize("name", names("vessel"))
 def test_every_vessel_takes_its_own_neutral(name: str) -> None:
     boat = vessel.load(name)
-    assert taken_row(boat, {}).tolist() == [c.neutral for c in boat.commands.values()]
+    assert clipped_row(boat, {}).tolist() == [c.neutral for c in boat.commands.values()]
 
 
 def test_a_pulse_that_is_not_sent_is_the_neutral_one() -> None:
     boat = vessel.load("twin_usv")
-    assert taken_row(boat, {}).tolist() == [0.0, 0.0, 1500.0, 1500.0]
-    assert taken_row(boat, {"pwm_left_us": 0.0}).tolist()[2:] == [800.0, 1500.0]
+    assert clipped_row(boat, {}).tolist() == [0.0, 0.0, 1500.0, 1500.0]
+    assert clipped_row(boat, {"pwm_left_us": 0.0}).tolist()[2:] == [800.0, 1500.0]
 
 
 @pytest.mark.parametrize(

@@ -306,7 +306,7 @@ def test_what_a_file_imports_by_dots_is_reached_too(
     monkeypatch.setattr(dependency_hash, "PACKAGE", copied / "boatsim")
     effect = physics / "effects" / "by_dots.py"
     effect.write_text(
-        "from .thruster import at_mount\nfrom ..noise import drawn\nfrom .. import particulars\n"
+        "from .thruster import at_mount\nfrom ..noise import uniform\nfrom .. import particulars\n"
     )
     reached = dependency_hash.reach(effect)
     assert {

@@ -296,7 +296,7 @@ def test_9_processes_may_run_what_their_parent_may(tmp_path: Path) -> None:
     )
     assert {p.name for p in (tmp_path / "out").iterdir()} == {"still", "twin"} and ran.exists()
     with trust.trusting(allowed=[tmp_path], ask=lambda folder: True):
-        assert trust.now().ask is None and trust.now().holds(ran)
+        assert trust.current_trust().ask is None and trust.current_trust().holds(ran)
 
 
 def test_10_trust_in_python_ends_with_its_block(tmp_path: Path) -> None:

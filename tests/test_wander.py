@@ -18,7 +18,7 @@ from boatsim.diagnosis.filter import (
 )
 from boatsim.physics import vessel
 from boatsim.physics.base import Array
-from boatsim.physics.facts import wrong
+from boatsim.physics.facts import first_invalid
 from boatsim.physics.program import Program
 from boatsim.recordings.table import Recording
 
@@ -143,6 +143,6 @@ def test_a_stated_wander_is_known_from_the_start(tmp_path: Path) -> None:
 
 
 def test_a_stated_wander_must_be_complete() -> None:
-    assert wrong({"position_wander_sd_m": 0.1}) is not None
-    assert wrong({"position_wander_sd_m": 0.1, "position_wander_time_s": -1.0}) is not None
-    assert wrong({"position_wander_sd_m": 0.1, "position_wander_time_s": 30.0}) is None
+    assert first_invalid({"position_wander_sd_m": 0.1}) is not None
+    assert first_invalid({"position_wander_sd_m": 0.1, "position_wander_time_s": -1.0}) is not None
+    assert first_invalid({"position_wander_sd_m": 0.1, "position_wander_time_s": 30.0}) is None

@@ -342,7 +342,7 @@ def _run_parallel(tasks: Sequence[Task], jobs: int, report: progress.RunReport) 
     with ignored_signals():  # Child processes inherit ignored signals.
         stop = context.Event()
         reached = context.Array("d", len(tasks))
-    arguments = (stop, reached, trust.now())
+    arguments = (stop, reached, trust.current_trust())
     with ProcessPoolExecutor(jobs, context, _start_worker, arguments) as pool:
         with ignored_signals():
             futures = [pool.submit(_run_in_worker, i, task) for i, task in enumerate(tasks)]

@@ -13,7 +13,7 @@ import numpy as np
 from boatsim.errors import BadInput, unknown_name
 from boatsim.physics.base import Channel, Effect, Measurement, Release
 from boatsim.physics.content import load_class, names
-from boatsim.physics.facts import WANDER, in_words, ruled_out
+from boatsim.physics.facts import WANDER, describe_fact, excluding_fact
 from boatsim.physics.program import Program
 from boatsim.physics.vessel import Vessel, check_bindings
 
@@ -90,7 +90,7 @@ def library_for(
             entries[effect.name] = effect
             if (
                 why := reasons.get(called)
-                or ruled_out(kind.ruled_out_by, known)
+                or excluding_fact(kind.ruled_out_by, known)
                 or _unseen(kind, columns)
             ):
                 left_out[effect.name] = why
@@ -167,7 +167,7 @@ def lacking(
     if "" not in axes and not axes & set(vessel.dof):
         return f"no freedom in {' or '.join(sorted(axes))}"
     if fact := next((f for f in kind.facts if f not in facts), ""):
-        return f"nobody states {in_words(fact)}"
+        return f"nobody states {describe_fact(fact)}"
     if issubclass(kind, Measurement) and kind.late is not None and not vessel.actuators:
         return "no command to be late behind"
     if kind.alone and (there := vessel.names_of(kind.idea())):
@@ -241,7 +241,7 @@ def without_ruled_out(vessel: Vessel, facts: Mapping[str, object]) -> Vessel:
     known = {**vessel.diagnosis.facts, **facts}
     return replace(
         vessel,
-        effects=tuple(e for e in vessel.effects if not ruled_out(type(e).ruled_out_by, known)),
+        effects=tuple(e for e in vessel.effects if not excluding_fact(type(e).ruled_out_by, known)),
     )
 
 

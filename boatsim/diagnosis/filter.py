@@ -16,7 +16,7 @@ from boatsim.diagnosis import priors
 from boatsim.diagnosis.config import DEFAULT, DiagnosisConfig, FilterConfig
 from boatsim.errors import BadInput
 from boatsim.physics.base import Unsteady, Wandering
-from boatsim.physics.commands import taken_rows
+from boatsim.physics.commands import clipped_rows
 from boatsim.physics.kernel.records import (
     FilterStart,
     History,
@@ -516,7 +516,7 @@ def map_recording(
     scale = {family: own.get(family, sd) / sd for family, sd in shared.items()}
     commands = np.zeros((len(recording), 1))
     if vessel.inputs:
-        commands = taken_rows(vessel, recording.signals, len(recording))
+        commands = clipped_rows(vessel, recording.signals, len(recording))
     facts = facts_of(vessel, recording)
     mapped = MappedRecording(
         recording.name,
@@ -569,7 +569,7 @@ def _commands_at_own_times(recording: Recording, vessel: Vessel) -> tuple[Array,
     if recording.orders is None or not vessel.inputs:
         return np.zeros(0), np.zeros((0, 0))
     t, signals = recording.orders.t, recording.orders.signals
-    return command_changes(t, taken_rows(vessel, signals, len(t)))
+    return command_changes(t, clipped_rows(vessel, signals, len(t)))
 
 
 def hull_motion(

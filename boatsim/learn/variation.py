@@ -39,7 +39,7 @@ class Variation:
         which = np.minimum((lots[:, 0] * len(self.boats)).astype(np.int64), len(self.boats) - 1)
         world.assign(which, some)
         if self.spread is not None:
-            for name, change in self.spread.drawn(lots[:, 1 + len(self.draws) :]).items():
+            for name, change in self.spread.sample(lots[:, 1 + len(self.draws) :]).items():
                 about = _about(self.boats[0], name)
                 value = world.get(name)[some] * change.factor + change.shift
                 world.set(name, np.clip(value, about.low, about.high), some)
@@ -81,7 +81,7 @@ def variation(
     draws = [draw(key, str(law)) for key, law in said.items() if key not in held]
     spread = boats[0].spread
     return Variation(
-        boats, draws, spread.times(wide) if spread is not None and wide > 0.0 else None
+        boats, draws, spread.scaled(wide) if spread is not None and wide > 0.0 else None
     )
 
 

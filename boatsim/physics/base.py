@@ -1,7 +1,7 @@
-"""All that the file of an effect needs, in one import: kinds, parameters, and the numbers laws take and give.
+"""All that the file of an effect needs, in one import: kinds of effects, parameters, arguments and results of laws.
 
-An effect is one idea of physics in one file of `boatsim/physics/effects/`. Its law is a small compiled function that
-the MuJoCo callback, the twin and the diagnosis filter all call, so that simulator and diagnosis can not disagree.
+An effect is one physical effect in one file of `boatsim/physics/effects/`. Its law is a small compiled function that the
+MuJoCo callback, the compiled engine and the diagnosis filter all call, so that simulator and diagnosis always agree.
 Axes are SNAME: x forward, y starboard, z down, heading and yaw rate clockwise seen from above.
 """
 
@@ -83,16 +83,16 @@ __all__ = [
 
 
 def motion(current: tuple[float, float] = (0.0, 0.0), **given: float) -> Motion:
-    """A motion for tests and plots: what is not given is zero, water velocities follow from the current [m/s].
+    """Return a motion for tests and plots.
 
-    The current is that past level axes; for a hull that pitches give `ur`, `vr`, `wr` themselves.
+    Args:
+        current: Velocity of the water, north and east [m/s]. It holds for level axes; for a hull that pitches give
+            `ur`, `vr` and `wr` directly.
+        given: Fields of `Motion`; the others are zero, or follow from these.
     """
     c, s = cos(given.get("psi", 0.0)), sin(given.get("psi", 0.0))
-    full = dict.fromkeys(Motion._fields, 0.0) | {
-        "cos_psi": c,
-        "sin_psi": s,
-        "wr": given.get("w", 0.0),
-    }
+    full = dict.fromkeys(Motion._fields, 0.0)
+    full |= {"cos_psi": c, "sin_psi": s, "wr": given.get("w", 0.0)}
     full["ur"] = given.get("u", 0.0) - (c * current[0] + s * current[1])
     full["vr"] = given.get("v", 0.0) - (c * current[1] - s * current[0])
     return Motion(**(full | given))

@@ -1,6 +1,6 @@
-"""What a vessel takes of what is sent to it: within each channel's range, neutral where nothing is sent.
+"""The commands that a vessel accepts: within the range of each channel, neutral where nothing is sent.
 
-All ways in end here: controllers, starts, environments, recordings, rows for the twin.
+Controllers, starts, environments, recordings and simulations all use these functions.
 """
 
 from collections.abc import Mapping
@@ -11,34 +11,67 @@ from boatsim.errors import BadInput
 from boatsim.physics.base import Array
 from boatsim.physics.vessel import Vessel
 
-SLACK = 1e-6  # share of a channel's range by which rounding may pass its end
+SLACK = 1e-6  # share of a channel's range by which rounding may exceed it
 
 
-def sent_row(vessel: Vessel, given: Mapping[str, float]) -> Array:
-    """(C,) as sent, in the order of the vessel's inputs, neutral where not given, in surroundings as it has them.
+def command_row(vessel: Vessel, given: Mapping[str, float]) -> Array:
+    """Return commands (inputs,) as sent, in the order of the vessel's inputs.
 
-    Raises BadInput for a command it does not take.
+    Args:
+        vessel: The vessel.
+        given: Commands by name. The others are neutral; measured surroundings have their neutral values.
+
+    Raises:
+        BadInput: The vessel has no such command.
     """
     for name in given:
         if name not in vessel.commands:
             raise BadInput(vessel.unknown_command(name))
-    sent = [given.get(n, c.neutral) for n, c in vessel.commands.items()]
-    return np.array([*sent, *(m.neutral for m in vessel.measured.values())], dtype=float)
+    sent = [given.get(name, channel.neutral) for name, channel in vessel.commands.items()]
+    sent += [measured.neutral for measured in vessel.measured.values()]
+    return np.array(sent, dtype=float)
 
 
-def taken_row(vessel: Vessel, given: Mapping[str, float]) -> Array:
-    """(C,) commands that act when these are sent. Raises BadInput."""
-    return taken(vessel, sent_row(vessel, given))
+def clipped_row(vessel: Vessel, given: Mapping[str, float]) -> Array:
+    """Return commands (inputs,) that act when these are sent: `clip` of `command_row`.
+
+    Args:
+        vessel: The vessel.
+        given: Commands by name; the others are neutral.
+
+    Raises:
+        BadInput: The vessel has no such command, or a value is not finite.
+    """
+    return clip(vessel, command_row(vessel, given))
 
 
-def taken_rows(vessel: Vessel, signals: Mapping[str, Array], count: int) -> Array:
-    """(N, C) inputs that act under the columns of a recording of `count` rows; other columns are passed over."""
-    neutral = zip(vessel.inputs, sent_row(vessel, {}).tolist(), strict=True)
-    return taken(vessel, np.column_stack([signals.get(n, np.full(count, x)) for n, x in neutral]))
+def clipped_rows(vessel: Vessel, signals: Mapping[str, Array], count: int) -> Array:
+    """Return inputs (N, inputs) that act under the columns of a recording.
+
+    Args:
+        vessel: The vessel.
+        signals: Columns (N,) by name; an input without a column is neutral, other columns are ignored.
+        count: Number of rows N.
+
+    Raises:
+        BadInput: A value is not finite.
+    """
+    columns = []
+    for name, neutral in zip(vessel.inputs, command_row(vessel, {}).tolist(), strict=True):
+        columns.append(signals.get(name, np.full(count, neutral)))
+    return clip(vessel, np.column_stack(columns))
 
 
-def taken(vessel: Vessel, sent: Array) -> Array:
-    """Inputs (..., C) that act when these are sent, in the vessel's order. Raises BadInput for one not finite."""
+def clip(vessel: Vessel, sent: Array) -> Array:
+    """Return inputs limited to the ranges of their channels.
+
+    Args:
+        vessel: The vessel.
+        sent: (..., inputs) in the vessel's order.
+
+    Raises:
+        BadInput: A value is not finite.
+    """
     limits = vessel.limits()
     if not limits:
         return sent
@@ -47,16 +80,21 @@ def taken(vessel: Vessel, sent: Array) -> Array:
         place = tuple(np.argwhere(~np.isfinite(sent))[0])
         name = list(limits)[place[-1]]
         what = "command" if name in vessel.commands else "measured"
+        least, most = limits[name]
         raise BadInput(
-            f"{vessel.name}: {what} {name} = {sent[place]:g}; allowed {limits[name][0]:g} to {limits[name][1]:g}"
+            f"{vessel.name}: {what} {name} = {sent[place]:g}; allowed {least:g} to {most:g}"
         )
     return np.asarray(np.clip(sent, low, high), dtype=float)
 
 
-def beyond(vessel: Vessel, sent: Array) -> list[str]:
-    """Channels of which more is sent (C,) than their range holds."""
-    passed = np.abs(sent - taken(vessel, sent)).tolist()
-    pairs = zip(
-        vessel.commands.items(), passed, strict=False
-    )  # what is measured comes behind and has no range
-    return [n for (n, c), off in pairs if off > SLACK * (c.high - c.low)]
+def saturated_channels(vessel: Vessel, sent: Array) -> list[str]:
+    """Return the names of channels that are sent more than their range.
+
+    Args:
+        vessel: The vessel.
+        sent: (inputs,) in the vessel's order.
+    """
+    excess = np.abs(sent - clip(vessel, sent)).tolist()
+    # measured inputs follow the commands and have no range
+    pairs = zip(vessel.commands.items(), excess, strict=False)
+    return [name for (name, c), off in pairs if off > SLACK * (c.high - c.low)]

@@ -1,6 +1,6 @@
-"""Writes a vessel's effects out as the source of one program: `laws.py`, what they add up to, unrolled.
+"""Generates `laws.py` of a vessel's program: one function for each part, which calls the laws of all effects.
 
-Kinds say what they add (`boatsim.physics.kinds`); this module gathers their lines, part by part. The text is meant to
+Each kind of effect contributes its own lines (`boatsim.physics.kinds`), which this module collects. The text is meant to
 be read: `python -m boatsim.physics.program VESSEL` prints it.
 """
 
@@ -8,7 +8,9 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
 from inspect import getsourcefile
+from itertools import chain
 from math import cos, sin
+from textwrap import indent
 
 from boatsim.errors import BadInput
 from boatsim.physics.content import address, load_class, module_of, names
@@ -20,178 +22,205 @@ from boatsim.physics.vessel import Vessel
 
 
 def kinds() -> list[type[Kind]]:
-    """All kinds of effects, one a file of `boatsim/physics/kinds`."""
+    """Return all kinds of effects, one for each file of `boatsim/physics/kinds`."""
     found: list[type[Kind]] = []
     for name in names("kind"):
         module = module_of("kind", name)
-        found += [
-            k
-            for k in vars(module).values()
-            if isinstance(k, type)
-            and issubclass(k, Kind)
-            and k is not Kind
-            and k.__module__ == module.__name__
-        ]
+        for value in vars(module).values():
+            is_kind = isinstance(value, type) and issubclass(value, Kind) and value is not Kind
+            if is_kind and value.__module__ == module.__name__:
+                found.append(value)
     return found
 
 
 class Composition:
-    """Effects in their places: what each is called with, which signals pass through it."""
+    """The arguments with which the laws of each effect are called: parameters, signals, states."""
 
     def __init__(self, vessel: Vessel, effects: Sequence[Effect], offsets: Sequence[int]) -> None:
-        """Effects beyond the vessel's own stand behind switches; `offsets` says where each one's parameters begin."""
+        """Assign places to signals and states.
+
+        Args:
+            vessel: The vessel.
+            effects: The vessel's own effects, then candidates, which act where their switch is on.
+            offsets: Place of each effect's first parameter in the flat array.
+        """
         self.vessel, self.offsets = vessel, tuple(offsets)
         self.effects = tuple(effects)
         self.signals, self.commands = (*vessel.actuators, *vessel.readings), vessel.inputs
-        self.sums: Mapping[str, Sequence[str]] = (
-            vessel.sums if any(type(e).sees_held for e in self.effects) else {}
-        )
-        looking = [
-            i
-            for i, e in enumerate(self.effects)
-            if isinstance(e, Recall) and self._may_look_back(i, e)
-        ]
-        shown = (*vessel.held, *self.sums)
-        self._own = {i: len(shown) + k for k, i in enumerate(looking)}
-        self.held: Sequence[str] = (
-            *shown,
-            *(f"recalled by {self.effects[i].name}" for i in looking),
-        )
+        self.sums: Mapping[str, Sequence[str]] = {}
+        if any(type(e).sees_held for e in self.effects):
+            self.sums = vessel.sums
+        held = [*vessel.held, *self.sums]
+        self._own: dict[int, int] = {}
+        for i, effect in enumerate(self.effects):
+            if isinstance(effect, Recall) and self._may_look_back(i, effect):
+                self._own[i] = len(held)
+                held.append(f"recalled by {effect.name}")
+        self.held: Sequence[str] = tuple(held)
 
-    # What kinds may ask
+    # Used by the kinds of effects
     # -----------------------------------------------------------------------------------------------
 
     def sites(self, number: int) -> Sequence[Site]:
-        """The calls of an effect's laws: one, or one for each instance on which it acts."""
+        """Return the calls of an effect's laws: one, or one for each effect that it acts on.
+
+        Args:
+            number: Place of the effect.
+        """
         effect = self.effects[number]
         own = self._values(number)
-        held = ("act", "at", f"np.int64({self.own(number)})") if type(effect).sees_held else ()
-        if type(effect).per_instance_of:
-            carriers = [self.effects.index(e) for e in self.vessel.carriers(effect)]
-            return [
-                Site(
-                    number,
-                    own,
-                    (self._carried(i, type(effect).per_instance_of), self._values(i), *held),
-                )
-                for i in carriers
-            ]
-        return [Site(number, own, ((self._signals(number),) if type(effect).roles else ()) + held)]
+        held: tuple[str, ...] = ()
+        if type(effect).sees_held:
+            held = ("act", "at", f"np.int64({self.own(number)})")
+        if not type(effect).per_instance_of:
+            signals = (self._signals(number),) if type(effect).roles else ()
+            return [Site(number, own, signals + held)]
+        calls = []
+        for carrier in self.vessel.carriers(effect):
+            i = self.effects.index(carrier)
+            carried = self._carried(i, type(effect).per_instance_of)
+            calls.append(Site(number, own, (carried, self._values(i), *held)))
+        return calls
 
     def targets(self, number: int) -> Sequence[str]:
-        """Actuators that a channel effect acts on."""
+        """Return the actuators that a channel effect acts on.
+
+        Args:
+            number: Place of the effect.
+        """
         return self.vessel.targets(self.effects[number])
 
     def source(self, number: int, actuator: str) -> str | None:
-        """The command that feeds an actuator through a channel effect, if it takes one."""
+        """Return the command that drives an actuator through a channel effect, None if there is none.
+
+        Args:
+            number: Place of the effect.
+            actuator: Name of the actuator.
+        """
         return self.vessel.feeding_command(self.effects[number], actuator)
 
     def side(self, actuator: str) -> float:
-        """-1 port, +1 starboard, 0 middle of what an actuator drives."""
+        """Return the side on which an actuator acts: -1 port, 0 middle, +1 starboard.
+
+        Args:
+            actuator: Its name.
+        """
         return self.vessel.side(actuator)
 
     def memory(self, number: int, actuator: str) -> int:
-        """Where an effect's memory of an actuator begins."""
+        """Return the place of the first state that an effect has of an actuator.
+
+        Args:
+            number: Place of the effect.
+            actuator: Name of the actuator.
+        """
         return self._memory[number, actuator]
 
     def own(self, number: int) -> int:
-        """Place in `held` of what an effect recalls; 0 of one that does not look back."""
+        """Return the place in `held` of the lagged signal of an effect; 0 if it has none.
+
+        Args:
+            number: Place of the effect.
+        """
         return self._own.get(number, 0)
 
     def _may_look_back(self, number: int, effect: Recall) -> bool:
-        """A slot of a diagnosis may come to, whatever is written into it; the vessel's own do or do not."""
+        """Whether an effect may use the history of a signal; a placeholder of symbolic regression may."""
         return number >= len(self.vessel.effects) or effect.looks_back
 
     def behind(self, number: int) -> Sequence[int]:
-        """The effects that come after one in the program."""
+        """Return the places of the effects that follow an effect in the program.
+
+        Args:
+            number: Place of the effect.
+        """
         return self._order[self._order.index(number) + 1 :]
 
     @cached_property
     def _order(self) -> list[int]:
-        """Effects by stage, else as they stand."""
+        """Places of the effects, by stage, then in the order of the vessel file."""
         return sorted(range(len(self.effects)), key=lambda i: self.effects[i].standing)
 
     @cached_property
     def memory_size(self) -> int:
-        """Floats that all channels, and laws that look back, together remember."""
-        channels = ((i, e) for i, e in enumerate(self.effects) if isinstance(e, Channel))
-        return sum(type(e).slots * len(self.targets(i)) for i, e in channels) + len(self._own)
+        """Number of states of all channels and of all lags."""
+        size = len(self._own)
+        for i, effect in enumerate(self.effects):
+            if isinstance(effect, Channel):
+                size += type(effect).slots * len(self.targets(i))
+        return size
 
     @cached_property
     def _memory(self) -> dict[tuple[int, str], int]:
-        found, at = {}, 0
+        found: dict[tuple[int, str], int] = {}
+        at = 0
         for actuator in self.signals:
             for i, effect in enumerate(self.effects):
                 if isinstance(effect, Channel) and actuator in self.targets(i):
-                    found[i, actuator], at = at, at + type(effect).slots
-        return found | {(i, WHOLE): at + k for k, i in enumerate(self._own)}
+                    found[i, actuator] = at
+                    at += type(effect).slots
+        for k, i in enumerate(self._own):
+            found[i, WHOLE] = at + k
+        return found
 
     def _values(self, i: int) -> str:
         """`V3(p[7], p[8])`: an effect's parameters as its law receives them."""
-        first = self.offsets[i]
-        return f"V{i}({', '.join(f'p[{first + j}]' for j in range(len(type(self.effects[i]).params())))})"
+        first, count = self.offsets[i], len(type(self.effects[i]).params())
+        return f"V{i}({', '.join(map('p[{}]'.format, range(first, first + count)))})"
 
     def _signals(self, i: int) -> str:
-        """`S3(act[at], act[at + 4], ...)`: the signals bound to an effect's roles."""
-        effect, texts = self.effects[i], []
+        """`S3(act[at], act[at + 4], ...)`: signals of an effect's roles, then cosine and sine of angles."""
+        effect = self.effects[i]
+        texts: list[str] = []
+        angles: list[str] = []
         bound = self.vessel.bindings(effect)
         for role, about in type(effect).roles.items():
-            texts.append(self._signal(bound.get(role, about.fixed)))
-        for role, about in type(effect).roles.items():
-            if about.unit == "rad":
-                channel = bound.get(role, about.fixed)
-                for part, of in (("cos", cos), ("sin", sin)):
-                    held = isinstance(channel, str)
-                    texts.append(
-                        self._signal(f"{part}_{channel}" if held else of(float(channel or 0.0)))
-                    )
-        return f"S{i}({', '.join(texts)})"
+            channel = bound.get(role, about.fixed)
+            texts.append(self._signal(channel))
+            if about.unit != "rad":
+                continue
+            if isinstance(channel, str):
+                angles += [self._signal(f"cos_{channel}"), self._signal(f"sin_{channel}")]
+            else:
+                angle = float(channel or 0.0)
+                angles += [self._signal(cos(angle)), self._signal(sin(angle))]
+        return f"S{i}({', '.join([*texts, *angles])})"
 
     def _carried(self, i: int, idea: str) -> str:
-        """Signals of an instance that is ridden on, as those of the idea that the rider knows."""
+        """The signals of an effect that another one acts on, in the form that the other's law takes."""
         if type(self.effects[i]).idea() == idea:
             return self._signals(i)
         return f"as_{idea}{i}({self._signals(i)}, {self._values(i)})"
 
     def _signal(self, bound: str | float | None) -> str:
-        """A held signal by its place, a fixed one by its number."""
+        """A signal by its place, a fixed one by its value."""
         if isinstance(bound, str):
             return f"act[at + {self.held.index(bound)}]"
         if bound is None:
             raise BadInput(f"{self.vessel.name}: a signal is bound to no channel")
         return repr(float(bound))
 
-    # The text
+    # Generated text
     # ---------------------------------------------------------------------------------------------------------
 
     def source_text(self) -> str:
-        """`laws.py`."""
+        """Return the text of `laws.py`."""
         functions: list[str] = []
         used: set[str] = set()
         constants = [f"HELD, MEMORY = {max(len(self.held), 1)}, {max(self.memory_size, 1)}"]
         everything = kinds()
-        for part in (part for kind in everything for part in kind.parts):
-            body, busy = self._body(part, everything)
-            functions.append(
-                "\n".join(
-                    [
-                        f"@{part.compiled}",
-                        f"def {part.name}({part.arguments}):",
-                        *(f"    {line}" for line in body),
-                        f"    return {part.result}".rstrip(),
-                        "",
-                        "",
-                    ]
-                )
-            )
-            constants.append(f"HAS_{part.name.upper()} = {busy}")
-            used |= {word for line in body for word in _calls(line)}
+        for part in chain.from_iterable(kind.parts for kind in everything):
+            body, has_effects = self._body(part, everything)
+            head = f"@{part.compiled}\ndef {part.name}({part.arguments}):\n"
+            lines = [*body, f"return {part.result}".rstrip()]
+            functions.append(head + indent("\n".join(lines), "    ") + "\n\n")
+            constants.append(f"HAS_{part.name.upper()} = {has_effects}")
+            used.update(*map(_calls, body))
         return "\n".join([*self._head(used), *constants, "", "", *functions])
 
     def _head(self, used: set[str]) -> Iterator[str]:
-        """Imports, and the compiled functions and types that the text below calls by number."""
-        # without the vessel's name: one that is patched, or another with the same effects, is not
-        # compiled anew
+        """Imports, and the compiled functions and types that the text below calls."""
+        # Without the name of the vessel, so that vessels with the same effects share a program.
         yield '"""Effects of a vessel, composed by boatsim; not meant to be edited."""'
         yield ""
         yield "import numpy as np"
@@ -207,52 +236,47 @@ class Composition:
                 yield f"V{i} = E[{i}].values_type()  # {_remark(effect.name)}"
             if f"S{i}" in used:
                 yield f"S{i} = E[{i}].signals_type()"
-            for law in dict.fromkeys(
-                law for kind in type(effect).__mro__ for law in getattr(kind, "laws", ())
-            ):
+            laws = chain.from_iterable(getattr(kind, "laws", ()) for kind in type(effect).__mro__)
+            for law in dict.fromkeys(laws):
                 if f"{law}{i}" in used:
                     _check_compiled(type(effect), law)
                     yield f"{law}{i} = shared(E[{i}].{law})"
 
     def _body(self, part: Part, everything: Sequence[type[Kind]]) -> tuple[list[str], bool]:
-        """Lines of a part, and whether any effect adds to it."""
-        body, busy = list(part.begin), False
+        """Lines of a part, and whether any effect contributes to it."""
+        body, has_effects = list(part.begin), False
         for station in part.stations(self):
             body += station.begin
             for i in self._order:
                 effect = self.effects[i]
-                lines = [
-                    line
-                    for kind in everything
-                    if isinstance(effect, kind)
-                    for line in kind.lines(part, station, i, self)
-                ]
-                busy = busy or bool(lines)
-                if lines and i >= len(
-                    self.vessel.effects
-                ):  # behind the switch of an effect that is optional
-                    lines = [f"if on[{i}] != 0.0:", *(f"    {line}" for line in lines)]
+                lines: list[str] = []
+                for kind in everything:
+                    if isinstance(effect, kind):
+                        lines += kind.lines(part, station, i, self)
+                has_effects = has_effects or bool(lines)
+                if lines and i >= len(self.vessel.effects):  # a candidate has a switch
+                    lines = [f"if on[{i}] != 0.0:", *map("    ".__add__, lines)]
                 body += lines
             body += station.end
-        return body, busy
+        return body, has_effects
 
 
 def _remark(name: str) -> str:
-    """A name of the user's as it may stand in a comment or a docstring of a program: it must end neither."""
+    """A user's name without characters that could end a comment or a docstring."""
     return re.sub(r"[^\w .+-]", "?", name)
 
 
 def _check_compiled(kind: type[Effect], law: str) -> None:
-    """Raises BadInput for a law that is missing, or that numba does not know."""
+    """Raise BadInput for a law that is missing or not compiled."""
     if not is_compiled(getattr(kind, law, None)):
         raise BadInput(
-            f"{getsourcefile(kind)}: class {kind.__name__} has no compiled {law}; it needs {law}: ClassVar = {law} of "
-            f'a function under @njit(inline="always")'
+            f"{getsourcefile(kind)}: class {kind.__name__} has no compiled {law}; "
+            f'it needs {law}: ClassVar = {law} of a function under @njit(inline="always")'
         )
 
 
 def _calls(line: str) -> Iterator[str]:
-    """Names that a line calls."""
+    """Names of the functions that a line calls."""
     for piece in line.split("(")[:-1]:
         word = piece
         for mark in " ,=":
@@ -261,5 +285,9 @@ def _calls(line: str) -> Iterator[str]:
 
 
 def classes_of(addresses: Sequence[str]) -> list[type[Effect]]:
-    """Effect classes of a composed program, for the program's own use."""
+    """Return the classes of effects, for use in generated programs.
+
+    Args:
+        addresses: Their addresses (`content.address`).
+    """
     return [load_class("effect", a) for a in addresses]

@@ -1,4 +1,4 @@
-"""Which files of ours a file can reach by its imports: what compiled code depends on."""
+"""Files of boatsim that a file imports, directly or indirectly: compiled code depends on their content."""
 
 import ast
 import hashlib
@@ -10,7 +10,11 @@ PACKAGE = Path(__file__).parents[1]
 
 @cache
 def stamp(path: Path) -> str:
-    """Digest of a file and of all that it can reach."""
+    """Return a digest of a file and of all files of boatsim that it reaches by imports.
+
+    Args:
+        path: A Python file.
+    """
     digest = hashlib.sha256()
     for file in sorted(reach(path)):
         digest.update(content(file))
@@ -19,29 +23,42 @@ def stamp(path: Path) -> str:
 
 @cache
 def content(path: Path) -> bytes:
-    """What a file held when it was first asked for: what is imported does not change with the file."""
+    """Return the content of a file at the first call: an imported module does not change with its file.
+
+    Args:
+        path: The file.
+    """
     return path.read_bytes()
 
 
 @cache
 def reach(path: Path) -> frozenset[Path]:
-    """A file and all of ours that it imports, by whatever way."""
+    """Return a file and all files of boatsim that it imports, directly or indirectly.
+
+    Args:
+        path: A Python file, of boatsim or of a user.
+    """
     found, ahead = {path}, [path]
     while ahead:
-        for file in _imports(ahead.pop()) - found:
-            found.add(file)
-            ahead.append(file)
+        new = _imports(ahead.pop()) - found
+        found |= new
+        ahead += new
     return frozenset(found)
 
 
 @cache
 def _imports(path: Path) -> frozenset[Path]:
-    """Files of ours that a file imports."""
+    """Files of boatsim that a file imports."""
     found = set()
     for node in ast.walk(ast.parse(content(path))):
-        names = [alias.name for alias in node.names] if isinstance(node, ast.Import) else []
+        names = []
+        if isinstance(node, ast.Import):
+            names = [alias.name for alias in node.names]
         if isinstance(node, ast.ImportFrom):
-            module = ".".join([*_above(path, node.level), *([node.module] if node.module else [])])
+            parts = _package(path, node.level)
+            if node.module:
+                parts = (*parts, node.module)
+            module = ".".join(parts)
             names = [module, *(f"{module}.{alias.name}" for alias in node.names)]
         for name in names:
             if name.partition(".")[0] == "boatsim" and (file := _file_of(name)) is not None:
@@ -49,14 +66,17 @@ def _imports(path: Path) -> frozenset[Path]:
     return frozenset(found)
 
 
-def _above(path: Path, level: int) -> tuple[str, ...]:
-    """The package that a relative import of so many dots starts from; nothing for an absolute one, or a user's file."""
+def _package(path: Path, level: int) -> tuple[str, ...]:
+    """Package from which a relative import of `level` dots starts; empty for an absolute one or a user's file."""
     if not level or not path.is_relative_to(PACKAGE):
         return ()
     return path.parents[level - 1].relative_to(PACKAGE.parent).parts
 
 
 def _file_of(name: str) -> Path | None:
-    """File of one of our modules; None for what is a name inside one."""
+    """File of a module of boatsim; None for a name inside a module."""
     below = PACKAGE.joinpath(*name.split(".")[1:])
-    return next((p for p in (below.with_suffix(".py"), below / "__init__.py") if p.is_file()), None)
+    for file in (below.with_suffix(".py"), below / "__init__.py"):
+        if file.is_file():
+            return file
+    return None

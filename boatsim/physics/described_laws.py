@@ -1,4 +1,4 @@
-"""What described laws share: the words of their terms, and how files and programs put them."""
+"""Base of the effects that a diagnosis finds by symbolic regression: one term of a law."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -10,60 +10,65 @@ from boatsim.physics.base import UNSET, Boat, Force, Recall, param
 from boatsim.physics.param import code
 from boatsim.physics.particulars import GRAVITY
 
-EVER = 1e12  # [s] beyond any clock, one that counts from 1970 too
-# of the speed, or rate, that belongs to the length by Froude: within so much a sense turns
+EVER = 1e12  # [s] beyond any clock, also one that counts from 1970
+# Speed within which the sign of a speed changes, as a share of the speed sqrt(g L), or rate
+# sqrt(g / L)
 LITTLE = 0.01
 
 
 @dataclass(frozen=True)
 class Described(Force, Recall):
-    """One term of a law: a coefficient times up to three factors, always or for a while."""
+    """One term of a law: a coefficient times up to three factors and a course in time."""
 
     described: ClassVar[bool] = True
     sees_held: ClassVar[bool] = True
     recall: ClassVar = terms.recall
     reach: ClassVar = terms.reach
 
-    # the factors it goes with; none: it is constant
+    # the factors; none: it is constant
     of: Sequence[str] = field(default=(), hash=False)
     acts: str = "always"  # which of `terms.COURSES`
     coefficient: float = param(
         0.0, low=-1e15, high=1e15, unit="", words="per product of its factors", fit=True, spread=1.0
     )
-    # the recording of which it is an event; "": of none
+    # the recording in which it acts; "": in all
     run: str = field(default="", metadata={"ours": True})
     begin: float = param(
-        -EVER, low=-EVER, high=EVER, unit="s", words="it begins, on the clock of the recording"
+        -EVER, low=-EVER, high=EVER, unit="s", words="begin, on the clock of the recording"
     )
     end: float = param(
         EVER,
         low=-EVER,
         high=EVER,
         unit="s",
-        words="it ends; of what fades or swings, one span later",
+        words="end; of a course that fades or swings, one time constant or period later",
     )
     wavelength: float = param(
-        1.0, low=1e-3, high=1e6, unit="m", words="of a pattern that lies still"
+        1.0, low=1e-3, high=1e6, unit="m", words="of a pattern that is fixed in the water"
     )
     crest: float = param(
-        0.0, low=-1e6, high=1e6, unit="m", words="where it is highest, north or east"
+        0.0, low=-1e6, high=1e6, unit="m", words="place of its crest, north or east"
     )
     beyond: float = param(
-        0.0, low=0.0, high=1e3, unit="", words="speed [SI] from which a factor beyond_ grows"
+        0.0, low=0.0, high=1e3, unit="", words="threshold [SI] of a factor beyond_"
     )
     memory: float = param(
-        UNSET, low=0.01, high=3600.0, unit="s", words="time constant of a factor recent_, changed_"
+        UNSET,
+        low=0.01,
+        high=3600.0,
+        unit="s",
+        words="time constant of a factor recent_ or changed_",
     )
     little: float = param(
-        UNSET, low=1e-9, high=1e3, unit="", words="speed [SI] within which a sense turns"
+        UNSET, low=1e-9, high=1e3, unit="", words="speed [SI] within which a factor sign_ changes"
     )
 
-    first: float = code("its first factor")
-    second: float = code("its second factor")
-    third: float = code("its third factor")
-    course: float = code("how it acts in time")
-    looks_at: float = code("the signal it looks back at")
-    looks: float = code("how it looks back")
+    first: float = code("first factor")
+    second: float = code("second factor")
+    third: float = code("third factor")
+    course: float = code("course in time")
+    looks_at: float = code("signal whose history is used")
+    looks: float = code("kind of history")
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -71,21 +76,30 @@ class Described(Force, Recall):
         terms.code_of(f"{self.name}: acts", self.acts, terms.COURSES)
         if not self.begin < self.end:
             raise BadInput(
-                f"{self.name}: begin = {self.begin:g}, end = {self.end:g} s; allowed is an end after it"
+                f"{self.name}: begin = {self.begin:g}, end = {self.end:g} s; "
+                "allowed is an end after the begin"
             )
 
     @property
     def looks_back(self) -> bool:
-        """Whether one of its factors is what a signal was of late."""
+        """Whether one of its factors is the history of a signal."""
         return self.stated("memory") and "memory" not in self.filled
 
     def rules(self, vessel: Boat) -> dict[str, float]:
-        """What its words are to the program. Raises BadInput for factors that the vessel has not."""
+        """Return the numbers that stand for names in the compiled law.
+
+        Args:
+            vessel: The vessel.
+
+        Raises:
+            BadInput: A factor does not exist on the vessel, or `memory` is missing.
+        """
         first, second, third = terms.codes(self.name, self.of, vessel.described_signals)
         turning = any(terms.UNITS.get(name.removeprefix("sign_")) == "rad/s" for name in self.of)
-        little = LITTLE * (GRAVITY / vessel.length if turning else GRAVITY * vessel.length) ** 0.5
+        square = GRAVITY / vessel.length if turning else GRAVITY * vessel.length
+        little = LITTLE * square**0.5
         acts = terms.code_of(self.name, self.acts, terms.COURSES)
-        looks_at, looks = terms.looks(self.name, self.of, vessel.described_signals)
+        looks_at, looks = terms.history_codes(self.name, self.of, vessel.described_signals)
         if looks_at and not self.stated("memory"):
             raise BadInput(
                 f"{self.name}: memory is missing: the time constant [s] of of = {list(self.of)}"
@@ -102,18 +116,18 @@ class Described(Force, Recall):
         }
 
     def by_name(self) -> dict[str, float]:
-        """Its numbers but the coefficient, as a program has them, by name."""
+        """Return the parameters of the compiled law by name, without the coefficient."""
         return {n: getattr(self, n) for n in type(self).params() if n != "coefficient"}
 
     def shape(self) -> dict[str, object]:
-        """What its table says of the law, less what has no meaning for it."""
-        said: dict[str, object] = {"of": list(self.of), "acts": self.acts}
+        """Return the keys of its table that describe the law, without those that have no meaning for it."""
+        found: dict[str, object] = {"of": list(self.of), "acts": self.acts}
         if self.acts != "always":
-            said |= {"begin": self.begin, "end": self.end}
+            found |= {"begin": self.begin, "end": self.end}
         if set(self.of) & set(terms.RIPPLES):
-            said |= {"wavelength": self.wavelength, "crest": self.crest}
+            found |= {"wavelength": self.wavelength, "crest": self.crest}
         if set(self.of) & set(terms.BEYOND):
-            said["beyond"] = self.beyond
+            found["beyond"] = self.beyond
         if self.looks_back:
-            said["memory"] = self.memory
-        return said
+            found["memory"] = self.memory
+        return found

@@ -1,4 +1,4 @@
-"""Draws the deep-V hull of a small outboard boat from its particulars.
+"""Draws the deep-V hull of a small outboard motor boat from its particulars.
 
 `python -m boatsim.physics.hullform models/VESSEL` writes OBJ meshes with the origin at the transom on the
 centreline at the design waterline; x forward, y to port, z up.
@@ -20,28 +20,37 @@ AROUND = 20  # points around a rounded body
 
 @dataclass(frozen=True)
 class DeepV:
-    """Lines of a hard-chine hull of constant deadrise up to `parallel`, warped and raked ahead of it."""
+    """Lines of a hard-chine hull: constant deadrise up to `parallel`, warped and raked forward of it."""
 
     length: float = 1.2  # [m] Bayless 2017, table 27
     beam: float = 0.30  # [m] same
     draught: float = 0.06  # [m] same
     deadrise: float = math.radians(25.0)  # [rad] same, section II
     parallel: float = 0.55  # [-] part of the length with straight keel and constant deadrise
-    # [m] amidships, by eye; the remaining numbers shape what the particulars leave open
+    # [m] amidships, estimated, as are the following numbers, which the particulars do not contain
     freeboard: float = 0.075
     stem_height: float = 0.125  # [m] tip of the bow above the waterline
     chine_beam: float = 0.25  # [m]
     rocker: float = 0.037  # [m] rise of the keel from amidships to the transom
-    # [-] exponent of the keel's rise to the stem; with rocker: displaces 4.6 kg, about the CG
+    # [-] exponent of the keel's rise to the stem; with `rocker` chosen so that the hull displaces
+    # 4.6 kg with the centre of buoyancy at the CG
     fullness: float = 2.4
     chine_end: float = 0.95  # [-] where the chine runs into the stem
 
     def ahead(self, s: Array) -> Array:
-        """0 up to the end of the parallel body, then rising to 1 at the bow."""
+        """Return 0 up to the end of the parallel body, rising from there to 1 at the bow.
+
+        Args:
+            s: Place along the hull, 0 at the transom, 1 at the bow.
+        """
         return np.clip((s - self.parallel) / (1 - self.parallel), 0, 1)
 
     def keel(self, s: Array) -> Array:
-        """Height of the keel and stem [m]."""
+        """Return the height of the keel and stem [m].
+
+        Args:
+            s: Place along the hull, 0 at the transom, 1 at the bow.
+        """
         aft = np.clip(1 - s / self.parallel, 0, 1)
         return (
             self.rocker * aft**2
@@ -50,36 +59,49 @@ class DeepV:
         )
 
     def chine(self, s: Array) -> tuple[Array, Array]:
-        """Half-breadth and height of the chine [m]."""
+        """Return half-breadth and height of the chine [m].
+
+        Args:
+            s: Place along the hull, 0 at the transom, 1 at the bow.
+        """
         along = np.clip((s - 0.4) / (self.chine_end - 0.4), 0, 1)
         half = self.chine_beam / 2 * (1 - along**2.2)
         rise = np.tan(self.deadrise + math.radians(30) * self.ahead(s))
         return half, self.keel(s) + half * rise
 
     def sheer(self, s: Array) -> tuple[Array, Array]:
-        """Half-breadth and height of the deck edge [m]."""
+        """Return half-breadth and height of the deck edge [m].
+
+        Args:
+            s: Place along the hull, 0 at the transom, 1 at the bow.
+        """
         aft, fore = np.clip((0.4 - s) / 0.4, 0, 1), np.clip((s - 0.4) / 0.6, 0, 1)
         half = self.beam / 2 * (1 - 0.05 * aft**2) * (1 - fore**2.8)
-        return half, self.freeboard + (self.stem_height - self.freeboard) * np.clip(
-            (s - 0.3) / 0.7, 0, 1
-        ) ** 1.6
+        rise = np.clip((s - 0.3) / 0.7, 0, 1) ** 1.6
+        return half, self.freeboard + (self.stem_height - self.freeboard) * rise
 
     def stations(self, count: int = 49) -> Array:
-        """Values of s, denser towards the bow."""
+        """Return places along the hull (count,), closer to each other towards the bow.
+
+        Args:
+            count: Number of places.
+        """
         return np.sin(np.linspace(0, math.pi / 2, count))
 
 
 @dataclass
 class Mesh:
-    """Triangles; each surface added keeps its own vertices, so that edges between surfaces stay sharp."""
+    """A mesh of triangles. Surfaces do not share vertices, so that the edges between them remain sharp."""
 
     points: list[Array] = field(default_factory=list)
     faces: list[tuple[int, int, int]] = field(default_factory=list)
 
     def add(self, grid: Array, *, flip: bool = False) -> None:
-        """Add the surface through a (rows, columns, 3) grid of points.
+        """Add the surface through a grid of points.
 
-        Looking along the rows the columns rise and outside is to the left; `flip` where outside is to the right.
+        Args:
+            grid: (rows, columns, 3). With the columns upwards, the outside is to the left along the rows.
+            flip: The outside is to the right.
         """
         rows, columns, _ = grid.shape
         start = sum(len(p) for p in self.points)
@@ -91,19 +113,31 @@ class Mesh:
                     self.faces.append(corners if flip else corners[::-1])
 
     def both_sides(self, grid: Array) -> None:
-        """Add a surface of the port side (y > 0) and its mirror image."""
+        """Add a surface of the port side (y > 0) and its mirror image.
+
+        Args:
+            grid: (rows, columns, 3).
+        """
         self.add(grid)
         self.add(grid * (1, -1, 1), flip=True)
 
     def body(self, rings: Sequence[Array]) -> None:
-        """Add a closed body through rings (n, 3), counter-clockwise seen against the direction they follow."""
+        """Add a closed body.
+
+        Args:
+            rings: Rings (n, 3) through which it passes, counter-clockwise seen against their order.
+        """
         closed = np.array([np.vstack([r, r[:1]]) for r in rings])
         self.add(closed)
         for ring, flip in ((closed[0], True), (closed[-1], False)):
             self.add(np.array([ring, np.tile(ring[:-1].mean(0), (len(ring), 1))]), flip=flip)
 
     def obj(self, about: str) -> str:
-        """The mesh as an OBJ file; triangles without area are left out."""
+        """Return the mesh as text of an OBJ file, without triangles of zero area.
+
+        Args:
+            about: Comment in the first line.
+        """
         points = np.round(np.vstack(self.points), 5) + 0.0
         lines = [f"# {about}", *(f"v {x:.5f} {y:.5f} {z:.5f}" for x, y, z in points)]
         for a, b, c in self.faces:
@@ -113,20 +147,33 @@ class Mesh:
 
 
 def between(a: Array, b: Array, rows: int) -> Array:
-    """(n, rows, 3) straight ruled surface from curve a (n, 3) to curve b (n, 3)."""
+    """Return the ruled surface (n, rows, 3) between two curves.
+
+    Args:
+        a: (n, 3).
+        b: (n, 3).
+        rows: Points from one curve to the other.
+    """
     t = np.linspace(0, 1, rows)[None, :, None]
     return np.asarray(a[:, None, :] * (1 - t) + b[:, None, :] * t)
 
 
 def curve(x: Array, y: Array | float, z: Array | float) -> Array:
-    """(n, 3) points of a curve."""
+    """Return the points (n, 3) of a curve from their coordinates, (n,) or scalar."""
     return np.stack(np.broadcast_arrays(x, y, z), axis=-1).astype(float)
 
 
 def ring(
     centre: Sequence[float], half: tuple[float, float], power: float = 2.0, axis: str = "z"
 ) -> Array:
-    """(n, 3) rounded rectangle (power 2: ellipse, higher: squarer) about `centre`, in the plane across `axis`."""
+    """Return the points (n, 3) of a rounded rectangle.
+
+    Args:
+        centre: (3,) its centre.
+        half: Half of its width and height.
+        power: 2: ellipse; larger: closer to a rectangle.
+        axis: Normal of its plane, "x" or "z".
+    """
     angle = np.linspace(0, 2 * math.pi, AROUND, endpoint=False)
     c, s = np.cos(angle), np.sin(angle)
     p = half[0] * np.sign(c) * np.abs(c) ** (2 / power)
@@ -136,7 +183,7 @@ def ring(
 
 
 def shell(hull: DeepV) -> Mesh:
-    """Bottom, topsides and transom."""
+    """Return bottom, topsides and transom of a hull."""
     s = hull.stations()
     x = s * hull.length
     chine_half, chine_z = hull.chine(s)
@@ -154,7 +201,7 @@ def shell(hull: DeepV) -> Mesh:
 
 
 def deck(hull: DeepV) -> Mesh:
-    """Foredeck, side decks, cockpit with its floor, and a stripe below the deck edge."""
+    """Return foredeck, side decks, cockpit, and a stripe below the deck edge of a hull."""
     s = np.unique(np.concatenate([hull.stations(), [0.04, 0.0401, 0.56, 0.5601]]))
     half, z = hull.sheer(s)
     x = s * hull.length
@@ -174,7 +221,7 @@ def deck(hull: DeepV) -> Mesh:
 
 
 def fittings() -> Mesh:
-    """Console, seats and windscreen frame."""
+    """Return console, seats and windscreen frame."""
     mesh = Mesh()
     console = ((0.0, 0.045), (0.06, 0.045), (0.075, 0.034), (0.1, 0.02))
     mesh.body([ring((0.52 - 0.1 * up, 0, 0.012 + up), (half, 0.05), 6) for up, half in console])
@@ -188,7 +235,7 @@ def fittings() -> Mesh:
 
 
 def outboard_cowl() -> Mesh:
-    """Motor cover; origin on the steering axis at the waterline, the motor astern of it."""
+    """Return the cover of the motor; origin on the steering axis at the waterline."""
     mesh = Mesh()
     levels = ((0.062, 0.75), (0.068, 0.93), (0.085, 1.0), (0.11, 0.98), (0.128, 0.88), (0.137, 0.6))
     mesh.body(
@@ -198,7 +245,7 @@ def outboard_cowl() -> Mesh:
 
 
 def outboard_leg() -> Mesh:
-    """Leg, plate over the propeller, gear case, skeg and a three-bladed propeller."""
+    """Return leg, cavitation plate, gear case, skeg and a propeller of three blades."""
     mesh = Mesh()
     strut = ((-0.055, 0.017), (0.0, 0.018), (0.064, 0.026))
     mesh.body([ring((-0.026, 0, z), (half, 0.35 * half), 2.4) for z, half in strut])
@@ -223,7 +270,11 @@ def outboard_leg() -> Mesh:
 
 
 def blade(turn: float) -> Array:
-    """(rows, 3, 3) one propeller blade, turned about the shaft; pitch angle falls towards the tip."""
+    """Return one propeller blade (4, 3, 3), its pitch angle decreasing towards the tip.
+
+    Args:
+        turn: Angle about the shaft [rad].
+    """
     rows = []
     for radius, chord, pitch in (
         (0.006, 0.007, 1.0),
@@ -233,16 +284,14 @@ def blade(turn: float) -> Array:
     ):
         for t in (-1, 0, 1):
             across, along = t * chord * math.cos(pitch), t * chord * math.sin(pitch)
-            y, z = (
-                radius * math.cos(turn + across / radius),
-                radius * math.sin(turn + across / radius),
-            )
+            angle = turn + across / radius
+            y, z = radius * math.cos(angle), radius * math.sin(angle)
             rows.append((-0.069 + along, y, -0.055 + z))
     return np.array(rows).reshape(4, 3, 3)
 
 
 def collision(hull: DeepV) -> Mesh:
-    """Convex prism of few vertices around the deck edge: what touches the walls."""
+    """Return a convex prism of few vertices around the deck edge, for contacts with walls."""
     s = np.array([0.0, 0.4, 0.6, 0.75, 0.87, 0.95, 1.0])
     half, _ = hull.sheer(s)
     plan = np.vstack(
@@ -254,7 +303,11 @@ def collision(hull: DeepV) -> Mesh:
 
 
 def meshes(hull: DeepV | None = None) -> dict[str, str]:
-    """File name -> OBJ text of everything the boat is drawn with."""
+    """Return the text of each OBJ file of the boat, by file name.
+
+    Args:
+        hull: Lines of the hull; the default ones if None.
+    """
     hull = hull or DeepV()
     parts = {
         "shell": shell(hull),
@@ -264,14 +317,18 @@ def meshes(hull: DeepV | None = None) -> dict[str, str]:
         "outboard_leg": outboard_leg(),
         "collision": collision(hull),
     }
-    return {
-        f"{name}.obj": mesh.obj(f"{name}, drawn by boatsim.physics.hullform")
-        for name, mesh in parts.items()
-    }
+    texts = {}
+    for name, mesh in parts.items():
+        texts[f"{name}.obj"] = mesh.obj(f"{name}, drawn by boatsim.physics.hullform")
+    return texts
 
 
 def main(arguments: Iterable[str]) -> None:
-    """Write the meshes into the folder given."""
+    """Write the meshes into folders.
+
+    Args:
+        arguments: The folders.
+    """
     for folder in arguments:
         for name, text in meshes().items():
             (Path(folder) / name).write_text(text)

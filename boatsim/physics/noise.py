@@ -1,22 +1,32 @@
-"""Chance inside compiled laws: numbers drawn by lot without a state, and narrow-band noise that is made of them."""
+"""Random numbers without a state, and narrow-band noise made of them, for compiled laws."""
 
 from math import cos, pi, sqrt, tan
 
 import numpy as np
 from numba import njit
 
-# courses there are; all of them are whole numbers that a parameter holds exactly
-MOST = 1_000_000_000
+# Number of realisations; a parameter, a float, holds each of these numbers exactly.
+REALISATIONS = 1_000_000_000
 
 
-def course(realisation: float, seed: int) -> float:
-    """Number of the random course that a scenario's seed gives an effect, whose own number is that of seed 0."""
-    return float(1 + (int(realisation) - 1 + seed) % MOST)
+def seeded_realisation(realisation: float, seed: int) -> float:
+    """Return the number of the realisation that a scenario's seed gives an effect.
+
+    Args:
+        realisation: The effect's own number, that of seed 0.
+        seed: The scenario's seed.
+    """
+    return float(1 + (int(realisation) - 1 + seed) % REALISATIONS)
 
 
 @njit(inline="always")
-def drawn(realisation: float, k: int) -> float:
-    """A number in [0, 1) that depends on realisation and k alone (G. Steele et al., SplitMix, OOPSLA 2014)."""
+def uniform(realisation: float, k: int) -> float:
+    """Return number k of a sequence, uniform in [0, 1) (SplitMix; G. Steele et al., OOPSLA 2014).
+
+    Args:
+        realisation: Number of the sequence.
+        k: Place in the sequence, from 0.
+    """
     z = np.uint64(realisation) * np.uint64(0xD1342543DE82EF95) + np.uint64(k + 1) * np.uint64(
         0x9E3779B97F4A7C15
     )
@@ -26,29 +36,42 @@ def drawn(realisation: float, k: int) -> float:
 
 
 @njit(inline="always")
-def line(place: float, damping: float) -> tuple[float, float]:
-    """A frequency of white noise behind the filter s / (s^2 + 2 damping s + 1), and its weight in the energy.
+def spectral_line(share: float, damping: float) -> tuple[float, float]:
+    """Return a frequency of white noise behind s / (s^2 + 2 damping s + 1), and its weight in the energy.
 
-    In the variable a = w - 1 / w the spectrum is a Lorentz line times 1 + a / sqrt(a^2 + 4), whose second part is odd:
-    `place`, in (-1/2, 1/2), is the share of the line below the frequency less a half, the weight is that factor.
+    In the variable a = w - 1 / w the spectrum is a Lorentz line times 1 + a / sqrt(a^2 + 4), whose second part is odd.
+    The weight is that factor.
+
+    Args:
+        share: Share of the line below the frequency less a half, in (-1/2, 1/2).
+        damping: Damping ratio of the filter.
     """
-    a = 2.0 * damping * tan(pi * place)
+    a = 2.0 * damping * tan(pi * share)
     root = sqrt(a * a + 4.0)
     return 0.5 * (a + root if a > 0.0 else 4.0 / (root - a)), 1.0 + a / root
 
 
 @njit
-def noise(
+def narrow_band_noise(
     t: float, frequency: float, damping: float, realisation: float, channel: float, count: float
 ) -> float:
-    """White noise through s / (s^2 + 2 z w0 s + w0^2) with unit variance, as a sum of `count` cosines.
+    """Return white noise behind s / (s^2 + 2 damping w s + w^2) with unit variance, as a sum of cosines.
 
-    One cosine by lot from each of as many equal parts of the line; channels are independent of each other. Whole
-    numbers as floats: numba would compile it anew for every integer that is written out.
+    The line is divided into equal parts, and each contributes one cosine of random frequency and phase. Whole numbers
+    are floats here: numba would compile the function again for each integer constant.
+
+    Args:
+        t: Time [s].
+        frequency: Frequency w of the filter [rad/s].
+        damping: Damping ratio of the filter.
+        realisation: Number of the random sequence.
+        channel: Number of the channel; channels are independent of each other.
+        count: Number of cosines.
     """
     total = 0.0
     for k in range(int(count)):
         first = 2 * (int(channel) * int(count) + k)
-        w, weight = line((k + drawn(realisation, first)) / count - 0.5, damping)
-        total += sqrt(weight) * cos(frequency * w * t + 2.0 * pi * drawn(realisation, first + 1))
+        w, weight = spectral_line((k + uniform(realisation, first)) / count - 0.5, damping)
+        phase = 2.0 * pi * uniform(realisation, first + 1)
+        total += sqrt(weight) * cos(frequency * w * t + phase)
     return total * sqrt(2.0 / count)

@@ -1,4 +1,4 @@
-"""Numbers that files may set: bounds, unit, words, checked on construction."""
+"""Numbers that files may set: bounds, unit and description, checked on construction."""
 
 import math
 from collections.abc import Mapping
@@ -8,36 +8,33 @@ from typing import NamedTuple, Self, TypeVar
 from boatsim.errors import BadInput, unknown_name
 
 N = TypeVar("N", bound=float)  # int or float
-UNSET = (
-    math.nan
-)  # a parameter that nobody stated: filled in on a vessel by `follows` or `Effect.rules`, else 0
+# A parameter without a value: it is set for a vessel by `follows` or `Effect.rules`, else to 0.
+UNSET = math.nan
 
 
 class Param(NamedTuple):
-    """What is known of a parameter before any data: bounds, unit, words, and whether a diagnosis may fit it."""
+    """Attributes of a parameter: bounds, unit, description, and how a diagnosis may fit it."""
 
     low: float
     high: float
     unit: str
-    words: str
-    fit: bool = False
+    words: str  # description
+    fit: bool = False  # whether a diagnosis may fit it
     # prior sd when fitted, in the unit, for a 1.2 m boat of 4.6 kg; scaled by Froude's law
     spread: float = 0.0
-    axis: str = ""  # freedom it belongs to ("roll", ...); fitted only on vessels that have it
-    absent: float = 0.0  # value at which the effect is not there
-    # "damping", "thrust", ...: a coefficient of the nominal that is never known exactly
+    # degree of freedom that it belongs to ("roll", ...); fitted only on vessels that have it
+    axis: str = ""
+    absent: float = 0.0  # value at which the effect has no influence
+    # "damping", "thrust", ...: a coefficient of the nominal model that is never known exactly
     calibrates: str = ""
-    # left unset: the vessel's "linear_damping.surge" or "vessel.body.mass"; "?" ends an optional
-    # one
+    # value of an unset parameter: that of "linear_damping.surge" or "vessel.body.mass" of the vessel;
+    # a "?" at the end if the vessel need not have it
     follows: str = ""
-    releases: tuple[
-        str, ...
-    ] = ()  # "linear_damping.surge", "body.mass": numbers of the vessel that may be off,
-    how: str = "sets"  # or "scales" or "shifts": what a released number undergoes
-    within: tuple[float, float] = (
-        -math.inf,
-        math.inf,
-    )  # beyond which no fit believes it, stated as the spread is
+    # numbers of the vessel that may have another value: "linear_damping.surge", "body.mass"
+    releases: tuple[str, ...] = ()
+    how: str = "sets"  # or "scales" or "shifts": how the parameter changes the released numbers
+    # plausible range of a fit, in the unit of `spread`
+    within: tuple[float, float] = (-math.inf, math.inf)
 
 
 def param(
@@ -57,27 +54,31 @@ def param(
     how: str = "sets",
     within: tuple[float, float] = (-math.inf, math.inf),
 ) -> N:
-    """Dataclass field of a checked number; `nominal` may be UNSET.
+    """Return the dataclass field of a checked number.
 
-    `unit` is "" for a ratio; `spread` is the prior sd of a fitted parameter. Raises ValueError for one without.
+    Args:
+        nominal: Default value; it may be UNSET.
+        low: Lower bound.
+        high: Upper bound.
+        unit: Unit, "" for a ratio.
+        words: Description.
+        fit: Whether a diagnosis may fit it.
+        spread: Prior sd of a fitted parameter, in its unit.
+        axis: Degree of freedom that it belongs to.
+        absent: Value at which the effect has no influence.
+        calibrates: Kind of coefficient of the nominal model, "damping" for example.
+        follows: Number of the vessel that an unset parameter has, "linear_damping.surge" for example.
+        releases: Numbers of the vessel that it changes.
+        how: How it changes them: "sets", "scales" or "shifts".
+        within: Plausible range of a fit.
+
+    Raises:
+        ValueError: A parameter with `fit` has no spread.
     """
     if fit and not spread > 0.0:
         raise ValueError(f"a parameter with fit=True needs a spread, its prior sd ({words})")
-    about = Param(
-        low,
-        high,
-        unit,
-        words,
-        fit,
-        spread,
-        axis,
-        absent,
-        calibrates,
-        follows,
-        releases,
-        how,
-        within,
-    )
+    about = Param(low, high, unit, words, fit, spread, axis, absent, calibrates, follows)
+    about = about._replace(releases=releases, how=how, within=within)
     return field(default=nominal, metadata={"param": about})
 
 
@@ -89,7 +90,16 @@ def factor(
     low: float = 0.1,
     high: float = 5.0,
 ) -> float:
-    """Field of a `Release`: numbers of the vessel that may be off by one factor."""
+    """Return the field of a `Release` that multiplies numbers of the vessel.
+
+    Args:
+        releases: The numbers, "linear_damping.surge" for example.
+        words: Description.
+        spread: Prior sd.
+        axis: Degree of freedom that it belongs to.
+        low: Lower bound.
+        high: Upper bound.
+    """
     return param(
         1.0,
         low=low,
@@ -115,7 +125,18 @@ def shift(
     axis: str = "",
     within: tuple[float, float] = (-math.inf, math.inf),
 ) -> float:
-    """Field of a `Release`: numbers of the vessel that may be off by one addend."""
+    """Return the field of a `Release` that is added to numbers of the vessel.
+
+    Args:
+        releases: The numbers, "body.centre" for example.
+        words: Description.
+        unit: Unit.
+        spread: Prior sd.
+        low: Lower bound.
+        high: Upper bound.
+        axis: Degree of freedom that it belongs to.
+        within: Plausible range of a fit.
+    """
     return param(
         0.0,
         low=low,
@@ -141,7 +162,18 @@ def number(
     absent: float,
     axis: str = "",
 ) -> float:
-    """Field of a `Release`: a number of the vessel that is not what is stated, but this; `absent` is the stated one."""
+    """Return the field of a `Release` that replaces a number of the vessel.
+
+    Args:
+        releases: The number, "body.mass" for example.
+        words: Description.
+        unit: Unit.
+        spread: Prior sd.
+        low: Lower bound.
+        high: Upper bound.
+        absent: Value in the vessel file.
+        axis: Degree of freedom that it belongs to.
+    """
     return param(
         absent,
         low=low,
@@ -157,22 +189,33 @@ def number(
 
 
 def code(words: str) -> float:
-    """Field of a number by which a program knows a word of a file: `Effect.rules` give it, no file states it."""
+    """Return the field of a number that stands for a name in a compiled law; `Effect.rules` sets it, files cannot.
+
+    Args:
+        words: Description.
+    """
     about = Param(-1e9, 1e9, "", words)
     return field(default=UNSET, kw_only=True, repr=False, metadata={"param": about, "ours": True})
 
 
 class Checked:
-    """Mixin of dataclasses whose `param` fields are checked on construction and whose unknown settings are named."""
+    """Mixin of dataclasses that checks `param` fields on construction and reports unknown settings."""
 
     @classmethod
     def params(cls) -> dict[str, Param]:
-        """Name -> `Param` of every checked field, in order of declaration."""
+        """Return the `Param` of every checked field by name, in the order of declaration."""
         return {f.name: f.metadata["param"] for f in fields(cls) if "param" in f.metadata}  # type: ignore[arg-type]
 
     @classmethod
     def from_settings(cls, settings: Mapping[str, object]) -> Self:
-        """Build from a file's table; raises BadInput with the nearest valid name for a setting that does not exist."""
+        """Return an instance with the settings of a file.
+
+        Args:
+            settings: Values by name.
+
+        Raises:
+            BadInput: A setting does not exist (the message contains the nearest valid name), or a value is not allowed.
+        """
         names = [f.name for f in fields(cls) if f.init and "ours" not in f.metadata]  # type: ignore[arg-type]
         for key in settings:
             if key not in names:
@@ -184,16 +227,13 @@ class Checked:
             value = getattr(self, name)
             if value is UNSET:
                 continue
-            if (
-                isinstance(value, bool)
-                or not isinstance(value, int | float)
-                or not math.isfinite(value)
-            ):
+            is_number = isinstance(value, int | float) and not isinstance(value, bool)
+            if not is_number or not math.isfinite(value):
                 raise BadInput(
                     f"{type(self).__name__}.{name} = {value!r}; allowed is a number ({about.words})"
                 )
             if not about.low <= value <= about.high:
                 raise BadInput(
-                    f"{type(self).__name__}.{name} = {value:g} {about.unit}; allowed {about.low:g} to "
-                    f"{about.high:g} {about.unit} ({about.words})"
+                    f"{type(self).__name__}.{name} = {value:g} {about.unit}; "
+                    f"allowed {about.low:g} to {about.high:g} {about.unit} ({about.words})"
                 )

@@ -1,6 +1,6 @@
 """Coefficients of a displacement hull from its particulars: published closed forms, one function each.
 
-Effects call them when they are put on a vessel (`completed`); nothing here is compiled. SI units and radians.
+Effects call them when a vessel is loaded (`completed`); none of them is compiled. SI units and radians.
 """
 
 from math import atanh, pi, sqrt
@@ -13,7 +13,7 @@ SEA_WATER = 1025.0  # [kg/m^3]
 
 
 class Spheroid(NamedTuple):
-    """Added mass and inertia of a spheroid per own mass and yaw inertia."""
+    """Added mass and inertia of a spheroid, divided by its displaced mass and yaw inertia."""
 
     surge: float  # k1
     sway: float  # k2
@@ -30,13 +30,19 @@ class Derivatives(NamedTuple):
 
 
 def spheroid(length: float, draught: float) -> Spheroid:
-    """Prolate spheroid of semi-axes length / 2 and draught (H. Lamb, Hydrodynamics, 6th ed. 1932, sections 114, 115).
+    """Return the added mass of a prolate spheroid (H. Lamb, Hydrodynamics, 6th ed. 1932, sections 114, 115).
 
-    Raises BadInput for a hull no longer than twice its draught.
+    Args:
+        length: Length of the hull, twice the longer semi-axis [m].
+        draught: Draught of the hull, the shorter semi-axis [m].
+
+    Raises:
+        BadInput: The hull is not longer than twice its draught.
     """
     if length <= 2.0 * draught:
         raise BadInput(
-            f"spheroid: length = {length:g} m; allowed is more than twice the draught, {2.0 * draught:g} m"
+            f"spheroid: length = {length:g} m; "
+            f"allowed is more than twice the draught, {2.0 * draught:g} m"
         )
     round_part = (2.0 * draught / length) ** 2
     square = 1.0 - round_part  # of the eccentricity
@@ -54,10 +60,16 @@ def spheroid(length: float, draught: float) -> Spheroid:
 def derivatives(
     length: float, beam: float, draught: float, trim: float, block: float
 ) -> Derivatives:
-    """Linear derivatives of a trimmed hull.
+    """Return the linear derivatives of a trimmed hull.
 
-    S. Inoue, M. Hirano, K. Kijima, Int. Shipbuilding Progress 28 (1981), as C. R. Martin, UBC 1993 has them. `trim` is
-    by the stern [m], `block` the block coefficient.
+    S. Inoue, M. Hirano, K. Kijima, Int. Shipbuilding Progress 28 (1981), in the form of C. R. Martin, UBC 1993.
+
+    Args:
+        length: Length [m].
+        beam: Beam [m].
+        draught: Draught [m].
+        trim: Trim by the stern [m].
+        block: Block coefficient.
     """
     k, tau = 2.0 * draught / length, trim / draught
     lift = 0.5 * pi * k + 1.4 * block * beam / length
@@ -70,23 +82,46 @@ def derivatives(
 
 
 def rudder_slope(area: float, aspect: float, inflow: float, density: float = SEA_WATER) -> float:
-    """Force normal to a blade per angle of attack [N/rad] (A. Fujii, T. Tsuda 1961), area [m^2], inflow [m/s]."""
+    """Return the force normal to a rudder per angle of attack [N/rad] (A. Fujii, T. Tsuda 1961).
+
+    Args:
+        area: Area of the blade [m^2].
+        aspect: Span divided by chord.
+        inflow: Speed of the inflow [m/s].
+        density: Density of the water [kg/m^3].
+    """
     return 0.5 * density * lift_slope(aspect) * area * inflow * inflow
 
 
 def lift_slope(aspect: float) -> float:
-    """f_alpha of a blade by its span per chord: normal force coefficient per angle of attack (same)."""
+    """Return f_alpha, the normal force coefficient of a rudder per angle of attack (Fujii and Tsuda 1961).
+
+    Args:
+        aspect: Span divided by chord.
+    """
     return 6.13 * aspect / (aspect + 2.25)
 
 
 def hull_share(block: float) -> float:
-    """a_H: force that a deflected rudder raises on the hull before it, per force on the blade (Inoue et al. 1981)."""
+    """Return a_H, the force that a rudder causes on the hull, divided by the force on the rudder (Inoue et al. 1981).
+
+    Args:
+        block: Block coefficient.
+    """
     return 0.627 * block - 0.153
 
 
 def roll_ratio_by_speed(
     length: float, beam: float, block: float, metacentric_height: float, speed: float
 ) -> float:
-    """What headway adds to the roll damping per critical, of a round bilge (Martin 1993, Appendix IV)."""
+    """Return the increase of the roll damping ratio with forward speed, for a round bilge (Martin 1993, Appendix IV).
+
+    Args:
+        length: Length [m].
+        beam: Beam [m].
+        block: Block coefficient.
+        metacentric_height: Metacentric height [m].
+        speed: Forward speed [m/s].
+    """
     f = speed / sqrt(GRAVITY * length) / block
     return 0.00085 * length / beam * sqrt(length / metacentric_height) * f * (1.0 + f + 2.0 * f * f)

@@ -1,4 +1,4 @@
-"""Presets: several entries of the library over one law."""
+"""Presets: several effects that share one law."""
 
 import sys
 from collections.abc import Mapping
@@ -11,8 +11,8 @@ from boatsim.physics.kinds.effect import Effect
 E = TypeVar("E", bound=Effect)
 
 
-class Freed(TypedDict, total=False):
-    """What is otherwise known of a parameter that a diagnosis may fit, as in `Param`."""
+class ParameterChanges(TypedDict, total=False):
+    """Attributes of a `Param` that a preset changes."""
 
     low: float
     high: float
@@ -27,36 +27,41 @@ def preset(
     law: type[E],
     name: str,
     *,
-    frees: Mapping[str, Freed] | None = None,
+    frees: Mapping[str, ParameterChanges] | None = None,
     fixed: Mapping[str, float] | None = None,
     otherwise: Mapping[str, float] | None = None,
     **about: object,
 ) -> type[E]:
-    """Another entry over the same law, under a name of its own; `about` is its words, shown_by, source, starts ...
+    """Return another effect with the same law, under its own name.
 
-    `frees` are the parameters that a diagnosis may fit, with what is otherwise known of them; `fixed` are
-    those that make the entry what it is. The rest stays open to a file, with `otherwise` as its other nominal values.
+    Args:
+        law: The effect whose law it has.
+        name: Name of the class.
+        frees: Parameters that a diagnosis may fit, with the attributes that differ from those of `law`.
+        fixed: Parameters with a fixed value.
+        otherwise: Other default values of the remaining parameters.
+        about: Class attributes: words, shown_by, source, starts and so on.
     """
+    frees, fixed, otherwise = frees or {}, fixed or {}, otherwise or {}
     types: dict[str, type] = {}
-    module = sys._getframe(1).f_globals[
-        "__name__"
-    ]  # the file that a program is composed from, maybe a user's own
+    # the module of the caller, from which programs are composed; it may be a user's file
+    module = sys._getframe(1).f_globals["__name__"]
     namespace: dict[str, object] = {**about, "__doc__": about["words"], "__module__": module}
     namespace["__annotations__"] = types
+    defaults = {f.name: f.default for f in fields(law)}
     for key, known in law.params().items():
-        nominal = next(f.default for f in fields(law) if f.name == key)
-        if key in (frees or {}):
-            known = known._replace(fit=True, calibrates="", **(frees or {})[key])
+        nominal = defaults[key]
+        if key in frees:
+            known = known._replace(fit=True, calibrates="", **frees[key])
             nominal = known.absent
-        elif key in (fixed or {}):
-            nominal = (fixed or {})[key]
+        elif key in fixed:
+            nominal = fixed[key]
             known = known._replace(low=nominal, high=nominal, fit=False, calibrates="", follows="")
         else:
-            nominal = (otherwise or {}).get(key, nominal)
+            nominal = otherwise.get(key, nominal)
             known = known._replace(fit=False)
         namespace[key] = field(default=nominal, metadata={"param": known})
         types[key] = float
-    made: type[E] = dataclass(frozen=True)(
-        new_class(name, (law,), exec_body=lambda body: body.update(namespace))
-    )
-    return made
+    kind = new_class(name, (law,), exec_body=lambda body: body.update(namespace))
+    found: type[E] = dataclass(frozen=True)(kind)
+    return found

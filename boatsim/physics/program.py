@@ -14,7 +14,7 @@ import numpy as np
 
 from boatsim.physics import cache
 from boatsim.physics import vessel as vessels
-from boatsim.physics.commands import taken_row
+from boatsim.physics.commands import clipped_row
 from boatsim.physics.compiled_program import CompiledProgram
 from boatsim.physics.compose import Composition
 from boatsim.physics.debugging import python_function
@@ -143,7 +143,7 @@ class Program:
         Raises:
             BadInput: A command does not exist or is not finite.
         """
-        return taken_row(self.vessel, commands)
+        return clipped_row(self.vessel, commands)
 
     def shown(self, state: Sequence[float]) -> Shown:
         """Return pose and body-axes velocities of joint coordinates and rates (2 NQ,)."""

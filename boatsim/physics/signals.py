@@ -1,7 +1,7 @@
-"""The signals of a moving hull in one table: name, unit, freedom, and what an instrument that shows them is off by.
+"""Signals of a moving hull: name, unit, degree of freedom and default sensor noise; arguments and results of laws.
 
-Axes are SNAME: x forward, y starboard, z down, heading and yaw rate clockwise seen from above. Vectors over the
-freedoms have the order of `AXES`, those of them that a vessel has.
+Axes are SNAME: x forward, y starboard, z down, heading and yaw rate clockwise seen from above. Vectors over the degrees
+of freedom have the order of `AXES`, without those that a vessel does not have.
 """
 
 from dataclasses import dataclass
@@ -16,21 +16,20 @@ from boatsim.physics.compiler_internals import known_to_numba
 Array = NDArray[np.float64]
 
 AXES = ("surge", "sway", "heave", "roll", "pitch", "yaw")
-COMPONENTS = dict(
-    zip(AXES, ("X_N", "Y_N", "Z_N", "K_Nm", "M_Nm", "N_Nm"), strict=True)
-)  # force columns, by freedom
+# force columns by degree of freedom
+COMPONENTS = dict(zip(AXES, ("X_N", "Y_N", "Z_N", "K_Nm", "M_Nm", "N_Nm"), strict=True))
 
 
 @dataclass(frozen=True)
 class Signal:
-    """One coordinate of a hull's motion, or its rate, as files and controllers know it."""
+    """One coordinate of a hull's motion, or its rate, with its names in files and controllers."""
 
     symbol: str  # field of `Motion`, `Shown` and the engine's `State`
     column: str  # in recordings and logs, with its unit
-    axis: str  # freedom it belongs to
+    axis: str  # degree of freedom
     rate: bool  # a body-axes rate, else a coordinate
-    noise: str  # family of the instruments that measure it
-    # [unit of the column] where neither recording nor vessel states one: fitted from here, widely
+    noise: str  # noise family: the instruments that measure it
+    # [unit of the column] start of the fit where neither recording nor vessel specifies one
     noise_sd: float
 
 
@@ -48,25 +47,33 @@ STATE = (
     Signal("q", "q_radps", "pitch", True, "pitch_rate_sd_radps", 0.005),
     Signal("r", "r_radps", "yaw", True, "yaw_rate_sd_radps", 0.005),
 )
-POSE = tuple(s.column for s in STATE if not s.rate)
-RATES = tuple(s.column for s in STATE if s.rate)
+POSE = tuple(s.column for s in STATE[:6])
+RATES = tuple(s.column for s in STATE[6:])
 NOISE = {s.noise: s.noise_sd for s in STATE}
 
 
 def signals_of(dof: tuple[str, ...]) -> tuple[Signal, ...]:
-    """Coordinates, then rates, of a vessel with these freedoms, in the order of `AXES`."""
+    """Return coordinates, then rates, of a vessel, in the order of `AXES`.
+
+    Args:
+        dof: Its degrees of freedom.
+    """
     return tuple(s for s in STATE if s.axis in dof)
 
 
 def follower(goal: str) -> str | None:
-    """Column of what is to follow a goal: of its name, or of the freedom it names: v_mps of `sway_mps`; None: none."""
+    """Return the column that follows a goal, as v_mps for `sway_mps`; None if no column does.
+
+    Args:
+        goal: Name of a column, or of a degree of freedom with a unit.
+    """
     names = {s.column: s.column for s in STATE}
     names |= {f"{s.axis}_{s.column.partition('_')[2]}": s.column for s in STATE}
     return names.get(goal)
 
 
 class Motion(NamedTuple):
-    """What a force law may look at; a freedom that the vessel has not is zero."""
+    """Motion as a force law sees it; zero for a degree of freedom that the vessel does not have."""
 
     t: float  # [s]
     x: float  # [m] north or forward at the start
@@ -89,7 +96,7 @@ class Motion(NamedTuple):
 
 
 class Shown(NamedTuple):
-    """What instruments show of a motion; a measurement effect changes it on its way into the recording."""
+    """Motion as instruments measure it; a measurement effect changes it before it is recorded."""
 
     x: float  # [m]
     y: float  # [m]
@@ -106,7 +113,7 @@ class Shown(NamedTuple):
 
 
 class Wrench(NamedTuple):
-    """Force on the hull in body axes about the origin of motion; `wrench` builds one in a compiled law."""
+    """Force on the hull in body axes about the origin of motion; compiled laws build it with `wrench`."""
 
     X: float = 0.0  # [N] surge
     Y: float = 0.0  # [N] sway
@@ -119,12 +126,12 @@ class Wrench(NamedTuple):
 def wrench(
     X: float = 0.0, Y: float = 0.0, Z: float = 0.0, K: float = 0.0, M: float = 0.0, N: float = 0.0
 ) -> Wrench:
-    """`Wrench` by the names of its components, the others zero."""
+    """Return a `Wrench` from the names of its components; the others are zero."""
     return Wrench(X, Y, Z, K, M, N)
 
 
 class Mass(NamedTuple):
-    """Symmetric inertia over the freedoms of a hull alike on both sides; all other entries of its matrix are zero."""
+    """Inertia matrix of a hull that is symmetric to port and starboard; all other entries are zero."""
 
     surge: float = 0.0  # [kg]
     sway: float = 0.0  # [kg]
@@ -140,7 +147,7 @@ class Mass(NamedTuple):
     roll_yaw: float = 0.0  # [kg m^2]
 
     def matrix(self) -> Array:
-        """(6, 6) over `AXES`."""
+        """Return the matrix (6, 6) over `AXES`."""
         full = np.zeros((6, 6))
         for value, (i, j) in zip(self, MASS_ENTRIES, strict=True):
             full[i, j] = full[j, i] = value
@@ -167,25 +174,14 @@ def mass(
     sway_yaw: float = 0.0,
     roll_yaw: float = 0.0,
 ) -> Mass:
-    """`Mass` by the names of its entries, the others zero."""
-    return Mass(
-        surge,
-        sway,
-        heave,
-        roll,
-        pitch,
-        yaw,
-        surge_heave,
-        surge_pitch,
-        heave_pitch,
-        sway_roll,
-        sway_yaw,
-        roll_yaw,
-    )
+    """Return a `Mass` from the names of its entries; the others are zero."""
+    diagonal = (surge, sway, heave, roll, pitch, yaw)
+    couplings = (surge_heave, surge_pitch, heave_pitch, sway_roll, sway_yaw, roll_yaw)
+    return Mass(*diagonal, *couplings)
 
 
 class Swell(NamedTuple):
-    """A lightly damped oscillator per axis, driven by noise: a force that comes and goes with one frequency."""
+    """Random oscillating force: per axis a lightly damped oscillator that is driven by white noise."""
 
     X: float  # [N] rms
     Y: float  # [N] rms
@@ -194,7 +190,7 @@ class Swell(NamedTuple):
     M: float  # [N m] rms
     N: float  # [N m] rms
     frequency: float  # [rad/s]
-    damping: float  # share of the critical one
+    damping: float  # damping ratio
 
 
 def swell(
@@ -207,12 +203,12 @@ def swell(
     frequency: float = 0.0,
     damping: float = 1.0,
 ) -> Swell:
-    """`Swell` by name; a frequency of zero means that there is none."""
+    """Return a `Swell` from the names of its fields; a frequency of zero means that there is none."""
     return Swell(X, Y, Z, K, M, N, frequency, damping)
 
 
 class Wander(NamedTuple):
-    """Error of instruments that comes and goes slowly, as that of satellite fixes does (Gauss-Markov, first order)."""
+    """Slowly varying error of instruments, such as satellite positions (first-order Gauss-Markov process)."""
 
     position: float  # [m] rms, north and east alike
     heading: float  # [rad] rms
@@ -226,8 +222,8 @@ for _constructor, _record in ((wrench, Wrench), (mass, Mass), (swell, Swell)):
 class Course(NamedTuple):
     """A signal over one step: at its begin, in its middle and at its end.
 
-    The middle is chosen so that Simpson's rule, by which a Runge-Kutta step weighs the three, gives the signal's mean
-    over the step exactly: a motor that follows within the step gives the right impulse.
+    A Runge-Kutta step weighs the three by Simpson's rule. The middle is chosen so that this gives the mean of the signal
+    over the step exactly, and thus the right impulse of a motor that reaches its command within the step.
     """
 
     begin: float
@@ -237,25 +233,32 @@ class Course(NamedTuple):
 
 @njit(inline="always")
 def course(begin: float, mean: float, end: float) -> Course:
-    """The course of a signal with this mean over the step; one that stands still stands still to the last bit."""
+    """Return the course of a signal with this mean over the step; a constant signal is exactly constant."""
     return Course(begin, mean + 0.25 * ((mean - begin) + (mean - end)), end)
 
 
-# [s] the shortest step that a lag asks for: in so short a one its mean counts, not its course
+# [s] Shortest step that a lag requires: over a shorter one only the mean of the signal matters.
 BRIEF = 0.02
 
 
 @njit(inline="always")
 def followed(lag: float) -> float:
-    """How far a step may reach while a signal follows with a lag [s]: three points tell its course over one lag."""
+    """Return the longest step [s] over which three points describe a signal behind a lag [s]: one lag."""
     return max(lag, BRIEF) if lag > 0.0 else np.inf
 
 
 @njit(inline="always")
 def lagged(x: Course, time_constant: float, memory: Array, at: int, dt: float) -> Course:
-    """A first-order lag behind a signal, exact where its course is a parabola; memory[at] is its value.
+    """Return a signal behind a first-order lag, exact if its course is a parabola; memory[at] is its state.
 
-    T y' = x - y with x = b + c s + d s^2, s in steps, has the solution f + g s + d s^2 beside a decaying rest.
+    T y' = x - y with x = b + c s + d s^2, s in steps, has the solution f + g s + d s^2 plus a decaying exponential.
+
+    Args:
+        x: The signal over the step.
+        time_constant: T [s].
+        memory: States of the actuators.
+        at: Place of the state in `memory`.
+        dt: Length of the step [s].
     """
     y, quick = memory[at], dt / time_constant
     c, d = 4.0 * x.middle - 3.0 * x.begin - x.end, 2.0 * (x.begin + x.end) - 4.0 * x.middle
@@ -268,5 +271,5 @@ def lagged(x: Course, time_constant: float, memory: Array, at: int, dt: float) -
 
 @njit(inline="always")
 def mean_of(x: Course) -> float:
-    """Mean over the step; that of a signal that stands still is the signal, to the last bit."""
+    """Return the mean of a signal over the step; that of a constant signal is exactly the signal."""
     return x.begin + (4.0 * (x.middle - x.begin) + (x.end - x.begin)) / 6.0

@@ -1,4 +1,4 @@
-"""How far off the fitted numbers of a vessel may be, all together: what a diagnosis leaves in a patched file."""
+"""Joint uncertainty of the fitted numbers of a vessel, as a diagnosis writes it into a patched vessel file."""
 
 from dataclasses import dataclass, replace
 from typing import NamedTuple, Self
@@ -14,12 +14,12 @@ CORRELATION_DECIMALS = 9  # in a file; far below the uncertainty of an estimated
 
 
 class FittedTable(Table):
-    """One fitted quantity, and the numbers that differ with it."""
+    """One fitted quantity x, and the numbers of the vessel that change with it."""
 
     fitted: str
     sd: PositiveFloat
-    scales: list[str] = []  # "effect.number" that are times 1 + x
-    shifts: dict[str, float] = {}  # "effect.number" -> what is added to it per x
+    scales: list[str] = []  # "effect.number": multiplied by 1 + x
+    shifts: dict[str, float] = {}  # "effect.number" -> change per x
 
 
 class SpreadTable(Table):
@@ -34,12 +34,12 @@ class SpreadTable(Table):
         if self.of and np.shape(self.correlation) != wanted:
             raise ValueError(f"correlation is not a table of {wanted[0]} rows of {wanted[1]}")
         if self.of and np.linalg.eigvalsh(np.array(self.correlation)).min() < -1e-6:
-            raise ValueError("correlation is that of no quantities: an eigenvalue is below 0")
+            raise ValueError("correlation is no correlation matrix: an eigenvalue is below 0")
         return self
 
 
 class Change(NamedTuple):
-    """What k boats have in place of a number: times the factor, and the shift added."""
+    """Change of a number of k vessels: it is multiplied by the factor, and the shift is added."""
 
     factor: Array | float = 1.0
     shift: Array | float = 0.0
@@ -47,35 +47,44 @@ class Change(NamedTuple):
 
 @dataclass(frozen=True)
 class Spread:
-    """Normal distribution of what was fitted, about the numbers of the vessel file."""
+    """Normal distribution of the F fitted quantities about the numbers of the vessel file."""
 
     of: tuple[FittedTable, ...]
     sd: Array  # (F,)
-    root: Array  # (F, F) of the correlation
+    root: Array  # (F, F) of the correlation matrix
 
     @classmethod
     def read(cls, table: SpreadTable) -> "Spread | None":
-        """From a vessel file; None where it says nothing."""
+        """Return the distribution in a vessel file; None if there is none.
+
+        Args:
+            table: The table [spread].
+        """
         if not table.of:
             return None
         values, vectors = np.linalg.eigh(np.array(table.correlation, dtype=float))
-        return cls(
-            tuple(table.of),
-            np.array([f.sd for f in table.of]),
-            vectors * np.sqrt(np.maximum(values, 0.0)),
-        )
+        sd = np.array([f.sd for f in table.of])
+        return cls(tuple(table.of), sd, vectors * np.sqrt(np.maximum(values, 0.0)))
 
     def table(self) -> dict[str, object]:
         """Return the [spread] table of a vessel file."""
         correlation = np.round(self.root @ self.root.T, CORRELATION_DECIMALS)
         return {"correlation": correlation.tolist(), "of": [one.model_dump() for one in self.of]}
 
-    def times(self, factor: float) -> "Spread":
-        """As wide as that factor says."""
+    def scaled(self, factor: float) -> "Spread":
+        """Return the distribution with all standard deviations multiplied by a factor.
+
+        Args:
+            factor: The factor.
+        """
         return replace(self, sd=self.sd * factor)
 
-    def drawn(self, shares: Array) -> dict[str, Change]:
-        """What becomes of each "effect.number", from numbers drawn by lot (k, F)."""
+    def sample(self, shares: Array) -> dict[str, Change]:
+        """Return the change of each "effect.number" for k samples.
+
+        Args:
+            shares: (k, F) independent numbers, uniform in (0, 1).
+        """
         off = ndtri(shares) @ self.root.T * self.sd
         found: dict[str, Change] = {}
         for one, x in zip(self.of, off.T, strict=True):

@@ -1,7 +1,7 @@
-"""Terms of a described law: products of factors that a sailor knows, and how it acts in time.
+"""Terms of symbolic regression: products of factors that have names, and their course in time.
 
-Files name factors, courses and directions; a program knows each by a number (`codes`), so that one compiled law is any
-of them. The same functions work on single numbers and on arrays over the rows of a recording.
+Files contain the names of factors, courses and directions; a program uses a number for each (`codes`), so that one
+compiled law serves all of them. The same functions work on single numbers and on arrays over the rows of a recording.
 """
 
 from collections.abc import Sequence
@@ -15,67 +15,53 @@ from boatsim.errors import BadInput, unknown_name
 from boatsim.physics.kernel.compiling import apart
 from boatsim.physics.signals import Course, Wrench, followed, lagged, wrench
 
-SPEEDS = (
-    "surge_speed",
-    "sway_speed",
-    "heave_speed",
-    "roll_rate",
-    "pitch_rate",
-    "yaw_rate",
-)  # through the water
-SIZES, SENSES = tuple(f"abs_{s}" for s in SPEEDS), tuple(f"sign_{s}" for s in SPEEDS)
+# through the water
+SPEEDS = ("surge_speed", "sway_speed", "heave_speed", "roll_rate", "pitch_rate", "yaw_rate")
+SIZES = tuple(map("abs_{}".format, SPEEDS))
+SENSES = tuple(map("sign_{}".format, SPEEDS))
 BEARINGS = ("cos_heading", "sin_heading", "cos_twice_heading", "sin_twice_heading")
 PLACES = ("north", "east", "depth", "roll_angle", "pitch_angle")
-RIPPLES = ("ripple_north", "ripple_east")  # a pattern that lies still, along north or east
-BEYOND = tuple(
-    f"beyond_{s}" for s in SPEEDS
-)  # what a speed is above a threshold either way, with its sign
-FACTORS = (
-    "",
-    *SPEEDS,
-    *SIZES,
-    *SENSES,
-    *BEARINGS,
-    *PLACES,
-    *RIPPLES,
-    *BEYOND,
-)  # a factor's number is its place here;
-HISTORIES = (
-    "recent",
-    "changed",
-)  # in front of an actuator signal: what it was of late, and by how much it is beyond
-RECALLED = 90  # number of what a term recalls, of its size one more
-FIRST_HELD = 100  # that of a vessel's k-th actuator signal this and 2 k, of its size one more
-MOST = 3  # factors of a term
+RIPPLES = ("ripple_north", "ripple_east")  # a pattern that is fixed in the water, along an axis
+BEYOND = tuple(map("beyond_{}".format, SPEEDS))  # excess of a speed over a threshold, with its sign
+# The number of a factor is its place in this list.
+FACTORS = ("", *SPEEDS, *SIZES, *SENSES, *BEARINGS, *PLACES, *RIPPLES, *BEYOND)
+# In front of the name of an actuator signal: the signal behind a first-order lag, and the signal less
+# that
+HISTORIES = ("recent", "changed")
+RECALLED = 90  # number of the lagged signal of a term; 91: its absolute value
+FIRST_HELD = 100  # number of actuator signal k less 2 k; one more: its absolute value
+MOST_FACTORS = 3  # in a term
 COURSES = ("always", "within", "rising", "fading", "swinging")
-DIRECTIONS = (
-    "surge",
-    "sway",
-    "heave",
-    "roll",
-    "pitch",
-    "yaw",
-    "north",
-    "east",
-)  # the last two on level axes
-SPEED_UNITS = dict(zip(SPEEDS, 3 * ("m/s",) + 3 * ("rad/s",), strict=True))
-UNITS = SPEED_UNITS | {
-    f"{mark}_{s}": unit for s, unit in SPEED_UNITS.items() for mark in ("abs", "beyond")
-}
+# north and east on level axes
+DIRECTIONS = ("surge", "sway", "heave", "roll", "pitch", "yaw", "north", "east")
+SPEED_UNITS = 3 * ("m/s",) + 3 * ("rad/s",)
+UNITS = dict(zip(SPEEDS, SPEED_UNITS, strict=True))
+for _names in (SIZES, BEYOND):
+    UNITS |= dict(zip(_names, SPEED_UNITS, strict=True))
 UNITS |= dict(zip(PLACES, 3 * ("m",) + 2 * ("rad",), strict=True))
 
-SINGLE, SIZE, SENSE, BEARING, PLACE, RIPPLE, ABOVE = (
-    FACTORS.index(names[0]) for names in (SPEEDS, SIZES, SENSES, BEARINGS, PLACES, RIPPLES, BEYOND)
-)
-Detail = tuple[
-    float, float, float, float
-]  # wavelength and crest [m] of a ripple, little and beyond [SI] of a speed
-WITHIN, RISING, FADING, SWINGING = (float(COURSES.index(c)) for c in COURSES[1:])
+# First number of each group of factors
+SINGLE, SIZE, SENSE = FACTORS.index(SPEEDS[0]), FACTORS.index(SIZES[0]), FACTORS.index(SENSES[0])
+BEARING, PLACE = FACTORS.index(BEARINGS[0]), FACTORS.index(PLACES[0])
+RIPPLE, ABOVE = FACTORS.index(RIPPLES[0]), FACTORS.index(BEYOND[0])
+# wavelength and crest [m] of a ripple, little and beyond [SI] of a speed
+Detail = tuple[float, float, float, float]
+WITHIN, RISING, FADING, SWINGING = map(float, range(1, len(COURSES)))
 
 
 @apart
 def factor(m: Any, act: Any, at: Any, own: Any, number: float, detail: Detail) -> Any:
-    """One factor; a sense turns within `little`, a ripple is one at its crest, act[at + own] is what is recalled."""
+    """Return one factor.
+
+    Args:
+        m: `Motion`.
+        act: Actuators.
+        at: First of the actuators to use.
+        own: Place of the term's lagged signal after `at`.
+        number: Number of the factor, see `codes`.
+        detail: Wavelength and crest of a ripple, which is 1 at its crest; speed `little` within which a sense changes;
+            threshold `beyond`.
+    """
     k, (wavelength, crest, little, beyond) = int(number), detail
     if k >= RECALLED:
         value = act[at + (own if k < FIRST_HELD else (k - FIRST_HELD) // 2)]
@@ -98,7 +84,15 @@ def factor(m: Any, act: Any, at: Any, own: Any, number: float, detail: Detail) -
 
 @apart
 def course(t: Any, acts: float, begin: float, end: float) -> Any:
-    """How a law acts in time: always; within two instants; rising between them; fading, swinging over their span."""
+    """Return the course of a law in time.
+
+    Args:
+        t: Time [s].
+        acts: Number of the course: always 1; 1 between begin and end; a ramp from begin to end; an exponential decay
+            from begin, or a sine, with end - begin as time constant or period.
+        begin: Time [s].
+        end: Time [s].
+    """
     if acts == WITHIN:
         return 1.0 * ((t >= begin) & (t < end))
     if acts == RISING:
@@ -112,7 +106,15 @@ def course(t: Any, acts: float, begin: float, end: float) -> Any:
 
 @njit(inline="always")
 def term(m: Any, q: Any, act: Any, at: Any, own: Any) -> Any:
-    """The product of a described law's factors and its course."""
+    """Return the product of a term's factors and its course.
+
+    Args:
+        m: `Motion`.
+        q: Parameters of the effect.
+        act: Actuators.
+        at: First of the actuators to use.
+        own: Place of the term's lagged signal after `at`.
+    """
     detail = (q.wavelength, q.crest, q.little, q.beyond)
     return (
         factor(m, act, at, own, q.first, detail)
@@ -134,9 +136,18 @@ def recalled(
     beyond: float,
     memory: float,
 ) -> None:
-    """What a term recalls over a step, to act: a signal or its size as it was of late, by a lag, or by how much beyond.
+    """Write the history of a signal over a step to act: the signal behind a first-order lag, or the signal less that.
 
-    `looks_at` and `beyond` are by `looks`; kept[at] is the lag's own.
+    Args:
+        act: Actuators.
+        held: Numbers that describe the actuators at one time.
+        own: Place of the result in act.
+        kept: States of the actuators.
+        at: Place of the state of the lag in `kept`.
+        dt: Length of the step [s].
+        looks_at: Number of the signal, see `history_codes`.
+        beyond: 1 for the signal less the lagged one, else 0.
+        memory: Time constant of the lag [s].
     """
     if looks_at < FIRST_HELD:
         return
@@ -152,19 +163,35 @@ def recalled(
 
 @njit(inline="always")
 def recall(act: Any, held: Any, own: Any, kept: Any, at: Any, dt: float, q: Any) -> None:
-    """`recalled` of a described law."""
+    """Apply `recalled` with the parameters of an effect.
+
+    Args:
+        act: Actuators.
+        held: Numbers that describe the actuators at one time.
+        own: Place of the result in act.
+        kept: States of the actuators.
+        at: Place of the state of the lag in `kept`.
+        dt: Length of the step [s].
+        q: Parameters of the effect.
+    """
     recalled(act, held, own, kept, at, dt, q.looks_at, q.looks, q.memory)
 
 
 @njit(inline="always")
 def reach(q: Any) -> float:
-    """For how many s three points tell what a described law recalls."""
+    """Return the longest step [s] over which three points describe the lagged signal of an effect with parameters q."""
     return followed(q.memory) if q.looks_at > 0.0 else np.inf
 
 
 @apart
 def along(m: Any, direction: float, force: float) -> Wrench:
-    """A force or moment along one of `DIRECTIONS`."""
+    """Return a force or moment along one of `DIRECTIONS`.
+
+    Args:
+        m: `Motion`.
+        direction: Number of the direction.
+        force: Force [N] or moment [N m].
+    """
     k = int(direction)
     if k == 6:
         return wrench(X=force * m.cos_psi, Y=-force * m.sin_psi)
@@ -181,25 +208,51 @@ def along(m: Any, direction: float, force: float) -> Wrench:
 
 
 def names_for(held: Sequence[str]) -> tuple[str, ...]:
-    """Names of all factors on a vessel with these actuator signals."""
-    signals = [name for h in held for name in (h, f"abs_{h}")]
-    late = [f"{how}_{signal}" for how in HISTORIES for signal in signals]
-    return (*FACTORS[1:], *signals, *late, *(f"abs_{how}_{h}" for how in HISTORIES for h in held))
+    """Return the names of all factors of a vessel.
+
+    Args:
+        held: Names of its actuator signals.
+    """
+    signals: list[str] = []
+    for name in held:
+        signals += [name, f"abs_{name}"]
+    histories: list[str] = []
+    for how in HISTORIES:
+        histories += map(f"{how}_{{}}".format, signals)
+    for how in HISTORIES:
+        histories += map(f"abs_{how}_{{}}".format, held)
+    return (*FACTORS[1:], *signals, *histories)
 
 
-def looking(name: str, held: Sequence[str]) -> tuple[str, str]:
-    """How a factor looks back, and at which signal or its size, ("recent", "abs_thrust_N"); "", "" if it does not."""
+def history_of(name: str, held: Sequence[str]) -> tuple[str, str]:
+    """Return the kind of history of a factor and its signal, as ("recent", "abs_thrust_N"); "", "" for other factors.
+
+    Args:
+        name: Name of the factor.
+        held: Names of the vessel's actuator signals.
+    """
     bare = name.removeprefix("abs_")
-    how = next((h for h in HISTORIES if bare.startswith(f"{h}_") and bare not in held), "")
-    return (how, bare.removeprefix(f"{how}_")) if how else ("", "")
+    for how in HISTORIES:
+        if bare.startswith(f"{how}_") and bare not in held:
+            return how, bare.removeprefix(f"{how}_")
+    return "", ""
 
 
-def looks(what: str, of: Sequence[str], held: Sequence[str]) -> tuple[float, float]:
-    """Numbers of the signal that a term looks back at, and how; 0, 0 where it does not. Raises BadInput for several."""
-    found = sorted({looking(name, held) for name in of} - {("", "")})
+def history_codes(what: str, of: Sequence[str], held: Sequence[str]) -> tuple[float, float]:
+    """Return the number of the signal whose history a term uses, and of the kind of history; 0, 0 without one.
+
+    Args:
+        what: Name of the effect, for the message.
+        of: Names of the factors.
+        held: Names of the vessel's actuator signals.
+
+    Raises:
+        BadInput: The factors use more than one history.
+    """
+    found = sorted({history_of(name, held) for name in of} - {("", "")})
     if len(found) > 1:
         raise BadInput(
-            f"{what}: of = {list(of)}; allowed is to look back at one signal, in one way"
+            f"{what}: of = {list(of)}; allowed is the history of one signal, of one kind"
         )
     for how, signal in found:
         return codes(what, (signal,), held)[0], float(HISTORIES.index(how))
@@ -207,28 +260,45 @@ def looks(what: str, of: Sequence[str], held: Sequence[str]) -> tuple[float, flo
 
 
 def codes(what: str, of: Sequence[str], held: Sequence[str]) -> tuple[float, ...]:
-    """(MOST,) numbers of a term's factors. Raises BadInput for a name that does not exist, or too many."""
-    if len(of) > MOST:
-        raise BadInput(f"{what}: of = {list(of)}; allowed are at most {MOST} factors")
+    """Return the numbers (MOST_FACTORS,) of a term's factors.
+
+    Args:
+        what: Name of the effect, for the message.
+        of: Names of the factors.
+        held: Names of the vessel's actuator signals.
+
+    Raises:
+        BadInput: A factor does not exist, or there are too many.
+    """
+    if len(of) > MOST_FACTORS:
+        raise BadInput(f"{what}: of = {list(of)}; allowed are at most {MOST_FACTORS} factors")
     found = []
     for name in of:
         size = name.removeprefix("abs_")
         if name in held or size in held:
-            of_size = name not in held
-            found.append(
-                float(FIRST_HELD + 2 * list(held).index(size if of_size else name) + of_size)
-            )
+            absolute = name not in held
+            signal = size if absolute else name
+            found.append(float(FIRST_HELD + 2 * list(held).index(signal) + absolute))
         elif name and name in FACTORS:
             found.append(float(FACTORS.index(name)))
         elif name in names_for(held):
             found.append(float(RECALLED + name.startswith("abs_")))
         else:
             raise BadInput(unknown_name(f"{what}: of", name, names_for(held)))
-    return (*found, *[0.0] * (MOST - len(found)))
+    return (*found, *[0.0] * (MOST_FACTORS - len(found)))
 
 
 def code_of(what: str, word: str, words: Sequence[str]) -> float:
-    """Number of a course or direction. Raises BadInput."""
+    """Return the number of a course or direction.
+
+    Args:
+        what: Name of the effect and key, for the message.
+        word: The course or direction.
+        words: All of them.
+
+    Raises:
+        BadInput: It does not exist.
+    """
     if word not in words:
         raise BadInput(unknown_name(what, word, words))
     return float(words.index(word))

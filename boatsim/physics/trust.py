@@ -1,6 +1,7 @@
-"""What may run: the library, and Python files in folders that the user named or trusts. Data run nothing by themselves.
+"""Which Python files may run: those of boatsim, and those in folders that the user has named or trusts.
 
-What is trusted holds for a block of `trusting`, and in the processes that the block starts if they are handed `now()`.
+Data files alone never cause Python code to run. Trust holds for a block of `trusting`, and in the processes that the
+block starts if they are given `current_trust()`.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -14,29 +15,39 @@ from boatsim.errors import BadInput
 
 @dataclass(frozen=True)
 class Trust:
-    """The folders of a user's own content, in which names resolve too, and those that he but allows to run."""
+    """The trusted folders.
+
+    Attributes:
+        content: Folders of the user's own content; names of effects, vessels and so on are searched in them.
+        allowed: Further folders whose Python files may run.
+        ask: Asks the user whether the Python files of a folder may run; None: there is no user to ask.
+        answers: The user's answers; each folder is asked for once.
+    """
 
     content: tuple[Path, ...] = ()
     allowed: tuple[Path, ...] = ()
-    # whether the Python files of a folder may run; None: nobody is there
     ask: Callable[[Path], bool] | None = None
-    answers: dict[Path, bool] = field(default_factory=dict)  # each folder is asked for once
+    answers: dict[Path, bool] = field(default_factory=dict)
 
     def holds(self, path: Path) -> bool:
-        """Whether a file lies in a trusted folder or below one, by its real place."""
+        """Return whether a file lies in a trusted folder or below one.
+
+        Args:
+            path: The file, without symbolic links.
+        """
         return any(path.is_relative_to(folder) for folder in (*self.content, *self.allowed))
 
 
 _now: ContextVar[Trust] = ContextVar("trust")
 
 
-def now() -> Trust:
-    """What is trusted here, to be handed to another process, which has nobody to ask."""
+def current_trust() -> Trust:
+    """Return what is trusted here, for another process, which cannot ask the user."""
     return replace(_now.get(Trust()), ask=None, answers={})
 
 
 def content() -> tuple[Path, ...]:
-    """Folders of the user's own content."""
+    """Return the folders of the user's own content."""
     return _now.get(Trust()).content
 
 
@@ -46,15 +57,23 @@ def trusting(
     allowed: Sequence[Path | str] = (),
     ask: Callable[[Path], bool] | None = None,
 ) -> Iterator[None]:
-    """Trust these folders, all below them too, on top of what is trusted already.
+    """Trust folders, with all folders below them, in addition to those that are trusted already.
 
-    Names resolve in those of `content` as in the library: in DIR/effects, DIR/models and so on, and in DIR itself.
-    Raises BadInput for a folder that does not exist.
+    Args:
+        content: Folders of the user's own content. Names are searched in them as in the library: in DIR/effects,
+            DIR/models and so on, and in DIR itself.
+        allowed: Further folders whose Python files may run.
+        ask: Asks the user whether the Python files of a folder may run.
+
+    Raises:
+        BadInput: A folder does not exist.
     """
     before = _now.get(Trust())
-    mine, others = (tuple(_folder(f) for f in given) for given in (content, allowed))
     inner = Trust(
-        (*before.content, *mine), (*before.allowed, *others), ask or before.ask, before.answers
+        (*before.content, *map(_folder, content)),
+        (*before.allowed, *map(_folder, allowed)),
+        ask or before.ask,
+        before.answers,
     )
     token = _now.set(inner)
     try:
@@ -64,12 +83,23 @@ def trusting(
 
 
 def adopt(trust: Trust) -> None:
-    """Trust what another process does, for as long as this one lives."""
+    """Trust what another process trusts, until this process ends.
+
+    Args:
+        trust: `current_trust()` of the other process.
+    """
     _now.set(trust)
 
 
 def check(path: Path) -> None:
-    """Raises BadInput for a Python file that nobody vouches for."""
+    """Check that a Python file may run; ask the user if that is possible.
+
+    Args:
+        path: The file.
+
+    Raises:
+        BadInput: The file is not trusted.
+    """
     real, trust = path.resolve(), _now.get(Trust())
     if trust.holds(real):
         return
@@ -77,17 +107,17 @@ def check(path: Path) -> None:
         trust.answers[real.parent] = trust.ask(real.parent)
     if not trust.answers.get(real.parent):
         raise BadInput(
-            f"{path} is not run: only data name this Python file; --trust (those beside the files given) or "
-            "--content FOLDER allows it"
+            f"{path} is not run: only a data file refers to this Python file; "
+            "--trust (the folders of the given files) or --content FOLDER allows it"
         )
 
 
 def _folder(given: Path | str) -> Path:
     try:
         folder = Path(given).expanduser().resolve()
-        there = folder.is_dir()
-    except (OSError, RuntimeError, ValueError) as error:  # a ring of links, no home, a nul
+        exists = folder.is_dir()
+    except (OSError, RuntimeError, ValueError) as error:  # circular links, no home, a null byte
         raise BadInput(f"{given}: no folder of content ({error})") from None
-    if not there:
-        raise BadInput(f"{given}: there is no such folder of content")
+    if not exists:
+        raise BadInput(f"{given}: this folder of content does not exist")
     return folder

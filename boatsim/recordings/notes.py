@@ -11,7 +11,7 @@ from typing import TypedDict, TypeVar
 
 from boatsim.errors import BadInput, unknown_name
 from boatsim.files import Value, home_folder, read_toml
-from boatsim.physics.facts import wrong
+from boatsim.physics.facts import first_invalid
 from boatsim.physics.signals import AXES
 
 T = TypeVar("T")
@@ -281,7 +281,7 @@ class _Reader:
         return found
 
     def facts(self) -> dict[str, Value]:
-        if found := wrong(self.content):
+        if found := first_invalid(self.content):
             raise self.bad(*found)
         return dict(self.content)
 

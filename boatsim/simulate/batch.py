@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from boatsim.errors import BadInput, unknown_name
-from boatsim.physics.commands import taken, taken_row
+from boatsim.physics.commands import clip, clipped_row
 from boatsim.physics.kernel.records import Fleet
 from boatsim.physics.kinds.effect import Effect
 from boatsim.physics.param import Param
@@ -73,7 +73,7 @@ class Batch:
             raise BadInput(f"{self._seeds.size} seeds for {self.n} boats; allowed is one for each")
         self.t = np.zeros(self.n)  # [s]
         self._y = np.zeros((self.n, 2 * self.code.NQ))
-        self._commands = np.tile(taken_row(self.vessels[0], {}), (self.n, 1))
+        self._commands = np.tile(clipped_row(self.vessels[0], {}), (self.n, 1))
         self._memory = np.zeros((self.n, self.program.memory_size))
         self._act = np.zeros((self.n, self.program.held_size))
         self._p = np.zeros((self.n, len(self.program.values())))
@@ -272,7 +272,7 @@ class Batch:
         """(k, C) commands that act when these are sent. Raises BadInput."""
         boat = self.vessels[0]
         if isinstance(commands, Mapping):
-            return taken_row(boat, commands)
+            return clipped_row(boat, commands)
         given, width = np.asarray(commands, dtype=float), len(boat.commands)
         fits = given.shape[:-1] in ((), (1,), boats.shape)
         if not (given.ndim and fits and given.shape[-1] in (width, len(boat.inputs))):
@@ -281,7 +281,7 @@ class Batch:
             )
         rows = self._commands[boats]
         rows[:, : given.shape[-1]] = given
-        return taken(boat, rows)
+        return clip(boat, rows)
 
     @cached_property
     def _parameters(self) -> dict[str, tuple[int, Param]]:

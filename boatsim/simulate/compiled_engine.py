@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from boatsim.errors import BadInput
-from boatsim.physics.commands import taken
+from boatsim.physics.commands import clip
 from boatsim.physics.kernel.records import Model
 from boatsim.physics.program import Program
 from boatsim.physics.signals import Array
@@ -46,7 +46,7 @@ class Twin:
         if substeps < 1 or abs(substeps * self.step - interval) > 1e-9 * interval:
             raise BadInput(f"step {self.step:g} s does not divide the interval {interval:g} s")
         p = self._values if values is None else values
-        commands = np.ascontiguousarray(taken(self.vessel, np.asarray(commands, dtype=float)))
+        commands = np.ascontiguousarray(clip(self.vessel, np.asarray(commands, dtype=float)))
         model = Model(self.program.body, p, self._on)
         plant = self.program.plant(self.program.joint_rates(np.array(start, dtype=float)))
         self.code.settle(commands[0], plant.memory, p, self._on, plant.act)

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 from boatsim.control.base import Controller
 from boatsim.control.compiled import CompiledController
 from boatsim.errors import BadInput
-from boatsim.physics.commands import sent_row
+from boatsim.physics.commands import command_row
 from boatsim.physics.signals import Array, signals_of
 from boatsim.physics.vessel import Vessel
 from boatsim.simulate.batch import Batch
@@ -99,7 +99,7 @@ class Fleet:
         )
         moving = start.motion()
         first = self._each[0].initial_commands() if isinstance(self._each[0], Controller) else {}
-        commands = sent_row(self.batch.vessels[0], {**first, **start.commands})
+        commands = command_row(self.batch.vessels[0], {**first, **start.commands})
         self.batch.reset([moving[s] for s in symbols] if starts is None else starts, commands)
         self._aboard.saturated[:] = 0.0
         self._aboard.random = [

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from boatsim.control.compiled import SENSE, CompiledController, Records, as_table, columns
 from boatsim.errors import BadInput
-from boatsim.physics.commands import SLACK, sent_row
+from boatsim.physics.commands import SLACK, command_row
 from boatsim.physics.debugging import DEBUG
 from boatsim.physics.signals import Array
 from boatsim.simulate import compiled_loop
@@ -72,7 +72,7 @@ class PassedOn:
         """A period for each goal."""
         for goal, same in groupby(goals):
             steps = len(list(same)) * self.aboard.steps
-            self.aboard.send(sent_row(self.aboard.batch.vessels[0], goal), steps)
+            self.aboard.send(command_row(self.aboard.batch.vessels[0], goal), steps)
 
 
 class ByFunction:
@@ -93,7 +93,7 @@ class ByFunction:
         for i, goal in enumerate(goals):
             batch.feel(as_table(self._sense))
             compiled_loop.disturb_boats(everyone, as_table(self._sense), numbers, noise, i)
-            orders = np.tile(sent_row(boat, {}), (len(batch), 1))
+            orders = np.tile(command_row(boat, {}), (len(batch), 1))
             for name, values in self.function(self._sense, goal).items():
                 if name not in boat.commands:
                     raise BadInput(boat.unknown_command(name))

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from boatsim.errors import BadInput, BadPhysics
-from boatsim.physics.commands import beyond, sent_row, taken
+from boatsim.physics.commands import clip, command_row, saturated_channels
 from boatsim.physics.program import Program
 from boatsim.physics.signals import Array, Wrench
 from boatsim.physics.vessel import Vessel
@@ -51,7 +51,7 @@ class Stepper(ABC):
         self._actuators = vessel.actuators
         self._mean = np.zeros(len(self._actuators))  # of each actuator over the last step
         self._places = {name: i for i, name in enumerate(vessel.commands)}
-        self._neutral = sent_row(vessel, {}).tolist()
+        self._neutral = command_row(vessel, {}).tolist()
         self._limits = list(vessel.limits().values())
         self.sent = list(
             self._neutral
@@ -106,7 +106,7 @@ class Stepper(ABC):
                 raise BadInput(self.vessel.unknown_command(name))
             sent[self._places[name]] = float(value)
         if not isfinite(sum(sent)):
-            taken(self.vessel, np.array(sent))  # says which
+            clip(self.vessel, np.array(sent))  # says which
         self.sent = sent
         self._commands[:] = [
             min(max(x, low), high) for x, (low, high) in zip(sent, self._limits, strict=True)
@@ -116,7 +116,7 @@ class Stepper(ABC):
     def beyond(self) -> list[str]:
         """Channels of which more was sent than their range holds."""
         acts = self._commands.tolist()
-        return [] if acts == self.sent else beyond(self.vessel, np.array(self.sent))
+        return [] if acts == self.sent else saturated_channels(self.vessel, np.array(self.sent))
 
     @property
     def commands(self) -> dict[str, float]:

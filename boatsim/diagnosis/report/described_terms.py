@@ -18,7 +18,7 @@ from boatsim.diagnosis.report.schema import DescribedEntry, TermEntry
 from boatsim.physics.described_laws import EVER, Described
 from boatsim.physics.effects.described_force import DescribedForce
 from boatsim.physics.effects.described_thrust import DescribedThrust
-from boatsim.physics.terms import BEYOND, RIPPLES, UNITS, looking
+from boatsim.physics.terms import BEYOND, RIPPLES, UNITS, history_of
 from boatsim.physics.vessel import Vessel
 
 FORCES = {
@@ -99,7 +99,7 @@ def over_words(over: str) -> str:
         return "product of the factors [SI]"
     if over in RIPPLES:
         return f"position {over.removeprefix('ripple_')} [m]"
-    how, signal = looking(over, ())
+    how, signal = history_of(over, ())
     if how:
         return _recent_words(how, signal)
     if unit := UNITS.get(over, ""):
@@ -248,7 +248,7 @@ def _factor(name: str, term: Described) -> str:
         return f"the size of {_factor(name.removeprefix('abs_'), term)}"
     if name.startswith("sign_"):
         return f"the sign of {_factor(name.removeprefix('sign_'), term)}"
-    how, signal = looking(name, ()) if term.looks_back else ("", "")
+    how, signal = history_of(name, ()) if term.looks_back else ("", "")
     if how:
         average = f"average over the last {number(term.memory)} s"
         if how == "recent":
@@ -274,7 +274,7 @@ def unit_of(term: Described, vessel: Vessel) -> str:
         powers["N"] = 1
         powers["m"] = int(term.axis in TURNING)
     for name in term.of:
-        signal = looking(name, vessel.described_signals)[1] or name
+        signal = history_of(name, vessel.described_signals)[1] or name
         unit = UNITS.get(name) or vessel.unit(signal.removeprefix("abs_"))
         above, _, below = unit.partition("/")
         _multiply(powers, above, -1)

@@ -8,7 +8,7 @@ from boatsim.diagnosis.description import Curve
 from boatsim.diagnosis.symbolic.term_forces import NO_AVERAGE, FittedRecording
 from boatsim.physics.base import Array
 from boatsim.physics.described_laws import Described
-from boatsim.physics.terms import RIPPLES, codes, looks
+from boatsim.physics.terms import RIPPLES, codes, history_codes
 
 BINS = 40  # of a curve; the figure of a report is not wider
 FEWEST_ROWS = 3  # of a bin that is drawn; fewer show noise only
@@ -90,7 +90,7 @@ def _abscissa(fitted: FittedRecording, term: Described, over: str, size: Array) 
     signals = fitted.problem.program.vessel.described_signals
     code, *_ = codes(term.name, (over,), signals)
     average = NO_AVERAGE
-    looks_at, deviation = looks(term.name, (over,), signals)
+    looks_at, deviation = history_codes(term.name, (over,), signals)
     if looks_at:
         average = (looks_at, deviation, term.memory)
     return fitted.factor(code, (1.0, 0.0, 1.0, 0.0), average)

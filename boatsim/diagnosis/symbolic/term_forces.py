@@ -16,7 +16,7 @@ from boatsim.physics.effects.described_force import DescribedForce
 from boatsim.physics.effects.described_thrust import DescribedThrust
 from boatsim.physics.signals import AXES
 
-# signal and kind of an average over the past, by `terms.looks`, and its time constant [s]
+# signal and kind of an average over the past, by `terms.history_codes`, and its time constant [s]
 Average = tuple[float, float, float]
 NO_AVERAGE: Average = (0.0, 0.0, 1.0)
 PLACES = dict(zip(AXES, ("x", "y", "z", "phi", "theta", "psi"), strict=True))
@@ -154,7 +154,7 @@ class FittedRecording:
         detail = (term.wavelength, term.crest, little, term.beyond)
         average = NO_AVERAGE
         if term.looks_back:
-            looks_at, deviation = terms.looks(term.name, term.of, vessel.described_signals)
+            looks_at, deviation = terms.history_codes(term.name, term.of, vessel.described_signals)
             average = (looks_at, deviation, term.memory)
         codes = terms.codes(term.name, term.of, vessel.described_signals)
         for code in codes[: len(term.of)]:
@@ -182,7 +182,7 @@ class FittedRecording:
         """Return the average over the past of an actuator signal or its size, or the deviation from it.
 
         Args:
-            looks_at: Code of the signal, by `terms.looks`.
+            looks_at: Code of the signal, by `terms.history_codes`.
             deviation: Whether the deviation is returned, 1 or 0.
             time_constant: Time constant of the average [s].
 

@@ -6,7 +6,7 @@ from typing import Any, ClassVar, Self
 from numba import njit
 
 from boatsim.physics.base import UNSET, Force, Wrench, param, wrench
-from boatsim.physics.noise import course, noise
+from boatsim.physics.noise import narrow_band_noise, seeded_realisation
 
 
 @njit
@@ -23,11 +23,11 @@ def law(m: Any, q: Any) -> Wrench:
     Y = K = N = 0.0
     w, z, number, count = q.frequency, q.damping, q.realisation, q.components
     if q.sway > 0.0:
-        Y = q.sway * noise(m.t, w, z, number, 0.0, count)
+        Y = q.sway * narrow_band_noise(m.t, w, z, number, 0.0, count)
     if q.roll > 0.0:
-        K = q.roll * noise(m.t, w, z, number, 1.0, count)
+        K = q.roll * narrow_band_noise(m.t, w, z, number, 1.0, count)
     if q.yaw > 0.0:
-        N = q.yaw * noise(m.t, w, z, number, 2.0, count)
+        N = q.yaw * narrow_band_noise(m.t, w, z, number, 2.0, count)
     return wrench(Y=Y, K=K + q.arm * Y, N=N)
 
 
@@ -76,4 +76,4 @@ class FilteredSea(Force):
         Args:
             seed: Seed of the scenario.
         """
-        return replace(self, realisation=course(self.realisation, seed))
+        return replace(self, realisation=seeded_realisation(self.realisation, seed))

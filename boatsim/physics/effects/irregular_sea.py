@@ -8,7 +8,7 @@ from numba import njit
 
 from boatsim.physics import particulars
 from boatsim.physics.base import UNSET, Boat, Force, Wrench, param, wrench
-from boatsim.physics.noise import course, drawn
+from boatsim.physics.noise import seeded_realisation, uniform
 
 LOWEST = 0.45  # lowest frequency over the modal one; less than 1e-13 of the energy lies below
 GRAVITY = particulars.GRAVITY
@@ -72,12 +72,12 @@ def law(m: Any, q: Any) -> Wrench:
     weight = 0.25 * pi * q.density * GRAVITY * q.draught**2 * q.length
     below = 0.0
     for k in range(count):
-        w = low + width * (k + drawn(q.realisation, 2 * k))
+        w = low + width * (k + uniform(q.realisation, 2 * k))
         # share of the energy below the cell's upper end
         above = exp(-1.25 * (modal / (low + width * (k + 1))) ** 4)
         number = w * w / GRAVITY  # deep water
         slope = number * q.significant_height * sqrt((above - below) / 8.0)
-        theta = w * m.t - number * run + 2.0 * pi * drawn(q.realisation, 2 * k + 1)
+        theta = w * m.t - number * run + 2.0 * pi * uniform(q.realisation, 2 * k + 1)
         up, turn = slope * sin(theta), slope * cos(theta)
         K += up
         if q.flat != 0.0:
@@ -210,4 +210,4 @@ class IrregularSea(Force):
         Args:
             seed: Seed of the scenario.
         """
-        return replace(self, realisation=course(self.realisation, seed))
+        return replace(self, realisation=seeded_realisation(self.realisation, seed))

@@ -6,7 +6,7 @@ from typing import Any, ClassVar, Self
 from numba import njit
 
 from boatsim.physics.base import Swell, Unsteady, Wrench, param, wrench
-from boatsim.physics.noise import course, noise
+from boatsim.physics.noise import narrow_band_noise, seeded_realisation
 
 WAVES = 64.0  # components of the realisation in each axis
 # channels of the noise, different from those of other effects
@@ -32,13 +32,13 @@ def law(m: Any, q: Any) -> Wrench:
         return wrench(X=X, Y=Y, K=K, N=N)
     w, z, number = q.frequency, q.damping, q.realisation
     if q.surge > 0.0:
-        X = q.surge * noise(m.t, w, z, number, SURGE, WAVES)
+        X = q.surge * narrow_band_noise(m.t, w, z, number, SURGE, WAVES)
     if q.sway > 0.0:
-        Y = q.sway * noise(m.t, w, z, number, SWAY, WAVES)
+        Y = q.sway * narrow_band_noise(m.t, w, z, number, SWAY, WAVES)
     if q.roll > 0.0:
-        K = q.roll * noise(m.t, w, z, number, ROLL, WAVES)
+        K = q.roll * narrow_band_noise(m.t, w, z, number, ROLL, WAVES)
     if q.yaw > 0.0:
-        N = q.yaw * noise(m.t, w, z, number, YAW, WAVES)
+        N = q.yaw * narrow_band_noise(m.t, w, z, number, YAW, WAVES)
     return wrench(X=X, Y=Y, K=K, N=N)
 
 
@@ -143,5 +143,6 @@ class WaveForcing(Unsteady):
             seed: Seed of the scenario.
         """
         return replace(
-            self, realisation=course(self.realisation, seed) if self.realisation else 0.0
+            self,
+            realisation=seeded_realisation(self.realisation, seed) if self.realisation else 0.0,
         )

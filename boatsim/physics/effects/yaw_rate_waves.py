@@ -7,7 +7,7 @@ from typing import Any, ClassVar, Self
 from numba import njit
 
 from boatsim.physics.base import UNSET, Boat, Swell, Unsteady, Wrench, param, wrench
-from boatsim.physics.noise import course, drawn, line
+from boatsim.physics.noise import seeded_realisation, spectral_line, uniform
 
 WAVES = 64  # components of the realisation
 # index of the first random number, beyond those of other effects with the same realisation
@@ -26,11 +26,11 @@ def component(k: int, q: Any) -> tuple[float, float, float]:
         k: Number of the component.
         q: Parameters of the effect.
     """
-    w, weight = line((k + 0.5) / WAVES - 0.5, q.damping)
+    w, weight = spectral_line((k + 0.5) / WAVES - 0.5, q.damping)
     return (
         q.frequency * w,
         q.rms * sqrt(2.0 * weight / WAVES),
-        2.0 * pi * drawn(q.realisation, FIRST + k),
+        2.0 * pi * uniform(q.realisation, FIRST + k),
     )
 
 
@@ -131,5 +131,6 @@ class YawRateWaves(Unsteady):
             seed: Seed of the scenario.
         """
         return replace(
-            self, realisation=course(self.realisation, seed) if self.realisation else 0.0
+            self,
+            realisation=seeded_realisation(self.realisation, seed) if self.realisation else 0.0,
         )

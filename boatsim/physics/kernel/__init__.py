@@ -1,1 +1,1 @@
-"""Compiled machinery written once for every vessel; `boatsim.physics.program` puts a vessel's own laws before it."""
+"""Compiled functions that are the same for every vessel; they call the generated laws of one vessel."""

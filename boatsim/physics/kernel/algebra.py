@@ -1,12 +1,12 @@
-"""Sums of products of named numbers: enough algebra to write equations of motion out and leave out what is zero."""
+"""Sums of products of named numbers, with which equations of motion are written without the terms that are zero."""
 
 from collections.abc import Iterable
 
-Terms = dict[tuple[str, ...], int]  # names of the factors, in order -> how often the product occurs
+Terms = dict[tuple[str, ...], int]  # names of the factors, in order -> coefficient of the product
 
 
 class Sum:
-    """A sum of products with whole coefficients; zero has no terms. Immutable."""
+    """A sum of products with integer coefficients; zero has no terms. Immutable."""
 
     __slots__ = ("terms",)
 
@@ -36,16 +36,18 @@ class Sum:
         return bool(self.terms)
 
     def __str__(self) -> str:
-        """As Python."""
+        """Python source of the sum."""
         if not self.terms:
             return "0.0"
         text = ""
         for factors, n in self.terms.items():
-            one = " * ".join((*([f"{abs(n)}.0"] if abs(n) != 1 or not factors else []), *factors))
-            text += (" - " if n < 0 else " + ") + one
-        return (
-            text.removeprefix(" + ") if text.startswith(" + ") else "-" + text.removeprefix(" - ")
-        )
+            sign = " - " if n < 0 else " + "
+            if abs(n) != 1 or not factors:
+                factors = (f"{abs(n)}.0", *factors)
+            text += sign + " * ".join(factors)
+        if text.startswith(" - "):
+            return "-" + text.removeprefix(" - ")
+        return text.removeprefix(" + ")
 
 
 ZERO = Sum({})
@@ -53,12 +55,20 @@ ONE = Sum({(): 1})
 
 
 def name(text: str) -> Sum:
-    """A number by its name."""
+    """Return a number as a sum of one term.
+
+    Args:
+        text: Its name.
+    """
     return Sum({(text,): 1})
 
 
 def total(parts: Iterable[Sum]) -> Sum:
-    """Sum of many."""
+    """Return the sum of sums.
+
+    Args:
+        parts: The sums.
+    """
     found = ZERO
     for part in parts:
         found = found + part
@@ -66,18 +76,27 @@ def total(parts: Iterable[Sum]) -> Sum:
 
 
 class Lines:
-    """Lines of a function body; what deserves a name gets one."""
+    """Lines of a function body, with variables for intermediate results."""
 
     def __init__(self) -> None:
         self.text: list[str] = []
 
-    def say(self, line: str) -> None:
-        """A line as it is."""
+    def add(self, line: str) -> None:
+        """Append a line.
+
+        Args:
+            line: Python source.
+        """
         self.text.append(line)
 
     def let(self, called: str, value: Sum) -> Sum:
-        """`called = value`, unless it is zero, one or a plain name already."""
+        """Assign a value to a variable and return its name; return zero, one or a single name unchanged.
+
+        Args:
+            called: Name of the variable.
+            value: The value.
+        """
         if not value or (len(value.terms) == 1 and max(map(len, value.terms)) <= 1):
             return value
-        self.say(f"{called} = {value}")
+        self.add(f"{called} = {value}")
         return name(called)

@@ -1,15 +1,15 @@
-"""Writes the equations of motion of any set of freedoms out as scalar code: one source, what is held left out.
+"""Generates the equations of motion for any set of degrees of freedom as scalar code without terms that are zero.
 
     M nu' = f - C(nu) nu + M_water nu_c',   nu = J(q) q'
 
-q are joint coordinates (x, y, z, phi, theta, psi; those that are free), nu body-axes velocities, nu_c the velocity of a
-uniform current in body axes, whose rate is that of a hull turning in it. The Coriolis force of added mass and ballast
+q are the joint coordinates (x, y, z, phi, theta, psi) that are free, nu the velocities in body axes, and nu_c the
+velocity of a uniform current in body axes, which changes as the hull turns. The Coriolis force of added mass and ballast
 belongs to the laws of those effects. State s = (q, q'), SNAME.
 
-Axes are fixed in the hull where it may pitch, or heave and roll (`TILTS`). Otherwise they turn with the heading alone,
-as manoeuvring models have it, and roll leaves them level. Where as many body rates as coordinates are free (`closed`),
-the whole mass matrix is inverted once; otherwise J' M J is solved at every evaluation. T. I. Fossen, Handbook of Marine
-Craft Hydrodynamics and Motion Control, 2nd ed. 2021, chapters 2, 3 and 6.
+The body axes are fixed in the hull if it may pitch, or heave and roll (`TILTS`). Otherwise they turn with the heading
+alone and remain level when the hull rolls, as is usual in manoeuvring models. If as many body rates as coordinates are
+free (`closed`), the mass matrix is inverted once; otherwise J' M J is factored at every evaluation. T. I. Fossen,
+Handbook of Marine Craft Hydrodynamics and Motion Control, 2nd ed. 2021, chapters 2, 3 and 6.
 """
 
 from dataclasses import dataclass
@@ -19,66 +19,77 @@ from boatsim.physics.signals import AXES, MASS_ENTRIES, Motion, Wrench
 
 COORDINATES = ("x", "y", "z", "phi", "theta", "psi")
 JOINTS = ("x", "y", "z", "psi", "theta", "phi")  # MuJoCo's order: yaw, then pitch, then roll
-SIGN = {
-    "x": 1,
-    "y": -1,
-    "z": -1,
-    "phi": 1,
-    "theta": -1,
-    "psi": -1,
-}  # SNAME = sign * z-up, coordinate and rate alike
-RIGID, WATER, HULL, WHOLE = (
-    0,
-    6,
-    18,
-    30,
-)  # where constants begin: m, x_G, z_G, I_x, I_y, I_z; then 12 entries each
+# SNAME = sign * z-up, for coordinates and rates
+SIGN = dict(zip(COORDINATES, (1, -1, -1, 1, -1, -1), strict=True))
+# First places in the constants k: m, x_G, z_G, I_x, I_y, I_z; then 12 entries of `Mass` each for
+# added mass, ballast and the sum (or its inverse)
+WATER, HULL, WHOLE = 6, 18, 30
 CONSTANTS = 42
 LINEAR, ANGULAR = range(3), range(3, 6)
 
 
 def tilts(free: frozenset[str]) -> bool:
-    """Whether axes are fixed in the hull, not level."""
+    """Return whether the body axes are fixed in the hull; otherwise they are level.
+
+    Args:
+        free: The degrees of freedom.
+    """
     return "pitch" in free or {"heave", "roll"} <= free
 
 
 def closed(free: frozenset[str]) -> bool:
-    """Whether body rates follow from as many coordinates: all six, or level axes that turn with both surge and sway."""
+    """Return whether as many body rates as coordinates are free.
+
+    They are for all six, and for level axes unless the hull yaws with only one of surge and sway.
+
+    Args:
+        free: The degrees of freedom.
+    """
     if tilts(free):
         return free == frozenset(AXES)
     return "yaw" not in free or len(free & {"surge", "sway"}) != 1
 
 
 def entry(begin: int, i: int, j: int) -> Sum:
-    """An entry of one of the constant 6 by 6 matrices, symmetric and alike on both sides of the hull."""
+    """Return an entry of one of the constant 6 by 6 matrices, for a hull symmetric to port and starboard.
+
+    Args:
+        begin: First place of the matrix in the constants.
+        i: Row.
+        j: Column.
+    """
     pair = (min(i, j), max(i, j))
     return name(f"k[{begin + MASS_ENTRIES.index(pair)}]") if pair in MASS_ENTRIES else ZERO
 
 
 def cross(a: list[Sum], b: list[Sum]) -> list[Sum]:
-    """Vector product."""
+    """Return the vector product of two vectors (3,)."""
     return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 
 
 @dataclass
 class Frame:
-    """Kinematics at one state, by the names its numbers have in the code written so far."""
+    """Kinematics at one state, in the names of variables of the generated code."""
 
     R: list[list[Sum]]  # body axes to earth axes
-    J: list[
-        list[Sum]
-    ]  # 6 by 6: body rates per joint rate, all coordinates; columns of held ones are not used
+    # 6 by 6: body rates per joint rate; columns of coordinates that are held are not used
+    J: list[list[Sum]]
     nu: list[Sum]  # (6,) body rates
-    turning: list[Sum]  # (3,) rate at which the axes turn
+    turning: list[Sum]  # (3,) angular velocity of the axes
     drift: list[Sum]  # (6,) J' q': body acceleration at constant joint rates
     water: list[Sum]  # (3,) velocity of the current in body axes
 
 
 class Writer:
-    """The functions of one set of freedoms as text."""
+    """Text of the functions for one set of degrees of freedom."""
 
     def __init__(self, dof: tuple[str, ...], centred: bool) -> None:
-        """`centred`: the mass centre is the origin of motion."""
+        """Set the degrees of freedom.
+
+        Args:
+            dof: The degrees of freedom.
+            centred: Whether the mass centre is the origin of motion.
+        """
         self.free = [i for i, axis in enumerate(AXES) if axis in dof]
         self.set = frozenset(dof)
         self.tilts, self.closed, self.centred = tilts(self.set), closed(self.set), centred
@@ -88,23 +99,28 @@ class Writer:
     # -------------------------------------------------------------------------------------------------------
 
     def coordinate(self, i: int) -> Sum:
-        """A joint coordinate's name, zero if it is held."""
+        """Return the name of a joint coordinate, zero if it is held."""
         return name(COORDINATES[i]) if i in self.free else ZERO
 
     def rate(self, i: int) -> Sum:
-        """A joint rate's name, zero if it is held."""
+        """Return the name of a joint rate, zero if it is held."""
         return name(COORDINATES[i] + "d") if i in self.free else ZERO
 
     def turn(self, lines: Lines, i: int) -> tuple[Sum, Sum]:
-        """Cosine and sine of an angle; level axes know nothing of roll."""
+        """Return cosine and sine of an angle i; level axes do not roll or pitch."""
         angle = COORDINATES[i]
         if i not in self.free or (i != 5 and not self.tilts):
             return ONE, ZERO
-        lines.say(f"c_{angle}, s_{angle} = cos({angle}), sin({angle})")
+        lines.add(f"c_{angle}, s_{angle} = cos({angle}), sin({angle})")
         return name(f"c_{angle}"), name(f"s_{angle}")
 
     def frame(self, lines: Lines, current: bool = True) -> Frame:
-        """Kinematics of the coordinates and rates whose names stand; reads the current from `flow` if asked."""
+        """Return the kinematics of a state whose coordinates and rates are variables.
+
+        Args:
+            lines: The function so far, to which variables are added.
+            current: Whether the velocity of the water is needed.
+        """
         (cf, sf), (ct, st), (cp, sp) = (self.turn(lines, i) for i in ANGULAR)
         R = [
             [cp * ct, cp * st * sf - sp * cf, sp * sf + cp * st * cf],
@@ -139,7 +155,7 @@ class Writer:
         ]
         water = [ZERO, ZERO, ZERO]
         if current and {0, 1} & set(self.free):
-            lines.say("north, east = flow(p, on)")
+            lines.add("north, east = flow(p, on)")
             water = [
                 lines.let(f"{n}_water", R[0][i] * name("north") + R[1][i] * name("east"))
                 for i, n in enumerate("uvw")
@@ -147,7 +163,7 @@ class Writer:
         return Frame(R, J, nu, turning, drift, water)
 
     def seen(self, frame: Frame) -> str:
-        """The motion as a force law sees it."""
+        """Return the text of the `Motion` that force laws take."""
         through = [frame.nu[i] - frame.water[i] for i in LINEAR]
         psi = ("c_psi", "s_psi") if 5 in self.free else ("1.0", "0.0")
         values = [
@@ -163,34 +179,30 @@ class Writer:
     # -----------------------------------------------------------------------------------------------------------
 
     def carried(self, frame: Frame, axis: int) -> Sum:
-        """Force on a turning hull of the water that moves with it: its share of a uniform current turns away below."""
+        """Return a component of the force of added mass that is due to the turning of a uniform current in body axes."""
         away = [-a for a in cross(frame.turning, frame.water)]
         return total(entry(WATER, axis, j) * away[j] for j in LINEAR)
 
     def rigid(self, lines: Lines, frame: Frame) -> list[Sum]:
-        """Coriolis and centripetal force (6,) of the rigid body about the origin."""
+        """Return the Coriolis and centripetal force (6,) of the rigid body about the origin."""
         m, inertia = name("k[0]"), [name(f"k[{3 + i}]") for i in LINEAR]
         spin = frame.turning
         p, q, r = frame.nu[3:]
         at_centre = cross(spin, frame.nu[:3])
-        lever = (
-            [ZERO, ZERO, ZERO]
-            if self.centred
-            else [name("k[1]"), ZERO, name("k[2]") if self.tilts else ZERO]
-        )
+        lever = [ZERO, ZERO, ZERO]
+        if not self.centred:
+            lever = [name("k[1]"), ZERO, name("k[2]") if self.tilts else ZERO]
         at_centre = [a + b for a, b in zip(at_centre, cross(spin, cross(spin, lever)), strict=True)]
         force = [lines.let(f"rigid{i}", -(m * a)) for i, a in enumerate(at_centre)]
-        gyroscopic = [(q * r, 1, 2), (r * p, 2, 0), (p * q, 0, 1)]
-        moment = (
-            [a * (inertia[i] - inertia[j]) for a, i, j in gyroscopic]
-            if self.tilts
-            else [ZERO, ZERO, ZERO]
-        )
+        moment = [ZERO, ZERO, ZERO]
+        if self.tilts:
+            gyroscopic = [(q * r, 1, 2), (r * p, 2, 0), (p * q, 0, 1)]
+            moment = [a * (inertia[i] - inertia[j]) for a, i, j in gyroscopic]
         return force + [a + b for a, b in zip(cross(lever, force), moment, strict=True)]
 
     def load(self, lines: Lines, frame: Frame, extra: str) -> list[Sum]:
-        """(6,) what drives M nu': laws, an extra force over the freedoms, Coriolis force, turning current."""
-        lines.say(f"f = wrench({self.seen(frame)}, p, on, act, at)")
+        """Return the right-hand side (6,) of M nu' = ...: laws, extra force, Coriolis force, turning current."""
+        lines.add(f"f = wrench({self.seen(frame)}, p, on, act, at)")
         rigid = self.rigid(lines, frame)
         found = []
         for i, component in enumerate(Wrench._fields):
@@ -199,16 +211,16 @@ class Writer:
         return found
 
     def unpack(self, lines: Lines) -> None:
-        """Names of the state's numbers."""
+        """Add variables for the coordinates and rates of the state."""
         for more, first in (("", 0), ("d", self.n)):
             names = ", ".join(COORDINATES[i] + more for i in self.free)
-            lines.say(f"{names} = {', '.join(f's[{first + j}]' for j in range(self.n))}")
+            lines.add(f"{names} = {', '.join(f's[{first + j}]' for j in range(self.n))}")
 
     # Accelerations
     # ----------------------------------------------------------------------------------------------------
 
     def accelerations(self) -> list[str]:
-        """Body of `accelerations`."""
+        """Return the body of `accelerations`."""
         lines = Lines()
         self.unpack(lines)
         frame = self.frame(lines)
@@ -220,32 +232,36 @@ class Writer:
             found = self.solved(
                 lines, [total(frame.J[a][i] * named[a] for a in range(6)) for i in self.free], ""
             )
-            lines.say(f"return {self.tuple(found)}")
+            lines.add(f"return {self.tuple(found)}")
             return lines.text
         pushed = {i: lines.let(f"load{i}", load[i]) for i in self.free}
         nudot = {i: total(entry(WHOLE, i, j) * pushed[j] for j in self.free) for i in self.free}
         for i in LINEAR:
-            if (
-                i in nudot
-            ):  # the drift of level or tilting axes taken out: acceleration along them, over ground
+            if i in nudot:  # acceleration over ground along the axes
                 nudot[i] = nudot[i] - frame.drift[i]
         moved = {i: lines.let(f"a{i}", a) for i, a in nudot.items()}
-        lines.say(f"return {self.tuple(self.joints(lines, frame, moved, moving=True))}")
+        lines.add(f"return {self.tuple(self.joints(lines, frame, moved, moving=True))}")
         return lines.text
 
     def joints(self, lines: Lines, frame: Frame, body: dict[int, Sum], moving: bool) -> list[str]:
-        """Joint accelerations of body accelerations; `moving`: with what the Euler rates themselves bring about."""
-        found = {
-            i: str(total(frame.R[i][j] * body[j] for j in LINEAR if j in body))
-            for i in LINEAR
-            if i in self.free
-        }
+        """Return joint accelerations from body accelerations.
+
+        Args:
+            lines: The function so far.
+            frame: Kinematics.
+            body: Body acceleration of each free axis.
+            moving: Whether to include the terms that are quadratic in the Euler rates.
+        """
+        found = []
+        for i in LINEAR:
+            if i in self.free:
+                found.append(str(total(frame.R[i][j] * body[j] for j in LINEAR if j in body)))
         if not self.tilts:
-            return [*found.values(), *(str(body[i]) for i in ANGULAR if i in body)]
+            return found + [str(body[i]) for i in ANGULAR if i in body]
         cf, sf, ct, st = (name(n) for n in ("c_phi", "s_phi", "c_theta", "s_theta"))
         phid, thetad, psid = (self.rate(i) for i in ANGULAR)
         along = sf * body[4] + cf * body[5] + (phid * thetad if moving else ZERO)
-        lines.say(f"along = {along}")
+        lines.add(f"along = {along}")
         rest = [
             body[3]
             + (thetad * psid * name("secant") if moving else ZERO)
@@ -256,43 +272,43 @@ class Writer:
         ]
         if moving:
             lines.text.insert(len(lines.text) - 1, "secant = 1.0 / c_theta")
-        return [*found.values(), *map(str, rest)]
+        return found + list(map(str, rest))
 
     def weighed(self, begin: int, motion: list[Sum]) -> list[Sum]:
-        """A constant matrix times a body motion (6,)."""
+        """Return the product of a constant matrix and a body motion (6,)."""
         return [total(entry(begin, i, j) * motion[j] for j in range(6)) for i in range(6)]
 
     def factor(self, lines: Lines, frame: Frame) -> None:
-        """J' M J of the free coordinates, factored L D L'."""
+        """Add variables for J' M J of the free coordinates and its factors L D L'."""
         for b, j in enumerate(self.free):
             column = [total(entry(WHOLE, i, a) * frame.J[a][j] for a in range(6)) for i in range(6)]
             for a, i in enumerate(self.free[b:], b):
                 value = total(frame.J[c][i] * column[c] for c in range(6))
-                lines.say(f"M{a}{b} = {value}")
+                lines.add(f"M{a}{b} = {value}")
         for j in range(self.n):
-            lines.say(f"D{j} = M{j}{j}" + "".join(f" - L{j}{k} * L{j}{k} * D{k}" for k in range(j)))
+            lines.add(f"D{j} = M{j}{j}" + "".join(f" - L{j}{k} * L{j}{k} * D{k}" for k in range(j)))
             for i in range(j + 1, self.n):
                 taken = "".join(f" - L{i}{k} * L{j}{k} * D{k}" for k in range(j))
-                lines.say(f"L{i}{j} = (M{i}{j}{taken}) / D{j}")
+                lines.add(f"L{i}{j} = (M{i}{j}{taken}) / D{j}")
 
     def solved(self, lines: Lines, right: list[Sum], tag: str) -> list[str]:
-        """Solution of the factored system, as names."""
+        """Add variables for the solution of the factored system; return their names."""
         for i, value in enumerate(right):
-            lines.say(f"y{tag}{i} = {value}" + "".join(f" - L{i}{k} * y{tag}{k}" for k in range(i)))
+            lines.add(f"y{tag}{i} = {value}" + "".join(f" - L{i}{k} * y{tag}{k}" for k in range(i)))
         for i in reversed(range(self.n)):
-            lines.say(
+            lines.add(
                 f"x{tag}{i} = y{tag}{i} / D{i}"
                 + "".join(f" - L{k}{i} * x{tag}{k}" for k in range(i + 1, self.n))
             )
         return [f"x{tag}{i}" for i in range(self.n)]
 
     def force_slopes(self) -> list[str]:
-        """Body of `force_slopes`: what a body force along each freedom does to the joint accelerations."""
+        """Return the body of `force_slopes`."""
         lines = Lines()
         self.unpack(lines)
         frame = self.frame(lines, current=False)
         if self.tilts and self.closed:
-            lines.say("secant = 1.0 / c_theta")
+            lines.add("secant = 1.0 / c_theta")
         if not self.closed:
             self.factor(lines, frame)
         for b, j in enumerate(self.free):
@@ -302,90 +318,89 @@ class Writer:
             else:
                 found = self.solved(lines, [frame.J[j][i] for i in self.free], f"{b}_")
             for a, text in enumerate(found):
-                lines.say(f"A[row + {a}, column + {b}] = {text}")
+                lines.add(f"A[row + {a}, column + {b}] = {text}")
         return lines.text
 
-    # Beside the motion
+    # Further functions
     # ------------------------------------------------------------------------------------------------
 
     def forces(self) -> list[str]:
-        """Body of `forces`."""
+        """Return the body of `forces`."""
         lines = Lines()
         self.unpack(lines)
         frame = self.frame(lines)
-        lines.say(f"f = wrench({self.seen(frame)}, p, on, act, at)")
-        lines.say(f"return {self.tuple([f'f.{Wrench._fields[i]}' for i in self.free])}")
+        lines.add(f"f = wrench({self.seen(frame)}, p, on, act, at)")
+        lines.add(f"return {self.tuple([f'f.{Wrench._fields[i]}' for i in self.free])}")
         return lines.text
 
     def moved(self) -> list[str]:
-        """Body of `moved`."""
+        """Return the body of `moved`."""
         lines = Lines()
         self.unpack(lines)
         frame = self.frame(lines, current=False)
         values = [*(str(self.coordinate(i)) for i in range(6)), *map(str, frame.nu)]
-        lines.say(f"return Shown({', '.join(values)})")
+        lines.add(f"return Shown({', '.join(values)})")
         return lines.text
 
     def feels(self) -> list[str]:
-        """Body of `feels`: heading, yaw rate, acceleration over ground along x and y, surge, sway, place, roll."""
+        """Return the body of `feels`: heading, yaw rate, acceleration over ground, surge, sway, position, roll."""
         lines = Lines()
         self.unpack(lines)
         frame = self.frame(lines, current=False)
-        lines.say("a = accelerations(t, s, act, at, p, on, k, extra)")
+        lines.add("a = accelerations(t, s, act, at, p, on, k, extra)")
         ahead, aside = (
             total(frame.J[row][i] * name(f"a[{b}]") for b, i in enumerate(self.free) if i in LINEAR)
             for row in (0, 1)
         )
         u, v, _, rolling, _, turning = frame.nu
         x, y, _, roll, _, heading = (self.coordinate(i) for i in range(6))
-        return [
-            *lines.text,
-            f"return {self.tuple([str(n) for n in (heading, turning, ahead, aside, u, v, x, y, roll, rolling)])}",
-        ]
+        readings = (heading, turning, ahead, aside, u, v, x, y, roll, rolling)
+        lines.add(f"return {self.tuple(list(map(str, readings)))}")
+        return lines.text
 
     def jacobian(self) -> list[str]:
-        """Body of `jacobian`."""
+        """Return the body of `jacobian`."""
         lines = Lines()
         self.unpack(lines)
         frame = self.frame(lines, current=False)
         for i in range(6):
             for b, j in enumerate(self.free):
                 if frame.J[i][j]:
-                    lines.say(f"J[{i}, {b}] = {frame.J[i][j]}")
+                    lines.add(f"J[{i}, {b}] = {frame.J[i][j]}")
         return lines.text
 
     def level_rates(self) -> list[str]:
-        """Body of `observe`: a state's rate along level axes; what turns with the hull only where it yaws."""
+        """Return the body of `observe_level`: a position, or a rate along level axes, which turn if the hull yaws."""
         lines = Lines()
-        lines.say("if code < NQ:")
-        lines.say("    row[code] = 1.0")
-        lines.say("    return float(s[code])")
+        lines.add("if code < NQ:")
+        lines.add("    row[code] = 1.0")
+        lines.add("    return float(s[code])")
         if not self.tilts and {0, 1, 5} <= set(self.free):
             psi, north, east = self.free.index(5), self.n, self.n + 1
-            lines.say("if code < NQ + 2:")
-            lines.say(f"    c, s_ = cos(s[{psi}]), sin(s[{psi}])")
-            lines.say(
+            lines.add("if code < NQ + 2:")
+            lines.add(f"    c, s_ = cos(s[{psi}]), sin(s[{psi}])")
+            lines.add(
                 f"    along, across = c * s[{north}] + s_ * s[{east}], c * s[{east}] - s_ * s[{north}]"
             )
-            lines.say("    if code == NQ:")
-            lines.say(f"        row[{north}], row[{east}], row[{psi}] = c, s_, across")
-            lines.say("        return float(along)")
-            lines.say(f"    row[{north}], row[{east}], row[{psi}] = -s_, c, -along")
-            lines.say("    return float(across)")
-        lines.say("row[code] = 1.0")
-        lines.say("return float(s[code])")
+            lines.add("    if code == NQ:")
+            lines.add(f"        row[{north}], row[{east}], row[{psi}] = c, s_, across")
+            lines.add("        return float(along)")
+            lines.add(f"    row[{north}], row[{east}], row[{psi}] = -s_, c, -along")
+            lines.add("    return float(across)")
+        lines.add("row[code] = 1.0")
+        lines.add("return float(s[code])")
         return lines.text
 
     def add_to_mujoco(self) -> list[str]:
-        """Body of `add_to_mujoco`: what its own rigid body lacks, in z-up joint coordinates."""
+        """Return the body of `add_to_mujoco`: forces and masses that MuJoCo's rigid body does not contain."""
         lines = Lines()
         order = [i for i in (COORDINATES.index(n) for n in JOINTS) if i in self.free]
         for b, i in enumerate(order):
             flip = "-" if SIGN[COORDINATES[i]] < 0 else ""
-            lines.say(f"{COORDINATES[i]}, {COORDINATES[i]}d = {flip}q[{b}], {flip}qd[{b}]")
-        lines.say("on = ()")
+            lines.add(f"{COORDINATES[i]}, {COORDINATES[i]}d = {flip}q[{b}], {flip}qd[{b}]")
+        lines.add("on = ()")
         frame = self.frame(lines)
-        lines.say(f"f = wrench({self.seen(frame)}, p, on, act, at)")
+        lines.add(f"f = wrench({self.seen(frame)}, p, on, act, at)")
         added = [[entry(WATER, i, j) + entry(HULL, i, j) for j in range(6)] for i in range(6)]
         needed = [a for a in range(6) if any(frame.J[a][i] for i in self.free)]
         load = {}
@@ -396,24 +411,23 @@ class Writer:
             )
         for b, i in enumerate(order):
             force = total(frame.J[a][i] * load[a] for a in needed)
-            lines.say(f"force[{b}] += {force if SIGN[COORDINATES[i]] > 0 else -force}")
-        mass = [
-            [lines.let(f"M{a}{c}", added[a][c]) if c >= a else ZERO for c in range(6)]
-            if a in needed
-            else [ZERO] * 6
-            for a in range(6)
-        ]
-        mass = [[mass[min(a, c)][max(a, c)] for c in range(6)] for a in range(6)]
+            lines.add(f"force[{b}] += {force if SIGN[COORDINATES[i]] > 0 else -force}")
+        mass = [[ZERO] * 6 for _ in range(6)]
+        for a in needed:
+            for c in range(a, 6):
+                mass[a][c] = mass[c][a] = lines.let(f"M{a}{c}", added[a][c])
         for b, i in enumerate(order):
             for d, j in enumerate(order[: b + 1]):
-                value = total(
-                    frame.J[a][i] * mass[a][c] * frame.J[c][j] for a in needed for c in needed
-                )
+                value = ZERO
+                for a in needed:
+                    value = value + total(
+                        frame.J[a][i] * mass[a][c] * frame.J[c][j] for c in needed
+                    )
                 if value:
                     same = SIGN[COORDINATES[i]] == SIGN[COORDINATES[j]]
-                    lines.say(f"M[{b * (b + 1) // 2 + d}] += {value if same else -value}")
+                    lines.add(f"M[{b * (b + 1) // 2 + d}] += {value if same else -value}")
         return lines.text
 
     def tuple(self, items: list[str]) -> str:
-        """Items as the text of a tuple."""
+        """Return the text of a tuple."""
         return f"({', '.join(items)},)"

@@ -99,7 +99,7 @@ class Processes:
 
 def _start(work: Work, task: Task) -> Worker:
     own, other = CONTEXT.Pipe()
-    process = CONTEXT.Process(target=_serve, args=(other, work, trust.now()), daemon=True)
+    process = CONTEXT.Process(target=_serve, args=(other, work, trust.current_trust()), daemon=True)
     with ignored_signals():  # Only the parent process handles signals; the workers end with it.
         process.start()
     other.close()
