@@ -106,7 +106,7 @@ def test_a_change_of_thrust_is_a_share_of_what_the_drive_gives(
         ({"axis": "swey"}, "axis 'swey' does not exist; did you mean 'sway'"),
         ({"acts": "sometimes"}, "acts 'sometimes' does not exist"),
         ({"of": ["north"] * 4}, "allowed are at most 3 factors"),
-        ({"acts": "within", "begin": 3.0, "end": 2.0}, "allowed is an end after it"),
+        ({"acts": "within", "begin": 3.0, "end": 2.0}, "allowed is an end after the begin"),
         ({"first": 3.0}, "setting 'first' does not exist"),
     ],
 )

@@ -153,11 +153,11 @@ def test_a_vessel_whose_laws_do_not_look_back_remembers_nothing_more(tmp_path: P
         ({"of": "recent_thrust"}, "memory is missing: the time constant"),
         (
             {"of": ["recent_thrust", "recent_thrust_port_N"], "memory": 2.0},
-            "allowed is to look back at one signal",
+            "allowed is the history of one signal",
         ),
         (
             {"of": ["recent_thrust", "changed_thrust"], "memory": 2.0},
-            "allowed is to look back at one signal",
+            "allowed is the history of one signal",
         ),
         ({"of": "recent_thrust", "memory": 0.0}, "memory = 0 s; allowed 0.01 to 3600 s"),
     ],

@@ -1,8 +1,9 @@
-"""All that the file of an effect needs, in one import: kinds of effects, parameters, arguments and results of laws.
+"""Everything that the file of an effect imports: kinds, parameters, arguments of laws.
 
-An effect is one physical effect in one file of `boatsim/physics/effects/`. Its law is a small compiled function that the
-MuJoCo callback, the compiled engine and the diagnosis filter all call, so that simulator and diagnosis always agree.
-Axes are SNAME: x forward, y starboard, z down, heading and yaw rate clockwise seen from above.
+An effect is one physical effect in one file of `boatsim/physics/effects/`. Its law is a small
+compiled function that the MuJoCo callback, the compiled engine and the diagnosis filter all call,
+so that simulator and diagnosis always agree. Axes are SNAME: x forward, y starboard, z down,
+heading and yaw rate clockwise seen from above.
 """
 
 from math import cos, sin
@@ -86,8 +87,8 @@ def motion(current: tuple[float, float] = (0.0, 0.0), **given: float) -> Motion:
     """Return a motion for tests and plots.
 
     Args:
-        current: Velocity of the water, north and east [m/s]. It holds for level axes; for a hull that pitches give
-            `ur`, `vr` and `wr` directly.
+        current: Velocity of the water, north and east [m/s]. It holds for level axes; for a hull
+            that pitches give `ur`, `vr` and `wr` directly.
         given: Fields of `Motion`; the others are zero, or follow from these.
     """
     c, s = cos(given.get("psi", 0.0)), sin(given.get("psi", 0.0))

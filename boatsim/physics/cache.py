@@ -1,13 +1,14 @@
 """Keeps compiled programs on disk, so that numba compiles each of them once.
 
-A program is a package in the user's cache folder: the generated `laws.py` and `motion.py` with copies of the files of
-the kernel. Its name is a digest of their content and of every file that a law can reach by imports, because numba
-itself looks at the content of a function's own file only. The code in the folder is run. The folder therefore belongs to
-the user alone, and a program whose files differ from what was written is written again.
+A program is a package in the user's cache folder: the generated `laws.py` and `motion.py` with
+copies of the files of the kernel. Its name is a digest of their content and of every file that a
+law can reach by imports, because numba itself looks at the content of a function's own file only.
+The code in the folder is run. The folder therefore belongs to the user alone, and a program whose
+files differ from what was written is written again.
 
-The folder is that of `platformdirs` for caches (`~/.cache/boatsim` on Linux), or the environment variable
-`BOATSIM_CACHE`. With `BOATSIM_DEBUG=1` (`boatsim.physics.debugging`) the files of the kernel are imported from the
-repository instead of being copied.
+The folder is that of `platformdirs` for caches (`~/.cache/boatsim` on Linux), or the environment
+variable `BOATSIM_CACHE`. With `BOATSIM_DEBUG=1` (`boatsim.physics.debugging`) the files of the
+kernel are imported from the repository instead of being copied.
 """
 
 import atexit
@@ -90,7 +91,7 @@ def package(files: Mapping[str, str], stamp: str, *further: Path) -> ModuleType:
 
 
 def stamp_of(files: Mapping[str, str], classes: Iterable[type[Effect]]) -> str:
-    """Return the name of a program: a digest of its text, of all that its laws reach, and of the compiler's version.
+    """Return the name of a program: a digest of its text and of all that it depends on.
 
     Args:
         files: Text of each file of the program.
@@ -168,7 +169,7 @@ def _is_complete(files: Mapping[str, str], path: Path) -> bool:
 
 
 def _write(files: Mapping[str, str], path: Path) -> None:
-    """Create a folder with these files in one step: another process may do the same at the same time."""
+    """Create a folder with these files in one step, as other processes may do the same."""
     temporary = Path(tempfile.mkdtemp(dir=path.parent, prefix=".new_"))
     try:
         for name, text in files.items():
@@ -204,8 +205,8 @@ def _imported(folders: tuple[Path, ...], name: str) -> ModuleType:
 def _prune(folder: Path) -> None:
     """Remove programs that have not been used for a long time.
 
-    Other processes are not disturbed: one that has loaded a program no longer needs its files, and one that does not
-    find them writes them again.
+    Other processes are not disturbed: one that has loaded a program no longer needs its files, and
+    one that does not find them writes them again.
     """
     for old in folder.glob("program_*"):
         with suppress(OSError):  # another process may remove it at the same time

@@ -1,4 +1,4 @@
-"""The commands that a vessel accepts: within the range of each channel, neutral where nothing is sent.
+"""The commands that a vessel accepts, limited to the ranges of its channels.
 
 Controllers, starts, environments, recordings and simulations all use these functions.
 """
@@ -19,7 +19,8 @@ def command_row(vessel: Vessel, given: Mapping[str, float]) -> Array:
 
     Args:
         vessel: The vessel.
-        given: Commands by name. The others are neutral; measured surroundings have their neutral values.
+        given: Commands by name. The others are neutral; measured surroundings have their neutral
+            values.
 
     Raises:
         BadInput: The vessel has no such command.
@@ -50,7 +51,8 @@ def clipped_rows(vessel: Vessel, signals: Mapping[str, Array], count: int) -> Ar
 
     Args:
         vessel: The vessel.
-        signals: Columns (N,) by name; an input without a column is neutral, other columns are ignored.
+        signals: Columns (N,) by name; an input without a column is neutral, other columns are
+            ignored.
         count: Number of rows N.
 
     Raises:

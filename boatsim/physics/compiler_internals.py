@@ -1,16 +1,20 @@
 """Every use that boatsim makes of undocumented parts of numba, llvmlite and MuJoCo.
 
-No other module may rely on them. Each assumption below is checked by `tests/test_compiler_internals.py`, and the upper
-bounds on numba and MuJoCo in `pyproject.toml` exist because of this module: raise a bound after that test has passed on
-the new version.
+No other module may rely on them. Each assumption below is checked by
+`tests/test_compiler_internals.py`, and the upper bounds on numba and MuJoCo in `pyproject.toml`
+exist because of this module: raise a bound after that test has passed on the new version.
 
-1. numba reads the default of each argument of a Python function through an `AbstractTemplate` (`known_to_numba`).
-2. numba keeps compiled code in a `FunctionCache`, whose file object may be given another class (`keep_on_disk`).
+1. numba reads the default of each argument of a Python function through an `AbstractTemplate`
+   (`known_to_numba`).
+2. numba keeps compiled code in a `FunctionCache`, whose file object may be given another class
+   (`keep_on_disk`).
 3. The option `_nrt=False` switches off numba's reference counts (`WITHOUT_REFERENCE_COUNTS`).
-4. A compiled function has a C wrapper whose address may be passed to other compiled code (`FunctionPointer`).
-5. `CFunc` accepts such a cache too (`compile_callback`), and an intrinsic may return a pointer (`pointer_from_integer`).
-6. The C structs of MuJoCo hold the addresses of their arrays, so that a search in memory finds the offset of each field
-   in whatever version is installed (`mujoco_layout`).
+4. A compiled function has a C wrapper whose address may be passed to other compiled code
+   (`FunctionPointer`).
+5. `CFunc` accepts such a cache too (`compile_callback`), and an intrinsic may return a pointer
+   (`pointer_from_integer`).
+6. The C structs of MuJoCo hold the addresses of their arrays, so that a search in memory finds the
+   offset of each field in whatever version is installed (`mujoco_layout`).
 """
 
 import ctypes
@@ -45,13 +49,15 @@ WITHOUT_REFERENCE_COUNTS: Mapping[str, Any] = {"_nrt": False}
 
 
 def known_to_numba(constructor: Callable[..., object], record: type) -> None:
-    """Let compiled code call a function that fills the fields of a named tuple, the others at their defaults.
+    """Let compiled code call a function that builds a named tuple with default values.
 
-    numba does not support defaults of named tuples, and a small compiled function in place of the constructor would be
-    analysed again at every call. The constructor is therefore registered by its signature alone.
+    numba does not support defaults of named tuples, and a small compiled function in place of the
+    constructor would be analysed again at every call. The constructor is therefore registered by
+    its signature alone.
 
     Args:
-        constructor: Python function whose arguments are the fields of `record`, floats with a default.
+        constructor: Python function whose arguments are the fields of `record`, floats with a
+            default.
         record: The named tuple that it returns.
     """
     python = utils.pysignature(constructor)
@@ -88,10 +94,10 @@ DIGEST_SIZE = sha256().digest_size  # bytes in front of each file of compiled co
 
 
 class SealedCacheFile(IndexDataCacheFile):
-    """The files in which numba keeps the compiled code of one function, each with a digest of its content.
+    """Files with the compiled code of one function, each with a digest of its content.
 
-    A damaged file counts as missing. numba compares the content of the function's own file alone; here the content of
-    all modules of boatsim that the file imports counts as well.
+    A damaged file counts as missing. numba compares the content of the function's own file alone;
+    here the content of all modules of boatsim that the file imports counts as well.
     """
 
     source: Path
@@ -109,7 +115,7 @@ class SealedCacheFile(IndexDataCacheFile):
         return None
 
     def save(self, key: Any, data: Any) -> None:
-        """Write compiled code; where that fails the function is compiled again in the next process."""
+        """Write compiled code; if that fails, the next process compiles the function again."""
         try:
             super().save(key, data)
         except Exception:  # the index cannot be read: start another one
@@ -207,10 +213,12 @@ PROBE_MODELS = (
 def mujoco_layout() -> dict[str, int]:
     """Find where MuJoCo's structs hold the fields that the native callback needs.
 
-    No header file is needed: Python knows the addresses of the arrays of mjData, and the struct is searched for them.
+    No header file is needed: Python knows the addresses of the arrays of mjData, and the struct is
+    searched for them.
 
     Returns:
-        Offsets of the fields of mjData and of its time in 8-byte words, and of `nuserdata` of mjModel in 4-byte words.
+        Offsets of the fields of mjData and of its time in 8-byte words, and of `nuserdata` of
+        mjModel in 4-byte words.
 
     Raises:
         BadPhysics: A field is not found.
@@ -243,7 +251,10 @@ def mujoco_layout() -> dict[str, int]:
 
 
 def _search(address: int, wanted: int) -> set[int]:
-    """Offsets of the words equal to `wanted`; ends soon after the first one, to stay within the struct."""
+    """Offsets of the words equal to `wanted`.
+
+    Ends soon after the first one, to stay within the struct.
+    """
     hits: set[int] = set()
     for start in range(0, SEARCH_LIMIT, 32):
         found = np.flatnonzero(_words(address + 8 * start, 32) == wanted)

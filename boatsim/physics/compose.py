@@ -1,7 +1,7 @@
-"""Generates `laws.py` of a vessel's program: one function for each part, which calls the laws of all effects.
+"""Generates `laws.py` of a vessel's program, whose functions call the laws of all effects.
 
-Each kind of effect contributes its own lines (`boatsim.physics.kinds`), which this module collects. The text is meant to
-be read: `python -m boatsim.physics.program VESSEL` prints it.
+Each kind of effect contributes its own lines (`boatsim.physics.kinds`), which this module collects.
+The text is meant to be read: `python -m boatsim.physics.program VESSEL` prints it.
 """
 
 import re
@@ -59,7 +59,7 @@ class Composition:
         self.held: Sequence[str] = tuple(held)
 
     # Used by the kinds of effects
-    # -----------------------------------------------------------------------------------------------
+    # ------------------------------------------------------------------------------------------
 
     def sites(self, number: int) -> Sequence[Site]:
         """Return the calls of an effect's laws: one, or one for each effect that it acts on.
@@ -91,7 +91,7 @@ class Composition:
         return self.vessel.targets(self.effects[number])
 
     def source(self, number: int, actuator: str) -> str | None:
-        """Return the command that drives an actuator through a channel effect, None if there is none.
+        """Return the command that drives an actuator through a channel effect, or None.
 
         Args:
             number: Place of the effect.
@@ -125,7 +125,10 @@ class Composition:
         return self._own.get(number, 0)
 
     def _may_look_back(self, number: int, effect: Recall) -> bool:
-        """Whether an effect may use the history of a signal; a placeholder of symbolic regression may."""
+        """Whether an effect may use the history of a signal.
+
+        A placeholder of symbolic regression may.
+        """
         return number >= len(self.vessel.effects) or effect.looks_back
 
     def behind(self, number: int) -> Sequence[int]:
@@ -169,7 +172,7 @@ class Composition:
         return f"V{i}({', '.join(map('p[{}]'.format, range(first, first + count)))})"
 
     def _signals(self, i: int) -> str:
-        """`S3(act[at], act[at + 4], ...)`: signals of an effect's roles, then cosine and sine of angles."""
+        """`S3(act[at], ...)`: signals of an effect's roles, then cosine and sine of angles."""
         effect = self.effects[i]
         texts: list[str] = []
         angles: list[str] = []
@@ -187,7 +190,7 @@ class Composition:
         return f"S{i}({', '.join([*texts, *angles])})"
 
     def _carried(self, i: int, idea: str) -> str:
-        """The signals of an effect that another one acts on, in the form that the other's law takes."""
+        """Signals of an effect that another one acts on, as the other's law takes them."""
         if type(self.effects[i]).idea() == idea:
             return self._signals(i)
         return f"as_{idea}{i}({self._signals(i)}, {self._values(i)})"
@@ -201,7 +204,7 @@ class Composition:
         return repr(float(bound))
 
     # Generated text
-    # ---------------------------------------------------------------------------------------------------------
+    # ------------------------------------------------------------------------------------------
 
     def source_text(self) -> str:
         """Return the text of `laws.py`."""

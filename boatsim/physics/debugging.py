@@ -1,12 +1,14 @@
 """Plain Python instead of compiled code, for break points, prints and coverage: `BOATSIM_DEBUG=1`.
 
-With the environment variable `BOATSIM_DEBUG` set to 1 before boatsim is imported, numba compiles nothing. The laws of
-effects and controllers and the kernel (`boatsim/physics/kernel/`) are imported from the files of the repository and run
-line by line. Only `laws.py` and `motion.py`, which are generated for each vessel, lie in the cache folder. A run takes
-about a thousand times as long. See `docs/debugging.md`.
+With the environment variable `BOATSIM_DEBUG` set to 1 before boatsim is imported, numba compiles
+nothing. The laws of effects and controllers and the kernel (`boatsim/physics/kernel/`) are imported
+from the files of the repository and run line by line. Only `laws.py` and `motion.py`, which are
+generated for each vessel, lie in the cache folder. A run takes about a thousand times as long. See
+`docs/debugging.md`.
 
-Differences from compiled code: a division by zero of two Python floats raises `ZeroDivisionError` instead of giving inf
-or nan, `math.sqrt` of a negative number raises `ValueError`, and results may differ in the last bits.
+Differences from compiled code: a division by zero of two Python floats raises `ZeroDivisionError`
+instead of giving inf or nan, `math.sqrt` of a negative number raises `ValueError`, and results may
+differ in the last bits.
 """
 
 import os
@@ -26,7 +28,8 @@ def python_function(function: Any) -> Callable[..., Any]:
     """Return the Python function of a compiled one; in debug mode the function itself.
 
     Args:
-        function: A function under one of the decorators of `boatsim.physics.kernel.compiling` or of numba.
+        function: A function under one of the decorators of `boatsim.physics.kernel.compiling` or of
+            numba.
     """
     found: Callable[..., Any] = getattr(function, "py_func", function)
     return found

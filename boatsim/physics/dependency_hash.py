@@ -1,4 +1,4 @@
-"""Files of boatsim that a file imports, directly or indirectly: compiled code depends on their content."""
+"""Files of boatsim that a file imports, directly or indirectly."""
 
 import ast
 import hashlib
@@ -23,7 +23,7 @@ def stamp(path: Path) -> str:
 
 @cache
 def content(path: Path) -> bytes:
-    """Return the content of a file at the first call: an imported module does not change with its file.
+    """Return the content that a file had at the first call, as for an imported module.
 
     Args:
         path: The file.
@@ -67,7 +67,10 @@ def _imports(path: Path) -> frozenset[Path]:
 
 
 def _package(path: Path, level: int) -> tuple[str, ...]:
-    """Package from which a relative import of `level` dots starts; empty for an absolute one or a user's file."""
+    """Package from which a relative import of `level` dots starts.
+
+    Empty for an absolute one or a user's file.
+    """
     if not level or not path.is_relative_to(PACKAGE):
         return ()
     return path.parents[level - 1].relative_to(PACKAGE.parent).parts

@@ -120,7 +120,7 @@ class Described(Force, Recall):
         return {n: getattr(self, n) for n in type(self).params() if n != "coefficient"}
 
     def shape(self) -> dict[str, object]:
-        """Return the keys of its table that describe the law, without those that have no meaning for it."""
+        """Return the keys of its table that describe the law, without those that it ignores."""
         found: dict[str, object] = {"of": list(self.of), "acts": self.acts}
         if self.acts != "always":
             found |= {"begin": self.begin, "end": self.end}

@@ -1,6 +1,7 @@
 """Facts of a run or a vessel: their allowed values and their descriptions.
 
-Some facts are read by laws (the position of the walls), others exclude effects (no wind blows indoors).
+Some facts are read by laws (the position of the walls), others exclude effects (no wind blows
+indoors).
 """
 
 from collections.abc import Mapping
@@ -51,7 +52,7 @@ def excluding_fact(by: Mapping[str, tuple[object, ...]], facts: Mapping[str, obj
 
 
 def first_invalid(facts: Mapping[str, object]) -> tuple[str, str] | None:
-    """Return the first fact with a value that is not allowed, and what is allowed; None if all are valid.
+    """Return the first fact with an invalid value and what is allowed, or None.
 
     Args:
         facts: The facts of a run or vessel.

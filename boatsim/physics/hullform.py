@@ -1,7 +1,7 @@
 """Draws the deep-V hull of a small outboard motor boat from its particulars.
 
-`python -m boatsim.physics.hullform models/VESSEL` writes OBJ meshes with the origin at the transom on the
-centreline at the design waterline; x forward, y to port, z up.
+`python -m boatsim.physics.hullform models/VESSEL` writes OBJ meshes with the origin at the transom
+on the centreline at the design waterline; x forward, y to port, z up.
 """
 
 import math
@@ -20,7 +20,7 @@ AROUND = 20  # points around a rounded body
 
 @dataclass(frozen=True)
 class DeepV:
-    """Lines of a hard-chine hull: constant deadrise up to `parallel`, warped and raked forward of it."""
+    """Lines of a hard-chine hull with constant deadrise up to `parallel`, warped forward of it."""
 
     length: float = 1.2  # [m] Bayless 2017, table 27
     beam: float = 0.30  # [m] same
@@ -91,7 +91,7 @@ class DeepV:
 
 @dataclass
 class Mesh:
-    """A mesh of triangles. Surfaces do not share vertices, so that the edges between them remain sharp."""
+    """A mesh of triangles; surfaces share no vertices, so that their edges are sharp."""
 
     points: list[Array] = field(default_factory=list)
     faces: list[tuple[int, int, int]] = field(default_factory=list)
@@ -100,7 +100,8 @@ class Mesh:
         """Add the surface through a grid of points.
 
         Args:
-            grid: (rows, columns, 3). With the columns upwards, the outside is to the left along the rows.
+            grid: (rows, columns, 3). With the columns upwards, the outside is to the left along the
+                rows.
             flip: The outside is to the right.
         """
         rows, columns, _ = grid.shape

@@ -37,10 +37,10 @@ def uniform(realisation: float, k: int) -> float:
 
 @njit(inline="always")
 def spectral_line(share: float, damping: float) -> tuple[float, float]:
-    """Return a frequency of white noise behind s / (s^2 + 2 damping s + 1), and its weight in the energy.
+    """Return a frequency of filtered white noise and its weight in the energy.
 
-    In the variable a = w - 1 / w the spectrum is a Lorentz line times 1 + a / sqrt(a^2 + 4), whose second part is odd.
-    The weight is that factor.
+    In the variable a = w - 1 / w the spectrum is a Lorentz line times 1 + a / sqrt(a^2 + 4), whose
+    second part is odd. The weight is that factor.
 
     Args:
         share: Share of the line below the frequency less a half, in (-1/2, 1/2).
@@ -55,10 +55,11 @@ def spectral_line(share: float, damping: float) -> tuple[float, float]:
 def narrow_band_noise(
     t: float, frequency: float, damping: float, realisation: float, channel: float, count: float
 ) -> float:
-    """Return white noise behind s / (s^2 + 2 damping w s + w^2) with unit variance, as a sum of cosines.
+    """Return narrow-band noise with unit variance, as a sum of cosines.
 
-    The line is divided into equal parts, and each contributes one cosine of random frequency and phase. Whole numbers
-    are floats here: numba would compile the function again for each integer constant.
+    The line is divided into equal parts, and each contributes one cosine of random frequency and
+    phase. Whole numbers are floats here: numba would compile the function again for each integer
+    constant.
 
     Args:
         t: Time [s].

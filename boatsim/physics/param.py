@@ -27,8 +27,8 @@ class Param(NamedTuple):
     absent: float = 0.0  # value at which the effect has no influence
     # "damping", "thrust", ...: a coefficient of the nominal model that is never known exactly
     calibrates: str = ""
-    # value of an unset parameter: that of "linear_damping.surge" or "vessel.body.mass" of the vessel;
-    # a "?" at the end if the vessel need not have it
+    # value of an unset parameter: that of "linear_damping.surge" or "vessel.body.mass" of the
+    # vessel; a "?" at the end if the vessel need not have it
     follows: str = ""
     # numbers of the vessel that may have another value: "linear_damping.surge", "body.mass"
     releases: tuple[str, ...] = ()
@@ -67,7 +67,8 @@ def param(
         axis: Degree of freedom that it belongs to.
         absent: Value at which the effect has no influence.
         calibrates: Kind of coefficient of the nominal model, "damping" for example.
-        follows: Number of the vessel that an unset parameter has, "linear_damping.surge" for example.
+        follows: Number of the vessel that an unset parameter has, "linear_damping.surge" for
+            example.
         releases: Numbers of the vessel that it changes.
         how: How it changes them: "sets", "scales" or "shifts".
         within: Plausible range of a fit.
@@ -189,7 +190,9 @@ def number(
 
 
 def code(words: str) -> float:
-    """Return the field of a number that stands for a name in a compiled law; `Effect.rules` sets it, files cannot.
+    """Return the field of a number that stands for a name in a compiled law.
+
+    `Effect.rules` sets it, files cannot.
 
     Args:
         words: Description.
@@ -199,7 +202,7 @@ def code(words: str) -> float:
 
 
 class Checked:
-    """Mixin of dataclasses that checks `param` fields on construction and reports unknown settings."""
+    """Mixin of dataclasses that checks `param` fields and reports unknown settings."""
 
     @classmethod
     def params(cls) -> dict[str, Param]:
@@ -214,7 +217,8 @@ class Checked:
             settings: Values by name.
 
         Raises:
-            BadInput: A setting does not exist (the message contains the nearest valid name), or a value is not allowed.
+            BadInput: A setting does not exist (the message contains the nearest valid name), or a
+                value is not allowed.
         """
         names = [f.name for f in fields(cls) if f.init and "ours" not in f.metadata]  # type: ignore[arg-type]
         for key in settings:

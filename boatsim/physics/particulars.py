@@ -1,6 +1,7 @@
-"""Coefficients of a displacement hull from its particulars: published closed forms, one function each.
+"""Coefficients of a displacement hull from its particulars, by published formulas.
 
-Effects call them when a vessel is loaded (`completed`); none of them is compiled. SI units and radians.
+Effects call them when a vessel is loaded (`completed`); none of them is compiled. SI units and
+radians.
 """
 
 from math import atanh, pi, sqrt
@@ -21,7 +22,10 @@ class Spheroid(NamedTuple):
 
 
 class Derivatives(NamedTuple):
-    """Non-dimensional derivatives about midship; forces per 0.5 rho L T V^2, moments per 0.5 rho L^2 T V^2."""
+    """Non-dimensional derivatives about midship.
+
+    Forces per 0.5 rho L T V^2, moments per 0.5 rho L^2 T V^2.
+    """
 
     sway_by_sway: float  # Y'v
     sway_by_yaw: float  # Y'r
@@ -30,7 +34,7 @@ class Derivatives(NamedTuple):
 
 
 def spheroid(length: float, draught: float) -> Spheroid:
-    """Return the added mass of a prolate spheroid (H. Lamb, Hydrodynamics, 6th ed. 1932, sections 114, 115).
+    """Return the added mass of a prolate spheroid (Lamb 1932, sections 114 and 115).
 
     Args:
         length: Length of the hull, twice the longer semi-axis [m].
@@ -62,7 +66,8 @@ def derivatives(
 ) -> Derivatives:
     """Return the linear derivatives of a trimmed hull.
 
-    S. Inoue, M. Hirano, K. Kijima, Int. Shipbuilding Progress 28 (1981), in the form of C. R. Martin, UBC 1993.
+    S. Inoue, M. Hirano, K. Kijima, Int. Shipbuilding Progress 28 (1981), in the form of C. R.
+    Martin, UBC 1993.
 
     Args:
         length: Length [m].
@@ -94,7 +99,7 @@ def rudder_slope(area: float, aspect: float, inflow: float, density: float = SEA
 
 
 def lift_slope(aspect: float) -> float:
-    """Return f_alpha, the normal force coefficient of a rudder per angle of attack (Fujii and Tsuda 1961).
+    """Return f_alpha, the slope of a rudder's normal force coefficient (Fujii, Tsuda 1961).
 
     Args:
         aspect: Span divided by chord.
@@ -103,7 +108,7 @@ def lift_slope(aspect: float) -> float:
 
 
 def hull_share(block: float) -> float:
-    """Return a_H, the force that a rudder causes on the hull, divided by the force on the rudder (Inoue et al. 1981).
+    """Return a_H, the force on the hull per force on its rudder (Inoue et al. 1981).
 
     Args:
         block: Block coefficient.
@@ -114,7 +119,7 @@ def hull_share(block: float) -> float:
 def roll_ratio_by_speed(
     length: float, beam: float, block: float, metacentric_height: float, speed: float
 ) -> float:
-    """Return the increase of the roll damping ratio with forward speed, for a round bilge (Martin 1993, Appendix IV).
+    """Return the increase of the roll damping ratio with speed (Martin 1993, Appendix IV).
 
     Args:
         length: Length [m].

@@ -37,7 +37,8 @@ def preset(
     Args:
         law: The effect whose law it has.
         name: Name of the class.
-        frees: Parameters that a diagnosis may fit, with the attributes that differ from those of `law`.
+        frees: Parameters that a diagnosis may fit, with the attributes that differ from those of
+            `law`.
         fixed: Parameters with a fixed value.
         otherwise: Other default values of the remaining parameters.
         about: Class attributes: words, shown_by, source, starts and so on.

@@ -30,7 +30,7 @@ KINEMATICS = ("moved", "jacobian")  # functions of one state that are used in Py
 
 @dataclass(frozen=True)
 class Program:
-    """The effects of a vessel and further candidates as compiled functions over one flat parameter array.
+    """The effects of a vessel and further candidates, compiled, with one parameter array.
 
     Attributes:
         vessel: The vessel; its own effects always act.
@@ -83,7 +83,7 @@ class Program:
 
     @cached_property
     def body(self) -> Array:
-        """(6,) mass [kg], mass centre x, z [m], inertia about it in roll, pitch and yaw [kg m^2]."""
+        """(6,) mass [kg], mass centre x, z [m], inertia in roll, pitch and yaw [kg m^2]."""
         b = self.vessel.body
         return np.array(
             [

@@ -1,7 +1,10 @@
-"""Signals of a moving hull: name, unit, degree of freedom and default sensor noise; arguments and results of laws.
+"""Signals of a moving hull: name, unit, degree of freedom and default sensor noise.
 
-Axes are SNAME: x forward, y starboard, z down, heading and yaw rate clockwise seen from above. Vectors over the degrees
-of freedom have the order of `AXES`, without those that a vessel does not have.
+Arguments and results of laws.
+
+Axes are SNAME: x forward, y starboard, z down, heading and yaw rate clockwise seen from above.
+Vectors over the degrees of freedom have the order of `AXES`, without those that a vessel does not
+have.
 """
 
 from dataclasses import dataclass
@@ -113,7 +116,10 @@ class Shown(NamedTuple):
 
 
 class Wrench(NamedTuple):
-    """Force on the hull in body axes about the origin of motion; compiled laws build it with `wrench`."""
+    """Force on the hull in body axes about the origin of motion.
+
+    Compiled laws build it with `wrench`.
+    """
 
     X: float = 0.0  # [N] surge
     Y: float = 0.0  # [N] sway
@@ -131,7 +137,10 @@ def wrench(
 
 
 class Mass(NamedTuple):
-    """Inertia matrix of a hull that is symmetric to port and starboard; all other entries are zero."""
+    """Inertia matrix of a hull that is symmetric to port and starboard.
+
+    All other entries are zero.
+    """
 
     surge: float = 0.0  # [kg]
     sway: float = 0.0  # [kg]
@@ -181,7 +190,7 @@ def mass(
 
 
 class Swell(NamedTuple):
-    """Random oscillating force: per axis a lightly damped oscillator that is driven by white noise."""
+    """Random oscillating force: a damped oscillator per axis, driven by white noise."""
 
     X: float  # [N] rms
     Y: float  # [N] rms
@@ -203,12 +212,15 @@ def swell(
     frequency: float = 0.0,
     damping: float = 1.0,
 ) -> Swell:
-    """Return a `Swell` from the names of its fields; a frequency of zero means that there is none."""
+    """Return a `Swell` from the names of its fields.
+
+    A frequency of zero means that there is none.
+    """
     return Swell(X, Y, Z, K, M, N, frequency, damping)
 
 
 class Wander(NamedTuple):
-    """Slowly varying error of instruments, such as satellite positions (first-order Gauss-Markov process)."""
+    """Slowly varying error of instruments, a first-order Gauss-Markov process."""
 
     position: float  # [m] rms, north and east alike
     heading: float  # [rad] rms
@@ -222,8 +234,9 @@ for _constructor, _record in ((wrench, Wrench), (mass, Mass), (swell, Swell)):
 class Course(NamedTuple):
     """A signal over one step: at its begin, in its middle and at its end.
 
-    A Runge-Kutta step weighs the three by Simpson's rule. The middle is chosen so that this gives the mean of the signal
-    over the step exactly, and thus the right impulse of a motor that reaches its command within the step.
+    A Runge-Kutta step weighs the three by Simpson's rule. The middle is chosen so that this gives
+    the mean of the signal over the step exactly, and thus the right impulse of a motor that reaches
+    its command within the step.
     """
 
     begin: float
@@ -233,7 +246,10 @@ class Course(NamedTuple):
 
 @njit(inline="always")
 def course(begin: float, mean: float, end: float) -> Course:
-    """Return the course of a signal with this mean over the step; a constant signal is exactly constant."""
+    """Return the course of a signal with this mean over the step.
+
+    A constant signal is exactly constant.
+    """
     return Course(begin, mean + 0.25 * ((mean - begin) + (mean - end)), end)
 
 
@@ -243,15 +259,18 @@ BRIEF = 0.02
 
 @njit(inline="always")
 def followed(lag: float) -> float:
-    """Return the longest step [s] over which three points describe a signal behind a lag [s]: one lag."""
+    """Return the longest step [s] over which three points describe a lagged signal: one lag."""
     return max(lag, BRIEF) if lag > 0.0 else np.inf
 
 
 @njit(inline="always")
 def lagged(x: Course, time_constant: float, memory: Array, at: int, dt: float) -> Course:
-    """Return a signal behind a first-order lag, exact if its course is a parabola; memory[at] is its state.
+    """Return a signal behind a first-order lag, exact if its course is a parabola.
 
-    T y' = x - y with x = b + c s + d s^2, s in steps, has the solution f + g s + d s^2 plus a decaying exponential.
+    Memory[at] is its state.
+
+    T y' = x - y with x = b + c s + d s^2, s in steps, has the solution f + g s + d s^2 plus a
+    decaying exponential.
 
     Args:
         x: The signal over the step.
@@ -271,5 +290,8 @@ def lagged(x: Course, time_constant: float, memory: Array, at: int, dt: float) -
 
 @njit(inline="always")
 def mean_of(x: Course) -> float:
-    """Return the mean of a signal over the step; that of a constant signal is exactly the signal."""
+    """Return the mean of a signal over the step.
+
+    That of a constant signal is exactly the signal.
+    """
     return x.begin + (4.0 * (x.middle - x.begin) + (x.end - x.begin)) / 6.0

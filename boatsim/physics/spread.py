@@ -1,4 +1,4 @@
-"""Joint uncertainty of the fitted numbers of a vessel, as a diagnosis writes it into a patched vessel file."""
+"""Joint uncertainty of the fitted numbers of a vessel, in a patched vessel file."""
 
 from dataclasses import dataclass, replace
 from typing import NamedTuple, Self

@@ -1,7 +1,8 @@
 """Terms of symbolic regression: products of factors that have names, and their course in time.
 
-Files contain the names of factors, courses and directions; a program uses a number for each (`codes`), so that one
-compiled law serves all of them. The same functions work on single numbers and on arrays over the rows of a recording.
+Files contain the names of factors, courses and directions; a program uses a number for each
+(`codes`), so that one compiled law serves all of them. The same functions work on single numbers
+and on arrays over the rows of a recording.
 """
 
 from collections.abc import Sequence
@@ -25,8 +26,8 @@ RIPPLES = ("ripple_north", "ripple_east")  # a pattern that is fixed in the wate
 BEYOND = tuple(map("beyond_{}".format, SPEEDS))  # excess of a speed over a threshold, with its sign
 # The number of a factor is its place in this list.
 FACTORS = ("", *SPEEDS, *SIZES, *SENSES, *BEARINGS, *PLACES, *RIPPLES, *BEYOND)
-# In front of the name of an actuator signal: the signal behind a first-order lag, and the signal less
-# that
+# In front of the name of an actuator signal: the signal behind a first-order lag, and the signal
+# less that
 HISTORIES = ("recent", "changed")
 RECALLED = 90  # number of the lagged signal of a term; 91: its absolute value
 FIRST_HELD = 100  # number of actuator signal k less 2 k; one more: its absolute value
@@ -59,8 +60,8 @@ def factor(m: Any, act: Any, at: Any, own: Any, number: float, detail: Detail) -
         at: First of the actuators to use.
         own: Place of the term's lagged signal after `at`.
         number: Number of the factor, see `codes`.
-        detail: Wavelength and crest of a ripple, which is 1 at its crest; speed `little` within which a sense changes;
-            threshold `beyond`.
+        detail: Wavelength and crest of a ripple, which is 1 at its crest; speed `little` within
+            which a sense changes; threshold `beyond`.
     """
     k, (wavelength, crest, little, beyond) = int(number), detail
     if k >= RECALLED:
@@ -88,8 +89,8 @@ def course(t: Any, acts: float, begin: float, end: float) -> Any:
 
     Args:
         t: Time [s].
-        acts: Number of the course: always 1; 1 between begin and end; a ramp from begin to end; an exponential decay
-            from begin, or a sine, with end - begin as time constant or period.
+        acts: Number of the course: always 1; 1 between begin and end; a ramp from begin to end; an
+            exponential decay from begin, or a sine, with end - begin as time constant or period.
         begin: Time [s].
         end: Time [s].
     """
@@ -136,7 +137,7 @@ def recalled(
     beyond: float,
     memory: float,
 ) -> None:
-    """Write the history of a signal over a step to act: the signal behind a first-order lag, or the signal less that.
+    """Write the history of a signal over a step to act.
 
     Args:
         act: Actuators.
@@ -179,7 +180,7 @@ def recall(act: Any, held: Any, own: Any, kept: Any, at: Any, dt: float, q: Any)
 
 @njit(inline="always")
 def reach(q: Any) -> float:
-    """Return the longest step [s] over which three points describe the lagged signal of an effect with parameters q."""
+    """Return the longest step [s] over which three points describe the lagged signal."""
     return followed(q.memory) if q.looks_at > 0.0 else np.inf
 
 
@@ -225,7 +226,7 @@ def names_for(held: Sequence[str]) -> tuple[str, ...]:
 
 
 def history_of(name: str, held: Sequence[str]) -> tuple[str, str]:
-    """Return the kind of history of a factor and its signal, as ("recent", "abs_thrust_N"); "", "" for other factors.
+    """Return the kind of history of a factor and its signal; "", "" for other factors.
 
     Args:
         name: Name of the factor.
@@ -239,7 +240,7 @@ def history_of(name: str, held: Sequence[str]) -> tuple[str, str]:
 
 
 def history_codes(what: str, of: Sequence[str], held: Sequence[str]) -> tuple[float, float]:
-    """Return the number of the signal whose history a term uses, and of the kind of history; 0, 0 without one.
+    """Return the numbers of the signal and the kind of history of a term; 0, 0 without one.
 
     Args:
         what: Name of the effect, for the message.

@@ -1,7 +1,7 @@
-"""Which Python files may run: those of boatsim, and those in folders that the user has named or trusts.
+"""Which Python files may run: those of boatsim and of folders that the user trusts.
 
-Data files alone never cause Python code to run. Trust holds for a block of `trusting`, and in the processes that the
-block starts if they are given `current_trust()`.
+Data files alone never cause Python code to run. Trust holds for a block of `trusting`, and in the
+processes that the block starts if they are given `current_trust()`.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -18,9 +18,11 @@ class Trust:
     """The trusted folders.
 
     Attributes:
-        content: Folders of the user's own content; names of effects, vessels and so on are searched in them.
+        content: Folders of the user's own content; names of effects, vessels and so on are searched
+            in them.
         allowed: Further folders whose Python files may run.
-        ask: Asks the user whether the Python files of a folder may run; None: there is no user to ask.
+        ask: Asks the user whether the Python files of a folder may run; None: there is no user to
+            ask.
         answers: The user's answers; each folder is asked for once.
     """
 
@@ -60,8 +62,8 @@ def trusting(
     """Trust folders, with all folders below them, in addition to those that are trusted already.
 
     Args:
-        content: Folders of the user's own content. Names are searched in them as in the library: in DIR/effects,
-            DIR/models and so on, and in DIR itself.
+        content: Folders of the user's own content. Names are searched in them as in the library: in
+            DIR/effects, DIR/models and so on, and in DIR itself.
         allowed: Further folders whose Python files may run.
         ask: Asks the user whether the Python files of a folder may run.
 

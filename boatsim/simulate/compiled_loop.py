@@ -1,7 +1,7 @@
-"""The closed loop of many vessels, compiled: in every control period sensors, law, commands and steps of physics.
+"""The compiled closed loop of many vessels: sensors, law, commands and physics.
 
-It depends neither on the vessel nor on the controller: their compiled functions are passed as pointers, so that it is
-compiled once for each kind of controller, whatever vessel it steers.
+It depends neither on the vessel nor on the controller: their compiled functions are passed as
+pointers, so that it is compiled once for each kind of controller, whatever vessel it steers.
 """
 
 from functools import cache

@@ -1,7 +1,8 @@
 """A vessel's forces as a C function that MuJoCo calls without the Python interpreter.
 
-The callback is compiled against the layout of MuJoCo's structs, which `boatsim.physics.compiler_internals` finds. Where
-that is not possible the engine uses a callback in Python and warns: it gives the same numbers many times more slowly.
+The callback is compiled against the layout of MuJoCo's structs, which
+`boatsim.physics.compiler_internals` finds. Where that is not possible the engine uses a callback in
+Python and warns: it gives the same numbers many times more slowly.
 """
 
 import warnings
@@ -28,7 +29,8 @@ def compile_native(code: CompiledProgram, size: int) -> Any:
         The C function, as `mujoco.set_mjcb_passive` takes it.
 
     Raises:
-        BadPhysics: The installed MuJoCo differs from what the callback needs; the message holds the reason.
+        BadPhysics: The installed MuJoCo differs from what the callback needs; the message holds the
+            reason.
     """
     try:
         load_mujoco_symbols()

@@ -136,7 +136,7 @@ class Body:
         )  # without the brackets that nobody needs
 
     # Statements
-    # -------------------------------------------------------------------------------------------------------
+    # ------------------------------------------------------------------------------------------
 
     def say(self, line: str) -> None:
         """One line at the present depth."""
@@ -284,7 +284,7 @@ class Body:
         return named(kind, f"_{self.temporaries}")
 
     # Expressions
-    # ------------------------------------------------------------------------------------------------------
+    # ------------------------------------------------------------------------------------------
 
     def value(self, node: ast.expr, store: bool = False) -> Value:
         """An expression; what must come before it is said first."""
@@ -453,7 +453,7 @@ class Body:
         return OPERATORS[type(op)]
 
     # Calls
-    # ------------------------------------------------------------------------------------------------------------
+    # ------------------------------------------------------------------------------------------
 
     def of_Call(self, node: ast.Call) -> Value:
         """A function of ours, of mathematics, a named tuple or a cast."""

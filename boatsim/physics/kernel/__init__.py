@@ -1,1 +1,4 @@
-"""Compiled functions that are the same for every vessel; they call the generated laws of one vessel."""
+"""Compiled functions that are the same for every vessel.
+
+They call the generated laws of one vessel.
+"""

@@ -1,4 +1,4 @@
-"""Sums of products of named numbers, with which equations of motion are written without the terms that are zero."""
+"""Sums of products of named numbers, from which equations without zero terms are written."""
 
 from collections.abc import Iterable
 
@@ -90,7 +90,9 @@ class Lines:
         self.text.append(line)
 
     def let(self, called: str, value: Sum) -> Sum:
-        """Assign a value to a variable and return its name; return zero, one or a single name unchanged.
+        """Assign a value to a variable and return its name.
+
+        Return zero, one or a single name unchanged.
 
         Args:
             called: Name of the variable.

@@ -1,7 +1,7 @@
 """Steps of many vessels, each with its own parameters, commands and actuators, in compiled code.
 
-`boats` are the rows to work on, so that threads can share the rows among them. The numbers of one vessel depend neither
-on another vessel nor on the thread.
+`boats` are the rows to work on, so that threads can share the rows among them. The numbers of one
+vessel depend neither on another vessel nor on the thread.
 """
 
 from typing import Any

@@ -1,6 +1,7 @@
-"""MuJoCo's passive-force callback of one vessel. All it needs lies in `userdata`, so that no state is global.
+"""MuJoCo's passive-force callback of one vessel; its arguments lie in `userdata`.
 
-userdata: parameters (P,); constants (K,); actuators at the begin, in the middle and at the end of the step (3 HELD,);
+userdata: parameters (P,); constants (K,); actuators at the begin, in the middle and at the end of
+    the step (3 HELD,);
 begin of the step [s]; 1 / length of the step [1/s].
 """
 
@@ -39,8 +40,10 @@ def make_native(offsets: dict[str, int], size: int) -> Any:
     """Compile the callback to a C function.
 
     Args:
-        offsets: Offsets of the fields in MuJoCo's structs, as `compiler_internals.mujoco_layout` finds them.
-        size: Floats in the `userdata` of the model. The callback leaves models of other sizes alone.
+        offsets: Offsets of the fields in MuJoCo's structs, as `compiler_internals.mujoco_layout`
+            finds them.
+        size: Floats in the `userdata` of the model. The callback leaves models of other sizes
+            alone.
 
     Returns:
         numba's C function; its attribute `ctypes` is what MuJoCo takes.

@@ -1,7 +1,7 @@
 """The ways in which numba compiles a vessel's program.
 
-All of them divide as IEEE 754 does instead of raising errors. With `BOATSIM_DEBUG=1` (`boatsim.physics.debugging`) they
-return the Python function unchanged.
+All of them divide as IEEE 754 does instead of raising errors. With `BOATSIM_DEBUG=1`
+(`boatsim.physics.debugging`) they return the Python function unchanged.
 """
 
 from collections.abc import Callable
@@ -38,12 +38,12 @@ unlocked = kept(nogil=True, **WITHOUT_REFERENCE_COUNTS)
 apart: Any = njit(error_model="numpy", **WITHOUT_REFERENCE_COUNTS)
 # A small part of one or two other functions: numba analyses it again in each of them.
 inlined = njit(error_model="numpy", inline="always")
-# A large part of many functions: analysed once and inlined by LLVM, which moves what does not change
-# out of loops.
+# A large part of many functions: analysed once and inlined by LLVM, which moves what does not
+# change out of loops.
 merged = njit(error_model="numpy", forceinline=True, **WITHOUT_REFERENCE_COUNTS)
 
 
 @cache
 def shared(law: Any) -> Any:
-    """Return an effect's law for programs to call: analysed once in a process and inlined by LLVM."""
+    """Return an effect's law for programs to call, analysed once in a process."""
     return merged(python_function(law))

@@ -1,4 +1,7 @@
-"""The filter's update by one measurement; compiled once for all vessels, which differ in the size of the state."""
+"""The filter's update by one measurement.
+
+Compiled once for all vessels, which differ in the size of the state.
+"""
 
 from math import log, sqrt
 
@@ -6,16 +9,21 @@ from boatsim.physics.kernel.compiling import lean
 from boatsim.physics.kernel.records import Channel, Estimate, Measurement
 from boatsim.physics.signals import Array
 
-# [sd] A measurement with a larger prediction error is an outlier. Its weight falls with the error and its penalty grows
-# with the logarithm of the error, as of a Cauchy distribution. Both are continuous, so that a fit does not get stuck.
+# [sd] A measurement with a larger prediction error is an outlier. Its weight falls with the error
+# and its penalty grows with the logarithm of the error, as of a Cauchy distribution. Both are
+# continuous, so that a fit does not get stuck.
 GATE = 5.0
-# Consecutive outliers of one channel. A further one means that the filter has diverged and must follow the measurements.
+# Consecutive outliers of one channel. A further one means that the filter has diverged and must
+# follow the measurements.
 IN_A_ROW = 2
 
 
 @lean
 def weigh(one: Measurement, estimate: Estimate, gain: Array, Ph: Array) -> float:
-    """Compute gain (n,) and P row' (n,) of one measurement, in place; return the inverse sd of its prediction error."""
+    """Compute gain (n,) and P row' (n,) of one measurement, in place.
+
+    Return the inverse sd of its prediction error.
+    """
     row, n, ny, own = one.row, estimate.n, one.ny, one.own
     P, variance = estimate.P, one.variance
     for a in range(n):
@@ -37,7 +45,10 @@ def weigh(one: Measurement, estimate: Estimate, gain: Array, Ph: Array) -> float
 
 @lean
 def update(one: Measurement, estimate: Estimate, gains: bool, channel: Channel, Ph: Array) -> float:
-    """Correct the mean by one measurement, and the covariance if `gains`; return its log likelihood."""
+    """Correct the mean by one measurement, and the covariance if `gains`.
+
+    Return its log likelihood.
+    """
     z, P, n, error = estimate.z, estimate.P, estimate.n, one.error
     gain, scale, white, outliers = channel.gain, channel.scale, channel.white, channel.outliers
     likelihood = 0.0

@@ -1,15 +1,17 @@
-"""Generates the equations of motion for any set of degrees of freedom as scalar code without terms that are zero.
+"""Generates the equations of motion for any degrees of freedom, without zero terms.
 
     M nu' = f - C(nu) nu + M_water nu_c',   nu = J(q) q'
 
-q are the joint coordinates (x, y, z, phi, theta, psi) that are free, nu the velocities in body axes, and nu_c the
-velocity of a uniform current in body axes, which changes as the hull turns. The Coriolis force of added mass and ballast
-belongs to the laws of those effects. State s = (q, q'), SNAME.
+q are the joint coordinates (x, y, z, phi, theta, psi) that are free, nu the velocities in body
+axes, and nu_c the velocity of a uniform current in body axes, which changes as the hull turns. The
+Coriolis force of added mass and ballast belongs to the laws of those effects. State s = (q, q'),
+SNAME.
 
-The body axes are fixed in the hull if it may pitch, or heave and roll (`TILTS`). Otherwise they turn with the heading
-alone and remain level when the hull rolls, as is usual in manoeuvring models. If as many body rates as coordinates are
-free (`closed`), the mass matrix is inverted once; otherwise J' M J is factored at every evaluation. T. I. Fossen,
-Handbook of Marine Craft Hydrodynamics and Motion Control, 2nd ed. 2021, chapters 2, 3 and 6.
+The body axes are fixed in the hull if it may pitch, or heave and roll (`TILTS`). Otherwise they
+turn with the heading alone and remain level when the hull rolls, as is usual in manoeuvring models.
+If as many body rates as coordinates are free (`closed`), the mass matrix is inverted once;
+otherwise J' M J is factored at every evaluation. T. I. Fossen, Handbook of Marine Craft
+Hydrodynamics and Motion Control, 2nd ed. 2021, chapters 2, 3 and 6.
 """
 
 from dataclasses import dataclass
@@ -51,7 +53,7 @@ def closed(free: frozenset[str]) -> bool:
 
 
 def entry(begin: int, i: int, j: int) -> Sum:
-    """Return an entry of one of the constant 6 by 6 matrices, for a hull symmetric to port and starboard.
+    """Return an entry of one of the constant 6 by 6 matrices of a symmetric hull.
 
     Args:
         begin: First place of the matrix in the constants.
@@ -96,7 +98,7 @@ class Writer:
         self.n = len(self.free)
 
     # Kinematics
-    # -------------------------------------------------------------------------------------------------------
+    # ------------------------------------------------------------------------------------------
 
     def coordinate(self, i: int) -> Sum:
         """Return the name of a joint coordinate, zero if it is held."""
@@ -176,10 +178,10 @@ class Writer:
         return f"Motion(t, {', '.join(values)})"
 
     # Forces
-    # -----------------------------------------------------------------------------------------------------------
+    # ------------------------------------------------------------------------------------------
 
     def carried(self, frame: Frame, axis: int) -> Sum:
-        """Return a component of the force of added mass that is due to the turning of a uniform current in body axes."""
+        """Return a component of the force of added mass as a uniform current turns in body axes."""
         away = [-a for a in cross(frame.turning, frame.water)]
         return total(entry(WATER, axis, j) * away[j] for j in LINEAR)
 
@@ -201,7 +203,7 @@ class Writer:
         return force + [a + b for a, b in zip(cross(lever, force), moment, strict=True)]
 
     def load(self, lines: Lines, frame: Frame, extra: str) -> list[Sum]:
-        """Return the right-hand side (6,) of M nu' = ...: laws, extra force, Coriolis force, turning current."""
+        """Return the right-hand side (6,) of M nu' = ..., as sums."""
         lines.add(f"f = wrench({self.seen(frame)}, p, on, act, at)")
         rigid = self.rigid(lines, frame)
         found = []
@@ -217,7 +219,7 @@ class Writer:
             lines.add(f"{names} = {', '.join(f's[{first + j}]' for j in range(self.n))}")
 
     # Accelerations
-    # ----------------------------------------------------------------------------------------------------
+    # ------------------------------------------------------------------------------------------
 
     def accelerations(self) -> list[str]:
         """Return the body of `accelerations`."""
@@ -322,7 +324,7 @@ class Writer:
         return lines.text
 
     # Further functions
-    # ------------------------------------------------------------------------------------------------
+    # ------------------------------------------------------------------------------------------
 
     def forces(self) -> list[str]:
         """Return the body of `forces`."""
@@ -343,7 +345,7 @@ class Writer:
         return lines.text
 
     def feels(self) -> list[str]:
-        """Return the body of `feels`: heading, yaw rate, acceleration over ground, surge, sway, position, roll."""
+        """Return the body of `feels`."""
         lines = Lines()
         self.unpack(lines)
         frame = self.frame(lines, current=False)
@@ -370,7 +372,7 @@ class Writer:
         return lines.text
 
     def level_rates(self) -> list[str]:
-        """Return the body of `observe_level`: a position, or a rate along level axes, which turn if the hull yaws."""
+        """Return the body of `observe_level`: a position, or a rate along level axes."""
         lines = Lines()
         lines.add("if code < NQ:")
         lines.add("    row[code] = 1.0")
@@ -379,9 +381,8 @@ class Writer:
             psi, north, east = self.free.index(5), self.n, self.n + 1
             lines.add("if code < NQ + 2:")
             lines.add(f"    c, s_ = cos(s[{psi}]), sin(s[{psi}])")
-            lines.add(
-                f"    along, across = c * s[{north}] + s_ * s[{east}], c * s[{east}] - s_ * s[{north}]"
-            )
+            along = f"c * s[{north}] + s_ * s[{east}]"
+            lines.add(f"    along, across = {along}, c * s[{east}] - s_ * s[{north}]")
             lines.add("    if code == NQ:")
             lines.add(f"        row[{north}], row[{east}], row[{psi}] = c, s_, across")
             lines.add("        return float(along)")
@@ -392,7 +393,7 @@ class Writer:
         return lines.text
 
     def add_to_mujoco(self) -> list[str]:
-        """Return the body of `add_to_mujoco`: forces and masses that MuJoCo's rigid body does not contain."""
+        """Return the body of `add_to_mujoco`: what MuJoCo's rigid body does not contain."""
         lines = Lines()
         order = [i for i in (COORDINATES.index(n) for n in JOINTS) if i in self.free]
         for b, i in enumerate(order):

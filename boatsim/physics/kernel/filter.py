@@ -1,8 +1,9 @@
-"""Extended Kalman filter over a recording, with one slowly varying unmodelled force per degree of freedom; smoother.
+"""Extended Kalman filter and smoother, with a latent force per degree of freedom.
 
-State z = (positions, earth-axes rates, body-axes latent forces), LASTING = 3 NQ entries. Where an oscillating force
-acts, the force and its rate per axis follow; where instruments have slowly varying errors, the error of each position
-follows. Measurements are taken one at a time, so that any of them may be missing (nan).
+State z = (positions, earth-axes rates, body-axes latent forces), LASTING = 3 NQ entries. Where an
+oscillating force acts, the force and its rate per axis follow; where instruments have slowly
+varying errors, the error of each position follows. Measurements are taken one at a time, so that
+any of them may be missing (nan).
 """
 
 from math import cos, exp, sin, sqrt
@@ -54,9 +55,11 @@ from .run import SHORTEST, actuate_in_place, least_after, settle, until_bend
 # their values.
 NY, LASTING = np.int64(2 * NQ), np.int64(3 * NQ)
 NZ = np.int64(LASTING + (2 * NQ if HAS_SWELL else 0) + (NQ if HAS_WANDER else 0))
-# Integration step in time constants of the quickest motion: half of Runge-Kutta's limit of stability
+# Integration step in time constants of the quickest motion: half of Runge-Kutta's limit of
+# stability
 STEADY = 1.4
-# Shortest integration step as a share of an interval; a vessel that needs a shorter one has diverged
+# Shortest integration step as a share of an interval; a vessel that needs a shorter one has
+# diverged
 LEAST = 0.01
 # Iterations that invert the errors of the instruments, which are always small
 INVERT = 10
@@ -70,10 +73,10 @@ INVERT = 10
 def predict(
     inputs: Inputs, i: int, delay: float, row: int, max_step: float, laws: Laws, plant: Plant
 ) -> int:
-    """Integrate the motion `plant.y` from row i - 1 to row i in place, with the latent force constant.
+    """Integrate the motion `plant.y` from row i - 1 to row i in place.
 
-    The motion of row i happened `delay` before its time. `row` is the last row of commands used so far; returns the one
-    used last. No step extends beyond a change of an actuator's signal.
+    The motion of row i happened `delay` before its time. `row` is the last row of commands used so
+    far; returns the one used last. No step extends beyond a change of an actuator's signal.
     """
     times, given, commands = inputs
     p, on, k = laws
@@ -97,7 +100,7 @@ def predict(
 
 @lean
 def linearise(t: float, h: float, z: Array, laws: Laws, plant: Plant, work: Work) -> float:
-    """Fill F with the transition of motion and latent forces over h, the exponential of the Jacobian.
+    """Fill F with the transition of motion and latent forces over h.
 
     Returns the decay rate of the quickest motion there [1/s].
     """
@@ -120,10 +123,10 @@ def linearise(t: float, h: float, z: Array, laws: Laws, plant: Plant, work: Work
 
 @lean
 def oscillator(h: float, s: Swell) -> tuple[float, float, float, float, float, float]:
-    """Transition of the oscillator over h, row by row, and its mean force over h per state and rate at the start.
+    """Transition of the oscillator over h, and its mean force per state and rate at the start.
 
-    The force is the rate divided by the frequency, w s / (s^2 + 2 damping w s + w^2): waves have no energy at zero
-    frequency.
+    The force is the rate divided by the frequency, w s / (s^2 + 2 damping w s + w^2): waves have no
+    energy at zero frequency.
     """
     w, damped = s.frequency, s.frequency * sqrt(1.0 - s.damping * s.damping)
     e, share = exp(-s.damping * w * h), s.damping * w / damped
@@ -188,7 +191,7 @@ def add_process_noise(h: float, noise: ProcessNoise, P: Array) -> None:
 
 @lean
 def split(z: Array, h: float, noise: ProcessNoise, plant: Plant) -> None:
-    """Set motion and force of `plant`: the motion of a state, and its mean latent force over the next h seconds."""
+    """Set the motion of `plant`, and its force to the mean latent force over h seconds."""
     force = plant.force
     copy(z, plant.y)
     for a in range(NQ):
@@ -217,7 +220,7 @@ def predict_covariance(h: float, noise: ProcessNoise, P: Array, F: Array, work: 
 
 @lean
 def predict_mean(h: float, noise: ProcessNoise, y: Array, z: Array) -> None:
-    """Predict the state over h, its motion at the end being y: forces and errors decay, oscillators turn."""
+    """Predict the state over h, with the motion y at its end."""
     m = noise.m
     for a in range(NY):
         z[a] = y[a]
@@ -233,7 +236,7 @@ def predict_mean(h: float, noise: ProcessNoise, y: Array, z: Array) -> None:
 
 @lean
 def add_deviation(F: Array, z: Array, about: Array, y: Array) -> None:
-    """Add to y, the motion that follows from the state `about`, the deviation of z from it along the transition F."""
+    """Add the deviation of z from `about` to y, the motion that follows from `about`."""
     for a in range(NY):
         for b in range(NY):
             y[a] += F[a, b] * (z[b] - about[b])
@@ -243,10 +246,10 @@ def add_deviation(F: Array, z: Array, about: Array, y: Array) -> None:
 def predict_and_linearise(
     f: Pass, i: int, row: int, z: Array, max_step: float, steps: Array
 ) -> int:
-    """`predict`, and the transition F about the state z before, with the actuators at the end of this interval.
+    """Apply `predict` and compute the transition F about the state z at the begin.
 
-    The steps follow the quickest motion: those that suited the row before may be too long. Fills steps[i] and a first
-    guess for the next row.
+    The steps follow the quickest motion: those that suited the row before may be too long. Fills
+    steps[i] and a first guess for the next row.
     """
     inputs, plant, times = f.inputs, f.plant, f.inputs.times
     h = times[i] - times[i - 1]
@@ -278,7 +281,7 @@ def recorded(y: Array, code: int, p: Array, on: Any) -> float:
 
 @lean
 def differentiate_channels(z: Array, codes: Any, H: Array, p: Array, on: Any) -> None:
-    """Fill H (C, 2 NQ), the derivatives of the channels by the motion z, where they need finite differences."""
+    """Fill H (C, 2 NQ) with the derivatives of the channels by z that need differences."""
     if not TILTS and not distorted(on):
         return
     seen = shown(moved(z), p, on)
@@ -325,7 +328,10 @@ def undistorted(z: Array, p: Array, on: Any) -> None:
 def update_row(
     f: Pass, estimate: Estimate, measured: Measurements, i: int, gains: bool, out: PassArrays
 ) -> float:
-    """Correct the mean by row i of a recording, and the covariance if `gains`; return its log likelihood."""
+    """Correct the mean by row i of a recording, and the covariance if `gains`.
+
+    Return its log likelihood.
+    """
     likelihood, z, codes = 0.0, estimate.z, measured.codes
     p, on, m, work = f.laws.p, f.laws.on, f.noise.m, f.work
     values, scale, white = measured.values[i], out.scale[i], out.whitened[i]
@@ -381,7 +387,7 @@ def kalman(
     out: PassArrays,
     history: History,
 ) -> float:
-    """Run one pass of the filter over a recording; fill `out`, and `history` if the options demand it.
+    """Run one pass of the filter over a recording; fill `out` and, on demand, `history`.
 
     Returns the log likelihood.
     """
@@ -446,7 +452,10 @@ def kalman(
 def smooth(
     history: History, gains: Array, times: Array, force: LatentForce, p: Array, on: Any
 ) -> None:
-    """Smooth the means and covariances of a pass in place (Rauch, Tung and Striebel); fill the gains (N, NZ, NZ)."""
+    """Smooth the means and covariances of a pass in place (Rauch, Tung and Striebel).
+
+    Fill the gains (N, NZ, NZ).
+    """
     means, covariances, transitions, predicted = history
     s, w = swell(p, on), wander(p, on)
     m, n = state_sizes(s, w)
@@ -486,10 +495,10 @@ def free_runs(
     states: Array,
     out: Array,
 ) -> None:
-    """Simulate from row starts[j] to ends[j] out of states[j] (2 NQ,), driven by the commands alone.
+    """Simulate from row starts[j] to ends[j] out of states[j] (2 NQ,) under the commands.
 
-    The actuators are simulated from the first row on, latent forces are zero. Fills out (runs, N, 2 NQ) with every
-    channel as the recording would show it.
+    The actuators are simulated from the first row on, latent forces are zero. Fills out (runs, N, 2
+    NQ) with every channel as the recording would show it.
     """
     times, (body, p, on) = inputs.times, model
     k, act, memory = np.zeros(K), np.zeros(3 * HELD), np.zeros(MEMORY)

@@ -8,8 +8,8 @@ from boatsim.physics.signals import Array
 from .laws import inertias
 from .motion import CLOSED, FREED
 
-# Surge, heave, pitch; sway, roll, yaw: a hull that is symmetric to port and starboard does not couple
-# the two.
+# Surge, heave, pitch; sway, roll, yaw: a hull that is symmetric to port and starboard does not
+# couple the two.
 BLOCKS = ((0, 2, 4), (1, 3, 5))
 # Entries of `Mass` in these blocks
 DIAGONAL = ((0, 2, 4), (1, 3, 5))
@@ -18,7 +18,10 @@ COUPLINGS = ((6, 7, 8), (9, 10, 11))
 
 @lean
 def invert(m: Array) -> None:
-    """Invert a mass matrix by its two blocks, in place; the row of a held axis is that of the identity."""
+    """Invert a mass matrix by its two blocks, in place.
+
+    The row of a held axis is that of the identity.
+    """
     for b in range(2):
         (i, j, k), (d, e, f), (x, y, z) = DIAGONAL[b], COUPLINGS[b], BLOCKS[b]
         xx, yy = FREED[x] * m[i] + 1.0 - FREED[x], FREED[y] * m[j] + 1.0 - FREED[y]
@@ -37,7 +40,7 @@ def invert(m: Array) -> None:
 
 @lean
 def constants(body: Array, p: Array, on: Any, k: Array) -> None:
-    """Fill k (42,): body (m, x_G, z_G, I_x, I_y, I_z), then the entries of `Mass` of added mass, ballast and the sum.
+    """Fill k (42,): rigid body, then the entries of `Mass` of added mass, ballast and the sum.
 
     The sum is inverted where one inverse serves all states (`CLOSED`).
     """

@@ -1,6 +1,7 @@
-"""Signatures of the laws of a vessel. `boatsim.physics.compose` generates the file that replaces this one.
+"""Signatures of a vessel's laws, in place of which `boatsim.physics.compose` generates a file.
 
-p: parameters of all effects, flat. on: 1 for each effect that acts. act: actuators, and the cosine and sine of those
+p: parameters of all effects, flat. on: 1 for each effect that acts. act: actuators, and the cosine
+    and sine of those
 that are angles, HELD numbers each at the begin, in the middle and at the end of a step.
 """
 
@@ -33,7 +34,7 @@ def inertias(p: Array, on: Any, water: Array, hull: Array) -> None:
 def actuate(
     commands: Array, memory: Array, dt: float, p: Array, on: Any, act: Array, held: Any
 ) -> None:
-    """Advance all channels by one step of dt [s]: commands of the vessel to actuators, act (3 held,)."""
+    """Advance all channels by one step of dt [s]; fill act (3 held,)."""
     raise NotImplementedError
 
 

@@ -1,4 +1,7 @@
-"""Operations on small dense matrices, in place; compiled once for all vessels, which differ in the size n."""
+"""Operations on small dense matrices, in place.
+
+Compiled once for all vessels, which differ in the size n.
+"""
 
 from math import sqrt
 
@@ -12,7 +15,10 @@ SMALLEST = 2.0**-40
 
 @lean
 def copy(source: Array, out: Array) -> None:
-    """Fill a vector from the begin of another. An assignment of slices would take numba seconds to compile."""
+    """Fill a vector from the begin of another.
+
+    An assignment of slices would take numba seconds to compile.
+    """
     for i in range(len(out)):
         out[i] = source[i]
 
@@ -79,7 +85,7 @@ def exponential(A: Array, h: float, F: Array, B: Array, n: int) -> None:
 
 @lean
 def solve(A: Array, B: Array, n: int) -> None:
-    """Compute B = A^-1 B for a symmetric positive definite A (n, n), which becomes its Cholesky factor."""
+    """Compute B = A^-1 B for a symmetric positive definite A, which becomes its Cholesky factor."""
     for j in range(n):
         for k in range(j):
             for i in range(j, n):

@@ -1,6 +1,9 @@
-"""Signatures of a vessel's equations of motion. `boatsim.physics.kernel.source` generates the file that replaces this.
+"""Signatures of a vessel's equations of motion.
 
-State s = (joint coordinates, their rates) of the vessel's degrees of freedom, NQ each. k: masses (`inertia`).
+`boatsim.physics.kernel.source` generates the file that replaces this.
+
+State s = (joint coordinates, their rates) of the vessel's degrees of freedom, NQ each. k: masses
+(`inertia`).
 """
 
 from typing import Any
@@ -22,7 +25,10 @@ DIFFERENCE = 1e-6  # [m, rad, m/s, rad/s] step of one-sided finite differences
 def step_in_place(
     t: float, y: Array, dt: float, act: Array, p: Array, on: Any, k: Array, extra: Array
 ) -> None:
-    """Advance the state y by one Runge-Kutta step of fourth order; extra: a further body force (NQ,)."""
+    """Advance the state y by one Runge-Kutta step of fourth order.
+
+    Extra: a further body force (NQ,).
+    """
 
 
 def forces(t: float, s: Array, act: Array, at: Any, p: Array, on: Any) -> tuple[float, ...]:
@@ -33,7 +39,7 @@ def forces(t: float, s: Array, act: Array, at: Any, p: Array, on: Any) -> tuple[
 def slopes(
     t: float, s: Array, act: Array, p: Array, on: Any, k: Array, extra: Array, out: Array
 ) -> None:
-    """Write the derivatives of the joint accelerations by the state to out (NQ, 2 NQ), one-sided."""
+    """Write the derivatives of the joint accelerations by the state to out (NQ, 2 NQ)."""
 
 
 def force_slopes(s: Array, k: Array, A: Array, row: np.int64, column: np.int64) -> None:
@@ -43,7 +49,7 @@ def force_slopes(s: Array, k: Array, A: Array, row: np.int64, column: np.int64) 
 def feels(
     t: float, s: Any, act: Array, at: Any, p: Array, on: Any, k: Array, extra: Any
 ) -> tuple[float, ...]:
-    """Readings of instruments aboard: psi, r, acceleration over ground along x and y, u, v, x, y, phi, p."""
+    """Readings of instruments aboard: psi, r, acceleration along x and y, u, v, x, y, phi, p."""
     raise NotImplementedError
 
 
@@ -53,11 +59,14 @@ def moved(s: Any) -> Shown:
 
 
 def observe_level(s: Array, code: int, row: Array) -> float:
-    """Expected value of one measured channel; fills its row of the measurement matrix. For level axes only."""
+    """Expected value of one measured channel.
+
+    Fills its row of the measurement matrix. For level axes only.
+    """
     raise NotImplementedError
 
 
 def add_to_mujoco(
     t: float, q: Array, qd: Array, act: Array, at: Any, p: Array, k: Array, force: Array, M: Array
 ) -> None:
-    """Add the passive force and the lower triangle of J' M J, in MuJoCo's z-up joint coordinates."""
+    """Add the passive force and the lower triangle of J' M J, in MuJoCo's coordinates."""

@@ -1,6 +1,7 @@
 """Named tuples in which related arrays travel between Python and compiled functions.
 
-Sizes: NQ degrees of freedom; NZ entries of the filter's state; P parameters of all effects; E effects; C measured
+Sizes: NQ degrees of freedom; NZ entries of the filter's state; P parameters of all effects; E
+    effects; C measured
 channels; N rows of a recording; M changes of the commands; B boats of a batch.
 """
 
@@ -18,7 +19,7 @@ class Model(NamedTuple):
 
 
 class Laws(NamedTuple):
-    """What the equations of motion take: parameters, switches and the constants computed from them."""
+    """Parameters, switches and constants of the equations of motion."""
 
     p: Array  # (P,) parameters of all effects, in SI units
     on: Any  # (E,) 1 for an effect that acts
@@ -65,14 +66,14 @@ class Measurements(NamedTuple):
 
 
 class LatentForce(NamedTuple):
-    """The slowly varying force that stands for unmodelled effects, an Ornstein-Uhlenbeck process per axis."""
+    """Force of unmodelled effects: an Ornstein-Uhlenbeck process per axis."""
 
     variances: Array  # (NQ,) [N^2, N^2 m^2]
     time_constant: float  # [s]
 
 
 class FilterStart(NamedTuple):
-    """Distribution of the filter's state (positions, earth-axes rates, latent forces) at the first row."""
+    """Distribution of positions, earth-axes rates and latent forces at the first row."""
 
     mean: Array  # (3 NQ,)
     covariance: Array  # (3 NQ, 3 NQ)
@@ -140,7 +141,10 @@ class Measurement(NamedTuple):
 
 
 class Channel(NamedTuple):
-    """Where the results of one measurement go; the first entry of `outliers`, `scale` and `white` belongs to it."""
+    """Where the results of one measurement go.
+
+    The first entry of `outliers`, `scale` and `white` belongs to it.
+    """
 
     outliers: Array  # consecutive outliers so far
     gain: Array  # (NZ,)

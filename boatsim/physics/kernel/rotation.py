@@ -9,10 +9,11 @@ from boatsim.physics.signals import Array, Course
 
 @merged
 def hold_turned(x: Course, act: Array, held: Any, angle: int, cosine: int, sine: int) -> None:
-    """Write cosine and sine of an angle at the begin, in the middle and at the end of a step to act (3 held,).
+    """Write cosine and sine of an angle at three times of a step to act (3 held,).
 
-    They take longer than the rest of an actuator and are not computed again for an angle that has not changed. The
-    begin is the end of the step before, which act still holds; zeros in both mean that there was no step before.
+    They take longer than the rest of an actuator and are not computed again for an angle that has
+    not changed. The begin is the end of the step before, which act still holds; zeros in both mean
+    that there was no step before.
     """
     last = 2 * held
     if act[last + angle] == x.begin and (act[last + cosine] != 0.0 or act[last + sine] != 0.0):

@@ -14,8 +14,8 @@ from .motion import NQ, K, step_in_place
 
 # [s] Shortest part of a step; within one, a signal that jumps is replaced by its mean.
 SHORTEST = 1e-6
-# Factor by which the shortest part grows where the parts of a step only become shorter: the parts of
-# a ramp behind a first-order lag would become shorter without end.
+# Factor by which the shortest part grows where the parts of a step only become shorter: the parts
+# of a ramp behind a first-order lag would become shorter without end.
 GROWS = 8.0
 LONG = 1e4  # [s] longer than any actuator needs to reach its command
 ENOUGH = 1e-9  # [s] a remainder of a step that is neglected
@@ -25,13 +25,16 @@ ENOUGH = 1e-9  # [s] a remainder of a step that is neglected
 def actuate_in_place(
     commands: Array, memory: Array, dt: float, p: Array, on: Any, act: Array
 ) -> None:
-    """Advance all channels by one step; fill act with the actuators at its begin, in its middle and at its end."""
+    """Advance all channels by one step.
+
+    Fill act with the actuators at its begin, in its middle and at its end.
+    """
     actuate(commands, memory, dt, p, on, act, np.int64(HELD))
 
 
 @compiled
 def settle(commands: Array, memory: Array, p: Array, on: Any, act: Array) -> None:
-    """Let the actuators reach their commands, in place, by a few steps far longer than any actuator needs."""
+    """Let the actuators reach their commands, in place, by a few very long steps."""
     for i in range(3 * HELD):
         act[i] = 0.0
     for _ in range(3):
@@ -44,7 +47,7 @@ def settle(commands: Array, memory: Array, p: Array, on: Any, act: Array) -> Non
 def until_bend(
     commands: Array, memory: Array, left: float, least: float, p: Array, on: Any
 ) -> float:
-    """Length of the next part of a step: at most `left`, and not beyond a jump or bend of a signal, but for `least`."""
+    """Return the length of the next part of a step: up to a jump or bend, within [least, left]."""
     if HAS_PAUSE:
         return min(left, max(pause(commands, memory, p, on), least))
     return left
@@ -52,7 +55,7 @@ def until_bend(
 
 @lean
 def least_after(part: float, before: float, least: float) -> float:
-    """Return the least length of the next part of a step, after parts of the lengths `before` and `part`."""
+    """Return the least length of the next part of a step, after `before` and `part`."""
     return GROWS * least if part <= least or part < before else SHORTEST
 
 
@@ -60,7 +63,9 @@ def least_after(part: float, before: float, least: float) -> float:
 def rollout(
     model: Model, plant: Plant, commands: Array, t0: float, dt: float, substeps: int, out: Array
 ) -> None:
-    """Simulate a vessel: row i of commands (N, C) is held for `substeps` steps of dt; states to out (N + 1, 2 NQ).
+    """Simulate a vessel: row i of commands (N, C) is held for `substeps` steps of dt.
+
+    States to out (N + 1, 2 NQ).
 
     Changes the arrays of `plant`.
     """

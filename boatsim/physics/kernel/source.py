@@ -1,4 +1,4 @@
-"""Generates `motion.py` of a program: the equations of motion and the kinematics of one set of degrees of freedom."""
+"""Generates `motion.py` of a program: equations of motion and kinematics."""
 
 from boatsim.physics.kernel.equations import CONSTANTS, Writer
 from boatsim.physics.signals import AXES
@@ -178,7 +178,7 @@ def written(dof: tuple[str, ...], centred: bool) -> str:
         ),
         function(
             "feels(t, s, act, at, p, on, k, extra)",
-            "Readings of instruments aboard: psi, r, acceleration along x and y, u, v, x, y, phi, p.",
+            "Readings of instruments: psi, r, acceleration along x and y, u, v, x, y, phi, p.",
             w.feels(),
             "inlined",
         ),
