@@ -4,11 +4,18 @@ Arrays are contiguous and of float64, or int64 where they hold rows or places. S
 freedom; P parameters of all effects; E effects; K constants; HELD numbers that describe the
 actuators at one time.
 
-p: (P,) parameters, `Program.values()`. on: (E,) 1 for each effect that acts, `Program.switches()`.
-    k: (K,) masses, filled
-by `constants`. act: (3 HELD,) actuators at the begin, in the middle and at the end of a step; `at`
-is the first of those to use. memory: (MEMORY,) state of the actuators. s, y: (2 NQ,) joint
-coordinates and their rates. force, extra: (NQ,) a further constant body force. Units are SI.
+Arguments of many functions:
+
+- p: (P,) parameters, `Program.values()`.
+- on: (E,) 1 for each effect that acts, `Program.switches()`.
+- k: (K,) masses, filled by `constants`.
+- act: (3 HELD,) actuators at the begin, in the middle and at the end of a step; `at` is the first
+  of those to use.
+- memory: (MEMORY,) state of the actuators.
+- s, y: (2 NQ,) joint coordinates and their rates.
+- force, extra: (NQ,) a further constant body force.
+
+Units are SI.
 """
 
 from typing import Any, Protocol
