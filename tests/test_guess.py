@@ -111,8 +111,8 @@ def test_what_the_vessels_file_says_of_its_recordings_comes_before_any_guess():
     log = log_of(psi=(0.0, 3.0), force_right=(0.0, 1.0), port=(0.0, 9.0), y=(0.0, 3.0))
     text = proposal(log, "v", [Drive("thrust_port_N", -1.0, 1.0)], (), stated)
     assert (
-        'thrust_port_N = "force_right"  # as' in text
-        and 'y_m = "-port"  # as' in text
+        'thrust_port_N = "force_right"  # by' in text
+        and 'y_m = "-port"  # by' in text
         and "none" not in text
     )
     assert text.count("y_m = ") == 1

@@ -24,7 +24,7 @@ from boatsim.diagnosis.filter import map_recording, prior_levels
 from boatsim.diagnosis.fit import converge
 from boatsim.diagnosis.free_runs import errors, free_runs
 from boatsim.diagnosis.loading import open_recording
-from boatsim.diagnosis.problem import Fit, Problem
+from boatsim.diagnosis.problem import Fit, FreeParameter, Problem
 from boatsim.diagnosis.report import patched_vessel
 from boatsim.diagnosis.search.ranking import baseline
 from boatsim.errors import BadInput
@@ -179,9 +179,13 @@ def _start(problem: Problem, best: Fit, name: str) -> Fit:
     """The initial values of a fit with one more effect."""
     effects = (*best.effects, name)
     free = problem.parameters(effects)
-    known = {(f.effect, f.name): x for f, x in zip(best.free, best.theta, strict=True)}
-    theta = np.array([known.get((f.effect, f.name), f.mean) for f in free])
+    known = dict(zip(map(_key, best.free), best.theta, strict=True))
+    theta = np.array([known.get(_key(f), f.mean) for f in free])
     return Fit(effects, free, theta, np.diag([f.sd**2 for f in free]), best.levels, -np.inf)
+
+
+def _key(parameter: FreeParameter) -> tuple[str, str]:
+    return parameter.effect, parameter.name
 
 
 def _without(best: Fit, names: Sequence[str]) -> Fit:
@@ -207,7 +211,12 @@ def _errors(judge: Problem, nominal: Fit, best: Fit) -> tuple[dict[str, float], 
     )
     if not found:
         raise BadInput(f"the held-out part is shorter than a free run of {judge.horizon:g} s")
-    return {k: v["before"] for k, v in found.items()}, {k: v["after"] for k, v in found.items()}
+    before: dict[str, float] = {}
+    after: dict[str, float] = {}
+    for family, rms in found.items():
+        before[family] = rms["before"]
+        after[family] = rms["after"]
+    return before, after
 
 
 def _written(problem: Problem, boat: Vessel, own: Fit, logs: str) -> str:
@@ -218,10 +227,13 @@ def _written(problem: Problem, boat: Vessel, own: Fit, logs: str) -> str:
     for key in ("based_on", "found"):  # the file is no patch of another vessel
         del document[key]
     by_rule = boat.diagnosis.coefficient_uncertainty
-    sd = {str(kind): MIN_SD for kind in by_rule}
+    sd = dict.fromkeys(map(str, by_rule), MIN_SD)
     for f, x, variance in zip(own.free, own.theta, np.diag(own.covariance), strict=True):
-        for effect in (e for e in boat.effects if f.relative and e.name in boat.names_of(f.effect)):
-            table = document["effect"][boat.effects.index(effect)]
+        names = boat.names_of(f.effect) if f.relative else []
+        for number, effect in enumerate(boat.effects):
+            if effect.name not in names:
+                continue
+            table = document["effect"][number]
             # Relative to the number of the rule if the fitted one is smaller
             spread = float(np.sqrt(variance)) / max(float(x), 1.0)
             kind = type(effect).params()[f.name].calibrates
@@ -259,14 +271,13 @@ def _fit_lines(best: Fit) -> list[str]:
     """Lines that report the number of coefficients and the identified effects."""
     lines = []
     for name in best.effects:
-        cells = [
-            f"{f.name} = {x:.3g} +- {np.sqrt(v):.2g}"
-            for f, x, v in zip(best.free, best.theta, np.diag(best.covariance), strict=True)
-            if f.effect == name
-        ]
-        where = (
-            "of the water on that day, not written" if name in OF_DAY else "written into the vessel"
-        )
+        cells = []
+        for f, x, v in zip(best.free, best.theta, np.diag(best.covariance), strict=True):
+            if f.effect == name:
+                cells.append(f"{f.name} = {x:.3g} +- {np.sqrt(v):.2g}")
+        where = "written into the vessel"
+        if name in OF_DAY:
+            where = "of the water on that day, not written"
         lines.append(f"  {name}: {', '.join(cells)} ({where})")
     return [f"fitted {sum(f.relative for f in best.free)} coefficients", *lines]
 

@@ -29,6 +29,10 @@ class Mount:
     astern: float | None = None
     turns: bool = False
 
+    def largest_astern(self, ahead: float) -> float:
+        """Return the largest thrust astern [N]; if it is unknown, that ahead."""
+        return ahead if self.astern is None else self.astern
+
 
 @dataclass(frozen=True)
 class Blade:
@@ -75,7 +79,8 @@ class Particulars:
         found = []
         for side, mount in zip(sides, self.thrusters, strict=True):
             seen[side] += 1
-            found.append((f"{side}{seen[side]}" if sides.count(side) > 1 else side, mount))
+            name = f"{side}{seen[side]}" if sides.count(side) > 1 else side
+            found.append((name, mount))
         return found
 
 
@@ -131,15 +136,16 @@ def particulars(
     mounts += [_mount("--steered", text, thrust, length, True) for text in steered]
     if not mounts:
         raise BadInput("no --thruster X,Y and no --steered X,Y; a boat needs at least one thruster")
-    blade = None if rudder is None else _blade(rudder, length)
+    blade = None
+    if rudder is not None:
+        blade = _blade(rudder, length)
     made = hull(length, beam, mass, hulls, draught)
     return Particulars(name, made, draught is not None, speed, tuple(mounts), blade)
 
 
 def _numbers(option: str, text: str, least: int, most: int) -> list[float]:
-    parts = [part.strip() for part in text.split(",")]
     try:
-        values = [float(part) for part in parts]
+        values = list(map(float, text.split(",")))
     except ValueError:
         values = []
     if not least <= len(values) <= most or not all(math.isfinite(x) for x in values):

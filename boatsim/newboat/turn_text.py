@@ -48,7 +48,7 @@ def _stages(boat: Particulars) -> list[dict[str, float]]:
         for channel, gain in steer.items():
             found[channel] = found.get(channel, 0.0) + helm * gain
         for (n, m), most in pairs:
-            least = most if m.astern is None else m.astern
+            least = m.largest_astern(most)
             found[thrust_channel(n)] = min(max(found[thrust_channel(n)], -least), most)
         return found
 

@@ -56,7 +56,8 @@ def number(value: float) -> str:
 def line(key: str, value: float, unit: str, rule: str) -> str:
     """Return the line `key = value  # [unit] rule`."""
     entry = f"{key} = {number(value)}"
-    return f"{entry:{COMMENT_COLUMN - 1}} # {f'[{unit}] ' if unit else ''}{rule}"
+    comment = f"[{unit}] {rule}" if unit else rule
+    return f"{entry:{COMMENT_COLUMN - 1}} # {comment}"
 
 
 def _of(key: str, found: Estimate, unit: str) -> str:
@@ -121,11 +122,15 @@ def _channels(boat: Particulars) -> Iterator[str]:
     full, _ = full_thrust(boat)
     yield from ("", "[channels]")
     for (name, mount), most in zip(boat.named(), full, strict=True):
-        least = most if mount.astern is None else mount.astern
-        rule = OWNER if mount.ahead is not None else thrust.full(boat.hull).rule
+        least = mount.largest_astern(most)
+        rule = OWNER
+        if mount.ahead is None:
+            rule = thrust.full(boat.hull).rule
         if mount.astern is None:
             rule = f"{rule}; the same astern"
-        low = "0.0" if least == 0.0 else f"-{number(least)}"
+        low = "0.0"
+        if least != 0.0:
+            low = f"-{number(least)}"
         limits = f'low = {low}, high = {number(most)}, about = "ahead positive"'
         yield f"{thrust_channel(name)} = {{ {limits} }}  # [N] {rule}"
         if mount.turns:
@@ -175,7 +180,9 @@ def _effects(boat: Particulars) -> Iterator[str]:
 def service(boat: Particulars) -> float:
     """Return the speed of the rudder coefficients [m/s]: service speed, at most top speed."""
     easy = resistance.service_speed(boat.hull)
-    return easy if boat.speed is None else min(easy, boat.speed)
+    if boat.speed is None:
+        return easy
+    return min(easy, boat.speed)
 
 
 def stated_thrust(boat: Particulars) -> float | None:
@@ -195,7 +202,9 @@ def _thruster(name: str, mount: Mount) -> Iterator[str]:
 def _rudder(boat: Particulars, speed: float) -> Iterator[str]:
     blade, by_rule = boat.rudder, rudders.area(boat.hull)
     assert blade is not None
-    area = Estimate(blade.area, OWNER) if blade.area is not None else by_rule
+    area = by_rule
+    if blade.area is not None:
+        area = Estimate(blade.area, OWNER)
     slope = rudders.slope(area.value, speed)
     # A positive angle pushes a blade aft to port, which turns the bow to starboard
     sign = 1.0 if blade.x < 0 else -1.0
@@ -240,17 +249,19 @@ def approach(boat: Particulars) -> float:
 def _manoeuvring(boat: Particulars) -> Iterator[str]:
     full, _ = full_thrust(boat)
     part, named = approach(boat), boat.named()
-    drives = [(thrust_channel(name), most) for (name, _), most in zip(named, full, strict=True)]
-    ahead = ", ".join(f"{channel} = {number(part * most)}" for channel, most in drives)
-    astern = ", ".join(
-        f"{channel} = -{number(part * (most if m.astern is None else m.astern))}"
-        for (channel, most), (_, m) in zip(drives, named, strict=True)
-        if m.astern is None or m.astern > 0.0
-    )
-    rule = "twice the resistance at an easy speed" if part < APPROACH_PART else "half thrust"
-    yield from ("", "[manoeuvring]", f"ahead = {{ {ahead} }}  # [N] {rule}")
+    ahead: list[str] = []
+    astern: list[str] = []
+    for (name, mount), most in zip(named, full, strict=True):
+        channel = thrust_channel(name)
+        ahead.append(f"{channel} = {number(part * most)}")
+        if (least := mount.largest_astern(most)) > 0.0 or mount.astern is None:
+            astern.append(f"{channel} = -{number(part * least)}")
+    rule = "half thrust"
+    if part < APPROACH_PART:
+        rule = "twice the resistance at an easy speed"
+    yield from ("", "[manoeuvring]", f"ahead = {{ {', '.join(ahead)} }}  # [N] {rule}")
     if astern:
-        yield f"astern = {{ {astern} }}  # [N]"
+        yield f"astern = {{ {', '.join(astern)} }}  # [N]"
     if steer := steering(boat):
         gains = ", ".join(f"{channel} = {number(gain)}" for channel, gain in steer.items())
         yield f"steer = {{ {gains} }}  # per rad of helm, positive to starboard"
@@ -260,16 +271,19 @@ def steering(boat: Particulars) -> dict[str, float]:
     """Return the commands per rad of helm: of rudder, turned thrusters or differential thrust."""
     if boat.rudder is not None:
         return {"rudder_rad": 1.0}
-    turning = {steer_channel(n): -1.0 if m.x <= 0 else 1.0 for n, m in boat.named() if m.turns}
+    turning: dict[str, float] = {}
+    for name, mount in boat.named():
+        if mount.turns:
+            turning[steer_channel(name)] = -1.0 if mount.x <= 0 else 1.0
     if turning:
         return turning
     full, _ = full_thrust(boat)
-    pairs, part = zip(boat.named(), full, strict=True), approach(boat)
-    return {
-        thrust_channel(n): -math.copysign(part * most / MAX_ANGLE, m.y)
-        for (n, m), most in pairs
-        if m.y != 0.0
-    }
+    part = approach(boat)
+    gains: dict[str, float] = {}
+    for (name, mount), most in zip(boat.named(), full, strict=True):
+        if mount.y != 0.0:
+            gains[thrust_channel(name)] = -math.copysign(part * most / MAX_ANGLE, mount.y)
+    return gains
 
 
 def _diagnosis(boat: Particulars) -> Iterator[str]:

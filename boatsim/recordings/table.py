@@ -25,6 +25,7 @@ from boatsim.recordings.raw_table import Raw, file_error
 __all__ = ["POSE", "RATES", "Notes", "Recording", "read", "write_csv"]
 
 FEWEST_ROWS = 20
+MOTION = (*POSE, *RATES)
 # Columns of runs of boatsim other than pose, rates and commands; missing sensors are nan
 RUN_COLUMN = re.compile(
     r"(sent|stick|actual|sensed|camera|estimate|reference|goal|force|wind)_|contacts$"
@@ -127,13 +128,13 @@ class Recording:
         Args:
             rate: Rows per second of the result, approximately [Hz].
         """
-        measured = {k: v for k, v in self.signals.items() if k in (*POSE, *RATES)}
+        measured = {k: v for k, v in self.signals.items() if k in MOTION}
         if any(np.isnan(v).any() for v in measured.values()):
             return self._thinned_each(rate, measured)
         n = max(1, round(1.0 / (rate * float(np.median(np.diff(self.t))))))
         if n == 1:
             return self
-        commands = {k: v for k, v in self.signals.items() if k not in (*POSE, *RATES)}
+        commands = {k: v for k, v in self.signals.items() if k not in MOTION}
         ends = np.append(np.arange(0, len(self.t), n), len(self.t))
         signals = {k: v[::n] for k, v in self.signals.items()}
         signals |= {k: np.add.reduceat(v, ends[:-1]) / np.diff(ends) for k, v in commands.items()}
@@ -259,7 +260,9 @@ def joined(pieces: Sequence[Recording]) -> Recording:
     first = pieces[0]
     if len(pieces) == 1:
         return first
-    signals = {name: np.concatenate([piece[name] for piece in pieces]) for name in first.signals}
+    signals: dict[str, Array] = {}
+    for name in first.signals:
+        signals[name] = np.concatenate([piece[name] for piece in pieces])
     return replace(first, t=np.concatenate([piece.t for piece in pieces]), signals=signals)
 
 
@@ -273,7 +276,7 @@ def csv_rows(recording: Recording, start: int = 0, end: int | None = None) -> st
     columns = [recording.t, *recording.signals.values()]
     line = ",".join(["%.12g"] * len(columns)) + "\n"
     part = np.column_stack([c[start:end] for c in columns]) + 0.0  # -0 becomes 0
-    return "".join([line % tuple(row) for row in part.tolist()]).replace("nan", "")
+    return "".join(map(line.__mod__, map(tuple, part.tolist()))).replace("nan", "")
 
 
 def _raw(path: Path) -> Raw:
@@ -402,26 +405,35 @@ def allowed_gaps(
     if not slow:
         return {}
     theirs = np.any([~e for e in slow.values()], axis=0)
-    return {n: e if n in slow else e & theirs for n, e in empty.items()}
+    return slow | {n: e & theirs for n, e in empty.items() if n not in slow}
 
 
 def _check_overlap(
     raw: Raw, empty: Mapping[str, "np.ndarray[tuple[int], np.dtype[np.bool_]]"]
 ) -> None:
     """Refuse logs merged by time that have poses in some rows and commands in others only."""
-    motion = [where for name, where in empty.items() if name in (*POSE, *RATES)]
-    commands = [where for name, where in empty.items() if name not in ("t_s", *POSE, *RATES)]
+    motion = []
+    commands = []
+    for name, where in empty.items():
+        if name in MOTION:
+            motion.append(where)
+        elif name != "t_s":
+            commands.append(where)
     if not motion or not commands:
         return
     posed, commanded = ~np.any(motion, axis=0), ~np.any(commands, axis=0)
     if posed.any() and commanded.any() and not (posed & commanded).any():
         t = raw.columns["t_s"]
-        spans = [f"{t[rows][0]:g} to {t[rows][-1]:g} s" for rows in (posed, commanded)]
+        spans = (_span(t[posed]), _span(t[commanded]))
         message = (
             f"poses ({spans[0]}) and commands ({spans[1]}) have no row in common; every "
             "row needs both"
         )
         raise file_error(raw.path, message, raw.rows[int(np.argmax(commanded))], "t_s")
+
+
+def _span(t: Array) -> str:
+    return f"{t[0]:g} to {t[-1]:g} s"
 
 
 def _check_time(raw: Raw) -> None:
@@ -452,7 +464,9 @@ def _check_units(raw: Raw) -> None:
 def _check_limits(raw: Raw, channels: Mapping[str, tuple[float, float]]) -> None:
     for name, (low, high) in channels.items():
         if name in raw.columns:
-            margin = ROUNDING * (high - low) if math.isfinite(high - low) else 0.0
+            margin = 0.0
+            if math.isfinite(high - low):
+                margin = ROUNDING * (high - low)
             beyond = (raw.columns[name] < low - margin) | (raw.columns[name] > high + margin)
             if beyond.any():
                 index = int(np.argmax(beyond))

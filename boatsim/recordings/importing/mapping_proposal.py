@@ -3,6 +3,7 @@
 import re
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import filterfalse
 
 import numpy as np
 
@@ -137,9 +138,10 @@ def proposal(
     lines = [
         "# Proposed from the names, units and ranges of the signals in the log: check every line."
     ]
-    lines += [f'vessel = "{vessel}"'] if vessel else ['# vessel = "NAME"']
+    lines.append(f'vessel = "{vessel}"' if vessel else '# vessel = "NAME"')
     body, used = _poses(log, best, dof, known)
-    body += [f"{_key(n)} = {_text(e)}  # as the vessel's file says" for n, e in known.items()]
+    for column, expression in known.items():
+        body.append(f"{_key(column)} = {_text(expression)}  # by the vessel's file")
     open_drives = [d for d in drives if d.name not in known]
     turning = Turning(best, log.frame == "ENU")
     driven: list[Guess] = []
@@ -162,7 +164,7 @@ def proposal(
         ("actual", "measured state of the drives"),
         ("stick", "the pilot's sticks, recorded with the commands"),
     ):
-        moving = [g for g in best.get(kind, []) if not _still(g)]
+        moving = list(filterfalse(_still, best.get(kind, [])))
         if moving:
             lines += [
                 "",
@@ -176,18 +178,17 @@ def _poses(
     log: Log, best: Mapping[str, list[Guess]], dof: Sequence[str], known: Collection[str]
 ) -> tuple[list[str], list[Guess]]:
     """Lines of the position and the columns of motion, and their signals."""
-    lines, used = [], list[Guess]()
+    lines: list[str] = []
+    used: list[Guess] = []
     pair = _pair(best.get("latitude", []), best.get("longitude", []))
     if pair:
         used += pair
-        lines += [
-            "[position]",
-            *(f"{g.column} = {_text(_expression(g))}{_note(g, best[g.column])}" for g in pair),
-        ]
-        middle = ", ".join(f"{np.nanmedian(g.signal.values):.4f}" for g in pair)
-        lines += (
-            [f"# origin = [{middle}]  # [deg]; else the first fix"] if pair[0].word == "deg" else []
-        )
+        lines.append("[position]")
+        for g in pair:
+            lines.append(f"{g.column} = {_text(_expression(g))}{_note(g, best[g.column])}")
+        if pair[0].word == "deg":
+            middle = ", ".join(f"{np.nanmedian(g.signal.values):.4f}" for g in pair)
+            lines.append(f"# origin = [{middle}]  # [deg]; else the first fix")
         lines.append("")
     lines.append("[columns]")
     enu = log.frame == "ENU"
@@ -214,7 +215,8 @@ def _poses(
             f"{'# ' if held else ''}{column} = "
             f"{_text(sign + _expression(g) + quarter)}{_note(g, best[source])}"
         )
-        used += [] if held else [g]
+        if not held:
+            used.append(g)
     if "psi_rad" not in {*best, *known}:
         lines.append(
             '# psi_rad = "..."  # no heading was found; it is needed for a vessel that turns'
@@ -243,9 +245,12 @@ def _expression(g: Guess) -> str:
 
 def _note(g: Guess, others: Sequence[Guess]) -> str:
     """A comment with the rate, the assumption and further possible signals."""
-    also = [_safe(o.name) for o in others if o is not g][:4]
-    parts = [f"{rate_of(g.signal.t):.3g} Hz", g.why, f"also {', '.join(also)}" if also else ""]
-    return "  # " + "; ".join(p for p in parts if p)
+    parts = [f"{rate_of(g.signal.t):.3g} Hz"]
+    if g.why:
+        parts.append(g.why)
+    if also := [_safe(o.name) for o in others if o is not g][:4]:
+        parts.append(f"also {', '.join(also)}")
+    return "  # " + "; ".join(parts)
 
 
 def _text(value: str) -> str:
@@ -258,14 +263,17 @@ def _commands(
     best: Mapping[str, Sequence[Guess]], drives: Sequence[Drive], turning: Turning
 ) -> tuple[list[str], list[Guess]]:
     """Lines of the vessel's channels, or without a vessel of all outputs that are not constant."""
-    moving = [
-        g for g in best.get("command", []) if not _still(g) or g.name in [d.name for d in drives]
-    ]
+    channels = {drive.name for drive in drives}
+    moving: list[Guess] = []
+    for g in best.get("command", []):
+        if g.name in channels or not _still(g):
+            moving.append(g)
     moving.sort(key=lambda g: _order(g.name))
-    if not drives:
-        names = _names([_called(g) for g in moving])
-        return [_drive_line(n, g, None) for n, g in zip(names, moving, strict=True)], list(moving)
     lines: list[str] = []
+    if not drives:
+        for name, g in zip(_names(list(map(_called, moving))), moving, strict=True):
+            lines.append(_drive_line(name, g, None))
+        return lines, moving
     taken: list[Guess] = []
     chosen = _chosen(best, drives, moving, turning)
     for drive in drives:
@@ -276,12 +284,15 @@ def _commands(
             )
             continue
         g, why = chosen[drive.name]
-        sense = (
-            drive.turns * turning.by((g, 1.0)) if _steers(drive) and g.name != drive.name else 0.0
-        )
+        sense = 0.0
+        if _steers(drive) and g.name != drive.name:
+            sense = drive.turns * turning.by((g, 1.0))
         taken.append(g)
         lines.append(_drive_line(drive.name, g, drive, sense) + why)
-    return [*lines, *(f"# not used: {_safe(g.name)}" for g in moving if g not in taken)], taken
+    for g in moving:
+        if g not in taken:
+            lines.append(f"# not used: {_safe(g.name)}")
+    return lines, taken
 
 
 def _chosen(
@@ -292,19 +303,23 @@ def _chosen(
 ) -> dict[str, tuple[Guess, str]]:
     """Signals of the channels by name, motion or order, and what the user must check."""
     found = {n: (g, "") for n, g in _matched(drives, moving).items()}
-    left = [g for g in moving if g not in [h for h, _ in found.values()]]
     helms = [d for d in drives if d.name not in found and _steers(d)]
-    named = [
-        g for n, (g, _) in found.items() if frozenset(tokens_of(n)) & HELM and not side_of(g.tokens)
-    ]
     if helms:
-        found |= _helms(
-            helms, named, left, [g for g in best.get("actual", []) if not _still(g)], turning
-        )
-    left = [g for g in left if g not in [h for h, _ in found.values()]]
+        named: list[Guess] = []
+        for name, (g, _) in found.items():
+            if frozenset(tokens_of(name)) & HELM and not side_of(g.tokens):
+                named.append(g)
+        measured = list(filterfalse(_still, best.get("actual", [])))
+        found |= _helms(helms, named, _unused(moving, found), measured, turning)
+    left = _unused(moving, found)
     missing = [d for d in drives if d.name not in found]
     found |= _by_order(missing, _as_many(left, len(missing)), turning)
     return found
+
+
+def _unused(signals: Sequence[Guess], found: Mapping[str, tuple[Guess, str]]) -> list[Guess]:
+    used = [g for g, _ in found.values()]
+    return [g for g in signals if g not in used]
 
 
 def _helms(
@@ -316,24 +331,27 @@ def _helms(
 ) -> dict[str, tuple[Guess, str]]:
     """Signals of channels that steer: by name, by the turning, or a measured angle."""
     if named:
-        return {d.name: (named[0], "; CHECK: one helm is used for all") for d in helms}
+        return _for_all(helms, named[0], "; CHECK: one helm is used for all")
     if steers := turning.helm([g for g in left if _fits(helms[0], g)]):
         why = f"; CHECK: chosen because the boat turns with it (correlation {steers[1]:+.2f})"
-        return {d.name: (steers[0], why) for d in helms}
+        return _for_all(helms, steers[0], why)
     why = "; CHECK: the measured angle is used as the command"
     rudders = [g for g in measured if g.tokens & HELM and _fits(helms[0], g)]
     if len(rudders) == 1:
-        return {d.name: (rudders[0], why) for d in helms}
+        return _for_all(helms, rudders[0], why)
     return {n: (g, why) for n, g in _matched(helms, rudders).items()}
+
+
+def _for_all(helms: Sequence[Drive], g: Guess, why: str) -> dict[str, tuple[Guess, str]]:
+    return dict.fromkeys((helm.name for helm in helms), (g, why))
 
 
 def _steers(drive: Drive) -> bool:
     """Whether a channel is an angle or has the name of one."""
-    return (
-        unit_of(drive.name) == "rad"
-        or not unit_of(drive.name)
-        and bool(frozenset(tokens_of(drive.name)) & HELM)
-    )
+    unit = unit_of(drive.name)
+    if unit:
+        return unit == "rad"
+    return not HELM.isdisjoint(tokens_of(drive.name))
 
 
 def _by_order(
@@ -341,16 +359,18 @@ def _by_order(
 ) -> dict[str, tuple[Guess, str]]:
     """Signals of channels by order; two sides are exchanged if the turning shows it."""
     why = "; CHECK: by order only" if len(left) > 1 else "; CHECK: the only signal that is left"
-    if len(missing) == len(left) == 2 and {
-        side_of(frozenset(tokens_of(d.name))) for d in missing
-    } == {*SIDED}:
-        port = [side_of(frozenset(tokens_of(d.name))) for d in missing].index(SIDED[0])
+    sides = [side_of(frozenset(tokens_of(d.name))) for d in missing]
+    if len(left) == 2 and sorted(sides) == list(SIDED):
+        port = sides.index(SIDED[0])
         sense = turning.by((left[port], 1.0), (left[1 - port], -1.0))
         if abs(sense) > MIN_CORRELATION:
             left = list(left) if sense > 0.0 else [left[1], left[0]]
             why = f"; CHECK: side by the turning of the boat (correlation {abs(sense):.2f})"
-    pairs = zip(missing, left, strict=False)
-    return {d.name: (g, why) for d, g in pairs if _fits(d, g) or _turns_a_screw(d, g)}
+    found: dict[str, tuple[Guess, str]] = {}
+    for drive, g in zip(missing, left, strict=False):
+        if _fits(drive, g) or _turns_a_screw(drive, g):
+            found[drive.name] = (g, why)
+    return found
 
 
 def _as_many(moving: Sequence[Guess], count: int) -> list[Guess]:
@@ -379,17 +399,13 @@ def _matched(drives: Sequence[Drive], moving: Sequence[Guess]) -> dict[str, Gues
     )
     found: dict[str, Guess] = {}
     for score, _, name, g in pairs:
-        rivals = [
-            s
-            for s, _, n, other in pairs
-            if n == name and other is not g and other not in found.values()
-        ]
-        if (
-            score >= 1.0
-            and name not in found
-            and g not in found.values()
-            and score > max(rivals, default=0.0)
-        ):
+        if score < 1.0 or name in found or g in found.values():
+            continue
+        best_rival = 0.0
+        for rival_score, _, rival_name, rival in pairs:
+            if rival_name == name and rival is not g and rival not in found.values():
+                best_rival = max(best_rival, rival_score)
+        if score > best_rival:
             found[name] = g
     return found
 
@@ -400,13 +416,8 @@ def _likeness(drive: Drive, g: Guess) -> float:
     theirs = g.tokens | frozenset(tokens_of(g.signal.about))
     ours = frozenset(tokens_of(drive.name))
     mine, other = side_of(ours), side_of(theirs)
-    if (
-        not _fits(drive, g)
-        or mine != other
-        and mine
-        and other
-        or bool(ours & HELM) != bool(theirs & HELM)
-    ):
+    opposite = mine != other and "" not in (mine, other)
+    if opposite or not _fits(drive, g) or bool(ours & HELM) != bool(theirs & HELM):
         return 0.0
     return 1.0 * (mine == other and mine != "") + 1.0 * bool(ours & HELM) + 0.5 * len(ours & theirs)
 
@@ -433,9 +444,9 @@ def _turns_a_screw(drive: Drive, g: Guess) -> bool:
 
 
 def _unit(g: Guess) -> str:
-    return g.signal.unit or {"deg": "deg", "rpm": "rpm", "degps": "deg/s"}.get(
-        g.word, unit_of(g.name)
-    )
+    if g.signal.unit:
+        return g.signal.unit
+    return {"deg": "deg", "rpm": "rpm", "degps": "deg/s"}.get(g.word, unit_of(g.name))
 
 
 def _drive_line(name: str, g: Guess, drive: Drive | None, sense: float = 0.0) -> str:
@@ -461,14 +472,18 @@ def _drive_line(name: str, g: Guess, drive: Drive | None, sense: float = 0.0) ->
         )
     scale = _scale(g, values, drive)
     if scale is None:
-        made = g.name if g.name == name else _converted(g, name)
-        return f"{_key(name)} = {_text(f'-{made}' if turned else made)}{note}"
+        expression = g.name if g.name == name else _converted(g, name)
+        if turned:
+            expression = f"-{expression}"
+        return f"{_key(name)} = {_text(expression)}{note}"
     ends, why = scale
     if drive is None and g.column == "command" and low >= 0.0:
         low = 0.0
-    low, high = (high, low) if turned else (low, high)
-    given = ", ".join(f"{k} = {v:g}" for k, v in zip(("low", "neutral", "high"), ends, strict=True))
-    note += f"; {why}" if why else ""
+    if turned:
+        low, high = high, low
+    given = "low = {:g}, neutral = {:g}, high = {:g}".format(*ends)
+    if why:
+        note += f"; {why}"
     if drive and unit_of(drive.name) == "rad":
         note += (
             f"; CHECK: full helm is assumed to be {np.degrees(max(abs(low), abs(high))):.0f} deg"
@@ -523,7 +538,8 @@ def _called(g: Guess) -> str:
     words = g.tokens | frozenset(tokens_of(g.signal.about))
     kind = "steer" if words & HELM else "throttle"
     unit = {"deg": "_rad", "rpm": "_radps"}.get(g.word, "")
-    return f"{kind}{'_' + side if (side := side_of(words)) else ''}{unit}"
+    side = side_of(words)
+    return f"{kind}_{side}{unit}" if side else f"{kind}{unit}"
 
 
 def _names(names: Sequence[str]) -> list[str]:
@@ -534,19 +550,22 @@ def _names(names: Sequence[str]) -> list[str]:
         seen[name] = seen.get(name, 0) + 1
         stem, _, unit = name.partition("_rad")
         number = f"_{seen[name]}" if names.count(name) > 1 else ""
-        found.append(f"{stem}{number}{f'_rad{unit}' if '_rad' in name else ''}")
+        ending = f"_rad{unit}" if "_rad" in name else ""
+        found.append(f"{stem}{number}{ending}")
     return found
 
 
 def _further_columns(kind: str, found: Sequence[Guess]) -> list[str]:
     """Lines of further columns, named by kind and signal."""
-    names = _names(
-        [f"{kind}_{re.sub(r'[^a-z0-9]+', '_', g.name.lower()).strip('_')}" for g in found]
-    )
-    return [
-        f"{_key(n)} = {_text(_expression(g) if g.word != 'us' else g.name)}"
-        for n, g in zip(names, found, strict=True)
-    ]
+    names = []
+    for g in found:
+        plain = re.sub(r"[^a-z0-9]+", "_", g.name.lower()).strip("_")
+        names.append(f"{kind}_{plain}")
+    lines = []
+    for name, g in zip(_names(names), found, strict=True):
+        expression = g.name if g.word == "us" else _expression(g)
+        lines.append(f"{_key(name)} = {_text(expression)}")
+    return lines
 
 
 def _key(name: str) -> str:

@@ -66,21 +66,31 @@ class Turning:
 
 def _speed(best: Mapping[str, Sequence[Guess]]) -> tuple[Array, Array]:
     """Times [s] and speeds over ground, in an arbitrary unit."""
-    pair = [best[n][0] for n in ("x_m", "y_m") if best.get(n)]
-    earth = [best[n][0] for n in ("latitude", "longitude") if best.get(n)]
-    pair = pair if len(pair) == 2 else earth
-    if len(pair) < 2 or len(pair[0].signal.t) != len(pair[1].signal.t):
+    pair = _both(best, "x_m", "y_m")
+    is_earth = not pair
+    if is_earth:
+        pair = _both(best, "latitude", "longitude")
+    if not pair or len(pair[0].signal.t) != len(pair[1].signal.t):
         return np.empty(0), np.empty(0)
     (north, east), t = (g.signal.values for g in pair), pair[0].signal.t
     there = np.isfinite(north) & np.isfinite(east) & np.isfinite(t)
     t, rows = np.unique(t[there], return_index=True)
     if len(t) < 3:
         return np.empty(0), np.empty(0)
-    degrees = 1e-7 if "1e-7" in pair[0].word else 1.0
-    wide = float(np.cos(np.radians(degrees * np.median(north[there])))) if pair is earth else 1.0
+    wide = 1.0
+    if is_earth:
+        degrees = 1e-7 if "1e-7" in pair[0].word else 1.0
+        wide = float(np.cos(np.radians(degrees * np.median(north[there]))))
     z = north[there][rows] + 1j * wide * east[there][rows]
     after = np.searchsorted(t, t + SPEED_WINDOW).clip(max=len(t) - 1)
     return t, np.asarray(np.abs(z[after] - z) / np.maximum(t[after] - t, 1e-9))
+
+
+def _both(best: Mapping[str, Sequence[Guess]], first: str, second: str) -> list[Guess]:
+    """The most probable signals of two columns; [] if one has none."""
+    if best.get(first) and best.get(second):
+        return [best[first][0], best[second][0]]
+    return []
 
 
 def _followed(signals: Sequence[tuple[Guess, float]], t: Array, values: Array) -> float:

@@ -92,10 +92,8 @@ def _parquet(path: Path) -> dict[str, Array]:
 
 def _is_number(types: Any, kind: Any) -> bool:
     """Whether a column has numbers, truth values or times; texts are not unpacked."""
-    return any(
-        getattr(types, f"is_{k}")(kind)
-        for k in ("integer", "floating", "decimal", "boolean", "timestamp")
-    )
+    names = ("integer", "floating", "decimal", "boolean", "timestamp")
+    return any(getattr(types, f"is_{name}")(kind) for name in names)
 
 
 @dataclass(frozen=True)
@@ -257,12 +255,12 @@ def _rows(
 def _is_units(row: Sequence[str], header: Sequence[str], separator: str) -> bool:
     """Whether the row below the header has units: short words and no numbers."""
     filled = [cell for cell in row if cell.strip()]
-    words = [
-        c
-        for c in filled
-        if _number(c, separator) is None and len(c.strip()) <= 10 and dates([c]) is None
-    ]
-    return bool(filled) and len(words) == len(filled) and 2 * len(filled) >= len(header)
+    if not filled or 2 * len(filled) < len(header):
+        return False
+    for cell in filled:
+        if _number(cell, separator) is not None or len(cell.strip()) > 10:
+            return False
+    return all(dates([cell]) is None for cell in filled)
 
 
 def _column(cells: Sequence[str], separator: str) -> Array:
@@ -274,7 +272,7 @@ def _column(cells: Sequence[str], separator: str) -> Array:
     found = [_number(cell, separator) for cell in cells]
     if all(x is None or x != x for x in found) and (when := dates(cells)) is not None:
         return when
-    return np.array([np.nan if x is None else x for x in found])
+    return np.array(found, dtype=float)  # None becomes nan
 
 
 def _number(cell: str, separator: str) -> float | None:
@@ -285,6 +283,8 @@ def _number(cell: str, separator: str) -> float | None:
     if separator != ",":
         text = text.replace(",", ".")
     try:
-        return float(text) if "_" not in text else None
+        if "_" in text:
+            return None
+        return float(text)
     except ValueError:
         return {"true": 1.0, "false": 0.0}.get(text.lower())
