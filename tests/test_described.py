@@ -125,9 +125,9 @@ def test_a_described_law_in_a_vessel_file_acts_on_engine_and_twin_alike(tmp_path
 
 def test_the_library_has_no_entry_of_its_own_for_what_is_described() -> None:
     library = library_for(BOAT)
-    assert not [n for n in library.tried if n.startswith("described")]
+    assert not [n for n in library.tested if n.startswith("described")]
     assert {e.name for e in library.compiled} - {e.name for e in library.entries} == {
-        e.name for e in library.slots
+        e.name for e in library.placeholders
     }
     assert not any(
         content.load_class("effect", n).confounded_with

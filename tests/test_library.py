@@ -104,8 +104,8 @@ def test_what_rides_on_thrusters_rides_on_propellers_by_their_rate() -> None:
     Y = 0.2 * 2500.0 * (0.5 * port.ahead - starboard.astern)
     assert (forces[1] - forces[0])[1] == pytest.approx(Y, rel=1e-6)
     assert (
-        "thrust_loss_with_speed" in library_for(otter).tried
-        and "shaft_deadband" in library_for(otter).tried
+        "thrust_loss_with_speed" in library_for(otter).tested
+        and "shaft_deadband" in library_for(otter).tested
     )
 
 

@@ -103,10 +103,10 @@ def test_each_order_is_the_composition_that_it_says(tmp_path: Path) -> None:
 def test_both_orders_are_tried_where_a_lag_lies_between_them_and_nowhere_else(
     tmp_path: Path,
 ) -> None:
-    twice = [n for n in library_for(lagging(tmp_path)).tried if n.startswith("reordered_")]
+    twice = [n for n in library_for(lagging(tmp_path)).tested if n.startswith("reordered_")]
     assert sorted(map(called, twice)) == ["thrust_deadband", "weak_reverse"]
     assert not [
-        n for n in library_for(vessel.load("trial_boat")).tried if n.startswith("reordered_")
+        n for n in library_for(vessel.load("trial_boat")).tested if n.startswith("reordered_")
     ]
 
 

@@ -119,7 +119,7 @@ def test_1_an_effect_that_a_vessel_asks_to_be_tried_does_not_run(tmp_path: Path)
         library_for(boat)
     assert not (place / "slime.ran").exists()
     with trust.trusting(allowed=[place]):
-        assert "slime" in library_for(boat).tried
+        assert "slime" in library_for(boat).tested
 
 
 def test_1_a_strangers_recording_runs_nothing(tmp_path: Path) -> None:

@@ -43,14 +43,14 @@ def test_every_entry_that_is_tried_can_be_put_on_the_vessel_and_fitted(name: str
         vessel.check_bindings(boat.composed_with(entry), name)
     there = {called(e.name) for e in library.entries}
     of_shelf = {n for n in content.names("effect") if fittable(content.load_class("effect", n))}
-    assert there | set(library.idle) | set(library.left_out) == of_shelf and not there & set(
-        library.idle
-    )
+    assert there | set(library.inapplicable) | set(
+        library.excluded
+    ) == of_shelf and not there & set(library.inapplicable)
 
 
 def test_facts_and_the_vessels_reasons_leave_entries_out(tmp_path: Path) -> None:
     boat = vessel.load("trial_boat")
-    everything = set(library_for(boat).tried)
+    everything = set(library_for(boat).tested)
     facts = {
         "indoors": True,
         "still_water": True,
@@ -59,9 +59,9 @@ def test_facts_and_the_vessels_reasons_leave_entries_out(tmp_path: Path) -> None
         "position_fix": "gnss",
     }
     indoors = library_for(boat, (), facts | {"steering_measured": True})
-    ruled_out = {n: why for n, why in indoors.left_out.items() if "--library" not in why}
+    ruled_out = {n: why for n, why in indoors.excluded.items() if "--library" not in why}
     assert (
-        everything - set(indoors.tried)
+        everything - set(indoors.tested)
         == set(ruled_out)
         == {
             "wind",
@@ -74,14 +74,14 @@ def test_facts_and_the_vessels_reasons_leave_entries_out(tmp_path: Path) -> None
         }
     )
     assert (
-        indoors.left_out["wind"] == "indoors = true"
+        indoors.excluded["wind"] == "indoors = true"
         and indoors.entries == library_for(boat).entries
     )
     blind = library_for(boat, (), None, ("t_s", "x_m", "y_m"))
-    assert everything - set(blind.tried) == {"heading_offset", "heading_deviation"}
+    assert everything - set(blind.tested) == {"heading_offset", "heading_deviation"}
     reasons = '[diagnosis.leave_out]\ntether = "nothing is tied to it"\n'
     planar = of(boats.PLANAR + reasons, tmp_path)
-    assert library_for(planar).left_out["tether"] == "the vessel's reason: nothing is tied to it"
+    assert library_for(planar).excluded["tether"] == "the vessel's reason: nothing is tied to it"
     with pytest.raises(BadInput, match="leave_out 'tehter' does not exist; did you mean 'tether'"):
         library_for(of(boats.PLANAR + reasons.replace("tether", "tehter"), tmp_path))
 
@@ -101,9 +101,10 @@ def test_an_entry_that_shows_as_another_does_is_tried_where_it_is_asked_for() ->
     boat = vessel.load("trial_boat")
     usual = library_for(boat)
     assert (
-        "shallow_water" not in usual.tried and "added_mass_error" in usual.left_out["shallow_water"]
+        "shallow_water" not in usual.tested
+        and "added_mass_error" in usual.excluded["shallow_water"]
     )
-    assert set(library_for(boat, ["shallow_water"]).tried) == {*usual.tried, "shallow_water"}
+    assert set(library_for(boat, ["shallow_water"]).tested) == {*usual.tested, "shallow_water"}
 
 
 def test_what_takes_the_place_of_a_rule_needs_a_reason(tmp_path: Path) -> None:

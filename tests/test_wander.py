@@ -125,9 +125,9 @@ def test_wander_is_named_as_such_and_physics_beside_it(
 
 def test_a_camera_does_not_wander() -> None:
     boat = vessel.load("trial_boat")
-    left_out = library_for(boat, facts={"position_fix": "camera"}).left_out
+    left_out = library_for(boat, facts={"position_fix": "camera"}).excluded
     assert left_out["position_wander"] == "position_fix = camera"
-    assert "position_wander" in library_for(boat, facts={"position_fix": "gnss"}).tried
+    assert "position_wander" in library_for(boat, facts={"position_fix": "gnss"}).tested
 
 
 @pytest.mark.slow

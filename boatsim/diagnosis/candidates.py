@@ -1,12 +1,14 @@
-"""What is tried: every entry of the library that can act on a vessel, less what facts or the vessel rule out.
+"""Candidate effects of a diagnosis: those that can act on a vessel, without those that are excluded.
 
-No vessel has a list. An entry says what it needs (freedoms, columns; by its kind also thrusters, rudders, numbers of
-the vessel) and which facts rule it out, and the vessel's data decide.
+No vessel has a list of candidates. An effect declares what it needs (degrees of freedom, columns; by
+its kind also thrusters, rudders, numbers of the vessel) and which facts exclude it. The vessel and
+its recordings decide.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import count, islice
+from typing import NamedTuple
 
 import numpy as np
 
@@ -17,37 +19,54 @@ from boatsim.physics.facts import WANDER, describe_fact, excluding_fact
 from boatsim.physics.program import Program
 from boatsim.physics.vessel import Vessel, check_bindings
 
-FURTHER = "further_"  # in front of the name of an entry of which the vessel has one already
-SLOTS = {
-    "described_force": ("described_", 5),
-    "described_thrust": ("described_thrust_", 2),
-}  # names, how many
-# of one that acts on the other side of an actuator's own lag than it usually does
+FURTHER = "further_"  # prefix of a candidate of which the vessel has one already
+# prefix of a candidate that acts on the other side of an actuator's lag than usual
 REORDERED = "reordered_"
+
+
+class Placeholders(NamedTuple):
+    """Effects reserved for terms found by symbolic regression."""
+
+    prefix: str  # of their names
+    number: int
+
+
+# by the name of the effect
+PLACEHOLDERS = {
+    "described_force": Placeholders("described_", 5),
+    "described_thrust": Placeholders("described_thrust_", 2),
+}
 
 
 @dataclass(frozen=True)
 class Library:
-    """The entries of one diagnosis."""
+    """Candidate effects of one diagnosis, and those that are excluded."""
 
-    entries: tuple[
-        Effect, ...
-    ]  # all that can act on the vessel: they are composed, whatever is known of a run
-    slots: tuple[Effect, ...]  # composed besides, for laws that the diagnosis writes itself
-    left_out: Mapping[
-        str, str
-    ]  # those of them that are not tried -> the fact, the vessel's reason, the column missing
-    idle: Mapping[str, str]  # what can not act on this vessel -> what that lacks
+    # all candidates that can act on the vessel; they are compiled whatever is known of a run
+    entries: tuple[Effect, ...]
+    # effects reserved for terms found by symbolic regression; they are compiled, too
+    placeholders: tuple[Effect, ...]
+    # candidates that are not tested -> the fact, the vessel's reason, or the missing column
+    excluded: Mapping[str, str]
+    inapplicable: Mapping[str, str]  # effects that cannot act on this vessel -> what is missing
 
     @property
     def compiled(self) -> tuple[Effect, ...]:
-        """All that a diagnosis composes beside the vessel's own effects."""
-        return (*self.entries, *self.slots)
+        """All effects that a diagnosis compiles in addition to the vessel's own."""
+        return (*self.entries, *self.placeholders)
 
     @property
-    def tried(self) -> tuple[str, ...]:
-        """Names of the entries that are tried."""
-        return tuple(e.name for e in self.entries if e.name not in self.left_out)
+    def tested(self) -> tuple[str, ...]:
+        """Names of the candidates that are tested."""
+        return tuple(e.name for e in self.entries if e.name not in self.excluded)
+
+
+class _Source(NamedTuple):
+    """Where a candidate comes from."""
+
+    table: Mapping[str, object]  # settings
+    kind: type[Effect]
+    requested: bool  # by the vessel or the user
 
 
 def library_for(
@@ -56,122 +75,144 @@ def library_for(
     facts: Mapping[str, object] | None = None,
     columns: Sequence[str] | None = None,
 ) -> Library:
-    """The entries for a vessel; `own` are files of the user's, `facts` those of the recordings besides the vessel's.
+    """Return the candidates for a vessel.
 
-    `columns` are those recorded; None: all there may be. Raises BadInput for a file, or an entry that the vessel names,
-    which does not exist or that no diagnosis could fit.
+    Args:
+        vessel: Vessel of the recordings.
+        own: Effects that the user requests, by name or file.
+        facts: Facts of the recordings in addition to the vessel's.
+        columns: Recorded columns; None: any.
+
+    Raises:
+        BadInput: An effect that is requested does not exist, or has no parameter to fit.
     """
     known: dict[str, object] = {**vessel.diagnosis.facts, **(facts or {})}
-    reasons = {n: f"the vessel's reason: {why}" for n, why in vessel.diagnosis.leave_out.items()}
-    for name in reasons:
-        if name not in names("effect"):
-            raise BadInput(
-                unknown_name(f"{vessel.name}: diagnosis.leave_out", name, names("effect"))
-            )
-    entries, left_out, idle = dict[str, Effect](), dict[str, str](), dict[str, str]()
-    for table, kind, asked in _tables(vessel, own):
-        called = str(table.get("name", kind.idea()))
+    reasons = _reasons_of(vessel)
+    entries = dict[str, Effect]()
+    excluded, inapplicable = dict[str, str](), dict[str, str]()
+    for source in _sources(vessel, own):
+        kind = source.kind
+        name = str(source.table.get("name", kind.idea()))
         if not fittable(kind):
-            if asked:
+            if source.requested:
                 raise BadInput(
-                    f"{table['use']}: this effect has no parameter that a diagnosis may fit (fit=True)"
+                    f"{source.table['use']}: this effect has no parameter that a diagnosis may "
+                    "fit (fit=True)"
                 )
             continue
-        if lacks := lacking(kind, vessel, known, table):
-            idle[called] = lacks
+        missing = lacking(kind, vessel, known, source.table)
+        if missing:
+            inapplicable[name] = missing
             continue
-        if kind.confounded_with and not asked:
-            left_out[called] = (
-                f"looks the same as {' or '.join(kind.confounded_with)}; --library {called} tries it"
-            )
+        if kind.confounded_with and not source.requested:
+            others = " or ".join(kind.confounded_with)
+            excluded[name] = f"looks the same as {others}; --library {name} tests it"
             continue
-        left_out.pop(called, None)
-        for effect in _either_side(placed(kind, vessel, known, table), vessel):
+        excluded.pop(name, None)
+        reason = reasons.get(name) or excluding_fact(kind.ruled_out_by, known)
+        reason = reason or _unrecorded(kind, columns)
+        for effect in _either_side(placed(kind, vessel, known, source.table), vessel):
             entries[effect.name] = effect
-            if (
-                why := reasons.get(called)
-                or excluding_fact(kind.ruled_out_by, known)
-                or _unseen(kind, columns)
-            ):
-                left_out[effect.name] = why
-    check_bindings(
-        replace(vessel, effects=(*vessel.effects, *entries.values())), f"{vessel.name}: library"
-    )
-    return Library(tuple(entries.values()), slots(vessel), left_out, idle)
+            if reason:
+                excluded[effect.name] = reason
+    together = replace(vessel, effects=(*vessel.effects, *entries.values()))
+    check_bindings(together, f"{vessel.name}: library")
+    return Library(tuple(entries.values()), placeholders(vessel), excluded, inapplicable)
 
 
-def slots(vessel: Vessel) -> tuple[Effect, ...]:
-    """Laws without words yet, in which a diagnosis writes what it describes; of kinds that can act on the vessel."""
+def _reasons_of(vessel: Vessel) -> dict[str, str]:
+    """The vessel's own reasons for excluding candidates. Raises BadInput for an unknown name."""
+    reasons = {}
+    for name, why in vessel.diagnosis.leave_out.items():
+        if name not in names("effect"):
+            where = f"{vessel.name}: diagnosis.leave_out"
+            raise BadInput(unknown_name(where, name, names("effect")))
+        reasons[name] = f"the vessel's reason: {why}"
+    return reasons
+
+
+def placeholders(vessel: Vessel) -> tuple[Effect, ...]:
+    """Return the effects reserved for terms found by symbolic regression that can act on a vessel.
+
+    Args:
+        vessel: Vessel of the recordings.
+    """
     found, taken = list[Effect](), {e.name for e in vessel.effects}
-    for idea, (begins, most) in SLOTS.items():
+    for idea, (prefix, number) in PLACEHOLDERS.items():
         kind: type[Effect] = load_class("effect", idea)
         if kind.per_instance_of and not vessel.effects_of(kind.per_instance_of):
             continue
-        free = (name for k in count(1) if (name := f"{begins}{k}") not in taken)
-        found += [
-            kind.from_settings({"name": name}).completed(vessel) for name in islice(free, most)
-        ]
+        free = (f"{prefix}{k}" for k in count(1) if f"{prefix}{k}" not in taken)
+        for name in islice(free, number):
+            found.append(kind.from_settings({"name": name}).completed(vessel))
     return tuple(found)
 
 
 def _either_side(effect: Effect, vessel: Vessel) -> tuple[Effect, ...]:
-    """An entry, and the same on the other side of an actuator of the vessel that takes its time, where it may be there.
+    """A candidate, and the same on the other side of an actuator's lag where both are possible.
 
     A dead band of the command and one of the shaft differ only where a lag lies between them.
     """
     if not isinstance(effect, Channel) or not type(effect).either_side:
         return (effect,)
-    slow = (
-        e for e in vessel.effects if isinstance(e, Channel) and type(e).slots and e.standing == 0
-    )
-    if not any(set(vessel.targets(e)) & set(vessel.targets(effect)) for e in slow):
-        return (effect,)
-    return effect, replace(effect, name=REORDERED + effect.name, other_side=True)
+    targets = set(vessel.targets(effect))
+    for other in vessel.effects:
+        lags = isinstance(other, Channel) and type(other).slots and other.standing == 0
+        if lags and targets & set(vessel.targets(other)):
+            reordered = replace(effect, name=REORDERED + effect.name, other_side=True)
+            return effect, reordered
+    return (effect,)
 
 
-def _tables(
-    vessel: Vessel, own: Sequence[str]
-) -> Iterator[tuple[Mapping[str, object], type[Effect], bool]]:
-    """Every entry of the shelf, what the vessel asks to be tried besides, the user's files: table, class, asked."""
+def _sources(vessel: Vessel, own: Sequence[str]) -> Iterator[_Source]:
+    """Every effect of the library, those that the vessel requests, and those of the user."""
     for name in names("effect"):
-        yield {"use": name}, load_class("effect", name), False
+        yield _Source({"use": name}, load_class("effect", name), False)
     for table in vessel.diagnosis.also:
-        yield table, load_class("effect", str(table.get("use")), vessel.path), True
+        yield _Source(table, load_class("effect", str(table.get("use")), vessel.path), True)
     for name in own:
-        yield {"use": name}, load_class("effect", name, named=True), True
+        yield _Source({"use": name}, load_class("effect", name, named=True), True)
 
 
 def fittable(kind: type[Effect]) -> bool:
-    """Whether an effect has a parameter that a diagnosis may fit."""
+    """Return whether an effect has a parameter that a diagnosis may fit."""
     return not kind.described and any(p.fit for p in kind.params().values())
 
 
-def _unseen(kind: type[Effect], columns: Sequence[str] | None) -> str:
-    """What an instrument's entry would show in, if that was not recorded."""
+def _unrecorded(kind: type[Effect], columns: Sequence[str] | None) -> str:
+    """The columns in which an error of an instrument would show, if none was recorded."""
     if columns is None or not issubclass(kind, Measurement) or not kind.of_columns:
         return ""
-    return (
-        ""
-        if set(kind.of_columns) & set(columns)
-        else f"no column {' or '.join(kind.of_columns)} was recorded"
-    )
+    if set(kind.of_columns) & set(columns):
+        return ""
+    return f"no column {' or '.join(kind.of_columns)} was recorded"
 
 
 def lacking(
     kind: type[Effect], vessel: Vessel, facts: Mapping[str, object], table: Mapping[str, object]
 ) -> str:
-    """What a vessel lacks for an entry to act, in words; "" where nothing is lacking."""
-    if missing := [n for n in kind.needs if n not in vessel.dof]:
+    """Return what a vessel lacks for an effect to act on it, in words, or "".
+
+    Args:
+        kind: Class of the effect.
+        vessel: Vessel of the recordings.
+        facts: Facts of the vessel and of the recordings.
+        table: Settings of the effect.
+    """
+    missing = [name for name in kind.needs if name not in vessel.dof]
+    if missing:
         return f"no freedom in {' and '.join(missing)}"
     axes = {p.axis for p in kind.params().values() if p.fit}
     if "" not in axes and not axes & set(vessel.dof):
         return f"no freedom in {' or '.join(sorted(axes))}"
-    if fact := next((f for f in kind.facts if f not in facts), ""):
-        return f"nobody states {describe_fact(fact)}"
+    for fact in kind.facts:
+        if fact not in facts:
+            return f"not specified: {describe_fact(fact)}"
     if issubclass(kind, Measurement) and kind.late is not None and not vessel.actuators:
         return "no command to be late behind"
-    if kind.alone and (there := vessel.names_of(kind.idea())):
-        return f"its own {there[0]}, whose numbers other entries release"
+    if kind.alone and vessel.names_of(kind.idea()):
+        own = vessel.names_of(kind.idea())[0]
+        return f"its own {own}, whose numbers other effects release"
     try:
         found = placed(kind, vessel, facts, table)
     except BadInput as error:
@@ -189,8 +230,19 @@ def placed(
     facts: Mapping[str, object],
     table: Mapping[str, object] | None = None,
 ) -> Effect:
-    """An entry on a vessel, doing nothing yet; a second of its kind under another name. Raises BadInput."""
-    given = {k: v for k, v in (table or {}).items() if k != "use"}
+    """Return a candidate on a vessel, with zero effect; a second of its kind gets another name.
+
+    Args:
+        kind: Class of the effect.
+        vessel: Vessel of the recordings.
+        facts: Facts of the vessel and of the recordings.
+        table: Settings of the effect.
+
+    Raises:
+        BadInput: The effect cannot act on the vessel.
+    """
+    given = dict(table or {})
+    given.pop("use", None)
     if not given.get("name") and vessel.names_of(kind.idea()) and not issubclass(kind, Release):
         given["name"] = FURTHER + kind.idea()
     effect = absent(kind, facts, given).completed(vessel)
@@ -203,63 +255,87 @@ def absent(
     facts: Mapping[str, object] | None = None,
     given: Mapping[str, object] | None = None,
 ) -> Effect:
-    """An entry at the values at which it does nothing, with what stated facts and its own table say of it."""
-    named = (
-        (places, (facts or {})[fact])
-        for fact, places in kind.facts.items()
-        if fact in (facts or {})
-    )
-    told = {
-        n: float(x)
-        for places, xs in named
-        for n, x in zip(places, np.array(xs, dtype=float), strict=True)
-    }
-    return kind.from_settings(
-        told | {n: p.absent for n, p in kind.params().items() if p.fit} | dict(given or {})
-    )
+    """Return an effect with the parameters at which it has zero effect.
+
+    Args:
+        kind: Class of the effect.
+        facts: Facts that set some of its parameters.
+        given: Further settings.
+    """
+    settings: dict[str, object] = {}
+    for fact, places in kind.facts.items():
+        if facts and fact in facts:
+            values = np.array(facts[fact], dtype=float)
+            settings |= {n: float(x) for n, x in zip(places, values, strict=True)}
+    settings |= {n: p.absent for n, p in kind.params().items() if p.fit}
+    return kind.from_settings(settings | dict(given or {}))
 
 
-def less(library: Library, without: Sequence[str]) -> tuple[str, ...]:
-    """Names of what is tried, less those taken out; they stay composed: nothing is compiled anew. Raises BadInput."""
-    there = library.tried
+def exclude(library: Library, without: Sequence[str]) -> tuple[str, ...]:
+    """Return the names of the candidates that are tested, without some.
+
+    The others stay compiled, so that nothing has to be compiled again.
+
+    Args:
+        library: Candidates of the diagnosis.
+        without: Names that are excluded.
+
+    Raises:
+        BadInput: A name does not exist.
+    """
+    tested = library.tested
     for name in without:
-        if name not in there and name not in names("effect"):
-            raise BadInput(unknown_name("--without", name, there))
-    return tuple(n for n in there if n not in without and called(n) not in without)
+        if name not in tested and name not in names("effect"):
+            raise BadInput(unknown_name("--without", name, tested))
+    return tuple(n for n in tested if n not in without and called(n) not in without)
 
 
 def called(name: str) -> str:
-    """What an answer calls an entry, be the vessel's own the same idea or not."""
+    """Return the name of a candidate in an answer, without the prefixes of repeated effects."""
     return name.removeprefix(REORDERED).removeprefix(FURTHER)
 
 
 def without_ruled_out(vessel: Vessel, facts: Mapping[str, object]) -> Vessel:
-    """The vessel without those of its own effects that facts rule out, as they rule entries out.
+    """Return a vessel without those of its effects that facts exclude.
 
-    A steering angle that was measured is behind the steering machine: a limit of it acts on commands, not once more.
+    A measured steering angle is taken behind the steering machine: the limit of the machine acts on
+    commands, and not on the measured angle again.
+
+    Args:
+        vessel: Vessel of the recordings.
+        facts: Facts of the recordings.
     """
     known = {**vessel.diagnosis.facts, **facts}
-    return replace(
-        vessel,
-        effects=tuple(e for e in vessel.effects if not excluding_fact(type(e).ruled_out_by, known)),
-    )
+    kept = tuple(e for e in vessel.effects if not excluding_fact(type(e).ruled_out_by, known))
+    return replace(vessel, effects=kept)
 
 
 def with_stated_errors(vessel: Vessel, facts: Mapping[str, object]) -> Vessel:
-    """The vessel with the wandering error of its fixes that facts state: the filter then knows it from the start."""
+    """Return a vessel with the drift of its position fixes that facts specify.
+
+    Args:
+        vessel: Vessel of the recordings.
+        facts: Facts of the recordings.
+    """
     known = {**vessel.diagnosis.facts, **facts}
-    if not all(f in known for f in WANDER) or not {"surge", "sway"} <= set(vessel.dof):
+    if not all(fact in known for fact in WANDER) or not {"surge", "sway"} <= set(vessel.dof):
         return vessel
-    sd, time = (float(str(known[f])) for f in WANDER)
+    sd, time = (float(str(known[fact])) for fact in WANDER)
     error = load_class("effect", "position_wander").from_settings({"position": sd, "time": time})
     return replace(vessel, effects=(*vessel.effects, error.completed(vessel)))
 
 
 def composed(vessel: Vessel) -> tuple[Program, tuple[str, ...]]:
-    """A vessel's program as its diagnosis composes it, and which entries act: a patched boat compiles nothing anew."""
+    """Return a vessel's program as its diagnosis compiles it, and the candidates that act.
+
+    A patched vessel then needs no further compilation.
+
+    Args:
+        vessel: Vessel file, or a patched one.
+    """
     own = tuple(e for e in vessel.effects if e.name not in vessel.found)
     found = {e.name: e for e in vessel.effects if e.name in vessel.found}
     nominal = replace(vessel, effects=own, found=())
-    library = library_for(nominal)
-    entries = {e.name: e for e in library.compiled} | found
-    return Program(nominal, tuple(entries.values())), tuple(n for n in entries if n in found)
+    candidates = {e.name: e for e in library_for(nominal).compiled} | found
+    program = Program(nominal, tuple(candidates.values()))
+    return program, tuple(name for name in candidates if name in found)

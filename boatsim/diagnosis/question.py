@@ -9,7 +9,7 @@ import numpy as np
 from boatsim.diagnosis import priors
 from boatsim.diagnosis.candidates import (
     Library,
-    less,
+    exclude,
     library_for,
     with_stated_errors,
     without_ruled_out,
@@ -95,7 +95,7 @@ def pose(loaded: Loaded, config: DiagnosisConfig = DEFAULT) -> Question:
     uncertainty = _uncertainty(loaded, vessel, config)
     problem = Problem(fitted, levels, uncertainty, loaded.horizon, config)
     library = libraries[first.path]
-    candidates = less(library, loaded.without)
+    candidates = exclude(library, loaded.without)
     return Question(problem, tuple(held_out), mapper, library, candidates)
 
 

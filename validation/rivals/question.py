@@ -61,7 +61,9 @@ def asked(trial: Path) -> Question:
     tracks = [map_recording(r, program, stated) for r in runs]
     uncertainty = priors.uncertainty(vessel) | runs[0].notes.coefficient_uncertainty
     problem = Problem(tracks, prior_levels(vessel, runs), uncertainty)
-    entries = {e.name: e for e in library.entries if e.name in library.tried and not type(e).random}
+    entries = {
+        e.name: e for e in library.entries if e.name in library.tested and not type(e).random
+    }
     families = {f for t in tracks for f in t.families}
     noise = {f: priors.sensed_noise(vessel, runs, f) or stated[f] for f in families}
     return Question(vessel, problem, entries, noise)

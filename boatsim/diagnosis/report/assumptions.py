@@ -18,8 +18,8 @@ def excluded_candidates(question: Question) -> list[LeftOutEntry]:
     Args:
         question: The candidates of the diagnosis.
     """
-    reasons = dict(question.library.left_out)
-    for name in question.library.tried:
+    reasons = dict(question.library.excluded)
+    for name in question.library.tested:
         if name not in question.candidates:
             reasons[name] = BY_USER
     by_idea = {called(name): why for name, why in sorted(reasons.items())}
