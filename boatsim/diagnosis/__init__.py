@@ -1,1 +1,1 @@
-"""When a simulation and a recording differ: where, what physics was left out, and what a model of it gains."""
+"""Diagnosis: finds the physics that a vessel model lacks, by recordings of the real vessel."""

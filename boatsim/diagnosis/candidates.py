@@ -1,8 +1,8 @@
-"""Candidate effects of a diagnosis: those that can act on a vessel, without those that are excluded.
+"""Candidate effects of a diagnosis: those that can act on a vessel, and those excluded.
 
-No vessel has a list of candidates. An effect declares what it needs (degrees of freedom, columns; by
-its kind also thrusters, rudders, numbers of the vessel) and which facts exclude it. The vessel and
-its recordings decide.
+No vessel has a list of candidates. An effect declares what it needs (degrees of freedom, columns;
+by its kind also thrusters, rudders, numbers of the vessel) and which facts exclude it. The vessel
+and its recordings decide.
 """
 
 from collections.abc import Iterator, Mapping, Sequence

@@ -1,8 +1,8 @@
 """Largest recorded commands, which scale the thresholds of candidate effects.
 
-A dead band, play or a stall shows only between zero and the largest command of a recording. Starting
-points, priors and bounds that scale with the size of a hull would miss it on one with stronger
-engines.
+A dead band, play or a stall shows only between zero and the largest command of a recording.
+Starting points, priors and bounds that scale with the size of a hull would miss it on one with
+stronger engines.
 """
 
 from collections.abc import Sequence
@@ -40,9 +40,9 @@ def excursion(
 def channels_of(vessel: Vessel, effect: Effect) -> tuple[str, ...]:
     """Return the channels on which a candidate acts.
 
-    These are the actuators of a channel effect, or the inputs of the vessel's effects whose numbers a
-    release changes. Of several inputs those in the unit of the release's thresholds are returned: the
-    angle of a rudder and not its shaft.
+    These are the actuators of a channel effect, or the inputs of the vessel's effects whose
+    numbers a release changes. Of several inputs those in the unit of the release's thresholds are
+    returned: the angle of a rudder and not its shaft.
 
     Args:
         vessel: Vessel of the recordings.

@@ -2,8 +2,8 @@
 
 A `DiagnosisConfig` holds one frozen group of settings per stage. Each setting has a default, a unit
 and the reason for its value. Users change settings by their dotted names, such as `select.odds`:
-with `boatsim diagnose --set`, or with the argument `settings` of `boatsim.diagnose`. The values used
-are written into diagnosis.json.
+with `boatsim diagnose --set`, or with the argument `settings` of `boatsim.diagnose`. The values
+used are written into diagnosis.json.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -71,8 +71,8 @@ class LoadConfig:
     disturbance: float = setting(
         2.2e-4,
         "weight",
-        "Rms of the force that is attributed to moving water and never reported as missing: 10 mN "
-        "on a hull of 4.6 kg in a towing tank.",
+        "Rms of the force that is attributed to moving water and never reported as missing: 10 "
+        "mN on a hull of 4.6 kg in a towing tank.",
         low=1e-12,
     )
     yaw_arm: float = setting(
@@ -99,23 +99,23 @@ class LoadConfig:
     finest_noise: float = setting(
         1e-4,
         "1",
-        "Lower bound of sensor noise, relative to the length, to a radian and to the Froude speed: "
-        "no instrument is more exact.",
+        "Lower bound of sensor noise, relative to the length, to a radian and to the Froude "
+        "speed: no instrument is more exact.",
         low=1e-12,
     )
     noise_orders: tuple[int, ...] = setting(
         (2, 3, 4, 5, 6),
         "count",
-        "Orders of the differences in which sensor noise is estimated; the motion is smoother than "
-        "noise at one of them.",
+        "Orders of the differences in which sensor noise is estimated; the motion is smoother "
+        "than noise at one of them.",
         1,
         20,
     )
     noise_ratio: float = setting(
         3.0,
         "1",
-        "Recordings whose estimated noise differs by more than this factor were made by different "
-        "instruments and get noise levels of their own.",
+        "Recordings whose estimated noise differs by more than this factor were made by "
+        "different instruments and get noise levels of their own.",
         low=1.0,
     )
     coefficient_uncertainty: float = setting(
@@ -149,8 +149,8 @@ class FilterConfig:
     free_run_step: float = setting(
         0.02,
         "s",
-        "Largest integration step of a free run: the step of the simulation, so that time lags are "
-        "averaged alike.",
+        "Largest integration step of a free run: the step of the simulation, so that time lags "
+        "are averaged alike.",
         low=1e-4,
     )
     filter_step: float = setting(
@@ -163,15 +163,16 @@ class FilterConfig:
     decay_step: float = setting(
         0.7,
         "1",
-        "Largest integration step in time constants of the fastest hull motion at rest; Runge-Kutta "
-        "is stable up to 2.8.",
+        "Largest integration step in time constants of the fastest hull motion at rest; "
+        "Runge-Kutta is stable up to 2.8.",
         1e-3,
         2.7,
     )
     phase_error: float = setting(
         0.007,
         "rad",
-        "Phase error that Runge-Kutta may accumulate until an oscillation of the hull has died out.",
+        "Phase error that Runge-Kutta may accumulate until an oscillation of the hull has died "
+        "out.",
         low=1e-6,
     )
     least_damping_ratio: float = setting(
@@ -185,8 +186,8 @@ class FilterConfig:
     initial_force: float = setting(
         3.0,
         "1",
-        "Initial rms of the latent force in assumed disturbance levels: moving actuators or a push by "
-        "hand may act when a recording begins.",
+        "Initial rms of the latent force in assumed disturbance levels: moving actuators or a "
+        "push by hand may act when a recording begins.",
         low=1e-6,
     )
     smoother_passes: int = setting(
@@ -338,8 +339,8 @@ class ChecksConfig:
     interpolation_min_noise_digits: float = setting(
         5.0,
         "1",
-        "Median size of fourth differences in units of the last digit that is more than rounding, "
-        "which yields 1.6.",
+        "Median size of fourth differences in units of the last digit that is more than "
+        "rounding, which yields 1.6.",
     )
     interpolation_max_chance: float = setting(
         1e-4, "1", "Expected number of such runs by chance, at most.", high=1.0
@@ -361,8 +362,8 @@ class ChecksConfig:
     rotation_tolerance: float = setting(
         0.5,
         "1",
-        "Difference from 1 allowed in that share: heading noise reduces it, and correct positions "
-        "have a share near 0.",
+        "Difference from 1 allowed in that share: heading noise reduces it, and correct "
+        "positions have a share near 0.",
     )
     jump_min_step: float = setting(
         3.0, "1", "A jump is larger than this multiple of the 99 % quantile of all steps.", low=1.0
@@ -475,8 +476,8 @@ class ChecksConfig:
     rudder_response_time: float = setting(
         3.5,
         "(length / gravity)^1/2",
-        "Time in which a hull responds to its rudder: it travels half its length at Froude number "
-        "0.14.",
+        "Time in which a hull responds to its rudder: it travels half its length at Froude "
+        "number 0.14.",
         low=0.01,
     )
     rudder_min_correlation: float = setting(
@@ -525,8 +526,8 @@ class ChecksConfig:
     unexplained_max_share: float = setting(
         0.6,
         "1",
-        "Unexplained force, relative to the force of the drives, from which reinterpretations are "
-        "compared.",
+        "Unexplained force, relative to the force of the drives, from which reinterpretations "
+        "are compared.",
     )
     unexplained_min_arm: float = setting(
         0.02,
@@ -545,8 +546,8 @@ class ChecksConfig:
     compare_tie_gain: float = setting(
         3.0,
         "nats",
-        "Reinterpretations within this evidence are tied: on a symmetric boat mirrored axes equal "
-        "exchanged drives.",
+        "Reinterpretations within this evidence are tied: on a symmetric boat mirrored axes "
+        "equal exchanged drives.",
     )
     compare_lead_scale: float = setting(
         4.0, "nats", "Lead that reduces the probability of an error by the factor e.", low=1e-3
@@ -558,8 +559,8 @@ class ChecksConfig:
     compare_max_rate: float = setting(
         1.5,
         "1",
-        "Multiple of the usual row rate above which the rows are reduced, because each instrument "
-        "then has separate rows.",
+        "Multiple of the usual row rate above which the rows are reduced, because each "
+        "instrument then has separate rows.",
         low=1.0,
     )
     compare_max_candidates: int = setting(
@@ -673,8 +674,8 @@ class FitConfig:
     halvings: int = setting(
         6,
         "count",
-        "A start at which the simulated boat diverges is moved halfway to zero effect, at most this "
-        "often.",
+        "A start at which the simulated boat diverges is moved halfway to zero effect, at most "
+        "this often.",
         low=0,
     )
     derivative_step: float = setting(
@@ -690,22 +691,22 @@ class FitConfig:
     broyden_share: float = setting(
         0.5,
         "1",
-        "A step must gain this share of the predicted gain for the derivatives to be updated from it "
-        "(Broyden 1965).",
+        "A step must gain this share of the predicted gain for the derivatives to be updated "
+        "from it (Broyden 1965).",
         0.0,
         1.0,
     )
     short_step_damping: float = setting(
         0.1,
         "1",
-        "With more damping than this a step is so short that its agreement with the prediction is no "
-        "sign of convergence.",
+        "With more damping than this a step is so short that its agreement with the prediction "
+        "is no sign of convergence.",
     )
     agreement: float = setting(
         0.1,
         "nats",
-        "A step whose gain differs from the prediction by less than this, plus a share of it, shows "
-        "that the quadratic model holds.",
+        "A step whose gain differs from the prediction by less than this, plus a share of it, "
+        "shows that the quadratic model holds.",
     )
     agreement_share: float = setting(
         0.02, "1", "The share of the predicted gain in the setting `agreement`.", 0.0, 1.0
@@ -713,15 +714,16 @@ class FitConfig:
     coefficient_range: tuple[float, ...] = setting(
         (0.05, 20.0),
         "1",
-        "Lowest and highest factor by which a coefficient of the nominal model may be recalibrated.",
+        "Lowest and highest factor by which a coefficient of the nominal model may be "
+        "recalibrated.",
         1e-6,
         1e6,
     )
     force_sd_below: float = setting(
         0.3,
         "1",
-        "Prior sd of the log of the latent force below the assumed disturbance level; narrow, because "
-        "calm water is no merit of a model.",
+        "Prior sd of the log of the latent force below the assumed disturbance level; narrow, "
+        "because calm water is no merit of a model.",
         low=1e-3,
     )
     force_sd_above: float = setting(
@@ -760,8 +762,8 @@ class FitConfig:
     force_raises: int = setting(
         10,
         "count",
-        "The latent force is raised by a factor of e at most this often until the filter can follow a "
-        "recording.",
+        "The latent force is raised by a factor of e at most this often until the filter can "
+        "follow a recording.",
         low=0,
     )
     search_rounds: int = setting(
@@ -800,18 +802,19 @@ class SelectConfig:
     odds: float = setting(
         2.0,
         "nats",
-        "Log of the odds, about seven to one, at which an effect is identified; each candidate has "
-        "the same prior probability.",
+        "Log of the odds, about seven to one, at which an effect is identified; each candidate "
+        "has the same prior probability.",
         low=0.0,
     )
     most_effects: int = setting(
         8,
         "count",
-        "Largest number of effects in one answer; further ones would have almost no data of their own.",
+        "Largest number of effects in one answer; further ones would have almost no data of "
+        "their own.",
         low=1,
     )
     least_gain: float = setting(
-        4.0, "nats", "Evidence that an identified effect must gain by itself.", low=0.0
+        4.0, "nats", "Evidence that an identified effect must gain alone.", low=0.0
     )
     unknown_gain: float = setting(
         6.0,
@@ -823,8 +826,8 @@ class SelectConfig:
     model_error: float = setting(
         0.05,
         "1",
-        "Share of the explained evidence added to `unknown_gain`: a law of nature is never exactly "
-        "that of a candidate.",
+        "Share of the explained evidence added to `unknown_gain`: a law of nature is never "
+        "exactly that of a candidate.",
         0.0,
         1.0,
     )
@@ -838,8 +841,8 @@ class SelectConfig:
     slight_share: float = setting(
         0.025,
         "1",
-        "An effect that gains less than this share of what the others explain may only correct the "
-        "shape of their laws.",
+        "An effect that gains less than this share of what the others explain may only correct "
+        "the shape of their laws.",
         0.0,
         1.0,
     )
@@ -853,24 +856,24 @@ class SelectConfig:
     remaining_share: float = setting(
         0.25,
         "1",
-        "A stochastic force is withdrawn if what it leaves unexplained gains more than this share of "
-        "what it gains.",
+        "A stochastic force is withdrawn if what it leaves unexplained gains more than this "
+        "share of what it gains.",
         0.0,
         1.0,
     )
     braking_share: float = setting(
         -0.3,
         "1",
-        "Mean power of an oscillating force, relative to the largest possible, below which it acts as "
-        "friction and is withdrawn.",
+        "Mean power of an oscillating force, relative to the largest possible, below which it "
+        "acts as friction and is withdrawn.",
         -1.0,
         0.0,
     )
     keep_factor: float = setting(
         40.0,
         "1",
-        "An effect whose gain by the curvature exceeds the required evidence by this factor is kept "
-        "without a fit that omits it.",
+        "An effect whose gain by the curvature exceeds the required evidence by this factor is "
+        "kept without a fit that omits it.",
         low=1.0,
     )
     alike: float = setting(
@@ -898,7 +901,8 @@ class SelectConfig:
     determined_share: float = setting(
         0.1,
         "1",
-        "An effect acts, too, if the data narrow another of its parameters to this share of the prior.",
+        "An effect acts, too, if the data narrow another of its parameters to this share of the "
+        "prior.",
         0.0,
         1.0,
     )
@@ -914,8 +918,8 @@ class SelectConfig:
     screening_failure: float = setting(
         8.0,
         "nats",
-        "A screening this far below the model without the candidate has failed: a parameter without "
-        "use costs less.",
+        "A screening this far below the model without the candidate has failed: a parameter "
+        "without use costs less.",
         low=0.0,
     )
     screening_steps: int = setting(
@@ -994,16 +998,16 @@ class ValidateConfig:
     unexplained_share: float = setting(
         0.9,
         "1",
-        "An effect without which more than this share of the latent force remains explains almost "
-        "nothing of it.",
+        "An effect without which more than this share of the latent force remains explains "
+        "almost nothing of it.",
         0.0,
         1.0,
     )
     alone_share: float = setting(
         0.95,
         "1",
-        "A part of the data does not show what is missing if the nominal model fitted to it alone has "
-        "at most this share more error than the patched vessel.",
+        "A part of the data does not show what is missing if the nominal model fitted to it "
+        "alone has at most this share more error than the patched vessel.",
         0.0,
         1.0,
     )
@@ -1016,8 +1020,8 @@ class AnswerConfig:
     law_error: float = setting(
         0.05,
         "1",
-        "Share of a fitted value (rad for directions) that is added to its sd in quadrature: a law of "
-        "nature is never exactly that of a candidate.",
+        "Share of a fitted value (rad for directions) that is added to its sd in quadrature: a "
+        "law of nature is never exactly that of a candidate.",
         0.0,
         1.0,
     )
@@ -1027,8 +1031,8 @@ class AnswerConfig:
     limit_share: float = setting(
         0.5,
         "1",
-        "An upper limit is reported only where the fitted sd is below this share of the prior sd; "
-        "otherwise it would only repeat the prior.",
+        "An upper limit is reported only where the fitted sd is below this share of the prior "
+        "sd; otherwise it would only repeat the prior.",
         0.0,
         1.0,
     )
@@ -1038,8 +1042,8 @@ class AnswerConfig:
     least_improvement: float = setting(
         1.1,
         "1",
-        "The report calls a result a hint if no rms error on held-out recordings decreases by more "
-        "than this factor.",
+        "The report calls a result a hint if no rms error on held-out recordings decreases by "
+        "more than this factor.",
         low=1.0,
     )
 
@@ -1060,8 +1064,8 @@ class DescribeConfig:
     general_improvement: float = setting(
         0.98,
         "1",
-        "A term generalizes if it reduces the mean square error of free runs over held-out recordings "
-        "to less than this share; smaller reductions are chance.",
+        "A term generalizes if it reduces the mean square error of free runs over held-out "
+        "recordings to less than this share; smaller reductions are chance.",
         0.01,
         1.0,
     )
@@ -1075,7 +1079,8 @@ class DescribeConfig:
     fine_refinement: tuple[float, ...] = setting(
         (0.12, 0.06, 0.03, 0.015),
         "grammar steps",
-        "Smaller changes that are judged by the likelihood of the filter, whose accuracy they need.",
+        "Smaller changes that are judged by the likelihood of the filter, whose accuracy they "
+        "need.",
         1e-4,
         1.0,
     )
@@ -1094,7 +1099,8 @@ class DescribeConfig:
     recording_parts: int = setting(
         16,
         "count",
-        "Parts of a recording; the intervals in which a term may act begin and end at their limits.",
+        "Parts of a recording; the intervals in which a term may act begin and end at their "
+        "limits.",
         low=2,
     )
     interval_lengths: tuple[int, ...] = setting(
@@ -1113,8 +1119,8 @@ class DescribeConfig:
     most_thrust_oscillations: int = setting(
         8,
         "count",
-        "Largest number of periods of an oscillating change of thrust in a recording; drives change "
-        "slowly.",
+        "Largest number of periods of an oscillating change of thrust in a recording; drives "
+        "change slowly.",
         low=1,
     )
     shortest_period: float = setting(
@@ -1282,7 +1288,7 @@ def from_settings(settings: Mapping[str, Given]) -> DiagnosisConfig:
 
 
 def as_plain(config: DiagnosisConfig) -> dict[str, Plain]:
-    """Return every setting of a configuration by its dotted name, with lists in the place of tuples."""
+    """Return every setting of a configuration by its dotted name; tuples become lists."""
     plain: dict[str, Plain] = {}
     for group, one in _declared():
         value = getattr(getattr(config, group), one.name)

@@ -19,8 +19,9 @@ def maximize(
 ) -> tuple[float, Array]:
     """Return the highest score that is found, and where.
 
-    A coordinate is revisited only if the score has risen by more than `enough` since its last visit:
-    most of them are at their maximum after one round. The step along each follows its last move.
+    A coordinate is revisited only if the score has risen by more than `enough` since its last
+    visit: most of them are at their maximum after one round. The step along each follows its last
+    move.
 
     Args:
         score: Function of the coordinates (n,).

@@ -1,10 +1,10 @@
 """Chooses the correlation time of the latent force by one rule, from the fitted recordings alone.
 
 A model is judged by free runs. The correlation time decides how much of a misfit the coefficients
-have to explain and how much is attributed to the latent force, which a free run omits; the evidence
-of an incomplete model prefers to attribute much to it. Therefore each half of the recordings is
-predicted by a fit to the other half, identified effects included. The usual value for a hull of this
-length is halved, or doubled, as long as that predicts clearly better.
+have to explain and how much is attributed to the latent force, which a free run omits; the
+evidence of an incomplete model prefers to attribute much to it. Therefore each half of the
+recordings is predicted by a fit to the other half, identified effects included. The usual value
+for a hull of this length is halved, or doubled, as long as that predicts clearly better.
 """
 
 from collections.abc import Sequence
@@ -133,7 +133,7 @@ def clearly_less(after: Array, before: Array, config: DiagnosisConfig = DEFAULT)
 
 
 def halves_errors(problem: Problem, start: Fit, seconds: float) -> Array:
-    """Return the error of each free run (S,) in a half that is predicted by a fit to the other half.
+    """Return the error of each free run (S,) in a half, predicted by a fit to the other.
 
     Args:
         problem: Recordings and priors.
@@ -141,8 +141,8 @@ def halves_errors(problem: Problem, start: Fit, seconds: float) -> Array:
         seconds: Correlation time [s].
 
     Returns:
-        Geometric mean of the rms of position [m] and of heading or roll [rad]; nan where one was not
-        recorded.
+        Geometric mean of the rms of position [m] and of heading or roll [rad]; nan where one was
+        not recorded.
     """
     levels = start.levels.with_time_constant(seconds)
     begin = replace(start, levels=levels, evidence=-np.inf)

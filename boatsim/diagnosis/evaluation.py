@@ -1,4 +1,4 @@
-"""The validate stage: free runs of the models over recordings, and the force that stays unexplained."""
+"""The validate stage: free runs of the models over recordings, and unexplained forces."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass

@@ -38,7 +38,7 @@ FEWEST_IN_PART = FEWEST_ROWS // 3
 # numbers of the body at the end of a run's parameter values, [kg], [m], [kg m^2], as in
 # `Program.body`
 BODY = ("mass", "centre_ahead", "centre_below", "roll_inertia", "pitch_inertia", "yaw_inertia")
-# entries of the mass matrix at the end of the constants of a compiled pass; its diagonal comes first
+# entries of the mass matrix at the end of the constants of a compiled pass, the diagonal first
 MASS_ENTRIES = 12
 # variance added to the mean square of recorded speeds, so that it is positive [m^2/s^2, rad^2/s^2]
 LEAST_RATE_VARIANCE = 1e-8
@@ -46,7 +46,7 @@ LEAST_RATE_VARIANCE = 1e-8
 
 @dataclass(frozen=True)
 class NoiseLevels:
-    """Levels of sensor noise and of the latent force, the same for all recordings of a diagnosis."""
+    """Levels of sensor noise and of the latent force, shared by all recordings."""
 
     force: Array  # (NQ,) rms of the latent force [N, N m]
     time_constant: float  # [s] correlation time of the latent force
@@ -81,7 +81,7 @@ class FilterPass:
     log_likelihood: float
     whitened: Array  # (N C,) prediction errors in standard deviations, 0 where nothing was recorded
     gains: Array  # (N, C, n)
-    # (N, C) inverse standard deviations of the prediction errors, less for outliers, 0 where missing
+    # (N, C) inverse sds of the prediction errors, less for outliers, 0 where missing
     scale: Array
     transitions: Array  # (N, 3 NQ, 3 NQ) linearised transitions of motion and latent force
     steps: Array  # (N,) integration steps [s]
@@ -112,7 +112,7 @@ class HullMotion(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class MappedRecording:
-    """A recording mapped to a program: measurements, commands and the parameter values of this run."""
+    """A recording mapped to a program: measurements, commands and parameter values."""
 
     name: str
     program: Program
@@ -275,7 +275,8 @@ class MappedRecording:
     ) -> list[tuple[int, Array]]:
         """Return free runs, each from a smoothed state with the recorded commands alone.
 
-        They start every horizon from the first row; a remainder shorter than the horizon is omitted.
+        They start every horizon from the first row; a remainder shorter than the horizon is
+        omitted.
 
         Args:
             values: Parameter values of the run.
@@ -315,7 +316,7 @@ class MappedRecording:
     def _add_sensor_error(
         self, runs: list[tuple[int, Array]], means: Array, decay_time: float, oscillators: int
     ) -> None:
-        """Add the expected error of a wandering instrument, which decays from the start of a run."""
+        """Add the expected drift of an instrument, which decays from the start of a run."""
         nq = self.program.module.NQ
         first = (3 + oscillators) * nq
         for a, channels in runs:
@@ -444,7 +445,7 @@ def _estimated_initial(mapped: MappedRecording) -> InitialState:
 
 
 def _speeds(t: Array, y: Array) -> Array:
-    """Rates of change of a signal over a second or four rows, whichever is longer."""
+    """Rates of change of a signal over four rows, but at least one second."""
     gap = np.searchsorted(t, t + max(1.0, 4 * float(np.median(np.diff(t)))))
     gap = gap.clip(max=len(t) - 1)
     far = gap > np.arange(len(t))
@@ -689,10 +690,10 @@ def relative_noise(
     recording: Recording,
     config: DiagnosisConfig = DEFAULT,
 ) -> dict[str, float]:
-    """Return the sensor noise of a recording relative to others, by family, where they differ a lot.
+    """Return the relative sensor noise of a recording, by family, where it differs a lot.
 
-    An exact log and one made by a camera must not be given the same noise, because a free run starts
-    at the state that its recording shows.
+    An exact log and one made by a camera must not be given the same noise, because a free run
+    starts at the state that its recording shows.
 
     Args:
         vessel: Vessel of the recordings.

@@ -1,4 +1,4 @@
-"""Free runs: simulations from a recorded state with the recorded commands alone, and their errors."""
+"""Free runs: simulations from a recorded state with the recorded commands alone."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass

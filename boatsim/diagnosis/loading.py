@@ -173,8 +173,8 @@ def split(
 ) -> tuple[list[Recording], list[Recording], str]:
     """Divide recordings into fitted and held-out ones.
 
-    If none is specified, the last recording is held out, or the middle third of a single one: the end
-    of a decay would be nearly linear and test nothing.
+    If none is specified, the last recording is held out, or the middle third of a single one: the
+    end of a decay would be nearly linear and test nothing.
 
     Args:
         recordings: Recordings to fit.

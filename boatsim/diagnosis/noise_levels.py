@@ -64,8 +64,8 @@ def _noise_prior(problem: Problem, logs: Array, specified: Array) -> float:
 def fit_force(problem: Problem, found: Fit, enough: float | None = None) -> Fit:
     """Return a hypothesis with the level of the latent force of each axis refitted.
 
-    The spectra of its stochastic forces are fitted together with it. Where the error of an instrument
-    drifts, so is the noise of the instruments, which was fitted without that error.
+    The spectra of its stochastic forces are fitted together with it. Where the error of an
+    instrument drifts, so is the noise of the instruments, which was fitted without that error.
 
     Args:
         problem: Recordings and priors.

@@ -67,7 +67,7 @@ class Diagnosis:
     def map_recording(
         self, recording: Recording, noise: Mapping[str, float] | None = None
     ) -> MappedRecording:
-        """Return a further recording mapped to the same program, with the terms that were described.
+        """Return a further recording mapped to the program, with the described terms.
 
         Args:
             recording: A recording of the same vessel.
@@ -180,8 +180,8 @@ def select(
 ) -> Selection:
     """Select the effects that the recordings require.
 
-    If the notes do not specify the correlation time of the latent force, it is chosen for the effects
-    that were selected, and they are selected again.
+    If the notes do not specify the correlation time of the latent force, it is chosen for the
+    effects that were selected, and they are selected again.
 
     Args:
         question: Mapped recordings, priors and candidates.

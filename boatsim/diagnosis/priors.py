@@ -67,8 +67,8 @@ def horizon(vessel: Vessel, config: LoadConfig = DEFAULT.load) -> float:
 def rate(vessel: Vessel, duration: float = 0.0, config: LoadConfig = DEFAULT.load) -> float:
     """Return the rows per second that are used of recordings [Hz].
 
-    An hour is informative by its many manoeuvres, a minute by its many rows; the cost of a diagnosis
-    is proportional to the rows.
+    An hour is informative by its many manoeuvres, a minute by its many rows; the cost of a
+    diagnosis is proportional to the rows.
 
     Args:
         vessel: Vessel whose [diagnosis] table may override the rule.
@@ -139,7 +139,7 @@ def sensed_noise(
 
 
 def noise_unit(vessel: Vessel, column: str) -> float:
-    """Return what the noise of a column is compared with: the length [m] or a radian, per s for rates.
+    """Return the unit of the noise of a column: the length [m] or a radian, per s for rates.
 
     Args:
         vessel: Vessel whose length sets the scale.

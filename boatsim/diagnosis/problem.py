@@ -1,4 +1,4 @@
-"""The estimation problem: mapped recordings, free parameters with their priors, and a fit of them."""
+"""The estimation problem: mapped recordings, free parameters with priors, and fits."""
 
 from collections import defaultdict
 from collections.abc import Mapping, Sequence
@@ -185,7 +185,7 @@ class Problem:
     horizon: float = field(init=False)  # [s] length of free runs
     # coefficients of the vessel's own effects that are refitted with every hypothesis
     nominal_coefficients: tuple[FreeParameter, ...] = field(init=False)
-    # (to, from) places in the parameter values of a run: unset parameters inherit the vessel's value
+    # (to, from) places in the values of a run: unset parameters inherit the vessel's value
     links: tuple[tuple[int, int], ...] = field(init=False)
 
     def __post_init__(self) -> None:
@@ -297,7 +297,7 @@ class Problem:
             theta: (F,) their values.
             on: (effects,) 1 for the effects that act, else 0.
             levels: Levels of sensor noise and latent force.
-            about: Passes whose linearisation is used again, for other noise levels; None: linearise.
+            about: Passes whose linearisation is used again; None: linearise.
         """
         before = about.passes if about else [None] * len(self.recordings)
         found = []

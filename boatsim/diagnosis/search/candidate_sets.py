@@ -235,8 +235,8 @@ class CandidateSets:
     def promising(self, best: Fit) -> list[str]:
         """Return the candidates that may gain on top of a set.
 
-        They are those that gained on top of a set which it contains. None are returned where no such
-        set was screened; all candidates are screened then.
+        They are those that gained on top of a set which it contains. None are returned where no
+        such set was screened; all candidates are screened then.
 
         Args:
             best: A fit.

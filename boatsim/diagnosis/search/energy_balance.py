@@ -1,8 +1,8 @@
 """Energy balance of a stochastic force: one that brakes the hull stands for a missing law.
 
 Waves excite a hull, and what they do comes back as damping: on the whole they give energy to it.
-Friction of another law than the fitted damping oscillates with the hull like waves of its own
-frequency would, but takes energy from it.
+Friction of another law than the fitted damping oscillates like waves at the
+frequency of the hull, but takes energy from it.
 """
 
 import numpy as np

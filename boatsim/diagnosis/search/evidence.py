@@ -36,7 +36,7 @@ def unknown_threshold(
 
 
 def combined_gain(gains: Sequence[float]) -> float:
-    """Return the evidence that any of several effects acts, whichever, up to their number [nats].
+    """Return the evidence that any of several effects acts [nats].
 
     Args:
         gains: Evidence of each [nats].

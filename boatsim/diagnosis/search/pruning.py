@@ -27,7 +27,7 @@ class IdentifiedEffect:
 
     name: str
     gain: float  # [nats] on top of the other effects
-    shared: float  # [nats] that one of it and its rivals gains, whichever
+    shared: float  # [nats] that any of it and its rivals gains
     probability: float
     tied_with: tuple[str, ...]  # names of its look-alikes
     rivals: Mapping[str, Fit]  # fits with the best other candidates in its place

@@ -1,4 +1,4 @@
-"""The select stage: forward selection by evidence, pruning, and decisions by held-out recordings."""
+"""The select stage: forward selection, pruning, and decisions by held-out recordings."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -39,7 +39,7 @@ class Baseline(NamedTuple):
 
 @dataclass(frozen=True)
 class Ranking:
-    """Result of the selection: identified effects, the evidence of all candidates, and what remains."""
+    """Result of the selection: identified effects, and the evidence of all candidates."""
 
     nominal: Fit  # the vessel as written, noise and force levels fitted
     recalibrated: Fit  # the nominal structure with its own coefficients refitted
@@ -50,7 +50,7 @@ class Ranking:
     left_over: float  # [nats] that a force beyond the assumed level gains after the best set
     structure: Structure  # what that force correlates with most
     explained: float  # [nats] that the deterministic effects of the best set gain
-    told_from: float  # [nats] of `left_over` from which something is missing besides
+    told_from: float  # [nats] of `left_over` from which an unknown cause is reported
     structured: bool  # whether that force, however weak, clearly correlates with something
     description: Description | None = None  # symbolic description of it
 

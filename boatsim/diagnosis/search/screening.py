@@ -107,10 +107,10 @@ def screen(
 
 
 def recheck(problem: Problem, base: Fit, screened: Fit) -> Fit:
-    """Return a screening if the full filter confirms it, else steps from the best point nearer `base`.
+    """Return a screening that the full filter confirms, else the best point nearer `base`.
 
-    A screening may fail where the held gains no longer suit the hull, for example where much mass is
-    missing. What seems little at a point that the filter confirms may still gain most.
+    A screening may fail where the held gains no longer suit the hull, for example where much mass
+    is missing. What seems little at a point that the filter confirms may still gain most.
 
     Args:
         problem: Recordings and priors.
@@ -146,8 +146,8 @@ def _half_log_determinant(J: Array) -> float:
 def starts(problem: Problem, effect: Effect) -> list[dict[str, float]]:
     """Return the starting points of a candidate's parameters.
 
-    They are those of the effect, scaled by Froude's law, and shares of the largest command recorded;
-    a small value where there are none.
+    They are those of the effect, scaled by Froude's law, and shares of the largest command
+    recorded; a small value where there are none.
 
     Args:
         problem: Recordings and priors.
@@ -282,7 +282,7 @@ def _steps(problem: Problem, start: Fit, about: Linearisation, rounds: int) -> t
             trial = space.damped_step(theta, J, g, damping)
             predicted = space.predicted_gain(J, g, theta, trial)
             if predicted >= 0.0 and score + predicted < about.score + config.screening_promise:
-                # too little to follow: the prediction is accepted as it is
+                # too little to follow: the prediction is accepted
                 theta, score, ends = trial, score + predicted, True
                 break
             after, value = evaluate(trial)
@@ -346,8 +346,9 @@ def _calm(problem: Problem, at: Fit, base: Fit) -> Fit:
 def stochastic_starts(problem: Problem, base: Fit, effect: Effect) -> list[Fit]:
     """Return the starts of a stochastic force, or of the drift of an instrument.
 
-    A stochastic force starts with a share of the latent force. The drift of an instrument starts with
-    the assumed levels, because force and noise that were fitted without it have absorbed part of it.
+    A stochastic force starts with a share of the latent force. The drift of an instrument starts
+    with the assumed levels, because force and noise that were fitted without it have absorbed part
+    of it.
 
     Args:
         problem: Recordings and priors.

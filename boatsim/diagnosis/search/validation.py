@@ -1,4 +1,4 @@
-"""Decisions by held-out recordings: effects that they refute, and look-alikes that they distinguish."""
+"""Decisions by held-out recordings: refuted effects, and distinguished look-alikes."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -49,10 +49,10 @@ def refuted_effect(
 ) -> str:
     """Return an effect that does not hold for held-out recordings, or "".
 
-    Either these become clearly less likely by it, or all recordings together gain less by it and its
-    look-alikes than is required and than the laws of the other effects may be off by. The likelihood
-    compares each row with the rows before. Free runs over held-out recordings must not require the
-    effect all the same, as they may where these go beyond the fitted ones.
+    Either these become clearly less likely by it, or all recordings together gain less by it and
+    its look-alikes than is required and than the laws of the other effects may be off by. The
+    likelihood compares each row with the rows before. Free runs over held-out recordings must not
+    require the effect all the same, as they may where these go beyond the fitted ones.
 
     Args:
         sets: Fits of candidate sets.
@@ -148,10 +148,10 @@ def with_held_out(
 def deterministic_replacement(
     sets: CandidateSets, best: Fit, named: Sequence[IdentifiedEffect], held_out: Recordings
 ) -> Fit | None:
-    """Replace a stochastic force, or a look-alike, by a deterministic effect if held-out data prefer it.
+    """Replace a stochastic force by a deterministic effect if held-out data prefer it.
 
-    Free runs over held-out recordings must get clearly better by it, or all recordings together must
-    become clearly more likely.
+    Free runs over held-out recordings must get clearly better by it, or all recordings together
+    must become clearly more likely.
 
     Args:
         sets: Fits of candidate sets; an effect that is replaced is added to those refuted.
