@@ -24,7 +24,7 @@ from boatsim.simulate.compiled_engine import Twin
 from boatsim.warp import Batch
 from boatsim.warp.kernels import HEAD
 from boatsim.warp.on_mujoco import OnMujoco
-from boatsim.warp.program import kept, module
+from boatsim.warp.program import import_text, module
 from boatsim.warp.runtime import warp
 from boatsim.warp.translate import Translation
 from boatsim.warp.values import REAL, ROW, WHOLE
@@ -145,7 +145,7 @@ def test_the_whole_library_has_the_same_forces_and_actuators() -> None:
     translation.function(code.forces, [REAL, ROW, ROW, WHOLE, ROW, ROW])
     translation.function(code.until_bend, [ROW, ROW, REAL, REAL, ROW, ROW])
     translation.function(code.actuate_in_place, [ROW, ROW, REAL, ROW, ROW, ROW])
-    wp, kernels = warp(), kept(HEAD.replace("{real}", "float64") + translation.text + CHECK)
+    wp, kernels = warp(), import_text(HEAD.replace("{real}", "float64") + translation.text + CHECK)
     there = [
         wp.array(x, dtype=wp.float64)
         for x in (t, s, act, values, on, commands, memory, moved, pauses, s[:, :3])

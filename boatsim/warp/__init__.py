@@ -1,3 +1,3 @@
-"""Large batches on Warp: a vessel's compiled program, translated, on a GPU or on Warp's CPU device."""
+"""Large batches on NVIDIA Warp, on a GPU or on its CPU device."""
 
 from boatsim.warp.batch import Batch as Batch

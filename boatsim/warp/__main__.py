@@ -1,4 +1,4 @@
-"""`python -m boatsim.warp VESSEL` prints a vessel's program as Warp has it."""
+"""`python -m boatsim.warp VESSEL` prints a vessel's program in Warp's language."""
 
 import sys
 

@@ -1,4 +1,4 @@
-"""A batch of boats on one of Warp's devices: the calls of `boatsim.simulate.batch.Batch`, the steps of a GPU."""
+"""A batch of boats on a device of Warp, with the interface of `boatsim.simulate.batch.Batch`."""
 
 from collections.abc import Mapping, Sequence
 
@@ -13,13 +13,15 @@ from boatsim.warp.device_state import Boats
 from boatsim.warp.on_mujoco import OnMujoco
 from boatsim.warp.standalone import Alone
 
-MOST = 2**24  # whole numbers up to here are what they are in single precision
+MOST_EXACT = 2**24  # integers up to this one are exact in single precision
 
 
 class Batch(batch.Batch):
-    """Boats in open water on a device. What is read comes from there when it is asked for, what is set goes there then.
+    """Boats in open water on a device.
 
-    The motion of a boat that diverges is `lost`; the others do not mind.
+    Arrays are copied to and from the device when they are needed.
+
+    A boat whose motion diverges is `lost`; other boats are unaffected.
     """
 
     def __init__(
@@ -33,19 +35,29 @@ class Batch(batch.Batch):
         double: bool = False,
         seeds: Sequence[int] | None = None,
     ) -> None:
-        """As the batch on cores; `device` is a name of Warp's, "cpu" or "cuda:0".
+        """Put boats at rest at the origin.
 
-        On mujoco_warp, in single precision, or without it, then in double precision too. Raises BadInput, for an effect
-        that has no form there too.
+        Args:
+            vessels: Boat i is the vessel i modulo their number.
+            n: Number of boats; that of the vessels if None.
+            step: Integration step [s].
+            device: Name of a device of Warp, "cpu" or "cuda:0".
+            mujoco: Integrate with mujoco_warp, which has single precision only; else in one kernel.
+            double: Double precision.
+            seeds: Seed of each boat's random effects.
+
+        Raises:
+            BadInput: Vessels differ in more than numbers, the law of an effect cannot be
+                translated, or an argument is not allowed.
         """
         if mujoco and double:
             raise BadInput(
-                "double = true; mujoco_warp knows single precision alone (allowed with mujoco = false)"
+                "double = true; mujoco_warp has single precision only (allowed with mujoco = false)"
             )
-        self._ahead = False  # the device has stepped since its states were read
-        self._changed = True  # what is here has changed since it was sent there
+        self._ahead = False  # whether the device has stepped since its states were read
+        self._changed = True  # whether arrays here have changed since they were sent
         self._double = double
-        self._numbers = np.zeros(0, dtype=np.int64)  # (n,) of each boat's vessel
+        self._numbers = np.zeros(0, dtype=np.int64)  # (n,) number of each boat's vessel
         super().__init__(vessels, n, step, seeds=seeds)
         self._there = Boats(self.program, self.n, step, device, "float64" if double else "float32")
         self.motion: OnMujoco | Alone = (
@@ -59,7 +71,7 @@ class Batch(batch.Batch):
         commands: ArrayLike | Mapping[str, float] | None = None,
         boats: ArrayLike | None = None,
     ) -> None:
-        """As there: boats (all) at states, actuators settled at commands, t = 0."""
+        """Put boats at states, see `boatsim.simulate.batch.Batch.reset`."""
         self._read()
         super().reset(states, commands, boats)
         self._changed = True
@@ -67,7 +79,7 @@ class Batch(batch.Batch):
     def advance(
         self, commands: ArrayLike | Mapping[str, float] | None = None, steps: int = 1
     ) -> None:
-        """As there: steps of all boats with the commands held."""
+        """Integrate all boats, see `boatsim.simulate.batch.Batch.advance`."""
         if commands is not None:
             self._commands[:] = self._taken(commands, np.arange(self.n))
         self.send()
@@ -76,14 +88,14 @@ class Batch(batch.Batch):
         self._ahead = True
 
     def set(self, parameter: str, values: ArrayLike, boats: ArrayLike | None = None) -> None:
-        """As there: other values of "effect.parameter"."""
+        """Set a parameter, see `boatsim.simulate.batch.Batch.set`."""
         self._read()
         super().set(parameter, values, boats)
         self._check_courses()
         self._changed = True
 
     def assign(self, vessel: ArrayLike, boats: ArrayLike | None = None) -> None:
-        """As there: boats become the vessel of that number."""
+        """Assign vessels to boats, see `boatsim.simulate.batch.Batch.assign`."""
         self._read()
         super().assign(vessel, boats)
         if boats is None:
@@ -106,17 +118,17 @@ class Batch(batch.Batch):
 
     @property
     def lost(self) -> NDArray[np.bool_]:
-        """(n,) boats whose motion is no longer finite; the others go on."""
+        """(n,) whether the motion of a boat is no longer finite; other boats are unaffected."""
         self._read()
         return super().lost
 
     def feel(self, felt: Array) -> None:
-        """As there: what instruments without noise would say."""
+        """Write readings without noise, see `boatsim.simulate.batch.Batch.feel`."""
         self._read()
         super().feel(felt)
 
     def send(self) -> None:
-        """To the device what has changed here; commands and clocks always."""
+        """Copy commands and times to the device, and all other arrays if they have changed."""
         self._there.commands.assign(self._commands)
         self._there.t.assign(self.t)
         if self._changed:
@@ -128,21 +140,22 @@ class Batch(batch.Batch):
             self._changed = False
 
     def _read(self) -> None:
-        """From the device what it has stepped."""
+        """Copy states and actuators from the device if it has stepped."""
         if self._ahead:
             self._y[:] = self.motion.states()
             self._memory[:], self._act[:] = self._there.memory.numpy(), self._there.act.numpy()
             self._ahead = False
 
     def _check_courses(self) -> None:
-        """Raises BadInput for a random course by a number that single precision lacks: it would be another one."""
+        """Raise BadInput for a realisation whose number is not exact in single precision."""
         for effect, first in zip(self.program.effects, self.program.offsets, strict=True):
             pairs = zip(
                 type(effect).params(), effect.values(), effect.seeded(1).values(), strict=True
             )
             for place, (key, value, other) in enumerate(pairs):
                 worst = self._p[:, first + place].max()
-                if value != other and worst > MOST and not self._double:
+                if value != other and worst > MOST_EXACT and not self._double:
                     raise BadInput(
-                        f"{effect.name}.{key} = {worst:.0f}; in single precision allowed to {MOST}"
+                        f"{effect.name}.{key} = {worst:.0f}; "
+                        f"in single precision allowed to {MOST_EXACT}"
                     )

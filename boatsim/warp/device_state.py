@@ -1,4 +1,4 @@
-"""What a device holds of a batch beside its motion: commands, actuators, parameters and masses."""
+"""Arrays of a batch on a device: commands, actuators, parameters and masses."""
 
 from types import ModuleType
 from typing import Any
@@ -12,10 +12,18 @@ from boatsim.warp.runtime import device, warp
 
 
 class Boats:
-    """Arrays of a device, a row a boat, and the program that works on them."""
+    """Arrays on a device, one row for each boat, and the program that works on them."""
 
     def __init__(self, program: Program, n: int, step: float, on: str, real: str) -> None:
-        """`on` is the device, `real` the kind of floats there."""
+        """Allocate the arrays.
+
+        Args:
+            program: The vessel's program.
+            n: Number of boats.
+            step: Integration step [s].
+            on: Name of the device, "cpu" or "cuda:0".
+            real: Kind of floats, "float32" or "float64".
+        """
         self.program, self.n, self.step = program, n, step
         self.wp, self.device = warp(), device(on)
         self.code = program.module
@@ -24,11 +32,16 @@ class Boats:
         self.commands = self.zeros(len(program.vessel.inputs))
         self.memory, self.act = self.zeros(program.memory_size), self.zeros(program.held_size)
         self.t = self.filled(np.zeros(n), self.wp.float64)  # [s]
-        self.moves = 0  # how often parameters came to lie elsewhere
+        self.reallocations = 0  # of arrays; a recorded graph of the GPU holds their addresses
         self.p = self.k = self.filled(np.zeros((0, 0)))
 
     def take(self, p: Array, k: Array) -> None:
-        """Parameters (n, P) and masses (n, K); a single row of each where all boats are alike."""
+        """Copy parameters and masses to the device; one row of each if all boats are equal.
+
+        Args:
+            p: (n, P) parameters.
+            k: (n, K) masses.
+        """
         alike = (p == p[:1]).all() and (k == k[:1]).all()
         p, k = (p[:1], k[:1]) if alike else (p, k)
         if self.p.shape == p.shape:
@@ -36,16 +49,26 @@ class Boats:
             self.k.assign(k)
         else:
             self.p, self.k = self.filled(p), self.filled(k)
-            self.moves += 1
+            self.reallocations += 1
 
     def zeros(self, *shape: int) -> Any:
-        """(n, ...) of zeros."""
+        """Return an array (n, ...) of zeros on the device."""
         return self.filled(np.zeros((self.n, *shape)))
 
     def filled(self, values: Array, kind: Any = None) -> Any:
-        """These numbers on the device."""
+        """Return a copy of an array on the device.
+
+        Args:
+            values: The numbers.
+            kind: Type of the entries; the program's floats if None.
+        """
         return self.wp.array(values, dtype=kind or self.real, device=self.device)
 
     def launch(self, kernel: str, *inputs: Any) -> None:
-        """One of the program's kernels, a thread a boat."""
+        """Run a kernel of the program with one thread for each boat.
+
+        Args:
+            kernel: Its name.
+            inputs: Its arguments.
+        """
         self.wp.launch(getattr(self.kernels, kernel), dim=self.n, inputs=inputs, device=self.device)

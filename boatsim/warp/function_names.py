@@ -1,4 +1,4 @@
-"""How Warp writes what laws take from Python, `math` and numpy."""
+"""Names in Warp of functions and operators of Python, `math` and numpy that laws use."""
 
 import ast
 import math
@@ -31,8 +31,8 @@ MATH: Mapping[Any, str] = {
     np.minimum: "wp.min",
     np.maximum: "wp.max",
 }
-OF_WHOLE = ("wp.min", "wp.max", "wp.abs")  # those that leave whole numbers whole
-OF_TWO = ("wp.min", "wp.max")  # of any number here, of two there
+OF_WHOLE = ("wp.min", "wp.max", "wp.abs")  # functions that map integers to integers
+OF_TWO = ("wp.min", "wp.max")  # functions of two arguments in Warp, of any number in Python
 CASTS: Mapping[Any, Kind] = {
     float: REAL,
     np.float64: REAL,
@@ -66,11 +66,11 @@ OPERATORS: Mapping[type[ast.AST], str] = {
     ast.UAdd: "+",
     ast.Not: "not",
 }
-OF_TRUTHS = {"&": "and", "|": "or"}  # of two truths
-OF_WHOLES = {"%": "remainder_", "//": "quotient_"}  # rounded down, as Python has them
+OF_TRUTHS = {"&": "and", "|": "or"}  # operators of two bools
+OF_WHOLES = {"%": "remainder_", "//": "quotient_"}  # of integers, rounded down as in Python
 RESERVED = ("T", "wp", "int", "float", "bool", "range", "lambda")
 
 
 def safe(name: str) -> str:
-    """A variable's name, less what Warp keeps to itself."""
+    """Return a name for a variable that is not reserved in Warp."""
     return f"{name}_" if name in RESERVED else name

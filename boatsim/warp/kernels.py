@@ -1,6 +1,6 @@
-"""Kernels of a batch: one thread a boat. `boatsim.warp.program` writes a vessel's own functions before them.
+"""Kernels of a batch, with one thread for each boat.
 
-The text below is Warp's: it is read, not imported.
+The text is in Warp's language; `boatsim.warp.program` writes it to a file.
 """
 
 HEAD = '''"""A vessel's program for Warp, translated by boatsim; not meant to be edited."""
@@ -61,14 +61,17 @@ def bits_(a: int, b: int, c: int, d: int):
 FORCES = '''
 @wp.kernel
 def add_forces(
-    t: wp.array(dtype=wp.float64), part: wp.array(dtype=T), share: T, at: int, q: wp.array2d(dtype=T),
-    qd: wp.array2d(dtype=T), act: wp.array2d(dtype=T), p: wp.array2d(dtype=T), k: wp.array2d(dtype=T),
+    t: wp.array(dtype=wp.float64), part: wp.array(dtype=T), share: T, at: int,
+    q: wp.array2d(dtype=T),
+    qd: wp.array2d(dtype=T), act: wp.array2d(dtype=T), p: wp.array2d(dtype=T),
+    k: wp.array2d(dtype=T),
     force: wp.array2d(dtype=T), M: wp.array2d(dtype=T),
 ):
-    """What the passive callback does: forces, and the mass of the water, at one stage of a Runge-Kutta step."""
+    """Add forces and the added mass at one stage of a Runge-Kutta step."""
     i = wp.tid()
     motion_add_to_mujoco(
-        T(t[i]) + share * part[i], q[i], qd[i], act[i], at, p[i % p.shape[0]], k[i % k.shape[0]], force[i], M[i]
+        T(t[i]) + share * part[i], q[i], qd[i], act[i], at,
+        p[i % p.shape[0]], k[i % k.shape[0]], force[i], M[i]
     )
 '''
 
@@ -76,10 +79,11 @@ PARTS = '''
 @wp.kernel
 def begin_part(
     commands: wp.array2d(dtype=T), dt: T, p: wp.array2d(dtype=T), t: wp.array(dtype=wp.float64),
-    part: wp.array(dtype=T), ahead: wp.array(dtype=int), left: wp.array(dtype=T), least: wp.array(dtype=T),
+    part: wp.array(dtype=T), ahead: wp.array(dtype=int), left: wp.array(dtype=T),
+    least: wp.array(dtype=T),
     before: wp.array(dtype=T), memory: wp.array2d(dtype=T), act: wp.array2d(dtype=T),
 ):
-    """The next part of each boat's own step: it ends where a signal jumps or bends. One that is done stands still."""
+    """Begin the next part of each boat's step, which ends where a signal jumps or bends."""
     i = wp.tid()
     t[i] = t[i] + wp.float64(part[i])
     part[i] = T(0.0)
@@ -100,13 +104,15 @@ def begin_part(
 
 @wp.kernel
 def rest(part: wp.array(dtype=T)):
-    """Nothing of what was stepped is left over for the clock."""
+    """Set the lengths of the parts to zero, so that the clock does not count them twice."""
     part[wp.tid()] = T(0.0)
 
 
 @wp.kernel
-def look(ahead: wp.array(dtype=int), left: wp.array(dtype=T), unfinished: wp.array(dtype=int)):
-    """Whether any boat is still on its way."""
+def find_unfinished(
+    ahead: wp.array(dtype=int), left: wp.array(dtype=T), unfinished: wp.array(dtype=int)
+):
+    """Set `unfinished` if any boat has steps left."""
     i = wp.tid()
     if left[i] > T({enough}) or ahead[i] > 0:
         unfinished[0] = 1
@@ -115,11 +121,13 @@ def look(ahead: wp.array(dtype=int), left: wp.array(dtype=T), unfinished: wp.arr
 ALONE = '''
 @wp.kernel
 def run_on(
-    commands: wp.array2d(dtype=T), step: wp.float64, steps: int, p: wp.array2d(dtype=T), k: wp.array2d(dtype=T),
-    none: wp.array(dtype=T), t: wp.array(dtype=wp.float64), y: wp.array2d(dtype=T), memory: wp.array2d(dtype=T),
+    commands: wp.array2d(dtype=T), step: wp.float64, steps: int, p: wp.array2d(dtype=T),
+    k: wp.array2d(dtype=T),
+    none: wp.array(dtype=T), t: wp.array(dtype=wp.float64), y: wp.array2d(dtype=T),
+    memory: wp.array2d(dtype=T),
     act: wp.array2d(dtype=T),
 ):
-    """Many steps without MuJoCo, as the twin goes."""
+    """Integrate many steps without MuJoCo, as the compiled engine does."""
     i = wp.tid()
     own, mass = i % p.shape[0], i % k.shape[0]
     for j in range(steps):

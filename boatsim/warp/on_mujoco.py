@@ -1,7 +1,8 @@
-"""A batch's motion on mujoco_warp: forces and the mass of the water enter through its passive callback.
+"""The motion of a batch on mujoco_warp: forces and added mass enter through its passive callback.
 
-mujoco_warp steps all its worlds together, by MuJoCo's Runge-Kutta method. Each boat has a step length of its own there,
-so that each may end a step where a signal of its actuators jumps or bends, and go on from there while others are ahead.
+mujoco_warp integrates all worlds together by MuJoCo's Runge-Kutta method. Each boat has its own
+step length, so that it can end a step where a signal of its actuators jumps or bends and continue
+from there while other boats are ahead.
 """
 
 from collections.abc import Sequence
@@ -18,19 +19,10 @@ from boatsim.physics.vessel import Vessel
 from boatsim.simulate import world
 from boatsim.warp.device_state import Boats
 
-STAGES = (
-    (0.0, 0),
-    (0.5, 1),
-    (0.5, 1),
-    (1.0, 2),
-)  # of a step: its share, and the actuators at begin, middle or end
-BODY = (
-    "body_mass",
-    "body_subtreemass",
-    "body_inertia",
-    "body_ipos",
-    "jnt_pos",
-)  # what loads differ in
+# Stages of a Runge-Kutta step: share of the step; actuators at its begin, middle or end
+STAGES = ((0.0, 0), (0.5, 1), (0.5, 1), (1.0, 2))
+# Arrays of the model that differ between vessels with different loads
+BODY = ("body_mass", "body_subtreemass", "body_inertia", "body_ipos", "jnt_pos")
 IDLE = (
     mujoco.mjtDisableBit.mjDSBL_CONSTRAINT
     | mujoco.mjtDisableBit.mjDSBL_CONTACT
@@ -42,7 +34,15 @@ class OnMujoco:
     """All boats as the worlds of one model in open water."""
 
     def __init__(self, boats: Boats, vessels: Sequence[Vessel]) -> None:
-        """`vessels` are those that boats may be of. Raises BadInput where mujoco_warp is missing."""
+        """Build the models.
+
+        Args:
+            boats: Arrays on the device.
+            vessels: The vessels that can be assigned to boats.
+
+        Raises:
+            BadInput: mujoco_warp is not installed.
+        """
         try:
             import mujoco_warp
         except ImportError:
@@ -52,12 +52,11 @@ class OnMujoco:
         self.boats, self._mjw = boats, mujoco_warp
         self._models = [world.build(v, step=boats.step, show=False) for v in vessels]
         model = self._models[0]
-        model.opt.disableflags = IDLE  # nothing touches anything; its forces are ours
+        model.opt.disableflags = IDLE  # no contacts; all forces come from the callback
         joints = [model.joint(i).name for i in range(model.njnt)]
         coordinates = [COORDINATES[i] for i in boats.code.FREE]
-        self._place = np.array(
-            [joints.index(c) for c in coordinates]
-        )  # of each coordinate among MuJoCo's joints
+        # place of each coordinate among MuJoCo's joints
+        self._place = np.array(list(map(joints.index, coordinates)))
         self._sign = np.array([float(SIGN[c]) for c in coordinates])
         with boats.wp.ScopedDevice(boats.device):
             self.model = mujoco_warp.put_model(model)
@@ -75,21 +74,29 @@ class OnMujoco:
         self._recorded = -1
 
     def take(self, numbers: NDArray[np.int64]) -> None:
-        """Boats become of the vessels of these numbers (n,): each world has its hull's mass, inertia and joints."""
+        """Assign vessels to boats: each world gets the mass, inertia and joints of its hull.
+
+        Args:
+            numbers: (n,) number of each boat's vessel.
+        """
         b = self.boats
-        for name in BODY if len(self._models) > 1 else ():
-            found, there = (
-                np.stack([getattr(m, name) for m in self._models])[numbers],
-                getattr(self.model, name),
-            )
-            if len(there) == b.n:
-                there.assign(found)
+        if len(self._models) == 1:
+            return
+        for name in BODY:
+            values = np.stack([getattr(m, name) for m in self._models])[numbers]
+            array = getattr(self.model, name)
+            if len(array) == b.n:
+                array.assign(values)
             else:
-                setattr(self.model, name, b.filled(found, there.dtype))
-                b.moves += 1
+                setattr(self.model, name, b.filled(values, array.dtype))
+                b.reallocations += 1
 
     def put(self, y: Array) -> None:
-        """States (n, 2 NQ), joint coordinates and rates."""
+        """Set the states.
+
+        Args:
+            y: (n, 2 NQ) joint coordinates and rates.
+        """
         half = y.shape[1] // 2
         for where, what in ((self.data.qpos, y[:, :half]), (self.data.qvel, y[:, half:])):
             turned = np.empty(what.shape)
@@ -97,46 +104,50 @@ class OnMujoco:
             where.assign(turned)
 
     def states(self) -> Array:
-        """(n, 2 NQ)."""
+        """Return joint coordinates and rates (n, 2 NQ)."""
         q, qd = self.data.qpos.numpy()[:, self._place], self.data.qvel.numpy()[:, self._place]
         return np.hstack([self._sign * q, self._sign * qd]).astype(float)
 
     def accelerations(self) -> Array:
-        """(n, NQ) of the joint coordinates, of what is on the device now."""
+        """Return the accelerations of the joint coordinates (n, NQ) in the present state."""
         self._stage = 0
         with self.boats.wp.ScopedDevice(self.boats.device):
             self._mjw.forward(self.model, self.data)
         return np.asarray(self._sign * self.data.qacc.numpy()[:, self._place], dtype=float)
 
     def advance(self, steps: int) -> None:
-        """Steps under the commands there are; boats that cut theirs take longer, and the last one is waited for."""
+        """Integrate all boats under their commands, until the last one has finished its steps.
+
+        Args:
+            steps: Number of steps.
+        """
         b = self.boats
         with b.wp.ScopedDevice(b.device):
-            if b.device.is_cuda and self._recorded != b.moves:  # a graph knows where parameters lay
+            if b.device.is_cuda and self._recorded != b.reallocations:
                 self._record()
             self._ahead.fill_(steps)
             for _ in range(steps):
-                self._all_on()
+                self._advance_part()
             while b.code.HAS_PAUSE and self._any_left():
-                self._all_on()
+                self._advance_part()
         b.launch("rest", self._part)
 
-    def _all_on(self) -> None:
-        """A part of a step of each boat."""
+    def _advance_part(self) -> None:
+        """Integrate a part of a step of each boat."""
         if self._graph is None:
             self._part_of_all()
         else:
             self.boats.wp.capture_launch(self._graph)
 
     def _record(self) -> None:
-        """Note down a part once as a graph of the GPU's, which is launched as a whole; all is compiled before."""
-        self._part_of_all()  # nobody has steps ahead: nothing moves
+        """Record a part as a graph of the GPU, after compiling everything in it."""
+        self._part_of_all()  # no boat has steps left: nothing moves
         with self.boats.wp.ScopedCapture() as capture:
             self._part_of_all()
-        self._graph, self._recorded = capture.graph, self.boats.moves
+        self._graph, self._recorded = capture.graph, self.boats.reallocations
 
     def _part_of_all(self) -> None:
-        """Actuators over a part of each boat's own step, then a Runge-Kutta step as long."""
+        """Advance the actuators of each boat over a part of its step, then its motion."""
         b = self.boats
         b.launch(
             "begin_part",
@@ -156,7 +167,7 @@ class OnMujoco:
         self._mjw.step(self.model, self.data)
 
     def _passive(self, model: Any, data: Any) -> None:
-        """mujoco_warp's callback, once a stage."""
+        """Callback of mujoco_warp, called once for each stage."""
         (share, place), self._stage, b = STAGES[self._stage], self._stage + 1, self.boats
         at = place * int(b.code.HELD)
         b.launch(
@@ -175,7 +186,7 @@ class OnMujoco:
         )
 
     def _any_left(self) -> bool:
-        """Whether any boat is still on its way."""
+        """Whether any boat has steps left."""
         self._unfinished.zero_()
-        self.boats.launch("look", self._ahead, self._left, self._unfinished)
+        self.boats.launch("find_unfinished", self._ahead, self._left, self._unfinished)
         return bool(self._unfinished.numpy()[0])

@@ -1,4 +1,4 @@
-"""A vessel's compiled program, translated for Warp and kept where compiled programs are."""
+"""A vessel's program, translated for Warp and kept in the cache folder of compiled programs."""
 
 from hashlib import sha256
 from types import ModuleType
@@ -7,10 +7,11 @@ from boatsim.errors import BadInput
 from boatsim.physics import cache
 from boatsim.physics.program import Program
 from boatsim.warp.kernels import ALONE, FORCES, HEAD, PARTS
-from boatsim.warp.translate import NoForm, Translation
+from boatsim.warp.translate import NotTranslatable, Translation
 from boatsim.warp.values import NOTHING, REAL, ROW, WHOLE, Kind
 
-ENTRIES: dict[str, tuple[Kind, ...]] = {  # what kernels call, and the kinds of its arguments
+# Functions that the kernels call, and the kinds of their arguments
+ENTRIES: dict[str, tuple[Kind, ...]] = {
     "add_to_mujoco": (REAL, ROW, ROW, ROW, WHOLE, ROW, ROW, ROW, ROW),
     "step_in_place": (REAL, ROW, REAL, ROW, ROW, NOTHING, ROW, ROW),
     "actuate_in_place": (ROW, ROW, REAL, ROW, NOTHING, ROW),
@@ -20,12 +21,20 @@ ENTRIES: dict[str, tuple[Kind, ...]] = {  # what kernels call, and the kinds of 
 
 
 def text_of(program: Program, real: str) -> str:
-    """The whole module; `real` is the kind of its floats. Raises BadInput for an effect that has no form there."""
+    """Return the text of the translated module.
+
+    Args:
+        program: The vessel's program.
+        real: Kind of its floats, "float32" or "float64".
+
+    Raises:
+        BadInput: The law of an effect cannot be translated.
+    """
     code, translation = program.module, Translation()
     try:
         for name, kinds in ENTRIES.items():
             translation.function(getattr(code, name), kinds)
-    except NoForm as error:
+    except NotTranslatable as error:
         raise BadInput(f"{program.vessel.name}: {error}") from None
     limits = {
         "{real}": real,
@@ -39,10 +48,19 @@ def text_of(program: Program, real: str) -> str:
 
 
 def module(program: Program, real: str = "float32") -> ModuleType:
-    """The translated program with the kernels of `boatsim.warp.kernels`, for Warp to compile."""
-    return kept(text_of(program, real))
+    """Return the translated program with the kernels of `boatsim.warp.kernels`.
+
+    Args:
+        program: The vessel's program.
+        real: Kind of its floats, "float32" or "float64".
+    """
+    return import_text(text_of(program, real))
 
 
-def kept(text: str) -> ModuleType:
-    """A module of Warp's as a file in the cache: Warp reads the text of what it compiles."""
+def import_text(text: str) -> ModuleType:
+    """Import a text from a file in the cache: Warp reads the source of what it compiles.
+
+    Args:
+        text: Source of the module.
+    """
     return cache.package({"__init__.py": text}, f"warp_{sha256(text.encode()).hexdigest()[:16]}")

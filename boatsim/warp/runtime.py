@@ -1,4 +1,4 @@
-"""Warp itself: imported when a batch is made, quiet, with its compiled kernels in boatsim's own folder."""
+"""The library Warp, imported on demand, with its kernels in boatsim's cache folder."""
 
 import os
 import sys
@@ -11,32 +11,43 @@ from boatsim.physics.cache import cache_folder
 
 
 def warp() -> Any:
-    """The library. Raises BadInput where it is missing."""
+    """Import Warp and return it.
+
+    Raises:
+        BadInput: It is not installed.
+    """
     try:
         import warp as wp
     except ImportError:
-        raise BadInput('a batch on Warp needs it installed: pip install "boatsim[warp]"') from None
+        raise BadInput('a batch on Warp needs warp-lang: pip install "boatsim[warp]"') from None
     if wp.config.kernel_cache_dir is None and "WARP_CACHE_PATH" not in os.environ:
         wp.config.kernel_cache_dir = str(cache_folder() / "warp")
-        wp.config.log_level = wp.LOG_ERROR  # it would tell of every module that it compiles
-        with deaf():
-            wp.get_devices()  # begins it
+        wp.config.log_level = wp.LOG_ERROR  # it reports every module that it compiles
+        with no_standard_error():
+            wp.get_devices()  # initialises Warp
     return wp
 
 
 def device(name: str) -> Any:
-    """A device by its name, "cpu" or "cuda:0". Raises BadInput for one that is not there."""
+    """Return a device.
+
+    Args:
+        name: "cpu" or "cuda:0", for example.
+
+    Raises:
+        BadInput: There is no such device.
+    """
     wp = warp()
     try:
         return wp.get_device(name)
     except (ValueError, RuntimeError):
-        there = ", ".join(str(found) for found in wp.get_devices())
-        raise BadInput(f"device = {name!r}; allowed here: {there}") from None
+        allowed = ", ".join(map(str, wp.get_devices()))
+        raise BadInput(f"device = {name!r}; allowed here: {allowed}") from None
 
 
 @contextmanager
-def deaf() -> Iterator[None]:
-    """Nothing reaches the standard error: Warp's own library says there that a computer has no GPU."""
+def no_standard_error() -> Iterator[None]:
+    """Discard the standard error: Warp's library reports there that a computer has no GPU."""
     sys.stderr.flush()
     kept, nowhere = os.dup(2), os.open(os.devnull, os.O_WRONLY)
     try:

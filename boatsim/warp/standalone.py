@@ -1,4 +1,4 @@
-"""A batch's motion in one kernel of its own, without MuJoCo: the twin's Runge-Kutta steps, boat by boat."""
+"""The motion of a batch in one kernel without MuJoCo, with the steps of the compiled engine."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -8,7 +8,7 @@ from boatsim.warp.device_state import Boats
 
 
 class Alone:
-    """Joint coordinates and rates of all boats, and how they go on."""
+    """Joint coordinates and rates of all boats, and their integration."""
 
     def __init__(self, boats: Boats) -> None:
         self.boats = boats
@@ -16,18 +16,26 @@ class Alone:
         self._none = boats.filled(np.zeros(boats.code.NQ))
 
     def take(self, numbers: NDArray[np.int64]) -> None:
-        """Boats become of other vessels: what they weigh is among the masses already."""
+        """Assign vessels to boats: nothing to do, the arrays of the device hold their masses."""
 
     def put(self, y: Array) -> None:
-        """States (n, 2 NQ), joint coordinates and rates."""
+        """Set the states.
+
+        Args:
+            y: (n, 2 NQ) joint coordinates and rates.
+        """
         self._y.assign(y)
 
     def states(self) -> Array:
-        """(n, 2 NQ)."""
+        """Return joint coordinates and rates (n, 2 NQ)."""
         return np.asarray(self._y.numpy(), dtype=float)
 
     def advance(self, steps: int) -> None:
-        """Steps under the commands there are."""
+        """Integrate all boats under their commands.
+
+        Args:
+            steps: Number of steps.
+        """
         b = self.boats
         b.launch(
             "run_on", b.commands, b.step, steps, b.p, b.k, self._none, b.t, self._y, b.memory, b.act

@@ -1,7 +1,8 @@
-"""What values of a compiled law are for Warp, and how each is written there."""
+"""Kinds of values in Warp, and the text with which each is written."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import chain
 from math import isfinite
 from typing import TypeAlias
 
@@ -10,19 +11,19 @@ REAL, WHOLE, BITS, TRUTH, ROW, NOTHING = "T", "int", "wp.uint64", "bool", "wp.ar
 
 @dataclass(frozen=True)
 class Record:
-    """A named tuple of floats, a struct there; known by its name in the text."""
+    """A named tuple of floats, which is a struct in Warp."""
 
     name: str
     fields: tuple[str, ...]
 
 
-# a tuple is no value of Warp's: its parts go their own ways
+# Warp has no tuples: each part is a value of its own
 Kind: TypeAlias = "str | Record | tuple[Kind, ...]"
 
 
 @dataclass(frozen=True)
 class Value:
-    """An expression: its kind, and its text or, of a tuple, its parts."""
+    """An expression: its kind, and its text or, for a tuple, its parts."""
 
     kind: Kind
     text: str = ""
@@ -34,61 +35,88 @@ NONE = Value(NOTHING)
 
 
 def tuple_of(parts: Sequence[Value]) -> Value:
-    """Values beside one another; none at all are nothing."""
+    """Return a tuple of values; no values are nothing.
+
+    Args:
+        parts: The values.
+    """
     return Value(tuple(p.kind for p in parts), parts=tuple(parts)) if parts else NONE
 
 
 def flat(value: Value) -> list[Value]:
-    """All parts of a value that Warp knows: of nothing there are none."""
+    """Return the parts of a value that are no tuples; none for nothing.
+
+    Args:
+        value: The value.
+    """
     if value.kind == NOTHING:
         return []
-    return (
-        [leaf for part in value.parts for leaf in flat(part)]
-        if isinstance(value.kind, tuple)
-        else [value]
-    )
+    if not isinstance(value.kind, tuple):
+        return [value]
+    return list(chain.from_iterable(map(flat, value.parts)))
 
 
 def named(kind: Kind, name: str) -> Value:
-    """A variable of this kind; the parts of a tuple are numbered."""
+    """Return a variable.
+
+    Args:
+        kind: Its kind.
+        name: Its name; those of the parts of a tuple are numbered.
+    """
     if isinstance(kind, tuple):
         return tuple_of([named(k, f"{name}_{i}") for i, k in enumerate(kind)])
-    return Value(kind, name) if kind != NOTHING else NONE
+    if kind == NOTHING:
+        return NONE
+    return Value(kind, name)
 
 
 def constant(number: object) -> Value:
-    """A number as it is written there."""
+    """Return a constant.
+
+    Args:
+        number: A bool, int or float.
+    """
     if isinstance(number, bool):
         return Value(TRUTH, str(number), fixed=number)
     if isinstance(number, int):
         return Value(WHOLE, str(number), fixed=number)
     assert isinstance(number, float)
-    text = f"T({number!r})" if isfinite(number) else ("T(wp.inf)" if number > 0.0 else "-T(wp.inf)")
+    text = f"T({number!r})"
+    if not isfinite(number):
+        text = "T(wp.inf)" if number > 0.0 else "-T(wp.inf)"
     return Value(REAL, text, fixed=number)
 
 
 def real(value: Value) -> Value:
-    """A number as a float."""
+    """Convert a value to a float.
+
+    Args:
+        value: A number.
+    """
     if value.kind == REAL:
         return value
     if isinstance(value.fixed, bool | int):
         return constant(float(value.fixed))
-    return Value(
-        REAL,
-        f"wp.where({value.text}, T(1.0), T(0.0))" if value.kind == TRUTH else f"T({value.text})",
-    )
+    if value.kind == TRUTH:
+        return Value(REAL, f"wp.where({value.text}, T(1.0), T(0.0))")
+    return Value(REAL, f"T({value.text})")
 
 
 def truth(value: Value) -> Value:
-    """A number as whether it is not zero."""
+    """Convert a value to a bool: whether it is not zero.
+
+    Args:
+        value: A number.
+    """
     if value.kind == TRUTH:
         return value
     if value.fixed is not None:
         return constant(bool(value.fixed))
-    return Value(TRUTH, f"({value.text} != {'T(0.0)' if value.kind == REAL else '0'})")
+    zero = "T(0.0)" if value.kind == REAL else "0"
+    return Value(TRUTH, f"({value.text} != {zero})")
 
 
 def written(kind: Kind) -> str:
-    """A kind as the annotation of an argument."""
+    """Return the annotation of an argument of a kind."""
     assert not isinstance(kind, tuple)
     return kind.name if isinstance(kind, Record) else kind
