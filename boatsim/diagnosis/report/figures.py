@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from boatsim.diagnosis.description import Written
+from boatsim.diagnosis.evaluation import MODELS
 from boatsim.diagnosis.free_runs import FreeRun
 from boatsim.diagnosis.report.described_terms import axis_of, over_words, share_or_force, what_of
 from boatsim.diagnosis.report.findings import Missing
@@ -17,7 +18,6 @@ MOST_CROSSINGS = 14  # zero crossings of an oscillation that are drawn
 BAND = 2.0  # [sd] half width of the bands
 OFF_SCALE = 2.5  # a nominal vessel with so many times the error of the others is cut off
 SIGNALS = {"psi_rad": "heading", "phi_rad": "roll", "theta_rad": "pitch", "z_m": "heave"}
-MODELS = ("nominal", "recalibrated", "patched")  # in drawing order, the last one on top
 
 Intervals = Sequence[IntervalEntry]
 

@@ -7,13 +7,13 @@ from pathlib import Path
 import numpy as np
 
 from boatsim.atomic_folder import atomic_folder
+from boatsim.diagnosis.evaluation import MODELS
 from boatsim.diagnosis.experiment_design.next_experiment import scenario_text
 from boatsim.diagnosis.free_runs import FreeRun
 from boatsim.diagnosis.pipeline import Diagnosis
 from boatsim.diagnosis.report import page, patched_vessel
 from boatsim.diagnosis.report.answer import NEXT_SCENARIO
 from boatsim.diagnosis.report.findings import Findings, Missing
-from boatsim.diagnosis.report.sentences import MODELS
 from boatsim.errors import BadPhysics
 from boatsim.files import replacing
 from boatsim.physics.signals import COMPONENTS, Array

@@ -7,6 +7,7 @@ from itertools import groupby, repeat
 
 import numpy as np
 
+from boatsim.diagnosis.evaluation import MODELS
 from boatsim.diagnosis.free_runs import FreeRun
 from boatsim.diagnosis.report import figures, svg_plots
 from boatsim.diagnosis.report.blocks import (
@@ -47,7 +48,6 @@ from boatsim.diagnosis.report.schema import (
 )
 from boatsim.diagnosis.report.sentences import (
     FAMILIES,
-    MODELS,
     NONE_TESTED,
     any_tested,
     assumptions,

@@ -3,6 +3,7 @@
 import itertools
 from collections.abc import Mapping, Sequence
 
+from boatsim.diagnosis.evaluation import MODELS
 from boatsim.diagnosis.report.described_terms import what_of
 from boatsim.diagnosis.report.findings import Findings
 from boatsim.diagnosis.report.formatting import (
@@ -25,7 +26,6 @@ from boatsim.diagnosis.report.schema import (
     MeanEntry,
 )
 
-MODELS = ("nominal", "recalibrated", "patched")
 FAMILIES: dict[Family, tuple[str, str]] = {  # key of `fit` -> its signal in words, SI unit
     "position_rms_m": ("position", "m"),
     "heading_rms_rad": ("heading", "rad"),
