@@ -62,7 +62,7 @@ def test_the_page_of_an_effect_has_each_parameter_and_what_is_fitted_and_what_ru
 ):
     page = REFERENCE["effects/tether"]
     assert "- **ruled out by**: moored = false" in page
-    assert "| tension | 0 N | 0 to 1e+06 | yes | steady pull |" in page
+    assert "| tension | 0 N | 0 to 1e+06 | yes | constant tension |" in page
     assert "as thrust" in REFERENCE["effects/rudder"]
 
 
@@ -94,7 +94,7 @@ def test_the_map_of_the_readme_and_that_of_the_site_lead_to_the_same_pages() -> 
         {Path(path).stem for path, _ in links(TEXTS[ROOT / name])}
         for name in ("README.md", "docs/index.md")
     ]
-    assert maps[0] - {"run", "CONTRIBUTING"} == maps[1] - {"run", "index"}
+    assert maps[0] - {"run", "CONTRIBUTING", "CITATION"} == maps[1] - {"run", "index"}
     assert {
         "first_steps",
         "your_boat",

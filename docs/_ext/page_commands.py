@@ -1,7 +1,7 @@
 """Run the commands of a documentation page and compare their output with what the page shows.
 
-A shown line agrees with a printed one if the words are equal and the figures agree to one unit of the last digit shown. A page
-may omit lines of the output anywhere; "..." is good style but not required.
+A shown line agrees with a printed one if the words are equal and the figures agree to one unit of
+the last digit shown. A page may omit lines of the output; "..." is good style but not required.
 """
 
 import os
@@ -63,7 +63,8 @@ def words_of(line: str) -> str:
 def figures_agree(shown: str, printed: str) -> bool:
     """Check that two printed numbers agree to one unit of the last digit shown.
 
-    If the shown number has more digits than the printed one, half a unit of the printed one is allowed in addition.
+    If the shown number has more digits than the printed one, half a unit of the printed one is
+    allowed in addition.
     """
     unit_shown = 10.0 ** -len(shown.partition(".")[2])
     unit_printed = 10.0 ** -len(printed.partition(".")[2])

@@ -1,132 +1,160 @@
-"""Pages of the reference, made of what the library says of itself; a Sphinx extension that writes them.
+"""Sphinx extension that writes the reference pages from the library.
 
-Nothing here imports Sphinx before it is set up: the tests read the pages without it.
+Sphinx is imported only when the extension is set up, so that tests can read the pages without it.
 """
 
 import re
 from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from boatsim.cli import app as program
 from boatsim.cli.catalogue import describe
 from boatsim.cli.entry import CLASSES, class_entry
+from boatsim.diagnosis.config import DEFAULT
 from boatsim.physics import content
 from boatsim.simulate import cases
 
 if TYPE_CHECKING:
     from sphinx.application import Sphinx
 
-FITTED = """One idea of physics or of measurement each, in `boatsim/physics/effects/`.
+EFFECTS = """Each page describes one effect of physics or of measurement from `boatsim/physics/effects/`.
 
-*Fitted: yes* are the parameters that a diagnosis fits when it tries the effect as what is missing. Those fitted *as
-damping, thrust, added mass, restoring* or *wind* are coefficients of the boat that are never known exactly: a diagnosis
-refits them within their stated uncertainty."""
-SHELVES = {  # folder of pages -> its heading and what stands below it
-    "commands": ("Commands", "What each says to `--help`."),
-    "effects": ("Effects", FITTED),
-    "controllers": ("Controllers", "One a file, in `controllers/`."),
-    "measures": ("Measures", "One measure of a run a file, in `boatsim/metrics/`."),
+A diagnosis fits the parameters marked *fitted: yes* when it tests the effect as a candidate.
+Parameters *fitted as damping, thrust, added mass, restoring* or *wind* are coefficients of the
+vessel that are never known exactly; a diagnosis refits them within their specified uncertainty."""
+SETTINGS = """Every number that influences a verdict of the diagnosis is a setting.
+
+`boatsim diagnose --set GROUP.NAME=VALUE` and the argument `settings` of `boatsim.diagnose` change one;
+`diagnosis.json` records the values used under `config`."""
+SECTIONS = {  # folder of pages -> heading and introduction of its index
+    "commands": ("Commands", "Each page is the output of `--help`."),
+    "effects": ("Effects", EFFECTS),
+    "controllers": ("Controllers", "One controller a file, in `controllers/`."),
+    "measures": ("Metrics", "One set of metrics a file, in `boatsim/metrics/`."),
     "sensors": (
         "Sensors",
-        "Beside the usual ones of `[sensors]`; one a file, in `boatsim/simulate/sensors/`.",
+        "Sensors in addition to those of `[sensors]`; one a file, in `boatsim/simulate/sensors/`.",
     ),
-    "vessels": ("Vessels", "A folder each, in `models/`."),
-    "scenarios": ("Scenarios", "In `scenarios/`, a folder for each vessel."),
+    "vessels": ("Vessels", "One folder each, in `models/`."),
+    "scenarios": ("Scenarios", "In `scenarios/`, one folder for each vessel."),
+    "settings": ("Settings of a diagnosis", SETTINGS),
 }
 
 
 def pages() -> dict[str, str]:
-    """All pages: path below `reference/` without the suffix -> text."""
-    found = dict(_commands())
+    """Return all pages: path below `reference/` without the suffix -> text."""
+    texts = dict(_command_pages())
     for kind in CLASSES:
-        found |= {f"{kind}s/{name}": _entry_page(kind, name) for name in content.names(kind)}
-    found |= {f"vessels/{name}": _vessel_page(name) for name in content.names("vessel")}
-    found |= dict(_scenarios())
-    return found | {f"{shelf}/index": _index(shelf, found) for shelf in SHELVES}
+        for name in content.names(kind):
+            texts[f"{kind}s/{name}"] = _entry_page(kind, name)
+    for name in content.names("vessel"):
+        texts[f"vessels/{name}"] = _vessel_page(name)
+    texts |= dict(_scenario_pages())
+    texts |= dict(_setting_pages())
+    for section in SECTIONS:
+        texts[f"{section}/index"] = _index(section, texts)
+    return texts
 
 
 def _entry_page(kind: str, name: str) -> str:
-    """An effect, controller, measure or sensor."""
-    one = class_entry(kind, name)
-    lines = [f"# {name}", "", f"{_sentence(one.words)}.", ""]
-    lines += [_plain(line) for line in one.doc] + ([""] if one.doc else [])
-    lines += [f"- **{what}**: {_plain(text)}" for what, text in one.facts] + (
-        [""] if one.facts else []
-    )
-    if one.parameters:
-        head, *rows = one.parameters
-        lines += [
-            _row(head),
-            _row("---" for _ in head),
-            *(_row(map(_plain, row)) for row in rows),
-            "",
-        ]
-    return "\n".join([*lines, "```toml", *one.example, "```", ""])
+    """Return the page of an effect, controller, set of metrics or sensor."""
+    entry = class_entry(kind, name)
+    lines = [f"# {name}", "", f"{_sentence(entry.words)}.", ""]
+    if entry.doc:
+        lines.extend(map(_escaped, entry.doc))
+        lines.append("")
+    if entry.facts:
+        for label, text in entry.facts:
+            lines.append(f"- **{label}**: {_escaped(text)}")
+        lines.append("")
+    if entry.parameters:
+        head, *rows = entry.parameters
+        lines += [_row(head), _row(["---"] * len(head))]
+        for row in rows:
+            lines.append(_row(map(_escaped, row)))
+        lines.append("")
+    return "\n".join([*lines, "```toml", *entry.example, "```", ""])
 
 
 def _vessel_page(name: str) -> str:
-    """What `boatsim show` prints of a vessel, but for the path of its file on the machine that builds."""
+    """Return what `boatsim show` prints of a vessel, without the path of its file."""
     lines = describe(name)
     lines = lines[lines.index(f"{name}: vessel") + 1 :]
-    words, *rest = lines[: lines.index("")] if "" in lines else lines
-    rest = [line for line in rest if not line.startswith("  file: ")]
-    return "\n".join(
-        [
-            f"# {name}",
-            "",
-            f"{_sentence(words.strip()).rstrip('.')}.",
-            "",
-            "```text",
-            *rest,
-            "```",
-            "",
-        ]
-    )
+    if "" in lines:
+        lines = lines[: lines.index("")]
+    words, *details = lines
+    page = [f"# {name}", "", f"{_sentence(words.strip()).rstrip('.')}.", "", "```text"]
+    for line in details:
+        if not line.startswith("  file: "):
+            page.append(line)
+    return "\n".join([*page, "```", ""])
 
 
-def _scenarios() -> Iterator[tuple[str, str]]:
-    """A page for each folder of scenarios: name, what it is, its controller."""
+def _scenario_pages() -> Iterator[tuple[str, str]]:
+    """Yield a page for each folder of scenarios."""
     folders: dict[str, list[str]] = {}
     for name in content.names("scenario"):
         folders.setdefault(name.partition("/")[0], []).append(name)
     for folder, names in folders.items():
-        lines = [f"# {folder}", "", "| `boatsim run` | what |", "| --- | --- |"]
-        lines += [
-            _row((f"`{name}`", _plain(str(cases.content(name)[0].get("about", "")))))
-            for name in names
-        ]
+        lines = [f"# {folder}", "", "| `boatsim run` | purpose |", "| --- | --- |"]
+        for name in names:
+            about = str(cases.content(name)[0].get("about", ""))
+            lines.append(_row((f"`{name}`", _escaped(about))))
         yield f"scenarios/{folder}", "\n".join([*lines, ""])
 
 
-def _commands() -> Iterator[tuple[str, str]]:
-    """A page for each command: its help."""
+def _command_pages() -> Iterator[tuple[str, str]]:
+    """Yield a page for each command: its help."""
     import typer
 
     group: Any = typer.main.get_command(program)
     with group.make_context("boatsim", [], resilient_parsing=True) as above:
         for name in group.list_commands(above):
             command = group.get_command(above, name)
-            inside = command.make_context(
+            context = command.make_context(
                 name, [], parent=above, resilient_parsing=True, terminal_width=100
             )
-            text = command.get_help(inside)
-            yield (
-                f"commands/{name}",
-                "\n".join([f"# boatsim {name}", "", "```text", *text.splitlines(), "```", ""]),
-            )
+            help_lines = command.get_help(context).splitlines()
+            page = [f"# boatsim {name}", "", "```text", *help_lines, "```", ""]
+            yield f"commands/{name}", "\n".join(page)
 
 
-def _index(shelf: str, found: Mapping[str, str]) -> str:
-    """The list of a shelf: each name with the first sentence of its page, where it has one."""
-    title, below = SHELVES[shelf]
-    names = [n.partition("/")[2] for n in found if n.startswith(f"{shelf}/")]
-    lines = [f"# {title}", "", below, ""]
-    for name in names:
-        words = found[f"{shelf}/{name}"].splitlines()[2].rstrip(".")
-        lines.append(
-            f"- [{name}]({name}.md){'' if words.startswith(('|', '```')) else f': {words}'}"
-        )
+def _setting_pages() -> Iterator[tuple[str, str]]:
+    """Yield a page for each group of settings of a diagnosis."""
+    for group in fields(DEFAULT):
+        settings = getattr(DEFAULT, group.name)
+        summary = (type(settings).__doc__ or "").splitlines()[0]
+        lines = [f"# {group.name}", "", _escaped(summary), ""]
+        lines += [
+            "| setting | default | unit | range | reason |",
+            "| --- | --- | --- | --- | --- |",
+        ]
+        for field in fields(settings):
+            about = field.metadata
+            limits = f"{about['low']:g} to {about['high']:g}"
+            name = f"`{group.name}.{field.name}`"
+            cells = (f"{field.default}", about["unit"], limits, about["reason"])
+            lines.append(_row((name, *map(_escaped, cells))))
+        yield f"settings/{group.name}", "\n".join([*lines, ""])
+
+
+def _index(section: str, texts: Mapping[str, str]) -> str:
+    """Return the index of a section: each name with the first sentence of its page."""
+    title, introduction = SECTIONS[section]
+    lines = [f"# {title}", "", introduction, ""]
+    names = []
+    for path in texts:
+        folder, _, name = path.partition("/")
+        if folder != section:
+            continue
+        names.append(name)
+        sentence = texts[path].splitlines()[2].rstrip(".")
+        if sentence.startswith(("|", "```")):
+            lines.append(f"- [{name}]({name}.md)")
+        else:
+            lines.append(f"- [{name}]({name}.md): {sentence}")
     return "\n".join([*lines, "", "```{toctree}", ":hidden:", "", *names, "```", ""])
 
 
@@ -135,31 +163,34 @@ def _row(cells: Iterable[str]) -> str:
 
 
 def _sentence(text: str) -> str:
-    return _plain(text[:1].upper() + text[1:])
+    return _escaped(text[:1].upper() + text[1:])
 
 
-def _plain(text: str) -> str:
-    """Text as it is, with no sign of it taken for Markdown, but for what stands in backticks."""
-    parts = re.split(r"(`[^`]*`)", text)
-    return "".join(
-        p if p.startswith("`") else re.sub(r"([\\*_<>|\[\]$])", r"\\\1", p) for p in parts
-    )
+def _escaped(text: str) -> str:
+    """Escape what Markdown would interpret, except in backticks."""
+    escaped = []
+    for part in re.split(r"(`[^`]*`)", text):
+        if part.startswith("`"):
+            escaped.append(part)
+        else:
+            escaped.append(re.sub(r"([\\*_<>|\[\]$])", r"\\\1", part))
+    return "".join(escaped)
 
 
 def write(app: "Sphinx") -> None:
-    """Write all pages that are not as they should be, and take away those that should not be."""
-    here = Path(app.srcdir) / "reference"
-    made = {here / f"{name}.md": text for name, text in pages().items()}
-    for file in here.glob("*/*.md"):
-        if file not in made:
+    """Write all pages that have changed, and remove those that no longer exist."""
+    folder = Path(app.srcdir) / "reference"
+    texts = {folder / f"{name}.md": text for name, text in pages().items()}
+    for file in folder.glob("*/*.md"):
+        if file not in texts:
             file.unlink()
-    for file, text in made.items():
+    for file, text in texts.items():
         file.parent.mkdir(exist_ok=True)
         if not file.is_file() or file.read_text(encoding="utf-8") != text:
             file.write_text(text, encoding="utf-8")
 
 
 def setup(app: "Sphinx") -> dict[str, Any]:
-    """Write before the pages are looked for."""
+    """Register the extension: the pages are written before Sphinx searches for pages."""
     app.connect("builder-inited", write)
     return {"parallel_read_safe": True}

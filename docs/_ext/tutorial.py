@@ -1,4 +1,4 @@
-"""Sphinx extension that runs the tutorial pages while the site is built and warns where their output differs."""
+"""Sphinx extension that runs the tutorials while the site is built and warns about differences."""
 
 import tempfile
 from pathlib import Path
