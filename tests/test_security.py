@@ -158,7 +158,9 @@ def test_2_content_runs_and_its_names_resolve(tmp_path: Path) -> None:
             == "boatsim.physics.effects.thruster"
         )
         assert plan_runs(["calm/still"], None, None)[0].task.name == "calm/still"
-    assert "no such folder" in refused(boatsim("list", "--content", tmp_path / "none"))
+    assert "this folder of content does not exist" in refused(
+        boatsim("list", "--content", tmp_path / "none")
+    )
 
 
 def test_3_trust_lets_run_what_lies_beside_the_files_of_the_command_line_and_nothing_else(
@@ -187,7 +189,7 @@ def test_4_a_person_at_a_terminal_is_asked_once(
     (file.parent / "test_boat" / "slimy.py").write_text(EFFECT.replace("Slime", "Slimy"))
     with (file.parent / "test_boat" / "vessel.toml").open("a") as text:
         text.write(USE.format("slimy"))
-    monkeypatch.setattr(trust_prompt, "_there", lambda: True)
+    monkeypatch.setattr(trust_prompt, "_is_interactive", lambda: True)
     done = CliRunner().invoke(app, ["run", str(file), "--out", str(tmp_path / "out")], input=answer)
     assert done.stderr.count("Run them? [y/N]") == 1 and ran.exists() == runs
     assert done.exit_code == (0 if runs else 2)
