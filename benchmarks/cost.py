@@ -20,7 +20,7 @@ import numpy as np
 
 from boatsim.physics import vessel
 from boatsim.recordings.table import Recording, read, write_csv
-from boatsim.simulate.compiled_engine import Twin
+from boatsim.simulate.batch import Batch
 
 BOAT = "trial_boat"
 HELD = 5 / 6  # [s] between joystick steps
@@ -42,9 +42,9 @@ def simulated(seconds: float, rate: float, seed: int) -> Recording:
     steps = rng.uniform(-1.0, 1.0, (int(seconds / HELD) + 1, 4)) * (0.9, 0.9, 0.6, 0.6)
     t = np.arange(0.0, seconds, 1.0 / rate)
     commands = steps[(t / HELD + 1e-9).astype(int)]
-    states = Twin(boat, STEP if rate < 10 else 1.0 / rate).rollout([0.0] * 6, commands, 1.0 / rate)[
-        :-1
-    ]
+    states = Batch(boat, step=STEP if rate < 10 else 1.0 / rate).rollout(
+        [0.0] * 6, commands, 1.0 / rate
+    )[:-1]
     pose = states[:, :3] + rng.standard_normal((len(t), 3)) * NOISE
     signals = dict(zip(("x_m", "y_m", "psi_rad"), pose.T, strict=True))
     return Recording(f"{seed}", t, signals | dict(zip(boat.commands, commands.T, strict=True)))

@@ -16,7 +16,6 @@ import numpy as np
 
 from boatsim.physics import vessel
 from boatsim.simulate.batch import Batch
-from boatsim.simulate.compiled_engine import Twin
 
 STEP, ROUNDS = 0.02, 5  # [s] of integration
 MINUTES = (1, 10, 60, 360, 1440)
@@ -56,12 +55,12 @@ def column(what: str, sizes: Sequence[int], seconds: Sequence[float], steps: Seq
 
 def lengths() -> str:
     """Return the column for the simulated length."""
-    twin = Twin(vessel.load("joystick_boat"), STEP)
+    compiled_engine = Batch(vessel.load("joystick_boat"), step=STEP)
     steps = [round(60 * m / STEP) for m in MINUTES]
     return column(
         "minutes",
         MINUTES,
-        [median_time(lambda n=n: twin.coast([0.0] * 6, COMMANDS, n)) for n in steps],
+        [median_time(lambda n=n: compiled_engine.coast([0.0] * 6, COMMANDS, n)) for n in steps],
         steps,
     )
 
@@ -83,10 +82,14 @@ def entries() -> str:
             {"use": "fan_wind", "name": f"wind_{i}", "speed": 0.1 * (i + 1), "toward": 0.1 * i}
             for i in range(extra)
         ]
-        twin = Twin(vessel.load("joystick_boat", extra=effects), STEP)
+        compiled_engine = Batch(vessel.load("joystick_boat", extra=effects), step=STEP)
         sizes.append(own + extra)
         seconds.append(
-            median_time(lambda twin=twin: twin.coast([0.0] * 6, COMMANDS, STEPS["entries"]))
+            median_time(
+                lambda compiled_engine=compiled_engine: compiled_engine.coast(
+                    [0.0] * 6, COMMANDS, STEPS["entries"]
+                )
+            )
         )
     return column("entries", sizes, seconds, [STEPS["entries"]] * len(sizes))
 

@@ -21,7 +21,7 @@ import numpy as np
 from boatsim.physics import vessel
 from boatsim.physics.base import Array
 from boatsim.physics.vessel import Vessel
-from boatsim.simulate.compiled_engine import Twin
+from boatsim.simulate.batch import Batch
 from boatsim.simulate.engine import Engine, State
 
 HOUR = 3600.0  # [s]
@@ -95,11 +95,11 @@ def of_engine(made: Vessel, step: float) -> Advance:
 
 def of_twin(made: Vessel, step: float) -> Advance:
     """Return a function that steps the vessel on the compiled engine."""
-    twin, state = Twin(made, step), np.array(START)
+    compiled_engine, state = Batch(made, step=step), np.array(START)
 
     def advance(steps: int) -> Array:
         nonlocal state
-        state = twin.coast(state.tolist(), {}, steps)
+        state = compiled_engine.coast(state.tolist(), {}, steps)
         return state
 
     return advance

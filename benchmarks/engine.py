@@ -25,7 +25,7 @@ from rich.table import Table
 
 from boatsim.physics import vessel
 from boatsim.simulate import cases, scenario
-from boatsim.simulate.compiled_engine import Twin
+from boatsim.simulate.batch import Batch
 from boatsim.simulate.engine import Engine, State
 from boatsim.simulate.run import run
 from boatsim.simulate.world import Tank
@@ -105,7 +105,7 @@ def stepping() -> list[Figure]:
     }
     engines["floor"] = Engine(boat, tank, STEP, show=False)
     engines["floor"].callback = None
-    twin, six = Twin(boat, STEP), Twin(vessel.load("otter"), STEP)
+    compiled_engine, six = Batch(boat, step=STEP), Batch(vessel.load("otter"), step=STEP)
     start = [START.x, START.y, START.psi, START.u, START.v, START.r]
 
     def coast(name: str, steps: int) -> None:
@@ -116,7 +116,9 @@ def stepping() -> list[Figure]:
         "native": Variant("native", 40_000, lambda: coast("native", 40_000)),
         "floor": Variant("floor", 40_000, lambda: coast("floor", 40_000)),
         "python": Variant("python", 5_000, lambda: coast("python", 5_000)),
-        "twin": Variant("twin", 1_000_000, lambda: twin.coast(start, COMMANDS, 1_000_000)),
+        "twin": Variant(
+            "twin", 1_000_000, lambda: compiled_engine.coast(start, COMMANDS, 1_000_000)
+        ),
         "six": Variant("six", 300_000, lambda: six.coast([0.0] * 12, SHAFTS, 300_000)),
     }
     for variant in variants.values():
@@ -201,7 +203,7 @@ def an_hour(folder: Path) -> Path:
 def every_scenario(console: Console) -> None:
     """Print the real-time factor of each scenario, the better of two runs, slowest first."""
     found = []
-    for name in cases.meant("*"):
+    for name in cases.matching("*"):
         took = []
         for _ in range(2):  # the first compiles
             whole = scenario.load(name)

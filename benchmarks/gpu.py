@@ -23,7 +23,7 @@ from boatsim.errors import BadInput
 from boatsim.physics import vessel
 from boatsim.physics.base import Array
 from boatsim.physics.vessel import Vessel
-from boatsim.simulate.compiled_engine import Twin
+from boatsim.simulate.batch import Batch as CoreBatch
 from boatsim.warp import Batch
 from boatsim.warp.runtime import device as known
 
@@ -76,14 +76,17 @@ def speed(boat: Vessel, device: str, largest: int) -> Table:
 
 def largest_difference(boat: Vessel, device: str, on_mujoco: bool) -> float:
     """Return the largest difference to the compiled engine, relative to the magnitude of each state."""
-    batch, twin = Batch(boat, BOATS, STEP, device, mujoco=on_mujoco), Twin(boat, STEP)
+    batch = Batch(boat, BOATS, STEP, device, mujoco=on_mujoco)
+    compiled_engine = CoreBatch(boat, step=STEP)
     starts, commands = random_case(boat, SECONDS, BOATS)
     batch.reset(starts, commands[0])
     found = [batch.states]
     for row in commands:
         batch.advance(row, SECOND)
         found.append(batch.states)
-    wanted = np.stack([twin.rollout(starts[i], commands[:, i], 1.0) for i in range(BOATS)], axis=1)
+    wanted = np.stack(
+        [compiled_engine.rollout(starts[i], commands[:, i], 1.0) for i in range(BOATS)], axis=1
+    )
     return float((np.abs(np.array(found) - wanted) / np.abs(wanted).max(axis=(0, 1))).max())
 
 

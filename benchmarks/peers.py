@@ -15,7 +15,7 @@ from time import perf_counter
 import numpy as np
 
 from boatsim.physics import vessel
-from boatsim.simulate.compiled_engine import Twin
+from boatsim.simulate.batch import Batch
 from boatsim.simulate.engine import Engine, State
 from boatsim.simulate.env import load as load_env
 
@@ -180,15 +180,15 @@ def of_us(
     steps: int,
     step: float = STEP,
 ) -> dict[str, Work]:
-    """Twin and MuJoCo engine on so many steps of Runge-Kutta under constant commands."""
-    twin, engine = Twin(made, step), Engine(made, step=step, show=False)
+    """Compiled engine and MuJoCo engine on so many steps of Runge-Kutta under constant commands."""
+    compiled, engine = Batch(made, step=step), Engine(made, step=step, show=False)
     moving = State(u=start[len(start) // 2])
 
     def on_mujoco() -> None:
         engine.reset(moving, commands)
         engine.coast(steps)
 
-    return {"twin": lambda: twin.coast(start, commands, steps), "engine": on_mujoco}
+    return {"twin": lambda: compiled.coast(start, commands, steps), "engine": on_mujoco}
 
 
 PEERS: dict[str, Callable[[], Pair]] = {

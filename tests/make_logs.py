@@ -2,7 +2,7 @@
 
 python tests/make_logs.py
 
-The boat is simulated (boatsim.simulate.compiled_engine, without noise); the logs are written by the library of each format where
+The boat is simulated (boatsim.simulate.batch, without noise); the logs are written by the library of each format where
 it has a writer (MCAP, bags, Parquet), else byte by byte as its documents say. Latitudes and longitudes come from the
 exact tangent plane by way of earth-centred coordinates, not from the formula that the readers use.
 """
@@ -27,12 +27,12 @@ A, F = 6378137.0, 1.0 / 298.257223563
 def simulated() -> dict[str, np.ndarray]:
     """Columns of the run at every step, commands in force from their row on."""
     from boatsim.physics.vessel import load
-    from boatsim.simulate.compiled_engine import Twin
+    from boatsim.simulate.batch import Batch
 
     t = STEP * np.arange(round(DURATION / STEP) + 1)
     turn = np.where(np.floor(t / 5.0) % 2 == 0, 1.0, -1.0) * np.where(t < 2.0, 0.0, 1.0)
     port, starboard = 62.4 + 20.8 * turn, 62.4 - 20.8 * turn
-    boat = Twin(load("otter"), STEP)
+    boat = Batch(load("otter"), step=STEP)
     assert list(boat.vessel.commands) == ["n_port_radps", "n_starboard_radps"]
     start = [0.0] * 12
     start[5] = math.radians(350.0)

@@ -6,7 +6,6 @@ import pytest
 from boatsim.errors import BadInput
 from boatsim.physics import vessel
 from boatsim.simulate.batch import TURN, Batch
-from boatsim.simulate.compiled_engine import Twin
 
 EXTRA = (
     {"use": "weak_reverse", "astern_factor": 0.694},
@@ -56,13 +55,13 @@ def test_a_boat_in_a_batch_moves_to_the_last_bit_as_it_does_alone_on_any_number_
 @pytest.mark.parametrize("name", ["joystick_boat", "otter", "kvlcc2_mmg", "jet_ski"])
 def test_a_batch_agrees_with_the_twin(name):
     boat = vessel.load(name)
-    twin, batch = Twin(boat, 0.02), Batch(boat, 3, 0.02)
+    compiled, batch = Batch(boat, step=0.02), Batch(boat, 3, 0.02)
     low, high = np.array(list(boat.limits().values())).T
     rows = np.random.default_rng(1).uniform(0.3 * low, 0.3 * high, (20, len(low)))
     rows = np.where(np.isfinite(rows), rows, 0.0)
-    start = np.zeros(2 * twin.code.NQ)
-    start[twin.code.NQ] = 1.0
-    course = twin.rollout(start, rows, 0.1)
+    start = np.zeros(2 * compiled.code.NQ)
+    start[compiled.code.NQ] = 1.0
+    course = compiled.rollout(start, rows, 0.1)
     batch.reset(start, rows[0])
     for i, row in enumerate(rows):
         batch.advance(row, 5)

@@ -8,7 +8,7 @@ from boatsim.cli.run_many import plan_runs
 from boatsim.errors import BadInput
 from boatsim.physics.content import find, names
 from boatsim.simulate import scenario
-from boatsim.simulate.cases import cases, content, meant, merged
+from boatsim.simulate.cases import cases, content, matching, merged
 
 HEAD = 'vessel = "trial_boat"\nduration = 2.0\n[controller]\nuse = "open_loop"\nperiod = 0.5\n'
 
@@ -101,15 +101,19 @@ def test_every_name_of_a_shipped_scenario_is_a_case_or_a_file_of_its_folder() ->
 def test_a_folder_a_pattern_and_a_file_stand_for_their_scenarios(tmp_path: Path) -> None:
     everything = names("scenario")
     assert (
-        meant("jet_ski") == meant("jet_ski/") == [n for n in everything if n.startswith("jet_ski/")]
+        matching("jet_ski")
+        == matching("jet_ski/")
+        == [n for n in everything if n.startswith("jet_ski/")]
     )
-    assert meant("joystick_boat/sway_?") == [f"joystick_boat/sway_{n}" for n in (1, 2, 3, 4)]
-    assert meant("joystick_boat/sway_1") == ["joystick_boat/sway_1"]
+    assert matching("joystick_boat/sway_?") == [f"joystick_boat/sway_{n}" for n in (1, 2, 3, 4)]
+    assert matching("joystick_boat/sway_1") == ["joystick_boat/sway_1"]
     file = write(tmp_path / "mine.toml", HEAD + '[[case]]\nname = "one"\n[[case]]\nname = "two"\n')
     alone = write(tmp_path / "plain.toml", HEAD)
     write(tmp_path / "_common.toml", HEAD)
-    assert meant(str(file)) == [f"{file}:one", f"{file}:two"] and meant(str(alone)) == [str(alone)]
-    assert meant(str(tmp_path)) == [f"{file}:one", f"{file}:two", str(alone)]
+    assert matching(str(file)) == [f"{file}:one", f"{file}:two"] and matching(str(alone)) == [
+        str(alone)
+    ]
+    assert matching(str(tmp_path)) == [f"{file}:one", f"{file}:two", str(alone)]
 
 
 def test_cases_run_into_folders_of_their_own_names(tmp_path: Path) -> None:
@@ -140,7 +144,7 @@ def test_cases_run_into_folders_of_their_own_names(tmp_path: Path) -> None:
         (
             '[[case]]\nname = "a"\n[[case]]\nname = "a"',
             ":a",
-            r"mine\.toml: case 'a' stands there twice",
+            r"mine\.toml: case 'a' occurs twice",
         ),
         ("[[case]]\nduration = 1.0", ":a", r"mine\.toml: \[\[case\]\] 1: name = None; allowed are"),
         ('[[case]]\nname = "a/b"', ":a", r"mine\.toml: \[\[case\]\] 1: name = 'a/b'; allowed are"),
@@ -153,7 +157,7 @@ def test_cases_run_into_folders_of_their_own_names(tmp_path: Path) -> None:
         (
             '[[case]]\nname = "calm"',
             "",
-            r"mine\.toml holds several cases; say which: mine\.toml:calm",
+            r"mine\.toml holds several cases; name one: mine\.toml:calm",
         ),
         (
             '[[case]]\nname = "a"\nbase = "sway_1"',

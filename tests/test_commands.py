@@ -20,7 +20,7 @@ from boatsim.physics.vessel import Vessel
 from boatsim.recordings import table
 from boatsim.recordings.table import Recording
 from boatsim.simulate import scenario
-from boatsim.simulate.compiled_engine import Twin
+from boatsim.simulate.batch import Batch
 from boatsim.simulate.engine import Engine
 from boatsim.simulate.run import Run, run
 
@@ -115,8 +115,8 @@ def test_too_much_moves_engine_and_twin_as_the_most_does(boat: Vessel) -> None:
     assert paths[0] == paths[1] and abs(paths[0].r) > 0.1
     names_ = list(boat.commands)
     rows = [np.tile([c.get(n, 0.0) for n in names_], (50, 1)) for c in (WILD, TAMED)]
-    twin = Twin(boat, 0.02)
-    wild, tamed = (twin.rollout([0.0] * 6, r, 0.02) for r in rows)
+    compiled = Batch(boat, step=0.02)
+    wild, tamed = (compiled.rollout([0.0] * 6, r, 0.02) for r in rows)
     assert np.array_equal(wild, tamed)
     assert wild[-1, :2] == pytest.approx(paths[0][1:3], abs=1e-9)
 

@@ -8,7 +8,7 @@ from alike import few
 
 from boatsim.physics import content, vessel
 from boatsim.physics.base import Array
-from boatsim.simulate.compiled_engine import Twin
+from boatsim.simulate.batch import Batch
 
 STEPS = (0.04, 0.02, 0.01, 0.005)  # [s]
 FINE = 0.00125  # [s] taken for the truth
@@ -28,7 +28,7 @@ RANGE = {"throttle": (4.2, 7.0)}
 def paths(name: str) -> dict[float, Array]:
     """States by step, over the same commands."""
     boat = vessel.load(name)
-    twin, rng, n = Twin(boat), np.random.default_rng(0), len(boat.dof)
+    compiled, rng, n = Batch(boat), np.random.default_rng(0), len(boat.dof)
     limits = [RANGE.get(c, limits) for c, limits in boat.limits().items()]
     rows = (
         np.column_stack([rng.uniform(*limit, ROWS) for limit in limits])
@@ -42,8 +42,8 @@ def paths(name: str) -> dict[float, Array]:
         start[0] = 0.1  # [rad] of heel, released
     found = {}
     for step in (*STEPS, FINE):
-        twin.step = step
-        found[step] = twin.rollout(start, rows, HELD)
+        compiled.step = step
+        found[step] = compiled.rollout(start, rows, HELD)
     return found
 
 

@@ -10,7 +10,7 @@ from boatsim.physics.effects.current import Current
 from boatsim.physics.program import Program
 from boatsim.physics.signals import signals_of
 from boatsim.physics.vessel import Vessel
-from boatsim.simulate.compiled_engine import Twin
+from boatsim.simulate.batch import Batch
 
 NORTH, EAST = 0.8, -0.6  # [m/s] of the current: 1 m/s
 HELD = 5.0  # [s] each row of commands
@@ -60,17 +60,19 @@ def carried(program: Program, states: Array, t: Array, by: float = 1.0) -> Array
 
 def sails_as_in_still_water(boat: Vessel) -> None:
     """Law of a vessel that has the effect `current`."""
-    twin, rows, start = Twin(boat), commands(boat), start_of(boat)
-    still, moving = twin.program.values(), twin.program.values()
+    compiled, rows, start = Batch(boat), commands(boat), start_of(boat)
+    still, moving = compiled.program.values(), compiled.program.values()
     for way, velocity in (("north", NORTH), ("east", EAST)):
-        at = twin.program.index("current", way)
+        at = compiled.program.index("current", way)
         still[at], moving[at] = 0.0, velocity
     t = HELD * np.arange(len(rows) + 1.0)
-    wanted = twin.rollout(start, rows, HELD, still)
-    (begin,) = carried(twin.program, start[None], t[:1])
-    found = twin.rollout(begin, rows, HELD, moving)
+    wanted = compiled.rollout(start, rows, HELD, still)
+    (begin,) = carried(compiled.program, start[None], t[:1])
+    found = compiled.rollout(begin, rows, HELD, moving)
     assert np.ptp(wanted, axis=0).min() > 1e-5  # it did move, in heave by less than a millimetre
-    assert carried(twin.program, found, t, -1.0) == pytest.approx(wanted, rel=0.0, abs=TOLERANCE)
+    assert carried(compiled.program, found, t, -1.0) == pytest.approx(
+        wanted, rel=0.0, abs=TOLERANCE
+    )
 
 
 @pytest.mark.parametrize(("name", "loads"), few(CASES))

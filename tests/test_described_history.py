@@ -24,7 +24,7 @@ from boatsim.physics.base import Array
 from boatsim.physics.effects.described_force import DescribedForce
 from boatsim.physics.kernel.records import Inputs, Model
 from boatsim.physics.program import Program
-from boatsim.simulate.compiled_engine import Twin
+from boatsim.simulate.batch import Batch
 from boatsim.simulate.engine import Engine
 
 MEMORY = 0.7  # [s]
@@ -94,10 +94,10 @@ def test_what_is_recalled_is_a_first_order_lag_to_the_last_digits(factor: str) -
 
 
 def test_a_law_that_looks_back_keeps_the_fourth_order() -> None:
-    twin, found = Twin(vessel.load("trial_boat", extra=LAWS)), {}
+    compiled, found = Batch(vessel.load("trial_boat", extra=LAWS)), {}
     for step in (0.04, 0.02, 0.0025):
-        twin.step = step
-        found[step] = twin.rollout(np.zeros(6), commanded(20), 0.4)
+        compiled.step = step
+        found[step] = compiled.rollout(np.zeros(6), commanded(20), 0.4)
     coarse, fine = (np.abs(found[step] - found[0.0025]).max() for step in (0.04, 0.02))
     assert fine < 1e-6 and coarse / fine > 12.0
 
@@ -105,7 +105,9 @@ def test_a_law_that_looks_back_keeps_the_fourth_order() -> None:
 def test_engine_twin_and_filter_agree_on_laws_that_look_back() -> None:
     boat = vessel.load("trial_boat", extra=LAWS)
     commands, row = np.repeat(commanded(13), 5, axis=0)[:61], 0.1  # 6 s
-    twin = Twin(boat, DEFAULT.filter.free_run_step).rollout(np.zeros(6), commands[:-1], row)
+    compiled = Batch(boat, step=DEFAULT.filter.free_run_step).rollout(
+        np.zeros(6), commands[:-1], row
+    )
     engine, seen = Engine(boat, step=DEFAULT.filter.free_run_step), []
     engine.reset(commands=dict(zip(boat.commands, commands[0].tolist(), strict=True)))
     for sent in commands:
@@ -123,12 +125,12 @@ def test_engine_twin_and_filter_agree_on_laws_that_look_back() -> None:
         np.zeros((1, 6)),
         out,
     )
-    np.testing.assert_allclose(twin[:, :3], seen, atol=1e-9)
+    np.testing.assert_allclose(compiled[:, :3], seen, atol=1e-9)
     np.testing.assert_allclose(out[0, :, :3], seen, atol=1e-6)
-    without = Twin(
-        vessel.load("trial_boat", extra=LAWS[-1:]), DEFAULT.filter.free_run_step
+    without = Batch(
+        vessel.load("trial_boat", extra=LAWS[-1:]), step=DEFAULT.filter.free_run_step
     ).rollout(np.zeros(6), commands[:-1], row)
-    assert np.abs(without - twin)[:, :3].max() > 0.02
+    assert np.abs(without - compiled)[:, :3].max() > 0.02
 
 
 def test_a_vessel_whose_laws_do_not_look_back_remembers_nothing_more(tmp_path: Path) -> None:

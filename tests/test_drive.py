@@ -284,7 +284,7 @@ def test_errors_of_a_log_in_pieces_are_those_of_the_whole(cuts: list[int]) -> No
     tally = tracking_errors.Tally()
     for begin, end in zip([0, *cuts], [*cuts, 100], strict=True):
         tally.add(rows(begin, end))
-    assert tally.norms() == pytest.approx(tracking_errors.errors(rows(0, 100)))
+    assert tally.metrics() == pytest.approx(tracking_errors.errors(rows(0, 100)))
 
 
 def until(true, seconds: float = 10.0) -> None:

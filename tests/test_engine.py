@@ -20,7 +20,7 @@ from boatsim.physics.base import Array
 from boatsim.physics.signals import signals_of
 from boatsim.physics.vessel import Vessel
 from boatsim.simulate import scenario
-from boatsim.simulate.compiled_engine import Twin
+from boatsim.simulate.batch import Batch
 from boatsim.simulate.engine import Engine, State, installed
 from boatsim.simulate.run import run
 from boatsim.simulate.world import Tank
@@ -99,10 +99,10 @@ def test_engine_and_twin_agree_over_20_s_of_random_commands(
     boat = on_water(name, loads)
     rows = held_commands(boat, 200, seed=2)
     engine = sailed(Engine(boat), rows, 5)
-    twin = Twin(boat).rollout(pose_and_rates(boat, START), rows, 0.1)
-    assert engine.shape == twin.shape == (201, 2 * len(boat.dof))
+    compiled = Batch(boat).rollout(pose_and_rates(boat, START), rows, 0.1)
+    assert engine.shape == compiled.shape == (201, 2 * len(boat.dof))
     assert np.ptp(engine, axis=0).min() > 1e-3  # it did move, heave by some mm at least
-    assert engine == pytest.approx(twin, rel=1e-10, abs=1e-10)
+    assert engine == pytest.approx(compiled, rel=1e-10, abs=1e-10)
 
 
 def test_what_is_only_looked_at_changes_no_number() -> None:

@@ -23,7 +23,7 @@ from boatsim.physics import particulars, vessel
 from boatsim.physics.base import Array
 from boatsim.physics.signals import signals_of
 from boatsim.physics.vessel import Vessel
-from boatsim.simulate.compiled_engine import Twin
+from boatsim.simulate.batch import Batch
 
 TONNE = 1000.0  # [kg]; the thesis counts in tonnes and kilonewtons
 
@@ -313,12 +313,16 @@ def test_sway_added_mass_heels_one_way_as_printed_or_both_ways_as_energy_demands
 
 def on_twin(boat: Vessel, rudder: Array, waves: Array) -> Array:
     """(N + 1, 5) states of the run in the twin."""
-    twin, symbols = Twin(boat, 0.02), [signal.symbol for signal in signals_of(boat.dof)]
+    compiled, symbols = Batch(boat, step=0.02), [signal.symbol for signal in signals_of(boat.dof)]
     y = np.array([speed_of(boat) if n == "u" else 0.0 for n in symbols])
-    at, values, rows = [twin.program.index("push", n) for n in WAVES], twin.program.values(), [y]
+    at, values, rows = (
+        [compiled.program.index("push", n) for n in WAVES],
+        compiled.program.values(),
+        [y],
+    )
     for i, (angle, wave) in enumerate(zip(rudder, waves, strict=True)):
         values[at] = wave * inertia(boat).diagonal()
-        y = twin.rollout(y, np.array([[angle]]), PERIOD, values, t0=PERIOD * i)[-1]
+        y = compiled.rollout(y, np.array([[angle]]), PERIOD, values, t0=PERIOD * i)[-1]
         rows.append(y)
     return np.array(rows)[:, [symbols.index(n) for n in ("psi", "r", "v", "phi", "p")]]
 

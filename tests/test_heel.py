@@ -11,7 +11,7 @@ from scipy.integrate import solve_ivp
 from boatsim.physics import vessel
 from boatsim.physics.base import Array
 from boatsim.physics.vessel import Vessel
-from boatsim.simulate.compiled_engine import Twin
+from boatsim.simulate.batch import Batch
 from boatsim.simulate.engine import Engine, State
 
 HEELING = boats.PLANAR.replace(
@@ -94,9 +94,9 @@ def test_engine_twin_and_an_independent_integrator_agree(
     engine.reset(State(**dict(zip(NAMES, START, strict=True))), commands)
     engine.advance(1000)
     s = engine.state
-    twin = Twin(boat, 0.01)
-    rows = np.tile(twin.program.command_array(commands), (100, 1))
-    end = twin.rollout(START, rows, 0.1)[-1]
+    compiled = Batch(boat, step=0.01)
+    rows = np.tile(compiled.program.command_array(commands), (100, 1))
+    end = compiled.rollout(START, rows, 0.1)[-1]
     truth = independent(damped, current, (2.0, 0.3), 10.0)
     assert [getattr(s, n) for n in NAMES] == pytest.approx(end.tolist(), abs=1e-10)
     assert end == pytest.approx(truth, abs=1e-6)
@@ -104,8 +104,8 @@ def test_engine_twin_and_an_independent_integrator_agree(
 
 def test_without_damping_energy_and_momentum_stay(tmp_path: Path) -> None:
     boat = heeling(tmp_path, **boats.WITHOUT_DRAG)
-    twin = Twin(boat, 0.01)
-    states = twin.rollout(START, np.zeros((200, len(boat.commands))), 0.1)
+    compiled = Batch(boat, step=0.01)
+    states = compiled.rollout(START, np.zeros((200, len(boat.commands))), 0.1)
     mass = boat.effect("added_mass").matrix()[np.ix_([0, 1, 3, 5], [0, 1, 3, 5])]  # type: ignore[union-attr]
     mass = mass + np.diag([MASS, MASS, IXX, IZZ])
     nu, phi, psi = states[:, 4:], states[:, 2], states[:, 3]

@@ -16,7 +16,7 @@ from scipy.optimize import brentq
 from boatsim.physics import vessel
 from boatsim.physics.base import Array, Force, Wrench, motion
 from boatsim.simulate import scenario
-from boatsim.simulate.compiled_engine import Twin
+from boatsim.simulate.batch import Batch
 from boatsim.simulate.engine import Engine, State
 from boatsim.simulate.evaluation import requested_metrics
 from boatsim.simulate.run import run
@@ -180,7 +180,7 @@ def test_mmg_ship_without_power_comes_to_rest_in_the_water_from_any_start(delta:
     rows = np.tile([delta, 0.0], (300, 1))
     for beta, r in product(np.radians([0, 30, 90, 150, 175, 180, -120]), (-0.15, 0.0, 0.15)):
         start = [0.0, 0.0, 0.0, U0 * cos(beta), -U0 * sin(beta), r]
-        nu = Twin(boat, 0.05).rollout(start, rows, 5.0)[:, 3:]
+        nu = Batch(boat, step=0.05).rollout(start, rows, 5.0)[:, 3:]
         energy = 0.5 * np.einsum("ti,ij,tj->t", nu, whole, nu)
         assert np.diff(energy).max() < 0.0 and energy[-1] < 0.005 * energy[0], (beta, r)
 

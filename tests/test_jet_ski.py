@@ -31,7 +31,7 @@ from boatsim.physics.effects.steering_offset import SteeringAsymmetry
 from boatsim.physics.effects.water_jet import WaterJet
 from boatsim.physics.signals import signals_of
 from boatsim.simulate import scenario
-from boatsim.simulate.compiled_engine import Twin
+from boatsim.simulate.batch import Batch
 from boatsim.simulate.engine import Engine, State
 from boatsim.simulate.evaluation import requested_metrics
 from boatsim.simulate.run import run
@@ -175,10 +175,10 @@ def test_engine_and_twin_follow_an_integration_of_the_printed_equations(
     engine.advance(1000)
     s = engine.state
     assert [getattr(s, n) for n in names] == pytest.approx(truth.tolist(), abs=1e-6)
-    twin = Twin(CRAFT, 0.01)
-    rows = np.tile(twin.program.command_array({"throttle": throttle, "jet_rad": jet}), (100, 1))
+    compiled = Batch(CRAFT, step=0.01)
+    rows = np.tile(compiled.program.command_array({"throttle": throttle, "jet_rad": jet}), (100, 1))
     ours = [signal.symbol for signal in signals_of(CRAFT.dof)]
-    end = twin.rollout([start[n] for n in ours], rows, 0.1)[-1]
+    end = compiled.rollout([start[n] for n in ours], rows, 0.1)[-1]
     assert end == pytest.approx([getattr(s, n) for n in ours], abs=1e-8)
 
 

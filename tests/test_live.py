@@ -82,7 +82,7 @@ def test_without_a_display_it_is_said_in_one_line_where_the_run_can_be_seen(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(viewer, "_listening", lambda port: False)
-    monkeypatch.setattr(viewer, "display", lambda: False)
+    monkeypatch.setattr(viewer, "has_display", lambda: False)
     monkeypatch.setattr(Pace, "wait", lambda *_: pytest.fail("nobody watches"))
     done = boatsim("run", "joystick_boat/sway_1", "--live", "--out", tmp_path / "out")
     assert done.exit_code == 0 and (tmp_path / "out" / "run.rrd").is_file()

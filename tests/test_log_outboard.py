@@ -17,7 +17,7 @@ from boatsim.physics.base import Array
 from boatsim.physics.vessel import Vessel
 from boatsim.recordings.importing.convert import notes_of
 from boatsim.recordings.table import Recording
-from boatsim.simulate.compiled_engine import Twin
+from boatsim.simulate.batch import Batch
 from validation.log_faults import Columns, write
 
 FULL = 1300.0  # [N]
@@ -43,7 +43,7 @@ def sailed(boat: Vessel, share: float = 1.0, current: complex = 0.0) -> Columns:
         [np.tile([share * FULL * a, b], (round(s * RATE), 1)) for s, a, b in PLAN]
     )
     felt = orders * [1.0 / 1.5, 1.0]
-    states = Twin(boat, 0.02).rollout(np.zeros(6), felt, 1.0 / RATE)[: len(orders)]
+    states = Batch(boat, step=0.02).rollout(np.zeros(6), felt, 1.0 / RATE)[: len(orders)]
     t = np.arange(len(orders)) / RATE
     seen = states[:, :3] + np.random.default_rng(3).standard_normal((len(t), 3)) * [
         0.02,

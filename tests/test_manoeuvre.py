@@ -277,14 +277,17 @@ def test_crash_stop_goes_astern_until_there_is_no_way_on() -> None:
 def test_limits_of_the_10_10_zigzag_meet_at_their_boundaries() -> None:
     for ratio, first, second in ((10.0, 10.0, 25.0), (30.0, 20.0, 40.0)):
         for beside in (ratio * (1 - 1e-9), ratio, ratio * (1 + 1e-9)):
-            assert imo.first_overshoot_10(beside, 1.0) == pytest.approx(first)
-            assert imo.second_overshoot_10(beside, 1.0) == pytest.approx(second)
-    assert (imo.first_overshoot_10(1.2, 0.5), imo.second_overshoot_10(1.2, 0.5)) == (10.0, 25.0)
-    assert (imo.first_overshoot_10(400.0, 10.0), imo.second_overshoot_10(400.0, 10.0)) == (
+            assert imo.FIRST_OVERSHOOT_10.at(beside, 1.0) == pytest.approx(first)
+            assert imo.SECOND_OVERSHOOT_10.at(beside, 1.0) == pytest.approx(second)
+    assert (imo.FIRST_OVERSHOOT_10.at(1.2, 0.5), imo.SECOND_OVERSHOOT_10.at(1.2, 0.5)) == (
+        10.0,
+        25.0,
+    )
+    assert (imo.FIRST_OVERSHOOT_10.at(400.0, 10.0), imo.SECOND_OVERSHOOT_10.at(400.0, 10.0)) == (
         20.0,
         40.0,
     )
-    assert imo.first_overshoot_10(160.0, 8.0) == pytest.approx(15.0)
+    assert imo.FIRST_OVERSHOOT_10.at(160.0, 8.0) == pytest.approx(15.0)
 
 
 @pytest.mark.parametrize(
@@ -434,11 +437,11 @@ def test_a_boat_without_a_table_is_handled_by_its_channels() -> None:
         (("zigzag", "--vessel", "kvlcc2_roll"), "kvlcc2_roll is not free to turn"),
         (
             ("roll_decay", "--vessel", "mariner"),
-            "mariner does not roll; its freedoms are surge, sway, yaw",
+            "mariner does not roll; its degrees of freedom are surge, sway, yaw",
         ),
         (
             ("crash_stop", "--vessel", "kvlcc2"),
-            "kvlcc2: nothing to go astern with; [manoeuvring] astern = ",
+            "kvlcc2: no thrust astern; specify it by [manoeuvring] astern = ",
         ),
         (
             ("zigzag", "--vessel", "mariner", "--angle", "50"),

@@ -14,7 +14,7 @@ from boatsim.physics.base import Array
 from boatsim.physics.kernel.records import Inputs, Model
 from boatsim.physics.program import Program
 from boatsim.recordings.table import Recording
-from boatsim.simulate.compiled_engine import Twin
+from boatsim.simulate.batch import Batch
 
 EVERY, ROWS = 0.02, 1501  # [s]; 30 s
 
@@ -25,9 +25,9 @@ def quick() -> tuple[Recording, Array]:
     commands = np.repeat(rng.uniform(-0.6, 0.9, (ROWS // 2 + 1, len(boat.commands))), 2, axis=0)[
         :ROWS
     ]
-    states = Twin(boat, EVERY / 2).rollout([0.0] * 6, np.repeat(commands, 2, axis=0), EVERY / 2)[
-        : 2 * ROWS
-    ]
+    states = Batch(boat, step=EVERY / 2).rollout(
+        [0.0] * 6, np.repeat(commands, 2, axis=0), EVERY / 2
+    )[: 2 * ROWS]
     t = EVERY * np.arange(ROWS)
     pose = dict(zip(("x_m", "y_m", "psi_rad"), states[::2, :3].T, strict=True))
     return Recording("quick", t, pose | dict(zip(boat.commands, commands.T, strict=True))), states
@@ -81,7 +81,7 @@ def test_an_exact_log_is_named_exactly(tmp_path: Path) -> None:
             np.column_stack([run[n] for n in boat.commands]),
             float(run.t[1] - run.t[0]),
         )
-        states = Twin(boat, every / 4).rollout([0.0] * 6, commands, every)[: len(run)]
+        states = Batch(boat, step=every / 4).rollout([0.0] * 6, commands, every)[: len(run)]
         pose = dict(zip(("x_m", "y_m", "psi_rad"), states[:, :3].T, strict=True))
         exact.append(replace(run, signals=run.signals | pose))
     answer = diagnosed(exact, tmp_path, "trial_boat", FURTHER)

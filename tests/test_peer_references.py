@@ -17,7 +17,7 @@ from scipy.integrate import quad, solve_ivp
 
 from boatsim.physics.base import Array, motion
 from boatsim.physics.effects.cross_flow_drag import FRESH_WATER, CrossFlowDrag
-from boatsim.simulate.compiled_engine import Twin
+from boatsim.simulate.batch import Batch
 from boatsim.simulate.engine import Engine, State
 
 MASS, YAW_INERTIA = 6.0, 0.5  # [kg], [kg m^2]
@@ -72,9 +72,9 @@ def sampled(
     settings = {"current": {"north": case.current[0], "east": case.current[1]}} | dict(more)
     vessel = boats.planar(folder, settings if case.drag else boats.WITHOUT_DRAG | settings)
     if how == "twin":
-        twin = Twin(vessel, STEP)
-        rows = np.tile(twin.program.command_array(case.commands), (round(10 * until), 1))
-        return twin.rollout(case.start, rows, 0.1)
+        compiled_engine = Batch(vessel, step=STEP)
+        rows = np.tile(compiled_engine.program.command_array(case.commands), (round(10 * until), 1))
+        return compiled_engine.rollout(case.start, rows, 0.1)
     engine = Engine(vessel, step=STEP)
     x, y, psi, u, v, r = case.start
     engine.reset(State(x=x, y=y, psi=psi, u=u, v=v, r=r), case.commands)
@@ -174,11 +174,11 @@ def test_energy_and_momentum_last(run: Runner) -> None:
 
 def test_an_hour_loses_a_day_s_share_of_energy_at_most(tmp_path: Path) -> None:
     """A day at 10 ms is to lose less than a millionth; the integrator loses as much every hour."""
-    twin, mass = (
-        Twin(boats.planar(tmp_path, boats.WITHOUT_DRAG), STEP),
+    compiled_engine, mass = (
+        Batch(boats.planar(tmp_path, boats.WITHOUT_DRAG), step=STEP),
         np.diag(rigid_mass() + ADDED),
     )
-    state = twin.coast(P3.start, {}, round(3600.0 / STEP))
+    state = compiled_engine.coast(P3.start, {}, round(3600.0 / STEP))
     assert 0.5 * np.sum(mass * state[3:] ** 2) == pytest.approx(3.361, rel=1e-6 / 24)  # [J]
     momentum = turned(state[2])[:2, :2] @ (mass * state[3:])[:2]
     assert momentum == pytest.approx([6.6, 0.9], abs=1e-6 / 24 * 6.6)  # [N s]

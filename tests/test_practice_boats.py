@@ -8,7 +8,7 @@ import pytest
 
 from boatsim.physics import vessel
 from boatsim.physics.base import Array
-from boatsim.simulate.compiled_engine import Twin
+from boatsim.simulate.batch import Batch
 from validation.practice import motion
 from validation.practice.boats import BOATS
 
@@ -64,7 +64,7 @@ def test_a_boat_with_nothing_concealed_sails_as_the_tools_own(name: str) -> None
     free = BOATS[name]().free
     at = [*free, *(6 + i for i in free)]
     start = [STARTS.get(name, {}).get(SYMBOLS[i], 0.0) for i in at]
-    theirs = Twin(boat, step=held / 1000).rollout(
+    theirs = Batch(boat, step=held / 1000).rollout(
         start, np.array(rows, dtype=float).reshape(5, -1), held
     )[1:]
     ours = sailed(name, held / 150)[:, at]

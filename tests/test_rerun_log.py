@@ -10,7 +10,7 @@ from boatsim.errors import BadInput
 from boatsim.recordings.readers.rrd import last_time
 from boatsim.recordings.table import Recording, read, write_csv
 from boatsim.view import blueprint, rerun_log, water
-from boatsim.view.rerun_log import RerunLog, log_overlay, norms_table
+from boatsim.view.rerun_log import RerunLog, log_overlay, metrics_table
 from boatsim.view.scene import Thruster, plain_scene, scene_from
 
 PORT = Thruster("port", -0.5, -0.19, "actual_thrust_port_N", "actual_steer_port_rad")
@@ -225,7 +225,7 @@ def test_without_a_file_and_a_viewer_there_is_nothing_to_do():
     with RerunLog(None, SCENE) as log:
         log.add_rows(circle())
         log.finish({})
-    assert not log.stream.heard
+    assert not log.stream.has_receiver
 
 
 def test_the_scene_of_a_vessel_has_its_hull_and_a_thruster_on_each_side():
@@ -284,7 +284,7 @@ def test_boats_are_as_large_as_the_track_asks_for_and_all_of_it_lies_in_view_on_
         np.ptp(hull[:, 0]) == pytest.approx(scene.times * boat.length, rel=0.1)
         and scene.times >= 1.0
     )
-    assert scene.length >= 0.99 * water.SEEN * size and scene.times == pytest.approx(
+    assert scene.length >= 0.99 * water.SMALLEST * size and scene.times == pytest.approx(
         max(1.0, 0.08 * size / boat.length)
     )
     length, width, x, y = scene.tank
@@ -308,7 +308,7 @@ def test_a_boat_that_goes_nowhere_is_drawn_at_its_size():
 
 
 def test_norms_are_told_with_what_was_published_and_whether_the_bar_is_met():
-    table = norms_table(
+    table = metrics_table(
         {
             "moved": {
                 "value": 0.51234,
@@ -339,7 +339,7 @@ def test_norms_are_told_with_what_was_published_and_whether_the_bar_is_met():
     )
     assert "| moved |  | 0.5123 m | at least 0.3 | yes | 0.4 (differs) |" in table
     assert "| rate |  | -2 rad/s | -1 to 1 | **no** |  |" in table
-    assert "| free | largest | too short |  |  |  |" in table and "no norms" in norms_table({})
+    assert "| free | largest | too short |  |  |  |" in table and "no metrics" in metrics_table({})
 
 
 def test_a_legend_says_the_unit():

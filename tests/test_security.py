@@ -428,7 +428,7 @@ def test_16_a_run_is_served_to_this_machine_alone(monkeypatch: pytest.MonkeyPatc
     ended = subprocess.Popen([sys.executable, "-c", ""], start_new_session=True)
     ended.wait()
     monkeypatch.setattr(viewer, "_rerun", lambda *options: asked.extend(options) or ended)
-    with pytest.raises(BoatsimError, match="does not start"), viewer.shown(serve=True):
+    with pytest.raises(BoatsimError, match="does not start"), viewer.viewer_for(serve=True):
         pass
     assert asked[asked.index("--bind") + 1] == "127.0.0.1"
 
@@ -440,7 +440,7 @@ def test_16_a_window_listens_to_this_machine_alone(monkeypatch: pytest.MonkeyPat
     monkeypatch.setattr(viewer, "_rerun", lambda *options: asked.extend(options) or ended)
     monkeypatch.setattr(viewer, "_listening", lambda port: False)
     monkeypatch.setenv("DISPLAY", ":99")
-    with viewer.shown(serve=False) as shown:
+    with viewer.viewer_for(serve=False) as shown:
         assert shown is None
     assert asked[asked.index("--bind") + 1] == "127.0.0.1"
 

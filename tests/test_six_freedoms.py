@@ -14,7 +14,7 @@ from boatsim.physics.base import Array
 from boatsim.physics.kernel.equations import tilts
 from boatsim.physics.signals import AXES, signals_of
 from boatsim.physics.vessel import Vessel
-from boatsim.simulate.compiled_engine import Twin
+from boatsim.simulate.batch import Batch
 from boatsim.simulate.engine import Engine, State
 
 # ---- the Otter (Fossen's toolbox)
@@ -389,7 +389,7 @@ def test_engine_and_twin_follow_lagrange_in_any_set_of_freedoms(
     free = [AXES.index(a) for a in dof]
     pose = np.array([0.1, -0.2, 0.05, 0.3, -0.2, 0.7])
     rate = np.array([0.4, -0.3, 0.1, 0.5, -0.4, 0.6])
-    engine, twin = Engine(boat, step=0.01), Twin(boat, step=0.01)
+    engine, compiled = Engine(boat, step=0.01), Batch(boat, step=0.01)
     start = np.concatenate([pose[free], rate[free]])  # joint coordinates and rates
     tilting = tilts(frozenset(dof))
     full = np.zeros(6)
@@ -412,7 +412,7 @@ def test_engine_and_twin_follow_lagrange_in_any_set_of_freedoms(
     wanted = [*found[: len(free)], *(J @ np.linalg.solve(J.T @ M @ J, found[len(free) :]))[free]]
     at_end = [getattr(engine.state, s.symbol) for s in signals_of(dof)]
     assert at_end == pytest.approx(wanted, rel=1e-6, abs=2e-6)
-    rolled = twin.rollout(list(moving.values()), np.zeros((30, 0)), 0.1)[-1]
+    rolled = compiled.rollout(list(moving.values()), np.zeros((30, 0)), 0.1)[-1]
     assert at_end == pytest.approx(rolled, rel=1e-10, abs=1e-10)
 
 

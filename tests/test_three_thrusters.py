@@ -18,7 +18,7 @@ from boatsim.physics.program import Program
 from boatsim.physics.signals import signals_of
 from boatsim.physics.vessel import Vessel
 from boatsim.recordings.table import Recording
-from boatsim.simulate.compiled_engine import Twin
+from boatsim.simulate.batch import Batch
 from boatsim.simulate.engine import Engine, State
 
 WORKBOAT = """
@@ -168,7 +168,7 @@ def test_engine_and_twin_sail_alike(place: Path) -> None:
     boat = vessel.load(str(place))
     rows, start = drawn(boat, 30, 3), State(psi=0.4, u=0.5, v=-0.2, r=0.1)
     pose_and_rates = [signal.symbol for signal in signals_of(boat.dof)]
-    wanted = Twin(boat).rollout([getattr(start, n) for n in pose_and_rates], rows, 1.0)
+    wanted = Batch(boat).rollout([getattr(start, n) for n in pose_and_rates], rows, 1.0)
     engine = Engine(boat)
     engine.reset(start, dict(zip(COMMANDS, rows[0], strict=True)))
     for row, then in zip(rows, wanted[1:], strict=True):

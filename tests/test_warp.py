@@ -20,7 +20,6 @@ from boatsim.physics.program import Program
 from boatsim.physics.trust import trusting
 from boatsim.physics.vessel import Vessel
 from boatsim.simulate import batch as cores
-from boatsim.simulate.compiled_engine import Twin
 from boatsim.warp import Batch
 from boatsim.warp.kernels import HEAD
 from boatsim.warp.on_mujoco import OnMujoco
@@ -74,9 +73,11 @@ def furthest(batch: Batch, boats_there: int) -> float:
     """Largest difference to the twin over ten seconds, each state by its largest size."""
     boat = batch.vessels[0]
     starts, commands = drawn_starts(boat, batch.n), drawn_commands(boat, (SECONDS, batch.n))
-    found, twin = sailed(batch, starts, commands)[:, :boats_there], Twin(boat, batch.step)
+    found = sailed(batch, starts, commands)[:, :boats_there]
+    compiled_engine = cores.Batch(boat, step=batch.step)
     wanted = np.stack(
-        [twin.rollout(starts[i], commands[:, i], 1.0) for i in range(boats_there)], axis=1
+        [compiled_engine.rollout(starts[i], commands[:, i], 1.0) for i in range(boats_there)],
+        axis=1,
     )
     return float((np.abs(found - wanted) / np.abs(wanted).max(axis=(0, 1))).max())
 

@@ -22,7 +22,7 @@ from boatsim.physics.base import Array
 from boatsim.physics.vessel import Vessel
 from boatsim.recordings.notes import unit_of
 from boatsim.recordings.table import Recording, write_csv
-from boatsim.simulate.compiled_engine import Twin
+from boatsim.simulate.batch import Batch
 
 VESSELS = ("trial_boat", "blueboat", "otter", "mariner")
 LASTS, HOLDS = 80.0, 4.0  # [s] of a log, of a command, on a boat of 1.2 m
@@ -46,14 +46,14 @@ def sailed(boat: Vessel, seed: int, lasts: float = LASTS) -> Columns:
     """A good log: positions and heading with noise, and the commands that were given."""
     rng, slow = np.random.default_rng(seed), froude_time(boat)
     rows, held = round(lasts * RATE), round(HOLDS * RATE)
-    twin = Twin(boat, slow / RATE / SUBSTEPS)
+    compiled = Batch(boat, step=slow / RATE / SUBSTEPS)
     levels = []
     for c in boat.commands.values():
         low, high = (max(c.low, -c.high) if c.low < 0.0 else c.low), c.high
         levels.append(rng.uniform(0.6 * low, 0.8 * high, -(-rows // held)))
     commands = np.repeat(np.column_stack(levels), held, axis=0)[:rows]
     nq = len(boat.dof)
-    states = twin.rollout(np.zeros(2 * nq), commands, slow / RATE)[:rows]
+    states = compiled.rollout(np.zeros(2 * nq), commands, slow / RATE)[:rows]
     x, y, psi = (states[:, boat.dof.index(axis)] for axis in ("surge", "sway", "yaw"))
     noise = rng.standard_normal((3, rows)) * [
         [PLACE_SD * boat.length],

@@ -180,7 +180,7 @@ def _effect_line(effect: Effect) -> str:
 def _scenario_lines(name: str) -> list[str]:
     """Description of a scenario, with the values of the files it builds on."""
     if name.endswith(".toml") and cases.cases(content.find("scenario", name)):
-        return [f"{Path(name).name}: scenarios", *(f"  {case}" for case in cases.meant(name))]
+        return [f"{Path(name).name}: scenarios", *(f"  {case}" for case in cases.matching(name))]
     table, place = cases.content(name)
     lines = [
         f"{place.name}: scenario",

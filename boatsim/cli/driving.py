@@ -16,7 +16,7 @@ from boatsim.drive.task import FILE, Task
 from boatsim.simulate.evaluation import RunEntry
 from boatsim.simulate.run_files import run_into_folder
 from boatsim.view.run_observers import rerun_observers
-from boatsim.view.viewer import display
+from boatsim.view.viewer import has_display
 
 
 def drive_vessel(
@@ -42,7 +42,7 @@ def drive_vessel(
             address = stack.enter_context(open_viewer(viewer.serve))
         session = Session(task, server, print_note, address is not None)
         print_note(f"drive in a browser on this machine: {server.address}")
-        if browser or (browser is None and display()):
+        if browser or (browser is None and has_display()):
             webbrowser.open(server.address)
         observers = rerun_observers(address)
         scenario = task.in_folder(folder)

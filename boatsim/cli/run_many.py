@@ -22,7 +22,7 @@ from boatsim.cli.metric_table import print_metrics
 from boatsim.errors import BadInput
 from boatsim.interruption import ignored_signals, signal_received
 from boatsim.physics import trust
-from boatsim.simulate.cases import meant
+from boatsim.simulate.cases import matching
 from boatsim.simulate.controllers import steered
 from boatsim.simulate.evaluation import RunEntry
 from boatsim.simulate.real_time_pace import Pace
@@ -178,9 +178,9 @@ def open_viewer(serve: bool) -> Iterator[str | None]:
     Yields:
         Address to which a run sends its data; None without a viewer.
     """
-    from boatsim.view.viewer import HERE, PAGE, shown
+    from boatsim.view.viewer import HERE, PAGE, viewer_for
 
-    with shown(serve) as viewer:
+    with viewer_for(serve) as viewer:
         if viewer is None:
             print_error(
                 "no viewer can be shown (is there a display?); the run continues without one. "
@@ -188,7 +188,7 @@ def open_viewer(serve: bool) -> Iterator[str | None]:
             )
         elif viewer.page:
             print_note(f"watch in a browser on this machine: {viewer.page}")
-        yield viewer.to if viewer else None
+        yield viewer.address if viewer else None
 
 
 def run_manoeuvre(scenario: Scenario, folder: Path) -> int:
@@ -245,7 +245,7 @@ def plan_runs(
     """
     if repeated := _first_repeated([Path(controller).stem for controller in controllers]):
         raise BadInput(f"--controller {repeated} is given twice; both would write to one folder")
-    addresses = list(chain.from_iterable(map(meant, names)))
+    addresses = list(chain.from_iterable(map(matching, names)))
     choices: Sequence[str | None] = controllers or [None]
     loaded: list[list[Scenario]] = []
     for address in addresses:

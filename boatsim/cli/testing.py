@@ -15,7 +15,7 @@ from boatsim.errors import BadInput, printable
 from boatsim.files import replacing
 from boatsim.simulate import baselines
 from boatsim.simulate.baselines import Baseline, BaselinesFile
-from boatsim.simulate.cases import files_of, meant
+from boatsim.simulate.cases import files_of, matching
 from boatsim.simulate.evaluation import Metric, all_metrics
 from boatsim.simulate.run import run
 from boatsim.simulate.scenario import Scenario, load
@@ -113,7 +113,7 @@ def _run_all(folder: Path, known: Mapping[str, Mapping[str, Baseline]], seeds: i
     ready: list[tuple[str, Scenario]] = []
     for path in files_of(folder):
         try:
-            for address in meant(str(path)):
+            for address in matching(str(path)):
                 ready.append((address.removeprefix(f"{path.parent}/"), load(address)))
         except FAULTS as error:
             cases.append(Case(path.name, error=one_line(error)))

@@ -109,7 +109,7 @@ class Session:
                 self._tally.add(rows)
                 self._heading = float(rows["psi_rad"][-1])
                 self._end = float(rows.t[-1])
-                metrics = self._tally.norms()
+                metrics = self._tally.metrics()
                 frame = self._painter.frame(rows, metrics, self.clock, self.hands, self.latency)
                 self.server.show(frame)
                 files(rows)

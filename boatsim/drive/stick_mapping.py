@@ -10,7 +10,7 @@ from boatsim.drive.driver_input import Sticks
 from boatsim.errors import BadInput
 from boatsim.physics.signals import STATE, follower
 from boatsim.physics.vessel import ManoeuvringTable, Vessel
-from boatsim.simulate.manoeuvre import approach, athwart, handled
+from boatsim.simulate.manoeuvre import approach, handled, transverse_thrusters
 
 # Defaults for a vessel whose files and controller specify no largest goals.
 FROUDE = 0.15  # Froude number of the largest speed: well below hull speed
@@ -194,7 +194,7 @@ def _channel_dials(vessel: Vessel, table: ManoeuvringTable) -> list[Dial]:
             _room(vessel, name, channels[name].neutral + side * per_rad) for side in (-1.0, 1.0)
         ]
         found.append(Dial(name, "yaw", *ends))
-    for name, share in athwart(vessel).items():
+    for name, share in transverse_thrusters(vessel).items():
         if name in channels and name not in table.steer:
             ends = [
                 _room(vessel, name, channels[name].neutral + side * share) for side in (-1.0, 1.0)

@@ -10,7 +10,7 @@ from boatsim.drive.stick_mapping import Dials, dials_of
 from boatsim.errors import BadInput
 from boatsim.files import MAX_TOML_BYTES, Value
 from boatsim.physics.content import find, load_class, names
-from boatsim.simulate.cases import Place, content, meant
+from boatsim.simulate.cases import Place, content, matching
 from boatsim.simulate.scenario import OFF, Scenario, from_table
 
 FILE = "scenario.toml"
@@ -149,7 +149,7 @@ def _find_scenario(vessel: str, scenario: str) -> str:
     own = f"{vessel}/{scenario}"
     if own in names("scenario"):
         return own
-    found = meant(scenario)
+    found = matching(scenario)
     if len(found) > 1:
         raise BadInput(
             f"--scenario {scenario} matches {len(found)}: {', '.join(found[:3])} ...; name one"

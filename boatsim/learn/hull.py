@@ -9,7 +9,7 @@ import numpy as np
 from boatsim.errors import BadInput
 from boatsim.physics.signals import AXES, Array
 from boatsim.physics.vessel import Vessel
-from boatsim.simulate.compiled_engine import Twin
+from boatsim.simulate.batch import Batch
 
 GRAVITY = 9.81  # [m/s^2]
 ROW = 0.1  # time between two rows in sqrt(L/g)
@@ -79,7 +79,7 @@ def scale_of(vessel: Vessel, full_ahead: Array) -> Scale:
         raise BadInput(f"{vessel.name} is not free in surge, sway and yaw, as a task must have it")
     row = ROW * sqrt(vessel.length / GRAVITY)
     place = columns(vessel)
-    rows = Twin(vessel, row / 10.0).rollout(
+    rows = Batch(vessel, step=row / 10.0).rollout(
         [0.0] * (2 * len(vessel.dof)), np.tile(full_ahead, (LONGEST, 1)), row
     )[:, place]
     gone = np.flatnonzero(np.hypot(rows[:, 0], rows[:, 1]) >= vessel.length)

@@ -1,8 +1,8 @@
 """Baselines of metrics, stored next to the scenarios, so that every change of behaviour is noticed.
 
-`pins.toml` in a folder of scenarios holds the value of each metric with the scenario's own seed, and
-a tolerance: the range of the metric over several seeds, because other noise is not a change, and at
-least the difference between the arithmetic of two machines.
+`pins.toml` in a folder of scenarios holds the value of each metric with the scenario's own seed,
+and a tolerance: the range of the metric over several seeds, because other noise is not a change,
+and at least the difference between the arithmetic of two machines.
 """
 
 import json
@@ -134,7 +134,7 @@ def _text(value: float | None, lacking: str | None) -> str:
 def to_toml(baselines: BaselinesFile) -> str:
     """Return the content of a pins.toml, with one line per metric so that diffs are readable."""
     lines = [
-        "# Baselines of the metrics of the scenarios in this folder, with each scenario's own seed.",
+        "# Baselines of the metrics of these scenarios, with each scenario's own seed.",
         "# `boatsim test FOLDER` compares with them, `boatsim test FOLDER --pin` writes this file.",
         "# tolerance: range over the seeds, at least a millionth of the value.",
         f"seeds = {baselines.seeds}",

@@ -1,6 +1,7 @@
-"""Many boats at once on all cores, each with its own parameters, state and actuators; without MuJoCo and its walls.
+"""The compiled engine: many vessels in open water on all cores, without MuJoCo.
 
-A boat in a batch moves to the last bit as it would alone in a batch of one, whatever the number of threads.
+Each vessel has its own parameters, state and actuators. Its motion does not depend on the number of
+vessels and threads, to the last bit. One vessel is a batch of n = 1.
 """
 
 import os
@@ -14,30 +15,39 @@ from numpy.typing import ArrayLike, NDArray
 
 from boatsim.errors import BadInput, unknown_name
 from boatsim.physics.commands import clip, clipped_row
-from boatsim.physics.kernel.records import Fleet
+from boatsim.physics.kernel.records import Fleet, Model
 from boatsim.physics.kinds.effect import Effect
 from boatsim.physics.param import Param
 from boatsim.physics.program import Program
 from boatsim.physics.signals import Array
 from boatsim.physics.vessel import Vessel
 
-Boats: TypeAlias = NDArray[np.int64]  # numbers of boats
-BODY = {  # numbers of the rigid body, and where they stand in `Program.body`
-    f"body.{name}": (place, Param(1e-9, 1e18, unit, f"{name.replace('_', ' ')} of the rigid body"))
-    for place, name, unit in (
-        (0, "mass", "kg"),
-        (3, "roll_inertia", "kg m^2"),
-        (4, "pitch_inertia", "kg m^2"),
-        (5, "yaw_inertia", "kg m^2"),
-    )
+Boats: TypeAlias = NDArray[np.int64]  # numbers of vessels
+# parameters of the rigid body -> place in `Program.body` and description
+BODY = {
+    "body.mass": (0, Param(1e-9, 1e18, "kg", "mass of the rigid body")),
+    "body.roll_inertia": (3, Param(1e-9, 1e18, "kg m^2", "roll inertia of the rigid body")),
+    "body.pitch_inertia": (4, Param(1e-9, 1e18, "kg m^2", "pitch inertia of the rigid body")),
+    "body.yaw_inertia": (5, Param(1e-9, 1e18, "kg m^2", "yaw inertia of the rigid body")),
 }
-TURN = 256  # boats that a thread steps in one go: what they need then stays in its core's cache
+TURN = 256  # vessels that a thread steps at a time, so that their data stay in its core's cache
 
 
 class Batch:
-    """Boats in open water. `advance` steps them under commands; what actuators remember is kept from call to call.
+    """Vessels in open water. `advance` steps them; the actuators keep their memory between calls.
 
-    States, SNAME [m, rad, m/s, rad/s], are as those of `Twin`: (x, y, psi, u, v, r) for boats in the plane.
+    States are SNAME [m, rad, m/s, rad/s]: the coordinates (x, y, z, phi, theta, psi) and the body
+    rates over ground (u, v, w, p, q, r) of the degrees of freedom of the vessel, (x, y, psi, u, v,
+    r) in the plane.
+
+    Attributes:
+        vessels: The different vessels.
+        n: Number of vessels that are simulated.
+        step: Integration step [s].
+        threads: Number of threads.
+        program: Compiled program, the same for all.
+        code: Its compiled functions.
+        t: Times (n,) [s].
     """
 
     def __init__(
@@ -49,15 +59,24 @@ class Batch:
         threads: int | None = None,
         seeds: Sequence[int] | None = None,
     ) -> None:
-        """Boat i is the vessel i modulo their number, at rest at the origin; `step` [s] of the integration.
+        """Put the vessels at the origin, at rest; number i is vessel i modulo their number.
 
-        `seeds` draw the random courses of boats in waves. Raises BadInput for vessels that differ in more than numbers.
+        Args:
+            vessels: Vessels that differ in numbers only.
+            n: How many to simulate; default: one of each.
+            step: Integration step [s].
+            threads: Number of threads; default: one per core.
+            seeds: Seeds (n,) of effects with random parameters, such as waves; default: 0.
+
+        Raises:
+            BadInput: If the vessels differ in more than numbers, or a number is not valid.
         """
         self.vessels = [vessels] if isinstance(vessels, Vessel) else list(vessels)
         self.n = len(self.vessels) if n is None else n
         if not self.vessels or self.n < 1:
             raise BadInput(
-                f"a batch of {self.n} boats of {len(self.vessels)} vessels; allowed is at least one of each"
+                f"a batch of {self.n} boats of {len(self.vessels)} vessels; "
+                "allowed is at least one of each"
             )
         if not step > 0.0:
             raise BadInput(f"step = {step:g} s; allowed is more than 0")
@@ -86,7 +105,7 @@ class Batch:
 
     @property
     def fleet(self) -> Fleet:
-        """States and parameters of all boats as compiled functions take them; views, not copies."""
+        """States and parameters as compiled functions take them: views, not copies."""
         return Fleet(
             self.t,
             self._y,
@@ -101,7 +120,7 @@ class Batch:
 
     @property
     def bytes_per_boat(self) -> int:
-        """Memory that a boat takes, whatever their number."""
+        """Memory per vessel [bytes]."""
         held = (
             self.t,
             self._y,
@@ -117,23 +136,23 @@ class Batch:
 
     @property
     def states(self) -> Array:
-        """(n, 2 NQ) present states, body rates over ground."""
+        """Present states (n, 2 NQ)."""
         return self.program.body_rates(self._y)
 
     @property
     def actuators(self) -> Array:
-        """(n, A) actuators now, in the order of `vessel.actuators`."""
+        """Present actuators (n, A), in the order of `vessel.actuators`."""
         last = 2 * self.code.HELD
         return self._act[:, last : last + len(self.vessels[0].actuators)].copy()
 
     @property
     def commands(self) -> Array:
-        """(n, C) commands in force, in the order of `vessel.inputs`."""
+        """Commands in force (n, C), in the order of `vessel.inputs`."""
         return self._commands.copy()
 
     @property
     def lost(self) -> NDArray[np.bool_]:
-        """(n,) boats whose motion is no longer finite; the others go on."""
+        """Whether the motion of each vessel (n,) has diverged; the others are unaffected."""
         return np.asarray(~np.isfinite(self._y).all(axis=1))
 
     def reset(
@@ -142,70 +161,155 @@ class Batch:
         commands: ArrayLike | Mapping[str, float] | None = None,
         boats: ArrayLike | None = None,
     ) -> None:
-        """Put boats (numbers or a mask; all) at states (2 NQ,) or (k, 2 NQ), actuators settled at commands, t = 0.
+        """Set the state of vessels at t = 0, with actuators settled at commands.
 
-        Default: at rest at the origin, commands neutral. Raises BadInput.
+        Args:
+            states: State (2 NQ,) or states (k, 2 NQ); default: at rest at the origin.
+            commands: Commands by channel, (C,) or (k, C); default: neutral.
+            boats: Numbers (k,) or a mask (n,) of the vessels; default: all.
+
+        Raises:
+            BadInput: If a shape, name or value is not valid.
         """
         chosen = self._chosen(boats)
         self._y[chosen] = (
             0.0 if states is None else self.program.joint_rates(self._rows(states, chosen))
         )
-        self._commands[chosen] = self._taken(commands if commands is not None else {}, chosen)
+        self._commands[chosen] = self._clip(commands if commands is not None else {}, chosen)
         self.t[chosen] = 0.0
         self.shared(lambda some: self.code.settle_boats(some, self.fleet), chosen)
 
     def advance(
         self, commands: ArrayLike | Mapping[str, float] | None = None, steps: int = 1
     ) -> None:
-        """Steps of all boats with the commands held: (n, C), (C,) or by name; None: those in force.
+        """Take steps of all vessels with the commands held.
 
-        Commands act within their channels' ranges; (..., C) without what is measured keeps that as it is.
-        Raises BadInput for one that is not finite.
+        Args:
+            commands: Commands by channel, (C,) or (n, C), which act within their ranges; without
+                the measured inputs, these stay as they are. None: the commands in force.
+            steps: Number of steps.
+
+        Raises:
+            BadInput: If a shape, name or value is not valid.
         """
         everyone = np.arange(self.n)
         if commands is not None:
-            self._commands[:] = self._taken(commands, everyone)
+            self._commands[:] = self._clip(commands, everyone)
         self.shared(lambda some: self._stepped(some, steps))
 
     def set(self, parameter: str, values: ArrayLike, boats: ArrayLike | None = None) -> None:
-        """Give boats other values, one or (k,), of "effect.parameter" or "body.mass"; what a file derives stays.
+        """Change a parameter of vessels, but no parameters that a vessel file derives from it.
 
-        Raises BadInput for a name that is unknown and a value out of bounds.
+        Args:
+            parameter: "effect.parameter" or "body.mass".
+            values: One value or (k,).
+            boats: Numbers (k,) or a mask (n,) of the vessels; default: all.
+
+        Raises:
+            BadInput: If the name is unknown or a value out of bounds.
         """
         chosen, (rows, place, about) = self._chosen(boats), self._known(parameter)
         given = self._each(parameter, np.asarray(values, dtype=float), chosen)
         if not ((given >= about.low) & (given <= about.high)).all():
             wrong = given[~((given >= about.low) & (given <= about.high))][0]
-            raise BadInput(
-                f"{parameter} = {wrong:g}; allowed {about.low:g} to {about.high:g} {about.unit}".rstrip()
-            )
+            allowed = f"{about.low:g} to {about.high:g} {about.unit}".rstrip()
+            raise BadInput(f"{parameter} = {wrong:g}; allowed {allowed}")
         rows[chosen, place] = given
         self._weigh(chosen)
 
     def get(self, parameter: str) -> Array:
-        """(n,) values of "effect.parameter"."""
+        """Return the values (n,) of "effect.parameter".
+
+        Raises:
+            BadInput: If the name is unknown.
+        """
         rows, place, _ = self._known(parameter)
         return rows[:, place].copy()
 
     def assign(self, vessel: ArrayLike, boats: ArrayLike | None = None) -> None:
-        """Make boats the vessel of that number, one or (k,), with all parameters as its file has them.
+        """Give vessels all parameters of one of the different vessels.
 
-        Raises BadInput for a number that none has.
+        Args:
+            vessel: Its number, or numbers (k,).
+            boats: Numbers (k,) or a mask (n,) of the vessels that change; default: all.
+
+        Raises:
+            BadInput: If a number does not exist.
         """
         chosen = self._chosen(boats)
         numbers = self._each("vessel", np.asarray(vessel, dtype=int), chosen)
-        if strange := [
-            number for number in np.unique(numbers) if not 0 <= number < len(self.vessels)
-        ]:
-            raise BadInput(f"vessel {strange[0]}; allowed 0 to {len(self.vessels) - 1}")
+        for number in np.unique(numbers):
+            if not 0 <= number < len(self.vessels):
+                raise BadInput(f"vessel {number}; allowed 0 to {len(self.vessels) - 1}")
         for number in np.unique(numbers):
             program, some = self.programs[number], chosen[numbers == number]
             self._p[some], self._body[some] = self._values[number], program.body
-            self._draw(program, some)
+            self._sample(program, some)
         self._weigh(chosen)
 
-    def _draw(self, program: Program, boats: Boats) -> None:
-        """Random courses by each boat's seed."""
+    def rollout(
+        self,
+        start: Sequence[float],
+        commands: Array,
+        interval: float,
+        values: Array | None = None,
+        t0: float = 0.0,
+    ) -> Array:
+        """Compute a free run of the first vessel; the state of the batch stays as it is.
+
+        Args:
+            start: State (2 NQ,).
+            commands: Rows (N, C) in the order of the vessel's inputs, each held for an interval,
+                within the ranges of their channels; actuators start settled at the first row.
+            interval: Length of an interval [s].
+            values: Parameters of all effects in place of the vessel's.
+            t0: Time at the start [s].
+
+        Returns:
+            States (N + 1, 2 NQ) at the ends of the intervals.
+
+        Raises:
+            BadInput: If the step does not divide the interval, or a command is not finite.
+        """
+        substeps = round(interval / self.step)
+        if substeps < 1 or abs(substeps * self.step - interval) > 1e-9 * interval:
+            raise BadInput(f"step {self.step:g} s does not divide the interval {interval:g} s")
+        p = self._values[0] if values is None else values
+        commands = np.ascontiguousarray(clip(self.vessels[0], np.asarray(commands, dtype=float)))
+        model = Model(self.program.body, p, self._on)
+        plant = self.program.plant(self.program.joint_rates(np.array(start, dtype=float)))
+        self.code.settle(commands[0], plant.memory, p, self._on, plant.act)
+        out = np.empty((len(commands) + 1, len(plant.y)))
+        self.code.rollout(model, plant, commands, t0, self.step, substeps, out)
+        return self.program.body_rates(out)
+
+    def coast(self, start: Sequence[float], commands: Mapping[str, float], steps: int) -> Array:
+        """Compute the state of the first vessel after steps with constant commands.
+
+        Args:
+            start: State (2 NQ,).
+            commands: Commands by channel, at which the actuators are settled; others are neutral.
+            steps: Number of steps.
+
+        Returns:
+            State (2 NQ,).
+
+        Raises:
+            BadInput: If a channel does not exist.
+        """
+        p = self._values[0]
+        act = np.zeros(self.program.held_size)
+        k = np.zeros(self.code.K)
+        memory = np.zeros(self.program.memory_size)
+        self.code.settle(self.program.command_array(commands), memory, p, self._on, act)
+        self.code.constants(self.program.body, p, self._on, k)
+        y = self.program.joint_rates(np.array(start, dtype=float))
+        self.code.steps(0.0, y, self.step, steps, act, p, self._on, k)
+        state: Array = self.program.body_rates(y[None])[0]
+        return state
+
+    def _sample(self, program: Program, boats: Boats) -> None:
+        """Parameters of effects with random parameters, by the seed of each vessel."""
         for effect, first in zip(program.effects, program.offsets, strict=True):
             if type(effect).seeded is not Effect.seeded:
                 for b in boats:
@@ -219,7 +323,12 @@ class Batch:
         self.code.weigh_boats(boats, self._body, self._p, self._on, self._k)
 
     def shared(self, work: Callable[[Boats], None], boats: Boats | None = None) -> None:
-        """Work on boats (all), by turns of some, on all threads."""
+        """Work on vessels on all threads.
+
+        Args:
+            work: Works on the vessels of these numbers.
+            boats: Numbers of the vessels; default: all.
+        """
         chosen = np.arange(self.n) if boats is None else boats
         turns = [chosen[i : i + TURN] for i in range(0, len(chosen), TURN)]
         if self.threads == 1 or len(turns) == 1:
@@ -229,72 +338,78 @@ class Batch:
         for _ in pool(self.threads, os.getpid()).map(work, turns):
             pass
 
-    def feel(self, felt: Array) -> None:
-        """What instruments without noise would say, a row (11,) a boat, in the order of `control.compiled.SENSE_FIELDS`."""
+    def sense(self, felt: Array) -> None:
+        """Write the readings of sensors without noise.
+
+        Args:
+            felt: Rows (n, 11) in the order of `control.compiled.SENSE_FIELDS`; they are changed.
+        """
         self.shared(lambda some: self.code.feel_boats(some, self.fleet, felt))
 
     def _chosen(self, boats: ArrayLike | None) -> Boats:
-        """Numbers of the boats that are meant. Raises BadInput."""
+        """Numbers of vessels, from numbers or a mask. Raises BadInput."""
         if boats is None:
             return np.arange(self.n)
         given = np.asarray(boats)
-        chosen = (
-            np.flatnonzero(given) if given.dtype == bool else np.atleast_1d(given).astype(np.int64)
-        )
-        if len(chosen) and not (0 <= chosen.min() and chosen.max() < self.n):
-            raise BadInput(
-                f"boat {chosen.max() if chosen.min() >= 0 else chosen.min()}; allowed 0 to {self.n - 1}"
-            )
+        if given.dtype == bool:
+            chosen = np.flatnonzero(given)
+        else:
+            chosen = np.atleast_1d(given).astype(np.int64)
+        for number in (chosen.min(initial=0), chosen.max(initial=0)):
+            if not 0 <= number < self.n:
+                raise BadInput(f"boat {number}; allowed 0 to {self.n - 1}")
         return chosen
 
     @staticmethod
     def _each(what: str, given: NDArray[Any], boats: Boats) -> NDArray[Any]:
-        """A value a boat. Raises BadInput."""
+        """One value per vessel. Raises BadInput."""
         if given.shape not in ((), (1,), boats.shape):
             raise BadInput(
-                f"{what}: values of shape {given.shape}; allowed are one, or one for each of {len(boats)} boats"
+                f"{what}: values of shape {given.shape}; "
+                f"allowed are one, or one for each of {len(boats)} boats"
             )
         return np.broadcast_to(given, boats.shape)
 
     def _rows(self, states: ArrayLike, boats: Boats) -> Array:
-        """A state a boat. Raises BadInput."""
+        """One state per vessel. Raises BadInput."""
         given = np.asarray(states, dtype=float)
         if (
             given.shape not in ((self._y.shape[1],), (len(boats), self._y.shape[1]))
             or not np.isfinite(given).all()
         ):
             raise BadInput(
-                f"states of shape {given.shape}; allowed are {self._y.shape[1]} finite numbers a boat"
+                f"states of shape {given.shape}; "
+                f"allowed are {self._y.shape[1]} finite numbers a boat"
             )
         return np.broadcast_to(given, (len(boats), self._y.shape[1]))
 
-    def _taken(self, commands: ArrayLike | Mapping[str, float], boats: Boats) -> Array:
-        """(k, C) commands that act when these are sent. Raises BadInput."""
-        boat = self.vessels[0]
+    def _clip(self, commands: ArrayLike | Mapping[str, float], boats: Boats) -> Array:
+        """Commands (k, C) in force when these are sent. Raises BadInput."""
+        vessel = self.vessels[0]
         if isinstance(commands, Mapping):
-            return clipped_row(boat, commands)
-        given, width = np.asarray(commands, dtype=float), len(boat.commands)
+            return clipped_row(vessel, commands)
+        given, width = np.asarray(commands, dtype=float), len(vessel.commands)
         fits = given.shape[:-1] in ((), (1,), boats.shape)
-        if not (given.ndim and fits and given.shape[-1] in (width, len(boat.inputs))):
+        if not (given.ndim and fits and given.shape[-1] in (width, len(vessel.inputs))):
             raise BadInput(
-                f"commands of shape {given.shape}; allowed are {width} a boat: {', '.join(boat.commands)}"
+                f"commands of shape {given.shape}; "
+                f"allowed are {width} a boat: {', '.join(vessel.commands)}"
             )
         rows = self._commands[boats]
         rows[:, : given.shape[-1]] = given
-        return clip(boat, rows)
+        return clip(vessel, rows)
 
     @cached_property
     def _parameters(self) -> dict[str, tuple[int, Param]]:
-        """Where each number of an effect lies, and what is known of it."""
-        program = self.program
-        return {
-            f"{effect.name}.{name}": (first + i, about)
-            for effect, first in zip(program.effects, program.offsets, strict=True)
-            for i, (name, about) in enumerate(type(effect).params().items())
-        }
+        """Place and description of each parameter of an effect."""
+        found: dict[str, tuple[int, Param]] = {}
+        for effect, first in zip(self.program.effects, self.program.offsets, strict=True):
+            for place, (name, about) in enumerate(type(effect).params().items(), first):
+                found[f"{effect.name}.{name}"] = (place, about)
+        return found
 
     def _known(self, parameter: str) -> tuple[Array, int, Param]:
-        """Rows of all boats in which a number stands, where, and what is known of it."""
+        """Array of a parameter, its column there, and its description. Raises BadInput."""
         if parameter in BODY:
             return (self._body, *BODY[parameter])
         if parameter not in self._parameters:
@@ -303,17 +418,22 @@ class Batch:
         return (self._p, *self._parameters[parameter])
 
     def _check_alike(self) -> None:
-        """Raises BadInput for vessels of which one program does not serve all."""
+        """Raises BadInput if the vessels need different programs."""
         first = self.vessels[0]
-        for i, (boat, program) in enumerate(zip(self.vessels, self.programs, strict=True)):
-            if program.module is not self.code or boat.inputs != first.inputs:
+        for i, (vessel, program) in enumerate(zip(self.vessels, self.programs, strict=True)):
+            if program.module is not self.code or vessel.inputs != first.inputs:
                 raise BadInput(
-                    f"vessel {i} of a batch ({boat.name}) has other effects, freedoms or channels than the first "
-                    f"({first.name}); allowed are other numbers"
+                    f"vessel {i} of a batch ({vessel.name}) has other effects, degrees of freedom "
+                    f"or channels than the first ({first.name}); allowed are other numbers"
                 )
 
 
 @cache
 def pool(threads: int, process: int) -> ThreadPoolExecutor:
-    """Threads that step boats, shared by all batches of a process; one that was forked has none of its parent's."""
+    """Return the threads that all batches of a process share.
+
+    Args:
+        threads: Number of threads.
+        process: Id of the process; a forked one does not have its parent's threads.
+    """
     return ThreadPoolExecutor(threads, "boats")

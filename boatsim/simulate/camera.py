@@ -1,4 +1,4 @@
-"""The camera above the water: sees any number of marks fixed to the hull, and gives the pose that fits them best."""
+"""A camera above the water: it sees marks on the hull and gives the pose that fits them best."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
@@ -16,7 +16,7 @@ CAMERA_POSE = ("x_m", "y_m", "psi_rad")  # columns of the pose that a frame give
 
 
 class Frame(NamedTuple):
-    """One camera frame: the pose that its marks give, and the marks themselves."""
+    """One camera frame: the positions of the marks and the pose that fits them."""
 
     t: float  # [s]
     x: float  # [m] CG
@@ -27,10 +27,11 @@ class Frame(NamedTuple):
 
 @dataclass(frozen=True)
 class Camera(Checked):
-    """A picture some times a second, on each of which the marks are pointed out by hand.
+    """A camera whose pictures are evaluated by hand: the user marks points of the hull.
 
-    Places in the water's plane are complex numbers, north + i east (on the hull ahead + i starboard). Heading and CG
-    are those of the drawing of the marks that lies nearest to what was seen; its size is free, as a picture's is.
+    Positions in the plane of the water are complex numbers, north + i east, on the hull ahead +
+    i starboard. Heading and CG are those of the least-squares fit of the marks' pattern to the
+    marked points; the scale of the pattern is free, as that of a picture is.
     """
 
     rate: float = param(6.0, low=0.1, high=240.0, unit="Hz", words="frames evaluated per second")
@@ -43,29 +44,39 @@ class Camera(Checked):
     def __post_init__(self) -> None:
         super().__post_init__()
         for name, place in self.marks.items():
-            if not _is_place(place):
+            if not _is_position(place):
                 raise BadInput(
-                    f"Camera.marks.{name} = {place!r}; allowed are two numbers, m ahead and to starboard"
+                    f"Camera.marks.{name} = {place!r}; "
+                    "allowed are two numbers, m ahead and to starboard"
                 )
-        if len({tuple(place) for place in self.marks.values()}) < 2:
+        if len(set(map(tuple, self.marks.values()))) < 2:
             raise BadInput(
                 f"Camera.marks = {dict(self.marks)}; a heading needs two marks in different places"
             )
 
     @cached_property
     def places(self) -> Array:
-        """(M,) complex, where the marks are on the hull [m]."""
+        """Complex positions (M,) of the marks on the hull [m]."""
         return np.array([complex(*place) for place in self.marks.values()])
 
     @cached_property
     def _weights(self) -> tuple[Array, Array]:
-        """(M,) each: by which the marks seen sum up to the place of the CG, and to the way the bow points."""
+        """Weights (M,) of the marks in the position of the CG, and in the direction of the bow."""
         off = self.places - self.places.mean()
         turn = off.conj() / (np.abs(off) ** 2).sum()
         return 1.0 / len(off) - self.places.mean() * turn, turn
 
     def seen(self, place: Array, psi: Array, noise: Array) -> Array:
-        """(..., M) marks of a boat at `place` (...) on heading `psi` (...); `noise` (..., 2 M) is standard normal."""
+        """Return the measured positions of the marks.
+
+        Args:
+            place: Complex position (...) of the CG [m].
+            psi: Heading (...) [rad].
+            noise: Standard normal numbers (..., 2 M).
+
+        Returns:
+            Complex positions (..., M) [m].
+        """
         shaken = self.mark_sd * (noise[..., 0::2] + 1j * noise[..., 1::2])
         return np.asarray(
             np.asarray(place)[..., None]
@@ -74,17 +85,30 @@ class Camera(Checked):
         )
 
     def pose(self, seen: Array) -> tuple[Array, Array]:
-        """Place (...) [m] of the CG and heading (...) [rad] of marks seen (..., M)."""
+        """Return the pose that fits measured marks.
+
+        Args:
+            seen: Complex positions (..., M) of the marks [m].
+
+        Returns:
+            Complex position (...) of the CG [m] and heading (...) [rad].
+        """
         centre, turn = self._weights
         return seen @ centre, np.angle(seen @ turn)
 
     def noise(self) -> dict[str, float]:
-        """Standard deviations of the pose that a frame gives, as a recording's notes have them."""
+        """Return the standard deviations of the pose, by their key in a recording's notes."""
         centre, turn = (float(np.sqrt((np.abs(w) ** 2).sum())) for w in self._weights)
         return {"position_sd_m": self.mark_sd * centre, "heading_sd_rad": self.mark_sd * turn}
 
     def shoot(self, t: float, pose: Pose, noise: Array) -> Frame:
-        """One frame of a boat at a true pose; `noise` holds two standard normal numbers a mark."""
+        """Take one frame.
+
+        Args:
+            t: Time [s].
+            pose: True pose.
+            noise: Standard normal numbers (2 M,).
+        """
         marks = self.seen(np.asarray(complex(pose[0], pose[1])), np.asarray(pose[2]), noise)
         place, psi = self.pose(marks)
         return Frame(
@@ -92,13 +116,22 @@ class Camera(Checked):
         )
 
     def due(self, number: int, t: float) -> bool:
-        """Whether frame `number` has been taken by the time t [s]."""
+        """Return whether frame `number` is due by the time t [s]."""
         return number / self.rate <= t + 1e-9
 
     def frames_between(
         self, t0: float, before: Pose, t1: float, after: Pose, first: int, rng: np.random.Generator
     ) -> Iterator[Frame]:
-        """Frames number `first` on that fall into (t0, t1], the pose interpolated between its two ends."""
+        """Take the frames that fall into a step, with the pose interpolated between its ends.
+
+        Args:
+            t0: Begin of the step [s].
+            before: True pose then.
+            t1: End of the step [s].
+            after: True pose then.
+            first: Number of the first frame that was not taken yet.
+            rng: Random generator of the marking noise.
+        """
         number = first
         while self.due(number, t1):
             w = 1.0 if t1 == t0 else min(max((number / self.rate - t0) / (t1 - t0), 0.0), 1.0)
@@ -110,9 +143,15 @@ class Camera(Checked):
 
 
 def camera_over(vessel: Vessel, settings: Mapping[str, object]) -> Camera:
-    """The camera of a [camera] table over a vessel, whose marks the table may move or add to.
+    """Return the camera of a scenario.
 
-    Where neither file names a mark they are half a length ahead and astern of the CG. Raises BadInput.
+    Args:
+        vessel: The vessel; its marks are used unless the settings replace them. Without any mark
+            there are two, half a length ahead and astern of the CG.
+        settings: The table [camera].
+
+    Raises:
+        BadInput: If a setting is not valid.
     """
     given = settings.get("marks", {})
     if not isinstance(given, Mapping):
@@ -123,7 +162,8 @@ def camera_over(vessel: Vessel, settings: Mapping[str, object]) -> Camera:
     return Camera.from_settings({**settings, "marks": {**vessel.marks, **given} or ends})
 
 
-def _is_place(given: object) -> bool:
-    """Whether it is two finite numbers."""
-    numbers = given if isinstance(given, list | tuple) else ()
-    return len(numbers) == 2 and all(type(x) in (int, float) and np.isfinite(x) for x in numbers)
+def _is_position(given: object) -> bool:
+    """Whether a value is a list of two finite numbers."""
+    if not isinstance(given, list | tuple) or len(given) != 2:
+        return False
+    return all(type(x) in (int, float) and np.isfinite(x) for x in given)

@@ -1,18 +1,20 @@
-"""What a scenario file says: on its own, as one of its cases, or on top of another that it builds on.
+"""Content of a scenario file: on its own, as one of its cases, or based on another scenario.
 
-A file is one scenario, or says in [[case]] tables (each with a `name`) what differs between several. A file may build
-on another with base = "folder/scenario", "file.toml" or "file.toml:case". A case builds on the rest of its file, or,
-where it says so, on another scenario or on a case beside it: base = "case".
+A file is one scenario, or several in [[case]] tables (each with a `name`), which hold what differs
+between them. A file may be based on another one with base = "folder/scenario", "file.toml" or
+"file.toml:case". A case is based on the rest of its file, or on another scenario or a case of the
+same file: base = "case".
 
-One rule lays the upper on the lower: a table is merged key by key, unless the upper one says what to `use`, for that
-is another thing and begins anew. All else, a list of tables too, takes the lower one's place.
-A file whose name begins with _ is only there to be built on. A path in a file starts at that file.
+Tables are merged key by key, except that a table with `use` replaces the one below it. All other
+values, lists of tables too, are replaced. Files whose names begin with _ only serve as a base.
+Paths in a file are relative to that file.
 """
 
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fnmatch import fnmatchcase
+from itertools import chain
 from pathlib import Path
 
 from boatsim.errors import BadInput, unknown_name
@@ -21,29 +23,30 @@ from boatsim.physics import trust
 from boatsim.physics.content import all_names, find, full_name, root
 
 NAME = re.compile(r"[\w.+-]+")
-OTHERS = (
-    "vessel.toml",
-    "patched.toml",
-    "recording.toml",
-    "pins.toml",
-)  # files of a folder that are no scenarios
+# files in a folder of scenarios that are none
+OTHERS = ("vessel.toml", "patched.toml", "recording.toml", "pins.toml")
 
 
 @dataclass(frozen=True)
 class Place:
-    """Where a scenario stands: a file, and which of its cases, "" for one that has none."""
+    """A scenario file and one of its cases.
+
+    Attributes:
+        path: The file.
+        case: Name of the case; "" if the file has none.
+    """
 
     path: Path
     case: str = ""
 
     @property
     def label(self) -> str:
-        """What a mistake in it is reported under."""
+        """Name in error messages."""
         return f"{self.path.name}: {self.case}" if self.case else self.path.name
 
     @property
     def name(self) -> str:
-        """vessel/case for scenarios that are found by name, the case or the file's stem for a file of the user's."""
+        """Vessel/case for shipped scenarios; the case or the file's stem for a file of the user."""
         own = self.case or self.path.stem
         for home in (root(), *trust.content()):
             if self.path.parent.parent == home / "scenarios":
@@ -52,19 +55,41 @@ class Place:
 
     @property
     def address(self) -> str:
-        """What it is found by again: vessel/case, or the path of a file of the user's, with its case."""
-        found = f"{self.path.resolve()}:{self.case}" if self.case else str(self.path.resolve())
-        return self.name if "/" in self.name or not self.path.is_file() else found
+        """Name by which it is found again: vessel/case, or the path of a file with its case."""
+        if "/" in self.name or not self.path.is_file():
+            return self.name
+        path = str(self.path.resolve())
+        return f"{path}:{self.case}" if self.case else path
 
 
 def content(given: str) -> tuple[dict[str, Value], Place]:
-    """All that a scenario says, by its name or path, and where it stands. Raises BadInput."""
+    """Read a scenario.
+
+    Args:
+        given: Name or path, as for `located`.
+
+    Returns:
+        The merged content, and where it comes from.
+
+    Raises:
+        BadInput: If the scenario or its base does not exist or a file is not valid.
+    """
     place = located(given)
-    return _told(place, ()), place
+    return _merged_with_bases(place, ()), place
 
 
-def meant(given: str) -> list[str]:
-    """The scenarios that a word on the command line stands for: a name, a folder, a pattern, or a file's cases."""
+def matching(given: str) -> list[str]:
+    """Return the scenarios that an argument of the command line stands for.
+
+    Args:
+        given: A name, a folder, a pattern with * and ?, or a file, which stands for its cases.
+
+    Returns:
+        Names and paths.
+
+    Raises:
+        BadInput: If there is none.
+    """
     shipped = all_names("scenario")
     if not given:
         raise BadInput(
@@ -72,24 +97,29 @@ def meant(given: str) -> list[str]:
         )
     if given in shipped:
         return [given]
-    inside = [n for n in shipped if n.startswith(f"{given.rstrip('/')}/")]
+    inside = [name for name in shipped if name.startswith(f"{given.rstrip('/')}/")]
     if inside:
         return inside
     if Path(given).is_dir():
-        return [one for path in files_of(Path(given)) for one in meant(str(path))]
+        return list(chain.from_iterable(matching(str(path)) for path in files_of(Path(given))))
     if any(sign in given for sign in "*?[") and not Path(given).is_file():
-        found = [n for n in shipped if fnmatchcase(n, given)]
+        found = [name for name in shipped if fnmatchcase(name, given)]
         if not found:
-            folders = sorted({n.partition("/")[0] for n in shipped})
+            folders = sorted({name.partition("/")[0] for name in shipped})
             raise BadInput(f"no scenario is like {given!r} (they are in {', '.join(folders)})")
         return found
     if given.endswith(".toml"):
-        return [f"{given}:{case}" for case in cases(find("scenario", given))] or [given]
+        names = cases(find("scenario", given))
+        return [f"{given}:{case}" for case in names] or [given]
     return [full_name("scenario", given)]
 
 
 def files_of(folder: Path) -> list[Path]:
-    """Scenario files in a folder, by name. Raises BadInput where there is none."""
+    """Return the scenario files in a folder, sorted by name.
+
+    Raises:
+        BadInput: If there is none.
+    """
     files = [path for path in sorted(folder.glob("[!_]*.toml")) if path.name not in OTHERS]
     if not files:
         raise BadInput(f"{folder}: there is no scenario (*.toml) in this folder")
@@ -97,48 +127,63 @@ def files_of(folder: Path) -> list[Path]:
 
 
 def cases(path: Path) -> list[str]:
-    """Names of a file's cases; none if it is one scenario. Raises BadInput for one without a name, or a name twice."""
+    """Return the names of a file's cases; none if it is one scenario.
+
+    Raises:
+        BadInput: If the file is not valid, a case has no name or two have the same.
+    """
     given = read_toml(path).get("case", [])
-    there = tables(given)
-    if not isinstance(given, list) or len(there) < len(given):
+    case_tables = tables(given)
+    if not isinstance(given, list) or len(case_tables) < len(given):
         raise BadInput(f"{path.name}: case = {given!r}; allowed are [[case]] tables")
     found: list[str] = []
-    for number, case in enumerate(there, 1):
+    for number, case in enumerate(case_tables, 1):
         name = case.get("name")
         if not isinstance(name, str) or not NAME.fullmatch(name):
             raise BadInput(
-                f"{path.name}: [[case]] {number}: name = {name!r}; allowed are letters, digits and _ . + -"
+                f"{path.name}: [[case]] {number}: name = {name!r}; "
+                "allowed are letters, digits and _ . + -"
             )
         if name in found:
-            raise BadInput(
-                f"{path.name}: case {name!r} stands there twice; each needs a name of its own"
-            )
+            raise BadInput(f"{path.name}: case {name!r} occurs twice; each needs a name of its own")
         found.append(name)
     return found
 
 
-def located(given: str, beside: Path | None = None) -> Place:
-    """The place of a scenario by its name, or by a path from the folder `beside`: a file, or `file.toml:case`."""
+def located(given: str, base_folder: Path | None = None) -> Place:
+    """Find a scenario.
+
+    Args:
+        given: Name, or path of a file, or `file.toml:case`.
+        base_folder: Folder from which a path starts; default: the working directory.
+
+    Raises:
+        BadInput: If it does not exist, or the file has several cases and none is given.
+    """
     file, _, case = given.rpartition(":")
     named = file.endswith(".toml")
-    path = find("scenario", file if named else given, beside)
-    there = cases(path)
+    path = find("scenario", file if named else given, base_folder)
+    names = cases(path)
     if named:
-        if case not in there:
-            raise BadInput(unknown_name(f"{path.name}: case", case, there))
+        if case not in names:
+            raise BadInput(unknown_name(f"{path.name}: case", case, names))
         return Place(path, case)
-    if not there:
+    if not names:
         return Place(path)
     own = given.rpartition("/")[2]
-    if given.endswith(".toml") or own not in there:
-        raise BadInput(
-            f"{path.name} holds several cases; say which: {', '.join(f'{path.name}:{c}' for c in there)}"
-        )
+    if given.endswith(".toml") or own not in names:
+        choices = ", ".join(f"{path.name}:{name}" for name in names)
+        raise BadInput(f"{path.name} holds several cases; name one: {choices}")
     return Place(path, own)
 
 
 def merged(base: Mapping[str, Value], over: Mapping[str, Value]) -> dict[str, Value]:
-    """One table on top of another."""
+    """Merge a table into a base table; see the module for the rule.
+
+    Args:
+        base: The base.
+        over: The table whose values take precedence.
+    """
     out = dict(base)
     for key, value in over.items():
         mine = out.get(key)
@@ -148,46 +193,50 @@ def merged(base: Mapping[str, Value], over: Mapping[str, Value]) -> dict[str, Va
     return out
 
 
-def _told(place: Place, above: Sequence[Place]) -> dict[str, Value]:
-    """Content of a place with that of its base beneath; `above` are those that build on it."""
+def _merged_with_bases(place: Place, above: Sequence[Place]) -> dict[str, Value]:
+    """Content merged into that of its bases; `above` are the scenarios based on this one."""
     if place in above:
-        way = " -> ".join(p.case or p.path.name for p in [*above[above.index(place) :], place])
-        raise BadInput(f"{above[0].label}: base leads back to where it came from: {way}")
-    file = {
-        key: _at_home(value, place.path.parent, key) for key, value in read_toml(place.path).items()
-    }
-    own: dict[str, Value] = next(
-        (case for case in tables(file.pop("case", [])) if case["name"] == place.case), {}
-    )
+        loop = [p.case or p.path.name for p in [*above[above.index(place) :], place]]
+        raise BadInput(f"{above[0].label}: base leads back to itself: {' -> '.join(loop)}")
+    file: dict[str, Value] = {}
+    for key, value in read_toml(place.path).items():
+        file[key] = _with_absolute_paths(value, place.path.parent, key)
+    own: dict[str, Value] = {}
+    for case in tables(file.pop("case", [])):
+        if case["name"] == place.case:
+            own = case
     layers = [own] if "base" in own else [file, own]
-    given = layers[0].get("base")
-    said: dict[str, Value] = {} if given is None else _told(_base(given, place), [*above, place])
+    found: dict[str, Value] = {}
+    base = layers[0].get("base")
+    if base is not None:
+        found = _merged_with_bases(_base(base, place), [*above, place])
     for layer in layers:
-        said = merged(said, {k: v for k, v in layer.items() if k not in ("base", "name")})
-    return said
+        found = merged(found, {k: v for k, v in layer.items() if k not in ("base", "name")})
+    return found
 
 
 def _base(given: Value, place: Place) -> Place:
-    """Where a base stands: a case beside the one that names it, or a scenario of another file."""
+    """The base that a scenario names: a case of the same file, or a scenario of another one."""
     try:
         if not isinstance(given, str):
             raise BadInput(f"{given!r}; allowed is the name of a scenario")
-        there = cases(place.path)
-        if given in there:
+        names = cases(place.path)
+        if given in names:
             return Place(place.path, given)
         if "/" not in given and ".toml" not in given:
-            raise BadInput(unknown_name("scenario", given, [*there, *all_names("scenario")]))
+            raise BadInput(unknown_name("scenario", given, [*names, *all_names("scenario")]))
         return located(given, place.path.parent)
     except BadInput as error:
         raise BadInput(f"{place.label}: base: {error}") from None
 
 
-def _at_home(value: Value, folder: Path, key: str = "") -> Value:
-    """Content of a file with the paths in it, of vessels and of what is to `use`, made to start at its folder."""
+def _with_absolute_paths(value: Value, folder: Path, key: str = "") -> Value:
+    """Content of a file with absolute paths in the keys `vessel` and `use`."""
     if isinstance(value, dict):
-        return {k: _at_home(v, folder, k) for k, v in value.items()}
+        return {k: _with_absolute_paths(v, folder, k) for k, v in value.items()}
     if isinstance(value, list):
-        return [_at_home(v, folder) for v in value]
+        return [_with_absolute_paths(v, folder) for v in value]
     if key in ("vessel", "use") and isinstance(value, str) and ("/" in value or "." in value):
-        return str((folder / value).resolve()) if (folder / value).exists() else value
+        if (folder / value).exists():
+            return str((folder / value).resolve())
     return value

@@ -1,4 +1,4 @@
-"""A scenario steered by another controller than its own, and whether that one fits, told before anything runs."""
+"""Scenarios with another controller than their own, checked before they run."""
 
 from collections.abc import Mapping
 
@@ -21,8 +21,8 @@ def steered(
 
     Args:
         given: Name or path of the scenario.
-        controller: Name of a controller, or path of its .py, which may run because the user names it. Another
-            controller has its default settings; for the scenario's own, the scenario's settings stay.
+        controller: Name of a controller, or path of its .py, which may run because the user names
+            it. Another controller has its default settings; the scenario's own keeps its settings.
         vessel: Vessel in place of the scenario's.
         changes: Top-level keys of the scenario that are replaced.
 
@@ -47,7 +47,7 @@ def steered(
 
 
 def _rehearse(scenario: Scenario) -> None:
-    """One step of the controller under each of its goals, of a boat at rest. Raises BadInput for a goal it misses."""
+    """Let the controller act once under each goal, for a vessel at rest, to find missing goals."""
     readings = {n: 0.0 for sensor in scenario.additional_sensors for n in type(sensor).columns}
     at_rest = dict.fromkeys(("psi", "r", "ax", "ay", "u", "v", "x", "y", "phi", "p"), 0.0)
     for goal in scenario.file.goal or [{}]:
@@ -58,6 +58,6 @@ def _rehearse(scenario: Scenario) -> None:
         except KeyError as error:
             if error.args and error.args[0] in type(scenario.controller).goals:
                 raise BadInput(controller_error(error, scenario.controller)) from None
-        except Exception:  # of a boat that never was; what goes wrong in a run is told there
+        except Exception:  # a run reports other errors; this one may be due to the artificial state
             continue
     scenario.controller.reset()

@@ -1,7 +1,7 @@
 """Steps a vessel on MuJoCo: added mass and all forces enter through the passive-force callback.
 
-Files, controllers and effects are SNAME (z down); MuJoCo's model is z up. The translation is here for people and files,
-and in `add_to_mujoco` of the equations for the compiled step; nowhere else.
+Files, controllers and effects use SNAME axes (z down), MuJoCo's model has z up. This module
+converts states, and `add_to_mujoco` of the equations converts forces in the compiled step.
 """
 
 from collections.abc import Callable, Iterator
@@ -21,11 +21,12 @@ from boatsim.simulate import native_callback, world
 from boatsim.simulate.stepper import State, Stepper
 from boatsim.simulate.world import Tank
 
-SAME = 1e-12  # relative: native and Python callback must agree to this at start-up
+# relative difference allowed between the native callback and the one in Python at start-up
+SAME = 1e-12
 
 
-class Look(TypedDict, total=False):
-    """What `world.build` may be told of the model beside its vessel and tank."""
+class ModelOptions(TypedDict, total=False):
+    """Options of `world.build`."""
 
     show: bool
     wall_solref: tuple[float, float] | None
@@ -33,7 +34,14 @@ class Look(TypedDict, total=False):
 
 
 class Engine(Stepper):
-    """One vessel in one tank."""
+    """One vessel in one tank.
+
+    Attributes:
+        tank: The tank.
+        model: The model of MuJoCo.
+        data: Its state.
+        callback: The passive-force callback, a pointer or a function.
+    """
 
     def __init__(
         self,
@@ -42,11 +50,21 @@ class Engine(Stepper):
         step: float = 0.02,
         *,
         callback: str = "native",
-        **look: Unpack[Look],
+        **options: Unpack[ModelOptions],
     ) -> None:
-        """Build the model; `look` goes to `world.build`. Raises BadPhysics for a model that can not be stepped.
+        """Build the model with the vessel at the origin, at rest.
 
-        `callback` is "native" (which falls back to "python", with a warning, where the two differ) or "python".
+        Args:
+            vessel: The vessel.
+            tank: The tank; default: open water.
+            step: Integration step [s].
+            callback: "native", which falls back to "python" with a warning where the two differ,
+                or "python".
+            **options: Options of `world.build`.
+
+        Raises:
+            BadInput: If the hull can not be read.
+            BadPhysics: If the model can not be stepped.
         """
         super().__init__(vessel, step)
         self.tank = tank or world.open_water(vessel)
@@ -54,16 +72,14 @@ class Engine(Stepper):
         self.code.constants(self.program.body, self._values, self._on, self._k)
         size = len(self._values) + self.code.K + self.program.held_size + 2
         with no_callback():
-            self.model = world.build(vessel, self.tank, step, size, **look)
+            self.model = world.build(vessel, self.tank, step, size, **options)
             self.data = mujoco.MjData(self.model)
         joints = [self.model.joint(i).name for i in range(self.model.njnt)]
         coordinates = [COORDINATES[i] for i in self.code.FREE]
-        self._place = np.array(
-            [joints.index(n) for n in coordinates]
-        )  # of each coordinate among MuJoCo's joints
-        self._sign = np.array(
-            [float(SIGN[n]) for n in coordinates]
-        )  # SNAME = sign * z-up, coordinate and rate alike
+        # place of each coordinate among MuJoCo's joints
+        self._place = np.array(list(map(joints.index, coordinates)))
+        # SNAME = sign * z-up, for coordinates and rates
+        self._sign = np.array([float(SIGN[name]) for name in coordinates])
         self._held = self.data.userdata[-self.program.held_size - 2 :]
         self.callback = self._choose(callback, size)
         self.reset()
@@ -80,12 +96,20 @@ class Engine(Stepper):
         self.data.qvel[self._place] = self._sign * state[self.code.NQ :]
 
     def settle(self) -> None:
-        """Let the actuators reach their commands at once."""
+        """Set the actuators to the steady state of their commands."""
         super().settle()
         self._write_userdata()
 
     def advance(self, steps: int = 1, length: float | None = None) -> None:
-        """Steps of `length` s (default: `step`) with the commands held. Raises BadPhysics if the motion diverges."""
+        """Take steps with the commands held.
+
+        Args:
+            steps: Number of steps.
+            length: Length of each step [s]; default: `step`.
+
+        Raises:
+            BadPhysics: If the motion diverges.
+        """
         with installed(self.callback):
             super().advance(steps, length)
         self.model.opt.timestep = self.step  # a step may have been cut
@@ -97,7 +121,7 @@ class Engine(Stepper):
         mujoco.mj_step(self.model, self.data)
 
     def coast(self, steps: int) -> None:
-        """Many steps inside MuJoCo's own loop with the actuators as they are: what benchmarks measure."""
+        """Take steps in MuJoCo's own loop with fixed actuators, for benchmarks."""
         with installed(self.callback):
             mujoco.mj_step(self.model, self.data, nstep=steps)
 
@@ -107,11 +131,11 @@ class Engine(Stepper):
 
     @property
     def contacts(self) -> int:
-        """How many contacts the hull has now."""
+        """Number of contacts of the hull."""
         return int(self.data.ncon)
 
     def acceleration(self) -> tuple[float, float]:
-        """Acceleration of the origin over ground along body x and y [m/s^2], as an accelerometer there feels it."""
+        """Return the acceleration of the origin over ground along body x and y [m/s^2]."""
         J = self.program.jacobian(self._joint_state().tolist())
         moving = [k for k, i in enumerate(self.code.FREE) if i < 3]
         ahead, aside, _ = J[:3, moving] @ (self._sign * self.data.qacc[self._place])[moving]
@@ -123,7 +147,7 @@ class Engine(Stepper):
         )
 
     def _choose(self, wanted: str, size: int) -> object:
-        """The native callback if it gives the same numbers as the one in Python, which always works."""
+        """The native callback if it agrees with the one in Python, which always works."""
         plain = python_callback(self.code, size)
         if wanted == "python" or DEBUG:
             return plain
@@ -138,7 +162,7 @@ class Engine(Stepper):
         return fast
 
     def _agree(self, fast: object, plain: object) -> bool:
-        """Whether both callbacks give the same acceleration at a state in which every term counts."""
+        """Whether both callbacks give the same acceleration at a state in which all terms count."""
         self._act[:] = np.linspace(0.3, 0.7, len(self._act))
         self._write_userdata()
         found = []
@@ -153,7 +177,12 @@ class Engine(Stepper):
 def python_callback(
     code: CompiledProgram, size: int
 ) -> Callable[[mujoco.MjModel, mujoco.MjData], None]:
-    """The callback in Python: the same compiled laws, called through the interpreter."""
+    """Return the callback in Python: the same compiled functions, called by the interpreter.
+
+    Args:
+        code: The vessel's compiled program.
+        size: Size of the model's userdata, by which the callback recognises its model.
+    """
 
     def passive(model: mujoco.MjModel, data: mujoco.MjData) -> None:
         if model.nuserdata == size:
@@ -165,34 +194,39 @@ def python_callback(
     return passive
 
 
-class installed:  # noqa: N801  # a context manager; as a class it costs a tenth of a generator's time, at every step
-    """MuJoCo's callbacks are global to the process: put ours in, and take it out again whatever happens.
+class installed:  # noqa: N801
+    """Install a passive-force callback for a block; MuJoCo's callbacks are global to the process.
 
-    Its warnings are heard and dropped, or it would write them to a file in the working folder: a motion gone wild is an
-    error of ours.
+    MuJoCo's warnings are dropped in the block; it would write them to a file in the working folder,
+    and a diverging motion is reported as an error. It is a class because that takes a tenth of the
+    time of a generator, and it is used at every step.
     """
 
     def __init__(self, callback: object) -> None:
-        """`callback` is a Python function or a pointer to a compiled one."""
+        """Prepare.
+
+        Args:
+            callback: A Python function or a pointer to a compiled one.
+        """
         self.callback = callback
 
     def __enter__(self) -> None:
-        self.heard = mujoco.get_mju_user_warning()
+        self._warning = mujoco.get_mju_user_warning()
         mujoco.set_mju_user_warning(_silent)
         mujoco.set_mjcb_passive(self.callback)
 
     def __exit__(self, *_: object) -> None:
         mujoco.set_mjcb_passive(None)
-        mujoco.set_mju_user_warning(self.heard)
+        mujoco.set_mju_user_warning(self._warning)
 
 
 def _silent(_: str) -> None:
-    """Takes a warning of MuJoCo's and says nothing."""
+    """Drop a warning of MuJoCo."""
 
 
 @contextmanager
 def no_callback() -> Iterator[None]:
-    """Compiling any model fails while a Python callback is installed."""
+    """Remove the callback for a block; a callback in Python prevents the compilation of models."""
     saved = mujoco.get_mjcb_passive()
     mujoco.set_mjcb_passive(None)
     try:

@@ -1,7 +1,7 @@
-"""The boat as a dm_control environment: commands in, SNAME observations out, on the engine.
+"""A scenario's vessel as a dm_control environment: commands in, SNAME observations out.
 
-`load` gives an environment with the interface of dm_env; `examples/random_commands.py` uses it. Where there is no
-display, import this module before dm_control: it has dm_control draw without one.
+`load` returns an environment with the interface of dm_env; `examples/random_commands.py` uses it.
+Without a display, import this module before dm_control, so that dm_control renders without one.
 """
 
 import os
@@ -32,7 +32,7 @@ if find_spec("dm_control") is None:
 
 
 def _choose_renderer() -> None:
-    """Without a display: EGL, else OSMesa, else none. Left alone, dm_control settles on a GLFW that only warns."""
+    """Without a display choose EGL, OSMesa or none, since dm_control would choose GLFW, which fails."""
     if {"MUJOCO_GL", "DISPLAY", "WAYLAND_DISPLAY"} & os.environ.keys():
         return
     for name in ("egl", "osmesa", "off"):
@@ -40,10 +40,8 @@ def _choose_renderer() -> None:
         try:
             import_module("dm_control.mujoco")
             return
-        except (
-            ImportError,
-            AttributeError,
-        ):  # PyOpenGL raises the latter where the library is not there
+        # PyOpenGL raises AttributeError where the library is missing
+        except (ImportError, AttributeError):
             os.environ.pop("PYOPENGL_PLATFORM", None)
 
 
@@ -52,100 +50,127 @@ from dm_control.mujoco import Physics, wrapper  # noqa: E402
 from dm_control.rl import control  # noqa: E402
 from dm_env import specs  # noqa: E402
 
-OUTBOARDS = {
-    -1: "outboard_port",
-    0: "outboard",
-    1: "outboard_starboard",
-}  # side of a steering channel -> body drawn
+# side of a steering channel -> drawn body
+OUTBOARDS = {-1: "outboard_port", 0: "outboard", 1: "outboard_starboard"}
 
 
 class BoatPhysics(Physics):
-    """An engine's model and data behind dm_control's interface; its forces act in `step` and `forward` and only there.
+    """An engine's model and data behind dm_control's interface; `step` and `forward` use forces.
 
-    `named.data`, cameras and contacts are MuJoCo's, z up; `engine.state` and the environment's observations are SNAME.
-    Controls are the vessel's commands.
+    `named.data`, cameras and contacts are MuJoCo's, z up; `engine.state` and the observations of
+    the environment are SNAME. Controls are the vessel's commands.
+
+    Attributes:
+        engine: The engine.
     """
 
     def __init__(self, engine: Engine) -> None:
-        """Take over an engine; whoever made it must no longer step it."""
+        """Take over an engine, which the caller must no longer step.
+
+        Args:
+            engine: The engine.
+        """
         self.engine = engine
-        boat = engine.vessel
-        steered = [(n, OUTBOARDS[boat.side(n)]) for n in boat.actuators if boat.roles[n] == "angle"]
+        vessel = engine.vessel
         bodies = {engine.model.body(i).name: i for i in range(engine.model.nbody)}
-        self._outboards = [(name, bodies[body]) for name, body in steered if body in bodies]
+        self._outboards: list[tuple[str, int]] = []  # actuator and number of its body
+        for name in vessel.actuators:
+            body = OUTBOARDS[vessel.side(name)] if vessel.roles[name] == "angle" else ""
+            if body in bodies:
+                self._outboards.append((name, bodies[body]))
         super().__init__(wrapper.MjData(engine.data))
 
     def step(self, nstep: int = 1) -> None:
-        """Advance by steps of `timestep()`, the commands held. Raises PhysicsError or BadPhysics if motion diverges."""
+        """Take steps of `timestep()` with the commands held.
+
+        Args:
+            nstep: Number of steps.
+
+        Raises:
+            PhysicsError: If dm_control finds the state invalid.
+            BadPhysics: If the motion diverges.
+        """
         with self.check_invalid_state():
             self.engine.advance(nstep)
             self._turn_outboards()
-            if (
-                self.legacy_step
-            ):  # positions and contacts of the state just reached, for cameras and observations
+            if self.legacy_step:  # contacts of the new state, for cameras and observations
                 with installed(self.engine.callback):
                     mujoco.mj_step1(self.engine.model, self.engine.data)
 
     def forward(self) -> None:
-        """Recompute all that follows from the state, the boat's forces included."""
+        """Recompute all quantities that follow from the state, including forces."""
         self.engine._write_userdata()
         self._turn_outboards()
         with installed(self.engine.callback):
             super().forward()
 
     def reset(self, keyframe_id: int | None = None) -> None:
-        """Put the boat at the origin, at rest. A boat has no keyframes: raises ValueError for one."""
+        """Put the vessel at the origin, at rest.
+
+        Raises:
+            ValueError: If a keyframe is given; a vessel has none.
+        """
         if keyframe_id is not None:
             raise ValueError(
-                f"keyframe {keyframe_id}: a boat has none; set `engine.reset(state)` in reset_context()"
+                f"keyframe {keyframe_id}: a boat has none; "
+                "set `engine.reset(state)` in reset_context()"
             )
         self.engine.reset()
         self.forward()
 
     def set_control(self, control: ArrayLike) -> None:
-        """Send commands (C,), in the vessel's order; they act within their ranges. Raises BadInput for others."""
+        """Send commands, which act within their ranges.
+
+        Args:
+            control: Commands (C,) in the vessel's order.
+
+        Raises:
+            BadInput: If the shape is wrong or a value is not finite.
+        """
         values, names = np.asarray(control, dtype=float), self.engine.vessel.commands
         if values.shape != (len(names),) or not np.isfinite(values).all():
             raise BadInput(
-                f"action {values.tolist()}; allowed are {len(names)} finite numbers: {', '.join(names)}"
+                f"action {values.tolist()}; "
+                f"allowed are {len(names)} finite numbers: {', '.join(names)}"
             )
         self.engine.command(dict(zip(names, values.tolist(), strict=True)))
 
     def control(self) -> Array:
-        """The commands (C,) in force."""
+        """Return the commands in force (C,)."""
         return self.engine._commands[: len(self.engine.vessel.commands)].copy()
 
     def copy(self, share_model: bool = False) -> "BoatPhysics":
-        """A boat of its own in the same state; its model is always its own, for outboards turn in the model."""
+        """Return a copy in the same state; it always has its own model, in which outboards turn."""
         restore, arguments = self.__reduce__()
         return restore(*arguments)
 
     def __reduce__(self) -> tuple[Callable[..., "BoatPhysics"], tuple[object, ...]]:
-        """Compiled callbacks do not pickle: what goes on the way is the vessel, the tank and the state."""
+        """Pickle vessel, tank and state, because compiled callbacks can not be pickled."""
         e = self.engine
         return _restored, (e.vessel, e.tank, e.step, self.get_state(WHOLE_STATE), self.get_state())
 
     def _reload_from_model(self, model: object) -> None:
-        raise BadPhysics("another model needs another engine: load the environment anew")
+        raise BadPhysics("another model needs another engine: load the environment again")
 
     def _physics_state_items(self) -> list[Array]:
-        """What a state is made of: besides positions and rates, what the actuators remember."""
+        """Arrays of the state: positions, rates, and the memory of the actuators."""
         e = self.engine
         return [e.data.qpos, e.data.qvel, e._commands, e._memory, e._act]
 
     def _turn_outboards(self) -> None:
-        """Draw each outboard at its actual angle a: its force points (cos a, sin a) in body axes, z down."""
+        """Turn each drawn outboard to its angle a, with its force along (cos a, sin a)."""
         actual = self.engine.actuators
         for name, body in self._outboards:
             half = -0.5 * actual[name]
             self.engine.model.body_quat[body] = (cos(half), 0.0, 0.0, sin(half))
 
 
-WHOLE_STATE = int(mujoco.mjtState.mjSTATE_INTEGRATION)  # all that MuJoCo's next step depends on
+# everything on which MuJoCo's next step depends
+WHOLE_STATE = int(mujoco.mjtState.mjSTATE_INTEGRATION)
 
 
 def _restored(vessel: Vessel, tank: Tank, step: float, whole: Array, state: Array) -> BoatPhysics:
-    """A copy, or what was pickled."""
+    """The physics of a copy or a pickle."""
     physics = BoatPhysics(Engine(vessel, tank, step))
     physics.set_state(whole, WHOLE_STATE)
     physics.set_state(state)
@@ -154,21 +179,35 @@ def _restored(vessel: Vessel, tank: Tank, step: float, whole: Array, state: Arra
 
 
 class BoatTask(control.Task):
-    """Move as the scenario's goal says: `surge_mps`, `sway_mps` and `yaw_radps`, zero where it says nothing.
+    """Follow the scenario's goals `surge_mps`, `sway_mps` and `yaw_radps`; missing goals are zero.
 
-    The reward of a control step is minus the squared error of velocity at its end [m^2/s^2], yaw rate as the speed it
-    gives bow and stern: -((u - u*)^2 + (v - v*)^2 + (L/2 (r - r*))^2). Episodes end with time only, discount 1.
+    The reward of a control step is minus the squared velocity error at its end [m^2/s^2], with the
+    yaw rate as the speed of bow and stern: -((u - u*)^2 + (v - v*)^2 + (L/2 (r - r*))^2). Episodes
+    end at a time only; the discount is 1.
+
+    Attributes:
+        scenario: The scenario.
+        scatter: Scatter of the starts.
     """
 
     def __init__(self, scenario: Scenario, seed: int, scatter: float = 0.0) -> None:
-        """`scatter`: each episode starts up to that many boat lengths and radians off the scenario's start."""
+        """Create a task.
+
+        Args:
+            scenario: The scenario.
+            seed: Seed of the starts.
+            scatter: Largest deviation of a start from the scenario's [lengths of the vessel, rad].
+
+        Raises:
+            BadInput: If `scatter` is out of range.
+        """
         if not 0.0 <= scatter <= 1.0:
             raise BadInput(f"scatter = {scatter:g}; allowed 0 to 1 boat length (and rad)")
         self.scenario, self.scatter = scenario, scatter
         self._random = np.random.default_rng(seed)
 
     def initialize_episode(self, physics: BoatPhysics) -> None:
-        """The scenario's start, actuators settled at its commands, others at those its controller begins with."""
+        """Put the vessel at the start, with actuators settled at the initial commands."""
         start, length = self.scenario.file.start, self.scenario.vessel.length
         x, y, psi = self._random.uniform(-self.scatter, self.scatter, 3) * (length, length, 1.0)
         scattered = {"x": start.x + x, "y": start.y + y, "psi": start.psi + psi}
@@ -178,19 +217,21 @@ class BoatTask(control.Task):
         )
 
     def before_step(self, action: ArrayLike, physics: BoatPhysics) -> None:
-        """Send the action to the actuators, which follow with their lags and limits."""
+        """Send the action to the actuators, which follow with their dynamics and limits."""
         physics.set_control(action)
 
     def action_spec(self, physics: BoatPhysics) -> specs.BoundedArray:
-        """(C,) command channels between their limits; the name lists them, separated by tabs."""
-        taken = self.scenario.vessel.commands
-        low, high = (
-            np.array([(c.low, c.high) for c in taken.values()], dtype=float).reshape(-1, 2).T
-        )
-        return specs.BoundedArray(low.shape, float, low, high, name="\t".join(taken))
+        """Return the limits of the commands (C,); the name lists them, tab-separated."""
+        channels = self.scenario.vessel.commands
+        limits = [(channel.low, channel.high) for channel in channels.values()]
+        low, high = np.array(limits, dtype=float).reshape(-1, 2).T
+        return specs.BoundedArray(low.shape, float, low, high, name="\t".join(channels))
 
     def get_observation(self, physics: BoatPhysics) -> OrderedDict[str, np.float64]:
-        """True pose in start axes and velocities in body axes, actual actuators, goal; units are in the names."""
+        """Return true pose in start axes, velocities in body axes, actuators and goals.
+
+        Units are part of the names.
+        """
         state, actual, goal = physics.engine.state, physics.engine.actuators, self._goal(physics)
         values = {s.column: getattr(state, s.symbol) for s in signals_of(self.scenario.vessel.dof)}
         values |= {f"actual_{name}": value for name, value in actual.items()}
@@ -198,7 +239,7 @@ class BoatTask(control.Task):
         return OrderedDict((name, np.float64(value)) for name, value in values.items())
 
     def get_reward(self, physics: BoatPhysics) -> float:
-        """Minus the squared error of velocity [m^2/s^2]."""
+        """Return minus the squared velocity error [m^2/s^2]."""
         s, (surge, sway, yaw) = physics.engine.state, self._goal(physics)
         swing = 0.5 * self.scenario.vessel.length * (s.r - yaw)
         return -float((s.u - surge) ** 2 + (s.v - sway) ** 2 + swing**2)
@@ -215,16 +256,25 @@ def load(
     scatter: float = 0.0,
     flat_observation: bool = False,
 ) -> control.Environment:
-    """The vessel of a scenario as an environment stepped once every period of the scenario's controller.
+    """Return an environment whose actions replace the scenario's controller, with its period.
 
-    The caller's actions take the controller's place; vessel, tank, start, goals and duration are the scenario's.
-    `seed` (default: the scenario's) only matters with `scatter`, see `BoatTask`. Raises BadInput or BadPhysics.
+    Args:
+        scenario: Name of a scenario, or a scenario.
+        seed: Seed of the starts; default: the scenario's.
+        scatter: Largest deviation of a start, see `BoatTask`.
+        flat_observation: Whether the observation is one array.
+
+    Raises:
+        BadInput: If the vessel can not turn and move sideways, or the period is not a whole number
+            of steps.
+        BadPhysics: If the model can not be stepped.
     """
     one = scenarios.load(scenario) if isinstance(scenario, str) else scenario
     file, period = one.file, one.controller.period
     if not {"surge", "sway", "yaw"} <= set(one.vessel.dof):
         raise BadInput(
-            f"{one.name}: {one.vessel.name} is not free in surge, sway and yaw, as an environment must be"
+            f"{one.name}: {one.vessel.name} is not free in surge, sway and yaw, "
+            "as an environment must be"
         )
     if abs(period / file.step - round(period / file.step)) > 1e-6 or period < file.step:
         raise BadInput(

@@ -1,7 +1,7 @@
-"""A scenario with many boats at once: its controller, sensors, goals and seeds for each, on all cores.
+"""A scenario with many vessels at once, each with its controller, sensors, goals and seed.
 
-As `boatsim run` without MuJoCo: nothing touches a wall, no camera films, and what ends a run early (`[until]`) ends no
-fleet. The noise of a boat's sensors is that of `boatsim run` with its seed.
+The vessels run on the compiled engine: there are no walls and no camera, and `[until]` does not end
+the run. The sensor noise of a vessel is that of `boatsim run` with its seed.
 """
 
 from collections.abc import Sequence
@@ -21,28 +21,42 @@ from boatsim.simulate.batch import Batch
 from boatsim.simulate.fleet_control import Aboard, ByFunction, ByLaw, PassedOn, Vectorised
 from boatsim.simulate.scenario import Scenario
 
-AHEAD = 64  # periods for which noise is drawn at a time
+AHEAD = 64  # [periods] for which noise is sampled at a time
 
 
 @dataclass(frozen=True)
 class Voyages:
-    """Where all boats were, and under which commands, at some times."""
+    """States and commands of all vessels at N times.
 
-    t: Array  # (N,) [s]
-    columns: tuple[str, ...]  # names of the states, as in a recording
-    states: Array  # (N, n, 2 NQ)
+    Attributes:
+        t: Times (N,) [s].
+        columns: Names of the states, as in a recording.
+        states: States (N, n, 2 NQ).
+        inputs: Names of the commands and measured inputs.
+        commands: Commands (N, n, C) in force before each time.
+    """
+
+    t: Array
+    columns: tuple[str, ...]
+    states: Array
     inputs: tuple[str, ...]
-    commands: Array  # (N, n, C) in force until then
+    commands: Array
 
     def __getitem__(self, column: str) -> Array:
-        """(N, n) of a state or an input by its name."""
+        """Return a state or an input (N, n) by its name."""
         if column in self.columns:
             return np.asarray(self.states[:, :, self.columns.index(column)])
         return np.asarray(self.commands[:, :, self.inputs.index(column)])
 
 
 class Fleet:
-    """N boats of a scenario; `run` sails them. What a boat does depends on its vessel, its start and its seed alone."""
+    """Vessels of a scenario; the motion of each depends on its vessel, start and seed only.
+
+    Attributes:
+        scenario: The scenario.
+        seeds: Seeds (n,).
+        batch: The vessels.
+    """
 
     def __init__(
         self,
@@ -54,45 +68,60 @@ class Fleet:
         controller: Controller | Sequence[Controller] | Vectorised | None = None,
         threads: int | None = None,
     ) -> None:
-        """Boat i has the vessel and the controller i modulo their numbers, and seed i; default: the scenario's.
+        """Put the vessels at the scenario's start.
 
-        Without `seeds` they count on from the scenario's. A controller is compiled, or passes its goals on as the
-        commands of their channels, or is a function of the records of what all sense and of the goal in force, which
-        gives the commands of all by name. Raises BadInput for one that is neither.
+        Args:
+            scenario: The scenario.
+            n: Number of vessels; default: one of each.
+            vessels: Vessels, used in turn; default: the scenario's.
+            seeds: Seeds (n,); default: those from the scenario's on.
+            controller: Controllers, used in turn; default: the scenario's. A controller must be
+                compiled or pass its goals on as commands. It can also be a function of the records
+                (n,) of all sensors and of the goals, which returns commands (n,) by channel.
+            threads: Number of threads; default: one per core.
+
+        Raises:
+            BadInput: If a controller is of another kind, or scenario and numbers do not fit.
         """
         file = scenario.file
-        boats = scenario.vessel if vessels is None else vessels
-        count = n if n is not None else 1 if isinstance(boats, Vessel) else len(boats)
-        self.seeds = (
-            np.arange(file.seed, file.seed + count)
-            if seeds is None
-            else np.asarray(seeds, dtype=int)
-        )
+        if vessels is None:
+            vessels = scenario.vessel
+        kinds = [vessels] if isinstance(vessels, Vessel) else list(vessels)
+        count = len(kinds) if n is None else n
+        if seeds is None:
+            seeds = range(file.seed, file.seed + count)
+        self.seeds = np.asarray(seeds, dtype=int)
         if len(self.seeds) != count:
             raise BadInput(f"{len(self.seeds)} seeds for {count} boats; allowed is one for each")
         if scenario.has_off_goal:
             raise BadInput(
-                f"{scenario.name}: a goal says off; boats of a fleet are steered all the time"
+                f"{scenario.name}: a goal has off = true; a fleet is steered all the time"
             )
         self.scenario = scenario
-        self.batch = Batch(boats, count, file.step, threads=threads, seeds=self.seeds.tolist())
+        self.batch = Batch(kinds, count, file.step, threads=threads, seeds=self.seeds.tolist())
         given = scenario.controller if controller is None else controller
         self._each = list(given) if isinstance(given, Sequence) else [given]
-        self._period = next(
-            (c.period for c in self._each if isinstance(c, Controller)), scenario.controller.period
-        )
+        first = self._each[0]
+        self._period = scenario.controller.period
+        if isinstance(first, Controller):
+            self._period = first.period
         self._steps = round(self._period / file.step)
         if abs(self._steps * file.step - self._period) > 1e-9:
             raise BadInput(
-                f"{scenario.name}: period {self._period:g} s; allowed are whole numbers of steps of {file.step:g} s"
+                f"{scenario.name}: period {self._period:g} s; "
+                f"allowed are whole numbers of steps of {file.step:g} s"
             )
         saturated = np.zeros((count, len(self.batch.vessels[0].inputs)))
         self._aboard = Aboard(self.batch, scenario.sensors, self._steps, saturated)
-        self._controlled = self._way()
+        self._controlled = self._control()
         self.reset()
 
     def reset(self, starts: ArrayLike | None = None) -> None:
-        """Back to the scenario's start, or to states (2 NQ,) or (n, 2 NQ), all noise from its beginning."""
+        """Put the vessels at a start, with the noise from its beginning.
+
+        Args:
+            starts: State (2 NQ,) or states (n, 2 NQ); default: the scenario's start.
+        """
         start, symbols = (
             self.scenario.file.start,
             [s.symbol for s in signals_of(self.batch.vessels[0].dof)],
@@ -110,11 +139,19 @@ class Fleet:
 
     @property
     def saturated(self) -> Array:
-        """(n, inputs) steps in which a boat was sent more than a channel takes."""
+        """Steps (n, inputs) in which a command exceeded its range."""
         return self._aboard.saturated.copy()
 
     def run(self, seconds: float | None = None, log: float = inf) -> Voyages:
-        """Sail on for so many seconds (the scenario's duration), noting every `log` s, rounded to control periods."""
+        """Continue the run.
+
+        Args:
+            seconds: Simulated time [s]; default: the scenario's duration.
+            log: Time between two logged rows [s], rounded to control periods.
+
+        Returns:
+            The rows, with the first and the last state.
+        """
         last = round((self.scenario.file.duration if seconds is None else seconds) / self._period)
         every = max(1, round(min(log, last * self._period) / self._period))
         at = [*range(0, last, every), last]
@@ -133,15 +170,15 @@ class Fleet:
         return Voyages(t, named, states, boat.inputs, commands)
 
     def _sail(self, periods: int) -> None:
-        """So many control periods, some at a time."""
+        """Advance by control periods, some at a time."""
         while periods > 0:
             part = min(periods, AHEAD)
             times = [(self._periods + k) * self._period for k in range(part)]
-            self._controlled.sail([self.scenario.goal_at(t) for t in times])
+            self._controlled.advance([self.scenario.goal_at(t) for t in times])
             self._periods, periods = self._periods + part, periods - part
 
-    def _way(self) -> PassedOn | ByFunction | ByLaw:
-        """How the boats are steered. Raises BadInput."""
+    def _control(self) -> PassedOn | ByFunction | ByLaw:
+        """How the vessels are controlled. Raises BadInput."""
         first = self._each[0]
         if not isinstance(first, Controller):
             return ByFunction(self._aboard, first)
@@ -150,7 +187,7 @@ class Fleet:
             return ByLaw(self._aboard, laws)
         if len(self._each) > 1 or not type(first).passes_on:
             raise BadInput(
-                f"controller {type(first).__name__} is not compiled; allowed are compiled ones, one that passes its "
-                f"goals on, and functions over all boats"
+                f"controller {type(first).__name__} is not compiled; allowed are compiled ones, "
+                "one that passes its goals on, and functions over all boats"
             )
         return PassedOn(self._aboard)

@@ -1,4 +1,4 @@
-"""The ways in which the boats of a fleet are steered: goals passed on, a compiled law, a function over all of them."""
+"""How the vessels of a fleet are controlled: goals passed on, compiled controllers, a function."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -23,14 +23,22 @@ Vectorised: TypeAlias = Callable[[Records, Mapping[str, float]], Mapping[str, Ar
 
 @dataclass
 class Aboard:
-    """What all ways share: boats, sensors, steps of a control period, steps in which more was sent than taken."""
+    """What all kinds of control share.
+
+    Attributes:
+        batch: The vessels.
+        sensors: Their sensors.
+        steps: Steps of a control period.
+        saturated: Steps (n, inputs) in which a command exceeded its range.
+        random: Random generators of the sensors of each vessel.
+        total: Time integral (n, inputs) of the commands of compiled controllers.
+    """
 
     batch: Batch
     sensors: Sensors
     steps: int
-    saturated: Array  # (n, inputs)
-    random: Sequence[np.random.Generator] = ()  # of each boat's sensors
-    # (n, inputs) sum over time [s] of the commands of compiled laws
+    saturated: Array
+    random: Sequence[np.random.Generator] = ()
     total: Array = field(init=False)
 
     def __post_init__(self) -> None:
@@ -38,60 +46,69 @@ class Aboard:
 
     @property
     def limits(self) -> tuple[Array, Array]:
-        """(inputs,) lowest and highest of each."""
+        """Smallest and largest value of each input (inputs,)."""
         low, high = (
             np.array(list(self.batch.vessels[0].limits().values()), dtype=float).reshape(-1, 2).T
         )
         return np.ascontiguousarray(low), np.ascontiguousarray(high)
 
     def noise(self, boats: Boats, periods: int) -> Array:
-        """(boats, periods, 7) further numbers of each boat's own noise."""
-        drawn = np.zeros((len(boats), periods, NOISES))
+        """Return the next numbers (boats, periods, 7) of the noise of each vessel."""
+        samples = np.zeros((len(boats), periods, NOISES))
         if not self.sensors.ideal:
-            for row, b in zip(drawn, boats, strict=True):
+            for row, b in zip(samples, boats, strict=True):
                 self.random[b].standard_normal(out=row)
-        return drawn
+        return samples
 
     def send(self, orders: Array, steps: int) -> None:
-        """Advance all under orders (n, inputs) or (inputs,), and count where more is sent than is taken."""
+        """Advance all vessels under orders and count the steps with commands beyond their range.
+
+        Args:
+            orders: Commands (n, inputs) or (inputs,).
+            steps: Number of steps.
+        """
         low, high = self.limits
         self.batch.advance(orders, steps)
         self.saturated += steps * (np.abs(orders - self.batch.commands) > SLACK * (high - low))
 
 
 class PassedOn:
-    """Goals are the commands of their channels; nothing is sensed."""
+    """Sends the goals as commands of their channels."""
 
     def __init__(self, aboard: Aboard) -> None:
         self.aboard = aboard
 
     def reset(self) -> None:
-        """Nothing is remembered."""
+        """Do nothing: there is no memory."""
 
-    def sail(self, goals: Sequence[Mapping[str, float]]) -> None:
-        """A period for each goal."""
+    def advance(self, goals: Sequence[Mapping[str, float]]) -> None:
+        """Advance by one control period per goal."""
         for goal, same in groupby(goals):
             steps = len(list(same)) * self.aboard.steps
             self.aboard.send(command_row(self.aboard.batch.vessels[0], goal), steps)
 
 
 class ByFunction:
-    """A function of the records of what all sense (n,) and of the goal gives the commands of all, by name."""
+    """Sends the commands that a function computes from the sensors of all vessels and the goals."""
 
     def __init__(self, aboard: Aboard, function: Vectorised) -> None:
         self.aboard, self.function = aboard, function
         self._sense = np.zeros(len(aboard.batch), SENSE)
 
     def reset(self) -> None:
-        """The function remembers what it likes."""
+        """Do nothing: the function has its own memory."""
 
-    def sail(self, goals: Sequence[Mapping[str, float]]) -> None:
-        """A period for each goal. Raises BadInput for a channel that is not there."""
+    def advance(self, goals: Sequence[Mapping[str, float]]) -> None:
+        """Advance by one control period per goal.
+
+        Raises:
+            BadInput: If the function returns a channel that does not exist.
+        """
         batch, numbers = self.aboard.batch, self.aboard.sensors.numbers
         everyone, boat = np.arange(len(batch)), batch.vessels[0]
         noise = self.aboard.noise(everyone, len(goals))
         for i, goal in enumerate(goals):
-            batch.feel(as_table(self._sense))
+            batch.sense(as_table(self._sense))
             compiled_loop.disturb_boats(everyone, as_table(self._sense), numbers, noise, i)
             orders = np.tile(command_row(boat, {}), (len(batch), 1))
             for name, values in self.function(self._sense, goal).items():
@@ -102,7 +119,7 @@ class ByFunction:
 
 
 class ByLaw:
-    """A compiled law, each boat with the settings of its controller and a memory of its own."""
+    """Compiled controllers of one kind; each vessel has its own settings and memory."""
 
     def __init__(
         self,
@@ -110,9 +127,15 @@ class ByLaw:
         controllers: Sequence[CompiledController],
         memory: Records | None = None,
     ) -> None:
-        """Boat i has the controller i modulo their number, and remembers in `memory`, or anew.
+        """Compile the loop of controller and vessels.
 
-        Raises BadInput where they are not of one kind.
+        Args:
+            aboard: Vessels and sensors.
+            controllers: Controllers, used in turn.
+            memory: Memory (n,) of the controllers; default: a new one.
+
+        Raises:
+            BadInput: If they are not of one kind.
         """
         kind = type(controllers[0])
         if any(type(c) is not kind or c.period != controllers[0].period for c in controllers):
@@ -134,15 +157,20 @@ class ByLaw:
         self._compile()
 
     def reset(self) -> None:
-        """Nothing learnt."""
+        """Clear the memory of all controllers."""
         self._memory[:] = np.zeros(1, self.kind.memory_type)
 
-    def sail(self, goals: Sequence[Mapping[str, float]], begins: bool = True) -> None:
-        """A period for each goal, each boat's on one thread; it begins with the law, or ends with it."""
-        table = np.array([self.kind.goal_values(goal) for goal in goals], dtype=float)
-        self.aboard.batch.shared(lambda boats: self._sailed(boats, table, begins))
+    def advance(self, goals: Sequence[Mapping[str, float]], begins: bool = True) -> None:
+        """Advance by one control period per goal.
 
-    def _sailed(self, boats: Boats, goals: Array, begins: bool) -> None:
+        Args:
+            goals: Goals of each period.
+            begins: Whether a period begins with the controller; otherwise it ends with it.
+        """
+        table = np.array([self.kind.goal_values(goal) for goal in goals], dtype=float)
+        self.aboard.batch.shared(lambda boats: self._advance(boats, table, begins))
+
+    def _advance(self, boats: Boats, goals: Array, begins: bool) -> None:
         aboard, batch, count = self.aboard, self.aboard.batch, len(goals)
         periods = compiled_loop.Periods(begins, count, aboard.steps, batch.step)
         loop = self._loop(goals, aboard.noise(boats, count))
@@ -165,7 +193,7 @@ class ByLaw:
     _run: Callable[..., None]
 
     def _compile(self) -> None:
-        """Compile the loop; law and program are pointers, so that it is kept on disk for all vessels."""
+        """Compile the loop; it takes pointers to functions, so that one serves all vessels."""
         code = self.aboard.batch.code
         loop = self._loop(np.zeros((1, len(self.kind.goals))), np.zeros((1, 1, NOISES)))
         records = tuple(map(numba.typeof, loop.control))

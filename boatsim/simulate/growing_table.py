@@ -15,7 +15,7 @@ PIECE = 500  # [rows] of a table in a file that are held in memory
 
 
 class GrowingTable:
-    """A table of floats filled row by row and stored by columns, so that recordings copy nothing."""
+    """A table of floats that is filled by rows and stored by columns."""
 
     def __init__(self, names: list[str], expected: int) -> None:
         """Create an empty table.
@@ -59,7 +59,7 @@ class GrowingTable:
 
 
 class FileTable(GrowingTable):
-    """A table in an unnamed temporary file, which reading maps into memory instead of loading it."""
+    """A table in an unnamed temporary file, which is mapped into memory for reading."""
 
     def __init__(self, names: list[str], folder: Path) -> None:
         """Create an empty table.

@@ -1,6 +1,7 @@
-"""What MuJoCo does not bear in the text of a hull is refused before it reads it.
+"""Checks the XML of a hull for content that MuJoCo can not handle.
 
-It prints by the name of a class that nobody defined, so that `%n` in one ends the process, and of nan it warns itself.
+MuJoCo uses the name of an undefined class as a format string, so that `%n` in one ends the process,
+and it prints warnings about nan itself.
 """
 
 import html
@@ -10,24 +11,31 @@ from pathlib import Path
 
 from boatsim.errors import BadInput
 
-# comments, instructions, tags with their attributes; every `<` begins one, closed or not: none is
-# looked at twice
+# comments, processing instructions and tags with attributes; every `<` begins one, closed or not,
+# so that the search takes linear time
 PARTS = re.compile(
     r"""<!--.*?(?:-->|\Z)|<\?.*?(?:\?>|\Z)|<(?:"[^"]*(?:"|\Z)|'[^']*(?:'|\Z)|[^"'>])*+(?:>|\Z)""",
     re.DOTALL,
 )
 INCLUDED = re.compile(r"""<include\b.*?\bfile\s*=\s*(?:"([^"]*)"|'([^']*)')""", re.DOTALL)
 NAN = re.compile(r"""["'\s]nan["'\s]""", re.IGNORECASE)
-LARGEST = 1 << 24  # bytes; meshes lie in files of their own
+LARGEST = 1 << 24  # [bytes] of a file; meshes are separate files
 
 
 def check_text(path: Path) -> None:
-    """Raises BadInput for a hull, or a file that it includes, which MuJoCo does not bear."""
+    """Check a hull and the files that it includes.
+
+    Args:
+        path: The XML file.
+
+    Raises:
+        BadInput: If a file has content that MuJoCo can not handle.
+    """
     waiting, seen = [path], set[Path]()
     while waiting:
         file = waiting.pop()
         if not file.exists() or (real := file.resolve()) in seen:
-            continue  # MuJoCo says so
+            continue  # MuJoCo reports a missing file
         seen.add(real)
         for tag in _tags(file):
             if "%" in tag:
@@ -40,7 +48,7 @@ def check_text(path: Path) -> None:
 
 
 def _tags(file: Path) -> Iterator[str]:
-    """Tags of a file as MuJoCo reads them, comments left out."""
+    """Tags of a file as MuJoCo reads them, without comments."""
     if not file.is_file():
         raise BadInput(f"{file}: is no file; a hull is one in XML")
     if file.stat().st_size > LARGEST:
@@ -50,6 +58,6 @@ def _tags(file: Path) -> Iterator[str]:
     for part in PARTS.finditer(file.read_bytes().decode("utf-8", "replace")):
         if part[0].startswith("<!--"):
             continue
-        if part[0].startswith("<!"):  # in these a quote, a `>` or a comment is none
+        if part[0].startswith("<!"):  # quotes, `>` and comments have another meaning in these
             raise BadInput(f"{file}: has {part[0][:40]!r}; allowed are tags and comments")
         yield html.unescape(part[0])

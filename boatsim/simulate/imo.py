@@ -1,8 +1,10 @@
-"""Standards for ship manoeuvrability of the International Maritime Organization, resolution MSC.137(76).
+"""Standards for ship manoeuvrability of the International Maritime Organization, MSC.137(76).
 
-They are meant for ships of 100 m and more; for anything smaller they are a yardstick. Lengths in ship lengths, angles
-in degrees, as the resolution has them.
+They apply to ships of 100 m and more and serve as a comparison for anything smaller. As in the
+resolution, lengths are in ship lengths [L] and angles in degrees.
 """
+
+from typing import NamedTuple
 
 ADVANCE = 4.5  # [L] turning circle
 TACTICAL_DIAMETER = 5.0  # [L]
@@ -11,29 +13,53 @@ OVERSHOOT_20 = 25.0  # [deg] first of the 20/20 zig-zag
 TRACK_REACH = 15.0  # [L] full astern stopping test; an administration may allow up to 20
 
 
-def first_overshoot_10(length: float, speed: float) -> float:
-    """Largest first overshoot [deg] of the 10/10 zig-zag of a ship of `length` [m] at `speed` [m/s]."""
-    ratio = length / speed
-    return 10.0 if ratio < 10.0 else 20.0 if ratio >= 30.0 else 5.0 + 0.5 * ratio
+class OvershootLimit(NamedTuple):
+    """Limit of an overshoot angle by the ratio of length and speed L/V.
+
+    It is `short` below L/V = 10 s, `long` from 30 s on, and `offset` + `slope` L/V in between.
+    """
+
+    short: float  # [deg]
+    long: float  # [deg]
+    offset: float  # [deg]
+    slope: float  # [deg/s]
+
+    def at(self, length: float, speed: float) -> float:
+        """Return the limit [deg] of a ship of `length` [m] at `speed` [m/s]."""
+        ratio = length / speed
+        if ratio < 10.0:
+            return self.short
+        if ratio >= 30.0:
+            return self.long
+        return self.offset + self.slope * ratio
 
 
-def second_overshoot_10(length: float, speed: float) -> float:
-    """Largest second overshoot [deg] of the 10/10 zig-zag."""
-    ratio = length / speed
-    return 25.0 if ratio < 10.0 else 40.0 if ratio >= 30.0 else 17.5 + 0.75 * ratio
+FIRST_OVERSHOOT_10 = OvershootLimit(10.0, 20.0, 5.0, 0.5)  # of the 10/10 zig-zag
+SECOND_OVERSHOOT_10 = OvershootLimit(25.0, 40.0, 17.5, 0.75)
 
 
 def limits(manoeuvre: str, angle: float, length: float, speed: float) -> dict[str, float]:
-    """Norm -> its largest value, for a manoeuvre with a helm `angle` [deg]; empty where the resolution has none."""
+    """Return the limits of a manoeuvre.
+
+    Args:
+        manoeuvre: Name of the manoeuvre.
+        angle: Helm [deg].
+        length: Length of the ship [m].
+        speed: Speed of the approach [m/s].
+
+    Returns:
+        Metric -> its largest value; empty where the resolution has no limits.
+    """
     if manoeuvre == "turning_circle" and abs(angle) == 35.0:
         return {"advance": ADVANCE, "tactical_diameter": TACTICAL_DIAMETER}
     if manoeuvre == "zigzag" and abs(angle) == 10.0:
-        first, second = first_overshoot_10(length, speed), second_overshoot_10(length, speed)
         return {
             "track_to_reversal": TRACK_TO_10,
-            "first_overshoot": first,
-            "second_overshoot": second,
+            "first_overshoot": FIRST_OVERSHOOT_10.at(length, speed),
+            "second_overshoot": SECOND_OVERSHOOT_10.at(length, speed),
         }
     if manoeuvre == "zigzag" and abs(angle) == 20.0:
         return {"first_overshoot": OVERSHOOT_20}
-    return {"track_reach": TRACK_REACH} if manoeuvre == "crash_stop" else {}
+    if manoeuvre == "crash_stop":
+        return {"track_reach": TRACK_REACH}
+    return {}

@@ -1,7 +1,8 @@
-"""Standard manoeuvres of any vessel: a scenario made from its data, with the IMO's limits as bars where there are some.
+"""Standard manoeuvres of any vessel as scenarios, with the IMO's limits as bands where they exist.
 
-A vessel's [manoeuvring] table says how it is driven ahead and steered. What the table leaves out follows from the
-channels: half of the largest thrust ahead, everything that turns as helm, or more thrust on one side than on the other.
+A vessel's [manoeuvring] table specifies how it is driven ahead and steered. Missing entries follow
+from the channels: half of the largest thrust ahead, and all steering channels as helm, or else a
+thrust difference between the sides.
 """
 
 from collections.abc import Mapping, Sequence
@@ -18,8 +19,8 @@ from boatsim.physics.content import vessel_address
 from boatsim.physics.signals import Array, signals_of
 from boatsim.physics.vessel import ManoeuvringTable, Vessel
 from boatsim.simulate import imo, scenario
+from boatsim.simulate.batch import Batch
 from boatsim.simulate.cases import Place
-from boatsim.simulate.compiled_engine import Twin
 from boatsim.simulate.scenario import Scenario
 
 ANGLES = {  # manoeuvre -> its usual angle [deg]
@@ -30,18 +31,17 @@ ANGLES = {  # manoeuvre -> its usual angle [deg]
     "crash_stop": 0.0,
     "roll_decay": 10.0,
 }
-HULL_LENGTHS = 100.0  # of travel after which an approach is steady
-STEPS = 250  # of integration in the time of one length of travel
-ROWS = 25  # of the log in that time
+HULL_LENGTHS = 100.0  # [lengths] of travel after which an approach is steady
+STEPS = 250  # integration steps per length of travel
+ROWS = 25  # rows of the log per length of travel
 BEFORE = 2.0  # [lengths] of approach before a manoeuvre begins
 LONGEST = 200.0  # [lengths] of travel
 HOLD = 30.0  # [lengths] for which each angle of a pull-out or spiral is held
 ROUND = 2.5 * pi  # [rad] of a turning circle
-FULL = radians(
-    35.0
-)  # helm angle that stands for all of the differential thrust of a vessel that has no helm
-AHEAD = 0.5  # cosine of the angle beyond which a thruster counts as one that pushes aside
-ROLLS = 12  # periods of a roll decay, of a hull as wide as this one
+# [rad] of helm that corresponds to the full thrust difference of a vessel without a helm
+FULL = radians(35.0)
+AHEAD = 0.5  # cosine of the angle from which on a thruster counts as a transverse one
+ROLLS = 12  # estimated roll periods of a roll decay
 
 
 def scenario_of(
@@ -52,11 +52,19 @@ def scenario_of(
     speed: float | None = None,
     heading: float | None = None,
 ) -> Scenario:
-    """The scenario of a manoeuvre; `angle` [deg], positive to starboard, `speed` [m/s] of the approach.
+    """Return the scenario of a manoeuvre.
 
-    Without an angle it is the usual one, or as much helm as the vessel has. `heading` [deg] is the change at which a
-    zig-zag reverses its helm, without it the angle. Raises BadInput for a manoeuvre or vessel that does not exist, or a
-    vessel that can not do it so.
+    Args:
+        manoeuvre: Name of the manoeuvre.
+        name: Name or file of the vessel.
+        loads: Load conditions.
+        angle: Helm [deg], positive to starboard; default: the usual angle, or as much helm as the
+            vessel has.
+        speed: Speed of the approach [m/s]; default: the vessel's.
+        heading: Heading change [deg] at which a zig-zag reverses its helm; default: the helm.
+
+    Raises:
+        BadInput: If the manoeuvre or vessel does not exist or do not fit.
     """
     if manoeuvre not in ANGLES:
         raise BadInput(unknown_name("manoeuvre", manoeuvre, ANGLES))
@@ -86,7 +94,8 @@ def scenario_of(
     _check_commands(vessel, 0.0 if manoeuvre == "crash_stop" else angle)
     if manoeuvre == "crash_stop" and not vessel.manoeuvring.astern:
         raise BadInput(
-            f"{vessel.name}: nothing to go astern with; [manoeuvring] astern = {{ CHANNEL = value }} says what"
+            f"{vessel.name}: no thrust astern; "
+            "specify it by [manoeuvring] astern = { CHANNEL = value }"
         )
     at = approach(vessel, speed)
     reverses = abs(angle) if heading is None else heading
@@ -96,104 +105,136 @@ def scenario_of(
 
 
 def _check_heading(manoeuvre: str, heading: float | None) -> None:
-    """Only a zig-zag has one, and it lies ahead of the bow."""
+    """Check that only a zig-zag has a heading, in its range."""
     if heading is None:
         return
     if manoeuvre != "zigzag":
         raise BadInput(
-            f"heading = {heading:g} deg; only a zigzag reverses its helm at a heading, not a {manoeuvre}"
+            f"heading = {heading:g} deg; "
+            f"only a zigzag reverses its helm at a heading, not a {manoeuvre}"
         )
     if not 0.1 <= heading <= 170.0:
         raise BadInput(f"heading = {heading:g} deg; allowed 0.1 to 170 deg")
 
 
 def handled(vessel: Vessel) -> ManoeuvringTable:
-    """The vessel's [manoeuvring] table, completed from its channels. Raises BadInput where nothing steers."""
-    given, taken = vessel.manoeuvring, vessel.commands
-    if wrong := [n for n in (*given.ahead, *given.astern, *given.steer) if n not in taken]:
-        raise BadInput(f"{vessel.name}: [manoeuvring] {vessel.unknown_command(wrong[0])}")
-    thrusters = [
-        n for n in vessel.actuators if vessel.roles[n] == "thrust" and n not in athwart(vessel)
-    ]
-    ahead = given.ahead or {n: 0.5 * taken[n].high for n in thrusters}
-    astern = given.astern or {
-        n: max(taken[n].low, -value) for n, value in ahead.items() if taken[n].low < 0.0 < value
-    }
-    steer = given.steer or {n: 1.0 for n in vessel.actuators if vessel.roles[n] == "angle"}
+    """Return the vessel's [manoeuvring] table, completed from its channels.
+
+    Args:
+        vessel: The vessel.
+
+    Raises:
+        BadInput: If a channel does not exist or there is no means of steering.
+    """
+    given, channels = vessel.manoeuvring, vessel.commands
+    for name in (*given.ahead, *given.astern, *given.steer):
+        if name not in channels:
+            raise BadInput(f"{vessel.name}: [manoeuvring] {vessel.unknown_command(name)}")
+    ahead, astern, steer = dict(given.ahead), dict(given.astern), dict(given.steer)
+    transverse = transverse_thrusters(vessel)
+    thrusters: list[str] = []
+    for name in vessel.actuators:
+        if vessel.roles[name] == "thrust" and name not in transverse:
+            thrusters.append(name)
+        elif vessel.roles[name] == "angle" and not given.steer:
+            steer[name] = 1.0
+    if not ahead:
+        ahead = {name: 0.5 * channels[name].high for name in thrusters}
+    if not astern:
+        for name, value in ahead.items():
+            if channels[name].low < 0.0 < value:
+                astern[name] = max(channels[name].low, -value)
     if not steer:
-        steer = {
-            n: -vessel.side(n) * ahead[n] / FULL for n in thrusters if vessel.side(n) and n in ahead
-        }
+        for name in thrusters:
+            if vessel.side(name) and name in ahead:
+                steer[name] = -vessel.side(name) * ahead[name] / FULL
     if not steer:
         raise BadInput(
-            f"{vessel.name}: nothing to steer with; [manoeuvring] steer = {{ CHANNEL = per rad }} says what"
+            f"{vessel.name}: no means of steering; "
+            "specify it by [manoeuvring] steer = { CHANNEL = per rad }"
         )
     table = given.model_copy(update={"ahead": ahead, "astern": astern, "steer": steer})
-    return table if given.steer else _to_starboard(replace(vessel, manoeuvring=table))
+    if given.steer:
+        return table
+    return _to_starboard(replace(vessel, manoeuvring=table))
 
 
-def athwart(vessel: Vessel) -> dict[str, float]:
-    """Thrusts of what is held at an angle, such as a tunnel across the bow, at which it drives nothing ahead.
+def transverse_thrusters(vessel: Vessel) -> dict[str, float]:
+    """Return the thrusters at a fixed angle that do not drive ahead, such as bow tunnels.
 
-    Each with the share of it that pushes to starboard.
+    Args:
+        vessel: The vessel.
+
+    Returns:
+        Channel of the thrust -> share of it that acts to starboard.
     """
-    bound = [vessel.bindings(e) for e in vessel.effects if "angle" in type(e).roles]
-    held = [(b.get("thrust"), b.get("angle")) for b in bound]
-    return {
-        str(thrust): sin(angle)
-        for thrust, angle in held
-        if isinstance(angle, int | float) and cos(angle) < AHEAD
-    }
+    found: dict[str, float] = {}
+    for effect in vessel.effects:
+        if "angle" in type(effect).roles:
+            bindings = vessel.bindings(effect)
+            angle = bindings.get("angle")
+            if isinstance(angle, int | float) and cos(angle) < AHEAD:
+                found[str(bindings.get("thrust"))] = sin(angle)
+    return found
 
 
 def helm_of(vessel: Vessel) -> float:
-    """Largest helm [deg] that all its channels can follow to both sides."""
-    table, taken = vessel.manoeuvring, vessel.commands
-    room = [
-        min(taken[n].high - table.ahead.get(n, 0.0), table.ahead.get(n, 0.0) - taken[n].low)
-        / abs(per_rad)
-        for n, per_rad in table.steer.items()
-    ]
-    return float(np.round(degrees(min(room)), 1))
+    """Return the largest helm [deg] to both sides within the ranges of all channels."""
+    table = vessel.manoeuvring
+    largest: list[float] = []  # [rad]
+    for name, per_rad in table.steer.items():
+        channel, ahead = vessel.commands[name], table.ahead.get(name, 0.0)
+        largest.append(min(channel.high - ahead, ahead - channel.low) / abs(per_rad))
+    return float(np.round(degrees(min(largest)), 1))
 
 
 def _check_commands(vessel: Vessel, angle: float) -> None:
-    """Ahead, astern and with this much helm [deg] to either side, no command leaves its channel's limits."""
+    """Check the commands ahead, astern and with this much helm [deg] against their ranges."""
     table = vessel.manoeuvring
-    all_of_them = {"going ahead": table.ahead, "going astern": table.astern}
+    cases = {"going ahead": table.ahead, "going astern": table.astern}
     for side in (angle, -angle):
-        turned = {
-            n: table.ahead.get(n, 0.0) + per_rad * radians(side)
-            for n, per_rad in table.steer.items()
-        }
-        all_of_them[f"{side:g} deg of helm"] = turned
-    for doing, commands in all_of_them.items():
+        cases[f"{side:g} deg of helm"] = _steered(table, radians(side))
+    for case, commands in cases.items():
         for name, value in commands.items():
             channel = vessel.commands[name]
             slack = 1e-6 * (channel.high - channel.low)
             if not channel.low - slack <= value <= channel.high + slack:
                 raise BadInput(
-                    f"{vessel.name}: {doing} means {name} = {value:g}; allowed {channel.low:g} to {channel.high:g}"
+                    f"{vessel.name}: {case} means {name} = {value:g}; "
+                    f"allowed {channel.low:g} to {channel.high:g}"
                 )
 
 
+def _steered(table: ManoeuvringTable, helm: float) -> dict[str, float]:
+    """Commands of the steering channels ahead at a helm [rad]."""
+    commands: dict[str, float] = {}
+    for name, per_rad in table.steer.items():
+        commands[name] = table.ahead.get(name, 0.0) + per_rad * helm
+    return commands
+
+
 def _to_starboard(vessel: Vessel) -> ManoeuvringTable:
-    """The table with helm such that a positive angle turns to starboard, which a short run of the vessel tells."""
+    """The table with the sign of the helm for which a short run turns to starboard."""
     table = vessel.manoeuvring
-    held = {
-        **table.ahead,
-        **{n: table.ahead.get(n, 0.0) + 0.2 * per_rad for n, per_rad in table.steer.items()},
-    }
-    way = _state(vessel, _usual_speed(vessel), held, 3.0)[2]
-    turned = {n: per_rad if way > 0.0 else -per_rad for n, per_rad in table.steer.items()}
-    return table.model_copy(update={"steer": turned})
+    commands = {**table.ahead}
+    for name, per_rad in table.steer.items():
+        commands[name] = table.ahead.get(name, 0.0) + 0.2 * per_rad
+    heading = _state(vessel, _usual_speed(vessel), commands, 3.0)[2]
+    if heading > 0.0:
+        return table
+    steer = {name: -per_rad for name, per_rad in table.steer.items()}
+    return table.model_copy(update={"steer": steer})
 
 
 def approach(vessel: Vessel, speed: float | None = None) -> float:
-    """Speed [m/s] at which the vessel goes straight ahead under the commands of its approach.
+    """Return the speed [m/s] at which the vessel goes straight ahead under its approach commands.
 
-    A given speed is only where the run begins: what keeps it there is the vessel's own affair. Raises BadInput for one
-    that makes no way.
+    Args:
+        vessel: The vessel.
+        speed: Initial speed that is returned instead.
+
+    Raises:
+        BadInput: If the vessel does not move ahead or the given speed is not valid.
     """
     if speed is not None:
         if not 0.0 < speed < inf:
@@ -205,13 +246,14 @@ def approach(vessel: Vessel, speed: float | None = None) -> float:
     )
     if not u > 0.0:
         raise BadInput(
-            f"{vessel.name} makes no way ahead under {table.ahead}; [manoeuvring] ahead says what drives it"
+            f"{vessel.name} does not move ahead under {table.ahead}; "
+            "specify its commands by [manoeuvring] ahead"
         )
     return u
 
 
 def _usual_speed(vessel: Vessel) -> float:
-    """The table's speed, else one [m/s] at which a hull of this length is still slow: Froude number 0.15."""
+    """The table's speed [m/s], by default that of Froude number 0.15, a slow speed."""
     return vessel.manoeuvring.speed or 0.15 * float(np.sqrt(9.81 * vessel.length))
 
 
@@ -220,40 +262,43 @@ def _half(vessel: Vessel) -> int:
 
 
 def _state(vessel: Vessel, speed: float, commands: Mapping[str, float], lengths: float) -> Array:
-    """State after so many lengths' time at a speed, begun straight ahead."""
+    """State after the time of so many lengths at a speed, from straight ahead."""
     step = _step(vessel, speed)
-    twin = Twin(vessel, step)
+    compiled = Batch(vessel, step=step)
     start = [0.0] * (2 * _half(vessel))
     start[_half(vessel)] = speed
     rows = np.tile(
-        twin.program.command_array(commands), (round(lengths * vessel.length / speed / step), 1)
+        compiled.program.command_array(commands), (round(lengths * vessel.length / speed / step), 1)
     )
-    last: Array = twin.rollout(start, rows, step)[-1]
+    last: Array = compiled.rollout(start, rows, step)[-1]
     return last
 
 
 def _step(vessel: Vessel, speed: float) -> float:
-    """Step of integration [s], a round number."""
+    """Integration step [s], a round number."""
     return _rounded(min(max(vessel.length / speed / STEPS, 0.002), 0.5))
 
 
 def _rounded(seconds: float) -> float:
-    """1, 2 or 5 times a power of ten, not above."""
+    """Largest 1, 2 or 5 times a power of ten that is not above."""
     power = 10.0 ** np.floor(log10(seconds))
-    return float(max(m for m in (1.0, 2.0, 5.0) if m * power <= seconds * (1 + 1e-9)) * power)
+    best = 1.0
+    for factor in (2.0, 5.0):
+        if factor * power <= seconds * (1 + 1e-9):
+            best = factor
+    return float(best * power)
 
 
 def _under_way(
     manoeuvre: str, vessel: Vessel, angle: float, speed: float, reverses: float
 ) -> dict[str, Value]:
-    """Tables of a manoeuvre that begins with an approach at a speed; a zig-zag reverses at a heading [deg]."""
+    """Tables of a manoeuvre after an approach at a speed; a zig-zag reverses at a heading [deg]."""
     table, unit, step = vessel.manoeuvring, vessel.length / speed, _step(vessel, speed)
     execute, hold = (step * round(lengths * unit / step) for lengths in (BEFORE, HOLD))
     helm, heading = {"angle": radians(angle)}, {"heading": radians(reverses)}
     place = {"execute": execute, "length": vessel.length}
-    own: dict[
-        str, tuple[Mapping[str, Value], Mapping[str, Value], float]
-    ] = {  # controller, measure, longest time
+    # tables of controller and metric set, and longest time [s]
+    own: dict[str, tuple[Mapping[str, Value], Mapping[str, Value], float]] = {
         "turning_circle": (helm, place, LONGEST * unit),
         "zigzag": (helm | heading, place | heading, LONGEST * unit),
         "pull_out": (helm | {"hold": hold}, {}, execute + 4 * hold),
@@ -267,10 +312,10 @@ def _under_way(
         "ahead": table.ahead,
         "steer": table.steer,
     }
-    as_usual = manoeuvre != "zigzag" or reverses == abs(
-        angle
-    )  # the limits are those of 10/10 and 20/20
-    bars = imo.limits(manoeuvre, angle, vessel.length, speed) if as_usual else {}
+    bands: dict[str, Value] = {}
+    if manoeuvre != "zigzag" or reverses == abs(angle):  # the limits are for 10/10 and 20/20
+        for name, high in imo.limits(manoeuvre, angle, vessel.length, speed).items():
+            bands[name] = {"guard": [0.0, high]}
     return {
         "duration": min(duration, 86400.0),
         "step": step,
@@ -279,7 +324,7 @@ def _under_way(
         "controller": {"use": manoeuvre, **handling, **controller},
         "camera": {"rate": min(max(1.0 / _rounded(unit / ROWS), 0.1), 6.0)},
         "measure": {"use": manoeuvre, **measure},
-        "norms": {name: {"guard": [0.0, high]} for name, high in bars.items()},
+        "norms": bands,
         "until": {"turned": ROUND} if manoeuvre == "turning_circle" else {},
     }
 
@@ -287,7 +332,9 @@ def _under_way(
 def _released(vessel: Vessel, angle: float) -> dict[str, Value]:
     """Tables of a roll decay from a heel [deg]."""
     if "roll" not in vessel.dof:
-        raise BadInput(f"{vessel.name} does not roll; its freedoms are {', '.join(vessel.dof)}")
+        raise BadInput(
+            f"{vessel.name} does not roll; its degrees of freedom are {', '.join(vessel.dof)}"
+        )
     period = _roll_period(vessel)
     step = _rounded(period / 200)
     return {
@@ -300,17 +347,16 @@ def _released(vessel: Vessel, angle: float) -> dict[str, Value]:
 
 
 def _roll_period(vessel: Vessel) -> float:
-    """Time [s] between two upward crossings of a small free roll. Raises BadInput for a hull that does not swing."""
-    guess = 2.0 * float(
-        np.sqrt(vessel.beam)
-    )  # [s] of a ship of usual stability, GM a twentieth of the beam
-    twin = Twin(vessel, guess / 400)
+    """Period [s] of a small free roll. Raises BadInput if the hull does not oscillate."""
+    # [s] of a ship of usual stability, with GM a twentieth of the beam
+    guess = 2.0 * float(np.sqrt(vessel.beam))
+    compiled = Batch(vessel, step=guess / 400)
     start = [0.0] * (2 * _half(vessel))
     roll = [signal.symbol for signal in signals_of(vessel.dof)].index("phi")
     start[roll] = radians(1.0)
-    rows = np.tile(twin.program.command_array({}), (8000, 1))
-    phi = twin.rollout(start, rows, guess / 400)[:, roll]
+    rows = np.tile(compiled.program.command_array({}), (8000, 1))
+    phi = compiled.rollout(start, rows, guess / 400)[:, roll]
     crossings = np.flatnonzero((phi[:-1] > 0.0) & (phi[1:] <= 0.0))
     if len(crossings) < 2:
-        raise BadInput(f"{vessel.name} does not swing when it is heeled and released")
+        raise BadInput(f"{vessel.name} does not oscillate when it is heeled and released")
     return float(crossings[1] - crossings[0]) * guess / 400

@@ -1,4 +1,4 @@
-"""Base class of metric sets, which compute named numbers from the log of a run, and helpers for them."""
+"""Base class of metric sets, which compute named numbers from the log of a run."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -142,7 +142,7 @@ def first_crossing(t: Array, above: Array) -> float | None:
 
 
 def surge_distance(log: Recording) -> Array:
-    """Return the integral of the surge speed since the first row by the trapezoid rule, (N,) [m]."""
+    """Return the integral (N,) of the surge speed since the first row [m], by trapezoids."""
     u = log["u_mps"]
     return np.concatenate(([0.0], np.cumsum(0.5 * (u[1:] + u[:-1]) * np.diff(log.t))))
 

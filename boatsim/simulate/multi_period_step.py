@@ -115,7 +115,7 @@ class MultiPeriodStep:
         goals: list[Mapping[str, float]] = [{}] * periods
         if self._scenario.file.goal:
             goals = [goal_at(t + i * self.period) for i in range(1, periods + 1)]
-        law.sail(goals, begins=False)
+        law.advance(goals, begins=False)
         for place, order in zip(law.places, law.orders[0].tolist(), strict=True):
             engine.sent[place] = order
         names, seconds = list(self._scenario.vessel.commands), periods * self.period

@@ -1,15 +1,19 @@
-"""Holds a run back so that somebody can watch it."""
+"""Holds a run back to the pace of a clock, so that it can be watched or driven."""
 
 import time
 from collections.abc import Callable
 
-# [s] by which a run may be late and still catch up; one that is later goes on from where it is
+# [s] of delay that a run catches up with; after a longer one the clock is set back
 BEHIND = 0.25
-NAP = 0.05  # [s] at most between two questions whether to stop
+NAP = 0.05  # [s] of sleep at most before `stop` is asked again
 
 
 class Pace:
-    """Waits until the clock has come as far as the run, so many times as fast as real time."""
+    """Waits until a clock has reached the simulated time, at a multiple of real time.
+
+    Attributes:
+        speed: Simulated time by real time.
+    """
 
     def __init__(
         self,
@@ -17,16 +21,29 @@ class Pace:
         clock: Callable[[], float] = time.monotonic,
         sleep: Callable[[float], None] = time.sleep,
     ) -> None:
-        """`speed` is simulated seconds a second, more than 0; the clock begins with the first wait."""
+        """Prepare; the clock starts at the first wait.
+
+        Args:
+            speed: Simulated time by real time, more than 0.
+            clock: Returns the real time [s].
+            sleep: Waits for a time [s].
+        """
         self.speed, self._clock, self._sleep = speed, clock, sleep
-        self._begin: float | None = None  # when the simulated time 0 was
+        self._begin: float | None = None  # real time [s] of the simulated time 0
 
     def behind(self, t: float) -> float:
-        """How long ago the simulated time `t` [s] was due [s]; 0 before the clock begins."""
-        return 0.0 if self._begin is None else self._clock() - self._begin - t / self.speed
+        """Return how long ago the simulated time `t` [s] was due [s]; 0 before the first wait."""
+        if self._begin is None:
+            return 0.0
+        return self._clock() - self._begin - t / self.speed
 
     def wait(self, t: float, stop: Callable[[], bool] = bool) -> None:
-        """Return when the simulated time `t` [s] is due, or at once if it is over or somebody wants to `stop`."""
+        """Wait until a simulated time is due.
+
+        Args:
+            t: The simulated time [s].
+            stop: Ends the wait when it returns True.
+        """
         due = t / self.speed
         if self._begin is None or self.behind(t) > BEHIND:
             self._begin = self._clock() - due

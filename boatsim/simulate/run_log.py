@@ -69,20 +69,20 @@ class RunLog:
         components = [COMPONENTS[AXES[i]] for i in self._axes]
         columns = ["t_s", *(signal.column for signal in self._signals), *self._loop.channels]
         columns += self._measured
-        columns += [f"sent_{name}" for name in self._loop.channels]
-        columns += [f"actual_{name}" for name in self._loop.engine.vessel.actuators]
-        columns += [f"sensed_{name}" for name in (*SENSED, *self._readings.values())]
-        columns += [
-            *mark_columns(self.scenario.camera),
-            *(f"camera_{name}" for name in CAMERA_POSE),
-        ]
-        columns += [f"force_{component}" for component in components]
+        columns += map("sent_{}".format, self._loop.channels)
+        columns += map("actual_{}".format, self._loop.engine.vessel.actuators)
+        columns += map("sensed_{}".format, (*SENSED, *self._readings.values()))
+        columns += mark_columns(self.scenario.camera)
+        columns += map("camera_{}".format, CAMERA_POSE)
+        columns += map("force_{}".format, components)
         if self._winds:
-            columns += [f"wind_{component}" for component in components]
+            columns += map("wind_{}".format, components)
         columns.append("contacts")
         for name in self._estimates:
             columns += [f"estimate_{name}", f"estimate_{name}_low", f"estimate_{name}_high"]
-        return [*columns, *self._references, *(f"{GOAL}{name}" for name in self._goals)]
+        columns += self._references
+        columns += [f"{GOAL}{name}" for name in self._goals]
+        return columns
 
     def is_due(self) -> bool:
         """Return whether a row is due now."""
@@ -106,19 +106,18 @@ class RunLog:
             estimates = controller.estimates()
         goal = loop.goal_at(state.t)
         row = [state.t, *self._motion_of(state), *loop.in_force(), *self._measured.values()]
-        row += [loop.sent[name] for name in loop.channels]
+        row += map(loop.sent.__getitem__, loop.channels)
         row += engine.actuators.values()
         row += SENSE_VALUES(sense)
-        row += [sense.more[name] for name in self._readings]
+        row += map(sense.more.__getitem__, self._readings)
         if frames:
             row += [*frames[-1].marks, *frames[-1][1:4]]
         else:
             row += [nan] * (2 * len(self.scenario.camera.marks) + len(CAMERA_POSE))
         wrench = engine.wrench()
-        row += [wrench[i] for i in self._axes]
+        row += map(wrench.__getitem__, self._axes)
         if self._winds:
-            wind = self._wind(state)
-            row += [wind[i] for i in self._axes]
+            row += map(self._wind(state).__getitem__, self._axes)
         row.append(engine.contacts)
         for name in self._estimates:
             row += estimates[name]

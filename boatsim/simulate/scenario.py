@@ -1,9 +1,10 @@
-"""A scenario is a file: which vessel, where, steered by what, towards what, for how long, and how it is judged."""
+"""Scenarios: vessel, water, start, controller, goals, duration and evaluation of a run."""
 
 from bisect import bisect_right
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import chain
 from math import pi, sin
 from pathlib import Path
 from typing import Annotated, Literal, Self, TypeVar
@@ -26,11 +27,11 @@ from boatsim.simulate.sensing import Sensor, Sensors
 
 T = TypeVar("T")
 M = TypeVar("M", Controller, MetricSet, Sensor)
-# key of a goal while which nothing is steered: commands are neutral, the controller begins anew
-# after it
+# key of a [[goal]] during which commands are neutral; the controller is reset at its end
 OFF = "off"
-BESIDE = ("from", OFF)  # keys of a goal that name no goal
-End = Annotated[float, Field(allow_inf_nan=True)]  # of a band; it may be open
+RESERVED = ("from", OFF)  # keys of a [[goal]] that are not goals
+# limit of a band, which may be infinite
+End = Annotated[float, Field(allow_inf_nan=True)]
 
 
 class TankTable(Table):
@@ -43,7 +44,7 @@ class TankTable(Table):
 
 
 class StartTable(Table):
-    """Where the boat starts and how it moves then, SNAME."""
+    """Pose and velocities at the start, SNAME."""
 
     x: float = 0.0  # [m]
     y: float = 0.0  # [m]
@@ -57,12 +58,11 @@ class StartTable(Table):
     theta: float = 0.0  # [rad]
     w: float = 0.0  # [m/s]
     q: float = 0.0  # [rad/s]
-    commands: dict[
-        str, float
-    ] = {}  # to which the actuators have settled; others to the controller's first, or neutral
+    # at which the actuators are settled; others are the controller's initial ones, or neutral
+    commands: dict[str, float] = {}
 
     def motion(self) -> dict[str, float]:
-        """Pose and velocities, by the symbols of the engine's state."""
+        """Return pose and velocities by their symbol in the engine's state."""
         return {s.symbol: float(getattr(self, s.symbol)) for s in STATE}
 
 
@@ -74,13 +74,12 @@ class UntilTable(Table):
 
 
 class MetricTable(Table):
-    """What a norm is held against: the paper's value, and the band about our own that a change must not leave."""
+    """Published value of a metric, and the regression band around the present value."""
 
     published: float | None = None
-    tolerance: float | None = Field(
-        default=None, gt=0
-    )  # either way of what is published, as its document states it
-    guard: tuple[End, End] | None = None  # low, high
+    # of the published value, to either side, as the publication states it
+    tolerance: float | None = Field(default=None, gt=0)
+    guard: tuple[End, End] | None = None  # regression band: low, high
 
     @model_validator(mode="after")
     def _in_order(self) -> Self:
@@ -94,7 +93,7 @@ class MetricTable(Table):
 
 
 class CheckTable(Table):
-    """A signal that must stay small: norm of `signal` below a limit."""
+    """A limit of the norm of a signal."""
 
     signal: str
     norm: Literal["inf", "rms", "l2", "l1"]
@@ -103,7 +102,10 @@ class CheckTable(Table):
 
 
 class CourseTable(Table):
-    """A goal that moves: mean + slope tau + amplitude sin(2 pi tau / period), tau [s] since the goal began."""
+    """A goal that changes with the time tau [s] since it began.
+
+    It is mean + slope tau + amplitude sin(2 pi tau / period).
+    """
 
     mean: float = 0.0
     slope: float = 0.0  # [1/s]
@@ -111,7 +113,7 @@ class CourseTable(Table):
     period: float = Field(default=1.0, gt=0)  # [s]
 
     def at(self, tau: float) -> float:
-        """Its value."""
+        """Return the goal at the time tau [s]."""
         return self.mean + self.slope * tau + self.amplitude * sin(2.0 * pi * tau / self.period)
 
 
@@ -131,14 +133,13 @@ class ScenarioFile(Table):
     until: UntilTable = UntilTable()
     controller: dict[str, object]
     sensors: dict[str, object] = {}
-    sensor: list[dict[str, object]] = []  # beside the usual ones
+    sensor: list[dict[str, object]] = []  # in addition to the usual ones
     camera: dict[str, object] = {}
     goal: list[dict[str, float | CourseTable]] = []
     set: dict[str, dict[str, object]] = {}
     effect: list[dict[str, object]] = []
-    measured: dict[
-        str, float
-    ] = {}  # the surroundings, as the vessel's channels of that kind read them throughout
+    # constant values of the vessel's measured channels, such as the wind
+    measured: dict[str, float] = {}
     measure: str | dict[str, object] | None = None
     log: float = Field(default=0.0, ge=0)  # [s] between rows of the log; 0: every step
     norms: dict[str, MetricTable] = {}
@@ -187,36 +188,42 @@ class Scenario:
 
     @cached_property
     def _goals(self) -> list[tuple[dict[str, float], dict[str, CourseTable]]]:
-        """Of each [[goal]] the values that stay and those that move."""
-        parted: list[tuple[dict[str, float], dict[str, CourseTable]]] = []
+        """Constant and time-varying values of each [[goal]]."""
+        goals: list[tuple[dict[str, float], dict[str, CourseTable]]] = []
         for goal in self.file.goal:
-            held = {k: v for k, v in goal.items() if k != "from" and not isinstance(v, CourseTable)}
-            parted.append((held, {k: v for k, v in goal.items() if isinstance(v, CourseTable)}))
-        return parted
+            constant: dict[str, float] = {}
+            courses: dict[str, CourseTable] = {}
+            for key, value in goal.items():
+                if isinstance(value, CourseTable):
+                    courses[key] = value
+                elif key != "from":
+                    constant[key] = value
+            goals.append((constant, courses))
+        return goals
 
     @property
     def goal_keys(self) -> list[str]:
-        """All that its goals speak of, in the order of the file."""
-        return list(
-            dict.fromkeys(key for goal in self.file.goal for key in goal if key not in BESIDE)
-        )
+        """Keys of all goals, in the order of the file."""
+        keys: list[str] = []
+        for goal in self.file.goal:
+            keys += [key for key in goal if key not in RESERVED]
+        return list(dict.fromkeys(keys))
 
     @property
     def has_off_goal(self) -> bool:
-        """Whether nobody steers for some of the time."""
+        """Whether the vessel is not steered for some of the time."""
         return any(goal.get(OFF) for goal in self.file.goal)
 
     def goal_at(self, t: float) -> Mapping[str, float]:
-        """Goals in force at time t [s]: the last [[goal]] that has begun."""
+        """Return the goals at time t [s]: those of the last [[goal]] that has begun."""
         at = bisect_right(self._begins, t + 1e-9) - 1
         if at < 0:
             return {}
-        held, courses = self._goals[at]
-        return (
-            {**held, **{k: c.at(t - self._begins[at]) for k, c in courses.items()}}
-            if courses
-            else held
-        )
+        constant, courses = self._goals[at]
+        if not courses:
+            return constant
+        tau = t - self._begins[at]
+        return {**constant, **{key: course.at(tau) for key, course in courses.items()}}
 
 
 def load(
@@ -242,8 +249,8 @@ def from_table(raw: Mapping[str, object], place: Place, vessel: Vessel | None = 
     Args:
         raw: Content of the file.
         place: Name of the scenario, and the file from which relative paths start.
-        vessel: Vessel in place of the scenario's, in its own load condition; [set], [[effect]] and [measured] of the
-            scenario apply to it.
+        vessel: Vessel in place of the scenario's, in its own load condition; [set], [[effect]] and
+            [measured] of the scenario apply to it.
 
     Raises:
         BadInput: One line with file, key, value found, what is allowed and the nearest valid name.
@@ -256,12 +263,12 @@ def from_table(raw: Mapping[str, object], place: Place, vessel: Vessel | None = 
         vessel = _vessel(file, path.parent, vessel)
         controller = _created(Controller, "controller", file.controller, path.parent)
         sensors = _settings("sensors", lambda: Sensors.from_settings(file.sensors))
-        aboard = _aboard(file.sensor, path.parent)
+        aboard = _additional_sensors(file.sensor, path.parent)
         camera = _settings("camera", lambda: camera_over(vessel, file.camera))
         measure = _measure(file.measure, path.parent)
         _check_goals(file, vessel, controller)
         _check_shape(file, controller)
-        _check_norms(file, camera, measure)
+        _check_metrics(file, camera, measure)
     except BadInput as error:
         raise BadInput(f"{label}: {error}") from None
     return Scenario(
@@ -298,21 +305,22 @@ def _created(base: type[M], kind: str, table: Mapping[str, object], folder: Path
     return found.from_settings({k: v for k, v in table.items() if k != "use"})
 
 
-def _aboard(tables: Sequence[Mapping[str, object]], folder: Path) -> tuple[Sensor, ...]:
-    """The sensors of the [[sensor]] tables, no two of which read the same."""
-    aboard: list[Sensor] = []
+def _additional_sensors(tables: Sequence[Mapping[str, object]], folder: Path) -> tuple[Sensor, ...]:
+    """The sensors of the [[sensor]] tables, which must have different readings."""
+    sensors: list[Sensor] = []
     for table in tables:
-        made = _created(Sensor, "sensor", table, folder)
-        if twice := [n for other in aboard for n in type(other).columns if n in type(made).columns]:
-            raise BadInput(
-                f"[[sensor]] {table['use']}: {twice[0]} is read by another sensor already"
-            )
-        aboard.append(made)
-    return tuple(aboard)
+        sensor = _created(Sensor, "sensor", table, folder)
+        for other in sensors:
+            if twice := [name for name in type(other).columns if name in type(sensor).columns]:
+                raise BadInput(
+                    f"[[sensor]] {table['use']}: {twice[0]} is read by another sensor already"
+                )
+        sensors.append(sensor)
+    return tuple(sensors)
 
 
 def _measure(given: str | Mapping[str, object] | None, folder: Path) -> MetricSet | None:
-    """The measure on the log that a scenario asks for."""
+    """The metric set of a scenario."""
     if given is None:
         return None
     table = {"use": given} if isinstance(given, str) else given
@@ -320,28 +328,28 @@ def _measure(given: str | Mapping[str, object] | None, folder: Path) -> MetricSe
 
 
 def _begin(goal: Mapping[str, float | CourseTable]) -> float:
-    """When a goal begins [s]."""
+    """Time at which a goal begins [s]."""
     begin = goal.get("from", 0.0)
     if isinstance(begin, CourseTable):
         raise BadInput("[[goal]] from is a table; allowed is a time in s")
     return begin
 
 
-def _settings(key: str, made: Callable[[], T]) -> T:
-    """Sensors or camera of its table."""
+def _settings(key: str, create: Callable[[], T]) -> T:
+    """Create sensors or camera; an error names the table."""
     try:
-        return made()
+        return create()
     except BadInput as error:
         raise BadInput(f"[{key}] {error}") from None
 
 
 def _check_goals(file: ScenarioFile, vessel: Vessel, controller: Controller) -> None:
-    """Goals are named by the controller, or are command channels of the vessel for one that passes them on."""
+    """Check that the controller knows the goals, or that they are the vessel's command channels."""
     allowed = type(controller).goals or tuple(vessel.commands)
     for goal in file.goal:
         for key in goal:
-            if key not in BESIDE and key not in allowed:
-                raise BadInput(unknown_name("[[goal]] key", key, [*BESIDE, *allowed]))
+            if key not in RESERVED and key not in allowed:
+                raise BadInput(unknown_name("[[goal]] key", key, [*RESERVED, *allowed]))
             channel, value = vessel.commands.get(key), goal[key]
             if channel and isinstance(value, float) and not channel.low <= value <= channel.high:
                 raise BadInput(
@@ -352,15 +360,17 @@ def _check_goals(file: ScenarioFile, vessel: Vessel, controller: Controller) -> 
         raise BadInput(f"[[goal]] from = {starts}; allowed are times in ascending order")
     if unknown := [c for c in type(controller).commands if c not in vessel.commands]:
         raise BadInput(
-            f"controller {file.controller['use']} sets {unknown[0]}; {vessel.unknown_command(unknown[0])}"
+            f"controller {file.controller['use']} sets {unknown[0]}; "
+            f"{vessel.unknown_command(unknown[0])}"
         )
 
 
 def _check_shape(file: ScenarioFile, controller: Controller) -> None:
-    """The boat starts inside its tank, and the controller's period holds at least one step."""
+    """Check that the start lies in the tank and the controller's period is at least one step."""
     if controller.period < file.step - 1e-12:
         raise BadInput(
-            f"step = {file.step:g} s; allowed is at most the controller's period, {controller.period:g} s"
+            f"step = {file.step:g} s; "
+            f"allowed is at most the controller's period, {controller.period:g} s"
         )
     if file.tank and file.is_compiled:
         raise BadInput(
@@ -375,10 +385,10 @@ def _check_shape(file: ScenarioFile, controller: Controller) -> None:
             )
 
 
-def _check_norms(file: ScenarioFile, camera: Camera, measure: MetricSet | None) -> None:
-    """Only norms of what is measured are judged, and the frames they need are taken."""
-    followed = tracking_errors.units(key for goal in file.goal for key in goal)
-    allowed = (*(type(measure).units if measure else ()), *followed)
+def _check_metrics(file: ScenarioFile, camera: Camera, measure: MetricSet | None) -> None:
+    """Check that the metrics with bands are computed and that the camera delivers their frames."""
+    tracked = tracking_errors.units(chain.from_iterable(file.goal))
+    allowed = [*type(measure).units, *tracked] if measure else list(tracked)
     for name in file.norms:
         if name not in allowed:
             raise BadInput(unknown_name("[norms] key", name, allowed))

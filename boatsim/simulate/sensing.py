@@ -1,6 +1,6 @@
-"""What a boat carries to feel its own motion: inertial unit, and where it has them speed log and position fix.
+"""Sensors of a vessel: inertial unit, and optionally speed log and position fix.
 
-Any further sensor is a file of `boatsim/simulate/sensors/`.
+Further sensors are files of `boatsim/simulate/sensors/`.
 """
 
 from collections.abc import Mapping, Sequence
@@ -16,14 +16,18 @@ from boatsim.physics.base import Array, Checked, param
 from boatsim.physics.kernel.compiling import lean
 from boatsim.simulate.stepper import Stepper
 
-NOISES = 7  # normal numbers that a sample takes
+NOISES = 7  # standard normal numbers per sample
 
 
 @lean
 def disturb(felt: Array, sensors: Array, noise: Array) -> None:
-    """Make what is true (t, psi, r, ax, ay, u, v, x, y, phi, p) what the unit says, in place.
+    """Turn true values into measurements, in place.
 
-    `sensors` are the numbers of `Sensors`, whether they are ideal first; noise (7,) is standard normal.
+    Args:
+        felt: True values (t, psi, r, ax, ay, u, v, x, y, phi, p), which become measurements; nan
+            where there is no sensor.
+        sensors: `Sensors.numbers`.
+        noise: Standard normal numbers (7,).
     """
     if sensors[0] != 0.0:
         return
@@ -47,9 +51,10 @@ def disturb(felt: Array, sensors: Array, noise: Array) -> None:
 
 @dataclass(frozen=True)
 class Sensors(Checked):
-    """What the controller feels: a BNO055 inertial unit, and a speed log if `speed_sd` is not negative.
+    """The usual sensors: a BNO055 inertial unit, and a speed log if `speed_sd` is not negative.
 
-    One sample of the unit's fusion (100 Hz) serves a whole control step: readings some ms apart see the same one.
+    One sample of the unit's sensor fusion (100 Hz) holds for a whole control step, since readings
+    some milliseconds apart return the same sample.
     """
 
     heading_sd: float = param(
@@ -71,8 +76,7 @@ class Sensors(Checked):
     position_sd: float = param(
         -1.0, low=-1.0, high=10.0, unit="m", words="position fix noise; below 0: none"
     )
-    # all of the motion is known as it is, roll too, whatever the noise stated above
-    ideal: bool = False
+    ideal: bool = False  # no noise and no bias; all of the motion is measured, roll too
 
     def sample(
         self,
@@ -83,7 +87,16 @@ class Sensors(Checked):
         rng: np.random.Generator,
         roll: tuple[float, float] = (nan, nan),
     ) -> Sense:
-        """One sample at a true pose (x, y, psi), body velocity (u, v, r), body acceleration (ax, ay), roll (phi, p)."""
+        """Return a sample.
+
+        Args:
+            t: Time [s].
+            pose: True x, y [m] and psi [rad].
+            velocity: True u, v [m/s] and r [rad/s].
+            acceleration: True acceleration along body x and y [m/s^2].
+            rng: Random generator of the noise.
+            roll: True phi [rad] and p [rad/s].
+        """
         felt = (
             t,
             pose[2],
@@ -103,37 +116,47 @@ class Sensors(Checked):
 
     @cached_property
     def numbers(self) -> Array:
-        """What `disturb` takes of it."""
-        return np.array(
-            [float(self.ideal), *(float(getattr(self, name)) for name in type(self).params())]
-        )
+        """Parameters of `disturb`: whether the sensors are ideal, then those of this class."""
+        values = [float(getattr(self, name)) for name in type(self).params()]
+        return np.array([float(self.ideal), *values])
 
 
 @dataclass(frozen=True)
 class Sensor(Checked):
-    """Base of further sensors: `[[sensor]]` with `use = "inclinometer"` in a scenario puts one aboard.
+    """Base class of further sensors; `[[sensor]]` with `use = "inclinometer"` adds one.
 
-    What it reads under the name of a field of `Sense` fills that field; any other name is found in `sense.more`.
+    A reading with the name of a field of `Sense` fills that field; others are in `sense.more`.
     """
 
     words: ClassVar[str] = ""  # one line for `boatsim list`
-    columns: ClassVar[
-        Mapping[str, str]
-    ] = {}  # what it reads -> its column in the log, with the unit, after `sensed_`
+    # reading -> its column in the log after `sensed_`, with the unit
+    columns: ClassVar[Mapping[str, str]] = {}
 
     def read(self, engine: Stepper, rng: np.random.Generator) -> Mapping[str, float]:
-        """One sample of everything in `columns` from the boat as it is."""
+        """Return a sample of all readings in `columns`.
+
+        Args:
+            engine: The engine, whose vessel is measured.
+            rng: Random generator of the noise.
+        """
         raise NotImplementedError
 
 
 def sensed(
-    base: Sense, aboard: Sequence[Sensor], engine: Stepper, rngs: Sequence[np.random.Generator]
+    base: Sense, sensors: Sequence[Sensor], engine: Stepper, rngs: Sequence[np.random.Generator]
 ) -> Sense:
-    """What the usual sensors say, with what the further ones read; each has randomness of its own."""
-    if not aboard:
+    """Add the readings of further sensors to a sample of the usual ones.
+
+    Args:
+        base: Sample of the usual sensors.
+        sensors: The further sensors.
+        engine: The engine, whose vessel is measured.
+        rngs: Random generator of each further sensor.
+    """
+    if not sensors:
         return base
     usual = {f.name for f in fields(Sense)} - {"more"}
     read: dict[str, float] = {}
-    for sensor, rng in zip(aboard, rngs, strict=True):
+    for sensor, rng in zip(sensors, rngs, strict=True):
         read |= sensor.read(engine, rng)
     return replace(base, **{n: x for n, x in read.items() if n in usual}, more=read)

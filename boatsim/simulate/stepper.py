@@ -1,6 +1,6 @@
-"""What steps a boat, on whatever: commands to actuators, steps cut where an actuator's signal jumps or bends.
+"""Base class of engines that step one vessel: commands, actuators, and steps cut where they jump.
 
-`engine` steps it on MuJoCo, among walls, `open_water` in compiled code alone, the faster.
+`engine` steps a vessel on MuJoCo, with walls; `open_water` on the compiled engine, which is faster.
 """
 
 from abc import ABC, abstractmethod
@@ -18,7 +18,7 @@ from boatsim.physics.vessel import Vessel
 
 
 class State(NamedTuple):
-    """Where the boat is and how it moves: SNAME, pose in start axes, velocities in body axes over ground."""
+    """State of a vessel, SNAME: pose in start axes, velocities over ground in body axes."""
 
     t: float = 0.0  # [s]
     x: float = 0.0  # [m]
@@ -36,10 +36,24 @@ class State(NamedTuple):
 
 
 class Stepper(ABC):
-    """One vessel. `command` sets what is sent to the actuators, `advance` steps."""
+    """One vessel. `command` sends commands to the actuators, `advance` steps.
+
+    Attributes:
+        vessel: The vessel.
+        step: Integration step [s].
+        program: The vessel's compiled program.
+        code: Its compiled functions.
+        sent: Commands as they were sent, in the order of the vessel's inputs; `commands` are those
+            in force.
+    """
 
     def __init__(self, vessel: Vessel, step: float) -> None:
-        """`step` is the integration step in s."""
+        """Compile the vessel's program.
+
+        Args:
+            vessel: The vessel.
+            step: Integration step [s].
+        """
         self.vessel, self.step = vessel, step
         self.program = Program(vessel)
         self.code = self.program.module
@@ -49,13 +63,12 @@ class Stepper(ABC):
         self._memory = np.zeros(self.program.memory_size)
         self._act = np.zeros(self.program.held_size)
         self._actuators = vessel.actuators
-        self._mean = np.zeros(len(self._actuators))  # of each actuator over the last step
+        # mean of each actuator over the last step
+        self._mean = np.zeros(len(self._actuators))
         self._places = {name: i for i, name in enumerate(vessel.commands)}
         self._neutral = command_row(vessel, {}).tolist()
         self._limits = list(vessel.limits().values())
-        self.sent = list(
-            self._neutral
-        )  # in the order of the vessel's inputs; what acts of it is `commands`
+        self.sent = list(self._neutral)
 
     @property
     @abstractmethod
@@ -64,29 +77,37 @@ class Stepper(ABC):
 
     @abstractmethod
     def _put(self, t: float, state: Array) -> None:
-        """Put the boat at joint coordinates and rates (2 NQ,)."""
+        """Set time [s] and joint coordinates and rates (2 NQ,)."""
 
     @abstractmethod
     def _joint_state(self) -> Array:
-        """(2 NQ,) joint coordinates and rates, SNAME."""
+        """Return joint coordinates and rates (2 NQ,), SNAME."""
 
     @abstractmethod
     def _step(self, dt: float) -> None:
-        """One step of dt [s] under the actuators as they are."""
+        """Take one step of dt [s] with the actuators as they are."""
 
     @abstractmethod
     def acceleration(self) -> tuple[float, float]:
-        """Acceleration of the origin over ground along body x and y [m/s^2], as an accelerometer there feels it."""
+        """Return the acceleration of the origin over ground along body x and y [m/s^2]."""
 
     @property
     def contacts(self) -> int:
-        """How many contacts the hull has now."""
+        """Number of contacts of the hull."""
         return 0
 
     def reset(
         self, state: State | None = None, commands: Mapping[str, float] | None = None
     ) -> None:
-        """Put the boat at a state (default: origin, at rest, t = 0), its actuators settled at the given commands."""
+        """Set the state, with actuators settled at commands.
+
+        Args:
+            state: The state; default: at the origin, at rest, t = 0.
+            commands: Commands by channel; others are neutral.
+
+        Raises:
+            BadInput: If a channel does not exist or a value is not finite.
+        """
         state = state or State()
         self._put(state.t, self.program.joint_rates(np.array(state[1:])[list(self.code.SHOWS)]))
         self._memory[:] = 0.0
@@ -94,19 +115,26 @@ class Stepper(ABC):
         self.settle()
 
     def settle(self) -> None:
-        """Let the actuators reach their commands at once."""
+        """Set the actuators to the steady state of their commands."""
         self.code.settle(self._commands, self._memory, self._values, self._on, self._act)
         self._mean[:] = self._mean_of_part()
 
     def command(self, commands: Mapping[str, float]) -> None:
-        """What is sent to the actuators from now on; limited to its range, neutral where not named. Raises BadInput."""
+        """Send commands to the actuators; they act within their ranges until the next ones.
+
+        Args:
+            commands: Commands by channel; others are neutral.
+
+        Raises:
+            BadInput: If a channel does not exist or a value is not finite.
+        """
         sent = list(self._neutral)
         for name, value in commands.items():
             if name not in self._places:
                 raise BadInput(self.vessel.unknown_command(name))
             sent[self._places[name]] = float(value)
         if not isfinite(sum(sent)):
-            clip(self.vessel, np.array(sent))  # says which
+            clip(self.vessel, np.array(sent))  # raises an error that names the channel
         self.sent = sent
         self._commands[:] = [
             min(max(x, low), high) for x, (low, high) in zip(sent, self._limits, strict=True)
@@ -114,23 +142,31 @@ class Stepper(ABC):
 
     @property
     def beyond(self) -> list[str]:
-        """Channels of which more was sent than their range holds."""
-        acts = self._commands.tolist()
-        return [] if acts == self.sent else saturated_channels(self.vessel, np.array(self.sent))
+        """Channels whose command exceeded its range."""
+        if self._commands.tolist() == self.sent:
+            return []
+        return saturated_channels(self.vessel, np.array(self.sent))
 
     @property
     def commands(self) -> dict[str, float]:
-        """Commands in force."""
-        return dict(
-            zip(self.vessel.commands, self._commands.tolist(), strict=False)
-        )  # what is measured comes behind
+        """Commands in force, by channel."""
+        # measured inputs come after the commands
+        return dict(zip(self.vessel.commands, self._commands.tolist(), strict=False))
 
     def in_force(self) -> list[float]:
-        """The same, without the names: in the order of the vessel's inputs."""
+        """Return the commands in force, in the order of the vessel's inputs."""
         return self._commands.tolist()
 
     def advance(self, steps: int = 1, length: float | None = None) -> None:
-        """Steps of `length` s (default: `step`) with the commands held. Raises BadPhysics if the motion diverges."""
+        """Take steps with the commands held.
+
+        Args:
+            steps: Number of steps.
+            length: Length of each step [s]; default: `step`.
+
+        Raises:
+            BadPhysics: If the motion diverges.
+        """
         for _ in range(steps):
             self._advance(self.step if length is None else length)
         if not isfinite(sum(self._joint_state().tolist())):
@@ -139,7 +175,7 @@ class Stepper(ABC):
             )
 
     def _advance(self, left: float) -> None:
-        """One step of `left` s, cut where an actuator's signal jumps or bends."""
+        """One step of `left` s, cut where the signal of an actuator has a jump or a kink."""
         least, before, whole = self.code.SHORTEST, 0.0, left
         self._mean[:] = 0.0
         while left > 1e-9:
@@ -157,7 +193,7 @@ class Stepper(ABC):
             left -= dt
 
     def _mean_of_part(self) -> Array:
-        """(A,) mean of each actuator over what was stepped last."""
+        """Mean (A,) of each actuator over the last part of a step."""
         n, held = len(self._mean), self.code.HELD
         act = self._act
         return np.asarray(
@@ -171,11 +207,11 @@ class Stepper(ABC):
 
     @property
     def actuators(self) -> dict[str, float]:
-        """Mean of each actuator over the last step."""
+        """Mean of each actuator over the last step, by name."""
         return dict(zip(self._actuators, self._mean.tolist(), strict=True))
 
     def wrench(self) -> Wrench:
-        """Sum of all force laws in body axes at the present state [N, N m]; zero along freedoms that are held."""
+        """Return the sum of all effects in body axes [N, N m]; fixed degrees of freedom have 0."""
         last = np.int64(2 * self.code.HELD)  # the actuators at the end of the last step
         found = self.code.forces(
             self.t, self._joint_state(), self._act, last, self._values, self._on

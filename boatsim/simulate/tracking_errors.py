@@ -1,6 +1,6 @@
-"""How well a boat follows its goals: every goal that is a signal of the motion is judged, asked for or not."""
+"""Tracking errors: metrics of the difference between each goal and the motion signal it is for."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from dataclasses import replace
 from math import degrees, pi, sqrt
 from typing import NamedTuple
@@ -12,98 +12,120 @@ from boatsim.physics.signals import follower
 from boatsim.recordings.notes import unit_of
 from boatsim.recordings.table import Recording, joined
 
-GOAL = "goal_"  # in front of a goal's key: its column in the log
-ENDINGS = ("rms", "largest", "integral")  # of a norm's name
+GOAL = "goal_"  # prefix of a goal's column in the log
+ENDINGS = ("rms", "largest", "integral")  # of a metric's name
 
 
 class Tally:
-    """Norms of the error e between goal and signal while the goal says something, of a log that comes in pieces.
+    """Tracking errors of a log that arrives in pieces.
 
-    rms is sqrt(mean e^2), largest max|e|, integral that of |e| over time, which does not depend on the log's step.
+    With the error e between goal and signal while the goal is in force, rms is sqrt(mean e^2),
+    largest is max|e| and integral is the time integral of |e|, which does not depend on the log's
+    step.
     """
 
     def __init__(self) -> None:
-        self._sums: dict[str, Sums] = {}  # by the goal's key
-        self._last: Recording | None = None  # row, which stands for the time until the next one
+        """Begin with an empty log."""
+        self._sums: dict[str, ErrorSums] = {}  # by the goal's key
+        self._last: Recording | None = None  # last row, which holds until the next one
 
     def add(self, log: Recording) -> None:
-        """The rows that follow."""
-        log = joined([self._last, log]) if self._last else log
-        for key, signal, _ in _followed(
-            n.removeprefix(GOAL) for n in log.signals if n.startswith(GOAL)
-        ):
+        """Add the rows that follow."""
+        if self._last:
+            log = joined([self._last, log])
+        goals = [name.removeprefix(GOAL) for name in log.signals if name.startswith(GOAL)]
+        durations = np.append(np.diff(log.t), 0.0)
+        for key, signal, _ in _tracked(goals):
             if signal in log.signals:
-                off = _off(signal, log[f"{GOAL}{key}"], log[signal])
-                self._sums[key] = self._sums.get(key, Sums()).with_rows(
-                    np.abs(off), np.append(np.diff(log.t), 0.0)
-                )
-        self._last = replace(log, t=log.t[-1:], signals={n: x[-1:] for n, x in log.signals.items()})
+                error = np.abs(_error(signal, log[f"{GOAL}{key}"], log[signal]))
+                sums = self._sums.get(key, ErrorSums())
+                self._sums[key] = sums.with_rows(error, durations)
+        last = {name: x[-1:] for name, x in log.signals.items()}
+        self._last = replace(log, t=log.t[-1:], signals=last)
 
-    def norms(self) -> dict[str, float]:
-        """By name, in the units of `units`."""
+    def metrics(self) -> dict[str, float]:
+        """Return the metrics by name, in the units of `units`."""
         found: dict[str, float] = {}
-        for key, _, names in _followed(self._sums):
-            if (of := self._sums[key]).time:
-                found |= dict(
-                    zip(names, (sqrt(of.squares / of.time), of.largest, of.integral), strict=True)
-                )
+        for key, _, names in _tracked(self._sums):
+            sums = self._sums[key]
+            if sums.time:
+                values = (sqrt(sums.squares / sums.time), sums.largest, sums.integral)
+                found |= zip(names, values, strict=True)
         return found
 
 
-class Sums(NamedTuple):
-    """Of the error |e| of one goal."""
+class ErrorSums(NamedTuple):
+    """Sums of the error |e| of one goal over the time in which the goal is in force."""
 
-    squares: float = 0.0  # integral of its square over time
-    time: float = 0.0  # [s] while the goal said something
+    squares: float = 0.0  # time integral of e^2
+    time: float = 0.0  # [s]
     largest: float = 0.0
     integral: float = 0.0
 
-    def with_rows(self, e: Array, lasts: Array) -> "Sums":
-        """With |e| (N,) of rows that last so long (N,) [s]."""
-        known = np.isfinite(e) & (lasts > 0.0)
-        e, dt = e[known], lasts[known]
-        squares, time, integral = float((e**2 * dt).sum()), float(dt.sum()), float((e * dt).sum())
-        return Sums(
-            self.squares + squares,
-            self.time + time,
+    def with_rows(self, error: Array, durations: Array) -> "ErrorSums":
+        """Return the sums with further rows.
+
+        Args:
+            error: |e| of the rows (N,), nan where no goal is in force.
+            durations: How long each row holds (N,) [s].
+        """
+        known = np.isfinite(error) & (durations > 0.0)
+        e, dt = error[known], durations[known]
+        return ErrorSums(
+            self.squares + float((e**2 * dt).sum()),
+            self.time + float(dt.sum()),
             max(self.largest, float(e.max(initial=0.0))),
-            self.integral + integral,
+            self.integral + float((e * dt).sum()),
         )
 
 
 def errors(log: Recording) -> dict[str, float]:
-    """The norms of a whole log."""
+    """Return the tracking errors of a complete log, by the metric's name."""
     tally = Tally()
     tally.add(log)
-    return tally.norms()
+    return tally.metrics()
 
 
 def units(goals: Iterable[str]) -> dict[str, str]:
-    """The norms of these goals, with their units: angles in degrees."""
+    """Return the names of the tracking errors of goals, with their units; angles are in degrees.
+
+    Args:
+        goals: Keys of the goals.
+    """
     found: dict[str, str] = {}
-    for _, signal, norms in _followed(goals):
+    for _, signal, names in _tracked(goals):
         unit = unit_of(signal).replace("rad", "deg")
-        found |= dict(zip(norms, (unit, unit, times_second(unit)), strict=True))
+        found |= zip(names, (unit, unit, times_second(unit)), strict=True)
     return found
 
 
 def times_second(unit: str) -> str:
-    """Unit of the time integral of what has a unit: m of m/s, m s of m."""
-    return unit.removesuffix("/s") if unit.endswith("/s") else f"{unit} s".strip()
+    """Return the unit of a time integral: m for m/s, m s for m."""
+    if unit.endswith("/s"):
+        return unit.removesuffix("/s")
+    return f"{unit} s".strip()
 
 
-def _followed(goals: Iterable[str]) -> Iterator[tuple[str, str, list[str]]]:
-    """Each goal that is a signal of the motion, that signal, its norms: a whole key tells yaw_rad from yaw_radps."""
-    signals = {key: signal for key in goals if (signal := follower(key))}
+def _tracked(goals: Iterable[str]) -> list[tuple[str, str, list[str]]]:
+    """Each goal that is for a motion signal: its key, the signal and the names of its metrics.
+
+    The metrics have the key without its unit, unless that is ambiguous: yaw_rad and yaw_radps.
+    """
+    signals: dict[str, str] = {}
+    for key in goals:
+        if signal := follower(key):
+            signals[key] = signal
     stems = [key.rpartition("_")[0] for key in signals]
+    found: list[tuple[str, str, list[str]]] = []
     for (key, signal), stem in zip(signals.items(), stems, strict=True):
         name = key if stems.count(stem) > 1 else stem
-        yield key, signal, [f"{name}_error_{ending}" for ending in ENDINGS]
+        found.append((key, signal, [f"{name}_error_{ending}" for ending in ENDINGS]))
+    return found
 
 
-def _off(signal: str, goal: Array, reached: Array) -> Array:
-    """Error (N,) in the unit that people read; of a heading the shorter way round."""
-    off = reached - goal
+def _error(signal: str, goal: Array, reached: Array) -> Array:
+    """Error (N,), in degrees for angles; that of a heading is at most half a turn."""
+    error = reached - goal
     if signal == "psi_rad":
-        off = (off + pi) % (2.0 * pi) - pi
-    return off * (degrees(1.0) if "rad" in unit_of(signal) else 1.0)
+        error = (error + pi) % (2.0 * pi) - pi
+    return error * (degrees(1.0) if "rad" in unit_of(signal) else 1.0)

@@ -1,4 +1,4 @@
-"""Tank, hull, motors, ballast and freedoms put together into one MuJoCo model. MuJoCo axes here: z up, y to port."""
+"""Builds the MuJoCo model of a vessel in a tank. Axes are MuJoCo's: z up, y to port."""
 
 import math
 from collections.abc import Mapping
@@ -15,16 +15,16 @@ from boatsim.physics.signals import Array
 from boatsim.physics.vessel import Vessel
 from boatsim.simulate.hull_xml_check import check_text
 
-Model: TypeAlias = mujoco.MjModel  # for those who must not import mujoco
+Model: TypeAlias = mujoco.MjModel  # for modules that must not import mujoco
 SMALLEST, LARGEST = 1e-3, 1e6  # [m] of a tank
 WALL = 0.02  # [m] half of a wall's thickness
 RIM = 0.08  # [m] wall above the water
 DRAWN = math.hypot(0.75, 1.5)  # [m] from the middle to a corner of the tank in tank.xml
-# solref: time constant [s] (two steps of 20 ms), critically damped. A wall only pushes, so the hull
-# leaves it with e^-2
-# of the speed it came with, 0.14; steps as coarse as the time constant make it 0.10 to 0.18
+# solref: time constant [s] (two steps of 20 ms), critically damped. A wall only pushes, so that the
+# hull leaves it with e^-2 = 0.14 of its speed, or 0.10 to 0.18 with steps as long as the time
+# constant
 SOFT_WALL = (0.04, 1.0)
-# freedom -> joint name, kind, axis; each axis turns with the angles before it: yaw, pitch, roll
+# degree of freedom -> name, kind and axis of its joint; yaw, pitch and roll turn in this order
 JOINTS = {
     "surge": ("x", mujoco.mjtJoint.mjJNT_SLIDE, (1, 0, 0)),
     "sway": ("y", mujoco.mjtJoint.mjJNT_SLIDE, (0, 1, 0)),
@@ -38,7 +38,7 @@ HALF_TURN = (0.0, 1.0, 0.0, 0.0)  # about x, exact in floating point
 
 @dataclass(frozen=True)
 class Tank:
-    """Rectangular water in start axes (SNAME): `length` along x, `width` along y, `centre` (x, y) of its middle."""
+    """Rectangular water in start axes, SNAME: `length` along x, `width` along y."""
 
     length: float  # [m]
     width: float  # [m]
@@ -56,7 +56,7 @@ class Tank:
 
 
 def open_water(vessel: Vessel) -> Tank:
-    """Water without walls, drawn as far as ten lengths."""
+    """Return water without walls, drawn with a size of ten lengths of the vessel."""
     return Tank(10.0 * vessel.length, 10.0 * vessel.length, vessel.length, walls=False)
 
 
@@ -70,20 +70,34 @@ def build(
     wall_solref: tuple[float, float] | None = None,
     friction: float = 0.0,
 ) -> mujoco.MjModel:
-    """Compile the vessel in its tank, free of forces, with joints x, y, z, psi, theta, phi as it is free; `step` in s.
+    """Compile the model of a vessel in a tank, with a joint per degree of freedom and no forces.
 
-    No gravity: buoyancy holds heave, pitch and (where roll is free) a restoring effect stands for the rest.
-    `show=False` leaves out everything that is only looked at, for speed. `wall_solref` is MuJoCo's contact solref,
-    (-stiffness, -damping) or (time constant [s], damping ratio). Raises BadPhysics if the mass matrix is not full.
+    There is no gravity: buoyancy and restoring effects include it.
+
+    Args:
+        vessel: The vessel.
+        tank: The tank; default: open water.
+        step: Integration step [s].
+        userdata: Size of MuJoCo's userdata.
+        show: Whether to include parts that are only drawn; without them the model is faster.
+        wall_solref: MuJoCo's contact parameters of the walls, (-stiffness, -damping) or (time
+            constant [s], damping ratio); default: critically damped.
+        friction: Friction coefficient of the walls.
+
+    Returns:
+        The model.
+
+    Raises:
+        BadInput: If MuJoCo can not build the hull.
+        BadPhysics: If MuJoCo does not store the full mass matrix.
     """
     tank = tank or open_water(vessel)
     spec = mujoco.MjSpec.from_file(str(root() / "models" / "tank.xml"))
     spec.option.timestep = step
     spec.option.integrator = mujoco.mjtIntegrator.mjINT_RK4
     spec.option.gravity = (0, 0, 0)
-    spec.option.disableflags |= (
-        mujoco.mjtDisableBit.mjDSBL_AUTORESET
-    )  # a motion gone wild is an error of ours to report
+    # the engine reports a diverging motion as an error
+    spec.option.disableflags |= mujoco.mjtDisableBit.mjDSBL_AUTORESET
     spec.nuserdata = userdata
     size_tank(spec, tank, vessel)
     hull = add_hull(spec, vessel)
@@ -104,7 +118,7 @@ def build(
 
 
 def size_tank(spec: mujoco.MjSpec, tank: Tank, vessel: Vessel) -> None:
-    """Give water, walls, fan and cameras the size and place of the tank."""
+    """Set size and position of water, walls, fan and cameras."""
     a, b, d = tank.length / 2, tank.width / 2, tank.depth
     middle, high = (RIM - d) / 2, (RIM + d) / 2  # walls stand on the floor and rise above the water
     boxes = {
@@ -137,13 +151,11 @@ def size_tank(spec: mujoco.MjSpec, tank: Tank, vessel: Vessel) -> None:
 
 
 def aim_cameras(spec: mujoco.MjSpec, tank: Tank, vessel: Vessel) -> None:
-    """Show the whole tank, or six boat lengths about the start where the tank is larger."""
+    """Show the tank, at most six lengths of the vessel around the start."""
     most = 6 * vessel.length
     long, wide = min(tank.length, most), min(tank.width, most)
-    x, y = (
-        tank.centre[0] if tank.length <= most else 0.0,
-        -tank.centre[1] if tank.width <= most else 0.0,
-    )
+    x = tank.centre[0] if tank.length <= most else 0.0
+    y = -tank.centre[1] if tank.width <= most else 0.0
     target = np.array([x, y, 0.0])
     above, oblique = spec.camera("above"), spec.camera("oblique")
     half = math.tan(math.radians(above.fovy) / 2)
@@ -154,7 +166,7 @@ def aim_cameras(spec: mujoco.MjSpec, tank: Tank, vessel: Vessel) -> None:
 
 
 def looking_at(eye: Array, target: Array) -> Array:
-    """MuJoCo `xyaxes` (6,) of a camera at `eye` that looks at `target` with the horizon level."""
+    """Return MuJoCo's `xyaxes` (6,) of a camera at `eye` that looks at `target`, horizon level."""
     forward = (target - eye) / np.linalg.norm(target - eye)
     right = np.cross(forward, (0, 0, 1))
     right = right / np.linalg.norm(right)
@@ -162,7 +174,7 @@ def looking_at(eye: Array, target: Array) -> Array:
 
 
 def add_hull(spec: mujoco.MjSpec, vessel: Vessel) -> mujoco.MjsBody:
-    """Attach the vessel's hull with its body origin at the CG, at its length and draught, motors and marks in place."""
+    """Attach the hull at its length and draught, with the origin at the CG; return its body."""
     drawing, (length, draught) = read_drawing(Path(vessel.path) / vessel.hull, vessel)
     stretch = vessel.length / length
     for mesh in drawing.meshes:
@@ -180,7 +192,18 @@ def add_hull(spec: mujoco.MjSpec, vessel: Vessel) -> mujoco.MjsBody:
 
 
 def read_drawing(path: Path, vessel: Vessel) -> tuple[mujoco.MjSpec, tuple[float, float]]:
-    """The hull's file, and length and draught [m] it was drawn for (the vessel's own where it says nothing)."""
+    """Read a hull file.
+
+    Args:
+        path: The file.
+        vessel: The vessel.
+
+    Returns:
+        Its content, and the length and draught [m] it was drawn for, by default the vessel's.
+
+    Raises:
+        BadInput: If MuJoCo can not read it or it has no hull.
+    """
     if not vessel.hull_xml:
         check_text(path)
     try:
@@ -189,16 +212,13 @@ def read_drawing(path: Path, vessel: Vessel) -> tuple[mujoco.MjSpec, tuple[float
         else:
             drawing = mujoco.MjSpec.from_file(str(path))
         bodies = [body.name for body in drawing.bodies]
-        _ = [
-            part.name for part in (*drawing.geoms, *drawing.sites, *drawing.meshes)
-        ]  # which need not be UTF-8
+        for part in (*drawing.geoms, *drawing.sites, *drawing.meshes):
+            _ = part.name  # raises an error unless it is UTF-8
     except (ValueError, TypeError) as error:  # a TypeError for a path that is not UTF-8
-        said = (
-            "its path is not UTF-8"
-            if isinstance(error, TypeError)
-            else " ".join(str(error).split())
-        )
-        raise BadInput(f"{path}: no hull that MuJoCo can read: {said}") from None
+        reason = " ".join(str(error).split())
+        if isinstance(error, TypeError):
+            reason = "its path is not UTF-8"
+        raise BadInput(f"{path}: no hull that MuJoCo can read: {reason}") from None
     if drawing.body("hull") is None:
         raise BadInput(
             unknown_name(f"{path}: body", "hull", (name for name in bodies if name != "world"))
@@ -220,12 +240,12 @@ def place_fittings(
     marks: Mapping[str, tuple[float, float]],
     shift: Array,
 ) -> None:
-    """Move outboards, their mount, ballast and drawn marks to where this load has them; drop what it has not."""
+    """Move outboards, mount, ballast and marks to their place in this load condition."""
     for side, name in ((1, "outboard_port"), (-1, "outboard_starboard")):
         body = drawing.body(name)
         if body is not None and "motor_half_spacing" in at:
             body.pos = (
-                _stated(at, "motor_ahead_of_cg"),
+                _required(at, "motor_ahead_of_cg"),
                 side * at["motor_half_spacing"],
                 body.pos[2],
             )
@@ -237,22 +257,23 @@ def place_fittings(
         mount.size = (mount.size[0], at.get("motor_half_spacing", mount.size[1]), mount.size[2])
     if (ballast := drawing.geom("ballast")) is not None:
         if at.get("ballast_mass", 0.0) > 0:
-            ballast.pos = (_stated(at, "ballast_from_transom") + shift[0], 0, ballast.pos[2])
+            ballast.pos = (_required(at, "ballast_from_transom") + shift[0], 0, ballast.pos[2])
         else:
             drawing.delete(ballast)
 
 
-def _stated(geometry: Mapping[str, float], key: str) -> float:
+def _required(geometry: Mapping[str, float], key: str) -> float:
     if key not in geometry:
         raise BadInput(f"geometry.{key} is missing; the hull that is drawn needs it")
     return geometry[key]
 
 
 def set_inertia(hull: mujoco.MjsBody, vessel: Vessel) -> None:
-    """Mass and inertia of the vessel file, at the CG.
+    """Set mass and inertia at the centre of mass.
 
-    The inertial frame is turned half round about x, which changes no number: MuJoCo keeps only the diagonal of the
-    mass matrix for a body whose inertial frame is its own frame, and added mass needs the whole lower triangle.
+    The inertial frame is turned by 180 deg about x, which changes no number: MuJoCo stores only the
+    diagonal of the mass matrix of a body whose inertial frame is its own, and added mass needs the
+    whole lower triangle.
     """
     body = vessel.body
     hull.explicitinertial = True
@@ -264,21 +285,21 @@ def set_inertia(hull: mujoco.MjsBody, vessel: Vessel) -> None:
 
 
 def origin_height(vessel: Vessel) -> float:
-    """Height of the origin of motion above the water surface [m]; 0 where the vessel file does not say."""
+    """Return the height of the origin of motion above the water [m]; 0 if it is not specified."""
     above_keel = vessel.geometry.get("cg_above_keel")
     return 0.0 if above_keel is None else above_keel - vessel.draught
 
 
 def add_joints(hull: mujoco.MjsBody, vessel: Vessel) -> None:
-    """One joint for each freedom; the axes of roll and pitch run through the origin of motion."""
-    for freedom, (name, kind, axis) in JOINTS.items():
-        if freedom in vessel.dof:
-            pos = (0, 0, origin_height(vessel)) if freedom in ("roll", "pitch") else (0, 0, 0)
+    """Add a joint per degree of freedom; roll and pitch axes pass through the origin of motion."""
+    for axis_name, (name, kind, axis) in JOINTS.items():
+        if axis_name in vessel.dof:
+            pos = (0, 0, origin_height(vessel)) if axis_name in ("roll", "pitch") else (0, 0, 0)
             hull.add_joint(name=name, type=kind, axis=axis, pos=pos)
 
 
 def add_contacts(spec: mujoco.MjSpec, solref: tuple[float, float], friction: float) -> None:
-    """Let the hull touch the four walls and nothing else; explicit pairs are cheaper than bit masks."""
+    """Add contacts of the hull with the four walls; explicit pairs are faster than bit masks."""
     touching = [g.name for g in spec.body("hull").geoms if g.name.startswith("collision")]
     for geom in touching:
         for wall in ("wall_ahead", "wall_astern", "wall_port", "wall_starboard"):
@@ -289,7 +310,7 @@ def add_contacts(spec: mujoco.MjSpec, solref: tuple[float, float], friction: flo
 
 
 def remove_looks(spec: mujoco.MjSpec) -> None:
-    """Delete what neither moves nor touches: drawn geoms, marks, outboards, fan, cameras, lights."""
+    """Delete all parts without contacts: drawn geoms, marks, outboards, fan, cameras, lights."""
     in_contact = {name for pair in spec.pairs for name in (pair.geomname1, pair.geomname2)}
     for geom in [g for g in spec.geoms if g.name not in in_contact]:
         spec.delete(geom)
@@ -300,7 +321,7 @@ def remove_looks(spec: mujoco.MjSpec) -> None:
 
 
 def check_mass_matrix(model: mujoco.MjModel, vessel: Vessel) -> None:
-    """Every lower-triangle entry of M must be stored, or added mass would be lost without a word."""
+    """Check that MuJoCo stores the lower triangle of the mass matrix, which added mass needs."""
     stored, needed = model.M_rownnz.tolist(), list(range(1, model.nv + 1))
     if stored != needed:
         raise BadPhysics(

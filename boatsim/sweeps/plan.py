@@ -15,7 +15,7 @@ import numpy as np
 from boatsim.errors import BadInput, BadPhysics
 from boatsim.physics.content import find
 from boatsim.physics.signals import Array
-from boatsim.simulate.cases import Place, content, meant
+from boatsim.simulate.cases import Place, content, matching
 from boatsim.simulate.evaluation import metric_names
 from boatsim.simulate.run import run
 from boatsim.simulate.scenario import from_table
@@ -236,7 +236,7 @@ def make_plan(
     Raises:
         BadInput: A scenario is unknown, a key repeats, or there are too many runs.
     """
-    names = tuple(chain.from_iterable(map(meant, scenarios)))
+    names = tuple(chain.from_iterable(map(matching, scenarios)))
     plan = Plan(names, tuple(axes), tuple(sampled), runs, seed, design)
     unique = [*names, *chain.from_iterable(target.keys for target in plan.targets)]
     for name in unique:

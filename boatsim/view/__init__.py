@@ -1,1 +1,1 @@
-"""Runs and recordings to look at, in rerun."""
+"""Display of runs and recordings in rerun."""

@@ -1,6 +1,8 @@
-"""How a log opens in rerun's viewer: scene on the left, plots in tabs on the right, colours and names of the curves."""
+"""Layout of logs in rerun's viewer: scene on the left, plots on the right, styles of the curves."""
 
+import re
 from collections.abc import Iterable, Mapping, Sequence
+from itertools import chain
 
 import rerun as rr
 import rerun.blueprint as rrb
@@ -13,6 +15,7 @@ from boatsim.view.scene import Scene
 
 WORLD = "world"
 MISSING = {f"force_{component}": axis for axis, component in COMPONENTS.items()}
+MOTION = tuple("off_m x_m y_m psi_rad phi_rad u_mps v_mps r_radps p_radps".split())
 TITLES = {"off_m": "distance from the recording [m]"}
 Colour = tuple[int, int, int]
 PALETTE: tuple[Colour, ...] = (
@@ -23,8 +26,10 @@ PALETTE: tuple[Colour, ...] = (
     (140, 86, 75),
     (23, 190, 207),
 )
-HIGH, WIDE = 0.95, 1.0  # what an eye that looks down sees of the water, by its height above it
-ORANGE, GREY, SKY = (255, 127, 14), (150, 150, 150), (238, 242, 246)
+HIGH, WIDE = 0.95, 1.0  # visible length and width below an eye, by its height above the water
+ORANGE = (255, 127, 14)
+GREY = (150, 150, 150)
+SKY = (238, 242, 246)
 # the same colour for the same thing in every plot; port red and starboard green as on the water
 FIXED: dict[str, Colour] = {
     "u_mps": PALETTE[0],
@@ -38,7 +43,14 @@ FIXED: dict[str, Colour] = {
 
 
 def style(name: str, number: int, boat: str = "", colour: Colour | None = None) -> rr.SeriesLines:
-    """Name, colour and width of a curve."""
+    """Return the style of a curve.
+
+    Args:
+        name: Column of the signal.
+        number: Number of the signal, for its colour.
+        boat: Name of the run in the legend; default: the signal.
+        colour: Colour; default: by signal.
+    """
     bound = name.endswith(("_low", "_high"))
     chosen = colour or _colour(name, number)
     return rr.SeriesLines(
@@ -47,12 +59,12 @@ def style(name: str, number: int, boat: str = "", colour: Colour | None = None) 
 
 
 def dots(boat: str, colour: Colour) -> rr.SeriesPoints:
-    """Samples of a recording: dots, under which the curves of the models stay visible."""
+    """Return the style of recorded samples: dots, which do not hide the curves of models."""
     return rr.SeriesPoints(colors=[colour], markers=["circle"], marker_sizes=[2.0], names=[boat])
 
 
 def band_style(name: str, flagged: Colour) -> rr.SeriesLines:
-    """Curve of a missing force, its band, or the part of it that was flagged."""
+    """Return the style of a missing force, its band, or its flagged part."""
     for end, (label, colour, width) in {
         "_flagged": ("flagged", flagged, 4.0),
         "_low": ("- 2 sd", GREY, 1.0),
@@ -64,21 +76,31 @@ def band_style(name: str, flagged: Colour) -> rr.SeriesLines:
 
 
 def words(name: str) -> str:
-    """Column name as a legend has it: `actual_thrust_port_N` -> "actual thrust port [N]"."""
-    end = next((bound for bound in ("_low", "_high") if name.endswith(bound)), "")
+    """Return the legend of a column: `actual_thrust_port_N` -> "actual thrust port [N]"."""
+    end = ""
+    for bound in ("_low", "_high"):
+        if name.endswith(bound):
+            end = bound
     plain, unit = name.removesuffix(end), unit_of(name)
-    plain = plain.rpartition("_")[0] if unit else plain
-    return f"{plain.replace('_', ' ')}{end.replace('_', ' ')}" + (f" [{unit}]" if unit else "")
+    if not unit:
+        return f"{plain}{end}".replace("_", " ")
+    stem = plain.rpartition("_")[0]
+    return f"{stem}{end}".replace("_", " ") + f" [{unit}]"
 
 
 def of_run(scene: Scene, names: Sequence[str]) -> rrb.Blueprint:
-    """Layout of a run: scene, velocities with their reference, and tabs of what else the run has."""
+    """Return the layout of a run: scene, velocities with their references, tabs of other signals.
+
+    Args:
+        scene: What is drawn.
+        names: Columns of the run.
+    """
     speed = with_goals(("u_mps", "v_mps", "reference_u_mps", "reference_v_mps"), names)
     rate = with_goals(("r_radps", "reference_r_radps", "p_radps"), names)
     return _layout(
         rrb.Vertical(
             _view(scene, ["path", "camera"]),
-            rrb.TextDocumentView(origin="norms", name="Norms"),
+            rrb.TextDocumentView(origin="norms", name="Metrics"),
             row_shares=[5, 3],
         ),
         _plot("Surge and sway velocity", speed),
@@ -88,12 +110,13 @@ def of_run(scene: Scene, names: Sequence[str]) -> rrb.Blueprint:
 
 
 def with_goals(signals: Sequence[str], names: Iterable[str]) -> list[str]:
-    """Of `names` those that are one of these signals, or a goal that one of them follows."""
-    return [
-        n
-        for n in names
-        if n in signals or (n.startswith(GOAL) and follower(n.removeprefix(GOAL)) in signals)
-    ]
+    """Return the names that are one of some signals, or a goal for one of them."""
+    found: list[str] = []
+    for name in names:
+        is_goal = name.startswith(GOAL) and follower(name.removeprefix(GOAL)) in signals
+        if is_goal or name in signals:
+            found.append(name)
+    return found
 
 
 def of_overlay(
@@ -103,59 +126,52 @@ def of_overlay(
     missing: Mapping[str, object],
     span: tuple[float, float],
 ) -> rrb.Blueprint:
-    """Layout of a diagnosis: all boats seen from above, their motion in tabs, and the missing force per axis.
+    """Return the layout of a diagnosis: view from above, motion in tabs, missing force per axis.
 
-    `span` is the time [s] that all plots show, so that what is above one another happens at once.
+    Args:
+        scene: What is drawn.
+        boats: Names of recording and models.
+        names: Columns of their motion.
+        missing: Columns of the missing force.
+        span: First and last time of all plots [s].
     """
-    moved = [
-        n
-        for n in (
-            "off_m",
-            "x_m",
-            "y_m",
-            "psi_rad",
-            "phi_rad",
-            "u_mps",
-            "v_mps",
-            "r_radps",
-            "p_radps",
-        )
-        if n in set(names)
-    ]
-    motion = [
-        _plot(TITLES.get(n, words(n)), [f"{boat}/{n}" for boat in boats], span=span) for n in moved
-    ]
-    forces = [
-        _plot(
-            f"Missing {axis} {'force [N]' if axis in ('surge', 'sway', 'heave') else 'moment [N m]'}",
-            [n for n in (name, f"{name}_low", f"{name}_high", f"{name}_flagged")],
-            "missing",
-            span,
-        )
-        for name, axis in MISSING.items()
-        if name in missing
-    ]
+    there = set(names)
+    motion: list[rrb.TimeSeriesView] = []
+    for name in MOTION:
+        if name in there:
+            curves = [f"{boat}/{name}" for boat in boats]
+            motion.append(_plot(TITLES.get(name, words(name)), curves, span=span))
+    forces: list[rrb.TimeSeriesView] = []
+    for name, axis in MISSING.items():
+        if name in missing:
+            kind = "force [N]" if axis in ("surge", "sway", "heave") else "moment [N m]"
+            curves = [name, f"{name}_low", f"{name}_high", f"{name}_flagged"]
+            forces.append(_plot(f"Missing {axis} {kind}", curves, "missing", span))
     length, width, x, y = scene.tank
     height = max(length / HIGH, width / WIDE)
     eye = (x - 0.15 * height, -y, height)
-    if "x_m" not in set(names):  # it only rolls: seen from astern
+    if "x_m" not in there:  # a vessel that only rolls is seen from astern
         eye = (-1.2 * scene.length, 0.0, 0.4 * scene.length)
     size = f", drawn {scene.times:.2g} times their size" if scene.times > 1.0 else ""
-    view = _view(
-        scene, [f"paths/{boat}" for boat in boats], eye, f"{scene.vessel}: {', '.join(boats)}{size}"
-    )
+    title = f"{scene.vessel}: {', '.join(boats)}{size}"
+    view = _view(scene, [f"paths/{boat}" for boat in boats], eye, title)
     return _layout(view, rrb.Tabs(*motion), *forces)
 
 
 def of_several(scene: Scene, boats: Mapping[str, Sequence[str]]) -> rrb.Blueprint:
-    """Layout of several runs, boat -> its signals: the scene above their norms, all boats in the plot of a signal."""
-    names = list(dict.fromkeys(n for signals in boats.values() for n in signals))
+    """Return the layout of several runs: the scene above their metrics, and a plot per signal.
+
+    Args:
+        scene: What is drawn.
+        boats: Columns of each run by name.
+    """
+    names = list(dict.fromkeys(chain.from_iterable(boats.values())))
 
     def plot(signal: str) -> rrb.TimeSeriesView:
-        return _plot(
-            words(signal),
-            [f"{boat}/{n}" for boat, own in boats.items() for n in with_goals([signal], own)],
-        )
+        curves: list[str] = []
+        for boat, own in boats.items():
+            curves += [f"{boat}/{name}" for name in with_goals([signal], own)]
+        return _plot(words(signal), curves)
 
     motion = [n for n in (*RATES, *POSE) if n in names]
     motion.sort(key=lambda n: len(with_goals([n], names)) < 2)  # those with a goal come first
@@ -167,7 +183,7 @@ def of_several(scene: Scene, boats: Mapping[str, Sequence[str]]) -> rrb.Blueprin
     trails = [f"paths/{boat}" for boat in boats]
     left = rrb.Vertical(
         _view(scene, trails, eye, ", ".join(boats)),
-        rrb.TextDocumentView(origin="norms", name="Norms"),
+        rrb.TextDocumentView(origin="norms", name="Metrics"),
         row_shares=[3, 2],
     )
     plots = [rrb.Tabs(*map(plot, part)) for part in (motion[::2], motion[1::2], drives) if part]
@@ -191,7 +207,7 @@ def _view(
     eye: tuple[float, float, float] | None = None,
     title: str = "",
 ) -> rrb.Spatial3DView:
-    """The scene seen from astern and above, or from `eye`; trails show everything up to the time cursor."""
+    """The scene seen from astern and above, or from `eye`; trails end at the time cursor."""
     so_far = rrb.VisibleTimeRanges(
         timeline=TIMELINE,
         start=rrb.TimeRangeBoundary.infinite(),
@@ -208,31 +224,34 @@ def _view(
 
 
 def _with_boat() -> rrb.EyeControls3D:
-    """An eye for open water: it turns about the boat and begins with all of its path in view."""
+    """An eye for open water that follows the vessel and begins with a view of its whole path."""
     return rrb.EyeControls3D(tracking_entity=f"{WORLD}/boat", eye_up=(0.0, 0.0, 1.0))
 
 
 def _still(scene: Scene, eye: tuple[float, float, float] | None) -> rrb.EyeControls3D:
-    """An eye at a place, or astern and above, that looks at the middle of the tank."""
+    """An eye that looks at the middle of the tank, by default from astern and above."""
     length, width, x, y = scene.tank
     place = eye or (x - 0.6 * max(length, width), -y, 0.6 * max(length, width))
     return rrb.EyeControls3D(position=place, look_target=(x, -y, 0.0), eye_up=(0.0, 0.0, 1.0))
 
 
 def _tabs(names: Sequence[str]) -> list[rrb.View | rrb.Container]:
-    """What a run has beside its velocities, grouped by what one wants to see together."""
-    actual = [n for n in names if n.startswith("actual_")]
-    command = [n.removeprefix("actual_") for n in actual if n.removeprefix("actual_") in names]
+    """Plots of the signals other than velocities, by subject."""
+    actual = [name for name in names if name.startswith("actual_")]
+    sent = [name.removeprefix("actual_") for name in actual]
+    drives = [*filter(set(names).__contains__, sent), *actual]
+
+    def matching(pattern: str) -> list[str]:
+        return [name for name in names if re.fullmatch(pattern, name)]
+
     groups = {
-        "Thrust": [n for n in (*command, *actual) if "thrust" in n],
-        "Steering": [n for n in (*command, *actual) if "thrust" not in n],
-        "PWM": [n for n in names if n.startswith("pwm_")],
-        "Estimates": [n for n in names if n.startswith("estimate_")],
-        "Forces": [n for n in names if n.startswith(("force_", "wind_")) and n.endswith("_N")],
-        "Yaw moments": [
-            n for n in names if n.startswith(("force_", "wind_")) and n.endswith("_Nm")
-        ],
-        "Heading": [n for n in names if n.endswith("psi_rad")],
+        "Thrust": [name for name in drives if "thrust" in name],
+        "Steering": [name for name in drives if "thrust" not in name],
+        "PWM": matching("pwm_.*"),
+        "Estimates": matching("estimate_.*"),
+        "Forces": matching("(force|wind)_.*_N"),
+        "Yaw moments": matching("(force|wind)_.*_Nm"),
+        "Heading": matching(".*psi_rad"),
         "Position": with_goals(("x_m", "y_m", "camera_x_m", "camera_y_m"), names),
     }
     return [_plot(title, members) for title, members in groups.items() if members]
@@ -266,6 +285,6 @@ def _colour(name: str, number: int) -> Colour:
 
 
 def paler(colour: Colour) -> Colour:
-    """The same hue, halfway to white: a goal beside what follows it."""
-    red, green, blue = ((c + 255) // 2 for c in colour)
-    return red, green, blue
+    """Return a colour halfway to white, for a goal next to its signal."""
+    red, green, blue = colour
+    return (red + 255) // 2, (green + 255) // 2, (blue + 255) // 2

@@ -1,12 +1,14 @@
-"""Runs as rerun logs: streamed to a viewer and a `.rrd` while they run, overlaid for a diagnosis, and read back.
+"""Runs as rerun logs: streamed while they run, overlaid for a diagnosis, or side by side.
 
-Every column of a recording is logged as float64 scalars under `signals/`, so a log holds what `recording.csv` holds;
-the 3D scene is drawn from the same columns. rerun is imported here and in `blueprint.py` only (0.5 s).
+Every column of a recording is logged as float64 scalars under `signals/`, so that a log holds the
+data of `recording.csv`; the 3D scene is drawn from the same columns. Importing this module takes
+0.5 s, because it imports rerun.
 """
 
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from itertools import chain, pairwise
 from pathlib import Path
 from time import monotonic
 from types import TracebackType
@@ -25,13 +27,12 @@ from boatsim.view.blueprint import WORLD
 from boatsim.view.scene import OUTBOARD, Scene, Solid
 from boatsim.view.stream import Stream
 
-# rows kept back before they are written, unless somebody watches: small chunks make large files
+# [rows] that are collected before they are written, because small chunks make large files
 BUFFER = 1000
-# [s] after which they are written all the same: a process that is killed loses no more than a
-# second
+# [s] after which rows are written in any case: a process that is killed loses less than a second
 OFTEN = 0.5
 TRAIL_STEP = 0.1  # [s] between points of the path drawn
-ABOVE = 0.02  # [m] arrows and paths lie this far above the water
+ABOVE = 0.02  # [m] height of arrows and paths above the water
 COLOURS = {
     "thrust": (235, 120, 20),
     "wind": (60, 150, 220),
@@ -42,15 +43,16 @@ COLOURS = {
     "water": (150, 190, 215),
     "flagged": (230, 0, 40),
 }
-# as in the report; told apart by colour-blind readers too, on dark plots and on the light scene
+# as in the report; distinguishable for colour-blind readers on dark plots and in the light scene
 BOATS = {
     "recording": (165, 173, 180),
     "nominal": (230, 105, 25),
     "recalibrated": (45, 140, 225),
     "patched": (0, 165, 120),
 }
+MET = {None: "", True: "yes", False: "**no**"}
 VERDICTS = {REPRODUCED: "(the same)", MISSED: "(differs)", NO_TOLERANCE: ""}
-# [s] between the end of one stretch, a gap, and the begin of the next at the same time
+# [s] by which the end of a segment is moved before the next one that begins at the same time
 PARTING = 1e-9
 
 
@@ -63,30 +65,40 @@ class Flagged(TypedDict):
 
 
 class RerunLog:
-    """A run's log: `add_rows` takes new rows while it runs, `finish` the norms; leaving the `with` block keeps all of it.
-
-    `path` is the `.rrd` to write, `viewer` the address of one that is fed (None: none).
-    """
+    """The log of a run in progress; leaving its `with` block writes the rest."""
 
     def __init__(self, path: Path | str | None, scene: Scene, viewer: str | None = None) -> None:
-        """Raises OSError, as whatever writes does."""
+        """Open the log.
+
+        Args:
+            path: The `.rrd` file; None: none.
+            scene: What is drawn.
+            viewer: Address of a viewer that is fed; None: none.
+
+        Raises:
+            OSError: If the file can not be written; all methods may raise it.
+        """
         self.scene, self.live = scene, viewer is not None
         self._waiting: list[Recording] = []
-        self._written = monotonic()  # when something last was
+        self._written = monotonic()  # time of the last write
         # time and place of the last point of the path
         self._trail: tuple[float, Array] | None = None
         self._known: set[str] = set()
         self.stream = Stream("boatsim", path, viewer)
-        if self.stream.heard:
+        if self.stream.has_receiver:
             _begin(self.stream)
             _draw_tank(self.stream, scene)
             _draw_hull(self.stream, scene, "boat")
-            self._say("Norms follow when the run is over.")
-            self.stream.keep()
+            self._write_text("Metrics follow when the run is over.")
+            self.stream.flush()
 
     def add_rows(self, rows: Recording) -> None:
-        """Log new rows, which follow those logged before."""
-        if len(rows) and self.stream.heard:
+        """Log the rows that follow those logged before.
+
+        Args:
+            rows: The rows.
+        """
+        if len(rows) and self.stream.has_receiver:
             self._waiting.append(rows)
         if (
             self.live
@@ -95,14 +107,18 @@ class RerunLog:
         ):
             self._write()
 
-    def finish(self, norms: Mapping[str, MetricEntry]) -> None:
-        """Add the table of norms: name -> value, unit, published, verdict, guard [low, high], ok."""
+    def finish(self, metrics: Mapping[str, MetricEntry]) -> None:
+        """Add the table of metrics.
+
+        Args:
+            metrics: Metrics by name, as in norms.json.
+        """
         self._write()
-        if self.stream.heard:
-            self._say(norms_table(norms))
+        if self.stream.has_receiver:
+            self._write_text(metrics_table(metrics))
 
     def close(self) -> None:
-        """Write what is waiting and end the file."""
+        """Write the rest and close the file."""
         try:
             self._write()
         finally:
@@ -119,7 +135,7 @@ class RerunLog:
     ) -> None:
         self.close()
 
-    def _say(self, text: str) -> None:
+    def _write_text(self, text: str) -> None:
         self.stream.log("norms", rr.TextDocument(text, media_type="text/markdown"), static=True)
 
     def _write(self) -> None:
@@ -127,9 +143,10 @@ class RerunLog:
             return
         rows = _joined(self._waiting)
         self._waiting, self._written = [], monotonic()
-        if new := rows.signals.keys() - self._known:
-            self._known |= new
-            for number, name in enumerate(n for n in rows.signals if n in new):
+        new = [name for name in rows.signals if name not in self._known]
+        if new:
+            self._known.update(new)
+            for number, name in enumerate(new):
                 self.stream.log(f"{SIGNALS}/{name}", blueprint.style(name, number), static=True)
             self.stream.send_blueprint(blueprint.of_run(self.scene, sorted(self._known)))
         _log_signals(self.stream, rows, SIGNALS)
@@ -137,7 +154,7 @@ class RerunLog:
         _log_arrows(self.stream, rows, self.scene)
         self._trail = _log_path(self.stream, rows, "path", COLOURS["path"], self._trail)
         _log_camera(self.stream, rows)
-        self.stream.keep()
+        self.stream.flush()
 
 
 def log_overlay(
@@ -147,32 +164,38 @@ def log_overlay(
     intervals: Sequence[Flagged],
     scene: Scene,
 ) -> None:
-    """diagnosis.rrd: all boats in one scene on one time line, the missing force per axis with its band.
+    """Write diagnosis.rrd: recording and models in one scene, and the missing force per axis.
 
-    `boats` are "recording", "nominal", "recalibrated", "patched", the first of them drawn as a hull and the others as
-    its outline, so that boats a few centimetres apart can be told; each comes in stretches, and nothing is drawn from
-    the end of one to the begin of the next. `missing` has `force_X_N` (and `_Y_N`, `_K_Nm`, `_N_Nm`) with `..._low`
-    and `..._high`; `intervals` are `where.intervals` of diagnosis.json (from_s, to_s, axis).
+    Args:
+        path: The file.
+        boats: Segments of the motion by name: "recording", "nominal", "recalibrated", "patched".
+            The first is drawn as a hull, the others as outlines, so that small distances are
+            visible. Segments are not connected.
+        missing: The missing force with its band: `force_X_N` (and `_Y_N`, `_K_Nm`, `_N_Nm`) with
+            `..._low` and `..._high`; None: none.
+        intervals: `where.intervals` of diagnosis.json.
+        scene: What is drawn.
+
+    Raises:
+        OSError: If the file can not be written.
     """
     stream = Stream("boatsim_diagnosis", path)
     _begin(stream)
     _draw_tank(stream, scene)
-    for number, (boat, stretches) in enumerate(boats.items()):
+    for number, (boat, segments) in enumerate(boats.items()):
         colour = BOATS.get(boat, blueprint.PALETTE[number % len(blueprint.PALETTE)])
         if number == 0:
             _draw_hull(stream, scene, f"boats/{boat}", colour)
         _draw_outline(stream, scene, boat, number, colour)
-        apart = _apart(stretches)
-        for stretch in apart:
-            _move(stream, stretch, scene, f"boats/{boat}")
-            _log_path(stream, stretch, f"paths/{boat}", colour, None, _above(scene, number))
-        for name in stretches[0].signals:
-            look = (
-                blueprint.dots(boat, colour)
-                if number == 0
-                else blueprint.style(name, number, boat, colour)
-            )
-            stream.log(f"{SIGNALS}/{boat}/{name}", look, static=True)
+        apart = _apart(segments)
+        for segment in apart:
+            _move(stream, segment, scene, f"boats/{boat}")
+            _log_path(stream, segment, f"paths/{boat}", colour, None, _above(scene, number))
+        for name in segments[0].signals:
+            style: rr.SeriesLines | rr.SeriesPoints = blueprint.dots(boat, colour)
+            if number > 0:
+                style = blueprint.style(name, number, boat, colour)
+            stream.log(f"{SIGNALS}/{boat}/{name}", style, static=True)
         _log_signals(stream, _with_gaps(apart), f"{SIGNALS}/{boat}")
     if missing is not None:
         marked = replace(missing, signals={**missing.signals, **_flagged(missing, intervals)})
@@ -181,34 +204,48 @@ def log_overlay(
                 f"missing/{name}", blueprint.band_style(name, COLOURS["flagged"]), static=True
             )
         _log_signals(stream, marked, "missing")
-    names = [name for run in reversed(list(boats.values())) for name in run[0].signals]
-    times = [r.t for run in boats.values() for r in run] + (
-        [missing.t] if missing is not None else []
-    )
-    span = (
-        min((float(t[0]) for t in times), default=0.0),
-        max((float(t[-1]) for t in times), default=1.0),
-    )
-    forces = missing.signals if missing is not None else {}
+    firsts = [segments[0].signals for segments in reversed(list(boats.values()))]
+    names = list(chain.from_iterable(firsts))
+    recordings = list(chain.from_iterable(boats.values()))
+    forces: Mapping[str, Array] = {}
+    if missing is not None:
+        recordings.append(missing)
+        forces = missing.signals
+    span = (0.0, 1.0)
+    if recordings:
+        begins, ends = zip(*(r.t[[0, -1]].tolist() for r in recordings), strict=True)
+        span = (min(begins), max(ends))
     stream.send_blueprint(blueprint.of_overlay(scene, list(boats), names, forces, span))
     stream.close()
 
 
 class Boat(NamedTuple):
-    """One of several runs in a log of all of them."""
+    """One of several runs in a log.
+
+    Attributes:
+        recording: The run.
+        scene: What is drawn.
+        goals: Legend of its goals; "": they are not drawn, because another run has the same.
+    """
 
     recording: Recording
     scene: Scene
-    # what its goals are called; "": they are not drawn, as those of a boat with the same ones are
     goals: str
 
 
-def log_side_by_side(path: Path | str, boats: Mapping[str, Boat], norms: str) -> None:
-    """compare.rrd: whole runs of several boats in one scene, each in its own colour, and their signals plot by plot.
+def log_side_by_side(path: Path | str, boats: Mapping[str, Boat], metrics: str) -> None:
+    """Write compare.rrd: several runs in one scene, each in its own colour, and their signals.
 
-    `boats` are by the names that stand beside the hulls and in the legends, letters, digits and _ only; `norms` is
-    their table in Markdown. The first is drawn as a hull in its tank, the others as outlines: so boats that are close
-    to each other can be told.
+    The first vessel is drawn as a hull in its tank, the others as outlines, so that small distances
+    are visible.
+
+    Args:
+        path: The file.
+        boats: Runs by the name in labels and legends, with letters, digits and _ only.
+        metrics: Their metrics as a table in Markdown.
+
+    Raises:
+        OSError: If the file can not be written.
     """
     stream = Stream("boatsim_compare", path)
     _begin(stream)
@@ -221,21 +258,19 @@ def log_side_by_side(path: Path | str, boats: Mapping[str, Boat], norms: str) ->
         _draw_outline(stream, boat.scene, name, number, colour)
         _move(stream, boat.recording, boat.scene, f"boats/{name}")
         _log_path(stream, boat.recording, f"paths/{name}", colour, None, _above(boat.scene, number))
-        shown = {
-            n: x for n, x in boat.recording.signals.items() if boat.goals or not n.startswith(GOAL)
-        }
-        for signal in shown:
-            is_goal = signal.startswith(GOAL)
-            legend, hue = (boat.goals, blueprint.paler(colour)) if is_goal else (name, colour)
-            stream.log(
-                f"{SIGNALS}/{name}/{signal}",
-                blueprint.style(signal, number, legend, hue),
-                static=True,
-            )
-        _log_signals(stream, replace(boat.recording, signals=shown), f"{SIGNALS}/{name}")
-    stream.log("norms", rr.TextDocument(norms, media_type="text/markdown"), static=True)
-    signals = {name: list(boat.recording.signals) for name, boat in boats.items()}
-    stream.send_blueprint(blueprint.of_several(scene, signals))
+        signals: dict[str, Array] = {}
+        for signal, values in boat.recording.signals.items():
+            style = blueprint.style(signal, number, name, colour)
+            if signal.startswith(GOAL):
+                if not boat.goals:
+                    continue
+                style = blueprint.style(signal, number, boat.goals, blueprint.paler(colour))
+            signals[signal] = values
+            stream.log(f"{SIGNALS}/{name}/{signal}", style, static=True)
+        _log_signals(stream, replace(boat.recording, signals=signals), f"{SIGNALS}/{name}")
+    stream.log("norms", rr.TextDocument(metrics, media_type="text/markdown"), static=True)
+    columns = {name: list(boat.recording.signals) for name, boat in boats.items()}
+    stream.send_blueprint(blueprint.of_several(scene, columns))
     stream.close()
 
 
@@ -243,30 +278,37 @@ def _begin(stream: Stream) -> None:
     stream.log(WORLD, rr.ViewCoordinates.RIGHT_HAND_Z_UP, static=True)
 
 
-def norms_table(norms: Mapping[str, MetricEntry]) -> str:
-    """Markdown table norm, what it is, value, guard, met, published with the verdict on it; what counts first."""
-    if not norms:
-        return "This scenario has no norms.\n"
-    lines = ["| norm | is | value | guard | met | published |", "|:---|:---|---:|---:|:---:|:---|"]
-    for name, norm in norms.items():
-        ok, ends = norm.get("ok"), [_short(end) for end in norm.get("guard") or (None, None)]
-        met = "" if ok is None else "yes" if ok else "**no**"
-        span = (
-            " to ".join(ends)
-            if all(ends)
-            else f"at least {ends[0]}"
-            if ends[0]
-            else f"at most {ends[1]}"
-        )
-        value = (
-            norm.get("lacking") or f"{_short(norm.get('value'))} {norm.get('unit') or ''}".strip()
-        )
-        said = (
-            f"{_short(norm.get('published'))} {VERDICTS.get(norm.get('verdict') or '', '')}".strip()
-        )
-        guard = span if any(ends) else ""
-        lines.append(f"| {name} | {norm.get('kind', '')} | {value} | {guard} | {met} | {said} |")
+def metrics_table(metrics: Mapping[str, MetricEntry]) -> str:
+    """Return the metrics of a run as a table in Markdown.
+
+    Args:
+        metrics: Metrics by name, as in norms.json.
+    """
+    if not metrics:
+        return "This scenario has no metrics.\n"
+    lines = ["| metric | is | value | band | met | published |", "|:---|:---|---:|---:|:---:|:---|"]
+    for name, entry in metrics.items():
+        value = f"{_short(entry.get('value'))} {entry.get('unit') or ''}".strip()
+        verdict = VERDICTS.get(entry.get("verdict") or "", "")
+        cells = [
+            name,
+            entry.get("kind", ""),
+            entry.get("lacking") or value,
+            _band(entry.get("guard")),
+            MET[entry.get("ok")],
+            f"{_short(entry.get('published'))} {verdict}".strip(),
+        ]
+        lines.append(f"| {' | '.join(cells)} |")
     return "\n".join(lines) + "\n"
+
+
+def _band(ends: Sequence[float | None] | None) -> str:
+    low, high = map(_short, ends or (None, None))
+    if low and high:
+        return f"{low} to {high}"
+    if low:
+        return f"at least {low}"
+    return f"at most {high}" if high else ""
 
 
 def _short(value: float | None) -> str:
@@ -274,33 +316,28 @@ def _short(value: float | None) -> str:
 
 
 def _joined(parts: Sequence[Recording]) -> Recording:
-    names = list(dict.fromkeys(name for part in parts for name in part.signals))
-    signals = {
-        n: np.concatenate([p.signals.get(n, np.full(len(p), math.nan)) for p in parts])
-        for n in names
-    }
+    signals: dict[str, Array] = {}
+    for name in dict.fromkeys(chain.from_iterable(part.signals for part in parts)):
+        pieces = [part.signals.get(name, np.full(len(part), math.nan)) for part in parts]
+        signals[name] = np.concatenate(pieces)
     return Recording(parts[0].name, np.concatenate([p.t for p in parts]), signals, Notes())
 
 
-def _apart(stretches: Sequence[Recording]) -> list[Recording]:
-    """Stretches whose ends come just before the begin of the next one, which may have the same time."""
-    ends = [next_one.t[0] - 2 * PARTING for next_one in stretches[1:]]
-    times = [
-        np.append(s.t[:-1], min(s.t[-1], end)) for s, end in zip(stretches, ends, strict=False)
-    ]
-    return [replace(s, t=t) for s, t in zip(stretches, [*times, stretches[-1].t], strict=True)]
+def _apart(segments: Sequence[Recording]) -> list[Recording]:
+    """Segments whose end is moved just before the begin of the next one."""
+    found: list[Recording] = []
+    for segment, following in pairwise(segments):
+        end = min(segment.t[-1], following.t[0] - 2 * PARTING)
+        found.append(replace(segment, t=np.append(segment.t[:-1], end)))
+    return [*found, segments[-1]]
 
 
-def _with_gaps(stretches: Sequence[Recording]) -> Recording:
-    """Stretches as one recording, with a row of nan before each begin but the first: curves break there."""
-    parts = [stretches[0]]
-    for stretch in stretches[1:]:
-        parts += [
-            Recording(
-                "", stretch.t[:1] - PARTING, {n: np.full(1, np.nan) for n in stretch.signals}
-            ),
-            stretch,
-        ]
+def _with_gaps(segments: Sequence[Recording]) -> Recording:
+    """Segments as one recording, separated by rows of nan, at which curves break."""
+    parts = [segments[0]]
+    for segment in segments[1:]:
+        gap = dict.fromkeys(segment.signals, np.full(1, np.nan))
+        parts += [Recording("", segment.t[:1] - PARTING, gap), segment]
     return _joined(parts)
 
 
@@ -315,7 +352,7 @@ def _log_signals(stream: Stream, rows: Recording, under: str) -> None:
 
 
 def _flat(x: Array, y: Array, z: float = 0.0) -> Array:
-    """SNAME x, y as points (N, 3) of the picture, whose z points up and y to port."""
+    """SNAME x, y as points (N, 3) of the picture, z up and y to port."""
     return np.column_stack([x, -y, np.full(len(x), z)])
 
 
@@ -324,7 +361,7 @@ def _draw_tank(stream: Stream, scene: Scene) -> None:
     for solid in scene.solids:
         if solid.part == "tank":
             stream.log(f"{WORLD}/tank/{solid.name}", _mesh(_surface(solid)), static=True)
-    if any(solid.part == "tank" for solid in scene.solids):
+    if "tank" in {solid.part for solid in scene.solids}:
         return
     corners = [
         (x + i * length / 2, -y + j * width / 2, ABOVE)
@@ -344,18 +381,18 @@ def _draw_tank(stream: Stream, scene: Scene) -> None:
 def _draw_hull(
     stream: Stream, scene: Scene, boat: str, tint: tuple[int, int, int] | None = None
 ) -> None:
-    """The hull's shapes under the entity of a boat; outboards hang from entities of their own so that they can turn."""
+    """Draw the hull; outboards are entities of their own, so that they can turn."""
     for solid in scene.solids:
         if solid.part != "tank":
-            part = "hull" if solid.part == "hull" else solid.part
-            stream.log(f"{WORLD}/{boat}/{part}/{solid.name}", _mesh(solid, tint), static=True)
+            entity = f"{WORLD}/{boat}/{solid.part}/{solid.name}"
+            stream.log(entity, _mesh(solid, tint), static=True)
     for thruster in scene.thrusters:
         at = rr.Transform3D(translation=(thruster.x, -thruster.y, 0.0))
         stream.log(f"{WORLD}/{boat}/{OUTBOARD}{thruster.name}", at, static=True)
 
 
 def _above(scene: Scene, number: int) -> float:
-    """Height [m] above everything on the hull, a little more for each boat: lines of different boats do not flicker."""
+    """Height [m] above the hull, different for each vessel, so that their lines do not flicker."""
     top = max(
         (float(s.vertices[:, 2].max()) for s in scene.solids if s.part != "tank"), default=0.0
     )
@@ -365,7 +402,7 @@ def _above(scene: Scene, number: int) -> float:
 def _draw_outline(
     stream: Stream, scene: Scene, boat: str, number: int, colour: tuple[int, int, int]
 ) -> None:
-    """Outline of the hull from above with a line from its middle to the bow, and its name on one of its sides."""
+    """Draw the outline of the hull from above, a line from its middle to the bow, and its name."""
     ring = scene.outline()
     height, bow, stern = _above(scene, number), float(ring[:, 0].max()), float(ring[:, 0].min())
     side = float(np.abs(ring[:, 1]).max())
@@ -381,7 +418,7 @@ def _draw_outline(
 
 
 def _surface(solid: Solid) -> Solid:
-    """Of something one can see through, such as water, only what faces up: its floor would flicker with the tank's."""
+    """The upper side of a transparent solid such as water, whose bottom would flicker."""
     if solid.colour[3] >= 1.0:
         return solid
     corners = solid.vertices[solid.triangles]
@@ -406,7 +443,7 @@ def _move(stream: Stream, rows: Recording, scene: Scene, boat: str) -> None:
     """Pose of the hull and angles of the outboards; a boat that only rolls stays at the origin."""
     zero = np.zeros(len(rows))
     pose = np.stack([rows.signals.get(name, zero) for name in POSE])
-    known = np.isfinite(pose).all(axis=0)  # where nothing was measured, the boat stays where it was
+    known = np.isfinite(pose).all(axis=0)  # rows without a measurement are skipped
     x, y, z, phi, theta, psi = pose[:, known]
     points = _flat(x, y)
     points[:, 2] -= z  # z is down
@@ -414,13 +451,13 @@ def _move(stream: Stream, rows: Recording, scene: Scene, boat: str) -> None:
     stream.send_columns(f"{WORLD}/{boat}", _when(rows.t[known]), place)
     for thruster in scene.thrusters:
         if (steer := rows.signals.get(thruster.steer)) is not None:
-            # the force points a to starboard when the leg is turned by a, clockwise seen from above
+            # a steering angle a turns the force by a to starboard
             turned = rr.Transform3D.columns(quaternion=_attitude(steer, zero))
             stream.send_columns(f"{WORLD}/{boat}/{OUTBOARD}{thruster.name}", _when(rows.t), turned)
 
 
 def _attitude(psi: Array, phi: Array, theta: Array | float = 0.0) -> Array:
-    """(N, 4) quaternions x, y, z, w of heading (clockwise), pitch (bow up) and roll, for the picture's z-up axes."""
+    """Quaternions (N, 4) x, y, z, w of heading, pitch and roll [rad] in axes of the picture."""
     cz, sz, cx, sx = np.cos(psi / 2), -np.sin(psi / 2), np.cos(phi / 2), np.sin(phi / 2)
     cy, sy = np.cos(theta / 2), -np.sin(theta / 2)
     return np.column_stack(
@@ -444,9 +481,8 @@ def _log_arrows(stream: Stream, rows: Recording, scene: Scene) -> None:
     for what in ("force", "wind"):
         if f"{what}_X_N" in rows.signals and f"{what}_Y_N" in rows.signals:
             vector = _flat(rows[f"{what}_X_N"], rows[f"{what}_Y_N"])
-            height = scene.length * (
-                0.2 if what == "force" else 0.35
-            )  # one above the other, so that both can be read
+            # different heights, so that both are visible
+            height = scene.length * (0.2 if what == "force" else 0.35)
             _arrow(stream, rows.t, what, scene, vector, _flat(zero, zero, height), COLOURS[what])
 
 
@@ -459,7 +495,7 @@ def _arrow(
     at: Array,
     colour: tuple[int, int, int],
 ) -> None:
-    """Arrows (N, 3) N in axes of the hull, one a row."""
+    """Log arrows of forces (N, 3) [N] in axes of the hull."""
     entity = f"{WORLD}/boat/{name}"
     words = {"force": "total force"}.get(name, name.replace("_", " "))
     look = rr.Arrows3D.from_fields(
@@ -482,7 +518,10 @@ def _log_path(
     last: tuple[float, Array] | None,
     height: float = ABOVE,
 ) -> tuple[float, Array] | None:
-    """One short line for each step; the view shows all up to its time. Returns the last point's time and place."""
+    """Log the path as short lines; return time and position of its last point.
+
+    The view shows all lines up to its time.
+    """
     if not {"x_m", "y_m"} <= rows.signals.keys():
         return last
     known = np.flatnonzero(np.isfinite(rows["x_m"]) & np.isfinite(rows["y_m"]))
@@ -501,7 +540,7 @@ def _log_path(
 
 
 def _log_camera(stream: Stream, rows: Recording) -> None:
-    """What the camera measured, at the rows in which it measured something new."""
+    """Log the measurements of the camera at the rows with a new one."""
     if not {"camera_x_m", "camera_y_m"} <= rows.signals.keys():
         return
     x, y = rows["camera_x_m"], rows["camera_y_m"]
@@ -520,7 +559,7 @@ def _log_camera(stream: Stream, rows: Recording) -> None:
 
 
 def _flagged(missing: Recording, intervals: Sequence[Flagged]) -> dict[str, Array]:
-    """The missing force where it was flagged, nan elsewhere, as signals of their own."""
+    """The missing force in flagged intervals, nan elsewhere, as further signals."""
     found: dict[str, Array] = {}
     for name, axis in blueprint.MISSING.items():
         inside = np.zeros(len(missing), dtype=bool)

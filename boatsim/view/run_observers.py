@@ -1,4 +1,4 @@
-"""Observers of a run that show it: the file run.rrd, and a viewer that is fed while the run goes."""
+"""Observers of a run that display it: the file run.rrd, and a live viewer."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -35,4 +35,6 @@ def rerun_observers(viewer: str | None = None) -> list[StartObserver]:
         with RerunLog(None, scene, viewer) as log:
             yield log
 
-    return [write_file, feed_viewer] if viewer else [write_file]
+    if viewer is None:
+        return [write_file]
+    return [write_file, feed_viewer]

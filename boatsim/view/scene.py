@@ -1,6 +1,7 @@
-"""What a 3D log shows of boat and tank: coloured triangles and arrows' places, taken from a compiled MuJoCo model.
+"""Scene of a 3D log, taken from a compiled MuJoCo model: coloured triangles and places of arrows.
 
-Axes are those of the picture: z up, x forward, y to port; SNAME (x, y, psi) appears as (x, -y, -psi).
+Axes are those of the picture: z up, x forward, y to port; SNAME (x, y, psi) appears as
+(x, -y, -psi).
 """
 
 from collections.abc import Iterator
@@ -18,24 +19,23 @@ if TYPE_CHECKING:
     from boatsim.simulate.world import Model, Tank
 
 Triangles = NDArray[np.uint32]
-SEEN = (0, 1, 2)  # MuJoCo geom groups that its viewers draw; touching shapes are in group 3
-OUTBOARD = "outboard_"  # bodies of this name turn with the steering of their side
-ROUND, PILL, BALL, BARREL, BRICK, MESH = (
-    2,
-    3,
-    4,
-    5,
-    6,
-    7,
-)  # mjtGeom: sphere, capsule, ellipsoid, cylinder, box, mesh
-REACH = 0.6  # a full-thrust arrow is this part of the boat's length
-# share of the weight that a force as long as REACH has on a boat whose thrust is not a command
+DRAWN_GROUPS = (0, 1, 2)  # geom groups that MuJoCo's viewers draw; contact shapes are in group 3
+OUTBOARD = "outboard_"  # prefix of bodies that turn with the steering of their side
+# values of mjtGeom
+SPHERE = 2
+CAPSULE = 3
+ELLIPSOID = 4
+CYLINDER = 5
+BOX = 6
+MESH = 7
+REACH = 0.6  # length of the arrow of full thrust, by the length of the vessel
+# force of an arrow of that length by the weight of a vessel whose thrust is not a command
 PUSH = 0.05
 GRAVITY = 9.81  # [m/s^2]
 
 
 class Solid(NamedTuple):
-    """A coloured shape of one part: "hull", "outboard_port" ..., or "tank"."""
+    """A coloured shape of a part: "hull", "outboard_port" ..., or "tank"."""
 
     part: str
     name: str
@@ -45,13 +45,13 @@ class Solid(NamedTuple):
 
 
 class Thruster(NamedTuple):
-    """Where an arrow of thrust starts, and the signals it shows."""
+    """Position and signals of an arrow of thrust."""
 
     name: str  # "port"
     x: float  # [m] forward of the CG
     y: float  # [m] to starboard
     thrust: str  # column of the recording: "actual_thrust_port_N"
-    steer: str  # its angle's column; one that does not exist means straight ahead
+    steer: str  # column of its angle; one that does not exist means straight ahead
 
 
 @dataclass(frozen=True)
@@ -60,21 +60,26 @@ class Scene:
 
     vessel: str
     length: float  # [m]
-    tank: tuple[
-        float, float, float, float
-    ]  # [m] length along x, width along y, centre x, centre y (SNAME)
+    # [m] length along x, width along y, centre x, centre y (SNAME)
+    tank: tuple[float, float, float, float]
     solids: tuple[Solid, ...] = ()
     thrusters: tuple[Thruster, ...] = ()
     reach: float = 0.3  # [m/N] length of an arrow per newton
-    open: bool = False  # no walls: the boat may go anywhere, and the eye goes with it
-    times: float = 1.0  # their size that boats are drawn
+    open: bool = False  # no walls; the eye follows the vessel
+    times: float = 1.0  # drawn size of vessels by their true size
 
     def enlarged(self, times: float) -> "Scene":
-        """The same with boats drawn so many times as large; the water and their paths stay."""
-        solids = (
-            s if s.part == "tank" else s._replace(vertices=times * s.vertices) for s in self.solids
-        )
-        thrusters = (t._replace(x=times * t.x, y=times * t.y) for t in self.thrusters)
+        """Return the scene with vessels enlarged; water and paths do not change.
+
+        Args:
+            times: Factor of the size.
+        """
+        solids: list[Solid] = []
+        for solid in self.solids:
+            if solid.part != "tank":
+                solid = solid._replace(vertices=times * solid.vertices)
+            solids.append(solid)
+        thrusters = [t._replace(x=times * t.x, y=times * t.y) for t in self.thrusters]
         return replace(
             self,
             length=times * self.length,
@@ -84,14 +89,20 @@ class Scene:
         )
 
     def outline(self) -> Array:
-        """(V, 2) m, closed, of what is drawn of the hull, seen from above (its convex hull)."""
+        """Return the closed outline (V, 2) [m] of the drawn hull from above, its convex hull."""
         points = np.concatenate([s.vertices[:, :2] for s in self.solids if s.part == "hull"])
         corners = ConvexHull(points).vertices
         return np.asarray(points[np.append(corners, corners[0])], dtype=float)
 
 
 def scene_from(model: "Model", vessel: "Vessel", tank: "Tank") -> Scene:
-    """The scene of a compiled model in its tank."""
+    """Return the scene of a model.
+
+    Args:
+        model: The compiled model.
+        vessel: Its vessel.
+        tank: Its tank.
+    """
     thrust = [c.high for n, c in vessel.commands.items() if vessel.roles.get(n) == "thrust"]
     return Scene(
         vessel.name,
@@ -107,7 +118,14 @@ def scene_from(model: "Model", vessel: "Vessel", tank: "Tank") -> Scene:
 def plain_scene(
     length: float, beam: float, tank: tuple[float, float, float, float], name: str = "boat"
 ) -> Scene:
-    """A scene without a model: a box of the boat's size [m] with a pointed bow."""
+    """Return a scene without a model: a box with a pointed bow.
+
+    Args:
+        length: Length of the vessel [m].
+        beam: Its beam [m].
+        tank: Length, width and centre of the water [m].
+        name: Name of the vessel.
+    """
     half, side, low, high = 0.5 * length, 0.5 * beam, -0.05 * length, 0.08 * length
     outline = [(-half, side), (-half, -side), (0.5 * half, -side), (half, 0.0), (0.5 * half, side)]
     vertices = np.array([(x, y, z) for z in (low, high) for x, y in outline])
@@ -120,15 +138,15 @@ def plain_scene(
 
 
 def _with_hull(solids: tuple[Solid, ...], vessel: "Vessel") -> tuple[Solid, ...]:
-    """The shapes of a model, with a box of the vessel's size where its hull has none that can be drawn."""
-    if any(s.part == "hull" for s in solids):
+    """The shapes of a model, with a box where its hull has none that can be drawn."""
+    if "hull" in {solid.part for solid in solids}:
         return solids
     size = plain_scene(vessel.length, vessel.beam, (1.0, 1.0, 0.0, 0.0))
     return *solids, *size.solids
 
 
 def _thrusters(vessel: "Vessel") -> Iterator[Thruster]:
-    """One for each effect that takes a thrust, where it is mounted."""
+    """A thruster for each effect with a thrust, at its position."""
     for effect in vessel.effects:
         on = vessel.bindings(effect) if "thrust" in type(effect).roles else {}
         if isinstance(on.get("thrust"), str):
@@ -137,9 +155,9 @@ def _thrusters(vessel: "Vessel") -> Iterator[Thruster]:
 
 
 def _solids(model: "Model") -> Iterator[Solid]:
-    """Every drawn shape, in the axes of its part."""
+    """All drawn shapes, in the axes of their part."""
     for geom in range(model.ngeom):
-        if model.geom_group[geom] not in SEEN:
+        if model.geom_group[geom] not in DRAWN_GROUPS:
             continue
         body = int(model.geom_bodyid[geom])
         shape = _shape(model, geom)
@@ -157,7 +175,7 @@ def _solids(model: "Model") -> Iterator[Solid]:
 
 
 def _in_part(model: "Model", body: int, vertices: Array) -> tuple[str, Array]:
-    """Name of the part a body belongs to and the vertices in that part's axes."""
+    """Name of the part of a body, and the vertices in axes of the part."""
     while body:
         name = model.body(body).name
         if name == "hull" or name.startswith(OUTBOARD):
@@ -184,18 +202,18 @@ def _shape(model: "Model", geom: int) -> tuple[Array, Triangles] | None:
         return np.array(model.mesh_vert[at : at + count], dtype=float), model.mesh_face[
             face : face + faces
         ].astype("u4")
-    if kind in (ROUND, BALL):
+    if kind in (SPHERE, ELLIPSOID):
         vertices, triangles = _lathe(
             [(np.cos(a), np.sin(a)) for a in np.linspace(-np.pi / 2, np.pi / 2, 17)]
         )
-        return vertices * (size if kind == BALL else size[0]), triangles
-    if kind == PILL:
+        return vertices * (size if kind == ELLIPSOID else size[0]), triangles
+    if kind == CAPSULE:
         ends = [(np.cos(a), np.sin(a), np.sign(a)) for a in np.linspace(-np.pi / 2, np.pi / 2, 18)]
         return _lathe([(size[0] * r, size[0] * z + size[1] * end) for r, z, end in ends])
-    if kind == BARREL:
+    if kind == CYLINDER:
         vertices, triangles = _lathe([(0.0, -1.0), (1.0, -1.0), (1.0, 1.0), (0.0, 1.0)])
         return vertices * (size[0], size[0], size[1]), triangles
-    if kind == BRICK:
+    if kind == BOX:
         vertices, triangles = _lathe(
             [(0.0, -1.0), (2**0.5, -1.0), (2**0.5, 1.0), (0.0, 1.0)], 4, np.pi / 4
         )
@@ -206,7 +224,7 @@ def _shape(model: "Model", geom: int) -> tuple[Array, Triangles] | None:
 def _lathe(
     profile: list[tuple[float, float]], around: int = 32, start: float = 0.0
 ) -> tuple[Array, Triangles]:
-    """Surface of revolution about z of a profile of (radius, z), every strip with vertices of its own."""
+    """Surface of revolution about z of a profile of (radius, z); strips do not share vertices."""
     angles = start + np.linspace(0.0, 2.0 * np.pi, around, endpoint=False)
     vertices: list[Array] = []
     triangles: list[NDArray[np.int64]] = []

@@ -1,6 +1,6 @@
-"""Where rerun's messages go: to a `.rrd`, to a viewer, or to both.
+"""Sends rerun's messages to a `.rrd` file, a viewer or both.
 
-The file is written here and not by rerun, whose own writer waits for ever at its end where the disk is full.
+The file is not written by rerun, whose writer never returns if the disk is full.
 """
 
 import warnings
@@ -12,61 +12,81 @@ import rerun as rr
 
 from boatsim.files import AppendedFile
 
-HEAD = 12  # bytes before the first message of a .rrd: RRF2, version, options
+HEAD = 12  # [bytes] before the first message of a .rrd: RRF2, version, options
 FRAME = Struct("<QQ")  # kind and length of a message
-END = 0  # kind of the last one
-PATIENCE = 10.0  # [s] for a viewer to take what is left at the end of a run
+END = 0  # kind of the last message
+PATIENCE = 10.0  # [s] for a viewer to receive the rest at the end of a run
 
 
 class Stream:
-    """Messages to a file and a viewer; `heard` is False if there is neither, and then nothing is worth logging."""
+    """Messages to a file and a viewer.
+
+    Attributes:
+        has_receiver: False if there is neither; then nothing needs to be logged.
+    """
 
     def __init__(self, name: str, path: Path | str | None, viewer: str | None = None) -> None:
-        """`path` is the `.rrd` to write, `viewer` the address of one (None: none). Raises OSError."""
+        """Open the file and connect to the viewer.
+
+        Args:
+            name: Name of the application.
+            path: The `.rrd` file; None: none.
+            viewer: Address of a viewer; None: none.
+
+        Raises:
+            OSError: If the file can not be written.
+        """
+        self._streams: list[rr.RecordingStream] = []
         self._file = self._written = self._viewer = None
-        self._begun = False
+        self._has_header = False
         if path is not None:
             Path(path).parent.mkdir(parents=True, exist_ok=True)
             self._file = AppendedFile(Path(path).open("wb", buffering=0), Path(path))
             to_file = rr.RecordingStream(name, send_properties=False)
             self._written = rr.binary_stream(to_file)
+            self._streams.append(to_file)
         if viewer is not None:
             self._viewer = rr.RecordingStream(name, send_properties=False)
             self._viewer.set_sinks(rr.GrpcSink(viewer))
-        self._to = [
-            *([to_file] if path is not None else []),
-            *([self._viewer] if self._viewer else []),
-        ]
-        self.heard = bool(self._to)
+            self._streams.append(self._viewer)
+        self.has_receiver = bool(self._streams)
 
     def log(self, entity: str, what: rr.AsComponents, static: bool = False) -> None:
-        """One thing; see rerun's own."""
-        for stream in self._to:
+        """Log an entity; see `rerun.RecordingStream.log`."""
+        for stream in self._streams:
             stream.log(entity, what, static=static)
 
     def send_columns(
         self, entity: str, indexes: Iterable[rr.TimeColumn], columns: Iterable[rr.ComponentColumn]
     ) -> None:
-        """Many rows of one thing; see rerun's own."""
+        """Log rows of an entity; see `rerun.RecordingStream.send_columns`."""
         indexes, columns = list(indexes), list(columns)
-        for stream in self._to:
+        for stream in self._streams:
             stream.send_columns(entity, indexes, columns)
 
     def send_blueprint(self, layout: rr.blueprint.Blueprint) -> None:
-        """How the viewer lays it out."""
-        for stream in self._to:
+        """Set the layout of the viewer."""
+        for stream in self._streams:
             stream.send_blueprint(layout)
 
-    def keep(self) -> None:
-        """What was logged is in the file when this returns. Raises OSError, and then the file ends where it did."""
+    def flush(self) -> None:
+        """Write everything that was logged to the file.
+
+        Raises:
+            OSError: If the disk is full; then the file is as it was before.
+        """
         if self._file and self._written and (new := self._written.read()):
-            first, self._begun = not self._begun, True
-            self._file.add(b"".join(_pieces(new, first)))
+            self._file.add(b"".join(_messages(new, not self._has_header)))
+            self._has_header = True
 
     def close(self) -> None:
-        """Keep the rest; nothing more comes. Raises OSError."""
+        """Write the rest and close the file.
+
+        Raises:
+            OSError: If the disk is full.
+        """
         try:
-            self.keep()
+            self.flush()
         finally:
             if self._file:
                 self._file.close()
@@ -74,11 +94,11 @@ class Stream:
                 _end(self._viewer)
 
 
-def _pieces(whole: bytes, first: bool) -> Iterator[bytes]:
-    """Of the bytes of a whole `.rrd` what appends to another: its messages, without its head unless it is the `first`.
+def _messages(whole: bytes, first: bool) -> Iterator[bytes]:
+    """Messages of a whole `.rrd` for appending to a file, with the header only if `first`.
 
-    Each message has its kind and length in front. The last one, with what follows, is a table of places in the file,
-    which a reader does not need.
+    A message begins with its kind and length. The last one and what follows are an index of the
+    file, which readers do not need.
     """
     if first:
         yield whole[:HEAD]
@@ -94,10 +114,7 @@ def _pieces(whole: bytes, first: bool) -> Iterator[bytes]:
 def _end(stream: rr.RecordingStream) -> None:
     try:
         stream.flush(timeout_sec=PATIENCE)
-    except (
-        RuntimeError,
-        TimeoutError,
-        ValueError,
-    ) as error:  # a viewer that was closed while the run went on
+    # the viewer may have been closed during the run
+    except (RuntimeError, TimeoutError, ValueError) as error:
         warnings.warn(f"the viewer did not take all of the log ({error})", stacklevel=4)
     stream.disconnect()

@@ -1,6 +1,6 @@
-"""The viewer that shows a run while it goes: one that listens here, a new one on the display, or rerun's in a browser.
+"""Rerun viewers that show a run while it goes: a running one, a new window, or one in a browser.
 
-All of them listen on this machine alone.
+All of them listen on this machine only.
 """
 
 import os
@@ -18,48 +18,60 @@ from urllib.parse import quote
 
 from boatsim.errors import BoatsimError
 
-PORT, PAGE = (
-    9876,
-    9090,
-)  # where a viewer listens, and the web viewer's page is, unless these are taken
+PORT = 9876  # where a viewer listens, unless the port is in use
+PAGE = 9090  # port of the web viewer's page, unless it is in use
 HERE = "127.0.0.1"
 PATIENCE = 15.0  # [s] for a viewer to start
-SETTLED = 0.3  # [s] after which it has all its ports, or has ended because one is taken
+SETTLED = 0.3  # [s] after which a viewer has all its ports, or has ended because one is in use
 
 
 @dataclass(frozen=True)
 class Viewer:
-    """Where messages go, and where a browser looks."""
+    """A running viewer.
 
-    to: str
+    Attributes:
+        address: Where messages are sent.
+        page: Address of its page; "" for a viewer with a window.
+    """
+
+    address: str
     page: str = ""
 
 
 @contextmanager
-def shown(serve: bool) -> Iterator[Viewer | None]:
-    """A viewer for the block: with `serve` rerun's own for browsers, which ends with it, otherwise one with a window.
+def viewer_for(serve: bool) -> Iterator[Viewer | None]:
+    """Provide a viewer for a block.
 
-    None where there is no display to show a window on. Raises BoatsimError where the web viewer does not start.
+    Args:
+        serve: Whether to start rerun's web viewer, which ends with the block, instead of a window.
+
+    Yields:
+        The viewer; None where there is no display for a window.
+
+    Raises:
+        BoatsimError: If the web viewer does not start.
     """
     if serve:
-        with _served() as viewer:
+        with _web_viewer() as viewer:
             yield viewer
+    elif _listening(PORT) or (has_display() and _open_window()):
+        yield Viewer(_address(PORT))
     else:
-        yield Viewer(_address(PORT)) if _listening(PORT) or (display() and _opened()) else None
+        yield None
 
 
-def display() -> bool:
-    """Whether there is a screen to open a window on."""
-    return sys.platform in ("darwin", "win32") or bool(
-        os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")
-    )
+def has_display() -> bool:
+    """Return whether a window can be opened."""
+    if sys.platform in ("darwin", "win32"):
+        return True
+    return bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))
 
 
-def _opened() -> bool:
-    """A viewer with a window, which stays when the run is over; whether it came up."""
+def _open_window() -> bool:
+    """Start a viewer with a window, which stays open after the run; return whether it started."""
     started = _rerun("--bind", HERE, "--port", str(PORT), "--expect-data-soon")
     try:
-        if _up(started, PORT):
+        if _wait_for(started, PORT):
             return True
     except BaseException:
         _end(started)
@@ -69,26 +81,26 @@ def _opened() -> bool:
 
 
 @contextmanager
-def _served() -> Iterator[Viewer]:
-    """The web viewer of rerun and what feeds it, in a process of its own that ends with the block."""
-    started, viewer = _serving(_free(PAGE)) or _serving(_free(0)) or _gone()
+def _web_viewer() -> Iterator[Viewer]:
+    """Rerun's web viewer in a process that ends with the block."""
+    started, viewer = _serve(_free_port(PAGE)) or _serve(_free_port(0)) or _not_started()
     try:
         yield viewer
     finally:
         _end(started)
 
 
-def _serving(page: int) -> "tuple[subprocess.Popen[bytes], Viewer] | None":
-    """A web viewer on a port; None if it does not start there, as where another one was quicker."""
-    to = _free(0)
+def _serve(page: int) -> "tuple[subprocess.Popen[bytes], Viewer] | None":
+    """Start a web viewer on a port; None if it does not start, as when the port is in use."""
+    port = _free_port(0)
     started = _rerun(
-        "--serve-web", "--bind", HERE, "--port", str(to), "--web-viewer-port", str(page)
+        "--serve-web", "--bind", HERE, "--port", str(port), "--web-viewer-port", str(page)
     )
     try:
-        if _up(started, to, page) and not _ends(started, SETTLED):
-            return started, Viewer(
-                _address(to), f"http://{HERE}:{page}/?url={quote(_address(to), safe='')}"
-            )
+        if _wait_for(started, port, page) and not _ends(started, SETTLED):
+            address = _address(port)
+            url = f"http://{HERE}:{page}/?url={quote(address, safe='')}"
+            return started, Viewer(address, url)
     except BaseException:
         _end(started)
         raise
@@ -96,12 +108,12 @@ def _serving(page: int) -> "tuple[subprocess.Popen[bytes], Viewer] | None":
     return None
 
 
-def _gone() -> NoReturn:
+def _not_started() -> NoReturn:
     raise BoatsimError("rerun's web viewer does not start on this machine")
 
 
 def _end(started: "subprocess.Popen[bytes]") -> None:
-    """The command is a wrapper; the viewer is its child. One that does not listen is killed."""
+    """End a viewer; its process group is used, because the command is a wrapper of the viewer."""
     for number in (signal.SIGTERM, signal.SIGKILL):
         with suppress(ProcessLookupError):
             os.killpg(started.pid, number)
@@ -110,7 +122,7 @@ def _end(started: "subprocess.Popen[bytes]") -> None:
 
 
 def _ends(started: "subprocess.Popen[bytes]", seconds: float) -> bool:
-    """Whether it ends within so long."""
+    """Whether a process ends within so many seconds."""
     try:
         started.wait(seconds)
     except subprocess.TimeoutExpired:
@@ -119,17 +131,19 @@ def _ends(started: "subprocess.Popen[bytes]", seconds: float) -> bool:
 
 
 def _rerun(*options: str) -> "subprocess.Popen[bytes]":
-    """The viewer's program, beside the running Python if it is there; signals of the terminal do not reach it."""
-    beside = Path(sys.executable).parent / "rerun"
-    command = [str(beside)] if beside.is_file() else [sys.executable, "-m", "rerun"]
+    """Start rerun's viewer in a session of its own, which signals of the terminal do not reach."""
+    command = [sys.executable, "-m", "rerun"]
+    script = Path(sys.executable).parent / "rerun"
+    if script.is_file():
+        command = [str(script)]
     silent = subprocess.DEVNULL
     return subprocess.Popen(
         [*command, *options], stdin=silent, stdout=silent, stderr=silent, start_new_session=True
     )
 
 
-def _up(started: "subprocess.Popen[bytes]", *ports: int) -> bool:
-    """Wait until all ports are listened at; whether they are."""
+def _wait_for(started: "subprocess.Popen[bytes]", *ports: int) -> bool:
+    """Wait until a viewer listens at all ports; return whether it does."""
     until = time.monotonic() + PATIENCE
     while not all(map(_listening, ports)):
         if started.poll() is not None or time.monotonic() > until:
@@ -142,8 +156,8 @@ def _address(port: int) -> str:
     return f"rerun+http://{HERE}:{port}/proxy"
 
 
-def _free(wanted: int) -> int:
-    """The port if nobody has it, else one that is free."""
+def _free_port(wanted: int) -> int:
+    """The port if it is free, else another one."""
     for port in (wanted, 0):
         with socket.socket() as tried, suppress(OSError):
             tried.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
@@ -153,7 +167,7 @@ def _free(wanted: int) -> int:
 
 
 def _listening(port: int) -> bool:
-    """Whether somebody listens at a port of this machine."""
+    """Whether a program listens at a port of this machine."""
     try:
         socket.create_connection((HERE, port), 1.0).close()
     except OSError:

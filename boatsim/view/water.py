@@ -1,4 +1,4 @@
-"""The scene of boats that went somewhere: water beyond all of their paths, and boats large enough to be seen on it."""
+"""Scene of vessels that travelled far: water around all paths, and enlarged vessels."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -11,27 +11,42 @@ from boatsim.recordings.table import Recording
 from boatsim.simulate import world
 from boatsim.view.scene import Scene, scene_from
 
-SEEN = 0.08  # length of a boat, at least, by the size of the track on which it is drawn
-MARGIN = 1.0  # lengths of a boat as drawn, around all paths
-BEYOND = 4.0  # times as much water as the view shows
+SMALLEST = 0.08  # length of a drawn vessel at least, as a share of the size of all paths
+MARGIN = 1.0  # lengths of the drawn vessel around all paths
+BEYOND = 4.0  # size of the water by the size of the view
 
 
-def around(boat: Vessel, boats: Mapping[str, Sequence[Recording]]) -> Scene:
-    """The scene for an overlay; a nominal boat, which may run away, does not decide how much of the water is shown."""
-    paths = [
-        r for name, runs in boats.items() for r in runs if name != "nominal" or len(boats) == 1
-    ]
-    spans = [_span([r.signals[n] for r in paths if n in r.signals]) for n in ("x_m", "y_m")]
-    sizes, centre = [high - low for low, high in spans], (sum(spans[0]) / 2, sum(spans[1]) / 2)
-    times = max(1.0, SEEN * max(sizes) / boat.length)
-    length, width = (size + 2.0 * MARGIN * times * boat.length for size in sizes)
+def around(vessel: Vessel, runs: Mapping[str, Sequence[Recording]]) -> Scene:
+    """Return the scene of an overlay of runs.
+
+    Args:
+        vessel: The vessel that is drawn.
+        runs: Recordings by name. One named "nominal" does not count for the size of the water
+            unless it is the only one, because the nominal model may run away.
+    """
+    paths: list[Recording] = []
+    for name, recordings in runs.items():
+        if name != "nominal" or len(runs) == 1:
+            paths += recordings
+    x_low, x_high = _range_of("x_m", paths)
+    y_low, y_high = _range_of("y_m", paths)
+    centre = ((x_low + x_high) / 2, (y_low + y_high) / 2)
+    times = max(1.0, SMALLEST * max(x_high - x_low, y_high - y_low) / vessel.length)
+    margin = 2.0 * MARGIN * times * vessel.length
+    length, width = x_high - x_low + margin, y_high - y_low + margin
     far = BEYOND * max(length, width)
-    tank = world.Tank(far, far, boat.draught * 2, walls=False, centre=centre)
-    scene = scene_from(world.build(boat, tank), boat, tank).enlarged(times)
+    tank = world.Tank(far, far, vessel.draught * 2, walls=False, centre=centre)
+    scene = scene_from(world.build(vessel, tank), vessel, tank).enlarged(times)
     return replace(scene, tank=(length, width, *centre))
 
 
-def _span(values: Sequence[Array]) -> tuple[float, float]:
-    """Least and largest of what was recorded; 0 where nothing was."""
-    finite = np.concatenate([v[np.isfinite(v)] for v in values] or [np.zeros(0)])
-    return (float(finite.min()), float(finite.max())) if len(finite) else (0.0, 0.0)
+def _range_of(column: str, recordings: Sequence[Recording]) -> tuple[float, float]:
+    """Smallest and largest finite value of a column; 0 if there is none."""
+    finite: list[Array] = [np.zeros(0)]
+    for recording in recordings:
+        values = recording.signals.get(column, np.zeros(0))
+        finite.append(values[np.isfinite(values)])
+    known = np.concatenate(finite)
+    if not len(known):
+        return 0.0, 0.0
+    return float(known.min()), float(known.max())

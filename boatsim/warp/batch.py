@@ -81,7 +81,7 @@ class Batch(batch.Batch):
     ) -> None:
         """Integrate all boats, see `boatsim.simulate.batch.Batch.advance`."""
         if commands is not None:
-            self._commands[:] = self._taken(commands, np.arange(self.n))
+            self._commands[:] = self._clip(commands, np.arange(self.n))
         self.send()
         self.motion.advance(steps)
         self.t += steps * self.step
@@ -122,10 +122,10 @@ class Batch(batch.Batch):
         self._read()
         return super().lost
 
-    def feel(self, felt: Array) -> None:
-        """Write readings without noise, see `boatsim.simulate.batch.Batch.feel`."""
+    def sense(self, felt: Array) -> None:
+        """Write readings without noise, see `boatsim.simulate.batch.Batch.sense`."""
         self._read()
-        super().feel(felt)
+        super().sense(felt)
 
     def send(self) -> None:
         """Copy commands and times to the device, and all other arrays if they have changed."""

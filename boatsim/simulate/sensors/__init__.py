@@ -1,1 +1,1 @@
-"""Sensors that a scenario's `[[sensor]]` adds to the usual ones: one a file, its name the file's name."""
+"""Further sensors, which `[[sensor]]` in a scenario adds by name; one per file, named after it."""

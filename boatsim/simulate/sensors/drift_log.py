@@ -1,4 +1,4 @@
-"""Drift log: sway velocity, which the usual sensors of a small boat do not tell."""
+"""Drift log: sway velocity, which the usual sensors of a small boat do not measure."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -13,7 +13,7 @@ from boatsim.simulate.stepper import Stepper
 
 @dataclass(frozen=True)
 class DriftLog(Sensor):
-    """Fills `v` of what the controller senses."""
+    """Measures `v` of `Sense`."""
 
     words: ClassVar[str] = "sway velocity over ground, with noise"
     columns: ClassVar = {"v": "v_mps"}
@@ -21,5 +21,5 @@ class DriftLog(Sensor):
     speed_sd: float = param(0.01, low=0.0, high=1.0, unit="m/s", words="noise of the velocity")
 
     def read(self, engine: Stepper, rng: np.random.Generator) -> Mapping[str, float]:
-        """The boat's sway velocity, off by the noise."""
+        """Return the sway velocity with noise."""
         return {"v": engine.state.v + self.speed_sd * float(rng.standard_normal())}

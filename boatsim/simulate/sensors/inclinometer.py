@@ -1,4 +1,4 @@
-"""Inclinometer: roll angle and roll rate, for boats that the usual unit does not tell how they heel."""
+"""Inclinometer: roll angle and roll rate, which the usual sensors do not measure."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -13,7 +13,7 @@ from boatsim.simulate.stepper import Stepper
 
 @dataclass(frozen=True)
 class Inclinometer(Sensor):
-    """Fills `phi` and `p` of what the controller senses."""
+    """Measures `phi` and `p` of `Sense`."""
 
     words: ClassVar[str] = "roll angle and rate, with noise"
     columns: ClassVar = {"phi": "phi_rad", "p": "p_radps"}
@@ -24,6 +24,6 @@ class Inclinometer(Sensor):
     )
 
     def read(self, engine: Stepper, rng: np.random.Generator) -> Mapping[str, float]:
-        """The boat's roll, off by the noise."""
+        """Return roll angle and roll rate with noise."""
         s, n = engine.state, rng.standard_normal(2).tolist()
         return {"phi": s.phi + self.roll_sd * n[0], "p": s.p + self.rate_sd * n[1]}

@@ -14,7 +14,7 @@ from boatsim.physics import vessel
 from boatsim.physics.base import AXES, Array
 from boatsim.physics.program import Program
 from boatsim.physics.vessel import Vessel
-from boatsim.simulate.compiled_engine import Twin
+from boatsim.simulate.batch import Batch
 
 NO_COMMANDS = np.zeros((100, 0))
 
@@ -25,8 +25,8 @@ def roller(tmp_path: Path) -> Vessel:
     return vessel.load(str(boats.written(tmp_path, "test_roller", boats.ROLL)))
 
 
-def held(twin: Twin, rows: int, X: float, N: float) -> Array:
-    return np.tile(twin.program.command_array(boats.push(X, N)), (rows, 1))
+def held(compiled: Batch, rows: int, X: float, N: float) -> Array:
+    return np.tile(compiled.program.command_array(boats.push(X, N)), (rows, 1))
 
 
 FREEDOMS = [("surge", "sway", "yaw"), ("surge", "sway", "roll", "yaw"), AXES]
@@ -63,14 +63,14 @@ def test_ahead_on_an_easterly_heading_is_motion_along_y(tmp_path: Path) -> None:
 
 
 def test_an_undamped_roll_is_a_harmonic(roller: Vessel) -> None:
-    found = Twin(roller, 0.01).rollout([0.2, 0.1], NO_COMMANDS, 0.1)
+    found = Batch(roller, step=0.01).rollout([0.2, 0.1], NO_COMMANDS, 0.1)
     t = 0.1 * np.arange(101)
     assert found[:, 0] == pytest.approx(0.2 * np.cos(2 * t) + 0.05 * np.sin(2 * t), abs=1e-7)
 
 
 def test_the_method_is_of_fourth_order(roller: Vessel) -> None:
     def error(step: float) -> float:
-        end = Twin(roller, step).rollout([0.2, 0.0], NO_COMMANDS, 0.2)[-1]
+        end = Batch(roller, step=step).rollout([0.2, 0.0], NO_COMMANDS, 0.2)[-1]
         return float(np.hypot(end[0] - 0.2 * np.cos(40.0), (end[1] + 0.4 * np.sin(40.0)) / 2))
 
     assert error(0.1) / error(0.05) == pytest.approx(16.0, rel=0.05)
@@ -78,39 +78,39 @@ def test_the_method_is_of_fourth_order(roller: Vessel) -> None:
 
 def test_a_roll_period_is_that_of_the_whole_inertia() -> None:
     boat = vessel.load("kvlcc2_roll", settings={"linear_damping": {"roll": 0.0}})
-    phi = Twin(boat).rollout([0.1, 0.0], np.zeros((1500, 0)), 0.02)[:, 0]
+    phi = Batch(boat).rollout([0.1, 0.0], np.zeros((1500, 0)), 0.02)[:, 0]
     rising = np.flatnonzero((phi[:-1] < 0) & (phi[1:] >= 0))
     ends = rising + phi[rising] / (phi[rising] - phi[rising + 1])
     assert 0.02 * np.diff(ends) == pytest.approx(2 * pi * sqrt((115.6 + 19.8) / 822.3), rel=1e-4)
 
 
 def test_coasting_is_a_free_run_with_constant_commands(tmp_path: Path) -> None:
-    twin, start = Twin(boats.planar(tmp_path)), [0.0, 0.0, 0.3, 0.2, 0.1, -0.1]
-    run = twin.rollout(start, held(twin, 50, 2.0, 0.1), 0.1)
-    assert twin.coast(start, boats.push(2.0, 0.1), 250) == pytest.approx(run[-1], rel=1e-12)
+    compiled, start = Batch(boats.planar(tmp_path)), [0.0, 0.0, 0.3, 0.2, 0.1, -0.1]
+    run = compiled.rollout(start, held(compiled, 50, 2.0, 0.1), 0.1)
+    assert compiled.coast(start, boats.push(2.0, 0.1), 250) == pytest.approx(run[-1], rel=1e-12)
     assert run[0] == pytest.approx(start)
 
 
 def test_a_command_acts_from_its_row_on_and_not_before(tmp_path: Path) -> None:
-    twin = Twin(boats.planar(tmp_path))
-    rows = np.vstack([held(twin, 10, 0.0, 0.0), held(twin, 10, 2.0, 0.0)])
-    u = twin.rollout([0.0] * 6, rows, 0.1)[:, 3]
+    compiled = Batch(boats.planar(tmp_path))
+    rows = np.vstack([held(compiled, 10, 0.0, 0.0), held(compiled, 10, 2.0, 0.0)])
+    u = compiled.rollout([0.0] * 6, rows, 0.1)[:, 3]
     assert (u[:11] == 0.0).all() and (np.diff(u[10:]) > 0).all()
 
 
 def test_values_given_take_the_place_of_the_vessels(tmp_path: Path) -> None:
     own, other = boats.planar(tmp_path), boats.planar(tmp_path, {"linear_damping": {"surge": 5.0}})
-    twin = Twin(own)
-    values = twin.program.values()
-    values[twin.program.index("linear_damping", "surge")] = 5.0
-    start, rows = [0.0] * 6, held(twin, 20, 2.0, 0.1)
-    changed = twin.rollout(start, rows, 0.1, values)
-    assert (changed == Twin(other).rollout(start, rows, 0.1)).all()
-    assert changed[-1, 3] < twin.rollout(start, rows, 0.1)[-1, 3]
+    compiled = Batch(own)
+    values = compiled.program.values()
+    values[compiled.program.index("linear_damping", "surge")] = 5.0
+    start, rows = [0.0] * 6, held(compiled, 20, 2.0, 0.1)
+    changed = compiled.rollout(start, rows, 0.1, values)
+    assert (changed == Batch(other).rollout(start, rows, 0.1)).all()
+    assert changed[-1, 3] < compiled.rollout(start, rows, 0.1)[-1, 3]
 
 
 def test_rows_of_unequal_steps_are_refused(tmp_path: Path) -> None:
-    twin = Twin(boats.planar(tmp_path), 0.02)
+    compiled = Batch(boats.planar(tmp_path), step=0.02)
     for interval in (0.05, 0.001):
         with pytest.raises(BadInput, match=r"step 0\.02 s does not divide the interval"):
-            twin.rollout([0.0] * 6, held(twin, 2, 0.0, 0.0), interval)
+            compiled.rollout([0.0] * 6, held(compiled, 2, 0.0, 0.0), interval)
