@@ -53,9 +53,8 @@ def power_4_(x: T):
 
 @wp.func
 def bits_(a: int, b: int, c: int, d: int):
-    return ((wp.uint64(a) * wp.uint64(65536) + wp.uint64(b)) * wp.uint64(65536) + wp.uint64(c)) * wp.uint64(
-        65536
-    ) + wp.uint64(d)
+    base = wp.uint64(65536)
+    return ((wp.uint64(a) * base + wp.uint64(b)) * base + wp.uint64(c)) * base + wp.uint64(d)
 '''
 
 FORCES = '''

@@ -1,6 +1,7 @@
 """Sums of products of named numbers, from which equations without zero terms are written."""
 
 from collections.abc import Iterable
+from operator import mul
 
 Terms = dict[tuple[str, ...], int]  # names of the factors, in order -> coefficient of the product
 
@@ -75,6 +76,11 @@ def total(parts: Iterable[Sum]) -> Sum:
     return found
 
 
+def dot(a: Iterable[Sum], b: Iterable[Sum]) -> Sum:
+    """Return the scalar product of two vectors."""
+    return total(map(mul, a, b))
+
+
 class Lines:
     """Lines of a function body, with variables for intermediate results."""
 
@@ -102,3 +108,12 @@ class Lines:
             return value
         self.add(f"{called} = {value}")
         return name(called)
+
+    def let_all(self, prefix: str, values: Iterable[Sum]) -> list[Sum]:
+        """Apply `let` to each value; the variables are numbered.
+
+        Args:
+            prefix: Name of the variables without the number.
+            values: The values.
+        """
+        return [self.let(f"{prefix}{i}", value) for i, value in enumerate(values)]

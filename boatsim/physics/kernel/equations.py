@@ -15,8 +15,9 @@ Hydrodynamics and Motion Control, 2nd ed. 2021, chapters 2, 3 and 6.
 """
 
 from dataclasses import dataclass
+from operator import add, neg, sub
 
-from boatsim.physics.kernel.algebra import ONE, ZERO, Lines, Sum, name, total
+from boatsim.physics.kernel.algebra import ONE, ZERO, Lines, Sum, dot, name, total
 from boatsim.physics.signals import AXES, MASS_ENTRIES, Motion, Wrench
 
 COORDINATES = ("x", "y", "z", "phi", "theta", "psi")
@@ -81,6 +82,10 @@ class Frame:
     drift: list[Sum]  # (6,) J' q': body acceleration at constant joint rates
     water: list[Sum]  # (3,) velocity of the current in body axes
 
+    def column(self, i: int) -> list[Sum]:
+        """Return the body rates (6,) per rate of coordinate i."""
+        return [row[i] for row in self.J]
+
 
 class Writer:
     """Text of the functions for one set of degrees of freedom."""
@@ -144,7 +149,7 @@ class Writer:
             for i in range(6)
         ]
         turning = nu[3:] if self.tilts else [ZERO, ZERO, nu[5]]
-        phid, thetad, psid = (self.rate(i) for i in ANGULAR)
+        phid, thetad, psid = map(self.rate, ANGULAR)
         bend = [ZERO, ZERO, ZERO]
         if self.tilts:
             bend = [
@@ -152,9 +157,7 @@ class Writer:
                 ct * cf * phid * psid - sf * phid * thetad - st * sf * thetad * psid,
                 -(cf * phid * thetad) - st * cf * thetad * psid - ct * sf * phid * psid,
             ]
-        drift = [-a for a in cross(turning, nu[:3])] + [
-            lines.let(f"bend{i}", a) for i, a in enumerate(bend)
-        ]
+        drift = list(map(neg, cross(turning, nu[:3]))) + lines.let_all("bend", bend)
         water = [ZERO, ZERO, ZERO]
         if current and {0, 1} & set(self.free):
             lines.add("north, east = flow(p, on)")
@@ -166,10 +169,10 @@ class Writer:
 
     def seen(self, frame: Frame) -> str:
         """Return the text of the `Motion` that force laws take."""
-        through = [frame.nu[i] - frame.water[i] for i in LINEAR]
+        through = map(sub, frame.nu[:3], frame.water)
         psi = ("c_psi", "s_psi") if 5 in self.free else ("1.0", "0.0")
         values = [
-            *(str(self.coordinate(i)) for i in range(6)),
+            *map(str, map(self.coordinate, range(6))),
             *map(str, frame.nu),
             *map(str, through),
             *psi,
@@ -182,8 +185,8 @@ class Writer:
 
     def carried(self, frame: Frame, axis: int) -> Sum:
         """Return a component of the force of added mass as a uniform current turns in body axes."""
-        away = [-a for a in cross(frame.turning, frame.water)]
-        return total(entry(WATER, axis, j) * away[j] for j in LINEAR)
+        away = map(neg, cross(frame.turning, frame.water))
+        return dot((entry(WATER, axis, j) for j in LINEAR), away)
 
     def rigid(self, lines: Lines, frame: Frame) -> list[Sum]:
         """Return the Coriolis and centripetal force (6,) of the rigid body about the origin."""
@@ -194,13 +197,13 @@ class Writer:
         lever = [ZERO, ZERO, ZERO]
         if not self.centred:
             lever = [name("k[1]"), ZERO, name("k[2]") if self.tilts else ZERO]
-        at_centre = [a + b for a, b in zip(at_centre, cross(spin, cross(spin, lever)), strict=True)]
-        force = [lines.let(f"rigid{i}", -(m * a)) for i, a in enumerate(at_centre)]
+        at_centre = list(map(add, at_centre, cross(spin, cross(spin, lever))))
+        force = lines.let_all("rigid", [-(m * a) for a in at_centre])
         moment = [ZERO, ZERO, ZERO]
         if self.tilts:
             gyroscopic = [(q * r, 1, 2), (r * p, 2, 0), (p * q, 0, 1)]
             moment = [a * (inertia[i] - inertia[j]) for a, i, j in gyroscopic]
-        return force + [a + b for a, b in zip(cross(lever, force), moment, strict=True)]
+        return force + list(map(add, cross(lever, force), moment))
 
     def load(self, lines: Lines, frame: Frame, extra: str) -> list[Sum]:
         """Return the right-hand side (6,) of M nu' = ..., as sums."""
@@ -228,12 +231,11 @@ class Writer:
         frame = self.frame(lines)
         load = self.load(lines, frame, "extra")
         if not self.closed:
-            load = [a - b for a, b in zip(load, self.weighed(WHOLE, frame.drift), strict=True)]
-            named = [lines.let(f"load{i}", a) for i, a in enumerate(load)]
+            load = list(map(sub, load, self.weighed(WHOLE, frame.drift)))
+            named = lines.let_all("load", load)
             self.factor(lines, frame)
-            found = self.solved(
-                lines, [total(frame.J[a][i] * named[a] for a in range(6)) for i in self.free], ""
-            )
+            right = [dot(frame.column(i), named) for i in self.free]
+            found = self.solved(lines, right, "")
             lines.add(f"return {self.tuple(found)}")
             return lines.text
         pushed = {i: lines.let(f"load{i}", load[i]) for i in self.free}
@@ -260,8 +262,8 @@ class Writer:
                 found.append(str(total(frame.R[i][j] * body[j] for j in LINEAR if j in body)))
         if not self.tilts:
             return found + [str(body[i]) for i in ANGULAR if i in body]
-        cf, sf, ct, st = (name(n) for n in ("c_phi", "s_phi", "c_theta", "s_theta"))
-        phid, thetad, psid = (self.rate(i) for i in ANGULAR)
+        cf, sf, ct, st = map(name, ("c_phi", "s_phi", "c_theta", "s_theta"))
+        phid, thetad, psid = map(self.rate, ANGULAR)
         along = sf * body[4] + cf * body[5] + (phid * thetad if moving else ZERO)
         lines.add(f"along = {along}")
         rest = [
@@ -278,14 +280,17 @@ class Writer:
 
     def weighed(self, begin: int, motion: list[Sum]) -> list[Sum]:
         """Return the product of a constant matrix and a body motion (6,)."""
-        return [total(entry(begin, i, j) * motion[j] for j in range(6)) for i in range(6)]
+        found = []
+        for i in range(6):
+            found.append(dot((entry(begin, i, j) for j in range(6)), motion))
+        return found
 
     def factor(self, lines: Lines, frame: Frame) -> None:
         """Add variables for J' M J of the free coordinates and its factors L D L'."""
         for b, j in enumerate(self.free):
-            column = [total(entry(WHOLE, i, a) * frame.J[a][j] for a in range(6)) for i in range(6)]
+            column = self.weighed(WHOLE, frame.column(j))
             for a, i in enumerate(self.free[b:], b):
-                value = total(frame.J[c][i] * column[c] for c in range(6))
+                value = dot(frame.column(i), column)
                 lines.add(f"M{a}{b} = {value}")
         for j in range(self.n):
             lines.add(f"D{j} = M{j}{j}" + "".join(f" - L{j}{k} * L{j}{k} * D{k}" for k in range(j)))
@@ -340,7 +345,7 @@ class Writer:
         lines = Lines()
         self.unpack(lines)
         frame = self.frame(lines, current=False)
-        values = [*(str(self.coordinate(i)) for i in range(6)), *map(str, frame.nu)]
+        values = [*map(str, map(self.coordinate, range(6))), *map(str, frame.nu)]
         lines.add(f"return Shown({', '.join(values)})")
         return lines.text
 
@@ -355,7 +360,7 @@ class Writer:
             for row in (0, 1)
         )
         u, v, _, rolling, _, turning = frame.nu
-        x, y, _, roll, _, heading = (self.coordinate(i) for i in range(6))
+        x, y, _, roll, _, heading = map(self.coordinate, range(6))
         readings = (heading, turning, ahead, aside, u, v, x, y, roll, rolling)
         lines.add(f"return {self.tuple(list(map(str, readings)))}")
         return lines.text
@@ -395,7 +400,7 @@ class Writer:
     def add_to_mujoco(self) -> list[str]:
         """Return the body of `add_to_mujoco`: what MuJoCo's rigid body does not contain."""
         lines = Lines()
-        order = [i for i in (COORDINATES.index(n) for n in JOINTS) if i in self.free]
+        order = [i for i in map(COORDINATES.index, JOINTS) if i in self.free]
         for b, i in enumerate(order):
             flip = "-" if SIGN[COORDINATES[i]] < 0 else ""
             lines.add(f"{COORDINATES[i]}, {COORDINATES[i]}d = {flip}q[{b}], {flip}qd[{b}]")
@@ -406,7 +411,7 @@ class Writer:
         needed = [a for a in range(6) if any(frame.J[a][i] for i in self.free)]
         load = {}
         for a in needed:
-            bent = total(added[a][j] * frame.drift[j] for j in range(6))
+            bent = dot(added[a], frame.drift)
             load[a] = lines.let(
                 f"load{a}", name(f"f.{Wrench._fields[a]}") + self.carried(frame, a) - bent
             )
