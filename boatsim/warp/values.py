@@ -40,7 +40,9 @@ def tuple_of(parts: Sequence[Value]) -> Value:
     Args:
         parts: The values.
     """
-    return Value(tuple(p.kind for p in parts), parts=tuple(parts)) if parts else NONE
+    if not parts:
+        return NONE
+    return Value(tuple(p.kind for p in parts), parts=tuple(parts))
 
 
 def flat(value: Value) -> list[Value]:
@@ -119,4 +121,6 @@ def truth(value: Value) -> Value:
 def written(kind: Kind) -> str:
     """Return the annotation of an argument of a kind."""
     assert not isinstance(kind, tuple)
-    return kind.name if isinstance(kind, Record) else kind
+    if isinstance(kind, Record):
+        return kind.name
+    return kind

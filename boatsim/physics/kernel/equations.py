@@ -264,18 +264,18 @@ class Writer:
             return found + [str(body[i]) for i in ANGULAR if i in body]
         cf, sf, ct, st = map(name, ("c_phi", "s_phi", "c_theta", "s_theta"))
         phid, thetad, psid = map(self.rate, ANGULAR)
-        along = sf * body[4] + cf * body[5] + (phid * thetad if moving else ZERO)
-        lines.add(f"along = {along}")
-        rest = [
-            body[3]
-            + (thetad * psid * name("secant") if moving else ZERO)
-            + name("along") * st * name("secant"),
-            cf * body[4] - sf * body[5] - (phid * psid * ct if moving else ZERO),
-            name("along") * name("secant")
-            + (thetad * psid * st * name("secant") if moving else ZERO),
-        ]
+        secant, along = name("secant"), name("along")
+        quadratic = [ZERO] * 4
         if moving:
-            lines.text.insert(len(lines.text) - 1, "secant = 1.0 / c_theta")
+            lines.add("secant = 1.0 / c_theta")
+            turn = thetad * psid
+            quadratic = [phid * thetad, turn * secant, phid * psid * ct, turn * st * secant]
+        lines.add(f"along = {sf * body[4] + cf * body[5] + quadratic[0]}")
+        rest = [
+            body[3] + quadratic[1] + along * st * secant,
+            cf * body[4] - sf * body[5] - quadratic[2],
+            along * secant + quadratic[3],
+        ]
         return found + list(map(str, rest))
 
     def weighed(self, begin: int, motion: list[Sum]) -> list[Sum]:
