@@ -9,8 +9,6 @@ from boatsim.diagnosis.filter import MappedRecording, segments
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.physics.base import Array
 
-# channels of a free run in a diagnosis
-MODELS = ("recorded", "nominal", "recalibrated", "patched")
 FAMILIES = {
     "position_rms_m": ("x_m", "y_m"),
     "heading_rms_rad": ("psi_rad",),
@@ -25,7 +23,7 @@ class FreeRun:
     run: str  # name of the recording
     start_s: float
     t: Array  # (M,) s
-    # one of `MODELS` -> those of x_m, y_m, psi_rad, phi_rad that were recorded, each (M,)
+    # "recorded" or the name of a model -> those of x_m, y_m, psi_rad, phi_rad that were recorded, each (M,)
     channels: dict[str, dict[str, Array]]
 
     def deviations(self, model: str, signals: Sequence[str]) -> list[Array]:

@@ -7,6 +7,7 @@ import numpy as np
 
 from boatsim.diagnosis.coordinate_search import maximize
 from boatsim.diagnosis.filter import NoiseLevels
+from boatsim.diagnosis.priors import CHI_SQUARE_MEDIAN
 from boatsim.diagnosis.problem import FilterPasses, Fit, Problem
 from boatsim.physics.base import Array, Wandering
 
@@ -19,9 +20,7 @@ TIME_STEP = 0.7
 # of the log of the noise from the specified level
 FORCE_START = 0.7
 NOISE_START_RANGE = 1.2
-# sum of the squared binomial coefficients of a third difference, and the median of a squared normal
-THIRD_DIFFERENCE = 20.0
-CHI_SQUARE_MEDIAN = 0.455
+THIRD_DIFFERENCE = 20.0  # sum of the squared binomial coefficients of a third difference
 FEWEST_ROWS = 8  # of a signal from which its noise is estimated
 
 

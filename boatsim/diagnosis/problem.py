@@ -21,9 +21,7 @@ from boatsim.physics.vessel import Vessel
 
 # side of the actuator to which a parameter of a channel effect belongs, by its name
 SIDES = {"port": -1, "middle": 0, "starboard": 1}
-# [kg], [m] mass and length of the hull for which effects specify their priors
-REFERENCE_MASS = 4.6
-REFERENCE_LENGTH = 1.2
+REFERENCE_MASS = 4.6  # [kg] of the hull for which effects specify their priors
 # dimensions of a unit: powers of mass, length and time
 SYMBOLS = {
     "N": (1, 1, -2),
@@ -131,7 +129,7 @@ def froude_scale(unit: str, vessel: Vessel) -> float:
         for factor in part.split():
             symbol, _, power = factor.partition("^")
             powers += sign * int(power or 1) * np.array(SYMBOLS[symbol])
-    mass, length = vessel.body.mass / REFERENCE_MASS, vessel.length / REFERENCE_LENGTH
+    mass, length = vessel.body.mass / REFERENCE_MASS, vessel.length / priors.REFERENCE_LENGTH
     return float(mass ** powers[0] * length ** (powers[1] + 0.5 * powers[2]))
 
 
