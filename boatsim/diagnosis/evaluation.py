@@ -13,10 +13,10 @@ from boatsim.diagnosis.locate.mean_force import mean_residual_force
 from boatsim.diagnosis.locate.missing_force import MissingForce, missing_force, residual_force
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.diagnosis.report.schema import MeanEntry
-from boatsim.diagnosis.report.sentences import MODELS as MODELS
 from boatsim.diagnosis.search.ranking import Ranking
 
-# the nominal model refitted to a part of the data alone
+# models that are compared, and the nominal one refitted to a part of the data alone
+MODELS = ("nominal", "recalibrated", "patched")
 ALONE = "alone"
 
 
