@@ -60,7 +60,7 @@ def coarse(name: str, step: float) -> float:
     """Return the largest distance [m] between 200 boats with a coarse and a fine integration step."""
     places = []
     for one in (0.005, step):
-        game = play(n=200, **{**registration.says(name), "step": one})
+        game = play(n=200, **{**registration.options_of(name), "step": one})
         game.begin(np.arange(200, dtype=np.uint64), np.arange(200))
         random = np.random.default_rng(1)  # equal actions for both steps
         for k in range(100):
@@ -99,7 +99,7 @@ def main() -> None:
     print(
         f"| {name} | 0.08 s, 0.02 s | {alone(name, 0.08, 0.02):,.0f} | {crowd(name, 0.08, 0.02):,.0f} |"
     )
-    boat = registration.says(name)["vessel"]
+    boat = registration.options_of(name)["vessel"]
     print(f"| dm_env, {boat} on MuJoCo | 0.08 s, 0.02 s | {dm(env.load(f'{boat}/berth')):,.0f} | |")
     off = 1e3 * max(coarse(name, 0.1) for name in registration.ids())
     print(

@@ -20,7 +20,7 @@ from boatsim.control.approach import Approach
 from boatsim.control.base import Sense
 from boatsim.learn import episode_random, registration
 from boatsim.learn.environment_options import play
-from boatsim.learn.pilot import piloted
+from boatsim.learn.pilot import run_episodes
 from boatsim.learn.play import Play
 from boatsim.learn.sb3 import BoatVecEnv
 from boatsim.physics.content import load_class
@@ -92,10 +92,10 @@ def of_policy(model: PPO, game: Play, seeds: episode_random.Seeds) -> Norms:
     while waiting.any():
         action, _ = model.predict(game.observations(True), deterministic=True)
         done = game.step(np.asarray(action, dtype=float))
-        new = waiting[done.over]
-        for name, values in done.norms.items():
-            found.setdefault(name, np.zeros(game.n))[done.over[new]] = values[new]
-        waiting[done.over] = False
+        new = waiting[done.finished]
+        for name, values in done.metrics.items():
+            found.setdefault(name, np.zeros(game.n))[done.finished[new]] = values[new]
+        waiting[done.finished] = False
     return found
 
 
@@ -164,13 +164,13 @@ def main() -> None:
     model.save(told.out / "policy.zip")
     if curve.rows:
         drawn(curve, told.out / "curve.svg")
-    says = registration.says(ID)
+    says = registration.options_of(ID)
     seeds = episode_random.episode(
         np.arange(UNSEEN, UNSEEN + told.draws, dtype=np.uint64), np.zeros(told.draws, np.uint64)
     )
     found = {
         "policy": of_policy(model, play(n=told.draws, **says), seeds),
-        "L1 joystick": piloted(
+        "L1 joystick": run_episodes(
             play(n=told.draws, **{**says, "period": 0.08, "step": 0.08}), seeds, Berthing
         ),
     }

@@ -18,7 +18,7 @@ from boatsim.errors import BadInput  # noqa: E402
 from boatsim.learn import episode_random, registration  # noqa: E402
 from boatsim.learn.actions import controls  # noqa: E402
 from boatsim.learn.environment_options import play  # noqa: E402
-from boatsim.learn.pilot import piloted  # noqa: E402
+from boatsim.learn.pilot import run_episodes  # noqa: E402
 from boatsim.learn.play import Play  # noqa: E402
 from boatsim.physics import vessel  # noqa: E402
 from boatsim.physics.content import load_class  # noqa: E402
@@ -178,9 +178,9 @@ def test_a_boat_is_berthed_once_it_has_lain_there_and_lost_once_it_touches() -> 
     states[2, 3] = 0.1  # fast
     sea.world.reset(states)
     done = [sea.step(np.zeros((3, 3))) for _ in range(10)]
-    assert done[0].ended.tolist() == [False, True, False]
-    assert done[-1].ended[0] and done[-1].reward[0] > 5.0 and done[-1].norms["is_success"][0]
-    assert not any(step.ended[2] for step in done)
+    assert done[0].terminated.tolist() == [False, True, False]
+    assert done[-1].terminated[0] and done[-1].reward[0] > 5.0 and done[-1].metrics["is_success"][0]
+    assert not any(step.terminated[2] for step in done)
 
 
 def test_a_joystick_controller_with_its_outer_loop_berths_in_calm_water() -> None:
@@ -194,7 +194,7 @@ def test_a_joystick_controller_with_its_outer_loop_berths_in_calm_water() -> Non
             return dict(self.inner.step(sense, goal))
 
     sea = game("berth", 8, period=0.08, step=0.04, duration=90.0)
-    norms = piloted(sea, np.arange(8, dtype=np.uint64), Berthing)
+    norms = run_episodes(sea, np.arange(8, dtype=np.uint64), Berthing)
     assert (
         norms["is_success"].all()
         and (norms["distance_L"] < 0.1).all()
@@ -306,7 +306,7 @@ def test_other_boats_play_too() -> None:
 
 
 def test_numbers_drawn_by_lot_are_uniform_and_independent() -> None:
-    rows = episode_random.shares(
+    rows = episode_random.uniform_numbers(
         episode_random.episode(np.arange(20000, dtype=np.uint64), np.zeros(20000, dtype=np.uint64)),
         3,
     )

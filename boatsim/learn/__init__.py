@@ -1,6 +1,7 @@
 """Gymnasium environments of one boat and of many boats; importing the package registers them.
 
-`gymnasium.make("boatsim.learn:boatsim/Berth-v0")` imports the package. It needs `pip install "boatsim[gym]"`.
+`gymnasium.make("boatsim.learn:boatsim/Berth-v0")` imports the package. Gymnasium is installed with
+`pip install "boatsim[gym]"`.
 """
 
 from importlib.util import find_spec

@@ -5,11 +5,11 @@ from boatsim.learn.environment_options import TASKS, play
 
 
 def main() -> None:
-    """Print actions and observations of each environment."""
+    """Print the actions and observations of each environment."""
     for name in registration.ids():
-        told = registration.says(name)
-        game = play(n=1, **told)
-        print(f"{name}: {TASKS[told['task']].words}, with {told['vessel']}")
+        options = registration.options_of(name)
+        game = play(n=1, **options)
+        print(f"{name}: {TASKS[options['task']].words}, with {options['vessel']}")
         for action, words in zip(game.controls.names, game.controls.words, strict=True):
             print(f"  action {action:21s} -1 to 1    {words}")
         for signal in game.signals:

@@ -7,7 +7,8 @@ differential actions.
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import Literal
+from itertools import chain, starmap
+from typing import Literal, NamedTuple
 
 import numpy as np
 
@@ -17,148 +18,174 @@ from boatsim.physics.vessel import Vessel
 
 Use = Literal["manoeuvring", "underway"]
 SIDES = (-1, 1)  # port, starboard
-TURNS = ("turn", "inward")
+DIFFERENTIAL = ("turn", "inward")
 STARBOARD = "the bow to starboard"
 
 
 @dataclass(frozen=True)
-class Lever:
-    """A channel that is commanded."""
+class DriveChannel:
+    """A command channel that sets the thrust or the angle of a drive."""
 
     channel: str
-    role: str  # in which a law takes what it drives
-    turning: bool  # an angle
-    side: int  # -1 port, +1 starboard, 0 middle
-    sense: float  # +1 or -1: of an angle that turns the bow to starboard while going ahead
+    role: str  # in which an effect uses the actuator
+    turning: bool  # whether it is an angle
+    side: int  # -1 port, +1 starboard, 0 on the centre line
+    sense: float  # 1 if a positive angle turns the bow to starboard when going ahead, else -1
+
+
+class Action(NamedTuple):
+    """An action and its shares of the channels."""
+
+    name: str
+    words: str
+    shares: dict[str, float]
 
 
 @dataclass(frozen=True)
 class Controls:
-    """Actions (n, A) from -1 to 1 and the commands (n, C) that they are.
+    """Actions (n, A) from -1 to 1, and their conversion to commands (n, C).
 
-    Each channel gets the sum of its actions' shares, within -1 and 1; 0 is its neutral, 1 and -1 the ends of its range.
+    The value of a channel is the sum of its actions' shares, limited to -1 and 1; 0 is its neutral
+    position, 1 and -1 are the ends of its range.
     """
 
     names: tuple[str, ...]
     words: tuple[str, ...]
     pattern: Array  # (A, C) share of each channel per action
     neutral: Array  # (C,)
-    up: Array  # (C,) to the upper end
-    down: Array  # (C,) to the lower one
+    up: Array  # (C,) from neutral to the upper end
+    down: Array  # (C,) from the lower end to neutral
     ahead: Array  # (A,) the action of full thrust straight ahead
 
     def commands(self, actions: Array) -> Array:
-        """(n, C), in the order of the vessel's commands."""
+        """Return the commands (n, C), in the order of the vessel's channels.
+
+        Args:
+            actions: Actions (n, A) from -1 to 1.
+        """
         share = np.minimum(np.maximum(actions @ self.pattern, -1.0), 1.0)
         ahead = np.maximum(share, 0.0)
         return np.asarray(self.neutral + ahead * self.up + (share - ahead) * self.down, dtype=float)
 
 
 def controls(vessel: Vessel, use: Use) -> Controls:
-    """The actions of a vessel, "manoeuvring" at low speed or "underway". Raises BadInput for one without drives.
+    """Return the actions of a vessel.
 
-    A mirrored pair of drives: `thrust` of both and, when manoeuvring or where nothing else turns the boat, `turn`, port
-    against starboard. A mirrored pair of angles: `inward`, the thrusts towards the middle line, when manoeuvring, and
-    `helm`, both alike, underway. What has no mirror image is an action of its own.
+    A mirrored pair of thrusters has an action `thrust` for both. It also has `turn`, port against
+    starboard, if the use is manoeuvring or if nothing else turns the vessel. A mirrored pair of
+    angles has `inward`, thrusts towards the centre line, when manoeuvring, and `helm`, equal
+    angles, underway. A drive without a mirror image has its own action.
+
+    Args:
+        vessel: The vessel.
+        use: "manoeuvring" at low speed, or "underway".
+
+    Raises:
+        BadInput: The vessel has no drive.
     """
-    found = levers(vessel)
-    if not found:
+    channels = drive_channels(vessel)
+    if not channels:
         raise BadInput(f"{vessel.name} has no drive that a command moves")
-    pairs = list(_pairs(found))
-    single = [lever for lever in found if not any(lever in pair for pair in pairs)]
-    steered = any(lever.turning for lever in found)
-    rows: list[tuple[str, str, dict[str, float]]] = []
+    pairs = list(_mirrored_pairs(channels))
+    paired = set(chain(*pairs))
+    steered = any(drive.turning for drive in channels)
+    actions: list[Action] = []
     for port, starboard in pairs:
-        rows += _of_pair(port, starboard, use, steered)
-    for lever in single:
-        share = {lever.channel: lever.sense}
-        rows.append(("helm" if lever.turning else lever.role, _said(lever), share))
-    names = [name for name, _, _ in rows]
-    for i, (_, words, share) in enumerate(rows):
-        if names.count(names[i]) > 1:
-            rows[i] = (next(iter(share)), words, share)
-    return _made(vessel, rows)
+        actions += _pair_actions(port, starboard, use, steered)
+    for drive in channels:
+        if drive not in paired:
+            actions.append(_single_action(drive))
+    names = [action.name for action in actions]
+    for index, action in enumerate(actions):
+        if names.count(action.name) > 1:
+            actions[index] = action._replace(name=next(iter(action.shares)))
+    return _make_controls(vessel, actions)
 
 
-def levers(vessel: Vessel) -> list[Lever]:
-    """What is commanded: each actuator, or the raw command that feeds it."""
-    found: list[Lever] = []
+def drive_channels(vessel: Vessel) -> list[DriveChannel]:
+    """Return the channel of each actuator: itself, or the raw command that feeds it.
+
+    Args:
+        vessel: The vessel.
+    """
+    channels: list[DriveChannel] = []
     for actuator in vessel.actuators:
-        fed = [
-            source
-            for e in vessel.effects
-            if (source := vessel.feeding_command(e, actuator)) is not None
-        ]
-        channel = fed[0] if fed else actuator
-        turning = vessel.unit(actuator) == "rad" and "angle" in vessel.roles[actuator]
-        sense = _sense(vessel, actuator) if turning else 1.0
-        found.append(Lever(channel, vessel.roles[actuator], turning, vessel.side(actuator), sense))
-    return found
+        channel = actuator
+        for effect in vessel.effects:
+            source = vessel.feeding_command(effect, actuator)
+            if source is not None:
+                channel = source
+                break
+        role = vessel.roles[actuator]
+        turning = vessel.unit(actuator) == "rad" and "angle" in role
+        sense = 1.0
+        if turning:
+            sense = _turning_sense(vessel, actuator)
+        channels.append(DriveChannel(channel, role, turning, vessel.side(actuator), sense))
+    return channels
 
 
-def _sense(vessel: Vessel, actuator: str) -> float:
-    """Whether a positive angle turns the bow to starboard (1) or to port (-1)."""
-    if turns := vessel.commands[actuator].turns:
+def _turning_sense(vessel: Vessel, actuator: str) -> float:
+    """1 if a positive angle turns the bow to starboard, -1 if it turns it to port."""
+    turns = vessel.commands[actuator].turns
+    if turns:
         return 1.0 if turns == "starboard" else -1.0
-    places = [
-        float(getattr(e, "x", 1.0))
-        for e in vessel.effects
-        if actuator in vessel.specified_bindings(e).values()
-    ]
-    return -1.0 if places and places[0] < 0.0 else 1.0
+    for effect in vessel.effects:
+        if actuator in vessel.specified_bindings(effect).values():
+            astern_of_origin = float(getattr(effect, "x", 1.0)) < 0.0
+            return -1.0 if astern_of_origin else 1.0
+    return 1.0
 
 
-def _pairs(found: Sequence[Lever]) -> Iterator[tuple[Lever, Lever]]:
-    """Port and starboard drives of the same role, where there is one of each."""
-    for role in dict.fromkeys(lever.role for lever in found):
-        sides = {
-            side: [one for one in found if one.role == role and one.side == side] for side in SIDES
-        }
-        if all(len(there) == 1 for there in sides.values()):
-            yield sides[-1][0], sides[1][0]
+def _mirrored_pairs(
+    channels: Sequence[DriveChannel],
+) -> Iterator[tuple[DriveChannel, DriveChannel]]:
+    """Port and starboard drive of each role that has exactly one on each side."""
+    per_side: dict[str, dict[int, list[DriveChannel]]] = {}
+    for drive in channels:
+        sides = per_side.setdefault(drive.role, {})
+        sides.setdefault(drive.side, []).append(drive)
+    for sides in per_side.values():
+        port, starboard = (sides.get(side, []) for side in SIDES)
+        if len(port) == 1 and len(starboard) == 1:
+            yield port[0], starboard[0]
 
 
-def _of_pair(
-    port: Lever, starboard: Lever, use: Use, steered: bool
-) -> Iterator[tuple[str, str, dict[str, float]]]:
+def _pair_actions(
+    port: DriveChannel, starboard: DriveChannel, use: Use, steered: bool
+) -> Iterator[Action]:
+    both = (port.channel, starboard.channel)
+    opposite = {port.channel: 1.0, starboard.channel: -1.0}
     if port.turning and use == "manoeuvring":
-        yield (
-            "inward",
-            "both drives push towards the middle line",
-            {port.channel: 1.0, starboard.channel: -1.0},
-        )
+        yield Action("inward", "both drives push towards the middle line", opposite)
     elif port.turning:
-        yield (
-            "helm",
-            f"both drives turn {STARBOARD}",
-            dict.fromkeys(_channels(port, starboard), port.sense),
-        )
+        yield Action("helm", f"both drives turn {STARBOARD}", dict.fromkeys(both, port.sense))
     else:
-        yield port.role, "both drives ahead", dict.fromkeys(_channels(port, starboard), 1.0)
+        yield Action(port.role, "both drives ahead", dict.fromkeys(both, 1.0))
         if use == "manoeuvring" or not steered:
-            yield (
-                "turn",
-                "port ahead, starboard astern",
-                {port.channel: 1.0, starboard.channel: -1.0},
-            )
+            yield Action("turn", "port ahead, starboard astern", opposite)
 
 
-def _channels(port: Lever, starboard: Lever) -> tuple[str, str]:
-    return port.channel, starboard.channel
+def _single_action(drive: DriveChannel) -> Action:
+    shares = {drive.channel: drive.sense}
+    if drive.turning:
+        return Action("helm", f"{drive.channel}, turning {STARBOARD}", shares)
+    return Action(drive.role, drive.channel, shares)
 
 
-def _said(lever: Lever) -> str:
-    return f"{lever.channel}, turning {STARBOARD}" if lever.turning else lever.channel
+def _is_ahead(name: str, words: str, shares: dict[str, float]) -> bool:
+    """Whether an action is part of full thrust straight ahead."""
+    return name not in DIFFERENTIAL and not words.endswith(STARBOARD)
 
 
-def _made(vessel: Vessel, rows: Sequence[tuple[str, str, dict[str, float]]]) -> Controls:
+def _make_controls(vessel: Vessel, actions: Sequence[Action]) -> Controls:
     channels = list(vessel.commands)
-    pattern = np.array([[share.get(c, 0.0) for c in channels] for _, _, share in rows])
-    low, neutral, high = np.array(
-        [(c.low, c.neutral, c.high) for c in vessel.commands.values()], dtype=float
-    ).T
-    names, words, _ = zip(*rows, strict=True)
-    ahead = np.array(
-        [float(name not in TURNS and not words.endswith(STARBOARD)) for name, words, _ in rows]
-    )
+    pattern = np.zeros((len(actions), len(channels)))
+    for row, action in zip(pattern, actions, strict=True):
+        for channel, share in action.shares.items():
+            row[channels.index(channel)] = share
+    ranges = [(c.low, c.neutral, c.high) for c in vessel.commands.values()]
+    low, neutral, high = np.array(ranges, dtype=float).T
+    names, words, _ = zip(*actions, strict=True)
+    ahead = np.array(list(starmap(_is_ahead, actions)), dtype=float)
     return Controls(names, words, pattern, neutral, high - neutral, neutral - low, ahead)

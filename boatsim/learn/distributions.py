@@ -1,5 +1,6 @@
-"""Distributions of episode parameters: `uniform(0, 0.5)`, `normal(0.7, 0.05)`, `loguniform(0.1, 1)`.
+"""Distributions of episode parameters.
 
+Examples are `uniform(0, 0.5)`, `normal(0.7, 0.05)` and `loguniform(0.1, 1)`.
 The quantiles are computed directly, not with scipy.stats as in boatsim.sweeps.sampled_keys, because
 environments sample at every reset and a frozen distribution of scipy.stats is many times slower.
 """
@@ -7,6 +8,7 @@ environments sample at every reset and a frozen distribution of scipy.stats is m
 import re
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from scipy.special import ndtri
@@ -15,64 +17,78 @@ from boatsim.errors import BadInput, unknown_name
 from boatsim.physics.signals import Array
 
 CALL = re.compile(r"\s*(\w+)\s*\(([^,]+),([^,]+)\)\s*")
-LAWS: dict[
-    str, tuple[str, Callable[[float, float], bool], Callable[[Array, float, float], Array]]
-] = {
-    "uniform": (
-        "low, high",
-        lambda low, high: low < high,
-        lambda p, low, high: low + (high - low) * p,
-    ),
-    "normal": ("mean, sd", lambda mean, sd: sd > 0.0, lambda p, mean, sd: mean + sd * ndtri(p)),
-    "loguniform": (
-        "low, high",
-        lambda low, high: 0.0 < low < high,
-        lambda p, low, high: low * np.exp(np.log(high / low) * p),
-    ),
+
+
+class Distribution(NamedTuple):
+    """A family of distributions with two numbers."""
+
+    numbers: str  # names of the two numbers
+    valid: Callable[[float, float], bool]
+    quantiles: Callable[[Array, float, float], Array]
+
+
+def _uniform(probabilities: Array, low: float, high: float) -> Array:
+    return low + (high - low) * probabilities
+
+
+def _normal(probabilities: Array, mean: float, sd: float) -> Array:
+    return np.asarray(mean + sd * ndtri(probabilities), dtype=float)
+
+
+def _loguniform(probabilities: Array, low: float, high: float) -> Array:
+    return np.asarray(low * np.exp(np.log(high / low) * probabilities), dtype=float)
+
+
+DISTRIBUTIONS = {
+    "uniform": Distribution("low, high", lambda low, high: low < high, _uniform),
+    "normal": Distribution("mean, sd", lambda mean, sd: sd > 0.0, _normal),
+    "loguniform": Distribution("low, high", lambda low, high: 0.0 < low < high, _loguniform),
 }
 
 
 @dataclass(frozen=True)
-class Draw:
-    """One quantity and its distribution."""
+class SampledParameter:
+    """A parameter and its distribution."""
 
     key: str
-    law: str
+    distribution: str
     first: float
     second: float
 
-    def at(self, shares: Array) -> Array:
-        """Return the quantiles of the distribution.
+    def quantiles(self, probabilities: Array) -> Array:
+        """Return the quantiles (k,) of the distribution.
 
         Args:
-            shares: Probabilities (k,) between 0 and 1.
+            probabilities: Probabilities (k,) between 0 and 1.
         """
-        return LAWS[self.law][2](shares, self.first, self.second)
+        family = DISTRIBUTIONS[self.distribution]
+        return family.quantiles(probabilities, self.first, self.second)
 
 
-def draw(key: str, said: str) -> Draw:
-    """Return the sampled quantity of a key and a distribution.
+def make_sampled_parameter(key: str, text: str) -> SampledParameter:
+    """Return the sampled parameter of a key and a distribution.
 
     Args:
-        key: Key of the quantity.
-        said: Text of the distribution.
+        key: Key of the parameter, such as "wind.speed".
+        text: The distribution, such as "uniform(0, 0.5)".
 
     Raises:
         BadInput: The text is not a distribution.
     """
-    call = CALL.fullmatch(said)
-    allowed = ", ".join(f"{name}({numbers})" for name, (numbers, _, _) in LAWS.items())
+    call = CALL.fullmatch(text)
     if not call:
-        raise BadInput(f"vary {key} = {said!r}; allowed is {allowed}, a number, or for load a list")
+        allowed = ", ".join(f"{name}({family.numbers})" for name, family in DISTRIBUTIONS.items())
+        raise BadInput(f"vary {key} = {text!r}; allowed is {allowed}, a number, or for load a list")
     name = call[1]
-    if name not in LAWS:
-        raise BadInput(unknown_name(f"vary {key}: distribution", name, LAWS))
+    if name not in DISTRIBUTIONS:
+        raise BadInput(unknown_name(f"vary {key}: distribution", name, DISTRIBUTIONS))
+    family = DISTRIBUTIONS[name]
     try:
-        first, second = float(call[2]), float(call[3])
+        first = float(call[2])
+        second = float(call[3])
     except ValueError:
-        raise BadInput(
-            f"vary {key} = {said!r}; {name} takes two numbers: {LAWS[name][0]}"
-        ) from None
-    if not LAWS[name][1](first, second):
-        raise BadInput(f"vary {key} = {said!r}; its numbers {LAWS[name][0]} are out of order")
-    return Draw(key, name, first, second)
+        expected = f"{name} takes two numbers: {family.numbers}"
+        raise BadInput(f"vary {key} = {text!r}; {expected}") from None
+    if not family.valid(first, second):
+        raise BadInput(f"vary {key} = {text!r}; its numbers {family.numbers} are out of order")
+    return SampledParameter(key, name, first, second)

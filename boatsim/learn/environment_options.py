@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from typing import TypedDict, Unpack
 
 from boatsim.errors import BadInput, unknown_name
-from boatsim.learn.play import Made, Play, open_water
+from boatsim.learn.play import MakeWorld, Play, open_water
 from boatsim.learn.tasks.base import Task
 from boatsim.learn.tasks.berth import Berth
 from boatsim.learn.tasks.follow_path import FollowPath
@@ -19,57 +19,72 @@ TASKS: Mapping[str, type[Task]] = {
 }
 
 
-class Told(TypedDict, total=False):
+class EnvironmentOptions(TypedDict, total=False):
     """Optional arguments of an environment."""
 
-    vessel: str  # by name or path, a patched.toml too
-    scenario: str  # in its place: vessel, load, set values and effects are this one's
+    vessel: str  # name or path, also of a patched.toml
+    scenario: str  # instead of a vessel; its vessel, load, set values and effects are used
     load: Sequence[str]
-    effects: Sequence[Mapping[str, object]]  # on top of the vessel's own, as [[effect]] tables
-    # "effect.number" -> "uniform(low, high)", ...; "load" -> a list; "spread" -> factor of a
-    # diagnosis'
+    effects: Sequence[Mapping[str, object]]  # in addition to the vessel's, as [[effect]] tables
+    # "effect.parameter" -> "uniform(low, high)" and so on; "load" -> a list; "spread" -> a factor
+    # of the uncertainty that a diagnosis found
     vary: Vary
-    settings: Mapping[str, object]  # of the task: its tolerances
+    settings: Mapping[str, object]  # parameters of the task, such as its tolerances
     period: float  # [s] of a control step
     step: float  # [s] of the integration
     duration: float  # [s] of an episode
 
 
-def play(task: str, n: int, world: Made | None = None, **told: Unpack[Told]) -> Play:
+def play(
+    task: str, n: int, world: MakeWorld | None = None, **options: Unpack[EnvironmentOptions]
+) -> Play:
     """Return a simulation of n boats at a task.
 
     Args:
         task: Name of the task.
         n: Number of boats.
         world: Creates the simulator; None for a compiled batch in open water.
-        told: Further arguments, see `Told`.
+        options: Further arguments, see `EnvironmentOptions`.
 
     Raises:
         BadInput: An argument is unknown or wrong.
     """
     if task not in TASKS:
         raise BadInput(unknown_name("task", task, TASKS))
-    if unknown := [key for key in told if key not in Told.__annotations__]:
-        raise BadInput(unknown_name(f"{task}: argument", unknown[0], list(Told.__annotations__)))
+    known = EnvironmentOptions.__annotations__
+    for key in options:
+        if key not in known:
+            raise BadInput(unknown_name(f"{task}: argument", key, list(known)))
     try:
-        rules = TASKS[task].from_settings(told.get("settings", {}))
-        varied, tank = _boats(told)
-        times = (told.get("period", 0.2), told.get("step", 0.1), told.get("duration", 60.0))
-        return Play(rules, varied, n, *times, world or open_water(), tank)
+        rules = TASKS[task].from_settings(options.get("settings", {}))
+        varied, tank = _variation_and_tank(options)
+        return Play(
+            rules,
+            varied,
+            n,
+            period=options.get("period", 0.2),
+            step=options.get("step", 0.1),
+            duration=options.get("duration", 60.0),
+            world=world or open_water(),
+            tank=tank,
+        )
     except BadInput as error:
         raise BadInput(f"{task}: {error}") from None
 
 
-def _boats(told: Told) -> tuple[Variation, Tank | None]:
-    """Variation of the given vessel, or of that of a scenario, and the tank of the scenario."""
-    if "scenario" in told:
-        if clash := [key for key in ("load", "effects") if key in told]:
-            raise BadInput(f"scenario and {clash[0]} are both given; a scenario has its own")
-        file = scenarios.load(told["scenario"]).file
-        varied = variation(file.vessel, file.load, file.effect, told.get("vary"), file.set)
-        return varied, Tank(**file.tank.model_dump()) if file.tank else None
-    if "vessel" not in told:
+def _variation_and_tank(options: EnvironmentOptions) -> tuple[Variation, Tank | None]:
+    """Variation of the given vessel, or variation and tank of the given scenario."""
+    vary = options.get("vary")
+    if "scenario" in options:
+        for key in ("load", "effects"):
+            if key in options:
+                raise BadInput(f"scenario and {key} are both given; a scenario has its own")
+        file = scenarios.load(options["scenario"]).file
+        varied = variation(file.vessel, file.load, file.effect, vary, file.set)
+        if file.tank is None:
+            return varied, None
+        return varied, Tank(**file.tank.model_dump())
+    if "vessel" not in options:
         raise BadInput("give a boat: vessel = its name, or scenario")
-    return variation(
-        told["vessel"], told.get("load", ()), told.get("effects", ()), told.get("vary")
-    ), None
+    load = options.get("load", ())
+    return variation(options["vessel"], load, options.get("effects", ()), vary), None

@@ -7,12 +7,17 @@ from boatsim.physics.signals import Array
 
 Seeds = NDArray[np.uint64]
 
-STRIDE, STEP = np.uint64(0xD1342543DE82EF95), np.uint64(0x9E3779B97F4A7C15)
-FIRST, SECOND = np.uint64(0xBF58476D1CE4E5B9), np.uint64(0x94D049BB133111EB)
+# Multiplier of a linear congruential generator, from Steele and Vigna, "Computationally easy,
+# spectrally good multipliers for congruential pseudorandom number generators", 2022.
+STRIDE = np.uint64(0xD1342543DE82EF95)
+# Increment and multipliers of SplitMix64: Steele et al., OOPSLA 2014.
+STEP = np.uint64(0x9E3779B97F4A7C15)
+FIRST = np.uint64(0xBF58476D1CE4E5B9)
+SECOND = np.uint64(0x94D049BB133111EB)
 
 
-def _mixed(z: Seeds) -> Seeds:
-    """Mixing function of SplitMix (Steele et al., OOPSLA 2014)."""
+def _mix(z: Seeds) -> Seeds:
+    """Mixing function of SplitMix64."""
     z = (z ^ (z >> np.uint64(30))) * FIRST
     z = (z ^ (z >> np.uint64(27))) * SECOND
     return z ^ (z >> np.uint64(31))
@@ -25,15 +30,15 @@ def episode(seeds: Seeds, number: Seeds) -> Seeds:
         seeds: Seeds (k,) of the reset.
         number: Numbers (k,) of the episodes since the reset.
     """
-    return _mixed(_mixed(seeds * STRIDE + STEP) + number * STEP)
+    return _mix(_mix(seeds * STRIDE + STEP) + number * STEP)
 
 
-def shares(seeds: Seeds, count: int) -> Array:
+def uniform_numbers(seeds: Seeds, count: int) -> Array:
     """Return uniform random numbers (k, count) in the open interval from 0 to 1.
 
     Args:
         seeds: Seeds (k,).
         count: Numbers for each seed.
     """
-    z = _mixed(seeds[:, None] * STRIDE + np.arange(1, count + 1, dtype=np.uint64) * STEP)
+    z = _mix(seeds[:, None] * STRIDE + np.arange(1, count + 1, dtype=np.uint64) * STEP)
     return ((z >> np.uint64(11)).astype(float) + 0.5) / 9007199254740992.0  # 2^53

@@ -12,12 +12,17 @@ from boatsim.physics.vessel import Vessel
 from boatsim.simulate.batch import Batch
 
 GRAVITY = 9.81  # [m/s^2]
-ROW = 0.1  # time between two rows in sqrt(L/g)
-LONGEST = 4000  # rows after which a boat counts as one that does not move ahead
+# The run under full thrust that measures the speed: interval of its rows, and their number after
+# which a vessel counts as one that does not move ahead.
+ROW_INTERVAL = 0.1  # [sqrt(L/g)]
+MOST_ROWS = 4000
 
 
 class Motion(NamedTuple):
-    """(n,) each: place [m], heading [rad], velocity in body axes over ground [m/s, rad/s], SNAME."""
+    """Position [m], heading [rad] and velocity over ground in body axes [m/s, rad/s] of n boats.
+
+    Symbols are those of SNAME; each array has shape (n,).
+    """
 
     x: Array
     y: Array
@@ -28,11 +33,11 @@ class Motion(NamedTuple):
 
 
 class Hulls(NamedTuple):
-    """(n,) each [m]: half length, half beam, and how far mid-length is ahead of the origin of motion."""
+    """Waterplane rectangles of n boats; each array has shape (n,) and unit m."""
 
-    ahead: Array
-    aside: Array
-    middle: Array
+    ahead: Array  # half length
+    aside: Array  # half beam
+    middle: Array  # distance of mid-length ahead of the origin of motion
 
     @classmethod
     def of(cls, vessels: list[Vessel]) -> "Hulls":
@@ -41,17 +46,21 @@ class Hulls(NamedTuple):
         Args:
             vessels: The vessels.
         """
-        lengths = np.array([v.length for v in vessels])
-        to_transom = np.array([v.geometry.get("cg_from_transom", 0.5 * v.length) for v in vessels])
-        return cls(
-            0.5 * lengths, 0.5 * np.array([v.beam for v in vessels]), 0.5 * lengths - to_transom
-        )
+        lengths = []
+        beams = []
+        to_transom = []
+        for vessel in vessels:
+            lengths.append(vessel.length)
+            beams.append(vessel.beam)
+            to_transom.append(vessel.geometry.get("cg_from_transom", 0.5 * vessel.length))
+        half_lengths = 0.5 * np.array(lengths)
+        return cls(half_lengths, 0.5 * np.array(beams), half_lengths - np.array(to_transom))
 
     def at(self, index: Array) -> "Hulls":
         """Return the rectangles of boats.
 
         Args:
-            index: Numbers of the vessels of the boats.
+            index: Numbers (n,) of the vessels of the boats.
         """
         return Hulls(self.ahead[index], self.aside[index], self.middle[index])
 
@@ -62,7 +71,7 @@ class Scale:
 
     length: float  # [m]
     beam: float  # [m]
-    speed: float  # [m/s] one length from rest under full thrust
+    speed: float  # [m/s] one length after the start from rest under full thrust
 
 
 def scale_of(vessel: Vessel, full_ahead: Array) -> Scale:
@@ -76,16 +85,17 @@ def scale_of(vessel: Vessel, full_ahead: Array) -> Scale:
         BadInput: The vessel lacks a degree of freedom or does not move ahead.
     """
     if not {"surge", "sway", "yaw"} <= set(vessel.dof):
-        raise BadInput(f"{vessel.name} is not free in surge, sway and yaw, as a task must have it")
-    row = ROW * sqrt(vessel.length / GRAVITY)
-    place = columns(vessel)
-    rows = Batch(vessel, step=row / 10.0).rollout(
-        [0.0] * (2 * len(vessel.dof)), np.tile(full_ahead, (LONGEST, 1)), row
-    )[:, place]
-    gone = np.flatnonzero(np.hypot(rows[:, 0], rows[:, 1]) >= vessel.length)
-    if not len(gone):
+        raise BadInput(f"{vessel.name} lacks surge, sway or yaw; a task needs all three")
+    interval = ROW_INTERVAL * sqrt(vessel.length / GRAVITY)
+    at_rest = [0.0] * (2 * len(vessel.dof))
+    commands = np.tile(full_ahead, (MOST_ROWS, 1))
+    states = Batch(vessel, step=interval / 10.0).rollout(at_rest, commands, interval)
+    x, y, _, u, v, _ = states[:, columns(vessel)].T
+    beyond = np.flatnonzero(np.hypot(x, y) >= vessel.length)
+    if not len(beyond):
         raise BadInput(f"{vessel.name} does not get a length ahead under full thrust")
-    return Scale(vessel.length, vessel.beam, float(np.hypot(rows[gone[0], 3], rows[gone[0], 4])))
+    first = beyond[0]
+    return Scale(vessel.length, vessel.beam, float(np.hypot(u[first], v[first])))
 
 
 def columns(vessel: Vessel) -> list[int]:

@@ -12,7 +12,7 @@ from boatsim.simulate.engine import Engine, State
 from boatsim.simulate.world import Tank
 
 
-class Walled:
+class TankWorld:
     """A `World` of one boat; the model is rebuilt when an episode changes the vessel."""
 
     def __init__(self, vessels: Sequence[Vessel], step: float, tank: Tank) -> None:
@@ -23,29 +23,37 @@ class Walled:
             step: Integration step [s].
             tank: The tank.
         """
-        self.vessels, self.step, self.tank = list(vessels), step, tank
+        self.vessels = list(vessels)
+        self.step = step
+        self.tank = tank
         self.vessel = self.vessels[0]
         self._engine: Engine | None = None
 
     @property
     def engine(self) -> Engine:
         """The boat's engine."""
-        self._engine = self._engine or Engine(self.vessel, self.tank, self.step, show=False)
+        if self._engine is None:
+            self._engine = Engine(self.vessel, self.tank, self.step, show=False)
         return self._engine
 
     @property
     def states(self) -> Array:
-        """(1, 2 NQ) present state."""
+        """Present state (1, 2 NQ) in SI units."""
         state = self.engine.state
         return np.array([[getattr(state, name) for name in self._names]])
 
     @property
     def _names(self) -> list[str]:
-        """Symbols of a state's entries."""
+        """Symbols of the entries of a state."""
         return [State._fields[1:][k] for k in self.engine.code.SHOWS]
 
     def advance(self, commands: ArrayLike, steps: int = 1) -> None:
-        """Steps with commands (1, C) held."""
+        """Advance by integration steps with constant commands.
+
+        Args:
+            commands: Commands (1, C).
+            steps: Number of integration steps.
+        """
         row = np.asarray(commands, dtype=float)[0].tolist()
         self.engine.command(dict(zip(self.vessel.commands, row, strict=True)))
         self.engine.advance(steps)
@@ -53,43 +61,69 @@ class Walled:
     def reset(
         self, states: ArrayLike, commands: ArrayLike | None = None, boats: ArrayLike | None = None
     ) -> None:
-        """Put the boat at a state, its actuators settled at neutral."""
-        self.engine.reset(
-            State(
-                **dict(zip(self._names, np.asarray(states, dtype=float)[0].tolist(), strict=True))
-            )
-        )
+        """Set the state of the boat, with its actuators settled at neutral.
+
+        Args:
+            states: State (1, 2 NQ) in SI units.
+            commands: Ignored.
+            boats: Ignored.
+        """
+        row = np.asarray(states, dtype=float)[0].tolist()
+        self.engine.reset(State(**dict(zip(self._names, row, strict=True))))
 
     def assign(self, vessel: ArrayLike, boats: ArrayLike | None = None) -> None:
-        """Make it the vessel of that number."""
-        self.vessel, self._engine = self.vessels[int(np.asarray(vessel).reshape(-1)[0])], None
+        """Exchange the vessel.
+
+        Args:
+            vessel: Number (1,) of the new vessel.
+            boats: Ignored.
+        """
+        self._replace_vessel(self.vessels[int(np.asarray(vessel).reshape(-1)[0])])
 
     def set(self, parameter: str, values: ArrayLike, boats: ArrayLike | None = None) -> None:
-        """Give it another value of "effect.parameter"; what its file derives from it stays."""
+        """Set a parameter; values that the vessel file derives from it do not change.
+
+        Args:
+            parameter: "effect.parameter".
+            values: Value (1,) in the unit of the parameter.
+            boats: Ignored.
+        """
         owner, _, name = parameter.partition(".")
         value = float(np.asarray(values).reshape(-1)[0])
         if owner == "body":
             body = self.vessel.body.model_copy(update={name: value})
-            self.vessel, self._engine = replace(self.vessel, body=body), None
+            self._replace_vessel(replace(self.vessel, body=body))
             return
-        had = self.vessel.effect(owner)
-        effects = [e.having({name: value}) if e is had else e for e in self.vessel.effects]
-        self.vessel, self._engine = replace(self.vessel, effects=tuple(effects)), None
+        effects = list(self.vessel.effects)
+        for index, effect in enumerate(effects):
+            if effect is self.vessel.effect(owner):
+                effects[index] = effect.having({name: value})
+        self._replace_vessel(replace(self.vessel, effects=tuple(effects)))
 
     def get(self, parameter: str) -> Array:
-        """(1,) its value."""
+        """Return the value (1,) of a parameter.
+
+        Args:
+            parameter: "effect.parameter".
+        """
         owner, _, name = parameter.partition(".")
-        return np.array(
-            [
-                float(
-                    getattr(
-                        self.vessel.body if owner == "body" else self.vessel.effect(owner), name
-                    )
-                )
-            ]
-        )
+        holder: object = self.vessel.effect(owner)
+        if owner == "body":
+            holder = self.vessel.body
+        return np.array([float(getattr(holder, name))])
+
+    def _replace_vessel(self, vessel: Vessel) -> None:
+        self.vessel = vessel
+        self._engine = None
 
 
-def in_tank(vessels: Sequence[Vessel], n: int, step: float, tank: Tank) -> Walled:
-    """A world of one boat on MuJoCo."""
-    return Walled(vessels, step, tank)
+def in_tank(vessels: Sequence[Vessel], n: int, step: float, tank: Tank) -> TankWorld:
+    """Return a simulator of one boat on MuJoCo.
+
+    Args:
+        vessels: Vessels among which episodes choose.
+        n: Number of boats, which is 1.
+        step: Integration step [s].
+        tank: The tank.
+    """
+    return TankWorld(vessels, step, tank)

@@ -14,41 +14,59 @@ from boatsim.physics.signals import Array
 
 
 class Pilot(Protocol):
-    """What steers one boat."""
+    """Controller of one boat."""
 
     def step(self, sense: Sense) -> Mapping[str, float]:
-        """Commands for the next control step, by name."""
+        """Return the commands of the next control step by channel; the others are neutral.
+
+        Args:
+            sense: True motion of the boat.
+        """
 
 
-def piloted(play: Play, seeds: Seeds, made: Callable[[], Pilot]) -> dict[str, Array]:
-    """Norms (n,) of an episode of each boat of a play, by their seeds (n,)."""
+def run_episodes(play: Play, seeds: Seeds, make_pilot: Callable[[], Pilot]) -> dict[str, Array]:
+    """Run one episode of each boat with controllers.
+
+    Args:
+        play: The simulation of n boats.
+        seeds: Seeds (n,) of the episodes.
+        make_pilot: Creates the controller of a boat.
+
+    Returns:
+        Metrics (n,) of the episodes by name.
+
+    Raises:
+        BadInput: A controller sends a command that the vessel does not have.
+    """
     play.begin(seeds, np.arange(play.n))
-    pilots = [made() for _ in range(play.n)]
-    names = list(play.vessel.commands)
+    pilots = [make_pilot() for _ in range(play.n)]
     commands = play.commands.copy()
-    found: dict[str, Array] = {}
-    open_yet = np.ones(play.n, dtype=bool)
-    while open_yet.any():
-        t, rows = play.t, np.column_stack(play.motion).tolist()
-        for i in np.flatnonzero(open_yet).tolist():
-            commands[i] = _row(pilots[i].step(_sense(float(t[i]), rows[i])), names, play)
+    metrics: dict[str, Array] = {}
+    running = np.ones(play.n, dtype=bool)
+    while running.any():
+        times = play.t
+        motions = np.column_stack(play.motion).tolist()
+        for boat in np.flatnonzero(running).tolist():
+            sent = pilots[boat].step(_sense(float(times[boat]), motions[boat]))
+            commands[boat] = _command_row(sent, play)
         done = play.step_commands(commands)
-        new = open_yet[done.over]
-        for name, values in done.norms.items():
-            found.setdefault(name, np.zeros(play.n, dtype=values.dtype))[done.over[new]] = values[
-                new
-            ]
-        open_yet[done.over] = False
-    return found
+        first_end = running[done.finished]
+        for name, values in done.metrics.items():
+            column = metrics.setdefault(name, np.zeros(play.n, dtype=values.dtype))
+            column[done.finished[first_end]] = values[first_end]
+        running[done.finished] = False
+    return metrics
 
 
-def _sense(t: float, row: Sequence[float]) -> Sense:
-    x, y, psi, u, v, r = row
+def _sense(t: float, motion: Sequence[float]) -> Sense:
+    x, y, psi, u, v, r = motion
     return Sense(t, psi, r, nan, nan, u, v, x, y)
 
 
-def _row(sent: Mapping[str, float], names: Sequence[str], play: Play) -> list[float]:
-    if unknown := [name for name in sent if name not in names]:
-        raise BadInput(play.vessel.unknown_command(unknown[0]))
-    neutral = [c.neutral for c in play.vessel.commands.values()]
-    return [sent.get(name, usual) for name, usual in zip(names, neutral, strict=True)]
+def _command_row(sent: Mapping[str, float], play: Play) -> list[float]:
+    """Value of each channel; neutral if it was not sent."""
+    channels = play.vessel.commands
+    for name in sent:
+        if name not in channels:
+            raise BadInput(play.vessel.unknown_command(name))
+    return [sent.get(name, channel.neutral) for name, channel in channels.items()]

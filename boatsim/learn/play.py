@@ -23,55 +23,69 @@ from boatsim.simulate.batch import Batch
 from boatsim.simulate.world import Tank
 
 Flags = NDArray[np.bool_]
-Seen = NDArray[np.float32]
-EVERYONE = slice(None)
-Made = Callable[
-    [Sequence[Vessel], int, float, Tank], World
-]  # of vessels, number of boats, integration step [s]
+Observations = NDArray[np.float32]
+ALL_BOATS = slice(None)
+# Creates a simulator from vessels, number of boats, integration step [s] and tank.
+MakeWorld = Callable[[Sequence[Vessel], int, float, Tank], World]
 
 
-def open_water(threads: int | None = None) -> Made:
-    """Worlds that are compiled batches; a core for each of the threads, unless told all there are."""
+def open_water(threads: int | None = None) -> MakeWorld:
+    """Return a function that creates compiled batches in open water.
+
+    Args:
+        threads: Threads that share the boats; None for one per core.
+    """
     return lambda vessels, n, step, _: Batch(vessels, n, step, threads=threads)
 
 
 class Step(NamedTuple):
-    """(n,) each, of a control step; `norms` are those of the boats whose episode it ends, by number in `over`."""
+    """Result of a control step of n boats."""
 
-    reward: Array
-    ended: Flags
-    late: Flags  # out of time
-    over: Boats
-    norms: dict[str, Array]
+    reward: Array  # (n,)
+    terminated: Flags  # (n,)
+    truncated: Flags  # (n,) the time is over
+    finished: Boats  # (k,) numbers of the boats whose episodes end
+    metrics: dict[str, Array]  # (k,) each, of these episodes
 
 
 class Play:
-    """n boats at one task, each in an episode of its own."""
+    """Simulation of n boats at one task; each is in its own episode."""
 
     def __init__(
         self,
         task: Task,
         variation: Variation,
         n: int,
+        *,
         period: float,
         step: float,
         duration: float,
-        world: Made,
+        world: MakeWorld,
         tank: Tank | None = None,
     ) -> None:
-        """A control step of `period` s is a whole number of integration steps of `step` s. Raises BadInput.
+        """Create a simulation.
 
-        `tank` takes the place of the task's own basin.
+        Args:
+            task: The task.
+            variation: Vessels and parameters that vary between episodes.
+            n: Number of boats.
+            period: Duration of a control step [s].
+            step: Integration step [s]; the period is a multiple of it.
+            duration: Duration of an episode [s].
+            world: Creates the simulator.
+            tank: Replaces the basin of the task; None for that basin.
+
+        Raises:
+            BadInput: A duration is wrong, or the vessel cannot do the task.
         """
-        self.task, self.variation, self.n = task, variation, n
+        self.task = task
+        self.variation = variation
+        self.n = n
         if not 0.0 < period < inf:
             raise BadInput(f"period = {period:g} s; allowed is more than 0")
-        self.period, self.duration = period, duration
-        self.substeps = round(period / step) if 0.0 < step < inf else 0
-        if self.substeps < 1 or abs(self.substeps * step - period) > 1e-9 * period:
-            raise BadInput(
-                f"step = {step:g} s; allowed are whole parts of the period, {period:g} s"
-            )
+        self.period = period
+        self.duration = duration
+        self.substeps = _substeps(period, step)
         if not period <= duration < inf:
             raise BadInput(f"duration = {duration:g} s; allowed is at least a period, {period:g} s")
         self.vessel = variation.boats[0]
@@ -80,74 +94,99 @@ class Play:
         self.scale = scale_of(self.vessel, self.controls.commands(self.controls.ahead))
         self.tank = tank or task.basin(self.scale)
         self.world = world(variation.boats, n, step, self.tank)
-        self.commands = np.tile(self.controls.neutral, (n, 1))  # in force
+        self.commands = np.tile(self.controls.neutral, (n, 1))  # present commands
         self._columns = columns(self.vessel)
-        self._hulls_of = Hulls.of(variation.boats)
-        self._hulls = self._hulls_of.at(np.zeros(n, dtype=np.int64))
-        self._last = round(duration / period)  # control steps of an episode
+        self._vessel_hulls = Hulls.of(variation.boats)
+        self._hulls = self._vessel_hulls.at(np.zeros(n, dtype=np.int64))
+        self._last_step = round(duration / period)
         self._steps = np.zeros(n, dtype=np.int64)
         self._goal = np.zeros((n, type(task).goals))
         self._memory = np.zeros((n, type(task).memory))
         self._actions = np.zeros((n, len(self.controls.names)))
-        signals = task.signals(self.scale)
-        self.signals: tuple[Signal, ...] = (*signals, *self._commanded())
-        self._of_task, self._per_bound = (
-            len(signals),
-            np.array([[1.0 / s.bound] for s in self.signals]),
-        )
-        self._seen: tuple[Array, ...] = ()
+        task_signals = task.signals(self.scale)
+        self.signals: tuple[Signal, ...] = (*task_signals, *self._action_signals())
+        self._task_signals = len(task_signals)
+        self._per_bound = np.array([[1.0 / signal.bound] for signal in self.signals])
+        self._observed: tuple[Array, ...] = ()
 
-    def _commanded(self) -> list[Signal]:
-        pairs = zip(self.controls.names, self.controls.words, strict=True)
-        return [Signal(f"last_{name}", 1.0, f"action before: {words}") for name, words in pairs]
+    def _action_signals(self) -> list[Signal]:
+        """Observations of the last action."""
+        signals = []
+        for name, words in zip(self.controls.names, self.controls.words, strict=True):
+            signals.append(Signal(f"last_{name}", 1.0, f"action before: {words}"))
+        return signals
 
     def begin(self, seeds: episode_random.Seeds, boats: Boats) -> None:
-        """Begin episodes of boats (k,) by their seeds (k,)."""
-        task, size = self.task, self.variation.shares
-        lots = episode_random.shares(seeds, size + type(task).shares)
-        which = self.variation.begin(self.world, lots[:, :size], boats)
-        starts, goals = task.begin(lots[:, size:], self.scale)
+        """Begin episodes.
+
+        Args:
+            seeds: Seeds (k,) of the episodes.
+            boats: Numbers (k,) of the boats.
+        """
+        task = self.task
+        size = self.variation.random_numbers
+        uniforms = episode_random.uniform_numbers(seeds, size + type(task).random_numbers)
+        which = self.variation.begin(self.world, uniforms[:, :size], boats)
+        starts, goals = task.begin(uniforms[:, size:], self.scale)
         states = np.zeros((len(boats), 2 * len(self.vessel.dof)))
         states[:, self._columns] = starts
         self.world.reset(states, None, boats)
-        hulls = self._hulls_of.at(which)
-        for all_of, here in zip(self._hulls, hulls, strict=True):
-            all_of[boats] = here
-        self._steps[boats], self._goal[boats], self._actions[boats] = 0, goals, 0.0
+        hulls = self._vessel_hulls.at(which)
+        for present, new in zip(self._hulls, hulls, strict=True):
+            present[boats] = new
+        self._steps[boats] = 0
+        self._goal[boats] = goals
+        self._actions[boats] = 0.0
         self.commands[boats] = self.controls.neutral
-        seen = task.look(Motion(*starts.T), np.zeros(len(boats)), goals, hulls, self.scale)
-        self._memory[boats] = task.start(seen, self.scale)
-        if not self._seen:  # the very first, of all boats
-            self._look()
-        for now, new in zip(self._seen, seen, strict=True):
-            now[boats] = new
+        observed = task.observe(Motion(*starts.T), np.zeros(len(boats)), goals, hulls, self.scale)
+        self._memory[boats] = task.start(observed, self.scale)
+        if not self._observed:  # the first call
+            self._observe()
+        for present, new in zip(self._observed, observed, strict=True):
+            present[boats] = new
 
     def step(self, actions: Array) -> Step:
-        """One control step with actions (n, A), from -1 to 1."""
+        """Simulate one control step.
+
+        Args:
+            actions: Actions (n, A); they are limited to -1 and 1.
+
+        Returns:
+            Rewards, ends and metrics of ended episodes.
+        """
         self._actions[:] = np.minimum(np.maximum(actions, -1.0), 1.0)
         return self.step_commands(self.controls.commands(self._actions))
 
     def step_commands(self, commands: Array) -> Step:
-        """One control step with commands (n, C) as the vessel takes them."""
+        """Simulate one control step with commands of the vessel.
+
+        Args:
+            commands: Commands (n, C) in the units of the channels.
+
+        Returns:
+            Rewards, ends and metrics of ended episodes.
+        """
         self.commands = commands
         self.world.advance(commands, self.substeps)
         self._steps += 1
-        self._look()
-        reward, ended = self.task.judge(self._seen, self._memory, self.period, self.scale)
-        late = (self._steps >= self._last) & ~ended
-        over = np.flatnonzero(ended | late)
-        norms: dict[str, Array] = {}
-        if len(over):
-            seen, memory = tuple(x[over] for x in self._seen), self._memory[over]
-            norms = self.task.norms(seen, memory, self.t[over], self.scale)
-        return Step(reward, ended, late, over, norms)
+        self._observe()
+        outcome = self.task.evaluate(self._observed, self._memory, self.period, self.scale)
+        reward, terminated = outcome
+        truncated = (self._steps >= self._last_step) & ~terminated
+        finished = np.flatnonzero(terminated | truncated)
+        metrics: dict[str, Array] = {}
+        if len(finished):
+            observed = tuple([values[finished] for values in self._observed])
+            memory = self._memory[finished]
+            metrics = self.task.metrics(observed, memory, self.t[finished], self.scale)
+        return Step(reward, terminated, truncated, finished, metrics)
 
-    def _look(self) -> None:
-        self._seen = self.task.look(self.motion, self.t, self._goal, self._hulls, self.scale)
+    def _observe(self) -> None:
+        self._observed = self.task.observe(self.motion, self.t, self._goal, self._hulls, self.scale)
 
     @property
     def t(self) -> Array:
-        """(n,) time [s] of each boat's episode."""
+        """Time (n,) [s] since the start of each boat's episode."""
         return np.asarray(self._steps * self.period, dtype=float)
 
     @property
@@ -155,17 +194,32 @@ class Play:
         """True motion of all boats."""
         return Motion(*self.world.states.T[self._columns])
 
-    def observations(self, normalised: bool, boats: Boats | slice = EVERYONE) -> Seen:
-        """(k, S) of boats as `signals` list them, over their bounds or in their units, clipped to these."""
+    def observations(self, normalised: bool, boats: Boats | slice = ALL_BOATS) -> Observations:
+        """Return observations (k, S) in the order of `signals`, limited to their bounds.
+
+        Args:
+            normalised: Whether they are divided by their bounds; otherwise in their units.
+            boats: Numbers (k,) of the boats.
+        """
         actions = self._actions[boats].T
         rows = np.empty((len(self.signals), actions.shape[1]))
-        for row, seen in zip(rows, self._seen[: self._of_task], strict=False):
-            row[:] = seen[boats]
-        rows[self._of_task :] = actions
+        for row, observed in zip(rows, self._observed[: self._task_signals], strict=False):
+            row[:] = observed[boats]
+        rows[self._task_signals :] = actions
         rows *= self._per_bound
         np.minimum(np.maximum(rows, -1.0, out=rows), 1.0, out=rows)
-        if not isfinite(rows.sum()):  # of a boat whose motion ran away; its episode ends
+        if not isfinite(rows.sum()):  # the motion of a boat diverged; its episode ends
             np.nan_to_num(rows, copy=False)
         if not normalised:
             rows /= self._per_bound
         return np.ascontiguousarray(rows.T, dtype=np.float32)
+
+
+def _substeps(period: float, step: float) -> int:
+    """Integration steps per control step."""
+    substeps = 0
+    if 0.0 < step < inf:
+        substeps = round(period / step)
+    if substeps < 1 or abs(substeps * step - period) > 1e-9 * period:
+        raise BadInput(f"step = {step:g} s; allowed are whole parts of the period, {period:g} s")
+    return substeps

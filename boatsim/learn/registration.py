@@ -9,7 +9,12 @@ import gymnasium
 from boatsim.files import read_toml
 
 IDS = Path(__file__).with_name("ids.toml")
-VARY = "vary"  # of all ids
+VARY = "vary"  # table of ids.toml that applies to all ids
+
+
+def _tables() -> dict[str, Mapping[str, Any]]:
+    """Tables of ids.toml."""
+    return {k: v for k, v in read_toml(IDS).items() if isinstance(v, Mapping)}
 
 
 def ids() -> list[str]:
@@ -17,25 +22,23 @@ def ids() -> list[str]:
     return [name for name in read_toml(IDS) if name != VARY]
 
 
-def says(name: str) -> dict[str, Any]:
+def options_of(name: str) -> dict[str, Any]:
     """Return the arguments of an environment.
 
     Args:
         name: Its id.
     """
-    said: dict[str, Mapping[str, Any]] = {
-        k: v for k, v in read_toml(IDS).items() if isinstance(v, Mapping)
-    }
-    return {VARY: dict(said[VARY]), **said[name]}
+    tables = _tables()
+    return {VARY: dict(tables[VARY]), **tables[name]}
 
 
 def register() -> None:
-    """Register every id of ids.toml that is not registered yet."""
+    """Register the ids of ids.toml that are not registered yet."""
     for name in ids():
         if name not in gymnasium.registry:
             gymnasium.register(
                 name,
                 entry_point="boatsim.learn.single:BoatEnv",
                 vector_entry_point="boatsim.learn.vector:BoatVectorEnv",
-                kwargs=says(name),
+                kwargs=options_of(name),
             )

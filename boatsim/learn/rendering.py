@@ -9,21 +9,27 @@ from boatsim.simulate.engine import Engine, State
 HEIGHT, WIDTH = 480, 640
 
 
-class Picture:
-    """A camera over the first boat of a play, in the task's basin."""
+class Camera:
+    """A camera over the first boat of a simulation, in the basin of its task."""
 
     def __init__(self, play: Play) -> None:
+        """Create a camera.
+
+        Args:
+            play: The simulation.
+        """
         from boatsim.simulate.env import BoatPhysics  # chooses a renderer, which takes a second
 
         self.play = play
         self.physics = BoatPhysics(Engine(play.vessel, play.tank, play.period))
 
-    def taken(self) -> NDArray[np.uint8]:
+    def picture(self) -> NDArray[np.uint8]:
         """Return the present picture (480, 640, 3)."""
-        m = {name: float(x[0]) for name, x in self.play.motion._asdict().items()}
+        motion = [float(values[0]) for values in self.play.motion]
+        state = State(**dict(zip(self.play.motion._fields, motion, strict=True)))
+        commands = self.play.commands[0].tolist()
         self.physics.engine.reset(
-            State(**m),
-            dict(zip(self.play.vessel.commands, self.play.commands[0].tolist(), strict=True)),
+            state, dict(zip(self.play.vessel.commands, commands, strict=True))
         )
         self.physics.forward()
         picture: NDArray[np.uint8] = self.physics.render(HEIGHT, WIDTH, camera_id="above")

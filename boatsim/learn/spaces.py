@@ -1,4 +1,4 @@
-"""Gymnasium's spaces of a play."""
+"""Gymnasium spaces of a simulation."""
 
 import numpy as np
 from gymnasium.spaces import Box
@@ -7,8 +7,15 @@ from boatsim.learn.play import Play
 
 
 def boxes(play: Play, normalised: bool) -> tuple[Box[np.float32], Box[np.float32]]:
-    """Spaces of the observation and of the action of one boat."""
-    bound = np.array([1.0 if normalised else s.bound for s in play.signals], dtype=np.float32)
-    return Box(-bound, bound, dtype=np.float32), Box(
-        -1.0, 1.0, (len(play.controls.names),), dtype=np.float32
-    )
+    """Return the spaces of the observation and of the action of one boat.
+
+    Args:
+        play: The simulation.
+        normalised: Whether observations are divided by their bounds.
+    """
+    bound = np.array([signal.bound for signal in play.signals], dtype=np.float32)
+    if normalised:
+        bound = np.ones(len(play.signals), dtype=np.float32)
+    actions = (len(play.controls.names),)
+    observation = Box(-bound, bound, dtype=np.float32)
+    return observation, Box(-1.0, 1.0, actions, dtype=np.float32)

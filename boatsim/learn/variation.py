@@ -7,7 +7,7 @@ import numpy as np
 
 from boatsim.errors import BadInput, unknown_name
 from boatsim.learn.backends import Boats, World
-from boatsim.learn.distributions import Draw, draw
+from boatsim.learn.distributions import SampledParameter, make_sampled_parameter
 from boatsim.physics import vessel as vessels
 from boatsim.physics.kinds.effect import Effect
 from boatsim.physics.param import Param
@@ -24,28 +24,57 @@ class Variation:
     """Vessels of all loads, and the parameters that are sampled when an episode starts."""
 
     def __init__(
-        self, boats: Sequence[Vessel], draws: Sequence[Draw], spread: Spread | None
+        self,
+        boats: Sequence[Vessel],
+        sampled: Sequence[SampledParameter],
+        spread: Spread | None,
     ) -> None:
-        self.boats, self.draws, self.spread = list(boats), list(draws), spread
-        self._about = {d.key: _about(self.boats[0], d.key) for d in self.draws}
+        """Create a variation.
+
+        Args:
+            boats: The vessel under each load.
+            sampled: Parameters with their distributions.
+            spread: Uncertainty that a diagnosis found; None for none.
+        """
+        self.boats = list(boats)
+        self.sampled = list(sampled)
+        self.spread = spread
+        self._definitions: dict[str, Param] = {}
+        for parameter in self.sampled:
+            self._definitions[parameter.key] = _definition(self.boats[0], parameter.key)
 
     @property
-    def shares(self) -> int:
-        """Number of random numbers that an episode needs."""
-        return 1 + len(self.draws) + (len(self.spread.sd) if self.spread else 0)
+    def random_numbers(self) -> int:
+        """Number of uniform random numbers that an episode needs."""
+        count = 1 + len(self.sampled)
+        if self.spread:
+            count += len(self.spread.sd)
+        return count
 
-    def begin(self, world: World, lots: Array, some: Boats) -> Array:
-        """Make boats `some` (k,) of a world anew from numbers drawn by lot (k, `shares`); which of `boats` each is."""
-        which = np.minimum((lots[:, 0] * len(self.boats)).astype(np.int64), len(self.boats) - 1)
-        world.assign(which, some)
+    def begin(self, world: World, uniforms: Array, boats: Boats) -> Array:
+        """Assign vessels and sampled parameters to boats.
+
+        Args:
+            world: Simulator of the boats.
+            uniforms: Uniform random numbers (k, `random_numbers`) between 0 and 1.
+            boats: Numbers (k,) of the boats.
+
+        Returns:
+            Numbers (k,) of the assigned vessels.
+        """
+        last = len(self.boats) - 1
+        which = np.minimum((uniforms[:, 0] * len(self.boats)).astype(np.int64), last)
+        world.assign(which, boats)
         if self.spread is not None:
-            for name, change in self.spread.sample(lots[:, 1 + len(self.draws) :]).items():
-                about = _about(self.boats[0], name)
-                value = world.get(name)[some] * change.factor + change.shift
-                world.set(name, np.clip(value, about.low, about.high), some)
-        for k, one in enumerate(self.draws, 1):
-            about = self._about[one.key]
-            world.set(one.key, np.clip(one.at(lots[:, k]), about.low, about.high), some)
+            changes = self.spread.sample(uniforms[:, 1 + len(self.sampled) :])
+            for name, change in changes.items():
+                param = _definition(self.boats[0], name)
+                value = world.get(name)[boats] * change.factor + change.shift
+                world.set(name, np.clip(value, param.low, param.high), boats)
+        for column, sampled in enumerate(self.sampled, 1):
+            param = self._definitions[sampled.key]
+            value = sampled.quantiles(uniforms[:, column])
+            world.set(sampled.key, np.clip(value, param.low, param.high), boats)
         return which
 
 
@@ -56,83 +85,107 @@ def variation(
     vary: Vary | None = None,
     settings: Mapping[str, Mapping[str, object]] | None = None,
 ) -> Variation:
-    """Variation of a vessel. `vary` says of "effect.number" a distribution, or the number that it is; of "load" a list.
+    """Return the variation of a vessel.
 
-    An effect that the vessel lacks is added with its defaults. What a diagnosis found of the vessel (`[spread]` of a
-    patched.toml) is drawn too, unless `vary` has `"spread" = 0`. Raises BadInput.
+    The uncertainty that a diagnosis found (`[spread]` of a patched.toml) is sampled too, unless
+    `vary` has `"spread" = 0`.
+
+    Args:
+        vessel: Name or path of the vessel.
+        load: Load conditions.
+        effects: Effects in addition to the vessel's, as `[[effect]]` tables.
+        vary: "effect.parameter" with a distribution or a fixed value; "load" with a list; "spread"
+            with a factor. An effect that the vessel lacks is added with its defaults.
+        settings: Values that replace those of the vessel file, per effect.
+
+    Raises:
+        BadInput: A name, distribution or value is wrong.
     """
-    said = dict(vary or {})
-    loads = said.pop(LOAD, None)
-    wide = said.pop("spread", 1.0)
+    varied = dict(vary or {})
+    loads = varied.pop(LOAD, None)
+    factor = varied.pop("spread", 1.0)
     if isinstance(loads, str) or (loads is not None and not isinstance(loads, Sequence)):
         raise BadInput(
             f'vary load = {loads!r}; allowed is a list such as ["light, narrow", "heavy, wide"]'
         )
-    if not isinstance(wide, int | float) or wide < 0.0:
+    if not isinstance(factor, int | float) or factor < 0.0:
         raise BadInput(
-            f"vary spread = {wide!r}; allowed is a factor of the diagnosis' spread, 0 for none"
+            f"vary spread = {factor!r}; allowed is a factor of the diagnosis' spread, 0 for none"
         )
-    extra = [*effects, *({"use": name} for name in _lacking(vessel, load, effects, said))]
-    boats = [
-        vessels.load(vessel, _parted(one), settings, extra) for one in loads or [", ".join(load)]
-    ]
-    held = {key: float(x) for key, x in said.items() if isinstance(x, int | float)}
-    boats = [_having(boat, held) for boat in boats]
-    draws = [draw(key, str(law)) for key, law in said.items() if key not in held]
+    extra = [*effects]
+    for name in _missing_effects(vessel, load, effects, varied):
+        extra.append({"use": name})
+    fixed = {key: float(x) for key, x in varied.items() if isinstance(x, int | float)}
+    boats = []
+    for conditions in loads or [", ".join(load)]:
+        boat = vessels.load(vessel, _split_load(conditions), settings, extra)
+        boats.append(_with_values(boat, fixed))
+    sampled = []
+    for key, text in varied.items():
+        if key not in fixed:
+            sampled.append(make_sampled_parameter(key, str(text)))
     spread = boats[0].spread
-    return Variation(
-        boats, draws, spread.scaled(wide) if spread is not None and wide > 0.0 else None
-    )
+    if spread is not None:
+        spread = spread.scaled(factor) if factor > 0.0 else None
+    return Variation(boats, sampled, spread)
 
 
-def _parted(loads: str) -> list[str]:
-    return [one.strip() for one in loads.split(",") if one.strip()]
+def _split_load(conditions: str) -> list[str]:
+    return list(filter(None, map(str.strip, conditions.split(","))))
 
 
-def _lacking(
+def _missing_effects(
     vessel: str,
     load: Sequence[str],
     effects: Sequence[Mapping[str, object]],
-    said: Mapping[str, object],
+    varied: Mapping[str, object],
 ) -> list[str]:
     """Effects that vary and that the vessel lacks."""
     own = vessels.load(vessel, list(load), extra=list(effects))
-    ideas = dict.fromkeys(key.partition(".")[0] for key in said if key not in BODY)
-    return [idea for idea in ideas if own.effect(idea) is None]
+    missing: dict[str, None] = {}
+    for key in varied:
+        name = key.partition(".")[0]
+        if key not in BODY and own.effect(name) is None:
+            missing[name] = None
+    return list(missing)
 
 
-def _having(boat: Vessel, held: Mapping[str, float]) -> Vessel:
+def _with_values(boat: Vessel, values: Mapping[str, float]) -> Vessel:
     """The vessel with other parameter values."""
-    for key, x in held.items():
+    for key, value in values.items():
         if key in BODY:
-            about = BODY[key][1]
-            if not about.low <= x <= about.high:
-                raise BadInput(
-                    f"vary {key} = {x:g}; allowed {about.low:g} to {about.high:g} {about.unit}"
-                )
-            boat = replace(boat, body=boat.body.model_copy(update={key.partition(".")[2]: x}))
+            param = BODY[key][1]
+            if not param.low <= value <= param.high:
+                allowed = f"{param.low:g} to {param.high:g} {param.unit}"
+                raise BadInput(f"vary {key} = {value:g}; allowed {allowed}")
+            body = boat.body.model_copy(update={key.partition(".")[2]: value})
+            boat = replace(boat, body=body)
             continue
-        owner, name = _owner(boat, key)
-        effects = [e.having({name: x}) if e is owner else e for e in boat.effects]
+        owner, name = _effect_and_parameter(boat, key)
+        effects = list(boat.effects)
+        for index, effect in enumerate(effects):
+            if effect is owner:
+                effects[index] = effect.having({name: value})
         boat = replace(boat, effects=tuple(effects))
     return boat
 
 
-def _owner(boat: Vessel, key: str) -> tuple[Effect, str]:
-    """The effect of "effect.number". Raises BadInput."""
-    idea, _, name = key.partition(".")
-    effect = boat.effect(idea)
+def _effect_and_parameter(boat: Vessel, key: str) -> tuple[Effect, str]:
+    """The effect of "effect.parameter" and the name of the parameter."""
+    owner, _, name = key.partition(".")
+    effect = boat.effect(owner)
     if effect is None:
-        raise BadInput(
-            unknown_name(f"vary: {boat.name}: effect", idea, [e.name for e in boat.effects])
-        )
-    if name not in type(effect).params():
-        raise BadInput(unknown_name(f"vary: {idea}: number", name, type(effect).params()))
+        names = [effect.name for effect in boat.effects]
+        raise BadInput(unknown_name(f"vary: {boat.name}: effect", owner, names))
+    params = type(effect).params()
+    if name not in params:
+        raise BadInput(unknown_name(f"vary: {owner}: number", name, params))
     return effect, name
 
 
-def _about(boat: Vessel, key: str) -> Param:
+def _definition(boat: Vessel, key: str) -> Param:
+    """Unit and bounds of a parameter."""
     if key in BODY:
         return BODY[key][1]
-    effect, name = _owner(boat, key)
+    effect, name = _effect_and_parameter(boat, key)
     return type(effect).params()[name]

@@ -21,30 +21,35 @@ Flags = NDArray[np.bool_]
 
 
 class Signal(NamedTuple):
-    """One observation: within -bound and bound, beyond which it is clipped."""
+    """One observation; it is limited to the interval from -bound to bound."""
 
     name: str  # with its unit
-    bound: float  # in that unit
+    bound: float  # in this unit
     words: str
 
 
-class Judged(NamedTuple):
-    """(n,) each, of a control step at its end."""
+class Outcome(NamedTuple):
+    """Reward and end of a control step of n boats."""
 
-    reward: Array
-    ended: Flags  # for good: what was asked is done, or can no longer be
+    reward: Array  # (n,)
+    terminated: Flags  # (n,) the task is done, or can no longer be done
 
 
 @dataclass(frozen=True)
 class Task(Checked):
-    """Base of tasks. Lengths are in boat lengths `scale.length`, speeds in `scale.speed` where not in m/s."""
+    """Base class of tasks.
+
+    Lengths are in boat lengths `scale.length` and speeds in `scale.speed`, unless a name or unit
+    shows another one. A task computes `observed` quantities once per control step, each an array (n,). The
+    first ones are those of `signals`; the others are used only by its own methods.
+    """
 
     words: ClassVar[str] = ""
-    use: ClassVar[Use] = "manoeuvring"  # which actions it takes
-    least_actions: ClassVar[int] = 2  # with fewer it can not be done
-    shares: ClassVar[int] = 0  # numbers drawn by lot for an episode
-    goals: ClassVar[int] = 0  # numbers that an episode's goal is made of
-    memory: ClassVar[int] = 0  # numbers that are remembered along an episode
+    use: ClassVar[Use] = "manoeuvring"  # selects the actions of the vessel
+    least_actions: ClassVar[int] = 2  # number of actions that the task needs
+    random_numbers: ClassVar[int] = 0  # uniform random numbers at the start of an episode
+    goals: ClassVar[int] = 0  # numbers that define the goal of an episode
+    memory: ClassVar[int] = 0  # numbers that are kept from one control step to the next
 
     @classmethod
     def idea(cls) -> str:
@@ -52,7 +57,15 @@ class Task(Checked):
         return snake_case(cls.__name__)
 
     def check(self, name: str, actions: Sequence[str]) -> None:
-        """Raises BadInput for a boat that moves in too few ways."""
+        """Check that a vessel has enough actions.
+
+        Args:
+            name: Name of the vessel.
+            actions: Names of its actions.
+
+        Raises:
+            BadInput: The vessel has fewer actions than the task needs.
+        """
         if len(actions) < type(self).least_actions:
             raise BadInput(
                 f"{name} can be moved by {', '.join(actions)} only; {type(self).__name__} needs "
@@ -68,34 +81,79 @@ class Task(Checked):
         """
 
     def basin(self, scale: Scale) -> Tank:
-        """Water and walls, for pictures and for MuJoCo: open water unless a task says otherwise."""
+        """Return water and walls for pictures and for MuJoCo: open water unless overridden.
+
+        Args:
+            scale: Scale of the vessel.
+        """
         return Tank(12.0 * scale.length, 12.0 * scale.length, scale.length, walls=False)
 
     @abstractmethod
-    def begin(self, shares: Array, scale: Scale) -> tuple[Array, Array]:
-        """Starts (k, 6) of x, y, psi, u, v, r and goals (k, G), from numbers drawn by lot (k, `shares`)."""
+    def begin(self, uniforms: Array, scale: Scale) -> tuple[Array, Array]:
+        """Return the starts and goals of episodes.
+
+        Args:
+            uniforms: Random numbers (k, `random_numbers`) between 0 and 1.
+            scale: Scale of the vessel.
+
+        Returns:
+            Starts (k, 6): x, y [m], psi [rad], u, v [m/s], r [rad/s]; and goals (k, `goals`).
+        """
 
     @abstractmethod
-    def look(
+    def observe(
         self, m: Motion, t: Array, goal: Array, hulls: Hulls, scale: Scale
     ) -> tuple[Array, ...]:
-        """What the task needs to know of boats at times t [s] of their episodes; the first entries are `signals`."""
+        """Return the observed quantities (n,).
 
-    def start(self, seen: tuple[Array, ...], scale: Scale) -> Array:
-        """(k, `memory`) what is remembered at the beginning."""
-        return np.zeros((len(seen[0]), type(self).memory))
+        Args:
+            m: True motion.
+            t: Time (n,) [s] since the start of the episode.
+            goal: Goals (n, `goals`).
+            hulls: Waterplane rectangles of the boats.
+            scale: Scale of the vessel.
+        """
+
+    def start(self, observed: tuple[Array, ...], scale: Scale) -> Array:
+        """Return the memory (k, `memory`) at the start of episodes: zeros unless overridden.
+
+        Args:
+            observed: Observed quantities (k,).
+            scale: Scale of the vessel.
+        """
+        return np.zeros((len(observed[0]), type(self).memory))
 
     @abstractmethod
-    def judge(self, seen: tuple[Array, ...], memory: Array, period: float, scale: Scale) -> Judged:
-        """Reward of a control step of `period` s by what is seen at its end; `memory` goes on in place."""
+    def evaluate(
+        self, observed: tuple[Array, ...], memory: Array, period: float, scale: Scale
+    ) -> Outcome:
+        """Return the reward and the end of a control step.
+
+        Args:
+            observed: Observed quantities (n,) at the end of the control step.
+            memory: Memory (n, `memory`), which is updated in place.
+            period: Duration of the control step [s].
+            scale: Scale of the vessel.
+        """
 
     @abstractmethod
-    def norms(
-        self, seen: tuple[Array, ...], memory: Array, t: Array, scale: Scale
+    def metrics(
+        self, observed: tuple[Array, ...], memory: Array, t: Array, scale: Scale
     ) -> dict[str, Array]:
-        """How episodes went that end now, `is_success` among it."""
+        """Return the metrics (k,) of ended episodes by name, among them `is_success`.
+
+        Args:
+            observed: Observed quantities (k,) at the end.
+            memory: Memory (k, `memory`).
+            t: Duration (k,) [s] of the episodes.
+            scale: Scale of the vessel.
+        """
 
 
-def wrapped(angle: Array) -> Array:
-    """The same directions inside [-pi, pi)."""
+def wrap_angle(angle: Array) -> Array:
+    """Return angles in the interval [-pi, pi).
+
+    Args:
+        angle: Angles [rad], of any shape.
+    """
     return (angle + pi) % (2.0 * pi) - pi

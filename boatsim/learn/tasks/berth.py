@@ -7,140 +7,166 @@ from typing import ClassVar
 import numpy as np
 
 from boatsim.learn.hull import Hulls, Motion, Scale
-from boatsim.learn.tasks.base import Judged, Signal, Task, wrapped
+from boatsim.learn.tasks.base import Outcome, Signal, Task, wrap_angle
 from boatsim.physics.base import param
 from boatsim.physics.signals import Array
 from boatsim.simulate.world import Tank
 
-POTENTIAL, HELD = 0, 1  # what is remembered
-PAID, LOST = 10.0, 5.0  # for lying at the berth; off by touching the quay or leaving the harbour
-HASTE = 0.02  # off for each length that full speed would have gone
-TURN = 0.5  # lengths that a radian of heading counts for
-CLOSE = 0.2  # a second at the berth, less the further from it
+# Columns of the memory: remaining distance and heading error [L], and time at the berth [s].
+POTENTIAL, HELD = range(2)
+# Weights of the reward; its unit is one boat length of progress.
+BERTHED = 10.0  # reward for a completed berthing
+LOST = 5.0  # penalty for touching the quay or leaving the harbour
+TIME_COST = 0.02  # penalty for the time in which full speed covers one length
+HEADING_WEIGHT = 0.5  # lengths per radian of heading error
+CLOSENESS = 0.2  # reward per second at the berth; lower further away
 
 
 @dataclass(frozen=True)
 class Berth(Task):
-    """Lie `gap` off a quay to port, on its heading, for `hold` seconds.
+    """Lie at a distance `gap` from a quay to port, on its heading, for `hold` seconds.
 
-    Done, and the episode ends, when the origin of motion has been within `place` of the berth, the heading within
-    `heading` and the speed of bow and stern below `speed` for `hold` seconds. Over as well, and failed, when a corner
-    of the hull touches the quay or the boat is `reach` away.
+    The task is done, and the episode ends, when the origin of motion has been within `place` of the
+    berth, the heading within `heading` and the speed of bow and stern below `speed` for `hold`
+    seconds. The episode also ends, as a failure, when a corner of the hull touches the quay or the
+    boat is `reach` away.
 
-    The reward is progress: how much smaller the distance [L] + 0.5 |heading error| [rad] got, and 0.2 a
-    second times exp(-e / 2), e the sum of squares of distance, heading error and speed over their tolerances, 0.1 L, 5
-    degrees and 0.03 L/s unless told. Off go 0.02 for the time that full speed takes for a length, 5 for touching or
-    leaving; 10 come on top when it is done.
+    The reward is the progress, which is the decrease of distance [L] + 0.5 |heading error| [rad],
+    plus 0.2 per second times exp(-e / 2). Here e is the sum of squares of distance, heading error
+    and speed, each divided by its tolerance: 0.1 L, 5 degrees and 0.03 L/s by default. Penalties
+    are 0.02 for the time in which full speed covers one length, and 5 for touching the quay or
+    leaving. A completed berthing adds 10.
     """
 
     words: ClassVar[str] = "from a few lengths off alongside a quay, and lie there"
-    shares: ClassVar[int] = 6
+    random_numbers: ClassVar[int] = 6
     memory: ClassVar[int] = 2
 
     place: float = param(
-        0.1, low=0.01, high=1.0, unit="L", words="from the berth, where it counts as there"
+        0.1, low=0.01, high=1.0, unit="L", words="largest distance from the berth of a success"
     )
     heading: float = param(
-        radians(5.0), low=0.01, high=0.5, unit="rad", words="off the quay's, the same"
+        radians(5.0), low=0.01, high=0.5, unit="rad", words="largest heading error of a success"
     )
-    speed: float = param(0.03, low=0.005, high=0.5, unit="L/s", words="of bow and stern, the same")
-    hold: float = param(2.0, low=0.0, high=60.0, unit="s", words="how long it must lie so")
+    speed: float = param(
+        0.03, low=0.005, high=0.5, unit="L/s", words="largest speed of bow and stern of a success"
+    )
+    hold: float = param(
+        2.0, low=0.0, high=60.0, unit="s", words="time that the boat must stay at the berth"
+    )
     gap: float = param(
         0.15, low=0.0, high=2.0, unit="L", words="between the quay and the boat's side at the berth"
     )
     near: float = param(
-        1.5, low=0.3, high=10.0, unit="L", words="from the berth, the nearest start"
+        1.5, low=0.3, high=10.0, unit="L", words="smallest distance from the berth at the start"
     )
-    far: float = param(3.0, low=0.3, high=10.0, unit="L", words="the furthest start")
+    far: float = param(
+        3.0, low=0.3, high=10.0, unit="L", words="largest distance from the berth at the start"
+    )
     reach: float = param(
-        6.0, low=1.0, high=20.0, unit="L", words="from the berth, where the harbour ends"
+        6.0, low=1.0, high=20.0, unit="L", words="distance from the berth at which an episode ends"
     )
 
     def signals(self, scale: Scale) -> tuple[Signal, ...]:
-        """Where the berth lies from the boat, far and near, heading off the quay's, speed, room to the quay."""
-        far, near = self.reach * scale.length, 0.5 * scale.length
+        """Return place of the berth, heading error, velocity and room; see `Task`."""
+        far = self.reach * scale.length
+        near = 0.5 * scale.length
         return (
-            Signal("ahead_m", far, "the berth, ahead of the boat"),
-            Signal("starboard_m", far, "the berth, to starboard of the boat"),
-            Signal("ahead_near_m", near, "the same with a bound for the last half length"),
-            Signal("starboard_near_m", near, "the same"),
-            Signal("sin_heading", 1.0, "of the heading, off the quay's"),
-            Signal("cos_heading", 1.0, "the same"),
-            Signal(
-                "heading_near_rad", 0.3, "off the quay's, with a bound for the last of the turn"
-            ),
+            Signal("ahead_m", far, "distance of the berth ahead of the boat"),
+            Signal("starboard_m", far, "distance of the berth to starboard of the boat"),
+            Signal("ahead_near_m", near, "the same with a bound of half a length"),
+            Signal("starboard_near_m", near, "the same with a bound of half a length"),
+            Signal("sin_heading", 1.0, "sine of the heading relative to the quay's"),
+            Signal("cos_heading", 1.0, "cosine of it"),
+            Signal("heading_near_rad", 0.3, "heading relative to the quay's, with a small bound"),
             Signal("u_mps", 0.5 * scale.speed, "surge velocity over ground"),
             Signal("v_mps", 0.5 * scale.speed, "sway velocity over ground"),
             Signal("r_radps", scale.speed / scale.length, "yaw rate"),
             Signal(
                 "u_near_mps",
                 0.1 * scale.speed,
-                "surge velocity, with a bound for the last of the way",
+                "surge velocity with a small bound",
             ),
-            Signal("v_near_mps", 0.1 * scale.speed, "the same of sway"),
-            Signal("r_near_radps", 0.2 * scale.speed / scale.length, "the same of yaw"),
-            Signal("quay_m", scale.length, "between the quay and the nearest corner of the hull"),
+            Signal("v_near_mps", 0.1 * scale.speed, "sway velocity with a small bound"),
+            Signal("r_near_radps", 0.2 * scale.speed / scale.length, "yaw rate with a small bound"),
+            Signal(
+                "quay_m",
+                scale.length,
+                "distance between the quay and the nearest corner of the hull",
+            ),
         )
 
     def basin(self, scale: Scale) -> Tank:
-        """The quay is its wall to port."""
+        """Return the basin, whose wall to port is the quay; see `Task`."""
         width = 2.0 * self.reach * scale.length
         quay = 0.5 * scale.beam + self.gap * scale.length
         return Tank(width, width, scale.length, centre=(0.0, 0.5 * width - quay))
 
-    def begin(self, shares: Array, scale: Scale) -> tuple[Array, Array]:
-        """Off the quay within 60 degrees of square, on any heading within a right angle, almost at rest."""
-        away = scale.length * (self.near + (self.far - self.near) * shares[:, 0])
-        bearing = radians(60.0) * (2.0 * shares[:, 1] - 1.0)
-        moving = 0.05 * scale.speed * (2.0 * shares[:, 3:6] - 1.0) * (1.0, 1.0, 1.0 / scale.length)
-        psi = radians(90.0) * (2.0 * shares[:, 2] - 1.0)
-        return np.column_stack(
-            [away * np.sin(bearing), away * np.cos(bearing), psi, moving]
-        ), np.empty((len(psi), 0))
+    def begin(self, uniforms: Array, scale: Scale) -> tuple[Array, Array]:
+        """Return starts almost at rest, at headings within 90 degrees of the quay's.
 
-    def look(
+        The bearing from the berth is within 60 degrees of the normal to the quay; see `Task`.
+        """
+        away = scale.length * (self.near + (self.far - self.near) * uniforms[:, 0])
+        bearing = radians(60.0) * (2.0 * uniforms[:, 1] - 1.0)
+        per_length = (1.0, 1.0, 1.0 / scale.length)
+        velocity = 0.05 * scale.speed * (2.0 * uniforms[:, 3:6] - 1.0) * per_length
+        psi = radians(90.0) * (2.0 * uniforms[:, 2] - 1.0)
+        x = away * np.sin(bearing)
+        y = away * np.cos(bearing)
+        return np.column_stack([x, y, psi, velocity]), np.empty((len(psi), 0))
+
+    def observe(
         self, m: Motion, t: Array, goal: Array, hulls: Hulls, scale: Scale
     ) -> tuple[Array, ...]:
-        """Signals, then distance [L], heading error [rad] and speed of bow and stern [L/s]."""
-        c, s, off = np.cos(m.psi), np.sin(m.psi), wrapped(m.psi)
-        ahead, starboard = -c * m.x - s * m.y, s * m.x - c * m.y
+        """Return the signals, distance [L], heading error [rad] and speed [L/s]; see `Task`."""
+        c = np.cos(m.psi)
+        s = np.sin(m.psi)
+        off = wrap_angle(m.psi)
+        ahead = -c * m.x - s * m.y
+        starboard = s * m.x - c * m.y
         quay = m.y + (0.5 * scale.beam + self.gap * scale.length)
         room = quay + hulls.middle * s - hulls.ahead * np.abs(s) - hulls.aside * np.abs(c)
         distance = np.sqrt(m.x * m.x + m.y * m.y) / scale.length
         aside = np.abs(m.v) + 0.5 * scale.length * np.abs(m.r)
         speed = np.sqrt(m.u * m.u + aside * aside) / scale.length
-        seen = (ahead, starboard, ahead, starboard, s, c, off, m.u, m.v, m.r, m.u, m.v, m.r, room)
-        return (*seen, distance, off, speed)
+        place = (ahead, starboard, ahead, starboard)
+        velocity = (m.u, m.v, m.r)
+        return (*place, s, c, off, *velocity, *velocity, room, distance, off, speed)
 
-    def start(self, seen: tuple[Array, ...], scale: Scale) -> Array:
-        """How far there is to go, and no time held."""
-        *_, distance, off, _ = seen
-        return np.column_stack([distance + TURN * np.abs(off), np.zeros(len(off))])
+    def start(self, observed: tuple[Array, ...], scale: Scale) -> Array:
+        """Return the initial distance and heading error, and no time at the berth; see `Task`."""
+        *_, distance, off, _ = observed
+        potential = distance + HEADING_WEIGHT * np.abs(off)
+        return np.column_stack([potential, np.zeros(len(off))])
 
-    def judge(self, seen: tuple[Array, ...], memory: Array, period: float, scale: Scale) -> Judged:
-        """Progress, haste, and what the end is worth."""
-        room, distance, off, speed = seen[-4:]
-        turned = np.abs(off)
-        left = distance + TURN * turned
-        there = (distance < self.place) & (turned < self.heading) & (speed < self.speed)
-        memory[:, HELD] = (memory[:, HELD] + period) * there
-        off_by = (
-            (distance / self.place) ** 2 + (turned / self.heading) ** 2 + (speed / self.speed) ** 2
+    def evaluate(
+        self, observed: tuple[Array, ...], memory: Array, period: float, scale: Scale
+    ) -> Outcome:
+        """Reward progress and nearness, penalise time and failure; see `Task`."""
+        room, distance, off, speed = observed[-4:]
+        heading_error = np.abs(off)
+        potential = distance + HEADING_WEIGHT * heading_error
+        placed = (distance < self.place) & (heading_error < self.heading)
+        memory[:, HELD] = (memory[:, HELD] + period) * (placed & (speed < self.speed))
+        squared_errors = (
+            (distance / self.place) ** 2
+            + (heading_error / self.heading) ** 2
+            + (speed / self.speed) ** 2
         )
         done = memory[:, HELD] >= self.hold - 1e-9
         lost = ~((room > 0.0) & (distance < self.reach))
-        reward = (
-            memory[:, POTENTIAL] - left - HASTE * period * scale.speed / scale.length + PAID * done
-        )
-        reward += CLOSE * period * np.exp(-0.5 * off_by)
-        memory[:, POTENTIAL] = left
-        return Judged(np.where(lost, -LOST, reward), done | lost)
+        time_cost = TIME_COST * period * scale.speed / scale.length
+        reward = memory[:, POTENTIAL] - potential - time_cost + BERTHED * done
+        reward += CLOSENESS * period * np.exp(-0.5 * squared_errors)
+        memory[:, POTENTIAL] = potential
+        return Outcome(np.where(lost, -LOST, reward), done | lost)
 
-    def norms(
-        self, seen: tuple[Array, ...], memory: Array, t: Array, scale: Scale
+    def metrics(
+        self, observed: tuple[Array, ...], memory: Array, t: Array, scale: Scale
     ) -> dict[str, Array]:
-        """Where and how the boat is at the end."""
-        room, distance, off, speed = seen[-4:]
+        """Return place, heading error and speed at the end; see `Task`."""
+        room, distance, off, speed = observed[-4:]
         touched = ~(room > 0.0)
         return {
             "is_success": (memory[:, HELD] >= self.hold - 1e-9) & ~touched,

@@ -7,96 +7,114 @@ from typing import ClassVar
 import numpy as np
 
 from boatsim.learn.hull import Hulls, Motion, Scale
-from boatsim.learn.tasks.base import Judged, Signal, Task, wrapped
+from boatsim.learn.tasks.base import Outcome, Signal, Task, wrap_angle
 from boatsim.physics.base import param
 from boatsim.physics.signals import Array
 
-TIME, PLACE, TURN = (
-    0,
-    1,
-    2,
-)  # what is remembered: after `settle`, seconds and integrals of squared errors
-LOST = 10.0  # off for leaving
+# Columns of the memory: time [s] after `settle`, and integrals of the squared distance [L^2 s] and
+# of the squared heading error [rad^2 s].
+TIME, SQUARED_DISTANCE, SQUARED_HEADING = range(3)
+LOST = 10.0  # penalty for leaving; larger than the reward of several seconds
 
 
 @dataclass(frozen=True)
 class HoldStation(Task):
-    """Stay within `place` of a station, rms, and within `heading` of its heading, once `settle` seconds have gone.
+    """Stay within `place` (rms) of a station and within `heading` (rms) of its heading.
 
-    The reward of a control step is (1 - e) times its share of a second, e = 2 tanh(distance [L]) + |heading error|
-    [rad] / 2 + 0.2 (speed / full speed)^2. An episode ends with time, or, with 10 off, when the boat is `reach` away.
+    Both count after `settle` seconds. The reward of a control step is (1 - e) times its duration in
+    seconds, with e = 2 tanh(distance [L]) + |heading error| [rad] / 2 + 0.2 (speed / full speed)^2.
+    An episode ends when the time is over, or, with a penalty of 10, when the boat is `reach` away.
     """
 
     words: ClassVar[str] = "stay at a place on a heading while wind and current push"
-    shares: ClassVar[int] = 3
+    random_numbers: ClassVar[int] = 3
     memory: ClassVar[int] = 3
 
     place: float = param(
-        0.2, low=0.01, high=2.0, unit="L", words="rms distance that counts as holding it"
+        0.2, low=0.01, high=2.0, unit="L", words="largest rms distance of a success"
     )
     heading: float = param(
-        radians(10.0), low=0.01, high=1.0, unit="rad", words="rms heading error, the same"
+        radians(10.0),
+        low=0.01,
+        high=1.0,
+        unit="rad",
+        words="largest rms heading error of a success",
     )
-    settle: float = param(20.0, low=0.0, high=1e4, unit="s", words="after which it counts")
+    settle: float = param(20.0, low=0.0, high=1e4, unit="s", words="time after which errors count")
     start_within: float = param(
-        0.5, low=0.0, high=5.0, unit="L", words="of the station, each way, at the start"
+        0.5,
+        low=0.0,
+        high=5.0,
+        unit="L",
+        words="largest distance from the station at the start, along each axis",
     )
     reach: float = param(
-        4.0, low=0.5, high=20.0, unit="L", words="from the station, where it is lost"
+        4.0,
+        low=0.5,
+        high=20.0,
+        unit="L",
+        words="distance from the station at which an episode ends",
     )
 
     def signals(self, scale: Scale) -> tuple[Signal, ...]:
-        """Where the station lies from the boat, heading off its own, speed."""
-        far, near = self.reach * scale.length, 0.5 * scale.length
+        """Return the place of the station, the heading error and the velocity; see `Task`."""
+        far = self.reach * scale.length
+        near = 0.5 * scale.length
         return (
-            Signal("ahead_m", far, "the station, ahead of the boat"),
-            Signal("starboard_m", far, "the station, to starboard of the boat"),
-            Signal("ahead_near_m", near, "the same with a bound for the last half length"),
-            Signal("starboard_near_m", near, "the same"),
-            Signal("sin_heading", 1.0, "of the heading, off the station's"),
-            Signal("cos_heading", 1.0, "the same"),
+            Signal("ahead_m", far, "distance of the station ahead of the boat"),
+            Signal("starboard_m", far, "distance of the station to starboard of the boat"),
+            Signal("ahead_near_m", near, "the same with a bound of half a length"),
+            Signal("starboard_near_m", near, "the same with a bound of half a length"),
+            Signal("sin_heading", 1.0, "sine of the heading relative to the station's"),
+            Signal("cos_heading", 1.0, "cosine of it"),
             Signal("u_mps", 0.5 * scale.speed, "surge velocity over ground"),
             Signal("v_mps", 0.5 * scale.speed, "sway velocity over ground"),
             Signal("r_radps", scale.speed / scale.length, "yaw rate"),
         )
 
-    def begin(self, shares: Array, scale: Scale) -> tuple[Array, Array]:
-        """Near the station, at rest, within half a radian of its heading."""
-        off = 2.0 * shares - 1.0
-        place = self.start_within * scale.length * off[:, :2]
-        return np.column_stack([place, 0.5 * off[:, 2], np.zeros((len(off), 3))]), np.empty(
-            (len(off), 0)
-        )
+    def begin(self, uniforms: Array, scale: Scale) -> tuple[Array, Array]:
+        """Return starts at rest near the station, within half a radian of its heading."""
+        offset = 2.0 * uniforms - 1.0
+        place = self.start_within * scale.length * offset[:, :2]
+        at_rest = np.zeros((len(offset), 3))
+        starts = np.column_stack([place, 0.5 * offset[:, 2], at_rest])
+        return starts, np.empty((len(offset), 0))
 
-    def look(
+    def observe(
         self, m: Motion, t: Array, goal: Array, hulls: Hulls, scale: Scale
     ) -> tuple[Array, ...]:
-        """Signals, then distance [L], heading error [rad], and the time."""
-        c, s = np.cos(m.psi), np.sin(m.psi)
-        ahead, starboard = -c * m.x - s * m.y, s * m.x - c * m.y
+        """Return the signals, distance [L], heading error [rad] and time [s]; see `Task`."""
+        c = np.cos(m.psi)
+        s = np.sin(m.psi)
+        ahead = -c * m.x - s * m.y
+        starboard = s * m.x - c * m.y
         distance = np.sqrt(m.x * m.x + m.y * m.y) / scale.length
-        seen = (ahead, starboard, ahead, starboard, s, c, m.u, m.v, m.r)
-        return (*seen, distance, np.abs(wrapped(m.psi)), t)
+        signals = (ahead, starboard, ahead, starboard, s, c, m.u, m.v, m.r)
+        return (*signals, distance, np.abs(wrap_angle(m.psi)), t)
 
-    def judge(self, seen: tuple[Array, ...], memory: Array, period: float, scale: Scale) -> Judged:
-        """How near, how straight, how quiet."""
-        u, v, _, distance, turned, t = seen[-6:]
+    def evaluate(
+        self, observed: tuple[Array, ...], memory: Array, period: float, scale: Scale
+    ) -> Outcome:
+        """Reward nearness, heading and low speed; see `Task`."""
+        u, v, _, distance, heading_error, t = observed[-6:]
         counts = period * (t > self.settle)
         memory[:, TIME] += counts
-        memory[:, PLACE] += counts * distance * distance
-        memory[:, TURN] += counts * turned * turned
+        memory[:, SQUARED_DISTANCE] += counts * distance * distance
+        memory[:, SQUARED_HEADING] += counts * heading_error * heading_error
         lost = ~(distance < self.reach)
-        quiet = (u * u + v * v) / scale.speed**2
-        reward = period * (1.0 - 2.0 * np.tanh(distance) - turned / 2.0 - 0.2 * quiet)
-        return Judged(np.where(lost, -LOST, reward), lost)
+        speed_squared = (u * u + v * v) / scale.speed**2
+        rate = 1.0 - 2.0 * np.tanh(distance) - heading_error / 2.0 - 0.2 * speed_squared
+        reward = period * rate
+        return Outcome(np.where(lost, -LOST, reward), lost)
 
-    def norms(
-        self, seen: tuple[Array, ...], memory: Array, t: Array, scale: Scale
+    def metrics(
+        self, observed: tuple[Array, ...], memory: Array, t: Array, scale: Scale
     ) -> dict[str, Array]:
-        """Root mean squares after settling."""
-        _, _, _, distance, _, _ = seen[-6:]
+        """Return root mean squares after settling; see `Task`."""
+        _, _, _, distance, _, _ = observed[-6:]
         time = np.maximum(memory[:, TIME], 1e-9)
-        place, turn = np.sqrt(memory[:, PLACE] / time), np.sqrt(memory[:, TURN] / time)
+        place = np.sqrt(memory[:, SQUARED_DISTANCE] / time)
+        turn = np.sqrt(memory[:, SQUARED_HEADING] / time)
         held = (memory[:, TIME] > 0.0) & (distance < self.reach)
         return {
             "is_success": held & (place < self.place) & (turn < self.heading),
