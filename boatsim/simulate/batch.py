@@ -87,7 +87,9 @@ class Batch:
         self._check_alike()
         self._values = [p.values() for p in self.programs]
         self._on, self._none = self.program.switches(), np.zeros(self.code.NQ)
-        self._seeds = np.zeros(self.n, dtype=int) if seeds is None else np.asarray(seeds, dtype=int)
+        self._seeds = np.zeros(self.n, dtype=int)
+        if seeds is not None:
+            self._seeds = np.asarray(seeds, dtype=int)
         if self._seeds.shape != (self.n,):
             raise BadInput(f"{self._seeds.size} seeds for {self.n} boats; allowed is one for each")
         self.t = np.zeros(self.n)  # [s]
@@ -175,7 +177,7 @@ class Batch:
         self._y[chosen] = (
             0.0 if states is None else self.program.joint_rates(self._rows(states, chosen))
         )
-        self._commands[chosen] = self._clip(commands if commands is not None else {}, chosen)
+        self._commands[chosen] = self._clip({} if commands is None else commands, chosen)
         self.t[chosen] = 0.0
         self.shared(lambda some: self.code.settle_boats(some, self.fleet), chosen)
 
@@ -186,7 +188,7 @@ class Batch:
 
         Args:
             commands: Commands by channel, (C,) or (n, C), which act within their ranges; without
-                the measured inputs, these stay as they are. None: the commands in force.
+                the measured inputs, these do not change. None: the commands in force.
             steps: Number of steps.
 
         Raises:
@@ -255,7 +257,7 @@ class Batch:
         values: Array | None = None,
         t0: float = 0.0,
     ) -> Array:
-        """Compute a free run of the first vessel; the state of the batch stays as it is.
+        """Compute a free run of the first vessel without changing the state of the batch.
 
         Args:
             start: State (2 NQ,).

@@ -145,7 +145,7 @@ def cases(path: Path) -> list[str]:
                 "allowed are letters, digits and _ . + -"
             )
         if name in found:
-            raise BadInput(f"{path.name}: case {name!r} occurs twice; each needs a name of its own")
+            raise BadInput(f"{path.name}: case {name!r} occurs twice; names must be different")
         found.append(name)
     return found
 

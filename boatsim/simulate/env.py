@@ -27,12 +27,13 @@ from boatsim.simulate.world import Tank
 
 if find_spec("dm_control") is None:
     raise ImportError(
-        "boatsim.simulate.env needs dm_control, which is not installed: it supports Python up to 3.12"
+        "boatsim.simulate.env needs dm_control, which is not installed: "
+        "it supports Python up to 3.12"
     )
 
 
 def _choose_renderer() -> None:
-    """Without a display choose EGL, OSMesa or none, since dm_control would choose GLFW, which fails."""
+    """Without a display choose EGL, OSMesa or none; dm_control would choose GLFW, which fails."""
     if {"MUJOCO_GL", "DISPLAY", "WAYLAND_DISPLAY"} & os.environ.keys():
         return
     for name in ("egl", "osmesa", "off"):

@@ -4,7 +4,7 @@ The vessels run on the compiled engine: there are no walls and no camera, and `[
 the run. The sensor noise of a vessel is that of `boatsim run` with its seed.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from math import inf
 
@@ -122,18 +122,17 @@ class Fleet:
         Args:
             starts: State (2 NQ,) or states (n, 2 NQ); default: the scenario's start.
         """
-        start, symbols = (
-            self.scenario.file.start,
-            [s.symbol for s in signals_of(self.batch.vessels[0].dof)],
-        )
-        moving = start.motion()
-        first = self._each[0].initial_commands() if isinstance(self._each[0], Controller) else {}
-        commands = command_row(self.batch.vessels[0], {**first, **start.commands})
-        self.batch.reset([moving[s] for s in symbols] if starts is None else starts, commands)
+        start, vessel = self.scenario.file.start, self.batch.vessels[0]
+        commands: dict[str, float] = {}
+        if isinstance(self._each[0], Controller):
+            commands.update(self._each[0].initial_commands())
+        commands.update(start.commands)
+        if starts is None:
+            motion = start.motion()
+            starts = [motion[signal.symbol] for signal in signals_of(vessel.dof)]
+        self.batch.reset(starts, command_row(vessel, commands))
         self._aboard.saturated[:] = 0.0
-        self._aboard.random = [
-            np.random.default_rng(np.random.SeedSequence(int(s)).spawn(1)[0]) for s in self.seeds
-        ]
+        self._aboard.random = list(map(_sensor_generator, self.seeds.tolist()))
         self._periods = 0
         self._controlled.reset()
 
@@ -152,30 +151,34 @@ class Fleet:
         Returns:
             The rows, with the first and the last state.
         """
-        last = round((self.scenario.file.duration if seconds is None else seconds) / self._period)
+        if seconds is None:
+            seconds = self.scenario.file.duration
+        last = round(seconds / self._period)
         every = max(1, round(min(log, last * self._period) / self._period))
         at = [*range(0, last, every), last]
-        boat = self.batch.vessels[0]
-        t, states = np.empty(len(at)), np.empty((len(at), len(self.batch), self.batch._y.shape[1]))
-        commands = np.empty((len(at), len(self.batch), len(boat.inputs)))
+        vessel, shape = self.batch.vessels[0], (len(at), len(self.batch))
+        t = np.empty(len(at))
+        states = np.empty((*shape, self.batch.fleet.y.shape[1]))
+        commands = np.empty((*shape, len(vessel.inputs)))
         for i, periods in enumerate(at):
             if i:
-                self._sail(periods - at[i - 1])
-            t[i], states[i], commands[i] = (
-                self._periods * self._period,
-                self.batch.states,
-                self.batch._commands,
-            )
-        named = tuple(s.column for s in signals_of(boat.dof))
-        return Voyages(t, named, states, boat.inputs, commands)
+                self._advance(periods - at[i - 1])
+            t[i] = self._periods * self._period
+            states[i] = self.batch.states
+            commands[i] = self.batch.commands
+        columns = tuple(signal.column for signal in signals_of(vessel.dof))
+        return Voyages(t, columns, states, vessel.inputs, commands)
 
-    def _sail(self, periods: int) -> None:
+    def _advance(self, periods: int) -> None:
         """Advance by control periods, some at a time."""
         while periods > 0:
             part = min(periods, AHEAD)
-            times = [(self._periods + k) * self._period for k in range(part)]
-            self._controlled.advance([self.scenario.goal_at(t) for t in times])
-            self._periods, periods = self._periods + part, periods - part
+            goals: list[Mapping[str, float]] = []
+            for number in range(self._periods, self._periods + part):
+                goals.append(self.scenario.goal_at(number * self._period))
+            self._controlled.advance(goals)
+            self._periods += part
+            periods -= part
 
     def _control(self) -> PassedOn | ByFunction | ByLaw:
         """How the vessels are controlled. Raises BadInput."""
@@ -191,3 +194,8 @@ class Fleet:
                 "one that passes its goals on, and functions over all boats"
             )
         return PassedOn(self._aboard)
+
+
+def _sensor_generator(seed: int) -> np.random.Generator:
+    """Generator of the inertial unit, as in a run with this seed."""
+    return np.random.default_rng(np.random.SeedSequence(seed).spawn(1)[0])

@@ -22,10 +22,11 @@ REFERENCE = "reference_"  # prefix of estimates that are reference signals of a 
 class RunLog:
     """Writes the state of a control loop into a table.
 
-    Columns besides the motion and the commands in force: `sent_` is a command as the controller
-    sent it, before its range limits it; `goal_` is a goal, nan where none is in force; `actual_` is
-    an actuator; `sensed_` and `camera_` are measurements; `force_` is the sum of all effects and
-    `wind_` that of the effects of air; `estimate_` is an estimate of the controller.
+    The columns are the motion, the commands in force and groups with a prefix. `sent_` is a command
+    as the controller sent it, before its range limits it; `goal_` is a goal, nan where none is in
+    force; `actual_` is an actuator; `sensed_` and `camera_` are measurements. `force_` is the sum
+    of all effects and `wind_` that of the effects of air. `estimate_` is an estimate of the
+    controller.
 
     Attributes:
         scenario: The scenario.

@@ -85,7 +85,7 @@ class Stepper(ABC):
 
     @abstractmethod
     def _step(self, dt: float) -> None:
-        """Take one step of dt [s] with the actuators as they are."""
+        """Take one step of dt [s] with fixed actuators."""
 
     @abstractmethod
     def acceleration(self) -> tuple[float, float]:

@@ -294,7 +294,8 @@ def add_joints(hull: mujoco.MjsBody, vessel: Vessel) -> None:
     """Add a joint per degree of freedom; roll and pitch axes pass through the origin of motion."""
     for axis_name, (name, kind, axis) in JOINTS.items():
         if axis_name in vessel.dof:
-            pos = (0, 0, origin_height(vessel)) if axis_name in ("roll", "pitch") else (0, 0, 0)
+            height = origin_height(vessel) if axis_name in ("roll", "pitch") else 0
+            pos = (0, 0, height)
             hull.add_joint(name=name, type=kind, axis=axis, pos=pos)
 
 

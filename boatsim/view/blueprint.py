@@ -95,6 +95,7 @@ def of_run(scene: Scene, names: Sequence[str]) -> rrb.Blueprint:
         scene: What is drawn.
         names: Columns of the run.
     """
+    turning = "Yaw and roll rate" if "p_radps" in names else "Yaw rate"
     speed = with_goals(("u_mps", "v_mps", "reference_u_mps", "reference_v_mps"), names)
     rate = with_goals(("r_radps", "reference_r_radps", "p_radps"), names)
     return _layout(
@@ -104,7 +105,7 @@ def of_run(scene: Scene, names: Sequence[str]) -> rrb.Blueprint:
             row_shares=[5, 3],
         ),
         _plot("Surge and sway velocity", speed),
-        _plot("Yaw rate" if "p_radps" not in names else "Yaw and roll rate", rate),
+        _plot(turning, rate),
         rrb.Tabs(*_tabs(names)),
     )
 
@@ -260,13 +261,16 @@ def _tabs(names: Sequence[str]) -> list[rrb.View | rrb.Container]:
 def _plot(
     title: str, names: Sequence[str], under: str = SIGNALS, span: tuple[float, float] | None = None
 ) -> rrb.TimeSeriesView:
-    ends = [rrb.TimeRangeBoundary.absolute(seconds=end) for end in span or ()]
+    axis = None
+    if span:
+        first, last = (rrb.TimeRangeBoundary.absolute(seconds=end) for end in span)
+        axis = rrb.TimeAxis(view_range=rrb.TimeRange(start=first, end=last))
     return rrb.TimeSeriesView(
         origin="/",
         name=title,
         contents=[f"/{under}/{name}" for name in names],
         plot_legend=rrb.PlotLegend(corner=rrb.Corner2D.RightTop),
-        axis_x=rrb.TimeAxis(view_range=rrb.TimeRange(start=ends[0], end=ends[1])) if ends else None,
+        axis_x=axis,
     )
 
 

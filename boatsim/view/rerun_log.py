@@ -32,6 +32,8 @@ BUFFER = 1000
 # [s] after which rows are written in any case: a process that is killed loses less than a second
 OFTEN = 0.5
 TRAIL_STEP = 0.1  # [s] between points of the path drawn
+# height of the arrows by the length of the vessel, different so that both are visible
+HEIGHTS = {"force": 0.2, "wind": 0.35}
 ABOVE = 0.02  # [m] height of arrows and paths above the water
 COLOURS = {
     "thrust": (235, 120, 20),
@@ -308,7 +310,9 @@ def _band(ends: Sequence[float | None] | None) -> str:
         return f"{low} to {high}"
     if low:
         return f"at least {low}"
-    return f"at most {high}" if high else ""
+    if high:
+        return f"at most {high}"
+    return ""
 
 
 def _short(value: float | None) -> str:
@@ -478,11 +482,10 @@ def _log_arrows(stream: Stream, rows: Recording, scene: Scene) -> None:
             vector = _flat(thrust * np.cos(steer), thrust * np.sin(steer))
             at = _flat(zero + thruster.x, zero + thruster.y, ABOVE)
             _arrow(stream, rows.t, f"thrust_{thruster.name}", scene, vector, at, COLOURS["thrust"])
-    for what in ("force", "wind"):
+    for what in HEIGHTS:
         if f"{what}_X_N" in rows.signals and f"{what}_Y_N" in rows.signals:
             vector = _flat(rows[f"{what}_X_N"], rows[f"{what}_Y_N"])
-            # different heights, so that both are visible
-            height = scene.length * (0.2 if what == "force" else 0.35)
+            height = scene.length * HEIGHTS[what]
             _arrow(stream, rows.t, what, scene, vector, _flat(zero, zero, height), COLOURS[what])
 
 

@@ -131,7 +131,7 @@ def _ends(started: "subprocess.Popen[bytes]", seconds: float) -> bool:
 
 
 def _rerun(*options: str) -> "subprocess.Popen[bytes]":
-    """Start rerun's viewer in a session of its own, which signals of the terminal do not reach."""
+    """Start rerun's viewer in a new session, which signals of the terminal do not reach."""
     command = [sys.executable, "-m", "rerun"]
     script = Path(sys.executable).parent / "rerun"
     if script.is_file():
