@@ -155,19 +155,19 @@ def nothing(t: float, y: Array, command: Array) -> Array:
 
 
 def diagnosed(*causes: Missing, late: Late | None = None) -> Diagnosis:
-    """Of recordings under these causes, the last one kept unseen."""
+    """Of recordings under these causes, the last one held out."""
     runs = [sail(f"run_{i + 1}", 40 + i, cause, late=late)[0] for i, cause in enumerate(causes)]
     return diagnose_loaded(Loaded(runs[:-1], runs[-1:], {None: BOAT}, "the last"))
 
 
 def halved(found: Diagnosis, signal: str) -> bool:
-    """Whether the patched boat errs half as much as the recalibrated one on unseen data."""
+    """Whether the patched boat errs half as much as the recalibrated one on held-out data."""
     rms = found.findings.answer["fit"][signal]  # type: ignore[literal-required]
     return bool(rms["patched"] < 0.5 * rms["recalibrated"])
 
 
 def replays(found: Diagnosis, held_out: Recording, folder: Path) -> None:
-    """Whether the patched vessel does on an unseen recording what the fitted one does."""
+    """Whether the patched vessel does on a held-out recording what the fitted one does."""
     patched_vessel.write(
         found.problem, found.vessel, found.ranking.best, folder / "patched.toml", found.ranking.laws
     )

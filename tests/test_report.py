@@ -17,13 +17,13 @@ from boatsim.diagnosis.report.findings import Findings, FreeRun, Missing
 from boatsim.diagnosis.report.formatting import (
     alike,
     limit,
+    name_and_value,
     nats,
     number,
     parameter,
     percent,
     quantity,
     readable,
-    shown,
     spread,
 )
 from boatsim.diagnosis.report.page import LONGEST_HEADLINE
@@ -130,7 +130,7 @@ def planar_answer(intervals: list[IntervalEntry]) -> Answer:
 
 
 def planar_runs() -> tuple[FreeRun, ...]:
-    """Free runs over one unseen recording, each model drifting off at its own pace."""
+    """Free runs over one held-out recording, each model drifting off at its own pace."""
     rng = np.random.default_rng(2)
     found = []
     for i in range(13):
@@ -376,7 +376,9 @@ def expected_numbers(answer) -> list[str]:
     ] = []  # all but the seconds, which would make the same diagnosis differ from run to run
     for e in answer["effects"]:
         found += [nats(e["gain_nats"]), percent(e["probability"])]
-        found += [shown(k, p["value"], p["unit"], p["sd"])[1] for k, p in e["parameters"].items()]
+        found += [
+            name_and_value(k, p["value"], p["unit"], p["sd"])[1] for k, p in e["parameters"].items()
+        ]
     for c in answer["candidates"]:
         found += [nats(c["gain_nats"]), percent(c["probability"])]
     found += [limit(k, v)[1] for e in answer["upper_limits"].values() for k, v in e.items()]
@@ -862,9 +864,12 @@ def test_readers_get_degrees_and_handy_units():
         quantity(0.0434, "m", 0.0078) == "4.34 ± 0.78 cm"
         and quantity(0.00392, "m/s", digits=2) == "3.9 mm/s"
     )
-    assert shown("toward_rad", -0.1076, "rad", 0.052) == ("toward", "353.8° ± 3.0°")
-    assert shown("x_fraction", -0.0884, "", 0.0098) == ("x", "−8.84 ± 0.98 %")
-    assert shown("frequency_radps", 2.0, "rad/s", 0.1)[1] == "2.00 ± 0.10 rad/s, a period of 3.14 s"
+    assert name_and_value("toward_rad", -0.1076, "rad", 0.052) == ("toward", "353.8° ± 3.0°")
+    assert name_and_value("x_fraction", -0.0884, "", 0.0098) == ("x", "−8.84 ± 0.98 %")
+    assert (
+        name_and_value("frequency_radps", 2.0, "rad/s", 0.1)[1]
+        == "2.00 ± 0.10 rad/s, a period of 3.14 s"
+    )
     assert (
         limit("astern_factor", 0.0301) == ("astern factor", "3.0 %")
         and limit("delay_s", 0.0533)[1] == "53 ms"

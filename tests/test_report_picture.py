@@ -24,7 +24,7 @@ def film_of(f: Findings):
     return found, {boat["look"]: boat for boat in found.film["boats"]}
 
 
-def test_the_picture_is_of_unseen_data_and_comes_before_everything_else(tmp_path):
+def test_the_picture_is_of_held_out_data_and_comes_before_everything_else(tmp_path):
     f = planar()
     report.write(f, tmp_path)
     html = (tmp_path / "report.html").read_text("utf-8")
@@ -159,7 +159,7 @@ def test_gaps_of_the_recording_are_gaps_of_the_film_and_rare_fixes_are_not(tmp_p
 
 
 def hour(runs: int = 3, horizon: float = 6.0, rate: float = 10.0) -> Findings:
-    """Findings from logs of an hour each, several of them unseen."""
+    """Findings from logs of an hour each, several of them held out."""
     f, n = planar(), round(3600 * rate)
     t = np.arange(n) / rate
     rng = np.random.default_rng(1)
@@ -186,7 +186,7 @@ def hour(runs: int = 3, horizon: float = 6.0, rate: float = 10.0) -> Findings:
                 m: {c: v + a * 0.01 * tau**2 for c, v in path.items()}
                 for m, a in zip(MODELS, (2, 1, 0.1), strict=True)
             }
-            free.append(FreeRun(f"unseen_{i}", float(s[0]), s, {"recorded": path} | models))
+            free.append(FreeRun(f"held_out_{i}", float(s[0]), s, {"recorded": path} | models))
     intervals = [
         {"run": f"log_{i}", "from_s": 9.0 * k, "to_s": 9.0 * k + 5.0, "axis": axis}
         for i in range(runs)
@@ -194,7 +194,7 @@ def hour(runs: int = 3, horizon: float = 6.0, rate: float = 10.0) -> Findings:
         for axis in band
     ]
     answer = f.answer | {"where": f.answer["where"] | {"intervals": intervals}}
-    return replace(f, answer=answer, missing=missing, free_runs=tuple(free), held_out=("unseen_0",))
+    return replace(f, answer=answer, missing=missing, free_runs=tuple(free), held_out=("held_out_0",))
 
 
 def test_the_page_of_logs_of_an_hour_stays_small_and_its_film_can_be_watched(tmp_path):

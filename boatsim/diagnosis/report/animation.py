@@ -58,8 +58,11 @@ def film(
         outline: Outline of a boat.
         start: Time [s] of the first frame shown.
     """
-    rows = [every(len(r.t), max(2, FRAMES // len(runs))) for r in runs]
-    t = np.concatenate([r.t[k] for r, k in zip(runs, rows, strict=True)])
+    rows, times = [], []
+    for run in runs:
+        rows.append(every(len(run.t), max(2, FRAMES // len(runs))))
+        times.append(run.t[rows[-1]])
+    t = np.concatenate(times)
     decimals = max(0, 4 - int(np.floor(np.log10(height))))
     unit, factor = ("m", 1.0)
     if signal:

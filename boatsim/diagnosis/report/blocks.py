@@ -68,12 +68,13 @@ def without_empty(table: Table) -> Table:
                 continue
             prose.append(len(kept))
         kept.append(i)
-    rows = []
-    for row in table.rows:
-        rows.append([row[i] for i in kept])
-    header = [table.header[i] for i in kept]
+    header, *rows = [_pick(row, kept) for row in (table.header, *table.rows)]
     aside = table.aside and len(table.header) - 1 in kept
     return replace(table, header=header, rows=rows, prose=tuple(prose), aside=aside)
+
+
+def _pick(row: list[str], columns: list[int]) -> list[str]:
+    return [row[i] for i in columns]
 
 
 @dataclass(frozen=True)
@@ -123,8 +124,8 @@ def as_text(block: Block) -> list[str]:
             rule = ["---:"] * len(block.header)
             for i in (0, *block.prose):
                 rule[i] = "---"
-            head, *rows = map(_cells, (block.header, *block.rows))
-            lines = [f"| {' | '.join(row)} |" for row in (head, rule, *rows)]
+            lines = [_table_line(block.header), f"| {' | '.join(rule)} |"]
+            lines += map(_table_line, block.rows)
             return ["", safe(block.caption), "", *lines]
         case Figures():
             return []
@@ -137,5 +138,5 @@ def _item(line: tuple[str, str]) -> str:
     return f"- **{safe(term)}**: {safe(meaning)}"
 
 
-def _cells(row: list[str]) -> list[str]:
-    return list(map(safe, row))
+def _table_line(row: list[str]) -> str:
+    return f"| {' | '.join(map(safe, row))} |"

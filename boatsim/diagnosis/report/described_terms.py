@@ -191,9 +191,12 @@ def _varies_with(term: Described, vessel: Vessel) -> str:
         if term.of:
             thrust += f" times {factors(term, vessel)}"
         parts.append(thrust)
+    elif term.of:
+        parts.append(factors(term, vessel))
+    elif term.acts == "always":
+        parts.append("nothing (constant)")
     else:
-        constant = "nothing (constant)" if term.acts == "always" else "time"
-        parts.append(factors(term, vessel) or constant)
+        parts.append("time")
     if when := _when(term):
         parts.append(when)
     return ", ".join(parts)
@@ -248,7 +251,9 @@ def _factor(name: str, term: Described) -> str:
         return f"the size of {_factor(name.removeprefix('abs_'), term)}"
     if name.startswith("sign_"):
         return f"the sign of {_factor(name.removeprefix('sign_'), term)}"
-    how, signal = history_of(name, ()) if term.looks_back else ("", "")
+    how, signal = "", name
+    if term.looks_back:
+        how, signal = history_of(name, ())
     if how:
         average = f"average over the last {number(term.memory)} s"
         if how == "recent":
@@ -280,8 +285,7 @@ def unit_of(term: Described, vessel: Vessel) -> str:
         _multiply(powers, above, -1)
         _multiply(powers, below, 1)
     del powers["rad"], powers["1"], powers[""]
-    above = " ".join(_power(symbol, n) for symbol, n in powers.items() if n > 0)
-    below = " ".join(_power(symbol, -n) for symbol, n in powers.items() if n < 0)
+    above, below = _product(powers, 1), _product(powers, -1)
     if below:
         return f"{above or '1'}/{below}"
     return above
@@ -294,7 +298,13 @@ def _multiply(powers: Counter[str], unit: str, sign: int) -> None:
         powers[base] += sign * int(power or 1)
 
 
-def _power(symbol: str, n: int) -> str:
-    if n == 1:
-        return symbol
-    return f"{symbol}^{n}"
+def _product(powers: Counter[str], sign: int) -> str:
+    """Return the product of the units above the fraction line, or below it (sign -1)."""
+    units = []
+    for symbol, power in powers.items():
+        n = sign * power
+        if n == 1:
+            units.append(symbol)
+        elif n > 1:
+            units.append(f"{symbol}^{n}")
+    return " ".join(units)

@@ -1,6 +1,7 @@
 """Figures of the report: missing forces, free runs and their errors, curves of formulas."""
 
 from collections.abc import Sequence
+from itertools import groupby
 
 import numpy as np
 
@@ -37,12 +38,14 @@ def missing_figures(
         parts = []
         for m in shared:
             parts += [m.force[axis] + BAND * m.sd[axis], m.force[axis] - BAND * m.sd[axis]]
-        largest = float(np.nanmax(np.abs(np.concatenate(parts))))
-        unit, factor = handy(shared[0].unit[axis], largest)
-        scales[axis] = limits([factor * v for v in parts]), unit, factor
+        values = np.concatenate(parts)
+        unit, factor = handy(shared[0].unit[axis], float(np.nanmax(np.abs(values))))
+        scales[axis] = limits([factor * values]), unit, factor
     drawn = []
     for m in runs:
-        panels = [_missing_panel(m, axis, intervals, *scales[axis]) for axis in m.force]
+        panels = []
+        for axis in m.force:
+            panels.append(_missing_panel(m, axis, intervals, *scales[axis]))
         drawn.append(figure(panels, m.run, wide=len(runs) == 1))
     return drawn
 
@@ -83,7 +86,9 @@ def free_run_figures(runs: Sequence[FreeRun]) -> list[str]:
     plan = {"x_m", "y_m"} <= signals
     found, panels = [], []
     if plan:
-        part = "the whole recording" if len(runs) > 1 else "the free run"
+        part = "the free run"
+        if len(runs) > 1:
+            part = "the whole recording"
         found.append(figure([plan_view(runs)], f"{name}: {part}"))
         panels.append(_error_panel(runs, "position"))
     if plan and len(runs) > 1:
@@ -160,6 +165,11 @@ def law_figure(written: Written) -> str:
         "means.",
     )
     return figure([panel], f"{capital(what_of(axis))}, over {along}", wide=True)
+
+
+def by_recording(free_runs: Sequence[FreeRun]) -> list[list[FreeRun]]:
+    """Return consecutive free runs grouped by their recording."""
+    return [list(group) for _, group in groupby(free_runs, key=lambda r: r.run)]
 
 
 def models_in(run: FreeRun) -> list[str]:

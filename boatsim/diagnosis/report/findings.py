@@ -1,4 +1,4 @@
-"""Findings: the result of a diagnosis that the report reads, the answer and the curves behind it."""
+"""Findings: the result of a diagnosis that the report reads, the answer and its curves."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field

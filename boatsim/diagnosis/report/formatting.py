@@ -160,7 +160,7 @@ def _largest(values: Sequence[float]) -> float:
     return max(map(abs, filter(math.isfinite, values)), default=0.0)
 
 
-def shown(key: str, value: float, unit: str = "", sd: float = 0.0) -> tuple[str, str]:
+def name_and_value(key: str, value: float, unit: str = "", sd: float = 0.0) -> tuple[str, str]:
     """Return the name and the value ± deviation of a parameter, fractions in per cent.
 
     Args:

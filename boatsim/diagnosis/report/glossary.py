@@ -24,20 +24,20 @@ def glossary(f: Findings) -> tuple[tuple[str, str], ...]:
         ),
         (
             "candidate effect",
-            "A physical effect or a measurement error of the library that the vessel model does not "
-            "have. A diagnosis tests each of them.",
+            "A physical effect or a measurement error of the library that the vessel model does "
+            "not have. A diagnosis tests each of them.",
         ),
         (
             "log Bayes factor, nats",
             "The evidence for an effect: the natural logarithm of how many times better the model "
             "with the effect predicts the recordings than the model without it. Each additional "
-            "parameter lowers it. Its unit is the nat: 1 nat is a factor of 2.7, 3 nats are a factor "
-            "of 20, 4 nats a factor of 55. The odds of chance next to it are the reciprocal of this "
-            "factor: odds of 1 in 55 mean that the model without the effect is 55 times less probable, "
-            "if both were equally probable before the recordings were made. An effect is "
-            f"identified if it reaches {least:g} nats. Together with its look-alikes it must also "
-            f"reach {odds:g} nats plus the logarithm of the number of candidates tested, and "
-            f"{slight:g} % of the evidence of the other effects, whose laws are never exact. "
+            "parameter lowers it. Its unit is the nat: 1 nat is a factor of 2.7, 3 nats are a "
+            "factor of 20, 4 nats a factor of 55. The odds of chance next to it are the reciprocal "
+            "of this factor: odds of 1 in 55 mean that the model without the effect is 55 times "
+            "less probable, if both were equally probable before the recordings were made. An "
+            f"effect is identified if it reaches {least:g} nats. Together with its look-alikes it "
+            f"must also reach {odds:g} nats plus the logarithm of the number of candidates tested, "
+            f"and {slight:g} % of the evidence of the other effects, whose laws are never exact. "
             f"Candidates within {close:g} nats of an identified effect are its look-alikes.",
         ),
         (
@@ -49,8 +49,8 @@ def glossary(f: Findings) -> tuple[tuple[str, str], ...]:
             "missing force",
             "The force or moment on the hull that the recordings show and the recalibrated vessel "
             "does not explain, estimated over time. Its band is two standard deviations on either "
-            "side. An interval is flagged where the band does not contain zero and the force exceeds "
-            "the assumed disturbance level.",
+            "side. An interval is flagged where the band does not contain zero and the force "
+            "exceeds the assumed disturbance level.",
         ),
         (
             "assumed disturbance level",
@@ -59,23 +59,24 @@ def glossary(f: Findings) -> tuple[tuple[str, str], ...]:
         ),
         (
             "held-out recordings",
-            "Recordings that were not used in any fit. They show whether a finding holds on new data.",
+            "Recordings that were not used in any fit. They show whether a finding holds on new "
+            "data.",
         ),
         (
             "free run",
-            "A simulation that starts at the recorded state and then receives the recorded commands "
-            "only. Its distance from the recording is the error of the model.",
+            "A simulation that starts at the recorded state and then receives the recorded "
+            "commands only. Its distance from the recording is the error of the model.",
         ),
         (
             "rms",
-            "Root mean square: the typical size of a quantity that varies. The rms error of a position "
-            "is that of its coordinates x and y.",
+            "Root mean square: the typical size of a quantity that varies. The rms error of a "
+            "position is that of its coordinates x and y.",
         ),
         (
             "formula",
-            "A law found by symbolic regression for a force that no candidate effect explains. It has "
-            f"at most {f.setting('describe.most_terms'):g} terms. Each term must reach {odds:g} nats "
-            "plus the logarithm of the number of terms tested.",
+            "A law found by symbolic regression for a force that no candidate effect explains. It "
+            f"has at most {f.setting('describe.most_terms'):g} terms. Each term must reach "
+            f"{odds:g} nats plus the logarithm of the number of terms tested.",
         ),
         ("±", "One standard deviation. In 95 of 100 cases the true value lies within two of them."),
         (

@@ -1,4 +1,4 @@
-"""Self-contained HTML pages: a template with the style, the script and the sections of all pages."""
+"""Self-contained HTML pages from templates, with the style and the script of all pages."""
 
 from base64 import b64encode
 from hashlib import sha256

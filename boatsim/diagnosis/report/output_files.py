@@ -13,6 +13,7 @@ from boatsim.diagnosis.free_runs import FreeRun
 from boatsim.diagnosis.pipeline import Diagnosis
 from boatsim.diagnosis.report import page, patched_vessel
 from boatsim.diagnosis.report.answer import NEXT_SCENARIO
+from boatsim.diagnosis.report.figures import by_recording
 from boatsim.diagnosis.report.findings import Findings, Missing
 from boatsim.errors import BadPhysics
 from boatsim.files import replacing
@@ -69,15 +70,14 @@ def overlay(found: Diagnosis, path: Path) -> None:
     boats: dict[str, list[Recording]] = {}
     missing, intervals = None, []
     if found.findings.free_runs:
-        first = found.findings.free_runs[0].run
-        runs = [r for r in found.findings.free_runs if r.run == first]
+        runs = by_recording(found.findings.free_runs)[0]
         boats["recording"] = [_joined(runs)]
         for model in MODELS:
             boats[model] = [_simulated(r, model) for r in runs]
-        missing = _missing_force(found.findings, first)
+        missing = _missing_force(found.findings, runs[0].run)
         if missing is not None:
             flagged = found.findings.answer["where"]["intervals"]
-            intervals = [i for i in flagged if i["run"] == first]
+            intervals = [i for i in flagged if i["run"] == missing.name]
     scene = water.around(found.vessel, boats)
     with replacing(path) as temporary:
         rerun_log.log_overlay(temporary, boats, missing, intervals, scene)

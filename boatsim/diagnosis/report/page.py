@@ -1,4 +1,4 @@
-"""The report of a diagnosis: one HTML page and the same text as Markdown, from the same sections."""
+"""The report of a diagnosis: an HTML page and the same text as Markdown, from the same sections."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -11,7 +11,13 @@ from boatsim.diagnosis.report.formatting import capital, listed, plain
 from boatsim.diagnosis.report.html_page import TEMPLATES, rendered
 from boatsim.diagnosis.report.replay_section import replay
 from boatsim.diagnosis.report.sections import sections_of
-from boatsim.diagnosis.report.sentences import any_tested, mean_force, proof, sentence
+from boatsim.diagnosis.report.sentences import (
+    any_tested,
+    mean_force,
+    only_measurement_errors,
+    proof,
+    sentence,
+)
 from boatsim.files import replacing
 
 VERDICTS = {  # verdict of the answer -> words at the top of the report
@@ -94,18 +100,21 @@ def _headline(f: Findings) -> str:
     whole = _sentence(f)
     if _log_problem(f):
         return f"{whole.partition('. ')[0]}."
-    names = [plain(e["name"]) for e in f.answer["effects"]]
     if len(whole) <= LONGEST_HEADLINE:
         return whole
-    if not names and f.answer["described"]:
-        forces = dict.fromkeys(what_of(law["axis"]) for law in f.answer["described"])
-        return f"{capital(listed(forces))} that no candidate effect explains."
-    if not names:
+    if names := [plain(e["name"]) for e in f.answer["effects"]]:
+        rest = ""
+        if f.answer["unknown"]["flag"]:
+            rest = ", and a force that they do not explain"
+        return f"{capital(listed(names))}{rest}."
+    forces: list[str] = []
+    for law in f.answer["described"]:
+        force = what_of(law["axis"])
+        if force not in forces:
+            forces.append(force)
+    if not forces:
         return whole
-    rest = ""
-    if f.answer["unknown"]["flag"]:
-        rest = ", and a force that they do not explain"
-    return f"{capital(listed(names))}{rest}."
+    return f"{capital(listed(forces))} that no candidate effect explains."
 
 
 def _sentence(f: Findings) -> str:
@@ -124,8 +133,7 @@ def _verdict(f: Findings) -> str:
         return LOG_PROBLEM
     if verdict == "unknown" and not any_tested(f.answer):
         return NONE_TESTED
-    kinds = {e["kind"] for e in f.answer["effects"]}
-    if verdict == "named" and kinds <= {"measurement"}:
+    if only_measurement_errors(f.answer):
         return MEASUREMENT_ERROR
     return VERDICTS[verdict]
 

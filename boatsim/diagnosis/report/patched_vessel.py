@@ -177,7 +177,8 @@ def _set(table: Table | InlineTable, name: str, value: float, reason: str) -> No
     """Set a number of a table and add the reason to its comment; inline tables have none."""
     if name in table:
         before = table[name].trivia.comment.removeprefix("# ")
-        reason = f"{before}; {reason}" if before else reason
+        if before:
+            reason = f"{before}; {reason}"
     table[name] = tomlkit.item(_rounded(value))
     if not isinstance(table, InlineTable):
         table[name].comment(reason)
@@ -195,7 +196,9 @@ def _effect_table(effect: Effect, vessel: Vessel, settings: Mapping[str, float])
     if isinstance(effect, Channel) and effect.other_side:
         table["other_side"] = True
     for key, value in (effect.shape() | dict(settings)).items():
-        table[key] = _rounded(value) if isinstance(value, float) else value
+        if isinstance(value, float):
+            value = _rounded(value)
+        table[key] = value
     table.add(tomlkit.nl())
     return table
 

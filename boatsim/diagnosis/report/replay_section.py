@@ -2,14 +2,13 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from itertools import groupby
 from math import cos, pi, sin
 
 import numpy as np
 
 from boatsim.diagnosis.free_runs import FreeRun
 from boatsim.diagnosis.report.animation import Film, Outline, film
-from boatsim.diagnosis.report.figures import SIGNALS, course_of, error_of, plan_view
+from boatsim.diagnosis.report.figures import SIGNALS, by_recording, course_of, error_of, plan_view
 from boatsim.diagnosis.report.findings import Findings
 from boatsim.diagnosis.report.formatting import listed, number
 from boatsim.diagnosis.report.svg_plots import Panel, legend, stacked
@@ -50,10 +49,14 @@ def replay(f: Findings) -> Replay | None:
     """
     if not f.free_runs:
         return None
-    runs = list(next(group for _, group in groupby(f.free_runs, key=lambda r: r.run)))
+    runs = by_recording(f.free_runs)[0]
     recorded = runs[0].channels["recorded"].keys()
-    wanted = ("recalibrated", "patched") if f.patched else ("recalibrated",)
-    models = [m for m in wanted if m in runs[0].channels]
+    simulated = runs[0].channels
+    models = []
+    if "recalibrated" in simulated:
+        models.append("recalibrated")
+    if f.patched and "patched" in simulated:
+        models.append("patched")
     if not models:
         return None
     if {"x_m", "y_m"} <= recorded:
@@ -116,7 +119,9 @@ def _title(what: str, runs: Sequence[FreeRun], models: Sequence[str]) -> str:
 def _legend(models: Sequence[str]) -> str:
     looks = {}
     for model in ("recorded", *models):
-        looks[model] = model + AGE[model] if "patched" in models else model
+        looks[model] = model
+        if "patched" in models:
+            looks[model] += AGE[model]
     return legend(looks)
 
 
@@ -130,8 +135,11 @@ def _around_largest_error(
     runs: Sequence[FreeRun], signal: str, most: int
 ) -> tuple[list[FreeRun], float]:
     """Return at most so many consecutive free runs around the largest error, and its time [s]."""
-    errors = [np.nan_to_num(np.abs(error_of(r, "recalibrated", signal))) for r in runs]
-    worst = int(np.argmax([e.max(initial=0.0) for e in errors]))
+    errors, largest = [], []
+    for run in runs:
+        errors.append(np.nan_to_num(np.abs(error_of(run, "recalibrated", signal))))
+        largest.append(errors[-1].max(initial=0.0))
+    worst = int(np.argmax(largest))
     first = min(max(worst - most // 2, 0), max(len(runs) - most, 0))
     time = float(runs[worst].t[int(np.argmax(errors[worst]))])
     return list(runs[first : first + most]), time
@@ -139,8 +147,10 @@ def _around_largest_error(
 
 def _about(runs: Sequence[FreeRun], drawn: Sequence[FreeRun], scale: float) -> str:
     """Return how to read the figure."""
-    seconds = number(float(runs[0].t[-1] - runs[0].t[0]), 2)
-    start = f"Every {seconds} s the simulated boats start" if len(runs) > 1 else "The boats start"
+    start = "The boats start"
+    if len(runs) > 1:
+        seconds = number(float(runs[0].t[-1] - runs[0].t[0]), 2)
+        start = f"Every {seconds} s the simulated boats start"
     sentences = [f"{start} at the recorded state and then receive the recorded commands only."]
     if len(drawn) < len(runs):
         sentences.append(

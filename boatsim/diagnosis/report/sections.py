@@ -3,7 +3,7 @@
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from itertools import groupby, repeat
+from itertools import repeat
 
 import numpy as np
 
@@ -28,6 +28,7 @@ from boatsim.diagnosis.report.formatting import (
     evidence,
     limit,
     listed,
+    name_and_value,
     nats,
     number,
     parameter,
@@ -35,7 +36,6 @@ from boatsim.diagnosis.report.formatting import (
     plain,
     quantity,
     readable,
-    shown,
     spread,
 )
 from boatsim.diagnosis.report.glossary import glossary
@@ -51,6 +51,7 @@ from boatsim.diagnosis.report.sentences import (
     NONE_TESTED,
     any_tested,
     assumptions,
+    only_measurement_errors,
     words_of,
 )
 
@@ -155,7 +156,7 @@ def _values(f: Findings, effect: EffectEntry) -> list[list[str]]:
     """Return name, value and meaning of each fitted parameter."""
     rows = []
     for key, p in effect["parameters"].items():
-        name, text = shown(key, p["value"], p["unit"], p["sd"])
+        name, text = name_and_value(key, p["value"], p["unit"], p["sd"])
         meaning = f.words.get(f"{effect['name']}.{key}", "")
         if meaning == name:
             meaning = ""
@@ -174,12 +175,13 @@ def _about_deviations(f: Findings, effect: EffectEntry) -> str:
     """Return what the printed standard deviations include."""
     law_error = f.setting("answer.law_error")
     direction = ""
-    if "rad" in [p["unit"] for p in effect["parameters"].values()]:
-        direction = f" ({math.degrees(law_error):.1f}° of a direction)"
+    for p in effect["parameters"].values():
+        if p["unit"] == "rad":
+            direction = f" ({math.degrees(law_error):.1f}° of a direction)"
     return (
         "± is one standard deviation. In addition to the uncertainty from noise it includes "
-        f"{100 * law_error:g} % of the effect's own size{direction}, because the law of a candidate "
-        "is never exactly that of nature."
+        f"{100 * law_error:g} % of the effect's own size{direction}, because the law of a "
+        "candidate is never exactly that of nature."
     )
 
 
@@ -192,12 +194,12 @@ def _unexplained(f: Findings) -> Iterator[Block]:
         yield Heading("A force that no candidate effect explains", facts)
     if unknown["gain_nats"] > unknown["told_from_nats"]:
         yield Text(
-            "Even with all identified effects, the recordings require an additional random force of "
-            f"more than {factor:g} times the assumed disturbance level. The evidence for it is a "
-            f"{evidence(unknown['gain_nats'])}. Such a force is reported from "
-            f"{nats(unknown['told_from_nats'])} nats on. This threshold increases with the evidence "
-            "that the identified effects explain, because their laws are never exact. The section on "
-            "the missing force shows where and when the force acts."
+            "Even with all identified effects, the recordings require an additional random force "
+            f"of more than {factor:g} times the assumed disturbance level. The evidence for it is "
+            f"a {evidence(unknown['gain_nats'])}. Such a force is reported from "
+            f"{nats(unknown['told_from_nats'])} nats on. This threshold increases with the "
+            "evidence that the identified effects explain, because their laws are never exact. The "
+            "section on the missing force shows where and when the force acts."
         )
     if "structure" in unknown:
         yield Text(_structure(unknown["structure"]))
@@ -262,7 +264,13 @@ def _coefficient(axis: str, term: TermEntry) -> str:
 
 
 def _assumptions(f: Findings) -> Iterator[Block]:
-    lines = [f"{capital(line)}." for line in assumptions(f.answer)]
+    lines = []
+    for line in assumptions(f.answer):
+        lines.append(f"{capital(line)}.")
+    yield from _bullets(lines)
+
+
+def _bullets(lines: Sequence[str]) -> Iterator[Block]:
     if lines:
         yield Items(tuple(zip(repeat(""), lines)))
 
@@ -279,8 +287,7 @@ def _where(f: Findings) -> Iterator[Block]:
         yield Table("When the force is missing", header, rows)
     if where["axes"]:
         yield _strengths(f)
-        kinds = {e["kind"] for e in f.answer["effects"]}
-        if verdict == "named" and kinds <= {"measurement"}:
+        if only_measurement_errors(f.answer):
             yield Text("These forces are not real: they are the result of the measurement error.")
     if f.missing:
         yield from _missing_figures(f)
@@ -290,10 +297,10 @@ def _where(f: Findings) -> Iterator[Block]:
         unknown = f.answer["unknown"]
         yield Text(
             "An interval is flagged wherever the missing force exceeds the assumed disturbance "
-            "level. Together the intervals are not enough for a finding: no candidate effect explains "
-            "them clearly better than the vessel model alone, and a cause outside the candidates "
-            f"gains {nats(unknown['gain_nats'])} of the {nats(unknown['told_from_nats'])} nats "
-            "required."
+            "level. Together the intervals are not enough for a finding: no candidate effect "
+            "explains them clearly better than the vessel model alone, and a cause outside the "
+            f"candidates gains {nats(unknown['gain_nats'])} of the "
+            f"{nats(unknown['told_from_nats'])} nats required."
         )
     yield _interval_table(where["intervals"])
 
@@ -350,7 +357,7 @@ def _missing_figures(f: Findings) -> Iterator[Block]:
     drawn: list[Missing] = []
     for i in sorted(order[:MOST_MISSING_FIGURES]):
         drawn.append(f.missing[i])
-        if not f.patched:  # there is no patched vessel with a force of its own
+        if not f.patched:  # the patched vessel is the recalibrated one
             drawn[-1] = replace(f.missing[i], left={})
     looks = {
         "missing": "missing force",
@@ -371,8 +378,10 @@ def _missing_figures(f: Findings) -> Iterator[Block]:
 def _validation(f: Findings) -> Iterator[Block]:
     """Yield the errors of free runs over held-out recordings, and their figures."""
     fit = f.answer["fit"]
-    models = MODELS if f.patched else MODELS[:2]
-    header = [*models, "error reduced by factor"] if f.patched else list(models)
+    models: tuple[str, ...] = MODELS[:2]
+    header = list(models)
+    if f.patched:
+        models, header = MODELS, [*MODELS, "error reduced by factor"]
     rows = []
     for key, (words, unit) in FAMILIES.items():
         if rms := fit.get(key):
@@ -380,7 +389,7 @@ def _validation(f: Findings) -> Iterator[Block]:
     if rows:
         caption = f"rms error of free runs of {fit['horizon_s']:g} s over {listed(fit['held_out'])}"
         yield Table(caption, ["error in", *header], rows)
-    by_run = _by_run(f.free_runs)
+    by_run = figures.by_recording(f.free_runs)
     if len(by_run) > 1:
         rows = []
         for runs in by_run:
@@ -400,11 +409,6 @@ def _validation(f: Findings) -> Iterator[Block]:
         )
     for title, names_of_columns, cells in f.extra_tables:
         yield Table(title, names_of_columns, cells, _text_columns(cells), folded=True)
-
-
-def _by_run(free_runs: Sequence[FreeRun]) -> list[list[FreeRun]]:
-    """Return consecutive free runs grouped by their recording."""
-    return [list(group) for _, group in groupby(free_runs, key=lambda r: r.run)]
 
 
 def _only(runs: Sequence[FreeRun], models: Sequence[str]) -> list[FreeRun]:
@@ -455,9 +459,11 @@ def _ranking(f: Findings) -> Iterator[Block]:
     candidates = f.answer["candidates"]
     if not candidates:
         return
-    status, rows, visible = _status(f), [], MOST_VISIBLE_CANDIDATES
+    status, visible = _status(f), MOST_VISIBLE_CANDIDATES
+    rows, gains = [], []
     for i, c in enumerate(candidates, 1):
         name = c["name"]
+        gains.append(c["gain_nats"])
         if name in status:
             visible = max(visible, i)
         rows.append(
@@ -469,14 +475,13 @@ def _ranking(f: Findings) -> Iterator[Block]:
                 f.words.get(name, ""),
             ]
         )
-    gains = np.array([c["gain_nats"] for c in candidates])
-    bars = tuple((np.maximum(gains, 0.0) / max(gains.max(), 1e-9)).tolist())
+    bars = tuple((np.maximum(gains, 0.0) / max(*gains, 1e-9)).tolist())
     caption = (
         "Each candidate effect tested alone. The log Bayes factor compares the recalibrated vessel "
         "with and without the candidate. For an identified effect it differs from the value above, "
-        "which is computed in the presence of all other identified effects. The probability assumes "
-        "that exactly one of these candidates is missing, or none. The probabilities add up to "
-        "100 %, so that only the strongest of several missing effects has a high probability."
+        "which is computed in the presence of all other identified effects. The probability "
+        "assumes that exactly one of these candidates is missing, or none. The probabilities add "
+        "up to 100 %, so that only the strongest of several missing effects has a high probability."
     )
     header = [
         "candidate",
@@ -518,8 +523,8 @@ def _limits(f: Findings) -> Iterator[Block]:
     if not rows:
         return
     caption = (
-        "With 95 % confidence each effect is weaker than this. The limit of a factor or fraction is "
-        "its distance from the value in the vessel file."
+        "With 95 % confidence each effect is weaker than this. The limit of a factor or fraction "
+        "is its distance from the value in the vessel file."
     )
     header, folded = ["candidate", "at most", "meaning"], f.answer["verdict"] != "nothing_missing"
     yield without_empty(Table(caption, header, rows, (1, 2), folded=folded, aside=True))
@@ -559,15 +564,17 @@ def _next(f: Findings) -> Iterator[Block]:
         if f.answer["effects"]:
             yield Text(
                 "None of the manoeuvres considered is expected to add more than "
-                f"{f.setting('plan.min_gain'):g} nat of evidence on the identified effects and their "
-                "rivals."
+                f"{f.setting('plan.min_gain'):g} nat of evidence on the identified effects and "
+                "their rivals."
             )
         return
     scenario = wanted["scenario"]
     rivals = []
     for name in wanted["separates"]:
         rivals.append("no effect at all" if name == "nothing" else plain(name))
-    commands = "the commands below" if f.steps else "the initial state that it specifies"
+    commands = "the initial state that it specifies"
+    if f.steps:
+        commands = "the commands below"
     gain = wanted["expected_gain_nats"]
     yield Items(
         (
@@ -579,8 +586,8 @@ def _next(f: Findings) -> Iterator[Block]:
             ),
             (
                 "How to perform it",
-                f"The file {scenario} lies next to this report; boatsim run {scenario} simulates it "
-                f"with the vessel as specified. Give the real boat {commands}, record it, and "
+                f"The file {scenario} lies next to this report; boatsim run {scenario} simulates "
+                f"it with the vessel as specified. Give the real boat {commands}, record it, and "
                 "diagnose all recordings together.",
             ),
         )
@@ -591,19 +598,23 @@ def _next(f: Findings) -> Iterator[Block]:
 
 def _commands(f: Findings) -> Table:
     """Return the folded table of the commands of the next experiment; its last row is the end."""
-    names = {}
+    header, units = ["from"], dict[str, str]()
     for _, levels in f.steps:
         for name in levels:
-            names[name] = parameter(name)
+            if name not in units:
+                words, units[name] = parameter(name)
+                header.append(words)
     rows = []
     for t, levels in f.steps:
         row = [f"{t:g} s"]
-        for name, (_, unit) in names.items():
-            row.append(shown(name, levels[name], unit)[1] if name in levels else "")
+        for name, unit in units.items():
+            text = ""
+            if name in levels:
+                _, text = name_and_value(name, levels[name], unit)
+            row.append(text)
         if not levels:
             row[1] = "end"
         rows.append(row)
-    header = ["from", *(words for words, _ in names.values())]
     return Table("Commands of the next experiment", header, rows, folded=True)
 
 
@@ -620,14 +631,16 @@ def _limitations(f: Findings) -> Iterator[Block]:
             )
     if not f.answer["fit"].get("held_out"):
         lines.append("Whether the finding holds on other data: no recording was held out.")
-    unlimited = [plain(name) for name, values in _not_found(f).items() if not values]
+    unlimited = []
+    for name, limits in _not_found(f).items():
+        if not limits:
+            unlimited.append(plain(name))
     if unlimited:
         lines.append(
             f"How strong {listed(unlimited, 'or')} could be at most: no limit could be computed."
         )
     lines += map(readable, f.remarks)
-    if lines:
-        yield Items(tuple(zip(repeat(""), lines)))
+    yield from _bullets(lines)
 
 
 def _files(f: Findings) -> Iterator[Block]:

@@ -1,4 +1,4 @@
-"""Sentences of a diagnosis: the verdict, its validation, the assumptions, and the printed summary."""
+"""Sentences of a diagnosis: the verdict, its validation, the assumptions, the printed summary."""
 
 import itertools
 from collections.abc import Mapping, Sequence
@@ -11,11 +11,11 @@ from boatsim.diagnosis.report.formatting import (
     capital,
     evidence,
     listed,
+    name_and_value,
     number,
     percent,
     plain,
     quantity,
-    shown,
 )
 from boatsim.diagnosis.report.schema import (
     AmbientEntry,
@@ -61,6 +61,14 @@ def any_tested(answer: Answer) -> bool:
     return bool(answer["candidates"])
 
 
+def only_measurement_errors(answer: Answer) -> bool:
+    """Return whether measurement errors explain everything, so that no physics is missing."""
+    for effect in answer["effects"]:
+        if effect["kind"] != "measurement":
+            return False
+    return answer["verdict"] == "named"
+
+
 def sentence(answer: Answer, words: Mapping[str, str] | None = None) -> str:
     """Return the verdict of a diagnosis in a few sentences.
 
@@ -98,8 +106,10 @@ def _effects(answer: Answer, words: Mapping[str, str]) -> list[str]:
     physics: list[str] = []
     measured: list[str] = []
     for effect in answer["effects"]:
-        clauses = measured if effect["kind"] == "measurement" else physics
-        clauses.append(_clause(effect, words))
+        if effect["kind"] == "measurement":
+            measured.append(_clause(effect, words))
+        else:
+            physics.append(_clause(effect, words))
     addition = "in addition, " if statements else ""
     if physics:
         effects = counted(len(physics), "effect")
@@ -200,7 +210,7 @@ def parameters(effect: EffectEntry, words: Mapping[str, str]) -> str:
     for key, p in effect["parameters"].items():
         if abs(p["value"]) <= p["sd"] and "factor" not in key:
             continue
-        name, text = shown(key, p["value"], p["unit"], p["sd"])
+        name, text = name_and_value(key, p["value"], p["unit"], p["sd"])
         if effect["kind"] == "measurement":  # "error heading north" is clearer than "cos"
             name = words.get(f"{effect['name']}.{key}", name)
         if p.get("at_bound"):
@@ -351,7 +361,9 @@ def _validation(f: Findings) -> list[str]:
     ]
     for key, (words, unit) in FAMILIES.items():
         if rms := fit.get(key):
-            name, scale = ("deg", 57.29578) if unit == "rad" else (unit, 1.0)
+            scale = 1.0
+            if unit == "rad":
+                unit, scale = "deg", 57.29578
             cells = ", ".join(f"{model} {rms[model] * scale:.4g}" for model in MODELS)
-            lines.append(f"  {words} [{name}]: {cells}")
+            lines.append(f"  {words} [{unit}]: {cells}")
     return lines

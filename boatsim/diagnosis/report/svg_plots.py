@@ -8,7 +8,7 @@ pointer back from the lines.
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from html import escape
-from itertools import chain, pairwise
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -265,8 +265,11 @@ def thinned(y: Array, most: int = POINTS) -> NDArray[np.int64]:
     if len(y) <= most:
         return np.arange(len(y))
     edges = np.linspace(0, len(y), max(1, most // 2) + 1).astype(int)
-    extremes = [(a + np.argmin(y[a:b]), a + np.argmax(y[a:b])) for a, b in pairwise(edges)]
-    return np.unique(np.array([0, *chain.from_iterable(extremes), len(y) - 1]))
+    rows = [0, len(y) - 1]
+    for first, end in pairwise(edges):
+        rows.append(first + np.argmin(y[first:end]))
+        rows.append(first + np.argmax(y[first:end]))
+    return np.unique(np.array(rows))
 
 
 def every(rows: int, most: int) -> NDArray[np.int64]:
@@ -283,7 +286,8 @@ def ticks(low: float, high: float, most: int) -> list[float]:
         if factor * power >= rough * (1 - 1e-9):
             step = float(power * factor)
     first, last = int(np.ceil(low / step - 1e-9)), int(np.floor(high / step + 1e-9))
-    return [float(k * step) for k in range(first, last + 1)]
+    found: list[float] = (step * np.arange(first, last + 1)).tolist()
+    return found
 
 
 def _tick(value: float) -> str:

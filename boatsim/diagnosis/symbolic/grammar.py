@@ -125,9 +125,10 @@ def _drives(vessel: Vessel, signal: str, side: float) -> bool:
 
 def _has_side_drives(vessel: Vessel) -> bool:
     """Return whether a drive lies off the centre line."""
-    return any(
-        getattr(e, "y", 0.0) != 0.0 for e in vessel.effects_of(DescribedThrust.per_instance_of)
-    )
+    for drive in vessel.effects_of(DescribedThrust.per_instance_of):
+        if getattr(drive, "y", 0.0) != 0.0:
+            return True
+    return False
 
 
 def _products(
@@ -174,14 +175,14 @@ def _row_interval(recordings: Recordings) -> float:
     return max(float(np.median(np.diff(r.times))) for r in recordings)
 
 
-def _longest(recordings: Recordings) -> float:
-    """Return the length [s] of the longest recording."""
+def longest_duration(recordings: Recordings) -> float:
+    """Return the duration [s] of the longest recording."""
     return max(float(r.times[-1] - r.times[0]) for r in recordings)
 
 
 def _memories(recordings: Recordings, config: DescribeConfig) -> list[float]:
     """Return the time constants [s] of averages over the past."""
-    rows, whole = _row_interval(recordings), _longest(recordings)
+    rows, whole = _row_interval(recordings), longest_duration(recordings)
     shortest = config.shortest_memory * rows
     longest = max(config.longest_memory, config.shortest_memory * rows / whole) * whole
     return list(map(_allowed_memory, np.geomspace(shortest, longest, config.memories).tolist()))
@@ -280,7 +281,7 @@ def neighbours(
         step: Size of the change, relative to the step of the grammar.
         config: Settings of the symbolic regression.
     """
-    whole = _longest([r for r in recordings if term.run in ("", r.name)])
+    whole = longest_duration([r for r in recordings if term.run in ("", r.name)])
     found: list[Described] = []
     if term.acts == "within":
         found += _moved_interval(term, step * whole / config.recording_parts)

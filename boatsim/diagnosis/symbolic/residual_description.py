@@ -11,6 +11,7 @@ from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.diagnosis.search import generalization
 from boatsim.diagnosis.search.evidence import left_over
 from boatsim.diagnosis.symbolic.curves import curve
+from boatsim.diagnosis.symbolic.grammar import longest_duration
 from boatsim.diagnosis.symbolic.term_forces import fitted_recordings
 from boatsim.diagnosis.symbolic.term_selection import Formula, select_terms, without_term
 from boatsim.progress import Report, silent
@@ -66,26 +67,29 @@ def _general(
     Terms are removed in the order of increasing evidence; events of single recordings remain. The
     last choice is the fit without any term, if terms have replaced effects of it.
     """
-    lasting = sorted((n for n, t in found.terms.items() if not t.run), key=lambda n: gains[n])
     chain = [found]
-    for slot in lasting:
-        chain.append(without_term(problem, chain[-1], slot))
-    if not set(start.fit.effects) <= set(chain[-1].fit.effects):
+    for slot in sorted(found.terms, key=lambda n: gains[n]):
+        if not found.terms[slot].run:
+            chain.append(without_term(problem, chain[-1], slot))
+    events_only = chain[-1]
+    if not set(start.fit.effects) <= set(events_only.fit.effects):
         chain.append(start)
     fits = {"recalibrated": recalibrated}
     for k, formula in enumerate(chain):
         fits[str(k)] = formula.fit
     runs = []
     if held_out:
-        longest = max(float(r.times[-1] - r.times[0]) for r in held_out)
-        runs = free_runs(problem, fits, held_out, min(problem.horizon, longest))
+        horizon = min(problem.horizon, longest_duration(held_out))
+        runs = free_runs(problem, fits, held_out, horizon)
     before = generalization.squares(runs, "recalibrated")
     if not before:  # without held-out data no term is confirmed
-        return chain[len(lasting)]
+        return events_only
     misfits = []
     for k in range(len(chain)):
         misfit = generalization.misfit(generalization.squares(runs, str(k)), before)
-        misfits.append(misfit if np.isfinite(misfit) else np.inf)  # inf: the simulation diverges
+        if not np.isfinite(misfit):  # the simulation diverges
+            misfit = np.inf
+        misfits.append(misfit)
     improvement = problem.config.describe.general_improvement
     best = len(chain) - 1
     for k in reversed(range(len(chain))):

@@ -179,11 +179,11 @@ class FittedRecording:
         return self._factors[key]
 
     def averaged(self, looks_at: float, deviation: float, time_constant: float) -> Array:
-        """Return the average over the past of an actuator signal or its size, or the deviation from it.
+        """Return the average over the past of an actuator signal or its size, or the deviation.
 
         Args:
             looks_at: Code of the signal, by `terms.history_codes`.
-            deviation: Whether the deviation is returned, 1 or 0.
+            deviation: Whether the deviation from the average is returned, 1 or 0.
             time_constant: Time constant of the average [s].
 
         Returns:

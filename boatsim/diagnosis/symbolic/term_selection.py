@@ -164,9 +164,12 @@ def _with_term(
     known = {}
     for f, x in zip(base.free, base.theta, strict=True):
         known[f.effect, f.name] = x
-    theta = np.array([known.get((f.effect, f.name), scored.coefficient) for f in free])
-    covariance = np.diag([f.sd**2 for f in free])
-    start = Fit(effects, free, theta, covariance, base.levels, -np.inf)
+    theta, variances = [], []
+    for f in free:
+        theta.append(known.get((f.effect, f.name), scored.coefficient))
+        variances.append(f.sd**2)
+    covariance = np.diag(variances)
+    start = Fit(effects, free, np.array(theta), covariance, base.levels, -np.inf)
     found = gauss_newton(problem, start, config.first_steps, config.refit_gain)
     if not np.isfinite(found.evidence):
         return None
@@ -275,7 +278,7 @@ def _replaces_effect(problem: Problem, before: Formula, extended: Formula) -> bo
 
 
 def _pruned(problem: Problem, formula: Formula) -> Formula:
-    """Return the formula without earlier terms or effects that the newest term makes unnecessary."""
+    """Return the formula without earlier terms or effects that the newest term replaces."""
     for name in formula.fit.effects[:-1]:
         without = without_term(problem, formula, name)
         if without.fit.evidence > formula.fit.evidence - problem.config.select.least_gain:
