@@ -598,7 +598,8 @@ def _next(f: Findings) -> Iterator[Block]:
 
 def _commands(f: Findings) -> Table:
     """Return the folded table of the commands of the next experiment; its last row is the end."""
-    header, units = ["from"], dict[str, str]()
+    header = ["from"]
+    units: dict[str, str] = {}
     for _, levels in f.steps:
         for name in levels:
             if name not in units:
