@@ -194,7 +194,9 @@ def hour(runs: int = 3, horizon: float = 6.0, rate: float = 10.0) -> Findings:
         for axis in band
     ]
     answer = f.answer | {"where": f.answer["where"] | {"intervals": intervals}}
-    return replace(f, answer=answer, missing=missing, free_runs=tuple(free), held_out=("held_out_0",))
+    return replace(
+        f, answer=answer, missing=missing, free_runs=tuple(free), held_out=("held_out_0",)
+    )
 
 
 def test_the_page_of_logs_of_an_hour_stays_small_and_its_film_can_be_watched(tmp_path):
