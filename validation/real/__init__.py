@@ -1,1 +1,1 @@
-"""Diagnoses of real recordings: what was left out of a published model, judged on runs it has not seen."""
+"""Benchmarks of the diagnosis on real recordings, judged on runs that were not fitted."""

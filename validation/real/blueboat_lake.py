@@ -1,14 +1,15 @@
 """A 15 kg catamaran on a lake: `python -m validation.real.blueboat_lake`.
 
-The nominal is linear in surge, sway and yaw with the source's force map, the baseline the same with damping and thrust
-refitted. The report is of a diagnosis with two runs kept unseen. For the figures each of the twelve runs is left out
-once: what is missing is chosen on eight runs of which it is none, and fitted on the other eleven. Position after free
-runs of 10 s, and dead reckoning from recorded heading and recorded forward speed alone, before and after the heading is
-corrected by what was found wrong with the instruments.
+The nominal is linear in surge, sway and yaw with the source's force map, the baseline the same with
+damping and thrust refitted. The report is that of a diagnosis with two held-out runs. For the
+figures each of the twelve runs is held out once: the missing effects are selected on eight of the
+other runs and fitted on all eleven. Two errors are compared: the position after free runs of 10 s,
+and dead reckoning from recorded heading and forward speed alone, before and after the heading is
+corrected by the identified measurement effects.
 """
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -24,172 +25,191 @@ from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.diagnosis.search.ranking import selection
 from boatsim.physics.base import Array, Measurement, Shown
 from boatsim.recordings.table import Recording
-from validation.real.common import print_verdict, report, runs_of, table
+from validation.real.common import (
+    fixed,
+    print_table,
+    print_verdict,
+    runs_except,
+    runs_of,
+    write_report,
+)
 
-NAME, VESSEL = "blueboat_lake", "blueboat"
-UNSEEN = ("run_220", "run_225")
-GROUPS = 3  # of four runs each, for which what is missing is chosen on the other eight
+NAME = "blueboat_lake"
+VESSEL = "blueboat"
+HELD_OUT = ("run_220", "run_225")
+GROUPS = 3  # of four runs each; the missing effects of a group are selected on the other eight runs
 GOALS = {"free runs": 0.75, "dead reckoning": 0.6}
 HORIZON = 10.0  # [s] of a free run
-WINDOW, SHORTEST = (
-    20.0,
-    5.0,
-)  # [s] of dead reckoning; [m] of path below which a window tells nothing
+WINDOW = 20.0  # [s] of dead reckoning
+SHORTEST = 5.0  # [m] of path below which the relative error of a window has no meaning
 
 
 def instruments(problem: Problem, found: Fit) -> list[Measurement]:
-    """The measurement effects of a fit, with their fitted values."""
-    kinds = {e.name: type(e) for e in problem.program.candidates if isinstance(e, Measurement)}
-    values = {
-        n: {f.name: float(x) for f, x in zip(found.free, found.theta, strict=True) if f.effect == n}
-        for n in kinds
-    }
-    return [kinds[n](**values[n]) for n in found.effects if n in kinds]
+    """Return the measurement effects of a fit with their fitted values."""
+    values: dict[str, dict[str, float]] = {}
+    for f, x in zip(found.free, found.theta, strict=True):
+        values.setdefault(f.effect, {})[f.name] = float(x)
+    candidates = {effect.name: effect for effect in problem.program.candidates}
+    fitted = []
+    for name in found.effects:
+        effect = candidates.get(name)
+        if isinstance(effect, Measurement):
+            fitted.append(type(effect)(**values.get(name, {})))
+    return fitted
 
 
-def corrected(heading: Array, effects: Sequence[Measurement]) -> Array:
-    """The true headings (N,) [rad] that the instruments show as `heading`, by fixed-point iteration."""
+def corrected_heading(heading: Array, effects: Sequence[Measurement]) -> Array:
+    """Return the true headings for given compass readings, by fixed-point iteration.
+
+    Args:
+        heading: (N,) readings [rad].
+        effects: Measurement effects of the compass.
+    """
     psi = heading.copy()
     for _ in range(8):
-        psi += heading - np.array([_shown(float(x), effects) for x in psi])
+        psi += heading - np.array([_reading(float(x), effects) for x in psi])
     return psi
 
 
-def _shown(psi: float, effects: Sequence[Measurement]) -> float:
-    seen = Shown(**dict.fromkeys(Shown._fields, 0.0) | {"psi": psi})
+def _reading(psi: float, effects: Sequence[Measurement]) -> float:
+    reading = Shown(**dict.fromkeys(Shown._fields, 0.0) | {"psi": psi})
     for effect in effects:
         show_as = type(effect).shown
         if show_as is not None:
-            seen = show_as(seen, effect.values())
-    return float(seen.psi)
+            reading = show_as(reading, effect.values())
+    return float(reading.psi)
 
 
-def dead_reckoning(run: Recording, heading: Array) -> list[float]:
-    """Error per path travelled of windows of 20 s: heading (N,) and the recorded forward speed carried forward."""
+def dead_reckoning(run: Recording, heading: Array) -> Iterator[float]:
+    """Yield the error per travelled path for windows of 20 s.
+
+    Args:
+        run: A recording with the forward speed.
+        heading: (N,) headings along which the speed is integrated [rad].
+    """
     place = np.column_stack([run["x_m"], run["y_m"]])
     speed = run["estimate_u_mps"][:, None] * np.column_stack([np.cos(heading), np.sin(heading)])
     steps = 0.5 * (speed[1:] + speed[:-1]) * np.diff(run.t)[:, None]
     path = np.hypot(*np.diff(place, axis=0).T)
-    errors = []
     for a, b in zip(*segments(run.t, WINDOW), strict=True):
-        if (travelled := float(path[a:b].sum())) >= SHORTEST:
-            errors.append(
-                float(np.hypot(*(place[b] - place[a] - steps[a:b].sum(axis=0)))) / travelled
-            )
-    return errors
+        travelled = float(path[a:b].sum())
+        if travelled >= SHORTEST:
+            missed = place[b] - place[a] - steps[a:b].sum(axis=0)
+            yield float(np.hypot(*missed)) / travelled
 
 
 @dataclass(frozen=True)
-class LeftOut:
-    """What the fit of all other runs makes of one."""
+class Fold:
+    """Result of one held-out run."""
 
     run: str
-    effects: tuple[str, ...]  # chosen without it
-    stretches: Sequence[FreeRun]
+    effects: tuple[str, ...]  # selected without it
+    free_runs: Sequence[FreeRun]
     as_recorded: Sequence[float]  # dead reckoning: error per path of each window
     corrected: Sequence[float]
 
 
-def left_out(found: Diagnosis, runs: dict[str, Path]) -> list[LeftOut]:
-    """Each run judged by a model chosen without its group and fitted without it; one compiled program serves all."""
-    whole = [loading.open_recording(path, VESSEL, ())[0] for path in runs.values()]
-    stated, rate = shared_noise(found.vessel, whole), priors.rate(found.vessel)
-    tracks = [map_recording(run.thinned(rate), found.problem.program, stated) for run in whole]
-    recorded = dict(zip((t.name for t in tracks), whole, strict=True))
-    of_hull = replace(found.problem.ambient, time_constant=priors.time_constant(found.vessel))
-    usual = Problem(
-        tracks, of_hull, found.problem.uncertainty
-    )  # of how long forces last a run left out tells nothing
-    out = []
-    for group in (tracks[i::GROUPS] for i in range(GROUPS)):
-        rest = without(usual, tracks, group)
+def leave_one_out(diagnosis: Diagnosis, runs: dict[str, Path]) -> list[Fold]:
+    """Judge each run by a model selected without its group and fitted without it.
+
+    All folds use one compiled program.
+    """
+    opened = [pipeline.open_recording(path, VESSEL, ())[0] for path in runs.values()]
+    vessel, program = diagnosis.vessel, diagnosis.problem.program
+    noise, rate = shared_noise(vessel, opened), priors.rate(vessel)
+    mapped = [map_recording(run.thinned(rate), program, noise) for run in opened]
+    by_name = {run.name: whole for run, whole in zip(mapped, opened, strict=True)}
+    # the correlation time of this fit would use the held-out runs
+    ambient = replace(diagnosis.problem.ambient, time_constant=priors.time_constant(vessel))
+    usual = Problem(mapped, ambient, diagnosis.problem.uncertainty)
+    folds = []
+    for i in range(GROUPS):
+        group = mapped[i::GROUPS]
+        rest = hold_out(usual, mapped, group)
         names = rest.program.entries
-        chosen = selection(rest, names)
-        if (again := with_correlation_time(rest, chosen[1])) is not rest:
-            rest, chosen = again, selection(again, names)
-        out += [_judged(without(rest, tracks, [t]), chosen, t, recorded[t.name]) for t in group]
-    return sorted(out, key=lambda one: one.run)
+        selected = selection(rest, names)
+        again = with_correlation_time(rest, selected[1])
+        if again is not rest:
+            rest, selected = again, selection(again, names)
+        for run in group:
+            others = hold_out(rest, mapped, [run])
+            folds.append(judge(others, selected, run, by_name[run.name]))
+    return sorted(folds, key=lambda fold: fold.run)
 
 
-def without(
-    problem: Problem, tracks: Sequence[MappedRecording], held_out: Sequence[MappedRecording]
+def hold_out(
+    problem: Problem, runs: Sequence[MappedRecording], held_out: Sequence[MappedRecording]
 ) -> Problem:
-    """The same question about all runs but some."""
-    kept = [t for t in tracks if all(t is not u for u in held_out)]
+    """Return the same problem for all runs except the held-out ones."""
+    out = set(map(id, held_out))
+    kept = [run for run in runs if id(run) not in out]
     return Problem(kept, problem.ambient, problem.uncertainty)
 
 
-def _judged(
-    rest: Problem, chosen: tuple[Fit, Fit], held_out: MappedRecording, run: Recording
-) -> LeftOut:
-    """Coefficients of the recalibrated and the patched boat fitted on `rest`, both judged on the run left out."""
-    fits = {
-        name: converge(rest, fit(rest, f))
-        for name, f in zip(("recalibrated", "patched"), chosen, strict=True)
-    }
-    stretches = free_runs(rest, fits, [held_out], HORIZON)
-    heading = corrected(run["psi_rad"], instruments(rest, fits["patched"]))
-    reckoned = dead_reckoning(run, run["psi_rad"]), dead_reckoning(run, heading)
-    return LeftOut(held_out.name, chosen[1].effects, stretches, *reckoned)
+def judge(
+    rest: Problem, selected: tuple[Fit, Fit], held_out: MappedRecording, run: Recording
+) -> Fold:
+    """Fit the recalibrated and the patched boat on `rest`, and judge both on the held-out run."""
+    fits = {}
+    for name, start in zip(("recalibrated", "patched"), selected, strict=True):
+        fits[name] = converge(rest, fit(rest, start))
+    runs = free_runs(rest, fits, [held_out], HORIZON)
+    psi = run["psi_rad"]
+    heading = corrected_heading(psi, instruments(rest, fits["patched"]))
+    before, after = list(dead_reckoning(run, psi)), list(dead_reckoning(run, heading))
+    return Fold(held_out.name, selected[1].effects, runs, before, after)
 
 
-def print_left_out(folds: Sequence[LeftOut]) -> None:
-    """A row per run, then all of them pooled against the goals; what each fold chose."""
-    header = [
-        "left out",
-        "recalibrated [m]",
-        "patched [m]",
-        "ratio",
-        "as recorded",
-        "corrected",
-        "ratio",
+def print_leave_one_out(folds: Sequence[Fold]) -> None:
+    """Print a row per run, all of them together with the goals, and what each fold selected."""
+    chosen = Counter[str]()
+    runs: list[FreeRun] = []
+    before: list[float] = []
+    after: list[float] = []
+    for fold in folds:
+        chosen.update(fold.effects)
+        runs += fold.free_runs
+        before += fold.as_recorded
+        after += fold.corrected
+    whole = Fold("all", (), runs, before, after)
+    rows = [
+        [fold.run, *_free(fold.free_runs), *_medians(fold.as_recorded, fold.corrected)]
+        for fold in (*folds, whole)
     ]
-    rows = [[f.run, *_free(f.stretches), *_medians(f.as_recorded, f.corrected)] for f in folds]
-    stretches = [s for f in folds for s in f.stretches]
-    before, after = (
-        [e for f in folds for e in f.as_recorded],
-        [e for f in folds for e in f.corrected],
-    )
-    rows.append(["all", *_free(stretches), *_medians(before, after)])
-    rows.append(
-        ["goal", "", "", f"<= {GOALS['free runs']}", "", "", f"<= {GOALS['dead reckoning']}"]
-    )
-    table(
-        "each run left out once: position rms of free runs of 10 s; error per path of dead reckoning",
-        header,
-        rows,
-    )
-    chosen = Counter(n for f in folds for n in f.effects)
-    table(
-        "chosen without the run, and for how many of them",
-        ["effect", "runs"],
-        [[n, str(k)] for n, k in chosen.most_common()],
-    )
+    goals = [f"<= {goal}" for goal in GOALS.values()]
+    rows.append(["goal", "", "", goals[0], "", "", goals[1]])
+    header = ["held out", "recalibrated [m]", "patched [m]", "ratio"]
+    header += ["as recorded", "corrected", "ratio"]
+    title = "each run held out once: position rms of free runs of 10 s; "
+    print_table(title + "error per path of dead reckoning", header, rows)
+    counts = [[name, str(number)] for name, number in chosen.most_common()]
+    print_table("selected without the run: number of runs", ["effect", "runs"], counts)
 
 
-def _free(stretches: Sequence[FreeRun]) -> list[str]:
-    found = errors(stretches).get("position_rms_m")
-    if not found:
+def _free(runs: Sequence[FreeRun]) -> list[str]:
+    rms = errors(runs).get("position_rms_m")
+    if not rms:
         return ["", "", ""]
-    before, after = found["recalibrated"], found["patched"]
-    return [f"{before:.3f}", f"{after:.3f}", f"{after / before:.3f}"]
+    before, after = rms["recalibrated"], rms["patched"]
+    return fixed(3, before, after, after / before)
 
 
 def _medians(before: Sequence[float], after: Sequence[float]) -> list[str]:
     if not before:
         return ["", "", ""]
     a, b = float(np.median(before)), float(np.median(after))
-    return [f"{a:.4f}", f"{b:.4f}", f"{b / a:.3f}"]
+    return [*fixed(4, a, b), f"{b / a:.3f}"]
 
 
 def main() -> None:
     """Diagnose, then leave one run out."""
     runs = runs_of(NAME)
-    fitted = [path for name, path in runs.items() if name not in UNSEEN]
-    found = pipeline.diagnose(fitted, [runs[name] for name in UNSEEN], VESSEL, horizon=HORIZON)
-    report(found, NAME)
-    print_verdict(found)
-    print_left_out(left_out(found, runs))
+    held_out = [runs[name] for name in HELD_OUT]
+    fitted = runs_except(runs, HELD_OUT)
+    diagnosis = pipeline.diagnose(fitted, held_out, VESSEL, horizon=HORIZON)
+    write_report(diagnosis, NAME)
+    print_verdict(diagnosis)
+    print_leave_one_out(leave_one_out(diagnosis, runs))
 
 
 if __name__ == "__main__":

@@ -1,56 +1,91 @@
-"""What the benchmarks on real recordings share: where recordings lie, where reports go, how a table is printed."""
+"""Helpers of the benchmarks on real recordings: folders, reports and printed tables."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
 from boatsim.cli import diagnosis as commands
 from boatsim.diagnosis.pipeline import Diagnosis
+from boatsim.diagnosis.report.before_after import MODELS as MODELS
+from boatsim.diagnosis.report.schema import EffectEntry
 
 RECORDINGS = Path(__file__).parents[3] / "shared" / "recordings"
 OUT = Path("out/real")
+DEG = 57.29578  # [deg/rad]
+MODEL_COLUMNS = ("recalibrated", "patched", "patched / recalibrated")
+KINDS = {
+    "physics": "missing from the model of the boat",
+    "measurement": "wrong with the instruments",
+}
 
 
 def runs_of(name: str) -> dict[str, Path]:
-    """Recordings of a set by run; ends the program with one line where the set is not there."""
-    found = {p.stem: p for p in sorted((RECORDINGS / name / "runs").glob("*.csv"))}
-    if not found:
+    """Return the files of a set of recordings by run.
+
+    Raises:
+        SystemExit: The set is not on this machine; one line is printed.
+    """
+    files = sorted((RECORDINGS / name / "runs").glob("*.csv"))
+    if not files:
         print(f"{name}: skipped, there are no recordings in ../shared/recordings/{name}/runs")
         raise SystemExit
-    return found
+    return {file.stem: file for file in files}
 
 
-def report(found: Diagnosis, name: str) -> None:
-    """Write report.html and the other files of a diagnosis to out/real/<name>/ and print its sentence."""
-    commands.write(found, OUT / name)
-    print(found.findings.answer["sentence"])
+def runs_except[T](runs: Mapping[str, T], names: Iterable[str]) -> list[T]:
+    """Return the values of all runs except the named ones."""
+    return [run for name, run in runs.items() if name not in names]
+
+
+def write_report(diagnosis: Diagnosis, name: str) -> None:
+    """Write the files of a diagnosis to out/real/<name>/ and print its summary."""
+    commands.write(diagnosis, OUT / name)
+    print(diagnosis.findings.answer["sentence"])
     print(f"report: {OUT / name / 'report.html'}")
 
 
-def table(title: str, header: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
-    """Print a table, first column to the left, the others to the right."""
-    widths = [max(len(r[i]) for r in (header, *rows)) for i in range(len(header))]
+def fixed(digits: int, *values: float) -> list[str]:
+    """Format values with a fixed number of decimals."""
+    return [f"{value:.{digits}f}" for value in values]
+
+
+def scaled(
+    errors: Mapping[str, float], factor: float, models: Sequence[str] = MODELS
+) -> list[float]:
+    """Return the errors of some models times a factor."""
+    return [errors[model] * factor for model in models]
+
+
+def print_table(title: str, header: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
+    """Print a table, its first column aligned to the left, the others to the right."""
+    lines = [header, *rows]
+    widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
     print(f"\n{title}")
-    for row in (header, *rows):
-        cells = [
-            c.ljust(w) if i == 0 else c.rjust(w)
-            for i, (c, w) in enumerate(zip(row, widths, strict=True))
-        ]
+    for first, *others in lines:
+        cells = [first.ljust(widths[0]), *map(str.rjust, others, widths[1:])]
         print("  " + "  ".join(cells).rstrip())
 
 
-def print_verdict(found: Diagnosis) -> None:
-    """Physics and measurement apart, in order of gain, with parameters."""
-    for kind, words in (
-        ("physics", "left out of the boat"),
-        ("measurement", "wrong with the instruments"),
-    ):
-        print(f"\n{words}:")
-        effects = [e for e in found.findings.answer["effects"] if e["kind"] == kind]
-        for e in sorted(effects, key=lambda e: -e["gain_nats"]):
-            values = ", ".join(
-                f"{k} {p['value']:.3g} +- {p['sd']:.2g}" for k, p in e["parameters"].items()
-            )
-            tied = f"; hardly to be told from {', '.join(e['tied_with'])}" if e["tied_with"] else ""
-            print(f"  {e['name']} ({e['gain_nats']:.0f} nats): {values}{tied}")
-        if not effects:
+def effects_of(diagnosis: Diagnosis) -> list[EffectEntry]:
+    """Return the identified effects of an answer."""
+    return diagnosis.findings.answer["effects"]
+
+
+def parameter_text(effect: EffectEntry, sign: str = "+-") -> str:
+    """Return the parameters of an identified effect with their standard deviations."""
+    values = effect["parameters"].items()
+    return ", ".join(f"{name} {p['value']:.3g} {sign} {p['sd']:.2g}" for name, p in values)
+
+
+def print_verdict(diagnosis: Diagnosis) -> None:
+    """Print the identified effects with their parameters, by kind and in order of gain."""
+    effects = sorted(effects_of(diagnosis), key=lambda effect: -effect["gain_nats"])
+    for kind, title in KINDS.items():
+        print(f"\n{title}:")
+        some = [effect for effect in effects if effect["kind"] == kind]
+        if not some:
             print("  nothing found")
+        for effect in some:
+            line = f"  {effect['name']} ({effect['gain_nats']:.0f} nats): {parameter_text(effect)}"
+            if effect["tied_with"]:
+                line += f"; hardly distinguished from {', '.join(effect['tied_with'])}"
+            print(line)

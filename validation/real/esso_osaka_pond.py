@@ -1,11 +1,14 @@
-"""A 3 m tanker on a pond, at low speed ahead and astern, in wind: `python -m validation.real.esso_osaka_pond`.
+"""A 3 m tanker on a pond in wind, at low speed: `python -m validation.real.esso_osaka_pond`.
 
-The nominal is the MMG model of captive tests of the same hull, the baseline the same with its coefficients refitted.
-Nobody says that there was wind: positions and commands have to show it, and the anemometer is then laid beside what
-they showed. Fitted on random and zig-zag runs, judged on turns and berthing by free runs of 60 s. Wind is no property
-of a ship: for each minute that is judged it is found in the rest of that run, with all else as fitted. Recorded
-velocities are not used; nor, in what is fitted, fixes held over, and runs are cut at leaps, for the reasons that are
-printed first. What is judged is judged as it was recorded.
+The nominal is the MMG model of captive tests of the same hull, the baseline the same with its
+coefficients refitted. The diagnosis does not know that there was wind: it has to identify the wind
+from positions and commands, and the result is then compared with the anemometer.
+
+Random and zig-zag runs are fitted; turns and berthing are judged by free runs of 60 s. Wind is not
+a property of a ship, so for each judged minute it is estimated from the rest of that run, with all
+else as fitted. Recorded velocities are not used. Position fixes that were held over are not fitted,
+and fitted runs are cut at jumps, for the reasons that are printed first. Judged runs are used as
+recorded.
 """
 
 import json
@@ -13,6 +16,7 @@ import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
+from itertools import chain
 from pathlib import Path
 
 import numpy as np
@@ -29,476 +33,474 @@ from boatsim.diagnosis.problem import Fit, FreeParameter, Problem
 from boatsim.physics.base import Array
 from boatsim.physics.vessel import Vessel
 from boatsim.recordings.table import Recording
-from validation.real.common import OUT, RECORDINGS, report, runs_of, table
-from validation.real.esso_osaka_vessel import NAME, SOURCE, written
+from validation.real.common import (
+    DEG,
+    MODELS,
+    OUT,
+    RECORDINGS,
+    fixed,
+    print_table,
+    print_verdict,
+    runs_of,
+    scaled,
+    write_report,
+)
+from validation.real.esso_osaka_vessel import NAME, SOURCE, write_vessel
 
-FITTED, JUDGED = ("random", "zigzag"), ("turn", "berthing")
-UNSEEN = (
-    "random_0731_1248",
-    "random_0806_1624_6",
-    "zigzag_0731_1403",
-)  # of the fitted days, for the diagnosis itself
-WINDOW = 300.0  # [s] of each run that the diagnosis is given at most, for the time it takes
+FITTED = ("random", "zigzag")
+JUDGED = ("turn", "berthing")
+# of the kinds that are fitted: held out from the diagnosis
+HELD_OUT = ("random_0731_1248", "random_0806_1624_6", "zigzag_0731_1403")
+WINDOW = 300.0  # [s] of each run that are diagnosed at most, to limit the computing time
 HORIZON = 60.0  # [s] of a free run
-MODELS = ("nominal", "recalibrated", "patched")
 TITLE = f"fitted on {' and '.join(FITTED)} runs, judged on {' and '.join(JUDGED)}"
-KEPT = OUT / NAME / "judged.json"
-GOALS = {"nominal": 0.75, "recalibrated": 0.9}  # position, patched over this one
+ERRORS_FILE = OUT / NAME / "judged.json"
+GOALS = {"nominal": 0.75, "recalibrated": 0.9}  # position error of the patched model over this one
 UNITS = {
     "position_rms_m": ("position [m]", np.sqrt(2.0)),
-    "heading_rms_rad": ("heading [deg]", 57.29578),
+    "heading_rms_rad": ("heading [deg]", DEG),
 }
 LONG = 250.0  # [s] of a run in which a ship of 3 m has met the wind from several sides
-NEAR_DIRECTION, NEAR_SIZE, SHARE = 30.0, 0.3, 0.75  # [deg], relative, of the runs
-WEATHER = ("force", "toward")  # of the wind: the rest says how the hull takes it
-ROUNDS = 3  # of ship and winds in turn
-STARTS = (0.0, 0.5 * np.pi, np.pi, -0.5 * np.pi)  # [rad] the wind may blow to
-USUAL = 0.5  # [N] of a breeze, to begin with
-NEARLY = 0.1  # [nats] that a wind is near enough its best
+NEAR_DIRECTION = 30.0  # [deg]
+NEAR_SPEED = 0.3  # relative
+SHARE = 0.75  # of the runs
+WEATHER = ("force", "toward")  # parameters of the wind; its others describe the hull
+ROUNDS = 3  # of fitting ship and winds in turn
+START_DIRECTIONS = (0.0, 0.5 * np.pi, np.pi, -0.5 * np.pi)  # [rad] to which the wind may blow
+START_FORCE = 0.5  # [N] of a breeze
+TOLERANCE = 0.1  # [nats] of the search for a wind
 SHORTEST = 15.0  # [s] of a stretch that is used
-SMOOTH, AROUND = 2.0, 5.0  # [s] over which a rate is taken; about a defect not compared
-LEAP, STEP = 0.1, 0.03  # [m], [rad] in a row of 0.1 s: twice as fast as the ship ever goes or turns
-LATE, SOON = (
-    2.5,
-    0.2,
-)  # [s] before a leap back, and behind it, in which fixes are late: the longest gap is as long
+SMOOTH = 2.0  # [s] over which a rate is estimated
+AROUND = 5.0  # [s] about a defect that are not compared
+# [m], [rad] in a row of 0.1 s: twice the largest speed and yaw rate of the ship
+JUMP = 0.1
+TURN_JUMP = 0.03
+# [s] before a jump in which fixes are delayed (the longest gap is as long), and after it
+BEFORE_JUMP = 2.5
+AFTER_JUMP = 0.2
 
 
-# ---- the recordings themselves
+# ---- quality of the recordings
 
 
 @dataclass(frozen=True)
-class Checked:
-    """How far positions, headings and recorded velocities of a run agree."""
+class Consistency:
+    """Agreement of positions, headings and recorded velocities of a run."""
 
     bridged: float  # share of rows whose fix was held over
-    leaps: int  # rows in which position or heading moves further than the ship
-    late_s: float  # recorded velocities behind the rates of x and y
-    aft_m: float  # their point aft of the one whose x and y are recorded
-    drift: float  # recorded sway velocity per that of x and y
+    jumps: int  # rows in which position or heading moves further than the ship can
+    delay_s: float  # of recorded velocities after the rates of x and y
+    aft_m: float  # distance of their reference point aft of that of x and y
+    sway_ratio: float  # recorded sway velocity over that of x and y
 
 
-def checked(path: Path) -> Checked:
-    """The same run by its positions and by its velocities."""
+def consistency_of(path: Path) -> Consistency:
+    """Compare the velocities of a run's positions with its recorded velocities."""
     d = np.genfromtxt(path, delimiter=",", names=True)
     psi, dt = d["psi_rad"], float(np.median(np.diff(d["t_s"])))
     n = round(0.5 * SMOOTH / dt)
-    bridged, leaps = defects(d)
+    bridged, jumps = defects(d)
     wide = np.ones(2 * round(AROUND / dt) + 1)
-    good = np.convolve(bridged | leaps, wide, "same") < 0.5
+    good = np.convolve(bridged | jumps, wide, "same") < 0.5
     good[: 4 * n] = good[-4 * n :] = False
-
-    def slope(x: Array) -> Array:
-        return np.asarray(np.convolve(x, _derivative(n, dt), "same"))
-
-    north, east = slope(d["x_m"]), slope(d["y_m"])
-    u, v = np.cos(psi) * north + np.sin(psi) * east, np.cos(psi) * east - np.sin(psi) * north
+    derivative = _derivative(n, dt)
+    north = np.convolve(d["x_m"], derivative, "same")
+    east = np.convolve(d["y_m"], derivative, "same")
+    u = np.cos(psi) * north + np.sin(psi) * east
+    v = np.cos(psi) * east - np.sin(psi) * north
     mean = np.ones(2 * n + 1) / (2 * n + 1)
-    said_u, said_v, said_r = (
-        np.convolve(d[c], mean, "same") for c in ("u_mps", "v_mps", "r_radps")
-    )
+    recorded_u = np.convolve(d["u_mps"], mean, "same")
+    recorded_v = np.convolve(d["v_mps"], mean, "same")
+    recorded_r = np.convolve(d["r_radps"], mean, "same")
 
-    def off(k: int) -> tuple[float, Array]:
-        """Misfit with the velocities taken k rows earlier, and sway velocity by positions as v, r and 1 make it."""
-        along, across = np.roll(said_u, -k)[good], np.roll(said_v, -k)[good]
-        A = np.column_stack([across, said_r[good], np.ones(int(good.sum()))])
-        made = np.linalg.lstsq(A, v[good], rcond=None)[0]
-        return float(np.var(u[good] - along) + np.var(v[good] - A @ made)), made
+    def misfit(k: int) -> tuple[float, Array]:
+        """Return the misfit with velocities k rows earlier, and the regression of v on v, r, 1."""
+        along, across = np.roll(recorded_u, -k)[good], np.roll(recorded_v, -k)[good]
+        A = np.column_stack([across, recorded_r[good], np.ones(int(good.sum()))])
+        x = np.linalg.lstsq(A, v[good], rcond=None)[0]
+        return float(np.var(u[good] - along) + np.var(v[good] - A @ x)), x
 
-    shift = min(range(-10, 16), key=lambda k: off(k)[0])
-    made = off(shift)[1]
-    return Checked(
-        float(np.mean(d["filled"] > 0.0)),
-        int(leaps.sum()),
-        shift * dt,
-        float(made[1]),
-        1.0 / float(made[0]),
-    )
+    shift = min(range(-10, 16), key=lambda k: misfit(k)[0])
+    sway, yaw, _ = misfit(shift)[1].tolist()
+    filled = float(np.mean(d["filled"] > 0.0))
+    return Consistency(filled, int(jumps.sum()), shift * dt, yaw, 1.0 / sway)
 
 
 def _derivative(n: int, dt: float) -> Array:
-    """Weights of the slope of a straight line through 2 n + 1 rows."""
+    """Return weights of the slope of a straight line through 2 n + 1 rows."""
     k = np.arange(n, -n - 1, -1)
     return np.asarray(k / (dt * float(np.sum(k**2))))
 
 
 def defects(d: Array) -> tuple[Array, Array]:
-    """Rows whose fix is bridged, rows from which position or heading leaps to the next (booleans)."""
-    moved = np.hypot(np.diff(d["x_m"], append=d["x_m"][-1]), np.diff(d["y_m"], append=d["y_m"][-1]))
-    turned = np.diff(d["psi_rad"], append=d["psi_rad"][-1]) - d["r_radps"] * np.diff(
-        d["t_s"], append=d["t_s"][-1]
-    )
-    return d["filled"] > 0.0, (moved > LEAP) | (np.abs(turned) > STEP)
+    """Return the rows with a bridged fix, and those before a jump of position or heading.
+
+    Args:
+        d: Structured array of a recording's columns.
+
+    Returns:
+        Two boolean arrays (N,).
+    """
+
+    def steps(name: str) -> Array:
+        return np.asarray(np.diff(d[name], append=d[name][-1]))
+
+    turned = steps("psi_rad") - d["r_radps"] * steps("t_s")
+    far = np.hypot(steps("x_m"), steps("y_m")) > JUMP
+    return d["filled"] > 0.0, far | (np.abs(turned) > TURN_JUMP)
 
 
-def sound(recording: Recording, path: Path, shortest: float) -> list[Recording]:
-    """Stretches of a recording between leaps, without fixes that are bridged, or late before the leap (nan)."""
+def sound_stretches(recording: Recording, path: Path, shortest: float) -> list[Recording]:
+    """Return the stretches of a recording between jumps.
+
+    Bridged fixes are nan. The rows just before a jump, whose fixes are delayed, are left out.
+
+    Args:
+        recording: The recording.
+        path: Its file.
+        shortest: Shortest stretch that is returned [s].
+    """
     d = np.genfromtxt(path, delimiter=",", names=True)
-    bridged, leaps = defects(d)
+    bridged, jumps = defects(d)
     gone = bridged[np.searchsorted(d["t_s"], recording.t - 1e-6)]
     fixes = {n: np.where(gone, np.nan, recording[n]) for n in ("x_m", "y_m", "psi_rad")}
     whole = replace(recording, signals={**recording.signals, **fixes})
-    at = d["t_s"][leaps]
-    begins, ends = [whole.t[0], *(at + SOON)], [*(at - LATE), whole.t[-1]]
-    return [
-        whole.between(float(a), float(b))
-        for a, b in zip(begins, ends, strict=True)
-        if b - a >= shortest
-    ]
+    at = d["t_s"][jumps]
+    begins = [whole.t[0], *(at + AFTER_JUMP)]
+    ends = [*(at - BEFORE_JUMP), whole.t[-1]]
+    stretches = []
+    for a, b in zip(begins, ends, strict=True):
+        if b - a >= shortest:
+            stretches.append(whole.between(float(a), float(b)))
+    return stretches
 
 
-def print_recordings(runs: Mapping[str, Path]) -> None:
-    """What is wrong with them, by kind of run, medians."""
+def print_consistency(runs: Mapping[str, Path]) -> None:
+    """Print the defects of the recordings by kind of run, medians over runs."""
     rows = []
     for kind in (*FITTED, *JUDGED):
-        found = [checked(p) for n, p in runs.items() if n.startswith(kind)]
-        middle = [
-            float(np.median([getattr(c, f) for c in found])) for f in ("late_s", "aft_m", "drift")
-        ]
-        bridged = float(np.mean([c.bridged for c in found]))
-        cells = (
-            f"{100 * bridged:.1f} %",
-            str(sum(c.leaps for c in found)),
-            *(f"{x:.2f}" for x in middle),
-        )
-        rows.append([kind, str(len(found)), *cells])
-    header = [
-        "",
-        "runs",
-        "bridged",
-        "leaps",
-        "u, v late [s]",
-        "v's point aft [m]",
-        "v / that of x, y",
-    ]
-    table("what is wrong with the recordings (medians over runs)", header, rows)
+        found = [consistency_of(path) for name, path in runs.items() if name.startswith(kind)]
+        bridged = float(np.mean([run.bridged for run in found]))
+        jumps = sum(run.jumps for run in found)
+        middle = np.median([(run.delay_s, run.aft_m, run.sway_ratio) for run in found], axis=0)
+        rows.append([kind, str(len(found)), f"{100 * bridged:.1f} %", str(jumps)])
+        rows[-1] += fixed(2, *middle)
+    header = ["", "runs", "bridged", "jumps"]
+    header += ["delay of u, v [s]", "v's point aft [m]", "v / that of x, y"]
+    print_table("defects of the recordings (medians over runs)", header, rows)
     print(
-        "(fixes held over are bridged: left out; behind some of them position or heading leaps, by up to 10 deg that"
+        "(Bridged fixes were held over and are not fitted. After some of them position or heading\n"
+        " jumps, by up to 10 deg that the yaw rate does not show; runs are cut there. Recorded u, v\n"
+        " are delayed against x, y and belong to another point of the ship; they are not used.)"
     )
-    print(
-        " the yaw rate has not got: runs are cut there; recorded u, v lag behind x, y and are those of another point of"
-    )
-    print(" the ship in turns: not used)")
 
 
-# ---- wind, run by run
+# ---- wind of each run
 
 
 @cache
-def per_square() -> float:
-    """Side force beam-on per square of the wind's speed [N s^2/m^2], by what is stated beside the recordings."""
-    stated = json.loads(SOURCE.read_text(encoding="utf-8"))
-    area, density = stated["above_water"]["lateral_area_m2"], stated["density_air_kgm3"]
-    return float(0.5 * density * area * stated["mmg"]["wind"]["Y1"])
+def side_force_per_square() -> float:
+    """Return the side force beam-on per square of the wind's speed [N s^2/m^2], by vessel.json."""
+    data = json.loads(SOURCE.read_text(encoding="utf-8"))
+    area, density = data["above_water"]["lateral_area_m2"], data["density_air_kgm3"]
+    return float(0.5 * density * area * data["mmg"]["wind"]["Y1"])
 
 
 @dataclass(frozen=True)
 class Wind:
-    """A steady push."""
+    """A steady force of the wind."""
 
     force: float  # [N] beam-on
     toward: float  # [rad] from the x axis, clockwise
 
     @property
     def speed(self) -> float:
-        """The steady wind that pushes so [m/s]."""
-        return float(np.sqrt(self.force / per_square()))
+        """Speed of the steady wind with this force [m/s]."""
+        return float(np.sqrt(self.force / side_force_per_square()))
 
 
-def towards(push: Array) -> Wind:
-    """The wind that pushes so far north and east [N]."""
-    return Wind(float(np.hypot(*push)), float(np.arctan2(push[1], push[0])))
+def wind_of_force(force: Array) -> Wind:
+    """Return the wind with a force (2,) to north and east [N]."""
+    return Wind(float(np.hypot(*force)), float(np.arctan2(force[1], force[0])))
 
 
-def measured(name: str) -> Wind:
-    """By the anemometer: the steady wind with the mean push of the gusts."""
+def measured_wind(name: str) -> Wind:
+    """Return the steady wind with the mean force of the wind that the anemometer measured."""
     d = np.genfromtxt(RECORDINGS / NAME / "wind" / f"{name}.csv", delimiter=",", names=True)
-    speed, comes_from = d["true_speed_mps"], d["true_direction_rad"]
-    north, east = (-float(np.nanmean(speed**2 * f(comes_from))) for f in (np.cos, np.sin))
-    return Wind(per_square() * float(np.hypot(north, east)), float(np.arctan2(east, north)))
+    square, comes_from = d["true_speed_mps"] ** 2, d["true_direction_rad"]
+    north = -float(np.nanmean(square * np.cos(comes_from)))
+    east = -float(np.nanmean(square * np.sin(comes_from)))
+    force = side_force_per_square() * float(np.hypot(north, east))
+    return Wind(force, float(np.arctan2(east, north)))
 
 
-def of_weather(free: FreeParameter) -> bool:
-    """Whether a parameter belongs to the day and not to the ship."""
-    return free.effect == "wind" and free.name in WEATHER
-
-
-Laid = Callable[
-    [Sequence[Recording]], list[MappedRecording]
-]  # recordings laid on the one compiled program
+# maps recordings on the only compiled program
+Mapper = Callable[[Sequence[Recording]], list[MappedRecording]]
 
 
 class Weather:
     """A fit of a ship in which every run may have a wind of its own."""
 
     def __init__(self, problem: Problem, ship: Fit) -> None:
-        """`ship` with or without a wind of all runs."""
-        names = ship.effects if "wind" in ship.effects else (*ship.effects, "wind")
+        """Begin with a fit of the ship, with or without a wind common to all runs."""
+        names = ship.effects
+        if "wind" not in names:
+            names = (*names, "wind")
         free = problem.parameters(names)
         known = {(f.effect, f.name): x for f, x in zip(ship.free, ship.theta, strict=True)}
-        theta = np.array([known.get((f.effect, f.name), f.mean) for f in free])
+        theta = []
+        self.rest = []  # positions of all parameters but those of the wind
+        for i, f in enumerate(free):
+            theta.append(known.get((f.effect, f.name), f.mean))
+            if f.effect != "wind" or f.name not in WEATHER:
+                self.rest.append(i)
+            elif f.name == "force":
+                self.prior_sd = f.sd  # of the wind's force [N]
         self.problem = problem
-        self.own = [i for i, f in enumerate(free) if of_weather(f)]
-        self.rest = [i for i, f in enumerate(free) if not of_weather(f)]
-        self.ship = Fit(names, free, theta, np.diag([f.sd**2 for f in free]), ship.levels, -np.inf)
+        self.ship = Fit(names, free, np.array(theta), _prior(free), ship.levels, -np.inf)
 
-    def _part(self, at: Sequence[int], theta: Array | None = None) -> Fit:
-        free = tuple(self.ship.free[i] for i in at)
-        x = self.ship.theta[at] if theta is None else theta
-        return Fit(
-            self.ship.effects, free, x, np.diag([f.sd**2 for f in free]), self.ship.levels, -np.inf
-        )
+    def _without_wind(self) -> Fit:
+        free = tuple(self.ship.free[i] for i in self.rest)
+        theta = self.ship.theta[self.rest]
+        return Fit(self.ship.effects, free, theta, _prior(free), self.ship.levels, -np.inf)
 
-    def wind(self, tracks: Sequence[MappedRecording]) -> Wind:
-        """The wind common to some tracks, with the ship as fitted.
+    def find_wind(self, recordings: Sequence[MappedRecording]) -> Wind:
+        """Return the wind common to some recordings, with the ship as fitted.
 
-        Sought as a push north and one east, each as likely either way: a force and its bearing would make calm likelier
-        than any one wind, though there always is some.
+        The prior is a normal distribution of the force to north and of that to east. A prior of
+        force and direction would prefer calm to any single wind.
         """
-        part = self._part(self.rest)
-        held = [replace(t, values=self.problem.values(t, part.free, part.theta)) for t in tracks]
+        part = self._without_wind()
+        fixed_ship = []
+        for run in recordings:
+            values = self.problem.values(run, part.free, part.theta)
+            fixed_ship.append(replace(run, values=values))
         on = self.problem.program.switches(self.ship.effects)
-        usual = next(self.ship.free[i].sd for i in self.own if self.ship.free[i].name == "force")
 
         def score(x: Array) -> float:
-            blown = self.problem.on([self.blown(t, towards(x)) for t in held])
-            likelihood = blown.log_likelihood((), np.zeros(0), on, self.ship.levels)
-            return likelihood - 0.5 * float(x @ x) / usual**2
+            wind = wind_of_force(x)
+            problem = self.problem.on([self.in_wind(run, wind) for run in fixed_ship])
+            likelihood = problem.log_likelihood((), np.zeros(0), on, self.ship.levels)
+            return likelihood - 0.5 * float(x @ x) / self.prior_sd**2
 
-        begun = [USUAL * np.array([np.cos(a), np.sin(a)]) for a in STARTS]
-        return towards(
-            max((maximize(score, x, USUAL, NEARLY) for x in begun), key=lambda found: found[0])[1]
-        )
+        found = []
+        for angle in START_DIRECTIONS:
+            start = START_FORCE * np.array([np.cos(angle), np.sin(angle)])
+            found.append(maximize(score, start, START_FORCE, TOLERANCE))
+        return wind_of_force(max(found, key=lambda best: best[0])[1])
 
-    def blown(self, one: MappedRecording, wind: Wind) -> MappedRecording:
-        """A track with that wind among its own values."""
-        values = one.values.copy()
+    def in_wind(self, recording: MappedRecording, wind: Wind) -> MappedRecording:
+        """Return a recording with a wind among its own values."""
+        values = recording.values.copy()
         for name in WEATHER:
             values[self.problem.program.index("wind", name)] = getattr(wind, name)
-        return replace(one, values=values)
+        return replace(recording, values=values)
 
     def refit(self, runs: Sequence[Sequence[MappedRecording]]) -> None:
-        """The ship again, each run in its own wind, and the winds again."""
+        """Fit the winds of all runs and the ship in turn."""
         for _ in range(ROUNDS):
-            winds = [self.wind(tracks) for tracks in runs]
-            pairs = zip(runs, winds, strict=True)
-            on = self.problem.on([self.blown(t, wind) for tracks, wind in pairs for t in tracks])
-            found = fit(on, self._part(self.rest))
+            recordings = []
+            for stretches, wind in zip(runs, list(map(self.find_wind, runs)), strict=True):
+                recordings += [self.in_wind(stretch, wind) for stretch in stretches]
+            found = fit(self.problem.on(recordings), self._without_wind())
             self.ship.theta[self.rest] = found.theta
             self.ship = replace(self.ship, levels=found.levels)
 
-    def free_runs(self, one: MappedRecording, wind: Wind) -> list[FreeRun]:
-        """Free runs of the ship over a run in that wind."""
-        return free_runs(
-            self.problem, {"patched": self._part(self.rest)}, [self.blown(one, wind)], HORIZON
-        )
+    def free_runs(self, recording: MappedRecording, wind: Wind) -> list[FreeRun]:
+        """Return free runs of the ship over a recording in a wind."""
+        models = {"patched": self._without_wind()}
+        return free_runs(self.problem, models, [self.in_wind(recording, wind)], HORIZON)
+
+
+def _prior(free: Sequence[FreeParameter]) -> Array:
+    """Return the prior covariance of free parameters."""
+    return np.diag([f.sd**2 for f in free])
 
 
 def around(stretches: Sequence[Recording], a: float, b: float) -> list[Recording]:
-    """What stretches of a run lie before and behind one minute."""
-    out = []
+    """Return the parts of a run's stretches before a [s] and after b [s]."""
+    parts = []
     for whole in stretches:
         for begin, end in ((float(whole.t[0]), a), (b, float(whole.t[-1]))):
             inside = (whole.t > begin - 1e-9) & (whole.t < end + 1e-9)
             if inside.any() and float(np.ptp(whole.t[inside])) >= SHORTEST:
-                out.append(whole.between(begin, end))
-    return out
+                parts.append(whole.between(begin, end))
+    return parts
+
+
+def _signed_deg(angle: float) -> float:
+    """Return an angle [rad] in degrees between -180 and 180."""
+    return float(np.degrees(np.angle(np.exp(1j * angle))))
 
 
 def print_winds(found: Mapping[str, Wind], seconds: Mapping[str, float]) -> None:
-    """Found in each run, all of it, beside what the anemometer says."""
-    rows, near = [], list[str]()
+    """Print the estimated wind of each whole run and the measured one."""
+    rows = []
+    near = set()
     for name, wind in found.items():
-        truth = measured(name)
-        turned = np.degrees(np.angle(np.exp(1j * (wind.toward - truth.toward))))
-        size = wind.speed / truth.speed
-        good = abs(turned) <= NEAR_DIRECTION and abs(size - 1.0) <= NEAR_SIZE
-        near += [name] if good else []
-        said = [f"{np.degrees(np.angle(np.exp(1j * w.toward))):.0f}" for w in (wind, truth)]
-        cells = (
-            *said,
-            f"{turned:+.0f}",
-            f"{wind.speed:.2f}",
-            f"{truth.speed:.2f}",
-            f"{size:.2f}",
-            "yes" if good else "-",
-        )
-        rows.append([name, *cells])
-    header = [
-        "run",
-        "blows to [deg]",
-        "measured",
-        "off",
-        "speed [m/s]",
-        "measured",
-        "ratio",
-        "both near",
-    ]
-    table("steady wind per run, found without the anemometer", header, rows)
-    near_to = f"{NEAR_DIRECTION:g} deg and {100 * NEAR_SIZE:g} %"
-    print(f"within {near_to}: {len(near)} of {len(rows)} runs (goal {SHARE:g} of them);")
-    long = [n for n in found if seconds[n] >= LONG]
-    print(f"of the runs of {LONG:g} s or longer {sum(n in near for n in long)} of {len(long)}")
+        truth = measured_wind(name)
+        off = _signed_deg(wind.toward - truth.toward)
+        ratio = wind.speed / truth.speed
+        verdict = "-"
+        if abs(off) <= NEAR_DIRECTION and abs(ratio - 1.0) <= NEAR_SPEED:
+            near.add(name)
+            verdict = "yes"
+        directions = fixed(0, _signed_deg(wind.toward), _signed_deg(truth.toward))
+        speeds = fixed(2, wind.speed, truth.speed, ratio)
+        rows.append([name, *directions, f"{off:+.0f}", *speeds, verdict])
+    header = ["run", "blows to [deg]", "measured", "off"]
+    header += ["speed [m/s]", "measured", "ratio", "both near"]
+    print_table("steady wind per run, estimated without the anemometer", header, rows)
+    near_to = f"{NEAR_DIRECTION:g} deg and {100 * NEAR_SPEED:g} %"
+    print(f"within {near_to}: {len(near)} of {len(rows)} runs (goal: {SHARE:g} of them);")
+    long = {name for name in found if seconds[name] >= LONG}
+    print(f"of the runs of {LONG:g} s or longer {len(near & long)} of {len(long)}")
 
 
-# ---- judged
+# ---- judgement
 
 
-def print_judged(stretches: Sequence[FreeRun], title: str) -> None:
-    """Errors of the three models by kind of run and together."""
+def runs_of_kind(runs: Sequence[FreeRun], kind: str) -> list[FreeRun]:
+    """Return the free runs over recordings of one kind; all of them for ""."""
+    return [run for run in runs if run.run.startswith(kind)]
+
+
+def print_judged(runs: Sequence[FreeRun], title: str) -> None:
+    """Print the errors of the three models by kind of run and over all runs."""
     rows = []
     for kind in (*JUDGED, ""):
-        some = [s for s in stretches if s.run.startswith(kind)]
+        some = runs_of_kind(runs, kind)
         off = errors(some)
         for family, (what, factor) in UNITS.items():
-            a, b, c = (off[family][m] * factor for m in MODELS)
-            goals = [
-                f"<= {GOALS[m]:g}" if not kind and family.startswith("position") else ""
-                for m in GOALS
-            ]
-            cells = [
-                f"{a:.3f}",
-                f"{b:.3f}",
-                f"{c:.3f}",
-                f"{c / a:.2f}",
-                goals[0],
-                f"{c / b:.2f}",
-                goals[1],
-            ]
-            rows.append([f"{kind or 'all'}, {what}", str(len(some)), *cells])
-    header = [
-        "rms",
-        "free runs",
-        "captive",
-        "recalibrated",
-        "patched",
-        "/ captive",
-        "goal",
-        "/ recalibrated",
-        "goal",
-    ]
-    table(title, header, rows)
+            goals = ["", ""]
+            if not kind and family.startswith("position"):
+                goals = [f"<= {goal:g}" for goal in GOALS.values()]
+            a, b, c = scaled(off[family], factor)
+            row = [f"{kind or 'all'}, {what}", str(len(some)), *fixed(3, a, b, c)]
+            rows.append([*row, f"{c / a:.2f}", goals[0], f"{c / b:.2f}", goals[1]])
+    header = ["rms", "free runs", "captive", "recalibrated", "patched"]
+    header += ["/ captive", "goal", "/ recalibrated", "goal"]
+    print_table(title, header, rows)
 
 
-def keep(stretches: Sequence[FreeRun]) -> None:
-    """What was judged, for the second mode to be laid beside it."""
-    found = {
-        kind: errors([s for s in stretches if s.run.startswith(kind)]) for kind in (*JUDGED, "")
-    }
-    KEPT.parent.mkdir(parents=True, exist_ok=True)
-    KEPT.write_text(json.dumps(found, indent=1), encoding="utf-8")
+def write_errors(runs: Sequence[FreeRun]) -> None:
+    """Write the errors by kind of run, for the comparison in `esso_osaka_wind`."""
+    found = {kind: errors(runs_of_kind(runs, kind)) for kind in (*JUDGED, "")}
+    ERRORS_FILE.parent.mkdir(parents=True, exist_ok=True)
+    ERRORS_FILE.write_text(json.dumps(found, indent=1), encoding="utf-8")
 
 
-def with_model(stretches: Sequence[FreeRun], patched: Sequence[FreeRun]) -> list[FreeRun]:
-    """The same stretches with what another boat does in them."""
-    return [
-        replace(s, channels={**s.channels, "patched": p.channels["patched"]})
-        for s, p in zip(stretches, patched, strict=True)
-    ]
-
-
-def in_rests_wind(
-    weather: Weather, whole: MappedRecording, stretches: Sequence[Recording], laid: Laid
+def in_wind_of_rest(
+    weather: Weather, whole: MappedRecording, stretches: Sequence[Recording], mapper: Mapper
 ) -> list[FreeRun]:
-    """Free runs over each minute of a run, in the wind found in the rest of that run."""
+    """Return free runs over each minute of a run, in the wind estimated from the rest of it."""
     out = []
     for a, b in zip(*segments(whole.times, HORIZON), strict=True):
-        rest = laid(around(stretches, float(whole.times[a]), float(whole.times[b])))
-        found = weather.free_runs(whole, weather.wind(rest))
-        out.append(next(s for s in found if s.start_s == whole.times[a]))
+        rest = mapper(around(stretches, float(whole.times[a]), float(whole.times[b])))
+        for run in weather.free_runs(whole, weather.find_wind(rest)):
+            if run.start_s == whole.times[a]:
+                out.append(run)
+                break
     return out
 
 
 @dataclass(frozen=True)
-class Opened:
-    """A run as a diagnosis takes it up: whole, and its sound stretches."""
+class OpenedRun:
+    """A whole run, and its sound stretches."""
 
     whole: Recording
     stretches: list[Recording]
 
     @property
     def longest(self) -> Recording:
-        """The first part of its longest stretch: what the diagnosis is given."""
+        """First part of the longest stretch, which is diagnosed."""
         found = max(self.stretches, key=lambda r: float(np.ptp(r.t)))
         return found.between(float(found.t[0]), float(found.t[0]) + WINDOW)
 
 
 def as_recorded(name: str, recording: Recording) -> Recording:
-    """A run with nothing laid beside it."""
+    """Return the recording without further columns."""
     return recording
 
 
-def opened(
+def open_runs(
     runs: Mapping[str, Path],
-    vessel: str,
+    vessel_name: str,
     completed: Callable[[str, Recording], Recording] = as_recorded,
-) -> tuple[dict[str, Opened], Vessel]:
-    """Every run, thinned, once what there is beside it is laid there."""
-    boat = loading.vessel_for(next(iter(runs.values())), vessel, ())
-    rate, found = priors.rate(boat), {}
+) -> tuple[dict[str, OpenedRun], Vessel]:
+    """Read all runs at the vessel's rate.
+
+    Args:
+        runs: Files by run.
+        vessel_name: Name or file of the vessel.
+        completed: Adds further columns to a run, given its name and recording.
+
+    Returns:
+        Runs by name, and the vessel.
+    """
+    vessel = pipeline.vessel_for(next(iter(runs.values())), vessel_name, ())
+    rate = priors.rate(vessel)
+    found = {}
     for name, path in runs.items():
-        recording = completed(name, loading.open_recording(path, vessel, ())[0])
-        parts = [r.thinned(rate) for r in sound(recording, path, SHORTEST)]
-        found[name] = Opened(drop_position_outliers(recording.thinned(rate), boat), parts)
-    return found, boat
+        recording = completed(name, pipeline.open_recording(path, vessel_name, ())[0])
+        stretches = [r.thinned(rate) for r in sound_stretches(recording, path, SHORTEST)]
+        whole = drop_position_outliers(recording.thinned(rate), vessel)
+        found[name] = OpenedRun(whole, stretches)
+    return found, vessel
 
 
-def diagnosed(recordings: Mapping[str, Opened], boat: Vessel) -> Diagnosis:
-    """What is missing, by a stretch of each random and zig-zag run."""
-    some = {n: one for n, one in recordings.items() if n.startswith(FITTED)}
-    fitted = [one.longest for n, one in some.items() if n not in UNSEEN]
-    held_out = [some[n].whole for n in UNSEEN]
-    boats = {r.path: boat for r in (*fitted, *held_out)}
-    note = f"{', '.join(UNSEEN)}; of the others the longest stretch without a leap, {WINDOW:g} s at most"
-    return pipeline.diagnose_loaded(Loaded(fitted, held_out, boats, note, horizon=HORIZON))
-
-
-def print_named(found: Diagnosis) -> None:
-    """The verdict and what is named."""
-    answer = found.findings.answer
-    print(f"\nverdict: {answer['verdict']}")
-    for e in answer["effects"]:
-        values = ", ".join(
-            f"{k} {p['value']:.3g} +- {p['sd']:.2g}" for k, p in e["parameters"].items()
-        )
-        tied = f"; hardly to be told from {', '.join(e['tied_with'])}" if e["tied_with"] else ""
-        print(f"  {e['kind']}: {e['name']} ({e['gain_nats']:.0f} nats): {values}{tied}")
+def diagnose(runs: Mapping[str, OpenedRun], vessel: Vessel) -> Diagnosis:
+    """Diagnose one stretch of each random and zig-zag run."""
+    fitted = []
+    for name, run in runs.items():
+        if name.startswith(FITTED) and name not in HELD_OUT:
+            fitted.append(run.longest)
+    held_out = [runs[name].whole for name in HELD_OUT]
+    vessels = {r.path: vessel for r in (*fitted, *held_out)}
+    note = f"{', '.join(HELD_OUT)}; of the other runs only the longest stretch without a jump, "
+    note += f"{WINDOW:g} s at most"
+    return pipeline.diagnose_recordings(fitted, held_out, vessels, note, horizon=HORIZON)
 
 
 def main() -> None:
-    """Diagnose, find each run's wind, judge."""
+    """Diagnose, estimate each run's wind, judge."""
     begin = time.perf_counter()
-    runs = runs_of(NAME)
-    print_recordings(runs)
-    recordings, boat = opened(runs, str(written()))
-    found = diagnosed(recordings, boat)
-    report(found, NAME)
-    print_named(found)
-    stated = shared_noise(boat, [r for one in recordings.values() for r in one.stretches])
+    files = runs_of(NAME)
+    print_consistency(files)
+    runs, vessel = open_runs(files, str(write_vessel()))
+    diagnosis = diagnose(runs, vessel)
+    write_report(diagnosis, NAME)
+    print_verdict(diagnosis)
+    noise = shared_noise(vessel, list(chain.from_iterable(r.stretches for r in runs.values())))
 
-    def laid(some: Sequence[Recording]) -> list[MappedRecording]:
-        return [found.map_recording(r, stated) for r in some]
+    def mapper(recordings: Sequence[Recording]) -> list[MappedRecording]:
+        return [diagnosis.laid(r, noise) for r in recordings]
 
-    tracks = {n: laid(one.stretches) for n, one in recordings.items()}
-    fitted = {n: some for n, some in tracks.items() if n.startswith(FITTED)}
-    judged = {n: laid([one.whole])[0] for n, one in recordings.items() if n.startswith(JUDGED)}
-    problem = found.problem.on([t for some in fitted.values() for t in some])
-    ranking = found.ranking
+    mapped = {name: mapper(run.stretches) for name, run in runs.items()}
+    fitted = [stretches for name, stretches in mapped.items() if name.startswith(FITTED)]
+    problem = diagnosis.problem.on(list(chain.from_iterable(fitted)))
+    ranking = diagnosis.ranking
     recalibrated = converge(problem, ranking.recalibrated)
     weather = Weather(problem, ranking.best)
-    weather.refit(list(fitted.values()))
-    seconds = {n: float(np.ptp(one.whole.t)) for n, one in recordings.items()}
-    print_winds({n: weather.wind(some) for n, some in tracks.items()}, seconds)
+    weather.refit(fitted)
+    winds, seconds = {}, {}
+    for name, stretches in mapped.items():
+        winds[name] = weather.find_wind(stretches)
+        seconds[name] = float(np.ptp(runs[name].whole.t))
+    print_winds(winds, seconds)
     fits = {"nominal": ranking.nominal, "recalibrated": recalibrated}
-    before = free_runs(problem, fits, list(judged.values()), HORIZON)
-    after = [
-        s
-        for n, t in judged.items()
-        for s in in_rests_wind(weather, t, recordings[n].stretches, laid)
-    ]
-    judgement = with_model(before, after)
-    print_judged(judgement, TITLE)
-    keep(judgement)
+    judged: list[FreeRun] = []
+    for name, run in runs.items():
+        if not name.startswith(JUDGED):
+            continue
+        whole = mapper([run.whole])[0]
+        before = free_runs(problem, fits, [whole], HORIZON)
+        after = in_wind_of_rest(weather, whole, run.stretches, mapper)
+        for one, patched in zip(before, after, strict=True):
+            channels = {**one.channels, "patched": patched.channels["patched"]}
+            judged.append(replace(one, channels=channels))
+    print_judged(judged, TITLE)
+    write_errors(judged)
     print(f"\n{time.perf_counter() - begin:.0f} s")
 
 

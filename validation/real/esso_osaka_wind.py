@@ -1,13 +1,15 @@
-"""The same tanker with its anemometer: `python -m validation.real.esso_osaka_wind`, after `...esso_osaka_pond`.
+"""The Esso Osaka with a known wind: `python -m validation.real.esso_osaka_wind`.
 
-The second mode of that benchmark: the recorded true wind is an input like the rudder, its force by the regression that
-lies beside the recordings, so that what is left when the wind is known can be asked. Fitted and judged as there.
+Run `validation.real.esso_osaka_pond` first. This is the second mode of that benchmark: the measured
+true wind is an input like the rudder, and its force follows from the regression in vessel.json. It
+shows what is missing when the wind is known. Fit and judgement are the same.
 """
 
 import json
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from itertools import chain
 
 import numpy as np
 
@@ -15,95 +17,116 @@ from boatsim.diagnosis.filter import shared_noise
 from boatsim.diagnosis.fit import converge
 from boatsim.diagnosis.free_runs import FreeRun, errors, free_runs
 from boatsim.recordings.table import Recording
-from validation.real.common import OUT, RECORDINGS, report, runs_of, table
+from validation.real.common import (
+    MODELS,
+    OUT,
+    RECORDINGS,
+    fixed,
+    print_table,
+    print_verdict,
+    runs_of,
+    scaled,
+    write_report,
+)
 from validation.real.esso_osaka_pond import (
+    ERRORS_FILE,
     FITTED,
     HORIZON,
     JUDGED,
-    KEPT,
-    MODELS,
     TITLE,
     UNITS,
-    diagnosed,
-    opened,
-    print_named,
+    diagnose,
+    open_runs,
+    runs_of_kind,
 )
-from validation.real.esso_osaka_vessel import NAME, written
+from validation.real.esso_osaka_vessel import NAME, write_vessel
 
-CALLED = f"{NAME}_wind"
-# [s] of readings taken together: the vessel's rate, in less a hull of 3 m does nothing
-STEADY = 0.5
+WIND_NAME = f"{NAME}_wind"
+# [s] over which the wind is averaged: the period of the vessel's rate, shorter than any response
+# of a hull of 3 m
+AVERAGE = 0.5
 
 
 def with_wind(name: str, recording: Recording) -> Recording:
-    """A run with its anemometer's columns, the mean of each `STEADY` seconds; the direction without jumps of a turn."""
+    """Return a run with the columns of its anemometer.
+
+    The wind is averaged over `AVERAGE` seconds, and its direction is unwrapped.
+    """
     d = np.genfromtxt(RECORDINGS / NAME / "wind" / f"{name}.csv", delimiter=",", names=True)
     good = np.isfinite(d["true_speed_mps"]) & np.isfinite(d["true_direction_rad"])
-    read = {
+    readings = {
         "wind_mps": d["true_speed_mps"][good],
         "wind_from_rad": np.unwrap(d["true_direction_rad"][good]),
     }
-    part = np.floor(recording.t / STEADY + 1e-6).astype(int)
-    laid = {n: np.interp(recording.t, d["t_s"][good], x) for n, x in read.items()}
+    part = np.floor(recording.t / AVERAGE + 1e-6).astype(int)
     rows = np.maximum(np.bincount(part), 1)
-    means = {n: (np.bincount(part, x) / rows)[part] for n, x in laid.items()}
+    means = {}
+    for signal, x in readings.items():
+        at_rows = np.interp(recording.t, d["t_s"][good], x)
+        means[signal] = (np.bincount(part, at_rows) / rows)[part]
     return replace(recording, signals=recording.signals | means)
 
 
-def print_against(
+def print_comparison(
     known: Sequence[FreeRun], concealed: Mapping[str, Mapping[str, Mapping[str, float]]]
 ) -> None:
-    """Errors of the three models with the wind as an input, beside those of the first mode where they are kept."""
+    """Print the errors of the three models with and without the measured wind.
+
+    Args:
+        known: Free runs with the wind as an input.
+        concealed: Errors of the first mode by kind of run, signals and model; may be empty.
+    """
     rows = []
     for kind in (*JUDGED, ""):
-        some = [s for s in known if s.run.startswith(kind)]
-        off, before = errors(some), concealed.get(kind, {})
+        some = runs_of_kind(known, kind)
+        off, before = errors(some), concealed.get(kind)
         for family, (what, factor) in UNITS.items():
-            now = [off[family][m] * factor for m in MODELS]
-            then = [before[family][m] * factor if before else np.nan for m in MODELS]
-            cells = [f"{x:.3f}" for pair in zip(then, now, strict=True) for x in pair]
-            rows.append(
-                [
-                    f"{kind or 'all'}, {what}",
-                    str(len(some)),
-                    *cells,
-                    f"{now[2] / now[0]:.2f}",
-                    f"{now[2] / then[2]:.2f}",
-                ]
-            )
-    models = [
-        f"{m}{end}" for m in ("captive", "recalibrated", "patched") for end in ("", " + wind")
-    ]
-    table(
-        TITLE, ["rms", "free runs", *models, "patched / captive, + wind", "+ wind / without"], rows
-    )
+            now = scaled(off[family], factor)
+            then = [np.nan] * len(MODELS)
+            if before:
+                then = scaled(before[family], factor)
+            cells = fixed(3, *chain.from_iterable(zip(then, now, strict=True)))
+            ratios = fixed(2, now[2] / now[0], now[2] / then[2])
+            rows.append([f"{kind or 'all'}, {what}", str(len(some)), *cells, *ratios])
+    header = ["rms", "free runs"]
+    for model in ("captive", "recalibrated", "patched"):
+        header += [model, f"{model} + wind"]
+    header += ["patched / captive, + wind", "+ wind / without"]
+    print_table(TITLE, header, rows)
     if not concealed:
-        print(f"(nothing to lay beside it: validation.real.esso_osaka_pond writes {KEPT})")
+        print(f"(no comparison: validation.real.esso_osaka_pond writes {ERRORS_FILE})")
 
 
 def main() -> None:
-    """Diagnose with the wind known, judge."""
+    """Diagnose with the known wind, then judge."""
     begin = time.perf_counter()
-    vessel = written(OUT / CALLED / "vessel" / NAME, wind_known=True)
-    recordings, boat = opened(runs_of(NAME), str(vessel), with_wind)
-    found = diagnosed(recordings, boat)
-    report(found, CALLED)
-    print_named(found)
-    stated = shared_noise(boat, [r for one in recordings.values() for r in one.stretches])
-    fitted = [r for n, one in recordings.items() if n.startswith(FITTED) for r in one.stretches]
-    judged = [one.whole for n, one in recordings.items() if n.startswith(JUDGED)]
-    problem = found.problem.on([found.map_recording(r, stated) for r in fitted])
-    fits = {"nominal": found.ranking.nominal}
-    fits |= {
-        n: converge(problem, getattr(found.ranking, at))
-        for n, at in zip(MODELS[1:], ("recalibrated", "best"), strict=True)
+    file = write_vessel(OUT / WIND_NAME / "vessel" / NAME, wind_known=True)
+    runs, vessel = open_runs(runs_of(NAME), str(file), with_wind)
+    diagnosis = diagnose(runs, vessel)
+    write_report(diagnosis, WIND_NAME)
+    print_verdict(diagnosis)
+    stretches = list(chain.from_iterable(run.stretches for run in runs.values()))
+    noise = shared_noise(vessel, stretches)
+    fitted, judged = [], []
+    for name, run in runs.items():
+        if name.startswith(FITTED):
+            fitted += [diagnosis.laid(stretch, noise) for stretch in run.stretches]
+        if name.startswith(JUDGED):
+            judged.append(diagnosis.laid(run.whole, noise))
+    problem = diagnosis.problem.on(fitted)
+    recalibrated = converge(problem, diagnosis.ranking.recalibrated)
+    fits = {
+        "nominal": diagnosis.ranking.nominal,
+        "recalibrated": recalibrated,
+        "patched": converge(problem, diagnosis.ranking.best),
     }
-    for f, x in zip(fits["recalibrated"].free, fits["recalibrated"].theta, strict=True):
+    for f, x in zip(recalibrated.free, recalibrated.theta, strict=True):
         if f.effect == "measured_wind":
-            print(f"  how the hull takes the measured wind: {f.name} x {x:.2f}")
-    tracks = [found.map_recording(r, stated) for r in judged]
-    concealed = json.loads(KEPT.read_text(encoding="utf-8")) if KEPT.is_file() else {}
-    print_against(free_runs(problem, fits, tracks, HORIZON), concealed)
+            print(f"  response of the hull to the measured wind: {f.name} x {x:.2f}")
+    concealed = {}
+    if ERRORS_FILE.is_file():
+        concealed = json.loads(ERRORS_FILE.read_text(encoding="utf-8"))
+    print_comparison(free_runs(problem, fits, judged, HORIZON), concealed)
     print(f"\n{time.perf_counter() - begin:.0f} s")
 
 

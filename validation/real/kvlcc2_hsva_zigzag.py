@@ -1,8 +1,9 @@
 """Free zig-zags of a 7 m tanker model (HSVA 2006): `python -m validation.real.kvlcc2_hsva_zigzag`.
 
-The nominal is linear about the approach speed with published derivatives, the baseline the same structure with all its
-coefficients refitted. The couplings are chosen on eight runs and judged by free runs of 60 s on two others, Z_15_05 and
-Z_20_05; then each of the ten runs is left out once, with the couplings kept and every coefficient refitted on the rest.
+The nominal is linear about the approach speed with published derivatives, the baseline the same
+structure with all its coefficients refitted. The couplings are selected on eight runs and judged by
+free runs of 60 s on two others, Z_15_05 and Z_20_05. Then each of the ten runs is held out once:
+the couplings are kept, and every coefficient is refitted on the other nine.
 """
 
 from collections.abc import Mapping
@@ -12,122 +13,101 @@ from boatsim.diagnosis.filter import MappedRecording
 from boatsim.diagnosis.fit import converge, gauss_newton
 from boatsim.diagnosis.free_runs import errors, free_runs
 from boatsim.diagnosis.pipeline import Diagnosis
-from validation.real.common import report, runs_of, table
+from validation.real.common import (
+    DEG,
+    MODEL_COLUMNS,
+    fixed,
+    print_table,
+    runs_except,
+    runs_of,
+    scaled,
+    write_report,
+)
 
 NAME = "kvlcc2_hsva_zigzag"
-UNSEEN = ("Z_15_05", "Z_20_05")
+HELD_OUT = ("Z_15_05", "Z_20_05")
 HORIZON = 60.0  # [s] of a free run: ten lengths, about one period of a zig-zag
-MODELS = ("recalibrated", "patched")
+REFITTED = ("recalibrated", "patched")
 GOALS = {"heading_rms_rad": 0.5, "position_rms_m": 0.35}  # of the recalibrated linear model
-UNITS = {"heading_rms_rad": ("heading [deg]", 57.29578), "position_rms_m": ("position [m]", 1.0)}
+UNITS = {"heading_rms_rad": ("heading [deg]", DEG), "position_rms_m": ("position [m]", 1.0)}
 
 
-def cells(found: dict[str, dict[str, float]]) -> list[str]:
-    """Baseline, result and ratio of heading and position."""
-    out = []
-    for family, (_, factor) in UNITS.items():
-        before, after = (found[family][m] * factor for m in MODELS)
-        out += [f"{before:.3f}", f"{after:.3f}", f"{after / before:.2f}"]
-    return out
-
-
-def print_unseen(found: Diagnosis, goals: Mapping[str, float] = GOALS) -> None:
-    """The two runs kept unseen, against the goals."""
-    held_out = errors(found.findings.free_runs)
+def print_held_out(diagnosis: Diagnosis, goals: Mapping[str, float] = GOALS) -> None:
+    """Print the errors on the two held-out runs with the goals."""
+    held_out = errors(diagnosis.findings.free_runs)
     rows = []
     for family, goal in goals.items():
         what, factor = UNITS[family]
-        nominal, before, after = (held_out[family][m] * factor for m in MODELS)
-        rows.append(
-            [
-                what,
-                *(f"{x:.3f}" for x in (nominal, before, after)),
-                f"{after / before:.3f}",
-                f"<= {goal}",
-            ]
-        )
-    header = [
-        "rms of free runs, 60 s",
-        "as published",
-        "recalibrated",
-        "patched",
-        "patched / recalibrated",
-        "goal",
-    ]
-    table(f"fitted on eight runs, unseen {' and '.join(UNSEEN)}", header, rows)
+        off = scaled(held_out[family], factor)
+        rows.append([what, *fixed(3, *off, off[2] / off[1]), f"<= {goal}"])
+    header = ["rms of free runs, 60 s", "as published", *MODEL_COLUMNS, "goal"]
+    print_table(f"fitted on eight runs, held out {' and '.join(HELD_OUT)}", header, rows)
 
 
-def print_couplings(found: Diagnosis) -> None:
-    """What is missing, in order of gain, and what gains nothing."""
-    ranking = found.ranking
-    named = {n.name: n.gain for n in ranking.named}
-    on_top = {n: f.evidence - ranking.best.evidence for n, f in ranking.last.items()}
-    rows = [
-        [
-            name,
-            f"{alone:.0f}",
-            f"{named.get(name, on_top.get(name, 0.0)):.0f}",
-            "missing" if name in named else "-",
-        ]
-        for name, alone in sorted(
-            ranking.first.items(), key=lambda item: (item[0] not in named, -item[1])
-        )
-    ]
-    rows.sort(key=lambda row: -named.get(row[0], -1.0))
-    table(
-        "couplings in order of gain",
-        ["entry", "alone [nats]", "beside the others [nats]", "verdict"],
-        rows,
-    )
-    idle = sorted((n for n, gain in on_top.items() if gain <= 0.0), key=lambda n: on_top[n])
-    print(f"gains nothing beside what was named: {', '.join(idle) or 'none of the entries tried'}")
+def print_couplings(diagnosis: Diagnosis) -> None:
+    """Print what is missing, in order of gain, and the candidates that gain nothing."""
+    ranking = diagnosis.ranking
+    identified = {effect.name: effect.gain for effect in ranking.named}
+    on_top = {name: fit.evidence - ranking.best.evidence for name, fit in ranking.last.items()}
+    alone = sorted(ranking.first.items(), key=lambda item: -item[1])
+    rows = []
+    for name, gain in sorted(alone, key=lambda item: -identified.get(item[0], -1.0)):
+        verdict = "missing" if name in identified else "-"
+        with_others = identified.get(name, on_top.get(name, 0.0))
+        rows.append([name, *fixed(0, gain, with_others), verdict])
+    header = ["candidate", "alone [nats]", "with the others [nats]", "verdict"]
+    print_table("couplings in order of gain", header, rows)
+    idle = [name for name in sorted(on_top, key=on_top.__getitem__) if on_top[name] <= 0.0]
+    print(f"no gain in addition to the identified effects: {', '.join(idle) or 'no candidate'}")
 
 
-def print_left_out(found: Diagnosis, tracks: list[MappedRecording]) -> None:
-    """Each run left out once."""
-    rows, ahead = [], [0, 0]
-    for out in tracks:
-        problem = found.problem.on([t for t in tracks if t is not out])
-        before, after = (
-            converge(problem, gauss_newton(problem, f, 4, 0.1))
-            for f in (found.ranking.recalibrated, found.ranking.best)
-        )
-        held_out = errors(
-            free_runs(problem, dict(zip(MODELS, (before, after), strict=True)), [out], HORIZON)
-        )
-        ahead = [
-            n + (held_out[f]["patched"] < held_out[f]["recalibrated"])
-            for n, f in zip(ahead, UNITS, strict=True)
-        ]
-        rows.append([out.name, *cells(held_out)])
-    header = [
-        "left out",
-        *(c for what, _ in UNITS.values() for c in (f"recalibrated {what}", "patched", "ratio")),
-    ]
-    table(
-        "leave one run out: rms of its free runs, 60 s, all else refitted on the nine others",
-        header,
-        rows,
+def print_leave_one_out(diagnosis: Diagnosis, recordings: list[MappedRecording]) -> None:
+    """Print the errors on each run, refitted without it."""
+    rows = []
+    better = dict.fromkeys(UNITS, 0)
+    for out in recordings:
+        problem = diagnosis.problem.on([run for run in recordings if run is not out])
+        fits = {}
+        for model, start in zip(
+            REFITTED, (diagnosis.ranking.recalibrated, diagnosis.ranking.best), strict=True
+        ):
+            fits[model] = converge(problem, gauss_newton(problem, start, 4, 0.1))
+        held_out = errors(free_runs(problem, fits, [out], HORIZON))
+        row = [out.name]
+        for family, (_, factor) in UNITS.items():
+            before, after = scaled(held_out[family], factor, REFITTED)
+            better[family] += after < before
+            row += [*fixed(3, before, after), f"{after / before:.2f}"]
+        rows.append(row)
+    header = ["held out"]
+    for what, _ in UNITS.values():
+        header += [f"recalibrated {what}", "patched", "ratio"]
+    title = "leave one run out: rms of its free runs, 60 s, all else refitted on the nine others"
+    print_table(title, header, rows)
+    heading, position = better.values()
+    print(
+        f"better than the recalibrated model in {heading} of {len(rows)} runs in heading, "
+        f"{position} in position"
     )
     print(
-        f"better than the recalibrated model in {ahead[0]} of {len(rows)} runs in heading, {ahead[1]} in position"
-    )
-    print(
-        "(the hull is course-unstable: in the 1 degree zig-zags the smallest error at the start grows all along)"
+        "(the hull is directionally unstable: in the 1 degree zig-zags any error at the start grows)"
     )
 
 
 def main() -> None:
     """Diagnose, then leave one run out."""
     runs = runs_of(NAME)
-    fitted = [p for n, p in runs.items() if n not in UNSEEN]
-    found = pipeline.diagnose(fitted, [runs[n] for n in UNSEEN], horizon=HORIZON)
-    report(found, NAME)
-    print_unseen(found)
-    print_couplings(found)
-    rate = priors.rate(found.vessel)
-    opened = [loading.open_recording(path, None, ())[0].thinned(rate) for path in runs.values()]
-    print_left_out(found, [found.map_recording(r) for r in opened])
+    held_out = [runs[name] for name in HELD_OUT]
+    diagnosis = pipeline.diagnose(runs_except(runs, HELD_OUT), held_out, horizon=HORIZON)
+    write_report(diagnosis, NAME)
+    print_held_out(diagnosis)
+    print_couplings(diagnosis)
+    rate = priors.rate(diagnosis.vessel)
+    recordings = []
+    for path in runs.values():
+        recording = pipeline.open_recording(path, None, ())[0]
+        recordings.append(diagnosis.laid(recording.thinned(rate)))
+    print_leave_one_out(diagnosis, recordings)
 
 
 if __name__ == "__main__":

@@ -1,8 +1,9 @@
-"""What the standard MMG model of a tanker leaves out: `python -m validation.real.kvlcc2_mmg [hsva] [marin]`.
+"""Effects missing from the standard MMG model of a tanker: `python -m validation.real.kvlcc2_mmg`.
 
-The nominal is the published model with the derivatives of captive tests in another tank, the baseline the same with
-them, a_H, gamma_R and the gains of propeller and rudder refitted. The free-running tests and the unseen runs are those
-of kvlcc2_hsva_zigzag (7 m model) and kvlcc2_marin_free (full-scale values), read there for a linear model.
+Arguments: `hsva`, `marin` or both (default). The nominal is the published model with the
+derivatives of captive tests in another tank, the baseline the same with these, a_H, gamma_R and the
+gains of propeller and rudder refitted. The free-running tests and the held-out runs are those of
+kvlcc2_hsva_zigzag (7 m model) and kvlcc2_marin_free (full-scale values), which judge a linear model.
 """
 
 import sys
@@ -22,46 +23,63 @@ from boatsim.diagnosis.loading import Loaded
 from boatsim.diagnosis.noise_levels import fit_force, force_prior
 from boatsim.diagnosis.pipeline import Diagnosis
 from boatsim.diagnosis.problem import Fit, Problem
+from boatsim.diagnosis.report.before_after import fits_of
 from boatsim.errors import BadInput, unknown_name
 from boatsim.physics.base import Array
 from boatsim.recordings.table import Recording
 from validation.real import kvlcc2_hsva_zigzag as hsva
 from validation.real import kvlcc2_marin_free as marin
-from validation.real.common import print_verdict, report, runs_of, table
+from validation.real.common import (
+    fixed,
+    print_table,
+    print_verdict,
+    runs_except,
+    runs_of,
+    write_report,
+)
 
 NAME = "kvlcc2_mmg"
-VESSELS = {"hsva": "kvlcc2_mmg", "marin": "kvlcc2_mmg_full_scale"}
 FACTS = {"steering_measured": True}  # both tanks measured the rudder's angle
-# [Hz] of rows at most, for the time it takes: the 7 m model needs half a minute for a swing
+# [Hz] of rows at most, to limit the computing time: the 7 m model takes 30 s for one oscillation
 RATE = 3.0
 GOAL = 0.5  # of the recalibrated model's error
-COUNT = ("first", "second")  # overshoots that are looked at
-# of the rudder angle of one side of a zig-zag: below it the rudder is on its way to the other side
-HELD = 0.97
-DRAWS = 50  # of coefficients from what the fitted runs leave open
-# share of its prior sd below which the sd of a coefficient says that the recordings know it
-TOLD = 0.5
+COUNT = ("first", "second")  # overshoots that are compared
+# of the rudder angle of one side of a zig-zag: below it the rudder is moving to the other side
+REACHED = 0.97
+SAMPLES = 50  # of coefficients from the posterior of the fitted runs
+# share of its prior sd below which the sd of a coefficient means that the recordings determine it
+DETERMINED = 0.5
+Errors = dict[str, float]
 
 
 # ---- overshoots
 
 
 def reversals(delta: Array) -> list[int]:
-    """Rows in which the rudder leaves one side (N,) [rad] of a zig-zag for the other."""
+    """Return the rows in which the rudder leaves one side of a zig-zag for the other.
+
+    Args:
+        delta: Rudder angles (N,) [rad].
+    """
     over = np.flatnonzero(np.abs(delta) > 0.5 * np.median(np.abs(delta)))
     ends = np.flatnonzero(np.diff(np.sign(delta[over])))
     found = []
     for first, last in zip((0, *(ends + 1)), ends, strict=False):
         side = over[first : last + 1]
         angle = np.abs(delta[side])
-        found.append(int(side[np.flatnonzero(angle > HELD * np.median(angle))[-1]]))
+        found.append(int(side[np.flatnonzero(angle > REACHED * np.median(angle))[-1]]))
     return found
 
 
 def overshoots(psi: Array, delta: Array, at: Sequence[int]) -> list[float]:
-    """How far the heading (N,) [rad] goes on behind each reversal [deg], up to the next one; the last only if it ends.
+    """Return the overshoot of each completed reversal [deg].
 
-    It ends where the ship has turned back before the rows do.
+    A reversal is completed when the ship has turned back before the next one or the last row.
+
+    Args:
+        psi: Headings (N,) [rad].
+        delta: Rudder angles (N,) [rad].
+        at: Rows of the reversals.
     """
     found = []
     for start, end in zip(at, (*at[1:], len(psi) - 1), strict=False):
@@ -71,202 +89,201 @@ def overshoots(psi: Array, delta: Array, at: Sequence[int]) -> list[float]:
     return found
 
 
-def swings(found: Diagnosis, run: Recording) -> dict[str, list[float]]:
-    """First overshoots [deg] as recorded and in one free run of each model, from the first row on."""
+def overshoots_by_model(diagnosis: Diagnosis, run: Recording) -> list[list[float]]:
+    """Return the first overshoots [deg] as recorded and in one free run of each model."""
     at = reversals(run["delta_rad"])
-    rows = at[len(COUNT)] + 1 if len(at) > len(COUNT) else len(run)
+    rows = len(run)
+    if len(at) > len(COUNT):
+        rows = at[len(COUNT)] + 1
     delta, at = run["delta_rad"][:rows], at[: len(COUNT)]
-    out = {"recorded": overshoots(run["psi_rad"][:rows], delta, at)}
-    laid = found.map_recording(run)
-    heading = int(laid.codes[laid.signals.index("psi_rad")])
-    for name, fit in models(found.ranking).items():
-        values, on = (
-            found.problem.values(laid, fit.free, fit.theta),
-            found.problem.program.switches(fit.effects),
-        )
-        first, y = laid.free_runs(
-            values, on, fit.levels, float(laid.times[rows - 1] - laid.times[0])
-        )[0]
-        out[name] = overshoots(y[:, heading], delta[first:], [i - first for i in at])
-    return out
+    found = [overshoots(run["psi_rad"][:rows], delta, at)]
+    mapped, problem = diagnosis.laid(run), diagnosis.problem
+    heading = int(mapped.codes[mapped.signals.index("psi_rad")])
+    duration = float(mapped.times[rows - 1] - mapped.times[0])
+    for fit in fits_of(problem, diagnosis.ranking).values():
+        values = problem.values(mapped, fit.free, fit.theta)
+        on = problem.program.switches(fit.effects)
+        first, states = mapped.free_runs(values, on, fit.levels, duration)[0]
+        found.append(overshoots(states[:, heading], delta[first:], [i - first for i in at]))
+    return found
 
 
-def print_overshoots(found: Diagnosis, runs: dict[str, Recording]) -> None:
-    """Of the zig-zags, with the recorded rudder and propeller."""
+def print_overshoots(diagnosis: Diagnosis, runs: dict[str, Recording]) -> None:
+    """Print the overshoots of zig-zags with the recorded rudder and propeller."""
     rows = []
     for name, run in runs.items():
-        seen = "" if name in found.findings.runs else "unseen"
-        swung = swings(found, run)
-        rows += [
-            [f"{name} {seen}".strip(), count, *(cell(swung[m], i) for m in ("recorded", *MODELS))]
-            for i, count in enumerate(COUNT)
-        ]
+        label = f"{name} held out"
+        if name in diagnosis.findings.runs:
+            label = name
+        by_model = overshoots_by_model(diagnosis, run)
+        for i, count in enumerate(COUNT):
+            row = [label, count]
+            for found in by_model:
+                row += fixed(1, *found[i : i + 1]) or ["-"]
+            rows.append(row)
     header = ["zig-zag", "overshoot", "recorded", "as published", "recalibrated", "patched"]
-    table(
-        "heading past that of the rudder's reversal [deg], one free run from the first row",
-        header,
-        rows,
-    )
-
-
-def cell(swung: Sequence[float], i: int) -> str:
-    """An overshoot, if there was one."""
-    return f"{swung[i]:.1f}" if i < len(swung) else "-"
+    title = "overshoot after the rudder's reversal [deg], one free run from the first row"
+    print_table(title, header, rows)
 
 
 # ---- the models
 
 
-def print_coefficients(found: Diagnosis) -> None:
-    """What the recalibration makes of the published coefficients."""
+def print_coefficients(diagnosis: Diagnosis) -> None:
+    """Print the recalibrated coefficients as factors of the published ones."""
+    fit = diagnosis.ranking.recalibrated
     rows = []
-    for f, x, v in zip(
-        found.ranking.recalibrated.free,
-        found.ranking.recalibrated.theta,
-        np.diag(found.ranking.recalibrated.covariance),
-        strict=True,
-    ):
-        told = "yes" if v < (TOLD * f.sd) ** 2 else "hardly"
-        rows.append([f"{f.effect} {f.name}", f"{x:.2f} +- {np.sqrt(v):.2f}", told])
-    table(
-        "recalibrated, as factors of the published model",
-        ["coefficient", "factor", "told by the recordings"],
-        rows,
-    )
+    for f, x, variance in zip(fit.free, fit.theta, np.diag(fit.covariance), strict=True):
+        determined = "yes" if variance < (DETERMINED * f.sd) ** 2 else "hardly"
+        rows.append([f"{f.effect} {f.name}", f"{x:.2f} +- {np.sqrt(variance):.2f}", determined])
+    header = ["coefficient", "factor", "determined by the recordings"]
+    print_table("recalibrated, as factors of the published model", header, rows)
 
 
-def print_left(found: Diagnosis) -> None:
-    """What no entry explains."""
-    unknown = found.findings.answer["unknown"]
+def print_residual(diagnosis: Diagnosis) -> None:
+    """Print the residual force that no candidate explains."""
+    answer = diagnosis.findings.answer
+    unknown = answer["unknown"]
     if not unknown["flag"]:
-        print("\nnothing is left over that no entry explains")
+        print("\nno unexplained residual force")
         return
+    line = f"\nunexplained residual force: {unknown['gain_nats']:.0f} nats"
     structure = unknown.get("structure")
-    goes_with = (
-        f"; in {structure['axis']} it goes with {structure['goes_with']}" if structure else ""
-    )
-    print(f"\nleft over, whatever its cause: {unknown['gain_nats']:.0f} nats{goes_with}")
-    for d in found.findings.answer["described"]:
-        print(f"  described: {d}")
+    if structure:
+        line += f"; in {structure['axis']} it correlates with {structure['goes_with']}"
+    print(line)
+    for term in answer["described"]:
+        print(f"  described: {term}")
 
 
-def opened(runs: dict[str, Path], vessel: str) -> dict[str, Recording]:
-    """Recordings as the diagnosis takes them."""
-    read = {n: loading.open_recording(path, vessel, ()) for n, path in runs.items()}
-    thin = {
-        n: drop_position_outliers(r.thinned(min(RATE, priors.rate(b))), b)
-        for n, (r, b) in read.items()
-    }
-    return {
-        n: replace(r, name=n, notes=replace(r.notes, facts={**FACTS, **r.notes.facts}))
-        for n, r in thin.items()
-    }
+def open_runs(runs: dict[str, Path], vessel_name: str) -> dict[str, Recording]:
+    """Return the recordings as they are diagnosed, by run."""
+    opened = {}
+    for name, path in runs.items():
+        run, vessel = pipeline.open_recording(path, vessel_name, ())
+        thin = drop_position_outliers(run.thinned(min(RATE, priors.rate(vessel))), vessel)
+        notes = replace(thin.notes, facts={**FACTS, **thin.notes.facts})
+        opened[name] = replace(thin, name=name, notes=notes)
+    return opened
 
 
-def diagnosed(
-    runs: dict[str, Recording], held_out: Sequence[str], vessel: str, horizon: float
+def diagnose(
+    runs: dict[str, Recording], held_out: Sequence[str], vessel_name: str, horizon: float
 ) -> Diagnosis:
-    """What the model leaves out of the recordings that are not kept unseen."""
-    boats = {r.path: loading.vessel_for(r.path, vessel, ()) for r in runs.values() if r.path}
-    fitted, kept = [r for n, r in runs.items() if n not in held_out], [runs[n] for n in held_out]
-    return pipeline.diagnose_loaded(
-        Loaded(fitted, kept, boats, ", ".join(held_out), horizon=horizon)
-    )
+    """Diagnose the model with all runs that are not held out."""
+    vessels = {}
+    for run in runs.values():
+        if run.path:
+            vessels[run.path] = pipeline.vessel_for(run.path, vessel_name, ())
+    kept = [runs[name] for name in held_out]
+    note = ", ".join(held_out)
+    fitted = runs_except(runs, held_out)
+    return pipeline.diagnose_recordings(fitted, kept, vessels, note, horizon=horizon)
 
 
 # ---- the two tanks
 
-Errors = dict[str, float]
+
+def log_likelihood(problem: Problem, found: Fit) -> float:
+    """Return the log likelihood [nats] of these coefficients with a refitted disturbance level."""
+    refitted = fit_force(problem, found)
+    on = problem.program.switches(refitted.effects)
+    likelihood = problem.log_likelihood(refitted.free, refitted.theta, on, refitted.levels)
+    return likelihood + force_prior(problem, refitted.levels)
 
 
-def likely(problem: Problem, found: Fit) -> float:
-    """Log likelihood [nats] of the recordings by these coefficients, the water as rough as it then must be."""
-    there = fit_force(problem, found)
-    on = problem.program.switches(there.effects)
-    return problem.log_likelihood(there.free, there.theta, on, there.levels) + force_prior(
-        problem, there.levels
-    )
-
-
-def print_room(
-    found: Diagnosis, held_out: Sequence[MappedRecording], judged: Callable[[Fit], Errors]
+def print_error_sources(
+    diagnosis: Diagnosis, held_out: Sequence[MappedRecording], errors_of: Callable[[Fit], Errors]
 ) -> None:
-    """How far the recalibrated model is off on unseen runs for its structure, how far for what it was not told.
+    """Print how much of the held-out error is due to the structure and to the coefficients.
 
-    The same coefficients refitted with the unseen runs among the fitted ones show what the structure can do; those
-    drawn from what the fitted runs leave open show what errors they let one expect.
+    A refit that includes the held-out runs shows the error due to the structure. Coefficients
+    sampled from the posterior of the fitted runs show the error that these runs let one expect.
+
+    Args:
+        diagnosis: The diagnosis of the fitted runs.
+        held_out: The held-out runs.
+        errors_of: Returns the errors of a fit on the held-out runs.
     """
-    before = found.ranking.recalibrated
-    everything = found.problem.on([*found.problem.recordings, *held_out])
+    before = diagnosis.ranking.recalibrated
+    everything = diagnosis.problem.on([*diagnosis.problem.recordings, *held_out])
     whole = converge(everything, gauss_newton(everything, before, 6, 0.1))
-    taught = judged(whole)
+    with_held_out = errors_of(whole)
     rng = np.random.default_rng(0)
-    low, high = ([getattr(f, end) for f in before.free] for end in ("low", "high"))
-    drawn = np.clip(rng.multivariate_normal(before.theta, before.covariance, DRAWS), low, high)
-    might = [judged(replace(before, theta=theta)) for theta in drawn]
+    low = [f.low for f in before.free]
+    high = [f.high for f in before.free]
+    samples = rng.multivariate_normal(before.theta, before.covariance, SAMPLES)
+    expected = [errors_of(replace(before, theta=x)) for x in np.clip(samples, low, high)]
     rows = []
-    for what, error in judged(before).items():
-        least, most = np.quantile([m[what] for m in might], [0.1, 0.9])
-        rows.append([what, f"{error:.3f}", f"{taught[what]:.3f}", f"{least:.3f} to {most:.3f}"])
-    header = [
-        "rms error",
-        "recalibrated",
-        "told the unseen runs too",
-        "coefficients as the fitted runs leave them open",
-    ]
-    table(f"what the structure can do, and the middle 80 % of {DRAWS} draws", header, rows)
-    cost = likely(found.problem, before) - likely(found.problem, whole)
-    print(f"told the unseen runs too, the model makes the fitted ones {cost:.0f} nats unlikelier")
+    for what, error in errors_of(before).items():
+        least, most = np.quantile([sample[what] for sample in expected], [0.1, 0.9])
+        cells = fixed(3, error, with_held_out[what])
+        rows.append([what, *cells, f"{least:.3f} to {most:.3f}"])
+    header = ["rms error", "recalibrated", "refitted with the held-out runs"]
+    header.append("coefficients sampled from the posterior")
+    title = f"error due to structure and coefficients; middle 80 % of {SAMPLES} samples"
+    print_table(title, header, rows)
+    cost = log_likelihood(diagnosis.problem, before) - log_likelihood(diagnosis.problem, whole)
+    print(f"refitted with the held-out runs, the fitted runs are {cost:.0f} nats less likely")
 
 
-def of_hsva(found: Diagnosis, runs: dict[str, Recording]) -> None:
-    """All runs are zig-zags."""
-    held_out = [found.map_recording(runs[n]) for n in hsva.UNSEEN]
+def report_on(
+    tank: str, recordings: str, vessel_name: str, held_out: Sequence[str], horizon: float
+) -> tuple[Diagnosis, dict[str, Recording]]:
+    """Diagnose and report a vessel on a set of recordings; return the diagnosis and the runs."""
+    runs = open_runs(runs_of(recordings), vessel_name)
+    diagnosis = diagnose(runs, held_out, vessel_name, horizon)
+    print(f"\n{recordings}, {vessel_name}")
+    write_report(diagnosis, f"{NAME}_{tank}")
+    print_verdict(diagnosis)
+    print_residual(diagnosis)
+    print_coefficients(diagnosis)
+    return diagnosis, runs
 
-    def judged(fit: Fit) -> Errors:
-        off = errors(free_runs(found.problem, {"": fit}, held_out, hsva.HORIZON))
+
+def judge_hsva() -> None:
+    """Diagnose the 7 m model in HSVA's tank; all runs are zig-zags."""
+    diagnosis, runs = report_on("hsva", hsva.NAME, NAME, hsva.HELD_OUT, hsva.HORIZON)
+    held_out = [diagnosis.laid(runs[name]) for name in hsva.HELD_OUT]
+
+    def errors_of(fit: Fit) -> Errors:
+        off = errors(free_runs(diagnosis.problem, {"": fit}, held_out, hsva.HORIZON))
         return {what: off[family][""] * factor for family, (what, factor) in hsva.UNITS.items()}
 
-    print_overshoots(found, runs)
-    hsva.print_unseen(found, dict.fromkeys(hsva.UNITS, GOAL))
-    print_room(found, held_out, judged)
+    print_overshoots(diagnosis, runs)
+    hsva.print_held_out(diagnosis, dict.fromkeys(hsva.UNITS, GOAL))
+    print_error_sources(diagnosis, held_out, errors_of)
 
 
-def of_marin(found: Diagnosis, runs: dict[str, Recording]) -> None:
-    """Zig-zags, and the circle on which they are judged."""
-    circle = found.map_recording(runs[marin.UNSEEN])
+def judge_marin() -> None:
+    """Diagnose the full-scale ship of MARIN's tests; the turning circle is held out."""
+    vessel_name = f"{NAME}_full_scale"
+    held_out = (marin.HELD_OUT,)
+    diagnosis, runs = report_on("marin", marin.NAME, vessel_name, held_out, marin.HORIZON)
+    circle = diagnosis.laid(runs[marin.HELD_OUT])
 
-    def judged(fit: Fit) -> Errors:
-        return dict(zip(marin.GOALS, marin.turn(found, fit, circle).tolist(), strict=True))
+    def errors_of(fit: Fit) -> Errors:
+        off = marin.turn_errors(diagnosis, fit, circle)
+        return dict(zip(marin.GOALS, off.tolist(), strict=True))
 
-    print_overshoots(found, {n: runs[n] for n in marin.FITTED})
-    marin.print_circle(found, circle, dict.fromkeys(marin.GOALS, GOAL))
-    print_room(found, [circle], judged)
+    print_overshoots(diagnosis, {name: runs[name] for name in marin.FITTED})
+    marin.print_circle(diagnosis, circle, dict.fromkeys(marin.GOALS, GOAL))
+    print_error_sources(diagnosis, [circle], errors_of)
 
 
-TANKS: dict[
-    str, tuple[str, tuple[str, ...], float, Callable[[Diagnosis, dict[str, Recording]], None]]
-] = {
-    "hsva": (hsva.NAME, hsva.UNSEEN, hsva.HORIZON, of_hsva),
-    "marin": (marin.NAME, (marin.UNSEEN,), marin.HORIZON, of_marin),
-}  # recordings, unseen runs, horizon [s] of free runs, what is printed of them
+TANKS = {"hsva": judge_hsva, "marin": judge_marin}
 
 
 def main(tanks: Sequence[str] = ()) -> None:
-    """Diagnose the model on the recordings of some tanks, or both. Raises BadInput for a tank that is not known."""
+    """Diagnose the model on the recordings of some tanks; both by default.
+
+    Raises:
+        BadInput: A tank is not known.
+    """
     for tank in tanks or TANKS:
         if tank not in TANKS:
             raise BadInput(unknown_name("tank", tank, TANKS))
-        name, held_out, horizon, judge = TANKS[tank]
-        runs = runs_of(name)
-        read = opened(runs, VESSELS[tank])
-        found = diagnosed(read, held_out, VESSELS[tank], horizon)
-        print(f"\n{name}, {VESSELS[tank]}")
-        report(found, f"{NAME}_{tank}")
-        print_verdict(found)
-        print_left(found)
-        print_coefficients(found)
-        judge(found, read)
+        TANKS[tank]()
 
 
 if __name__ == "__main__":

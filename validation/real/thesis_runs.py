@@ -1,8 +1,11 @@
-"""The thesis' eight tests as functions of what its model may have left out: fast closed-loop runs on the compiled twin.
+"""Fast closed-loop runs of the thesis' eight tests, as functions of effects its model may lack.
 
-The scenarios, controllers, sensors, camera and norms are those of `boatsim run`; only walls and log are left out. At
-the rate of the published turns the thesis' program runs in open loop: steering straight, the port motor at 104 or 105
-of 255 by the noise of its sensors. So a turn's commands can be played to boats that turn about as fast (`played`).
+Scenarios, controllers, sensors, camera and metrics are those of `boatsim run`; only the walls and
+the log are left out. The runs use the compiled engine.
+
+At the rate of the published turns the thesis' program effectively runs in open loop: it steers
+straight, and the noise of its sensors switches the port motor between 104 and 105 of 255. So the
+commands of one turn can be replayed on boats that turn about as fast (`replayed`).
 """
 
 from collections.abc import Mapping, Sequence
@@ -27,12 +30,12 @@ WINDY = ("yaw_2", "yaw_4")  # T18
 
 @dataclass(frozen=True)
 class Knob:
-    """One strength: where it acts, the value at which it does nothing, prior sd and bounds."""
+    """An adjustable strength: where it acts, its absent value, its prior sd and its bounds."""
 
     effect: str  # of the vessel, or "controller", "camera", "body"
     name: str
     unit: str
-    mean: float  # absent
+    mean: float  # value at which it has no effect
     sd: float
     low: float
     high: float
@@ -42,59 +45,83 @@ class Knob:
     @property
     def label(self) -> str:
         """Name for tables."""
-        of = " and ".join(sorted({t.split("_")[0] for t in self.tests}))
-        return f"{self.effect}.{self.name}" + (f" ({of})" if self.effect == "pwm_thrust" else "")
+        label = f"{self.effect}.{self.name}"
+        if self.effect != "pwm_thrust":
+            return label
+        kinds = sorted({test.split("_")[0] for test in self.tests})
+        return f"{label} ({' and '.join(kinds)})"
 
     def applied(self, own: float, x: float) -> float:
-        """The value that goes into the run."""
+        """Return the value used in a run.
+
+        Args:
+            own: The scenario's own value.
+            x: The strength.
+        """
         return {"set": x, "add": own + x, "times": own * x}[self.how]
 
 
 class Bench:
-    """A test of the thesis, ready to run with any knobs."""
+    """A test of the thesis that runs with any knobs."""
 
     def __init__(
         self,
         name: str,
         extra: Sequence[Mapping[str, Any]] = (),
         nominal: Mapping[str, Any] | None = None,
-        played: bool = False,
+        replayed: bool = False,
     ) -> None:
-        """`extra` effects replace the scenario's own of these names; `nominal` are [set] tables.
+        """Load a scenario.
 
-        `played`: every boat gets the commands that the scenario's own boat gets.
+        Args:
+            name: Name of the test, with the suffix `_as_published` for the thesis' controller.
+            extra: Effects that replace the scenario's own of the same names.
+            nominal: Tables `[set]` of the scenario.
+            replayed: Every boat gets the commands that the scenario's own boat gets.
         """
         raw = content(f"joystick_boat/{name}")[0]
-        own = [t for t in raw.get("effect", []) if t["use"] not in {e["use"] for e in extra}]
-        wind: dict[str, Any] = next(
-            (t for t in raw.get("effect", []) if t["use"] == "fan_wind"), {}
-        )
-        told = [{**wind, **e} if e["use"] == "fan_wind" else dict(e) for e in extra]
-        settings = {k: {**raw.get("set", {}).get(k, {}), **v} for k, v in (nominal or {}).items()}
-        over = {"tank": None, "effect": [*own, *told], "set": {**raw.get("set", {}), **settings}}
+        added = {effect["use"]: dict(effect) for effect in extra}
+        kept = []
+        for table in raw.get("effect", []):
+            if table["use"] not in added:
+                kept.append(table)
+            elif table["use"] == "fan_wind":
+                added["fan_wind"] = {**table, **added["fan_wind"]}
+        settings = dict(raw.get("set", {}))
+        for key, values in (nominal or {}).items():
+            settings[key] = {**settings.get(key, {}), **values}
+        over = {"tank": None, "effect": [*kept, *added.values()], "set": settings}
         self.scenario: Scenario = scenario.load(f"joystick_boat/{name}", over)
         assert isinstance(self.scenario.measure, CameraMetricSet)
-        self.name, self.measure = name, self.scenario.measure
+        self.name = name
+        self.measure = self.scenario.measure
         self.program = Program(self.scenario.vessel)
-        self.published = {
-            n: t.published for n, t in self.scenario.file.norms.items() if t.published is not None
-        }
+        self.published = {}
+        for metric, targets in self.scenario.file.norms.items():
+            if targets.published is not None:
+                self.published[metric] = targets.published
         self._links = _links(self.program)
-        kinds = {e["use"]: load_class("effect", e["use"]) for e in extra}
-        releases = {name: kind() for name, kind in kinds.items() if issubclass(kind, Release)}
-        self._released = {name: one.changes(self.scenario.vessel) for name, one in releases.items()}
-        self._own = Bench(name) if played else None
-        self._played: dict[int, Array] = {}  # seed -> commands (N, C), one row a step
+        self._released = {}
+        for use in added:
+            kind = load_class("effect", use)
+            if issubclass(kind, Release):
+                self._released[use] = kind().changes(self.scenario.vessel)
+        self._own = None
+        if replayed:
+            self._own = Bench(name)
+        self._commands: dict[int, Array] = {}  # seed -> commands (N, C), one row a step
 
     def norms(
         self, knobs: Sequence[Knob], values: Sequence[float], seeds: Sequence[int]
     ) -> dict[str, float]:
-        """Mean norms over seeds; empty where a run never got as far as they ask."""
+        """Return the metrics, averaged over seeds; empty if a run ends before they are defined."""
         found = [self.measure.from_frames(self._film(knobs, values, seed)) for seed in seeds]
-        return {n: float(np.mean([f[n] for f in found])) for n in found[0]} if all(found) else {}
+        if not all(found):
+            return {}
+        return {name: float(np.mean([run[name] for run in found])) for name in found[0]}
 
     def _film(self, knobs: Sequence[Knob], values: Sequence[float], seed: int) -> CameraFrames:
-        """What the camera sees of one run."""
+        """Return the frames of the camera during one run."""
         p, body = self.program.values(), self.program.body.copy()
         controller, camera = self.scenario.controller, self.scenario.camera
         own = dict(vars(controller))
@@ -107,21 +134,22 @@ class Bench:
             elif knob.effect == "body":
                 body[-1] = knob.applied(body[-1], x)  # yaw inertia
             elif knob.effect in self._released:
-                for change in (c for c in self._released[knob.effect] if c.parameter == knob.name):
-                    at = self.program.index(change.owner, change.key)
-                    p[at] = change.of(p[at], x)
+                for change in self._released[knob.effect]:
+                    if change.parameter == knob.name:
+                        at = self.program.index(change.owner, change.key)
+                        p[at] = change.of(p[at], x)
             else:
                 at = self.program.index(knob.effect, knob.name)
                 p[at] = knob.applied(p[at], x)
-        for to, source in self._links:
-            p[to] = p[source]
-        imu, marks = (np.random.default_rng(s) for s in np.random.SeedSequence(seed).spawn(2))
+        for copy, source in self._links:
+            p[copy] = p[source]
+        imu, marks = map(np.random.default_rng, np.random.SeedSequence(seed).spawn(2))
         if self._own is None:
             t, y = self._run(p, body, imu)
         else:
-            if seed not in self._played:
-                self._played[seed] = self._own.commands(imu)
-            t, y = self._play(p, body, self._played[seed])
+            if seed not in self._commands:
+                self._commands[seed] = self._own.commands(imu)
+            t, y = self._replay(p, body, self._commands[seed])
         for name, value in own.items():
             setattr(controller, name, value)
         every = round(camera.rate / self.measure.scored)
@@ -130,60 +158,60 @@ class Bench:
         frames = frames[::every]
         x, east, psi = (np.interp(frames, t, y[:, i]) for i in (0, 1, 2))
         seen = camera.seen(x + 1j * east, psi, noise)
-        points = {
-            name: np.stack([z.real, z.imag], axis=-1)
-            for name, z in zip(camera.marks, seen.T, strict=True)
-        }
+        points = {}
+        for name, z in zip(camera.marks, seen.T, strict=True):
+            points[name] = np.stack([z.real, z.imag], axis=-1)
         return CameraFrames(frames, camera.pose(seen)[1], points, np.stack([x, east], axis=-1), psi)
 
     def commands(self, rng: np.random.Generator) -> Array:
-        """Commands of every step of the boat without knobs, the last ones held until the duration is over."""
-        given: list[Array] = []
-        self._run(self.program.values(), self.program.body, rng, given)
-        found, file = np.concatenate(given), self.scenario.file
-        return np.concatenate(
-            [found, np.tile(found[-1], (round(file.duration / file.step) - len(found), 1))]
-        )
+        """Return the commands (N, C) of every step of the boat without knobs.
 
-    def _play(self, p: Array, body: Array, commands: Array) -> tuple[Array, Array]:
-        """Times (N,) and states (N, 6) in earth axes of a run with given commands."""
-        code, on, y, step = (
-            self.program.module,
-            self.program.switches(),
-            np.zeros(6),
-            self.scenario.file.step,
-        )
-        memory, out = np.zeros(self.program.memory_size), np.zeros((len(commands) + 1, 6))
-        start = self.program.command_array(self.scenario.controller.initial_commands())
-        code.settle(start, memory, p, on, np.zeros(self.program.held_size))
-        code.rollout(Model(body, p, on), self.program.plant(y, memory), commands, 0.0, step, 1, out)
+        The last ones are held until the duration is over.
+        """
+        parts: list[Array] = []
+        self._run(self.program.values(), self.program.body, rng, parts)
+        found, file = np.concatenate(parts), self.scenario.file
+        missing = round(file.duration / file.step) - len(found)
+        return np.concatenate([found, np.tile(found[-1], (missing, 1))])
+
+    def _replay(self, p: Array, body: Array, commands: Array) -> tuple[Array, Array]:
+        """Return times (N,) and states (N, 6) in earth axes of a run with given commands."""
+        program, step = self.program, self.scenario.file.step
+        code, on = program.module, program.switches()
+        memory, out = np.zeros(program.memory_size), np.zeros((len(commands) + 1, 6))
+        start = program.command_array(self.scenario.controller.initial_commands())
+        code.settle(start, memory, p, on, np.zeros(program.held_size))
+        plant = program.plant(np.zeros(6), memory)
+        code.rollout(Model(body, p, on), plant, commands, 0.0, step, 1, out)
         return np.asarray(step * np.arange(len(out)), float), np.asarray(out, float)
 
     def _run(
-        self, p: Array, body: Array, rng: np.random.Generator, given: list[Array] | None = None
+        self, p: Array, body: Array, rng: np.random.Generator, log: list[Array] | None = None
     ) -> tuple[Array, Array]:
-        """Times (N,) and states (N, 6) in earth axes of one run to its end; `given` gets the commands of every step."""
-        told, code = self.scenario, self.program.module
-        controller, file, sensors = told.controller, told.file, told.sensors
+        """Return times (N,) and states (N, 6) in earth axes of one run to its end.
+
+        The commands of every step are appended to `log`.
+        """
+        program, file = self.program, self.scenario.file
+        controller, sensors, code = self.scenario.controller, self.scenario.sensors, program.module
         controller.reset()
         period = round(controller.period / file.step)
-        memory, act = np.zeros(self.program.memory_size), np.zeros(self.program.held_size)
-        on = self.program.switches()
-        code.settle(self.program.command_array(controller.initial_commands()), memory, p, on, act)
+        memory, act = np.zeros(program.memory_size), np.zeros(program.held_size)
+        on = program.switches()
+        code.settle(program.command_array(controller.initial_commands()), memory, p, on, act)
         y, out, pull = np.zeros(6), np.zeros((period + 1, 6)), (0.0, 0.0)
         parts, t = [np.zeros((1, 6))], 0.0
         while t < file.duration - 1e-9 and not _over(file.until, y):
             x, east, psi, *_ = y.tolist()
-            u, v, r = self.program.body_rates(y[None])[0, 3:].tolist()
+            u, v, r = program.body_rates(y[None])[0, 3:].tolist()
             sense: Sense = sensors.sample(t, (x, east, psi), (u, v, r), pull, rng)
-            row = self.program.command_array(controller.step(sense, told.goal_at(t)))
+            row = program.command_array(controller.step(sense, self.scenario.goal_at(t)))
             commands = np.tile(row, (period, 1))
-            code.rollout(
-                Model(body, p, on), self.program.plant(y, memory), commands, t, file.step, 1, out
-            )
-            if given is not None:
-                given.append(commands)
-            a, b = (out[-1, i] - out[-2, i] for i in (3, 4))  # over the last step
+            plant = program.plant(y, memory)
+            code.rollout(Model(body, p, on), plant, commands, t, file.step, 1, out)
+            if log is not None:
+                log.append(commands)
+            a, b = (out[-1] - out[-2])[3:5]  # over the last step
             c, s = np.cos(y[2]), np.sin(y[2])
             pull = ((c * a + s * b) / file.step, (c * b - s * a) / file.step)
             parts.append(out[1:].copy())
@@ -194,18 +222,17 @@ class Bench:
 
 def _over(until: Any, y: Array) -> bool:
     """Whether the run is at its end."""
-    return bool(
-        (until.starboard is not None and y[1] >= until.starboard)
-        or (until.turned is not None and abs(y[2]) >= until.turned)
-    )
+    arrived = until.starboard is not None and y[1] >= until.starboard
+    return bool(arrived or (until.turned is not None and abs(y[2]) >= until.turned))
 
 
 def _links(program: Program) -> list[tuple[int, int]]:
-    """Positions of parameters that are those of another effect: (copy, source)."""
-    found, there = [], {e.name for e in program.effects}
+    """Return the positions of parameters that follow another effect: (copy, source)."""
+    found = []
+    owners = {effect.name for effect in program.effects}
     for effect in program.effects:
         for name in effect.filled:
             owner, _, key = type(effect).params()[name].follows.removesuffix("?").partition(".")
-            if owner in there:
+            if owner in owners:
                 found.append((program.index(effect.name, name), program.index(owner, key)))
     return found

@@ -1,9 +1,10 @@
-"""The latent force's correlation time on the real recordings: `python -m validation.real.time_constant [SET ...]`.
+"""Correlation time of the latent force: `python -m validation.real.time_constant [SET ...]`.
 
-The rule is that of every diagnosis (`boatsim.diagnosis.correlation_time`): what is missing is chosen with the usual
-value of a hull of this length, each half of the fitted recordings is predicted by a fit of the other half, and the
-value is halved or doubled as long as that predicts clearly better. Here the error with every value is printed beside
-the one that is taken. The recordings on which the other benchmarks judge are not opened.
+The rule is that of every diagnosis (`boatsim.diagnosis.correlation_time`). The missing effects are
+selected with the default value for a hull of this length. Each half of the fitted recordings is
+predicted by a fit of the other half, and the value is halved or doubled as long as that predicts
+clearly better. This script prints the error for every value and marks the selected one. The
+recordings on which the other benchmarks are judged are not read.
 """
 
 import sys
@@ -20,45 +21,42 @@ from boatsim.diagnosis.problem import Problem
 from boatsim.diagnosis.search.ranking import selection
 from boatsim.physics.program import Program
 from validation.real import blueboat_lake, kvlcc2_hsva_zigzag, kvlcc2_marin_free
-from validation.real.common import runs_of, table
+from validation.real.common import print_table, runs_except, runs_of
 
-UNSEEN = {
-    blueboat_lake.NAME: blueboat_lake.UNSEEN,
-    kvlcc2_hsva_zigzag.NAME: kvlcc2_hsva_zigzag.UNSEEN,
-    kvlcc2_marin_free.NAME: (kvlcc2_marin_free.UNSEEN,),
+HELD_OUT = {
+    blueboat_lake.NAME: blueboat_lake.HELD_OUT,
+    kvlcc2_hsva_zigzag.NAME: kvlcc2_hsva_zigzag.HELD_OUT,
+    kvlcc2_marin_free.NAME: (kvlcc2_marin_free.HELD_OUT,),
 }
-VESSELS = {blueboat_lake.NAME: blueboat_lake.VESSEL}  # the others' recordings name theirs
+VESSELS = {blueboat_lake.NAME: blueboat_lake.VESSEL}  # the other recordings name their vessel
 
 
-def problem_of(paths: list[Path], vessel: str | None) -> Problem:
-    """The question of a diagnosis of some recordings."""
-    opened = [loading.open_recording(path, vessel, ()) for path in paths]
-    boat, first = opened[0][1], opened[0][0]
-    program = Program(boat, library_for(boat).compiled)
-    stated = shared_noise(boat, [first])
-    tracks = [map_recording(run.thinned(priors.rate(boat)), program, stated) for run, _ in opened]
-    uncertainty = priors.uncertainty(boat)
-    return Problem(
-        tracks, prior_levels(boat, [first]), uncertainty | first.notes.coefficient_uncertainty
-    )
+def problem_of(paths: list[Path], vessel_name: str | None) -> Problem:
+    """Return the estimation problem of a diagnosis of some recordings."""
+    opened = [pipeline.open_recording(path, vessel_name, ()) for path in paths]
+    first, vessel = opened[0]
+    program = Program(vessel, library_for(vessel).compiled)
+    noise, rate = shared_noise(vessel, [first]), priors.rate(vessel)
+    recordings = [map_recording(run.thinned(rate), program, noise) for run, _ in opened]
+    uncertainty = priors.uncertainty(vessel) | first.notes.coefficient_uncertainty
+    return Problem(recordings, prior_levels(vessel, [first]), uncertainty)
 
 
 def main() -> None:
-    """A table per set."""
-    for name in sys.argv[1:] or UNSEEN:
-        paths = [path for run, path in runs_of(name).items() if run not in UNSEEN[name]]
-        problem = problem_of(paths, VESSELS.get(name))
-        _, chosen = selection(problem, problem.program.entries)
-        usual, taken = problem.ambient.time_constant, correlation_time(problem, chosen)
-        steps = DEFAULT.fit.correlation_time_steps
-        ladder = [usual * 2.0**step for step in range(-steps, steps + 1)]
-        errors = [float(np.exp(np.mean(np.log(halves_errors(problem, chosen, x))))) for x in ladder]
-        rows = [
-            [f"{x:.2g}", f"{e:.4g}", "*" if x == taken else ""]
-            for x, e in zip(ladder, errors, strict=True)
-        ]
-        title = f"{name}: with the usual {usual:.2g} s {problem.program.vessel.name} lacks {', '.join(chosen.effects)}"
-        table(title, ["time constant [s]", "error of the other half", "taken"], rows)
+    """Print one table per set."""
+    for name in sys.argv[1:] or HELD_OUT:
+        problem = problem_of(runs_except(runs_of(name), HELD_OUT[name]), VESSELS.get(name))
+        _, best = selection(problem, problem.program.entries)
+        usual = problem.ambient.time_constant
+        selected = correlation_time(problem, best)
+        rows = []
+        for step in range(-STEPS, STEPS + 1):
+            seconds = usual * 2.0**step
+            error = float(np.exp(np.mean(np.log(halves_errors(problem, best, seconds)))))
+            rows.append([f"{seconds:.2g}", f"{error:.4g}", "*" if seconds == selected else ""])
+        title = f"{name}: with the default {usual:.2g} s {problem.program.vessel.name} lacks "
+        header = ["time constant [s]", "error of the other half", "selected"]
+        print_table(title + ", ".join(best.effects), header, rows)
 
 
 if __name__ == "__main__":

@@ -1,7 +1,8 @@
 """A small USV of unknown size follows a path: `python -m validation.real.twin_usv_paths`.
 
-One closed-loop run, weakly excited, noisy, no mass, no dimensions: lumped coefficients per unit of mass and inertia.
-The middle third is kept unseen. Prints what was found, how strong at most is what was not, and what can not be told.
+There is one closed-loop run. It is noisy and weakly excited, and neither mass nor dimensions are
+known, so the coefficients are lumped per unit of mass and inertia. The middle third is held out.
+The script prints what was found, upper limits of what was not, and what cannot be determined.
 """
 
 import numpy as np
@@ -10,95 +11,79 @@ from boatsim.diagnosis import pipeline
 from boatsim.diagnosis.evaluation import MODELS
 from boatsim.diagnosis.free_runs import errors
 from boatsim.diagnosis.pipeline import Diagnosis
-from validation.real.common import report, runs_of, table
+from validation.real.common import (
+    DEG,
+    MODEL_COLUMNS,
+    effects_of,
+    fixed,
+    print_table,
+    runs_of,
+    scaled,
+    write_report,
+)
 
-NAME, VESSEL = "twin_usv_paths", "twin_usv"
+NAME = "twin_usv_paths"
+VESSEL = "twin_usv"
 HORIZON = 10.0  # [s] of a free run
-HELPS = 0.9  # ratio of errors on unseen data above which an effect found has not earned its place
-TOLD = 0.5  # share of its prior sd below which the sd of a coefficient says that the data know it
+# ratio of held-out errors above which an effect is only a hint, because it hardly helps
+HINT_RATIO = 0.9
+# share of its prior sd below which the sd of a coefficient means that the data determine it
+DETERMINED = 0.5
+QUANTITIES = {"position_rms_m": ("position [m]", 1.0), "heading_rms_rad": ("heading [deg]", DEG)}
 
 
-def print_unseen(found: Diagnosis) -> None:
-    """Free runs over the middle third."""
-    off = errors(found.findings.free_runs)
+def print_held_out(diagnosis: Diagnosis) -> None:
+    """Print the errors of free runs over the middle third."""
+    off = errors(diagnosis.findings.free_runs)
+    rows, ratios = [], []
+    for family, (what, factor) in QUANTITIES.items():
+        nominal, before, after = scaled(off[family], factor)
+        rows.append([what, *fixed(3, nominal, before, after), f"{after / before:.2f}"])
+        ratios.append(float(rows[-1][-1]))
+    header = ["rms of free runs, 10 s", "as written", *MODEL_COLUMNS]
+    print_table("fitted on the first and last third, held out the middle third", header, rows)
+    if max(ratios) > HINT_RATIO:
+        print("  The patch hardly helps on held-out data: its effects are hints, not findings.")
+
+
+def print_found(diagnosis: Diagnosis) -> None:
+    """Print the identified effects, and upper limits of the others."""
     rows = []
-    for family, what, factor in (
-        ("position_rms_m", "position [m]", 1.0),
-        ("heading_rms_rad", "heading [deg]", 57.29578),
-    ):
-        nominal, before, after = (off[family][m] * factor for m in MODELS)
-        rows.append(
-            [what, f"{nominal:.3f}", f"{before:.3f}", f"{after:.3f}", f"{after / before:.2f}"]
-        )
-    header = [
-        "rms of free runs, 10 s",
-        "as written",
-        "recalibrated",
-        "patched",
-        "patched / recalibrated",
-    ]
-    table("fitted on the first and last third, unseen the middle third", header, rows)
-    if any(float(row[-1]) > HELPS for row in rows):
-        print(
-            "  What was added hardly helps on unseen data: take what is named below for a hint, not for a finding."
-        )
+    for e in effects_of(diagnosis):
+        tied = ", ".join(e["tied_with"]) or "-"
+        rows.append([e["name"], e["kind"], f"{e['gain_nats']:.1f}", tied])
+    header = ["effect", "kind", "gain [nats]", "hardly distinguished from"]
+    print_table("found", header, rows or [["nothing", "", "", ""]])
+    limits = []
+    for name, strengths in diagnosis.findings.answer["upper_limits"].items():
+        limits += [[f"{name} {key}", f"{value:.3g}"] for key, value in strengths.items()]
+    title = "not found; upper limits (95 %)"
+    print_table(title, ["effect", "strength"], limits or [["nothing can be excluded", ""]])
 
 
-def print_found(found: Diagnosis) -> None:
-    """Effects named, and upper limits of the others."""
-    answer = found.findings.answer
-    rows = [
-        [e["name"], e["kind"], f"{e['gain_nats']:.1f}", ", ".join(e["tied_with"]) or "-"]
-        for e in answer["effects"]
-    ]
-    table(
-        "found",
-        ["effect", "kind", "gain [nats]", "hardly to be told from"],
-        rows or [["nothing", "", "", ""]],
-    )
-    limits = [
-        [f"{n} {k}", f"{v:.3g}"]
-        for n, each in answer["upper_limits"].items()
-        for k, v in each.items()
-    ]
-    table(
-        "not found; at most (95 %)",
-        ["effect", "strength"],
-        limits or [["nothing can be excluded", ""]],
-    )
-
-
-def print_untold(found: Diagnosis) -> None:
-    """Coefficients of the nominal beside their priors."""
-    best = found.ranking.recalibrated
-    sd = np.sqrt(np.diag(best.covariance))
-    rows = [
-        [
-            f"{f.effect} {f.name}",
-            f"{x:.2f} +- {s:.2f}",
-            f"{f.sd:.2f}",
-            "yes" if s < TOLD * f.sd else "hardly",
-        ]
-        for f, x, s in zip(best.free, best.theta, sd, strict=True)
-    ]
-    table(
-        "coefficients, as factors of the vessel file",
-        ["coefficient", "factor", "prior sd", "told by the data"],
-        rows,
-    )
+def print_coefficients(diagnosis: Diagnosis) -> None:
+    """Print the coefficients of the nominal model with their prior standard deviations."""
+    best = diagnosis.ranking.recalibrated
+    rows = []
+    for f, x, sd in zip(best.free, best.theta, np.sqrt(np.diag(best.covariance)), strict=True):
+        determined = "yes" if sd < DETERMINED * f.sd else "hardly"
+        rows.append([f"{f.effect} {f.name}", f"{x:.2f} +- {sd:.2f}", f"{f.sd:.2f}", determined])
+    header = ["coefficient", "factor", "prior sd", "determined by the data"]
+    print_table("coefficients, as factors of the vessel file", header, rows)
     print(
-        "\nThe data can not tell: mass, yaw inertia and thrust (only their ratios), what answers a command when the"
-        "\ncontroller answers the motion, and wind or current along the one way out that the path takes."
+        "\nThe data do not determine mass, yaw inertia and thrust (only their ratios), the response"
+        "\nto a command while the controller reacts to the motion, and wind or current along the"
+        "\nonly outward course of the path."
     )
 
 
 def main() -> None:
-    """Diagnose the one run there is."""
-    found = pipeline.diagnose(list(runs_of(NAME).values()), vessel=VESSEL, horizon=HORIZON)
-    report(found, NAME)
-    print_unseen(found)
-    print_found(found)
-    print_untold(found)
+    """Diagnose the only run."""
+    diagnosis = pipeline.diagnose(list(runs_of(NAME).values()), vessel=VESSEL, horizon=HORIZON)
+    write_report(diagnosis, NAME)
+    print_held_out(diagnosis)
+    print_found(diagnosis)
+    print_coefficients(diagnosis)
 
 
 if __name__ == "__main__":
