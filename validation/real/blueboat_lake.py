@@ -114,7 +114,7 @@ def leave_one_out(diagnosis: Diagnosis, runs: dict[str, Path]) -> list[Fold]:
 
     All folds use one compiled program.
     """
-    opened = [pipeline.open_recording(path, VESSEL, ())[0] for path in runs.values()]
+    opened = [loading.open_recording(path, VESSEL, ())[0] for path in runs.values()]
     vessel, program = diagnosis.vessel, diagnosis.problem.program
     noise, rate = shared_noise(vessel, opened), priors.rate(vessel)
     mapped = [map_recording(run.thinned(rate), program, noise) for run in opened]

@@ -2,14 +2,16 @@
 
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
+from typing import TypeVar
 
 from boatsim.cli import diagnosis as commands
+from boatsim.diagnosis.evaluation import MODELS as MODELS
 from boatsim.diagnosis.pipeline import Diagnosis
-from boatsim.diagnosis.report.before_after import MODELS as MODELS
 from boatsim.diagnosis.report.schema import EffectEntry
 
 RECORDINGS = Path(__file__).parents[3] / "shared" / "recordings"
 OUT = Path("out/real")
+T = TypeVar("T")
 DEG = 57.29578  # [deg/rad]
 MODEL_COLUMNS = ("recalibrated", "patched", "patched / recalibrated")
 KINDS = {
@@ -31,7 +33,7 @@ def runs_of(name: str) -> dict[str, Path]:
     return {file.stem: file for file in files}
 
 
-def runs_except[T](runs: Mapping[str, T], names: Iterable[str]) -> list[T]:
+def runs_except(runs: Mapping[str, T], names: Iterable[str]) -> list[T]:
     """Return the values of all runs except the named ones."""
     return [run for name, run in runs.items() if name not in names]
 

@@ -35,7 +35,6 @@ from boatsim.physics.vessel import Vessel
 from boatsim.recordings.table import Recording
 from validation.real.common import (
     DEG,
-    MODELS,
     OUT,
     RECORDINGS,
     fixed,
@@ -438,11 +437,11 @@ def open_runs(
     Returns:
         Runs by name, and the vessel.
     """
-    vessel = pipeline.vessel_for(next(iter(runs.values())), vessel_name, ())
+    vessel = loading.vessel_for(next(iter(runs.values())), vessel_name, ())
     rate = priors.rate(vessel)
     found = {}
     for name, path in runs.items():
-        recording = completed(name, pipeline.open_recording(path, vessel_name, ())[0])
+        recording = completed(name, loading.open_recording(path, vessel_name, ())[0])
         stretches = [r.thinned(rate) for r in sound_stretches(recording, path, SHORTEST)]
         whole = drop_position_outliers(recording.thinned(rate), vessel)
         found[name] = OpenedRun(whole, stretches)
@@ -459,7 +458,7 @@ def diagnose(runs: Mapping[str, OpenedRun], vessel: Vessel) -> Diagnosis:
     vessels = {r.path: vessel for r in (*fitted, *held_out)}
     note = f"{', '.join(HELD_OUT)}; of the other runs only the longest stretch without a jump, "
     note += f"{WINDOW:g} s at most"
-    return pipeline.diagnose_recordings(fitted, held_out, vessels, note, horizon=HORIZON)
+    return pipeline.diagnose_loaded(Loaded(fitted, held_out, vessels, note, horizon=HORIZON))
 
 
 def main() -> None:
@@ -474,7 +473,7 @@ def main() -> None:
     noise = shared_noise(vessel, list(chain.from_iterable(r.stretches for r in runs.values())))
 
     def mapper(recordings: Sequence[Recording]) -> list[MappedRecording]:
-        return [diagnosis.laid(r, noise) for r in recordings]
+        return [diagnosis.map_recording(r, noise) for r in recordings]
 
     mapped = {name: mapper(run.stretches) for name, run in runs.items()}
     fitted = [stretches for name, stretches in mapped.items() if name.startswith(FITTED)]

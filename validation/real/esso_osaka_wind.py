@@ -110,9 +110,9 @@ def main() -> None:
     fitted, judged = [], []
     for name, run in runs.items():
         if name.startswith(FITTED):
-            fitted += [diagnosis.laid(stretch, noise) for stretch in run.stretches]
+            fitted += [diagnosis.map_recording(stretch, noise) for stretch in run.stretches]
         if name.startswith(JUDGED):
-            judged.append(diagnosis.laid(run.whole, noise))
+            judged.append(diagnosis.map_recording(run.whole, noise))
     problem = diagnosis.problem.on(fitted)
     recalibrated = converge(problem, diagnosis.ranking.recalibrated)
     fits = {

@@ -105,8 +105,8 @@ def main() -> None:
     rate = priors.rate(diagnosis.vessel)
     recordings = []
     for path in runs.values():
-        recording = pipeline.open_recording(path, None, ())[0]
-        recordings.append(diagnosis.laid(recording.thinned(rate)))
+        recording = loading.open_recording(path, None, ())[0]
+        recordings.append(diagnosis.map_recording(recording.thinned(rate)))
     print_leave_one_out(diagnosis, recordings)
 
 

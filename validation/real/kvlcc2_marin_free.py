@@ -44,8 +44,8 @@ def print_circle(
     diagnosis: Diagnosis, circle: MappedRecording, goals: Mapping[str, float], header: str = "goal"
 ) -> None:
     """Print the errors on the held-out turning circle with the goals for speed and yaw rate."""
-    models = fits_of(diagnosis.problem, diagnosis.ranking).values()
-    by_model = [turn_errors(diagnosis, fit, circle) for fit in models]
+    fits = models(diagnosis.ranking).values()
+    by_model = [turn_errors(diagnosis, fit, circle) for fit in fits]
     rows = []
     for (what, goal), off in zip(goals.items(), np.transpose(by_model), strict=True):
         rows.append([what, *fixed(3, *off, off[2] / off[1]), f"<= {goal}"])
@@ -60,8 +60,8 @@ def main() -> None:
     fitted = [runs[name] for name in FITTED]
     diagnosis = pipeline.diagnose(fitted, [runs[HELD_OUT]], horizon=HORIZON)
     write_report(diagnosis, NAME)
-    recording, vessel = pipeline.open_recording(runs[HELD_OUT], None, ())
-    circle = diagnosis.laid(recording.thinned(priors.rate(vessel)))
+    recording, vessel = loading.open_recording(runs[HELD_OUT], None, ())
+    circle = diagnosis.map_recording(recording.thinned(priors.rate(vessel)))
     print_circle(diagnosis, circle, GOALS, f"goal (and <= {SHARE})")
     speed = circle.measured[circle.times <= DURATION, circle.signals.index("u_mps")]
     rms = float(np.sqrt(np.mean((speed - speed[0]) ** 2)))

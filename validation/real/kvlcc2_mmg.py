@@ -15,7 +15,7 @@ import numpy as np
 
 from boatsim.diagnosis import loading, pipeline, priors
 from boatsim.diagnosis.checks.position_outliers import drop_position_outliers
-from boatsim.diagnosis.evaluation import MODELS, models
+from boatsim.diagnosis.evaluation import models
 from boatsim.diagnosis.filter import MappedRecording
 from boatsim.diagnosis.fit import converge, gauss_newton
 from boatsim.diagnosis.free_runs import errors, free_runs
@@ -23,7 +23,6 @@ from boatsim.diagnosis.loading import Loaded
 from boatsim.diagnosis.noise_levels import fit_force, force_prior
 from boatsim.diagnosis.pipeline import Diagnosis
 from boatsim.diagnosis.problem import Fit, Problem
-from boatsim.diagnosis.report.before_after import fits_of
 from boatsim.errors import BadInput, unknown_name
 from boatsim.physics.base import Array
 from boatsim.recordings.table import Recording
@@ -97,10 +96,10 @@ def overshoots_by_model(diagnosis: Diagnosis, run: Recording) -> list[list[float
         rows = at[len(COUNT)] + 1
     delta, at = run["delta_rad"][:rows], at[: len(COUNT)]
     found = [overshoots(run["psi_rad"][:rows], delta, at)]
-    mapped, problem = diagnosis.laid(run), diagnosis.problem
+    mapped, problem = diagnosis.map_recording(run), diagnosis.problem
     heading = int(mapped.codes[mapped.signals.index("psi_rad")])
     duration = float(mapped.times[rows - 1] - mapped.times[0])
-    for fit in fits_of(problem, diagnosis.ranking).values():
+    for fit in models(diagnosis.ranking).values():
         values = problem.values(mapped, fit.free, fit.theta)
         on = problem.program.switches(fit.effects)
         first, states = mapped.free_runs(values, on, fit.levels, duration)[0]
@@ -160,7 +159,7 @@ def open_runs(runs: dict[str, Path], vessel_name: str) -> dict[str, Recording]:
     """Return the recordings as they are diagnosed, by run."""
     opened = {}
     for name, path in runs.items():
-        run, vessel = pipeline.open_recording(path, vessel_name, ())
+        run, vessel = loading.open_recording(path, vessel_name, ())
         thin = drop_position_outliers(run.thinned(min(RATE, priors.rate(vessel))), vessel)
         notes = replace(thin.notes, facts={**FACTS, **thin.notes.facts})
         opened[name] = replace(thin, name=name, notes=notes)
@@ -174,11 +173,11 @@ def diagnose(
     vessels = {}
     for run in runs.values():
         if run.path:
-            vessels[run.path] = pipeline.vessel_for(run.path, vessel_name, ())
+            vessels[run.path] = loading.vessel_for(run.path, vessel_name, ())
     kept = [runs[name] for name in held_out]
     note = ", ".join(held_out)
     fitted = runs_except(runs, held_out)
-    return pipeline.diagnose_recordings(fitted, kept, vessels, note, horizon=horizon)
+    return pipeline.diagnose_loaded(Loaded(fitted, kept, vessels, note, horizon=horizon))
 
 
 # ---- the two tanks
@@ -244,7 +243,7 @@ def report_on(
 def judge_hsva() -> None:
     """Diagnose the 7 m model in HSVA's tank; all runs are zig-zags."""
     diagnosis, runs = report_on("hsva", hsva.NAME, NAME, hsva.HELD_OUT, hsva.HORIZON)
-    held_out = [diagnosis.laid(runs[name]) for name in hsva.HELD_OUT]
+    held_out = [diagnosis.map_recording(runs[name]) for name in hsva.HELD_OUT]
 
     def errors_of(fit: Fit) -> Errors:
         off = errors(free_runs(diagnosis.problem, {"": fit}, held_out, hsva.HORIZON))
@@ -260,7 +259,7 @@ def judge_marin() -> None:
     vessel_name = f"{NAME}_full_scale"
     held_out = (marin.HELD_OUT,)
     diagnosis, runs = report_on("marin", marin.NAME, vessel_name, held_out, marin.HORIZON)
-    circle = diagnosis.laid(runs[marin.HELD_OUT])
+    circle = diagnosis.map_recording(runs[marin.HELD_OUT])
 
     def errors_of(fit: Fit) -> Errors:
         off = marin.turn_errors(diagnosis, fit, circle)

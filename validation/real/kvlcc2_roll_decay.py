@@ -15,15 +15,14 @@ from pathlib import Path
 import numpy as np
 
 from boatsim.diagnosis import loading, pipeline, priors
-from boatsim.diagnosis.evaluation import MODELS, models
+from boatsim.diagnosis.evaluation import models
 from boatsim.diagnosis.filter import MappedRecording
 from boatsim.diagnosis.fit import converge
 from boatsim.diagnosis.free_runs import errors, free_runs
 from boatsim.diagnosis.loading import Loaded
 from boatsim.diagnosis.pipeline import Diagnosis
 from boatsim.diagnosis.problem import Fit, Problem
-from boatsim.diagnosis.report.before_after import fits_of
-from boatsim.diagnosis.search.evidence import price
+from boatsim.diagnosis.search.evidence import required_gain
 from boatsim.diagnosis.search.ranking import Ranking, rank
 from boatsim.diagnosis.search.screening import screen
 from boatsim.physics.base import Array
@@ -52,7 +51,7 @@ Table = tuple[str, list[str], Rows]
 
 def open_release(name: str) -> tuple[Recording, Vessel]:
     """Return a release at the rate of a diagnosis, and its vessel."""
-    recording, vessel = pipeline.open_recording(DATA / f"{name}.csv", None, ())
+    recording, vessel = loading.open_recording(DATA / f"{name}.csv", None, ())
     return replace(recording.thinned(priors.rate(vessel)), name=name), vessel
 
 
@@ -86,8 +85,8 @@ def diagnose_thirds(whole: Recording, vessel: Vessel, held_out: int = 1) -> Diag
     """Diagnose with one third held out, by default the middle one."""
     parts = thirds_of(whole)
     kept = parts.pop(held_out)
-    return pipeline.diagnose_recordings(
-        parts, [kept], {whole.path: vessel}, kept.name, horizon=HORIZON
+    return pipeline.diagnose_loaded(
+        Loaded(parts, [kept], {whole.path: vessel}, kept.name, horizon=HORIZON)
     )
 
 
@@ -173,7 +172,7 @@ def polar_errors(
 
 def map_all(diagnosis: Diagnosis, parts: Sequence[Recording]) -> list[MappedRecording]:
     """Return recordings mapped on the program of a diagnosis."""
-    return list(map(diagnosis.laid, parts))
+    return list(map(diagnosis.map_recording, parts))
 
 
 def error_rows(
@@ -225,11 +224,11 @@ def coefficients(problem: Problem, fitted: Fit) -> dict[str, tuple[float, float]
     body, mapped = problem.program.vessel.body, problem.recordings[0]
     values = {}
     for i, f in enumerate(fitted.free):
-        unit = 1.0
+        scale = 1.0
         if f.relative:
-            unit = mapped.values[f.at]
-        sd = float(np.sqrt(fitted.covariance[i, i]) * unit)
-        values[f.effect, f.name] = (float(fitted.theta[i] * unit), sd)
+            scale = mapped.values[f.at]
+        sd = float(np.sqrt(fitted.covariance[i, i]) * scale)
+        values[f.effect, f.name] = (float(fitted.theta[i] * scale), sd)
     damping, damping_sd = values["linear_damping", "roll"]
     stiffness, sd = values["righting_arm", "stiffness"]
     inertia = body.roll_inertia + mapped.values[problem.program.index("added_mass", "roll")]
@@ -279,7 +278,7 @@ def with_sd(value: float, sd: float) -> str:
 def transfer_rows(at_rest: Diagnosis, whole: Recording) -> Rows:
     """Return rows with the errors of the boats fitted at zero speed on the release at speed."""
     (mapped,) = map_all(at_rest, [whole])
-    fits = fits_of(at_rest.problem, at_rest.ranking)
+    fits = models(at_rest.ranking)
     stretches = free_runs(at_rest.problem, fits, [mapped], float(np.ptp(mapped.times)))
     rms = errors(stretches)["roll_rms_rad"]
     rows = []
@@ -300,7 +299,7 @@ def last_third(diagnosis: Diagnosis, whole: Recording) -> tuple[Rows, Ranking]:
     problem = diagnosis.problem
     alone = Problem([tail], problem.ambient, problem.uncertainty)
     ranking = rank(alone, problem.program.entries)
-    fits = dict(fits_of(problem, diagnosis.ranking))
+    fits = dict(models(diagnosis.ranking))
     fits["linear, fitted here"] = ranking.recalibrated
     gains = {}
     for name, gain in ranking.first.items():
@@ -335,7 +334,7 @@ def tables(splits: Mapping[str, Diagnosis], releases: Sequence[Recording]) -> li
     rows += error_rows(middle, of_thirds, map_all(middle, thirds_of(whole)[1:2]), "middle third")
     header = ["window", "mean envelope [deg]", "recorded", *fits]
     tail, ranking = last_third(middle, whole)
-    best, enough = max(ranking.first.values()), price(len(ranking.first))
+    best, enough = max(ranking.first.values()), required_gain(len(ranking.first))
     verdict = "a model is clearly better than the linear one fitted here"
     if best < enough:
         verdict = "no model is clearly better than the linear one fitted here"

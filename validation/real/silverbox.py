@@ -98,7 +98,7 @@ facts = {{ indoors = true }}
 """
 HULL = (
     '<mujoco><worldbody><body name="hull"><geom type="box" size="0.6 0.15 0.1"/>'
-    '</body></worldbody></mujoco>\n'
+    "</body></worldbody></mujoco>\n"
 )
 
 
@@ -197,7 +197,7 @@ def diagnose(whole: Recording, vessel: Vessel) -> Diagnosis:
     """Diagnose the linear oscillator from stretches of the training data."""
     fitted = [rows_of(whole, *rows) for rows in FITTED]
     held_out = rows_of(whole, *HELD_OUT)
-    return pipeline.diagnose_recordings(fitted, [held_out], {whole.path: vessel}, held_out.name)
+    return pipeline.diagnose_loaded(Loaded(fitted, [held_out], {whole.path: vessel}, held_out.name))
 
 
 # ---- judgement
@@ -207,7 +207,7 @@ def map_test(diagnosis: Diagnosis, test: Recording) -> MappedRecording:
     """Return a mapped set with all of the input, and only the first rows of the displacement."""
     phi = test["phi_rad"].copy()
     phi[START:] = np.nan
-    return diagnosis.laid(replace(test, signals={**test.signals, "phi_rad": phi}))
+    return diagnosis.map_recording(replace(test, signals={**test.signals, "phi_rad": phi}))
 
 
 def simulation_errors(

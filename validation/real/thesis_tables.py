@@ -1,26 +1,32 @@
-"""What the thesis left out, from its tables alone: `python -m validation.real.thesis_tables`.
+"""Effects missing from the thesis' model, by its tables: `python -m validation.real.thesis_tables`.
 
-Source of the data: J. A. Bayless, Adaptive Control of Joystick Steering in Recreational Boats, Marquette University,
-2017. There are no time series, only error norms of eight tests, so every candidate is judged by running the tests:
-the scenarios joystick_boat/*_as_published (the thesis' own program) in the compiled twin, closed loop, camera and all.
+Source of the data: J. A. Bayless, Adaptive Control of Joystick Steering in Recreational Boats,
+Marquette University, 2017. It prints no time series, only error norms of eight tests, so every
+candidate is judged by simulating the tests: the scenarios joystick_boat/*_as_published (the thesis'
+own program) in the compiled engine, in closed loop and with the camera.
 
-Compared are, per test, with the values that stand as `published` in the scenario files:
-- sway 1 to 4 (Table 22): inf-norm, 2-norm and 1-norm of the smoothed yaw rate, heading change at 0.9 m;
-- yaw 1 to 4 (Table 23): inf-norm and rms of the light's distance from its circle (the rms of test 4 exceeds its
-  inf-norm and is left out), distance moved; time of a turn 44 s ("two turns in almost 90 s", section V-E);
-- what the text says of the sway tests: they took 13 to 18 s (0.9 m at the number of frames that the norms need) and
-  the boat stayed in its tank (section V-A), so that it went 0 to 0.15 m ahead (Table 26: the surge error is positive).
-The 1-norm of the yaw tests is printed, not fitted: the number of frames it needs differs between tests of one length.
+These values of each test, which the scenario files have as `published`, are compared:
+- sway 1 to 4 (Table 22): inf-norm, 2-norm and 1-norm of the smoothed yaw rate, heading change at
+  0.9 m;
+- yaw 1 to 4 (Table 23): inf-norm and rms of the light's distance from its circle (the rms of test 4
+  exceeds its inf-norm and is not used), distance moved; time of a turn 44 s ("two turns in almost
+  90 s", section V-E);
+- text about the sway tests: they took 13 to 18 s (0.9 m at the number of frames that the norms
+  need) and the boat stayed in its tank (section V-A), so that it went 0 to 0.15 m ahead (Table 26:
+  the surge error is positive).
+The 1-norm of the yaw tests is printed, not fitted: the number of frames it needs differs between
+tests of one length.
 
-A residual is a log ratio, for the heading the error over 10 deg, for the distance moved over 0.1 m; outside the bounds
-of the text a log ratio, and over 0.15 m. Beyond 3 it grows as its logarithm; its stated spread is 0.3. The norms of
-one test are readings of one curve: together they count as two numbers, each bound of the text as one.
+A residual is a log ratio, for the heading the error over 10 deg, for the distance moved over 0.1 m;
+outside the bounds of the text a log ratio, and for the surge the error over 0.15 m. Beyond 3 it grows
+logarithmically. Its standard deviation is set to 0.3. The norms of one test are computed from one
+curve: together they count as two numbers, each bound of the text as one.
 
-The nominal is the thesis' simulation as far as it is physical: rigid body and added mass, ideal thrust either way, no
-drag, no Coriolis force, no lags, no wind. Its own coefficients are the thrust at PWM 150 in the sway and in the yaw
-program; refitted they give the baseline. Candidates are added as `boatsim diagnose` adds them: by Laplace evidence,
-from 4 nats on. The search plays the turns' commands with one seed; the norms printed at the end are closed loop with
-six seeds.
+The nominal is the thesis' simulation as far as it is physical: rigid body and added mass, ideal
+thrust in both directions, no drag, no Coriolis force, no lags, no wind. Its own coefficients are the
+thrust at PWM 150 in the sway and in the yaw program; refitted they give the baseline. Candidates are
+added as in `boatsim diagnose`: by Laplace evidence, from 4 nats on. The search replays the commands
+of the turns with one seed; the norms printed at the end are closed loop with six seeds.
 """
 
 from collections.abc import Mapping, Sequence
@@ -34,20 +40,26 @@ import numpy as np
 from boatsim.diagnosis.config import DEFAULT
 from boatsim.diagnosis.fit import ParameterSpace, log_prior
 from boatsim.physics.base import Array
-from validation.real.common import table
+from validation.real.common import fixed, print_table
 from validation.real.thesis_runs import TESTS, WINDY, Bench, Knob
-from validation.real.thesis_score import CLIP, SCALE, J
+from validation.real.thesis_score import CLIP, J, residual
 
-ENOUGH = 4.0  # [nats] an effect must gain to be named
-# of a residual: camera marks, rounding of the tables, and how far runs of one test differ
+MIN_GAIN = 4.0  # [nats] an effect must gain to be identified
+# of a residual: camera marks, rounding of the tables, and the differences of runs of one test
 SPREAD = 0.3
-INDEPENDENT = 2.0  # numbers that the norms of one test are worth
-ROOM, TIMES = 0.15, (13.0, 18.0)  # [m] ahead of the bow in the tank; [s] of a sway test
+INDEPENDENT = 2.0  # independent numbers to which the norms of one test are equivalent
+# [m] ahead of the bow in the tank; [s] of a sway test
+ROOM = 0.15
+SHORTEST_TIME = 13.0
+LONGEST_TIME = 18.0
 STEP = 0.15  # of a finite difference, in prior sds: the loop's relays make the norms rough below it
-MOST = 6  # effects in one answer
-SEEDS, FINAL = (0,), (0, 1, 2, 3, 4, 5)  # of the search; of the norms that are printed
-TOLD = 0.9  # a fitted sd above this share of the prior one means that the tables say nothing
-SWAY, YAW = TESTS[:4], TESTS[4:]
+MAX_EFFECTS = 6  # in one answer
+SEEDS = (0,)  # of the search
+FINAL_SEEDS = (0, 1, 2, 3, 4, 5)  # of the norms that are printed
+DETERMINED = 0.9  # a fitted sd above this share of the prior sd: the tables do not determine it
+CORRELATED = 0.7  # absolute correlation from which two strengths are printed
+SWAY = TESTS[:4]
+YAW = TESTS[4:]
 NOMINAL: dict[str, dict[str, Any]] = {
     "cross_flow_drag": {"section_drag_coefficient": 0.0, "linear": 0.0},
     "surge_drag": {"linear": 0.0, "quadratic": 0.0},
@@ -63,10 +75,9 @@ ADDED: list[dict[str, Any]] = [
     {"use": "shallow_water", "factor": 1.0},
     {"use": "fan_wind", "speed": 0.0},
 ]
+# prior: 0.2 to 0.8 N (the thesis prints none)
 OWN = (
-    Knob(
-        "pwm_thrust", "at_span", "N", 0.5, 0.3, 0.01, 3.0, tests=SWAY
-    ),  # prior: 0.2 to 0.8 N (the thesis prints none)
+    Knob("pwm_thrust", "at_span", "N", 0.5, 0.3, 0.01, 3.0, tests=SWAY),
     Knob("pwm_thrust", "at_span", "N", 0.5, 0.3, 0.01, 3.0, tests=YAW),
 )
 CANDIDATES: dict[str, tuple[Knob, ...]] = {
@@ -99,7 +110,7 @@ Data = Mapping[str, Mapping[str, float]]  # test -> norm -> published value
 
 @dataclass(frozen=True)
 class Fit:
-    """A set of candidates with their best strengths."""
+    """A set of candidates with fitted strengths."""
 
     names: tuple[str, ...]
     knobs: tuple[Knob, ...]
@@ -109,104 +120,117 @@ class Fit:
     evidence: float  # [nats]
 
     def value(self, knob: Knob) -> tuple[float, float]:
-        """Fitted strength and one standard deviation."""
+        """Return a fitted strength and its standard deviation."""
         i = self.knobs.index(knob)
         return float(self.theta[i]), sqrt(self.covariance[i, i])
 
 
 class Tables:
-    """Published norms, and the runs that are to give them."""
+    """Published norms, and the simulated tests that should reproduce them."""
 
     def __init__(
         self, data: Data | None = None, tests: Sequence[str] = TESTS, seeds: Sequence[int] = SEEDS
     ) -> None:
-        """`data` in place of the published norms."""
+        """Load the tests.
+
+        Args:
+            data: Norms that replace the published ones.
+            tests: Names of the tests.
+            seeds: Seeds of the runs, over which the norms are averaged.
+        """
         self.benches = {t: Bench(f"{t}_as_published", ADDED, NOMINAL, t in YAW) for t in tests}
-        self.data = data or {t: published(b) for t, b in self.benches.items()}
-        self.facts, self.seeds = True, tuple(seeds)
-        self.kept: dict[Any, dict[str, float]] = {}
+        self.data = data or dict(zip(tests, map(published, self.benches.values()), strict=True))
+        self.facts = True
+        self.seeds = tuple(seeds)
+        self.cache: dict[Any, dict[str, float]] = {}
 
     def only(self, tests: Sequence[str], facts: bool = True) -> "Tables":
-        """Some of the tests, with or without the bounds of the text; runs are shared."""
+        """Return some of the tests, with or without the bounds of the text; runs are shared."""
         found = copy(self)
-        found.benches, found.facts = {t: self.benches[t] for t in tests}, facts
+        found.benches = {test: self.benches[test] for test in tests}
+        found.facts = facts
         return found
 
     def norms(self, test: str, knobs: Sequence[Knob], theta: Sequence[float]) -> dict[str, float]:
-        """Norms of a test, each run made once."""
-        acting = [(k, float(x)) for k, x in zip(knobs, theta, strict=True) if test in k.tests]
-        key = (test, *acting)
-        if key not in self.kept:
-            self.kept[key] = self.benches[test].norms(
-                [k for k, _ in acting], [x for _, x in acting], self.seeds
-            )
-        return self.kept[key]
+        """Return the norms of a test; each run is simulated once."""
+        acting, values = [], []
+        for knob, x in zip(knobs, theta, strict=True):
+            if test in knob.tests:
+                acting.append(knob)
+                values.append(float(x))
+        key = (test, tuple(acting), tuple(values))
+        if key not in self.cache:
+            self.cache[key] = self.benches[test].norms(acting, values, self.seeds)
+        return self.cache[key]
 
     def residuals(self, knobs: Sequence[Knob], theta: Sequence[float]) -> Array:
-        """Weighted residuals of all tests, one after the other."""
-        return np.concatenate([self.of_test(t, knobs, theta) for t in self.benches])
+        """Return the weighted residuals (R,) of all tests."""
+        return np.concatenate([self.of_test(test, knobs, theta) for test in self.benches])
 
     def of_test(self, test: str, knobs: Sequence[Knob], theta: Sequence[float]) -> Array:
-        """Weighted residuals of one test: its norms, then the bounds of the text."""
+        """Return the weighted residuals of one test: its norms, then the bounds of the text."""
         found, wanted = self.norms(test, knobs, theta), self.data[test]
-        norms = [
-            soft(residual(n, found, x)) * sqrt(INDEPENDENT / len(wanted)) for n, x in wanted.items()
-        ]
-        facts = [soft(x) for x in beyond(found)] if test in SWAY and self.facts else []
-        return np.array([*norms, *facts]) / SPREAD
+        weight = sqrt(INDEPENDENT / len(wanted))
+        residuals = []
+        for name, x in wanted.items():
+            off = 2.0 * CLIP  # for a run that ends before the norm is defined
+            if name in found:
+                off = residual(name, found[name], x)
+            residuals.append(soft(off) * weight)
+        if test in SWAY and self.facts:
+            residuals += map(soft, beyond(found))
+        return np.array(residuals) / SPREAD
 
     def rows(self) -> dict[str, slice]:
-        """Where each test's residuals lie."""
-        sizes = [len(self.data[t]) + (2 if t in SWAY and self.facts else 0) for t in self.benches]
-        ends = np.cumsum(sizes).tolist()
-        return {t: slice(e - n, e) for t, n, e in zip(self.benches, sizes, ends, strict=True)}
+        """Return the rows of the residuals of each test."""
+        slices, begin = {}, 0
+        for test in self.benches:
+            end = begin + len(self.data[test])
+            if test in SWAY and self.facts:
+                end += 2
+            slices[test] = slice(begin, end)
+            begin = end
+        return slices
 
 
 def published(bench: Bench) -> dict[str, float]:
-    """What is fitted of a test's published norms."""
-    return {n: x for n, x in bench.published.items() if n != "position_l1"}
-
-
-def residual(name: str, found: Mapping[str, float], wanted: float) -> float:
-    """As `thesis_score.J` has it, not clipped; a run that never got there is as far away as counts."""
-    if name not in found:
-        return 2.0 * CLIP
-    return (found[name] - wanted) / SCALE[name] if name in SCALE else log(found[name] / wanted)
+    """Return the published norms of a test that are fitted."""
+    return {name: x for name, x in bench.published.items() if name != "position_l1"}
 
 
 def beyond(found: Mapping[str, float]) -> tuple[float, float]:
-    """How far surge offset and time of a sway test lie outside what the text allows."""
+    """Return the residuals of surge offset and time of a sway test outside the text's bounds."""
     if not found:
         return 2.0 * CLIP, 2.0 * CLIP
     ahead, time = found["surge_offset"], found["time_to_end"]
-    return (
-        (ahead - min(max(ahead, 0.0), ROOM)) / ROOM,
-        log(time / min(max(time, TIMES[0]), TIMES[1])),
-    )
+    bounded = min(max(time, SHORTEST_TIME), LONGEST_TIME)
+    return (ahead - min(max(ahead, 0.0), ROOM)) / ROOM, log(time / bounded)
 
 
 def soft(x: float) -> float:
-    """A residual itself while small, its logarithm beyond the clip of J: far away still shows the way."""
+    """Return a residual that grows logarithmically beyond `CLIP`, so that it keeps a slope."""
     return CLIP * asinh(x / CLIP)
 
 
-# Fit
-# --------------------------------------------------------------------------------------------------------------
+# ---- fit
 
 
 def knobs_of(names: Sequence[str]) -> tuple[Knob, ...]:
-    """The nominal's own coefficients and those of candidates."""
-    return (*OWN, *(k for n in names for k in CANDIDATES[n]))
+    """Return the nominal's own coefficients and those of candidates."""
+    knobs = list(OWN)
+    for name in names:
+        knobs += CANDIDATES[name]
+    return tuple(knobs)
 
 
 def score(tables: Tables, knobs: Sequence[Knob], theta: Array) -> tuple[float, Array]:
-    """Log posterior up to a constant, and the residuals."""
+    """Return the log posterior up to a constant, and the residuals (R,)."""
     e = tables.residuals(knobs, theta.tolist())
     return log_prior(knobs, theta) - 0.5 * float(e @ e), e  # type: ignore[arg-type]
 
 
 def slopes(tables: Tables, knobs: Sequence[Knob], theta: Array, e: Array) -> Array:
-    """Derivatives of the residuals by theta / sd, one-sided, into the bounds."""
+    """Return the derivatives (R, F) of the residuals by theta / sd, one-sided, into the bounds."""
     found = np.zeros((len(e), len(knobs)))
     for j, knob in enumerate(knobs):
         h = STEP if theta[j] + STEP * knob.sd <= knob.high else -STEP
@@ -217,7 +241,14 @@ def slopes(tables: Tables, knobs: Sequence[Knob], theta: Array, e: Array) -> Arr
 
 
 def gauss_newton(tables: Tables, names: Sequence[str], theta: Array, most: int = 6) -> Fit:
-    """Damped Gauss-Newton from theta; Laplace evidence at the end."""
+    """Return a fit by damped Gauss-Newton steps, with its Laplace evidence.
+
+    Args:
+        tables: The data.
+        names: Candidates that act.
+        theta: (F,) start.
+        most: Largest number of steps.
+    """
     knobs = knobs_of(names)
     space = ParameterSpace(knobs)  # type: ignore[arg-type]
     theta, damping = space.clipped(theta), 1e-3
@@ -242,28 +273,30 @@ def gauss_newton(tables: Tables, names: Sequence[str], theta: Array, most: int =
 
 
 def with_candidate(tables: Tables, base: Fit, name: str, most: int = 3) -> Fit:
-    """`base` with one more candidate, begun at the best of a few strengths and of the thrusts fitted and expected."""
-    knobs, names = CANDIDATES[name], (*base.names, name)
+    """Return `base` refitted with one more candidate.
 
-    def start(shift: float, thrust: Array) -> Array:
-        moved = [min(max(k.mean + shift * k.sd, k.low), k.high) for k in knobs]
-        return np.concatenate([thrust, base.theta[2:], moved])
-
-    mean = np.array([k.mean for k in OWN])
+    The start is the best of a few strengths, with the thrusts of `base` and of the prior.
+    """
+    names = (*base.names, name)
+    space = ParameterSpace(CANDIDATES[name])  # type: ignore[arg-type]
+    knobs = knobs_of(names)
+    port, starboard = OWN[0].mean, OWN[1].mean
     thrusts = (
         base.theta[:2],
-        np.array([base.theta[0], mean[1]]),
-        np.array([mean[0], base.theta[1]]),
-        mean,
+        np.array([base.theta[0], starboard]),
+        np.array([port, base.theta[1]]),
+        np.array([port, starboard]),
     )
-    begun = [start(s, thrust) for s in (-1.0, -0.3, 0.3, 1.0) for thrust in thrusts]
-    return gauss_newton(
-        tables, names, max(begun, key=lambda x: score(tables, knobs_of(names), x)[0]), most
-    )
+    starts = []
+    for shift in (-1.0, -0.3, 0.3, 1.0):
+        strengths = space.clipped(space.mean + shift * space.sd)
+        starts += [np.concatenate([thrust, base.theta[2:], strengths]) for thrust in thrusts]
+    best = max(starts, key=lambda theta: score(tables, knobs, theta)[0])
+    return gauss_newton(tables, names, best, most)
 
 
 def without(tables: Tables, base: Fit, name: str) -> Fit:
-    """`base` refitted without one of its candidates."""
+    """Return `base` refitted without one of its candidates."""
     names = tuple(n for n in base.names if n != name)
     known = dict(zip(base.knobs, base.theta.tolist(), strict=True))
     return gauss_newton(tables, names, np.array([known[k] for k in knobs_of(names)]))
@@ -271,127 +304,127 @@ def without(tables: Tables, base: Fit, name: str) -> Fit:
 
 @dataclass(frozen=True)
 class Ranking:
-    """What selection over the candidates found."""
+    """Result of the selection of candidates."""
 
     nominal: Fit  # as written
     recalibrated: Fit
     best: Fit
     first: dict[str, float]  # gain of each candidate alone [nats]
-    gains: dict[str, float]  # of each named on top of the others named
-    rivals: dict[
-        str, dict[str, Fit]
-    ]  # named -> the best set with each other candidate in its place
-    last: dict[str, Fit]  # each other candidate on top of the best set
+    gains: dict[str, float]  # of each identified effect, in addition to the others
+    rivals: dict[str, dict[str, Fit]]  # identified -> the best set with another one in its place
+    last: dict[str, Fit]  # each other candidate in addition to the best set
+
+    def gain(self, fit: Fit) -> float:
+        """Return the evidence of a fit minus that of the best [nats]."""
+        return fit.evidence - self.best.evidence
+
+
+def _evidence(fit: Fit) -> float:
+    return fit.evidence
 
 
 def rank(
-    tables: Tables, candidates: Sequence[str] = tuple(CANDIDATES), most: int = MOST
+    tables: Tables, candidates: Sequence[str] = tuple(CANDIDATES), most: int = MAX_EFFECTS
 ) -> Ranking:
-    """Forward selection by evidence, then each member weighed on top of the others and against its rivals."""
-    theta = np.array([k.mean for k in OWN])
+    """Select candidates one by one by evidence, and compare each with the others in its place."""
+    theta = np.array([OWN[0].mean, OWN[1].mean])
     nominal = Fit((), OWN, theta, np.zeros((2, 2)), np.zeros((0, 2)), score(tables, OWN, theta)[0])
     base = best = gauss_newton(tables, (), theta)
-    looks: dict[tuple[str, ...], dict[str, Fit]] = {}
+    tested: dict[tuple[str, ...], dict[str, Fit]] = {}
+
+    def with_each(fit: Fit) -> dict[str, Fit]:
+        others = [name for name in candidates if name not in best.names]
+        return {name: with_candidate(tables, fit, name) for name in others}
+
     while len(best.names) < most:
-        tried = {n: with_candidate(tables, best, n) for n in candidates if n not in best.names}
-        looks[best.names] = tried
-        front = max(tried.values(), key=lambda f: f.evidence)
-        if front.evidence < best.evidence + ENOUGH:
+        tested[best.names] = with_each(best)
+        front = max(tested[best.names].values(), key=_evidence)
+        if front.evidence < best.evidence + MIN_GAIN:
             break
         best = pruned(tables, gauss_newton(tables, front.names, front.theta))
-        if best.names in looks:
+        if best.names in tested:
             break
-    first = {n: f.evidence - base.evidence for n, f in looks[()].items()}
+    first = {name: fit.evidence - base.evidence for name, fit in tested[()].items()}
     gains: dict[str, float] = {}
     rivals: dict[str, dict[str, Fit]] = {}
-    others = [n for n in candidates if n not in best.names]
     for name in best.names:
         fewer = without(tables, best, name)
         gains[name] = best.evidence - fewer.evidence
-        rivals[name] = {n: with_candidate(tables, fewer, n) for n in others}
-    last = looks.get(best.names) or {n: with_candidate(tables, best, n) for n in others}
+        rivals[name] = with_each(fewer)
+    last = tested.get(best.names) or with_each(best)
     return Ranking(nominal, base, best, first, gains, rivals, last)
 
 
 def pruned(tables: Tables, best: Fit) -> Fit:
-    """Without the members that others have made needless."""
+    """Return the set without members that others have made unnecessary."""
     while best.names:
-        fewer = max((without(tables, best, n) for n in best.names), key=lambda f: f.evidence)
-        if fewer.evidence < best.evidence - ENOUGH:
+        fewer = max([without(tables, best, name) for name in best.names], key=_evidence)
+        if fewer.evidence < best.evidence - MIN_GAIN:
             break
         best = fewer
     return best
 
 
-# What is printed
-# --------------------------------------------------------------------------------------------------
+# ---- printed tables
 
 
-def left_out(tables: Tables, fitted: Fit, test: str) -> Fit:
-    """The same set refitted without one test, from where it was and from nearer to the prior."""
+def fit_without_test(tables: Tables, fitted: Fit, test: str) -> Fit:
+    """Return the same set refitted without one test, the better of two starts.
+
+    The starts are the old strengths, and strengths nearer to the prior.
+    """
     rest = tables.only([t for t in tables.benches if t != test])
-    mean = np.array([k.mean for k in fitted.knobs])
-    starts = (fitted.theta, 0.7 * fitted.theta + 0.3 * mean)
-    return max(
-        (gauss_newton(rest, fitted.names, theta) for theta in starts), key=lambda f: f.evidence
-    )
+    mean = np.array([knob.mean for knob in fitted.knobs])
+    near = gauss_newton(rest, fitted.names, fitted.theta)
+    far = gauss_newton(rest, fitted.names, 0.7 * fitted.theta + 0.3 * mean)
+    return max(near, far, key=_evidence)
 
 
 def distance(tables: Tables, fitted: Fit, tests: Sequence[str]) -> float:
-    """J of some tests."""
+    """Return J of some tests."""
     pairs = []
-    for t in tests:
-        found = tables.norms(t, fitted.knobs, fitted.theta.tolist())
-        wanted = tables.data[t]
-        pairs.append((found or {n: x * 1e9 for n, x in wanted.items()}, wanted))
+    for test in tests:
+        wanted = tables.data[test]
+        found = tables.norms(test, fitted.knobs, fitted.theta.tolist())
+        if not found:
+            found = {name: x * 1e9 for name, x in wanted.items()}
+        pairs.append((found, wanted))
     return J(pairs)
 
 
-def print_ranking(found: Ranking) -> None:
-    """Candidates in order of gain."""
+def print_ranking(ranking: Ranking) -> None:
+    """Print the candidates in order of gain."""
+    gains = ranking.gains
+    alone = sorted(ranking.first.items(), key=lambda item: -item[1])
     rows = []
-    for name in sorted(
-        found.first, key=lambda n: (n not in found.gains, -found.gains.get(n, 0.0), -found.first[n])
-    ):
-        fitted = found.best if name in found.gains else found.last[name]
-        gain = found.gains[name] if name in found.gains else fitted.evidence - found.best.evidence
-        values = ", ".join(strength(fitted, k) for k in CANDIDATES[name])
-        verdict = "missing" if name in found.gains else "-"
-        rows.append(
-            [
-                name,
-                KINDS.get(name, "physics"),
-                f"{found.first[name]:.1f}",
-                f"{gain:.1f}",
-                values,
-                verdict,
-            ]
-        )
-    header = [
-        "candidate",
-        "kind",
-        "alone [nats]",
-        "beside the others [nats]",
-        "value +- sd",
-        "verdict",
-    ]
-    table(
-        "candidates: gain over the recalibrated nominal alone, and beside (or on top of) what is named",
-        header,
-        rows,
-    )
+    for name, first in sorted(alone, key=lambda item: -gains.get(item[0], -np.inf)):
+        fitted, verdict = ranking.best, "missing"
+        if name not in gains:
+            fitted, verdict = ranking.last[name], "-"
+        gain = gains.get(name, ranking.gain(fitted))
+        kind = KINDS.get(name, "physics")
+        rows.append([name, kind, *fixed(1, first, gain), strengths(fitted, name), verdict])
+    header = ["candidate", "kind", "alone [nats]", "with the others [nats]", "value +- sd"]
+    title = "candidates: gain over the recalibrated nominal alone, and with the identified effects"
+    print_table(title, [*header, "verdict"], rows)
+
+
+def strengths(fitted: Fit, name: str) -> str:
+    """Return the fitted values of a candidate as text."""
+    return ", ".join(strength(fitted, knob) for knob in CANDIDATES[name])
 
 
 def strength(fitted: Fit, knob: Knob) -> str:
-    """A fitted value with its spread; whether the tables say anything of it."""
+    """Return a fitted value as text; "(prior)" if the tables do not determine it."""
     value, sd = fitted.value(knob)
-    return f"{knob.name} {value:.3g} +- {sd:.2g} {knob.unit}".rstrip() + (
-        " (prior)" if sd > TOLD * knob.sd else ""
-    )
+    text = f"{knob.name} {value:.3g} +- {sd:.2g} {knob.unit}".rstrip()
+    if sd > DETERMINED * knob.sd:
+        text += " (prior)"
+    return text
 
 
-def print_sources(tables: Tables, found: Ranking) -> None:
-    """What part of the data calls for each effect."""
+def print_sources(tables: Tables, ranking: Ranking) -> None:
+    """Print the gain of each effect by part of the data, and the information of each test."""
     parts = {
         "all": tables,
         "norms only": tables.only(TESTS, facts=False),
@@ -399,190 +432,179 @@ def print_sources(tables: Tables, found: Ranking) -> None:
         "sway, with the text": tables.only(SWAY),
         "yaw norms": tables.only(YAW),
     }
-    rows = [
-        [name, *(f"{gain_in(part, found.best, name):.1f}" for part in parts.values())]
-        for name in found.best.names
-    ]
-    table(
-        "gain of each effect by part of the data, all else refitted to that part [nats]",
-        ["effect", *parts],
-        rows,
-    )
+    best = ranking.best
+    rows = []
+    for name in best.names:
+        rows.append([name, *fixed(1, *(gain_in(part, best, name) for part in parts.values()))])
+    title = "gain of each effect by part of the data, all else refitted to that part [nats]"
+    print_table(title, ["effect", *parts], rows)
     shares = []
-    for j, knob in enumerate(found.best.knobs):
-        each = {
-            t: float((found.best.slopes[rows_, j] ** 2).sum()) for t, rows_ in tables.rows().items()
-        }
-        total = max(sum(each.values()), 1e-12)
-        shares.append([knob.label, *(f"{100 * x / total:.0f}" for x in each.values())])
-    table("information on each strength by test [%]", ["strength", *tables.benches], shares)
+    for j, knob in enumerate(best.knobs):
+        information = []
+        for part in tables.rows().values():
+            information.append(float((best.slopes[part, j] ** 2).sum()))
+        total = max(sum(information), 1e-12)
+        shares.append([knob.label, *fixed(0, *(100 * np.array(information) / total))])
+    title = "information on each strength by test [%]"
+    print_table(title, ["strength", *tables.benches], shares)
 
 
 def gain_in(part: Tables, best: Fit, name: str) -> float:
-    """Evidence for one effect in a part of the data."""
+    """Return the evidence of one effect in a part of the data [nats]."""
     return gauss_newton(part, best.names, best.theta).evidence - without(part, best, name).evidence
 
 
-def print_left_out(tables: Tables, found: Ranking) -> None:
-    """Leave one test out."""
-    rows, ahead = [], 0
+def print_leave_one_out(tables: Tables, ranking: Ranking) -> None:
+    """Print J of each test, fitted and held out."""
+    base, best = ranking.recalibrated, ranking.best
+    rows = []
+    better = 0
     sums = np.zeros(2)
     for test in tables.benches:
-        fits = (found.recalibrated, found.best)
-        again = [left_out(tables, f, test) for f in fits]
-        (a, la), (b, lb) = (
-            [distance(tables, x, [test]) for x in pair] for pair in zip(fits, again, strict=True)
-        )
-        sums += np.array([la, lb]) ** 2
-        ahead += lb < la
-        rows.append(
-            [
-                test,
-                f"{a:.2f}",
-                f"{b:.2f}",
-                f"{la:.2f}",
-                f"{lb:.2f}",
-                f"{lb / la:.2f}",
-                f"{balance(again[1]):.3f}",
-            ]
-        )
+        base_without = fit_without_test(tables, base, test)
+        best_without = fit_without_test(tables, best, test)
+        before = distance(tables, base_without, [test])
+        after = distance(tables, best_without, [test])
+        sums += np.array([before, after]) ** 2
+        better += after < before
+        fitted = distance(tables, base, [test]), distance(tables, best, [test])
+        row = [test, *fixed(2, *fitted, before, after, after / before)]
+        rows.append([*row, f"{thrust_ratio(best_without):.3f}"])
     rms = np.sqrt(sums / len(rows))
-    whole = [distance(tables, f, list(tables.benches)) for f in (found.recalibrated, found.best)]
-    rows.append(
-        [
-            "all",
-            *(f"{x:.2f}" for x in whole),
-            *(f"{x:.2f}" for x in rms),
-            f"{rms[1] / rms[0]:.2f}",
-            f"{balance(found.best):.3f}",
-        ]
-    )
-    header = [
-        "test",
-        "fitted: recalibrated",
-        "with effects",
-        "left out: recalibrated",
-        "with effects",
-        "ratio",
-        "thrust ahead / astern",
-    ]
-    table("J, the rms residual of a test's norms (log ratios; 10 deg; 0.1 m)", header, rows)
-    print(f"with effects nearer to the test left out in {ahead} of {len(tables.benches)}")
+    tests = list(tables.benches)
+    whole = distance(tables, base, tests), distance(tables, best, tests)
+    row = ["all", *fixed(2, *whole, *rms, rms[1] / rms[0])]
+    rows.append([*row, f"{thrust_ratio(best):.3f}"])
+    header = ["test", "fitted: recalibrated", "with effects", "held out: recalibrated"]
+    header += ["with effects", "ratio", "thrust ahead / astern"]
+    print_table("J, the rms residual of a test's norms (log ratios; 10 deg; 0.1 m)", header, rows)
+    print(f"held-out test predicted better with effects in {better} of {len(tests)}")
 
 
-def print_norms(found: Ranking) -> None:
-    """Published norms and those of the boats, closed loop, and the corrected controller on the boat found."""
+def print_norms(ranking: Ranking) -> None:
+    """Print published norms and those of the boats in closed loop.
+
+    The last column has the corrected controller on the boat with the identified effects.
+    """
     rows, pairs = [], []
     for test in TESTS:
         bench = Bench(f"{test}_as_published", ADDED, NOMINAL)
-        ours = Bench(test, ADDED, NOMINAL)
-        columns = [run(bench, f) for f in (found.nominal, found.recalibrated, found.best)] + [
-            run(ours, found.best)
-        ]
-        pairs.append((columns[2], published(bench)))
-        names = [*bench.published, *(["surge_offset", "time_to_end"] if test in SWAY else [])]
-        for name in names:
-            wanted = f"{bench.published[name]:g}" if name in bench.published else SAID[name]
-            rows.append(
-                [f"{test} {name}", wanted, *(f"{c[name]:.3g}" if c else "-" for c in columns)]
-            )
-    header = [
-        "test, norm",
-        "published",
-        "as published model",
-        "recalibrated",
-        "with effects",
-        "corrected controller",
-    ]
-    table(
-        "norms of the thesis' program, mean of six seeds; last column: our controller on the same boat",
-        header,
-        rows,
-    )
+        best = run(bench, ranking.best)
+        columns = [run(bench, ranking.nominal), run(bench, ranking.recalibrated), best]
+        columns.append(run(Bench(test, ADDED, NOMINAL), ranking.best))
+        pairs.append((best, published(bench)))
+        wanted = {name: f"{x:g}" for name, x in bench.published.items()}
+        if test in SWAY:
+            wanted |= TEXT_BOUNDS
+        for name, text in wanted.items():
+            row = [f"{test} {name}", text]
+            for found in columns:
+                row.append(f"{found[name]:.3g}" if found else "-")
+            rows.append(row)
+    header = ["test, norm", "published", "as published model", "recalibrated", "with effects"]
+    header.append("corrected controller")
+    title = "norms of the thesis' program, mean of six seeds; last column: our controller"
+    print_table(title, header, rows)
     print(f"J of the boat with effects in these closed-loop runs: {J(pairs):.2f}")
     print("- : the test does not end as it should (too short for the norms, or no full turn)")
 
 
-SAID = {"surge_offset": "0 to 0.15", "time_to_end": "13 to 18"}  # what the text says
+TEXT_BOUNDS = {"surge_offset": "0 to 0.15", "time_to_end": "13 to 18"}
 
 
 def run(bench: Bench, fitted: Fit) -> dict[str, float]:
-    """Norms of a test with a boat's strengths; strengths of the thesis' controller are left to it."""
-    told = [
-        (k, x)
-        for k, x in zip(fitted.knobs, fitted.theta.tolist(), strict=True)
-        if bench.name.removesuffix("_as_published") in k.tests
-        and (k.effect != "controller" or bench.name.endswith("_as_published"))
-    ]
-    return bench.norms([k for k, _ in told], [x for _, x in told], FINAL)
+    """Return the norms of a test with a boat's strengths.
+
+    Strengths of the thesis' controller are used only in tests with that controller.
+    """
+    as_published = bench.name.endswith("_as_published")
+    knobs, values = [], []
+    for knob, x in zip(fitted.knobs, fitted.theta.tolist(), strict=True):
+        used = knob.effect != "controller" or as_published
+        if used and bench.name.removesuffix("_as_published") in knob.tests:
+            knobs.append(knob)
+            values.append(x)
+    return bench.norms(knobs, values, FINAL_SEEDS)
 
 
-def alike(found: Ranking, name: str) -> dict[str, tuple[float, Fit]]:
-    """Look-alikes of a named effect: what they gain over it in its place, and the fit, best first."""
-    gains = {n: (f.evidence - found.best.evidence, f) for n, f in found.rivals[name].items()}
-    return {
-        n: x
-        for n, x in sorted(gains.items(), key=lambda item: -item[1][0])
-        if x[0] > -DEFAULT.select.alike
-    }
+def alike(ranking: Ranking, name: str) -> dict[str, Fit]:
+    """Return the fits with another effect in the place of an identified one that cannot be excluded.
+
+    The best one is first.
+    """
+    rivals = sorted(ranking.rivals[name].items(), key=lambda item: -item[1].evidence)
+    return {rival: fit for rival, fit in rivals if ranking.gain(fit) > -DEFAULT.select.alike}
 
 
-def balance(fitted: Fit) -> float:
-    """Thrust of the port motor, ahead at 0.70 of the PWM, over that of the starboard motor astern (Appendix H)."""
-    x = {
-        k.effect + "." + k.name: v for k, v in zip(fitted.knobs, fitted.theta.tolist(), strict=True)
-    }
+def thrust_ratio(fitted: Fit) -> float:
+    """Return the thrust of the port motor ahead at 0.70 of the PWM over that of starboard astern.
+
+    The thesis calibrates its motors by this ratio (Appendix H).
+    """
+    x = {}
+    for knob, value in zip(fitted.knobs, fitted.theta.tolist(), strict=True):
+        x[f"{knob.effect}.{knob.name}"] = value
     f, curve = x.get("thrust_imbalance.fraction", 0.0), x.get("pwm_thrust.exponent", 1.0)
     return float(0.70**curve * (1.0 + f) / (1.0 - f) / x.get("weak_reverse.astern_factor", 1.0))
 
 
-def print_untold(found: Ranking) -> None:
-    """What the tables can not tell."""
-    print("\nwhat the tables can not tell")
-    for name in found.rivals:
-        for rival, (gain, fitted) in alike(found, name).items():
-            values = ", ".join(strength(fitted, k) for k in CANDIDATES[rival])
-            print(f"  {name} or, in its place, {rival} ({gain:+.1f} nats): {values}")
+def print_undetermined(ranking: Ranking) -> None:
+    """Print what the tables do not determine."""
+    print("\nnot determined by the tables")
+    for name in ranking.rivals:
+        for rival, fitted in alike(ranking, name).items():
             print(
-                f"    thrust ahead over thrust astern: {balance(found.best):.3f} with the one, "
-                f"{balance(fitted):.3f} with the other; this ratio is what the tables tell"
+                f"  {name} or, in its place, {rival} ({ranking.gain(fitted):+.1f} nats): "
+                f"{strengths(fitted, rival)}"
             )
-    idle = [n for n, f in found.last.items() if f.evidence - found.best.evidence < ENOUGH]
-    print(
-        f"  whether there is also any of: {', '.join(idle) or 'none of the candidates'} (each gains less than 4 nats)"
-    )
-    mute = [
-        k.label for n, f in found.last.items() for k in CANDIDATES[n] if f.value(k)[1] > TOLD * k.sd
-    ]
-    print(f"  the strength of: {', '.join(mute) or 'none'} (the spread stays that of the prior)")
-    sd = np.sqrt(np.diag(found.best.covariance))
-    corr = found.best.covariance / np.outer(sd, sd)
-    for i, a in enumerate(found.best.knobs):
-        for j, b in enumerate(found.best.knobs[:i]):
-            if abs(corr[i, j]) > 0.7:
-                print(f"  {b.label} and {a.label} apart: correlation {corr[i, j]:+.2f}")
+            print(
+                f"    thrust ahead over thrust astern: {thrust_ratio(ranking.best):.3f} with the "
+                f"first, {thrust_ratio(fitted):.3f} with the second; the tables determine this ratio"
+            )
+    idle, vague = [], []
+    for name, fitted in ranking.last.items():
+        if ranking.gain(fitted) < MIN_GAIN:
+            idle.append(name)
+        for knob in CANDIDATES[name]:
+            if fitted.value(knob)[1] > DETERMINED * knob.sd:
+                vague.append(knob.label)
+    names = ", ".join(idle) or "none of the candidates"
+    print(f"  presence of any of: {names} (each gains less than {MIN_GAIN:g} nats)")
+    labels = ", ".join(vague) or "none"
+    print(f"  the strength of: {labels} (the standard deviation remains that of the prior)")
+    sd = np.sqrt(np.diag(ranking.best.covariance))
+    correlation = ranking.best.covariance / np.outer(sd, sd)
+    for i, a in enumerate(ranking.best.knobs):
+        for j, b in enumerate(ranking.best.knobs[:i]):
+            if abs(correlation[i, j]) > CORRELATED:
+                print(f"  {b.label} and {a.label} apart: correlation {correlation[i, j]:+.2f}")
 
 
 def main() -> None:
-    """Fit, rank, and say what carries it."""
+    """Fit, rank, and print the evidence."""
     tables = Tables()
-    found = rank(tables)
-    named = [" or ".join([n, *alike(found, n)]) for n in found.best.names]
-    print(f"missing from the thesis' model, by its tables alone: {', '.join(named) or 'nothing'}")
-    print(
-        f"baseline: the thesis' model with its thrusts refitted ({', '.join(own(found.recalibrated))})"
-    )
-    print(f"with effects: {', '.join(own(found.best))}")
-    print_ranking(found)
-    print_sources(tables, found)
-    print_left_out(tables, found)
-    print_norms(found)
-    print_untold(found)
+    ranking = rank(tables)
+    identified = []
+    for name in ranking.best.names:
+        identified.append(" or ".join([name, *alike(ranking, name)]))
+    missing = ", ".join(identified) or "nothing"
+    print(f"missing from the thesis' model, by its tables alone: {missing}")
+    print(f"baseline: the thesis' model with its thrusts refitted ({own(ranking.recalibrated)})")
+    print(f"with effects: {own(ranking.best)}")
+    print_ranking(ranking)
+    print_sources(tables, ranking)
+    print_leave_one_out(tables, ranking)
+    print_norms(ranking)
+    print_undetermined(ranking)
 
 
-def own(fitted: Fit) -> list[str]:
-    """The nominal's own coefficients."""
-    return [f"{k.label} {x:.3g} +- {s:.2g} {k.unit}" for k in OWN for x, s in [fitted.value(k)]]
+def own(fitted: Fit) -> str:
+    """Return the nominal's own coefficients as text."""
+    texts = []
+    for knob in OWN:
+        x, sd = fitted.value(knob)
+        texts.append(f"{knob.label} {x:.3g} +- {sd:.2g} {knob.unit}")
+    return ", ".join(texts)
 
 
 if __name__ == "__main__":

@@ -33,7 +33,7 @@ VESSELS = {blueboat_lake.NAME: blueboat_lake.VESSEL}  # the other recordings nam
 
 def problem_of(paths: list[Path], vessel_name: str | None) -> Problem:
     """Return the estimation problem of a diagnosis of some recordings."""
-    opened = [pipeline.open_recording(path, vessel_name, ()) for path in paths]
+    opened = [loading.open_recording(path, vessel_name, ()) for path in paths]
     first, vessel = opened[0]
     program = Program(vessel, library_for(vessel).compiled)
     noise, rate = shared_noise(vessel, [first]), priors.rate(vessel)
@@ -44,13 +44,14 @@ def problem_of(paths: list[Path], vessel_name: str | None) -> Problem:
 
 def main() -> None:
     """Print one table per set."""
+    steps = DEFAULT.fit.correlation_time_steps
     for name in sys.argv[1:] or HELD_OUT:
         problem = problem_of(runs_except(runs_of(name), HELD_OUT[name]), VESSELS.get(name))
         _, best = selection(problem, problem.program.entries)
         usual = problem.ambient.time_constant
         selected = correlation_time(problem, best)
         rows = []
-        for step in range(-STEPS, STEPS + 1):
+        for step in range(-steps, steps + 1):
             seconds = usual * 2.0**step
             error = float(np.exp(np.mean(np.log(halves_errors(problem, best, seconds)))))
             rows.append([f"{seconds:.2g}", f"{error:.4g}", "*" if seconds == selected else ""])

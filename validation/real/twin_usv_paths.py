@@ -8,7 +8,6 @@ The script prints what was found, upper limits of what was not, and what cannot 
 import numpy as np
 
 from boatsim.diagnosis import pipeline
-from boatsim.diagnosis.evaluation import MODELS
 from boatsim.diagnosis.free_runs import errors
 from boatsim.diagnosis.pipeline import Diagnosis
 from validation.real.common import (

@@ -1,1 +1,1 @@
-"""Real recordings altered so that the right answer is known: `python -m validation.real.concealed`."""
+"""Real recordings with known alterations: `python -m validation.real.concealed`."""

@@ -1,16 +1,20 @@
-"""Real recordings altered so that the right answer is known: `python -m validation.real.concealed [--only NAME...]`.
+"""Real recordings with known alterations: `python -m validation.real.concealed [--only NAME...]`.
 
-Something is missing from the plain vessel of every real recording already. So the unaltered recordings are diagnosed
-first, the vessel patched, and that again with what is still named, at most three times; what is named of the unaltered
-recordings even then counts for nothing. Then each case alters the recordings as its cause would have, by closed form,
-or takes one of the effects found out of the patched vessel again. Beside the truth stands what a fit makes of the same
-cause in the unaltered recordings: a real boat has a little of everything, to which an alteration adds, so that the size
-of both together is right too. A cause can be told from a recording (is visible) if the true structure, its sizes
-fitted, gains more than 6 nats in the tool's own filter; what can not be told must be left alone.
+The plain vessel of every real recording already lacks something. So the unaltered recordings are
+diagnosed first and the vessel is patched; this is repeated with the patched vessel, at most three
+times. What is still identified in the unaltered recordings is not counted.
 
---only takes names of sets or parts of names of cases, --list prints the cases alone. The two releases take a minute or
-two. Of the others short pieces of a few runs are used, as printed, and still a single diagnosis may take ten minutes,
-for so much is missing from their plain vessels. Sets whose recordings are not there are skipped.
+Each case then alters the recordings as its cause would have, by closed form, or removes one of the
+identified effects from the patched vessel. The truth is printed together with a fit of the same
+cause to the unaltered recordings: a real boat has a little of everything, to which an alteration
+adds, so the size of both together is right too. A cause is visible if the true structure, with
+fitted sizes, gains more than 6 nats in the filter of the diagnosis. A cause that is not visible must
+not be reported.
+
+--only takes names of sets or parts of names of cases; --list prints the cases. The two releases take
+a minute or two. Short pieces of a few runs are used of the other sets, as printed; a single
+diagnosis may still take ten minutes, because so much is missing from their plain vessels. Sets
+whose recordings are not on this machine are skipped.
 """
 
 import argparse
@@ -18,103 +22,92 @@ import time
 from collections.abc import Sequence
 from pathlib import Path
 
-from validation.real.common import OUT, table
+from validation.real.common import OUT, print_table
 from validation.real.concealed.alterations import unaltered
 from validation.real.concealed.base import Patched
 from validation.real.concealed.cases import STUDIES, Case, Study
 from validation.real.concealed.judging import Verdict, names_of, shares, sizes_of
 
+HEADER = ["set", "concealed", "truth", "unaltered", "gain [nats]", "outcome", "answer"]
+
 
 def row(study: Study, case: Case, verdict: Verdict) -> list[str]:
-    """A line of the table."""
-    gain = "" if verdict.gain is None else f"{verdict.gain:.1f}"
-    return [
-        study.name,
-        case.name,
-        sizes_of(case.truth) or "nothing",
-        verdict.own,
-        gain,
-        verdict.outcome,
-        verdict.said,
-    ]
+    """Return a row of the table."""
+    gain = ""
+    if verdict.gain is not None:
+        gain = f"{verdict.gain:.1f}"
+    truth = sizes_of(case.truth) or "nothing"
+    return [study.name, case.name, truth, verdict.own, gain, verdict.outcome, verdict.answer]
 
 
-HEADER = ["set", "concealed", "truth", "unaltered", "gain [nats]", "judged", "said"]
+def requested(study: Study, case: str, only: Sequence[str]) -> bool:
+    """Whether a case is requested by the name of its set or a part of its own name."""
+    return not only or study.name in only or any(part in case for part in only)
 
 
-def wanted(study: Study, case: Case, only: Sequence[str]) -> bool:
-    """Whether a case is asked for."""
-    return not only or any(o == study.name or o in case.name for o in only)
+def any_requested(study: Study, only: Sequence[str]) -> bool:
+    """Whether any case of a set is requested."""
+    if not only or study.name in only or any("removed" in part for part in only):
+        return True
+    cases = study.cases(study.open(None, unaltered).vessel)
+    return any(requested(study, case.name, only) for case in cases)
 
 
 def main() -> None:
-    """Every set in turn, each case printed as it is judged, then all of them against the goals."""
+    """Run every set, print each case as it is judged, then all of them with the goals."""
     parser = argparse.ArgumentParser(
         prog="python -m validation.real.concealed", description=__doc__
     )
-    parser.add_argument(
-        "--only", nargs="+", default=[], help="names of sets, or parts of names of cases"
-    )
+    only = "names of sets, or parts of names of cases"
+    parser.add_argument("--only", nargs="+", default=[], help=only)
     parser.add_argument("--list", action="store_true", help="print the cases and run none")
-    parser.add_argument(
-        "--out", type=Path, default=OUT / "concealed", help="where patched vessels go"
-    )
-    asked = parser.parse_args()
+    folder = "folder of the patched vessels"
+    parser.add_argument("--out", type=Path, default=OUT / "concealed", help=folder)
+    options = parser.parse_args()
     rows, verdicts = list[list[str]](), list[Verdict]()
     for study in STUDIES:
-        if not study.there():
-            print(f"{study.name}: skipped, its recordings are not there")
+        if not study.runs.exists():
+            print(f"{study.name}: skipped, its recordings are not on this machine")
             continue
-        if asked.list:
-            listed(study, asked.only)
-            continue
-        if asked.only and study.name not in asked.only and not _any_case(study, asked.only):
-            continue
-        some = run(study, asked.only, asked.out)
-        rows += [r for r, _ in some]
-        verdicts += [v for _, v in some]
+        if options.list:
+            print_cases(study, options.only)
+        elif any_requested(study, options.only):
+            run(study, options.only, options.out, rows, verdicts)
     if verdicts:
-        table("what was concealed, and what was said of it", HEADER, rows)
-        table("against the goals", ["", "", "goal"], [list(s) for s in shares(verdicts)])
+        print_table("concealed causes and answers", HEADER, rows)
+        print_table("goals", ["", "", "goal"], shares(verdicts))
 
 
-def _any_case(study: Study, only: Sequence[str]) -> bool:
-    vessel = study.open(None, unaltered).vessel
-    return any(wanted(study, c, only) for c in study.cases(vessel)) or any(
-        "taken out again" in o for o in only
-    )
-
-
-def listed(study: Study, only: Sequence[str]) -> None:
-    """The cases of a set; sizes that depend on the patched vessel are those of the plain one."""
+def print_cases(study: Study, only: Sequence[str]) -> None:
+    """Print the cases of a set, with the sizes for its plain vessel."""
     print(f"{study.name}: {study.about}")
     for case in study.cases(study.open(None, unaltered).vessel):
-        if wanted(study, case, only):
-            print(
-                f"  {case.name}: {sizes_of(case.truth) or 'nothing, which no recording can tell'}"
-            )
-    print("  each effect that is found in the unaltered recordings, taken out again")
+        if requested(study, case.name, only):
+            print(f"  {case.name}: {sizes_of(case.truth) or 'nothing that a recording shows'}")
+    print("  each effect that is identified in the unaltered recordings, removed")
 
 
-def run(study: Study, only: Sequence[str], out: Path) -> list[tuple[list[str], Verdict]]:
-    """All cases of a set."""
+def run(
+    study: Study,
+    only: Sequence[str],
+    out: Path,
+    rows: list[list[str]],
+    verdicts: list[Verdict],
+) -> None:
+    """Run the requested cases of a set, and append their rows and verdicts."""
     begin = time.perf_counter()
     patched = Patched(study, out)
     print(f"\n{study.name}: {study.about}")
     print(f"  the vessel lacks: {sizes_of(patched.found) or 'nothing'}")
     left = ", ".join(sorted(names_of(patched.before))) or "nothing"
-    print(
-        f"  with that, still named: {left} ({patched.before.findings.answer['verdict']})",
-        flush=True,
-    )
-    found = []
+    verdict = patched.before.findings.answer["verdict"]
+    print(f"  still identified with the patched vessel: {left} ({verdict})", flush=True)
     for case in patched.cases():
-        if wanted(study, case, only):
-            verdict = patched.verdict(case)
-            cells = row(study, case, verdict)
-            print(f"  {' | '.join(cells[1:])}  [{time.perf_counter() - begin:.0f} s]", flush=True)
-            found.append((cells, verdict))
-    return found
+        if requested(study, case.name, only):
+            verdicts.append(patched.verdict(case))
+            rows.append(row(study, case, verdicts[-1]))
+            seconds = time.perf_counter() - begin
+            print(f"  {' | '.join(rows[-1][1:])}  [{seconds:.0f} s]", flush=True)
 
 
 if __name__ == "__main__":

@@ -1,10 +1,11 @@
-"""Real recordings written down otherwise than they were made, so that what is wrong with them is known.
+"""Alterations of real recordings: what a known fault would have recorded.
 
-Every alteration takes a recording as it is opened, before rows are thinned, and gives another. Commands are altered by
-the inverse of a fault: a boat that has the fault and is given what is then written does exactly what was recorded.
+Each alteration takes a recording as it was read, before rows are thinned, and returns another. Commands
+are altered by the inverse of a fault: a boat with the fault that receives the altered commands moves
+exactly as recorded.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -13,79 +14,96 @@ from boatsim.physics.base import Array
 from boatsim.recordings.table import Recording
 
 Alteration = Callable[[Recording], Recording]
-KINDS = ("", "estimate_")  # of velocities: measured, and an autopilot's that no fit looks at
+KINDS = ("", "estimate_")  # of velocities: measured, and an autopilot's, which no fit uses
+POSITIONS = ("x_m", "y_m")
 
 
 def unaltered(recording: Recording) -> Recording:
-    """As it was recorded."""
+    """Return the recording itself."""
     return recording
 
 
 def chained(*alterations: Alteration) -> Alteration:
-    """One after the other."""
+    """Return several alterations in sequence."""
 
     def alter(recording: Recording) -> Recording:
-        for one in alterations:
-            recording = one(recording)
+        for alteration in alterations:
+            recording = alteration(recording)
         return recording
 
     return alter
+
+
+def _replaced(recording: Recording, signals: Mapping[str, Array]) -> Recording:
+    """Return a recording with other values of some signals."""
+    return replace(recording, signals={**recording.signals, **signals})
+
+
+def _plus(recording: Recording, added: Mapping[str, Array]) -> Recording:
+    """Return a recording with values added to the signals that it has."""
+    signals = dict(recording.signals)
+    for name in signals.keys() & added.keys():
+        signals[name] = signals[name] + added[name]
+    return replace(recording, signals=signals)
 
 
 # ---- commands
 
 
 def rewritten(names: Sequence[str], written: Callable[[Array], Array]) -> Alteration:
-    """Commands of these channels as `written` makes them of those given, row by row."""
+    """Replace commands by a function of them.
+
+    Args:
+        names: Channels.
+        written: Returns the altered commands (N,) for those given.
+    """
 
     def alter(recording: Recording) -> Recording:
-        changed = {n: written(recording[n]) + 0.0 for n in names}
-        return replace(recording, signals={**recording.signals, **changed})
+        return _replaced(recording, {name: written(recording[name]) + 0.0 for name in names})
 
     return alter
 
 
 def weaker(names: Sequence[str], factor: float) -> Alteration:
-    """Motors that give `factor` of their commands: written is what was given, divided by it."""
+    """Motors that give a factor of their commands."""
     return rewritten(names, lambda given: given / factor)
 
 
 def weaker_astern(names: Sequence[str], factor: float) -> Alteration:
-    """The same astern alone."""
+    """Motors that give a factor of their commands astern."""
     return rewritten(names, lambda given: np.where(given < 0.0, given / factor, given))
 
 
 def dead_band(names: Sequence[str], width: float) -> Alteration:
-    """Motors that lack `width` of every command, in its unit: written is so much more, to the side that it is on."""
+    """Motors that lack a constant width of every command, in its unit."""
     return rewritten(names, lambda given: given + width * np.sign(given))
 
 
 def off_by(names: Sequence[str], offset: float) -> Alteration:
-    """Actuators that add `offset` to every command, in its unit: written is so much less."""
+    """Actuators that add an offset to every command, in its unit."""
     return rewritten(names, lambda given: given - offset)
 
 
 def steering_harder(names: Sequence[str], gain: float) -> Alteration:
-    """Rudders that add `gain` of the size of every angle: written is what then gives the angle that there was."""
+    """Rudders that add a share of the size of every angle, so that they steer harder to one side."""
     return rewritten(names, lambda given: given / (1.0 + gain * np.sign(given)))
 
 
-def late(names: Sequence[str], seconds: float) -> Alteration:
-    """Commands that take effect later than they are written, or earlier; whole rows, the end (the beginning) is lost.
+def delayed_commands(names: Sequence[str], seconds: float) -> Alteration:
+    """Commands that take effect later [s] than they were recorded, or earlier if negative.
 
-    To positions and commands alone that is a clock of the poses that is late by as much.
+    The delay is rounded to whole rows, and rows without commands are removed. For positions and
+    commands alone this is equivalent to a delayed clock of the poses.
     """
 
     def alter(recording: Recording) -> Recording:
-        rows = round(seconds / float(np.median(np.diff(recording.t))))
-        n = len(recording)
-        here, there = (
-            (slice(0, n - rows), slice(rows, n))
-            if rows >= 0
-            else (slice(-rows, n), slice(0, n + rows))
-        )
-        signals = {k: v[there if k in names else here] for k, v in recording.signals.items()}
-        return replace(recording, t=recording.t[here], signals=signals)
+        rows, n = round(seconds / float(np.median(np.diff(recording.t)))), len(recording)
+        kept = slice(max(-rows, 0), n - max(rows, 0))
+        moved = slice(max(rows, 0), n - max(-rows, 0))
+        signals = {name: x[kept] for name, x in recording.signals.items()}
+        for name in signals.keys() & set(names):
+            signals[name] = recording[name][moved]
+        return replace(recording, t=recording.t[kept], signals=signals)
 
     return alter
 
@@ -94,9 +112,9 @@ def late(names: Sequence[str], seconds: float) -> Alteration:
 
 
 def current(north: float, east: float) -> Alteration:
-    """The same motion through water that moves over the ground [m/s]: Galilei's transformation.
+    """The same motion through water that moves over the ground [m/s], by a Galilean transformation.
 
-    Positions drift with it, speeds over the ground change by it; speeds through the water are those that there were.
+    Positions drift, and speeds over the ground change; speeds through the water stay the same.
     """
 
     def alter(recording: Recording) -> Recording:
@@ -114,7 +132,10 @@ def current(north: float, east: float) -> Alteration:
 
 
 def heading_off(offset: float, cos: float = 0.0, sin: float = 0.0) -> Alteration:
-    """A compass that shows psi + offset + cos cos(psi) + sin sin(psi) [rad]; speeds are resolved along that."""
+    """A compass that reads psi + offset + cos cos(psi) + sin sin(psi) [rad].
+
+    Recorded speeds are resolved along the reading.
+    """
 
     def alter(recording: Recording) -> Recording:
         psi = recording["psi_rad"]
@@ -134,14 +155,15 @@ def heading_off(offset: float, cos: float = 0.0, sin: float = 0.0) -> Alteration
 
 
 def of_another_point(forward: float, starboard: float) -> Alteration:
-    """Position, and speed where it was recorded, of a point so far ahead and to starboard [m]."""
+    """Position, and speed where it was recorded, of a point ahead and to starboard [m]."""
 
     def alter(recording: Recording) -> Recording:
         psi = recording["psi_rad"]
         c, s = np.cos(psi), np.sin(psi)
         added = {"x_m": c * forward - s * starboard, "y_m": s * forward + c * starboard}
         for kind in KINDS:
-            if (r := recording.signals.get(f"{kind}r_radps")) is not None:
+            r = recording.signals.get(f"{kind}r_radps")
+            if r is not None:
                 added |= {f"{kind}u_mps": -r * starboard, f"{kind}v_mps": r * forward}
         return _plus(recording, added)
 
@@ -149,41 +171,34 @@ def of_another_point(forward: float, starboard: float) -> Alteration:
 
 
 def stretched(x: float, y: float) -> Alteration:
-    """Positions (1 + x) and (1 + y) times as far from the origin of the tank; speeds are another instrument's."""
+    """Positions (1 + x) and (1 + y) times as far from the origin of the tank, and the same speeds."""
 
     def alter(recording: Recording) -> Recording:
-        signals = {"x_m": recording["x_m"] * (1.0 + x), "y_m": recording["y_m"] * (1.0 + y)}
-        return replace(recording, signals={**recording.signals, **signals})
+        factors = {"x_m": 1.0 + x, "y_m": 1.0 + y}
+        return _replaced(recording, {name: recording[name] * k for name, k in factors.items()})
 
     return alter
 
 
 def late_fixes(seconds: float) -> Alteration:
-    """Positions that reach the log later than all beside them; whole rows, the beginning is lost."""
-
-    def alter(recording: Recording) -> Recording:
-        rows, n = round(seconds / float(np.median(np.diff(recording.t)))), len(recording)
-        old = ("x_m", "y_m")
-        signals = {k: v[: n - rows] if k in old else v[rows:] for k, v in recording.signals.items()}
-        return replace(recording, t=recording.t[rows:], signals=signals)
-
-    return alter
+    """Positions that are recorded later [s] than all other signals, by whole rows."""
+    return delayed_commands(POSITIONS, -seconds)
 
 
 def rolled(offset: float = 0.0, scale: float = 1.0) -> Alteration:
-    """Roll shown `scale` times as large, then `offset` [rad] more; -1: a sensor the wrong way round."""
+    """Roll readings multiplied by a scale, plus an offset [rad]; scale -1 is a reversed sensor."""
 
     def alter(recording: Recording) -> Recording:
         signals = {"phi_rad": scale * recording["phi_rad"] + offset}
         if "p_radps" in recording.signals:
             signals["p_radps"] = scale * recording["p_radps"]
-        return replace(recording, signals={**recording.signals, **signals})
+        return _replaced(recording, signals)
 
     return alter
 
 
-def ticking(factor: float) -> Alteration:
-    """A clock of the log that shows `factor` s for every second, from the first row on; poses alone."""
+def clock_scaled(factor: float) -> Alteration:
+    """A clock that counts `factor` s per second from the first row on, for poses alone."""
 
     def alter(recording: Recording) -> Recording:
         return replace(recording, t=recording.t[0] + (recording.t - recording.t[0]) * factor)
@@ -191,10 +206,10 @@ def ticking(factor: float) -> Alteration:
     return alter
 
 
-# ---- what nothing can tell: the same physics in another frame
+# ---- changes of the frame, which no recording shows
 
 
-def begun_later(seconds: float) -> Alteration:
+def clock_shifted(seconds: float) -> Alteration:
     """Another zero of the clock."""
     return lambda recording: replace(recording, t=recording.t + seconds)
 
@@ -207,21 +222,11 @@ def moved(x: float, y: float) -> Alteration:
 
 
 def turned(angle: float) -> Alteration:
-    """Another bearing of the axes [rad]: positions and heading turned together."""
+    """Another direction of the axes [rad]: positions and heading are rotated together."""
 
     def alter(recording: Recording) -> Recording:
         x, y, c, s = recording["x_m"], recording["y_m"], np.cos(angle), np.sin(angle)
-        signals = {
-            "x_m": c * x - s * y,
-            "y_m": s * x + c * y,
-            "psi_rad": recording["psi_rad"] + angle,
-        }
-        return replace(recording, signals={**recording.signals, **signals})
+        signals = {"x_m": c * x - s * y, "y_m": s * x + c * y}
+        return _replaced(recording, signals | {"psi_rad": recording["psi_rad"] + angle})
 
     return alter
-
-
-def _plus(recording: Recording, added: dict[str, Array]) -> Recording:
-    """With something added to those of the signals that there are."""
-    there = {n: recording[n] + x for n, x in added.items() if n in recording.signals}
-    return replace(recording, signals={**recording.signals, **there})

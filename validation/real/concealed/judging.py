@@ -1,4 +1,4 @@
-"""What a diagnosis says of a recording in which a cause is concealed, judged against that cause."""
+"""Judgement of a diagnosis of recordings in which a cause is concealed."""
 
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -13,37 +13,43 @@ from boatsim.diagnosis.report.answer import key_of
 from boatsim.diagnosis.report.schema import EffectEntry
 from boatsim.diagnosis.search.screening import add_effect
 from boatsim.physics.base import Effect
+from validation.real.common import effects_of, parameter_text
 
-VISIBLE = 6.0  # [nats] that the true structure gains over no cause, from which a cause can be told
-SDS, NEAR = 2.0, 0.15  # a size is right within so many sds, or so near to it
-SOME = 0.1  # of a bound or a prior sd: where a parameter that the truth does not state begins
+VISIBLE = 6.0  # [nats] gained by the true structure, from which a cause is visible
+# a size is right within so many sds, or within this share of it
+MAX_SDS = 2.0
+MAX_SHARE = 0.15
+START = 0.1  # of a prior sd: start of a parameter that the truth does not specify
 
 
 @dataclass(frozen=True)
 class Cause:
-    """What is concealed, in the library's words; `alike` is what says the same of this recording."""
+    """A concealed cause, named as the candidate effect that describes it."""
 
     name: str
-    # by parameter with unit, as an answer has them
+    # by parameter with unit, as in an answer
     values: Mapping[str, float] = field(default_factory=dict)
-    alike: tuple["Cause", ...] = ()
+    alike: tuple["Cause", ...] = ()  # causes that are equivalent for this recording
 
     @property
     def either(self) -> tuple["Cause", ...]:
-        """Itself and what counts as it."""
+        """The cause and those equivalent to it."""
         return (self, *self.alike)
 
 
 @dataclass(frozen=True)
 class Size:
-    """A parameter with its sd; `absent` is its value where the cause is not there."""
+    """A parameter with its sd; `absent` is its value if the cause is absent."""
 
     value: float
     sd: float
     absent: float = 0.0
 
     def with_own(self, own: "Size") -> "Size":
-        """This and what a boat has of it already: factors multiply, all else adds up."""
+        """Return the size together with that of the unaltered boat.
+
+        Factors multiply, all other parameters add.
+        """
         if own.absent == 1.0:
             return Size(self.value * own.value, self.value * own.sd, 1.0)
         return Size(self.value + own.value, own.sd)
@@ -51,237 +57,281 @@ class Size:
 
 @dataclass(frozen=True)
 class Verdict:
-    """What became of one case."""
+    """Result of one case."""
 
-    outcome: str  # one of `OUTCOMES`
-    said: str
-    gain: (
-        float | None
-    )  # [nats] of the true structure; None where nothing was concealed, or no entry can say it
-    # what the unaltered recordings have of the same causes, too little to be named or known already
+    outcome: str  # one of the six below
+    answer: str
+    # [nats] of the true structure; None where nothing was concealed or no candidate describes it
+    gain: float | None
+    # sizes of the same causes in the unaltered recordings
     own: str = ""
 
 
-RIGHT, SIZE, WRONG, MISSED, ALONE, FAINT = (
-    "right",
-    "size off",
-    "wrong name",
-    "missed",
-    "left alone",
-    "right, though faint",
-)
-OUTCOMES = (RIGHT, SIZE, WRONG, MISSED, ALONE, FAINT)
+RIGHT = "right"
+SIZE = "size off"
+WRONG = "wrong name"
+MISSED = "missed"
+ALONE = "nothing reported"
+FAINT = "right, though not visible"
 
 
-def judged(
-    found: Diagnosis, truth: Sequence[Cause], before: Diagnosis, beside: Sequence[Cause] = ()
+def judge(
+    diagnosis: Diagnosis, truth: Sequence[Cause], before: Diagnosis, others: Sequence[Cause] = ()
 ) -> Verdict:
-    """The answer against the causes concealed, less what is named of the unaltered recordings of the same boat.
+    """Compare an answer with the concealed causes.
 
-    `beside` are causes that this vessel lacks all along: they must be named too.
+    Effects that are identified in the unaltered recordings too are not counted.
+
+    Args:
+        diagnosis: Diagnosis of the altered recordings.
+        truth: The concealed causes.
+        before: Diagnosis of the unaltered recordings with the same vessel.
+        others: Causes that this vessel lacks anyway; they must be identified too.
     """
-    answer, every = found.findings.answer, (*truth, *beside)
-    known = {c.name for c in beside} or names_of(before)
-    new = [
-        e
-        for e in answer["effects"]
-        if beside or e["name"] not in known or e["name"] in meant(truth)
-    ]
+    every = (*truth, *others)
+    known = {cause.name for cause in others} or names_of(before)
+    answer = diagnosis.findings.answer
     doubt = answer["unknown"]["flag"] and not before.findings.answer["unknown"]["flag"]
-    gain = gain_of(found, truth, known)
+    gain = gain_of(diagnosis, truth, known)
     visible = gain is not None and gain > VISIBLE
-    own = own_of(before, truth, known)
-    hits = [next((e for e in new if _says(e, cause)), None) for cause in every]
-    wrong = [e for e in new if not any(_says(e, cause) for cause in every)]
-    of_boat = [e for e in wrong if of_the_boat(before, e, known)]
-    wrong = [e for e in wrong if e not in of_boat]
+    own = sizes_before(before, truth, known)
+    new, wrong, words = [], [], []
+    for effect in answer["effects"]:
+        if not others and effect["name"] in known and effect["name"] not in accepted_names(truth):
+            continue
+        new.append(effect)
+        words.append(effect_text(effect))
+        if any(_matches(effect, cause) for cause in every):
+            continue
+        if is_of_the_boat(before, effect, known):
+            words[-1] += " (also in the unaltered recordings)"
+        else:
+            wrong.append(effect)
+    hits = []
+    for cause in every:
+        hits.append(next((effect for effect in new if _matches(effect, cause)), None))
     if wrong:
         outcome = WRONG
     elif truth and all(hits):
-        sizes = all(
-            right_size(e, cause, own.get(e["name"]))
-            for e, cause in zip(hits, truth, strict=False)
-            if e
-        )
-        outcome = (RIGHT if sizes else SIZE) if visible else FAINT
-    elif visible:
+        outcome = FAINT
+        if visible:
+            outcome = RIGHT
+            for effect, cause in zip(hits, truth, strict=False):
+                if effect and not right_size(effect, cause, own.get(effect["name"])):
+                    outcome = SIZE
+    elif visible or doubt:
         outcome = MISSED
     else:
-        outcome = MISSED if doubt else ALONE
-    words = [f"{in_words(e)}{' (the unaltered ones have it)' if e in of_boat else ''}" for e in new]
-    said = "; ".join([*words, *(["a cause unknown"] if doubt else [])]) or "nothing new"
-    return Verdict(
-        outcome, f"{said} ({answer['verdict']})", gain, "; ".join(map(in_numbers, own.values()))
-    )
+        outcome = ALONE
+    if doubt:
+        words.append("an unknown cause")
+    text = f"{'; '.join(words) or 'nothing new'} ({answer['verdict']})"
+    return Verdict(outcome, text, gain, "; ".join(map(size_text, own.values())))
 
 
-def of_the_boat(before: Diagnosis, entry: EffectEntry, known: Collection[str]) -> bool:
-    """Whether a name says what is left over of the unaltered recordings too, where nothing was named for it.
+def is_of_the_boat(before: Diagnosis, entry: EffectEntry, known: Collection[str]) -> bool:
+    """Whether an effect explains a residual that the unaltered recordings have too.
 
-    Only where something unknown is left there, and the entry, fitted to them, gains and has the same sizes.
+    This requires that something unknown remains in the unaltered recordings, and that the effect,
+    fitted to them, gains and has the same sizes.
     """
-    effect = entry_of(before.problem, entry["name"])
+    effect = candidate(before.problem, entry["name"])
     if effect is None or not before.findings.answer["unknown"]["flag"]:
         return False
     base = _with_known(before, (), known)
-    values = {k: p["value"] for k, p in entry["parameters"].items()}
-    whole = with_entry(before.problem, base, effect, values)
+    values = {name: p["value"] for name, p in entry["parameters"].items()}
+    whole = with_effect(before.problem, base, effect, values)
     if not whole.evidence - base.evidence > VISIBLE:
         return False
-    params = type(effect).params()
-    for name in (f.name for f in whole.free if f.effect == effect.name and not f.relative):
-        found, (value, sd) = (
-            entry["parameters"][key_of(name, params[name].unit)],
-            whole.value(effect.name, name),
-        )
-        if abs(found["value"] - value) > max(
-            SDS * float(np.hypot(found["sd"], sd)), NEAR * abs(value)
-        ):
+    for key, (value, sd, _) in _parameters(whole, effect).items():
+        found = entry["parameters"][key]
+        limit = max(MAX_SDS * float(np.hypot(found["sd"], sd)), MAX_SHARE * abs(value))
+        if abs(found["value"] - value) > limit:
             return False
     return True
 
 
-def names_of(found: Diagnosis) -> set[str]:
-    """Names that an answer stands for."""
-    return {e["name"] for e in found.findings.answer["effects"]}
+def names_of(diagnosis: Diagnosis) -> set[str]:
+    """Return the names of the identified effects."""
+    return {effect["name"] for effect in effects_of(diagnosis)}
 
 
-def meant(truth: Sequence[Cause]) -> set[str]:
-    """All names that would be right."""
-    return {c.name for cause in truth for c in cause.either}
+def accepted_names(truth: Sequence[Cause]) -> set[str]:
+    """Return all names that are right for some causes."""
+    names: set[str] = set()
+    for cause in truth:
+        names.update(one.name for one in cause.either)
+    return names
 
 
-def _says(entry: EffectEntry, cause: Cause) -> bool:
-    """Whether an entry is that cause, or is said to be hardly told from it."""
-    return bool({c.name for c in cause.either} & {entry["name"], *entry["tied_with"]})
+def _matches(entry: EffectEntry, cause: Cause) -> bool:
+    """Whether an identified effect is that cause, or is reported as tied with it."""
+    return bool(accepted_names([cause]) & {entry["name"], *entry["tied_with"]})
 
 
 def right_size(entry: EffectEntry, cause: Cause, own: Mapping[str, Size] | None = None) -> bool:
-    """Whether the sizes stated are those of the cause, or of it and what the boat has of it itself (`own`) together.
+    """Whether the sizes of an effect are those of a cause, alone or with the boat's own.
 
-    Those of one unit are the parts of one arrow.
+    Parameters with one unit are the components of one vector.
+
+    Args:
+        entry: An identified effect.
+        cause: The concealed cause.
+        own: Sizes of the same cause in the unaltered recordings, by parameter with unit.
     """
-    true = next((c.values for c in cause.either if c.name == entry["name"]), {})
-    units = {k: entry["parameters"][k]["unit"] for k in true if k in entry["parameters"]}
-
-    def near(expected: Mapping[str, Size]) -> bool:
-        for key, unit in units.items():
-            size = np.hypot.reduce([expected[k].value for k in units if units[k] == unit])
-            found = entry["parameters"][key]
-            sd = np.hypot(found["sd"], expected[key].sd)
-            if abs(found["value"] - expected[key].value) > max(SDS * sd, NEAR * size):
-                return False
-        return True
-
-    alone = {k: Size(x, 0.0) for k, x in true.items()}
-    both = {k: s.with_own(own[k]) if own and k in own else s for k, s in alone.items()}
-    return near(alone) or near(both)
+    alone: dict[str, Size] = {}
+    for one in cause.either:
+        if one.name == entry["name"]:
+            alone = {key: Size(x, 0.0) for key, x in one.values.items()}
+            break
+    both = dict(alone)
+    for key in alone.keys() & (own or {}).keys():
+        both[key] = alone[key].with_own((own or {})[key])
+    return _near(entry, alone) or _near(entry, both)
 
 
-def in_words(entry: EffectEntry) -> str:
-    """Name and sizes of an entry, and what it is tied with."""
-    sizes = ", ".join(
-        f"{k} {p['value']:.3g} ± {p['sd']:.2g}" for k, p in entry["parameters"].items()
-    )
-    tied = f" or {' or '.join(entry['tied_with'])}" if entry["tied_with"] else ""
-    return f"{entry['name']} {sizes}{tied}"
+def _near(entry: EffectEntry, expected: Mapping[str, Size]) -> bool:
+    """Whether the sizes of an effect are near the expected ones."""
+    parameters = {k: p for k, p in entry["parameters"].items() if k in expected}
+    squares: dict[str, float] = {}  # of the vectors, by unit
+    for key, p in parameters.items():
+        squares[p["unit"]] = float(np.hypot(squares.get(p["unit"], 0.0), expected[key].value))
+    for key, p in parameters.items():
+        sd = np.hypot(p["sd"], expected[key].sd)
+        limit = max(MAX_SDS * sd, MAX_SHARE * squares[p["unit"]])
+        if abs(p["value"] - expected[key].value) > limit:
+            return False
+    return True
+
+
+def effect_text(entry: EffectEntry) -> str:
+    """Return the name and the sizes of an effect, and the effects tied with it."""
+    return " or ".join([f"{entry['name']} {parameter_text(entry, '±')}", *entry["tied_with"]])
 
 
 def sizes_of(truth: Sequence[Cause]) -> str:
-    """Causes with their sizes."""
-    return "; ".join(
-        f"{c.name} {', '.join(f'{k} {x:.3g}' for k, x in c.values.items())}".strip() for c in truth
-    )
-
-
-def gain_of(found: Diagnosis, truth: Sequence[Cause], known: Collection[str]) -> float | None:
-    """Nats that the true structure, its sizes fitted, gains in the tool's own filter over what is known already.
-
-    None where nothing is concealed or an entry is not there.
-    """
-    problem = found.problem
-    base = whole = _with_known(found, truth, known)
+    """Return causes with their sizes as text."""
+    texts = []
     for cause in truth:
-        effect = entry_of(problem, cause.name)
+        sizes = ", ".join(f"{key} {x:.3g}" for key, x in cause.values.items())
+        texts.append(f"{cause.name} {sizes}".strip())
+    return "; ".join(texts)
+
+
+def gain_of(diagnosis: Diagnosis, truth: Sequence[Cause], known: Collection[str]) -> float | None:
+    """Return the evidence gained by the true structure with fitted sizes [nats].
+
+    None where nothing is concealed or a candidate is not available.
+
+    Args:
+        diagnosis: Diagnosis of the altered recordings.
+        truth: The concealed causes.
+        known: Effects that are known to be missing and are part of both models.
+    """
+    base = whole = _with_known(diagnosis, truth, known)
+    for cause in truth:
+        effect = candidate(diagnosis.problem, cause.name)
         if effect is None:
             return None
-        whole = with_entry(problem, whole, effect, cause.values)
+        whole = with_effect(diagnosis.problem, whole, effect, cause.values)
     return whole.evidence - base.evidence if truth else None
 
 
-def own_of(
+def sizes_before(
     before: Diagnosis, truth: Sequence[Cause], known: Collection[str]
 ) -> dict[str, dict[str, Size]]:
-    """Sizes of the same causes fitted to the unaltered recordings, by name and parameter with unit.
+    """Return sizes of causes fitted to the unaltered recordings, by name and parameter with unit.
 
     A real boat has a little of everything, to which an alteration adds.
     """
-    whole, found = _with_known(before, truth, known), dict[str, dict[str, Size]]()
+    whole = _with_known(before, truth, known)
+    found = {}
     for cause in truth:
-        if (effect := entry_of(before.problem, cause.name)) is None:
+        effect = candidate(before.problem, cause.name)
+        if effect is None:
             return {}
-        whole = with_entry(before.problem, whole, effect, {})
-        params = type(effect).params()
-        free = [f.name for f in whole.free if f.effect == effect.name and not f.relative]
-        sizes = {n: (*whole.value(effect.name, n), params[n].absent) for n in free}
-        found[cause.name] = {key_of(n, params[n].unit): Size(*s) for n, s in sizes.items()}
+        whole = with_effect(before.problem, whole, effect, {})
+        found[cause.name] = {key: Size(*x) for key, x in _parameters(whole, effect).items()}
     return found
 
 
-def in_numbers(sizes: Mapping[str, Size]) -> str:
-    """Sizes with their sds."""
+def _parameters(fit: Fit, effect: Effect) -> dict[str, tuple[float, float, float]]:
+    """Return fitted value, sd and absent value of an effect's parameters, by name with unit."""
+    params = type(effect).params()
+    found = {}
+    for f in fit.free:
+        if f.effect == effect.name and not f.relative:
+            key = key_of(f.name, params[f.name].unit)
+            found[key] = (*fit.value(effect.name, f.name), params[f.name].absent)
+    return found
+
+
+def size_text(sizes: Mapping[str, Size]) -> str:
+    """Return sizes with their sds as text."""
     return ", ".join(f"{s.value:.2g} ± {s.sd:.1g}" for s in sizes.values())
 
 
-def _with_known(found: Diagnosis, truth: Sequence[Cause], known: Collection[str]) -> Fit:
-    """The recalibrated vessel with what is known to be missing from it besides."""
-    base = found.ranking.recalibrated
-    for name in sorted(set(known) - meant(truth)):
-        if (effect := entry_of(found.problem, name)) is not None:
-            base = with_entry(found.problem, base, effect, _fitted(found, effect))
+def _with_known(diagnosis: Diagnosis, truth: Sequence[Cause], known: Collection[str]) -> Fit:
+    """Return the recalibrated vessel with the effects that are known to be missing."""
+    base = diagnosis.ranking.recalibrated
+    for name in sorted(set(known) - accepted_names(truth)):
+        effect = candidate(diagnosis.problem, name)
+        if effect is not None:
+            base = with_effect(diagnosis.problem, base, effect, _fitted(diagnosis, effect))
     return base
 
 
-def entry_of(problem: Problem, name: str) -> Effect | None:
-    """The library's entry of that name as it was composed with a vessel."""
-    there = {e.name: e for e in problem.program.candidates}
-    return there.get(FURTHER + name) or there.get(name)
+def candidate(problem: Problem, name: str) -> Effect | None:
+    """Return the candidate effect of that name in a compiled program, if it has one."""
+    candidates = {effect.name: effect for effect in problem.program.candidates}
+    return candidates.get(FURTHER + name) or candidates.get(name)
 
 
-def with_entry(problem: Problem, base: Fit, effect: Effect, values: Mapping[str, float]) -> Fit:
-    """An entry added to a fit, begun at these values, all refitted."""
+def with_effect(problem: Problem, base: Fit, effect: Effect, values: Mapping[str, float]) -> Fit:
+    """Return a fit with one more effect that starts at these values, all refitted."""
     params = type(effect).params()
-    free = [
-        f for f in problem.parameters((effect.name,)) if f.effect == effect.name and not f.relative
-    ]
-    begin = {
-        f.name: values.get(key_of(f.name, params[f.name].unit), f.mean + SOME * f.sd) for f in free
-    }
-    start = add_effect(problem, base, effect.name, {n: x for n, x in begin.items()})
-    return converge(problem, gauss_newton(problem, start, 4, 0.1))
+    start = {}
+    for f in problem.parameters((effect.name,)):
+        if f.effect == effect.name and not f.relative:
+            usual = f.mean + START * f.sd
+            start[f.name] = values.get(key_of(f.name, params[f.name].unit), usual)
+    added = add_effect(problem, base, effect.name, start)
+    return converge(problem, gauss_newton(problem, added, 4, 0.1))
 
 
-def _fitted(found: Diagnosis, effect: Effect) -> dict[str, float]:
-    """Values that an answer gives an entry."""
-    entries = [e for e in found.findings.answer["effects"] if e["name"] == called(effect.name)]
-    return {k: p["value"] for e in entries for k, p in e["parameters"].items()}
+def _fitted(diagnosis: Diagnosis, effect: Effect) -> dict[str, float]:
+    """Return the values of an effect in an answer."""
+    values = {}
+    for entry in effects_of(diagnosis):
+        if entry["name"] == called(effect.name):
+            values |= {name: p["value"] for name, p in entry["parameters"].items()}
+    return values
 
 
-def shares(verdicts: Sequence[Verdict]) -> list[tuple[str, str, str]]:
-    """What the goals ask for: how many, of how many, the goal."""
-    visible = [v for v in verdicts if v.gain is not None and v.gain > VISIBLE]
-    faint = [v for v in verdicts if v.gain is None or v.gain <= VISIBLE]
-    named = [v for v in visible if v.outcome == RIGHT]
-    wrong = [v for v in verdicts if v.outcome == WRONG]
-    alone = [v for v in faint if v.outcome in (ALONE, FAINT)]
-
-    def of(some: Sequence[Verdict], all_of_them: Sequence[Verdict]) -> str:
-        return f"{len(some)} of {len(all_of_them)}" + (
-            f" = {len(some) / len(all_of_them):.2f}" if all_of_them else ""
-        )
-
+def shares(verdicts: Sequence[Verdict]) -> list[list[str]]:
+    """Return rows of what the goals require: name, count, goal."""
+    visible, invisible = [], []
+    for v in verdicts:
+        if v.gain is not None and v.gain > VISIBLE:
+            visible.append(v.outcome)
+        else:
+            invisible.append(v.outcome)
+    everything = [*visible, *invisible]
+    alone = invisible.count(ALONE) + invisible.count(FAINT)
+    named, wrong = visible.count(RIGHT), everything.count(WRONG)
     return [
-        ("visible causes named, with their size", of(named, visible), ">= 0.80"),
-        ("cases with a wrong name", of(wrong, verdicts), "<= 0.02"),
-        ("invisible ones left alone, or named rightly all the same", of(alone, faint), "1.00"),
+        ["visible causes identified, with their size", _share(named, visible), ">= 0.80"],
+        ["cases with a wrong name", _share(wrong, everything), "<= 0.02"],
+        [
+            "invisible causes not reported, or identified correctly",
+            _share(alone, invisible),
+            "1.00",
+        ],
     ]
+
+
+def _share(count: int, cases: Sequence[str]) -> str:
+    text = f"{count} of {len(cases)}"
+    if cases:
+        text += f" = {count / len(cases):.2f}"
+    return text
