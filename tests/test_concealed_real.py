@@ -11,7 +11,7 @@ from boatsim.physics.effects import thrust_deadband, weak_reverse
 from boatsim.recordings.table import Recording
 from validation.real.concealed import alterations as a
 from validation.real.concealed.base import Patched
-from validation.real.concealed.cases import STUDIES, late_by, uneven
+from validation.real.concealed.cases import STUDIES, delay_of, uneven
 from validation.real.concealed.judging import (
     ALONE,
     FAINT,
@@ -98,7 +98,7 @@ def test_a_rudder_that_is_off_or_steers_harder_gives_what_was_given(run: Recordi
 def test_commands_written_so_much_earlier_arrive_when_they_were_given(
     run: Recording, seconds: float
 ) -> None:
-    altered = a.late((PORT, STARBOARD), seconds)(run)
+    altered = a.delayed_commands((PORT, STARBOARD), seconds)(run)
     given = np.interp(altered.t + seconds, run.t, run[PORT])
     assert altered[PORT] == pytest.approx(given)
     assert altered["x_m"] == pytest.approx(np.interp(altered.t, run.t, run["x_m"]))
@@ -106,8 +106,8 @@ def test_commands_written_so_much_earlier_arrive_when_they_were_given(
 
 
 def test_late_commands_are_a_late_clock_and_early_ones_nothing_else() -> None:
-    assert {c.name for c in late_by(0.4).either} == {"command_delay", "clock_offset"}
-    assert {c.name for c in late_by(-0.4).either} == {"clock_offset"}
+    assert {c.name for c in delay_of(0.4).either} == {"command_delay", "clock_offset"}
+    assert {c.name for c in delay_of(-0.4).either} == {"clock_offset"}
 
 
 def test_galilei_keeps_speeds_through_the_water_and_moves_positions_as_speeds_over_ground(
@@ -168,7 +168,7 @@ def test_a_roll_shown_more_is_the_restoring_stiffness_times_it_in_a_linear_law(
 def test_a_slow_clock_and_a_scaled_roll_divide_an_oscillators_laws_as_said() -> None:
     t, (omega, damping) = np.linspace(0.0, 20.0, 4001), (2.5, 0.1)
     phi = 0.2 * np.exp(-damping * t) * np.cos(omega * t)
-    altered = a.rolled(0.0, 0.5)(a.ticking(1.5)(Recording("decay", t, {"phi_rad": phi})))
+    altered = a.rolled(0.0, 0.5)(a.clock_scaled(1.5)(Recording("decay", t, {"phi_rad": phi})))
     rate = np.gradient(altered["phi_rad"], altered.t)
     k, d = (omega**2 + damping**2) / 1.5**2, 2.0 * damping / 1.5
     left = np.gradient(rate, altered.t) + d * rate + k * altered["phi_rad"]
@@ -176,7 +176,7 @@ def test_a_slow_clock_and_a_scaled_roll_divide_an_oscillators_laws_as_said() -> 
 
 
 def test_another_frame_is_the_same_motion(run: Recording) -> None:
-    altered = a.chained(a.turned(0.7), a.moved(3.0, -4.0), a.begun_later(50.0))(run)
+    altered = a.chained(a.turned(0.7), a.moved(3.0, -4.0), a.clock_shifted(50.0))(run)
     steps = [np.hypot(np.diff(r["x_m"]), np.diff(r["y_m"])) for r in (run, altered)]
     assert steps[0] == pytest.approx(steps[1])
     assert altered["u_mps"] == pytest.approx(run["u_mps"])
@@ -228,7 +228,9 @@ def test_what_is_concealed_in_a_release_is_named_with_its_size(tmp_path: Path) -
     some = [
         c
         for c in patched.cases()
-        if c.name.startswith(("roll shown 0.012 rad more", "clock", "cubic_damping"))
+        if c.name.startswith(("roll reading 0.012 rad more", "clock 500", "cubic_damping"))
     ]
     verdicts = [patched.verdict(c) for c in some]
-    assert [v.outcome for v in verdicts] == [RIGHT, RIGHT, ALONE, RIGHT], [v.said for v in verdicts]
+    assert [v.outcome for v in verdicts] == [RIGHT, RIGHT, ALONE, RIGHT], [
+        v.answer for v in verdicts
+    ]

@@ -22,11 +22,9 @@ from boatsim.physics.vessel import Vessel
 from boatsim.simulate import scenario
 from boatsim.simulate.engine import Engine, State
 from boatsim.simulate.run import run
-from validation.real import esso_osaka_vessel as written
+from validation.real import esso_osaka_vessel as esso
 
-there = pytest.mark.skipif(
-    not written.SOURCE.is_file(), reason="no ../shared/recordings/esso_osaka"
-)
+there = pytest.mark.skipif(not esso.SOURCE.is_file(), reason="no ../shared/recordings/esso_osaka")
 QUADRANTS = list(
     product((0.4, 0.05, -0.3), (12.0, 2.0, -3.0, -15.0), (0.5, -0.3))
 )  # u [m/s], n [1/s], delta [rad]
@@ -244,7 +242,7 @@ def test_the_blade_of_a_ship_that_drifts_astern_leads_and_steers_the_other_way()
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return written.written(tmp_path_factory.mktemp("vessels") / written.NAME).parent
+    return esso.write_vessel(tmp_path_factory.mktemp("vessels") / esso.NAME).parent
 
 
 @pytest.fixture(scope="module")
@@ -255,7 +253,7 @@ def ship(folder: Path) -> Vessel:
 @pytest.fixture(scope="module")
 def published() -> dict[str, Any]:
     """The captive tests' numbers under the names of the equations above."""
-    p = json.loads(written.SOURCE.read_text(encoding="utf-8"))
+    p = json.loads(esso.SOURCE.read_text(encoding="utf-8"))
     h, s, b = (p["mmg"][part] for part in ("hull", "propeller", "rudder"))
     D = p["propeller"]["D_m"]
     return {
@@ -298,7 +296,7 @@ def published() -> dict[str, Any]:
 def test_the_project_holds_none_of_the_coefficients() -> None:
     """Their licence is non-commercial: blanks alone are in the project."""
     effects_only = (
-        (written.BLANKS / "vessel.toml.in").read_text(encoding="utf-8").split("[[effect]]", 1)[1]
+        (esso.TEMPLATES / "vessel.toml.in").read_text(encoding="utf-8").split("[[effect]]", 1)[1]
     )
     numbers = [
         line

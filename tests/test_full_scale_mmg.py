@@ -122,7 +122,7 @@ def test_a_swing_that_the_rows_cut_off_is_no_overshoot() -> None:
     not (RECORDINGS / "kvlcc2_marin_free").is_dir(), reason="needs ../shared/recordings"
 )
 def test_overshoots_read_of_marins_zigzags_are_the_published_ones() -> None:
-    runs = bench.opened(runs_of("kvlcc2_marin_free"), SHIP.name)
+    runs = bench.open_runs(runs_of("kvlcc2_marin_free"), SHIP.name)
     wanted = {"zz_m10": (8.2, 21.9), "zz_10": (9.5, 15.0), "zz_m20": (13.7, 14.9)}
     for name, published in wanted.items():
         psi, delta = runs[name]["psi_rad"], runs[name]["delta_rad"]

@@ -135,13 +135,18 @@ REAL = (
     Row(ROLL, "every second 20 s window", "split", "windows", (1, 2, 3)),
     Row(ROLL, "middle third", "split", "middle third", (1, 2, 3)),
     Row(
-        HSVA, "unseen 15/5 and 20/5", "fitted on eight runs", "heading [deg]", (1, 2, 3), long=True
+        HSVA,
+        "held-out 15/5 and 20/5",
+        "fitted on eight runs",
+        "heading [deg]",
+        (1, 2, 3),
+        long=True,
     ),
     Row(HSVA, "position", "fitted on eight runs", "position [m]", (1, 2, 3), long=True),
     Row(MARIN, "35 deg turning circle", "fitted on", "yaw rate [deg/s]", (1, 2, 3), long=True),
     Row(MARIN, "speed", "fitted on", "speed [m/s]", (1, 2, 3), long=True),
-    Row(LAKE, "each of 12 runs", "each run left out", "all", (0, 1, 2), long=True),
-    Row(LAKE, "dead reckoning", "each run left out", "all", (3, 4, 5), long=True),
+    Row(LAKE, "each of 12 runs", "each run held out", "all", (0, 1, 2), long=True),
+    Row(LAKE, "dead reckoning", "each run held out", "all", (3, 4, 5), long=True),
     Row(
         POND,
         "turns and berthing",
@@ -222,7 +227,7 @@ def test_a_row_about_real_recordings_is_what_its_benchmark_prints(
         pytest.skip("needs recordings beside the repository")
     (cells,) = (
         c
-        for c in with_names("## On real recordings")
+        for c in with_names("## Real recordings")
         if c[0] == row.benchmark and row.judged_on in c[1]
     )
     monkeypatch.chdir(tmp_path)
@@ -241,7 +246,7 @@ def with_names(heading: str) -> Iterator[list[str]]:
 
 
 def test_every_row_about_real_recordings_is_compared() -> None:
-    rows = list(with_names("## On real recordings"))
+    rows = list(with_names("## Real recordings"))
     assert len(rows) == len(REAL)
     for cells in rows:
         assert any(
@@ -261,14 +266,14 @@ TRIALS = {  # as a row of the page begins -> rows of the benchmark that give its
         "visible unknown cause described",
         "with a term of its kind",
     ],
-    "their error on unseen": ["described: error ratio"],
+    "their error on held-out": ["described: error ratio"],
     "skill with these": ["skill, truth taken out", "of these by a description"],
     "unknown causes flagged": [
         "visible unknown cause flagged, pilot",
         "visible unknown cause flagged, concealed",
     ],
     "known cause": ["known cause"],
-    "skill on unseen runs": ["held-out skill"],
+    "skill on held-out runs": ["held-out skill"],
     "true parameters": ["true parameters", "median error"],
     "unknowns made": ["flagged, pilot", "flagged, concealed"],
 }
@@ -284,7 +289,7 @@ def test_the_table_of_the_trials_is_what_the_benchmark_prints(
     monkeypatch.setattr(
         sys, "argv", ["trials", "--unknowns", "--jobs", "1", "--out", str(tmp_path)]
     )
-    compare_trials("## On boats with concealed effects")
+    compare_trials("## Trial boat with concealed effects")
 
 
 @pytest.mark.skipif(not LONG, reason="many minutes")
@@ -297,7 +302,7 @@ def test_the_table_of_five_other_vessels_is_what_the_benchmarks_print(
     monkeypatch.setattr(
         sys, "argv", ["trials", made, "--jobs", "1", "--out", str(tmp_path / "out")]
     )
-    compare_trials("## On five other vessels")
+    compare_trials("## Five other vessels")
 
 
 def compare_trials(heading: str) -> None:

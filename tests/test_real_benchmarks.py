@@ -13,7 +13,7 @@ TRUTH = {"thrust": 0.6, "astern": 0.7}  # [N], ratio
 
 @pytest.fixture(scope="module")
 def windows() -> Diagnosis:
-    return roll.by_windows(*roll.opened(roll.AT_REST))
+    return roll.diagnose_windows(*roll.open_release(roll.AT_REST))
 
 
 def test_every_second_window_of_the_roll_decay_is_predicted_far_better_than_by_a_linear_boat(
@@ -26,21 +26,21 @@ def test_every_second_window_of_the_roll_decay_is_predicted_far_better_than_by_a
 
 
 def test_the_middle_third_is_predicted_from_the_first_and_the_last() -> None:
-    assert roll.ratio(roll.by_thirds(*roll.opened(roll.AT_REST))) <= 0.2
+    assert roll.ratio(roll.diagnose_thirds(*roll.open_release(roll.AT_REST))) <= 0.2
 
 
 def test_on_the_last_third_alone_a_constant_moment_alone_beats_the_linear_boat(
     windows: Diagnosis,
 ) -> None:
-    _, ranking = roll.last_third(windows, roll.opened(roll.AT_REST)[0])
+    _, ranking = roll.last_third(windows, roll.open_release(roll.AT_REST)[0])
     assert {n.name for n in ranking.named} == {"steady_force"}
     alike = {"steady_force", "roll_offset"}  # so small a roll can not tell them apart
     assert max(gain for name, gain in ranking.first.items() if name not in alike) < 4.0
 
 
 def test_stiffening_explains_the_phase_and_damping_the_envelope(windows: Diagnosis) -> None:
-    whole, _ = roll.opened(roll.AT_REST)
-    held_out = roll.laid_on(windows, roll.cut_windows(whole)[1::2])
+    whole, _ = roll.open_release(roll.AT_REST)
+    held_out = roll.map_all(windows, roll.windows_of(whole)[1::2])
     off = roll.polar_errors(windows.problem, roll.one_at_a_time(windows), held_out)
     envelope, phase = ({label: e[i] / off["linear"][i] for label, e in off.items()} for i in (0, 1))
     assert phase["+ righting_arm_stiffening"] < 0.4 < 0.9 < envelope["+ righting_arm_stiffening"]
@@ -57,7 +57,7 @@ def test_fast_runs_of_the_thesis_tests_give_the_norms_of_the_engine(test: str) -
 def test_commands_of_a_turn_can_be_played_to_another_boat() -> None:
     knobs, values = (thesis.OWN[1],), (0.2,)
     closed, played = (
-        Bench("yaw_1_as_published", played=p).norms(knobs, values, (0,)) for p in (False, True)
+        Bench("yaw_1_as_published", replayed=p).norms(knobs, values, (0,)) for p in (False, True)
     )
     fitted = ("moved", "position_inf", "position_rms", "turn_time")
     assert {n: played[n] for n in fitted} == pytest.approx({n: closed[n] for n in fitted}, rel=0.15)
@@ -75,8 +75,8 @@ def test_an_effect_that_made_the_norms_is_found_in_them() -> None:
     assert ranking.best.names == ("weak_reverse",) and ranking.gains["weak_reverse"] > 4.0
     value, sd = ranking.best.value(thesis.CANDIDATES["weak_reverse"][0])
     assert value == pytest.approx(TRUTH["astern"], abs=max(2.0 * sd, 0.02))
-    left = thesis.left_out(tables, ranking.best, "sway_3")
-    without = thesis.left_out(tables, ranking.recalibrated, "sway_3")
+    left = thesis.fit_without_test(tables, ranking.best, "sway_3")
+    without = thesis.fit_without_test(tables, ranking.recalibrated, "sway_3")
     assert thesis.distance(tables, left, ["sway_3"]) < 0.5 * thesis.distance(
         tables, without, ["sway_3"]
     )

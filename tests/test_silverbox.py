@@ -29,7 +29,7 @@ def taken(folder: Path, between: str) -> tuple[Recording, Array]:
     file = folder / "made.csv"
     table = np.column_stack([t, tones(t), 0.0 * t])
     np.savetxt(file, table, delimiter=",", header="t_s,force_V,displacement_V", comments="")
-    recording = silverbox.opened(file, between)
+    recording = silverbox.open_set(file, between)
     middle = (np.arange(400 * silverbox.FINER) + 0.5) / silverbox.FINER / RATE
     return recording, tones(middle)
 
@@ -37,7 +37,7 @@ def taken(folder: Path, between: str) -> tuple[Recording, Array]:
 def test_the_input_between_its_rows_is_the_band_limited_signal_through_them(tmp_path: Path) -> None:
     """Away from its ends, where nobody knows what came before."""
     inner, off = slice(15 * silverbox.FINER, -15 * silverbox.FINER), {}
-    for between in silverbox.WAYS:
+    for between in silverbox.INTERPOLATIONS:
         recording, true = taken(tmp_path, between)
         assert recording.orders is not None
         off[between] = float(
@@ -58,21 +58,21 @@ def test_a_row_holds_the_mean_of_the_courses_until_the_next(tmp_path: Path) -> N
 
 
 def test_the_vessel_swings_as_the_circuit_on_a_slower_clock(tmp_path: Path) -> None:
-    boat = silverbox.written(tmp_path)
+    boat = silverbox.write_vessel(tmp_path)
     arm, thruster = boat.effect("righting_arm"), boat.effect("thruster")
     assert arm is not None and thruster is not None and boat.dof == ("roll",)
     stiffness, lever = getattr(arm, "stiffness"), getattr(thruster, "z")  # noqa: B009
     pulsation = np.sqrt(stiffness / boat.body.roll_inertia)  # [rad/s]
     assert pulsation / (2.0 * np.pi) == pytest.approx(
-        silverbox.SWINGS * silverbox.SECOND / RATE, rel=1e-4
+        silverbox.NATURAL_FREQUENCY * silverbox.SECOND / RATE, rel=1e-4
     )
     assert -lever == pytest.approx(stiffness)  # a steady V heels it by a V
 
 
 @pytest.fixture(scope="module")
 def found(tmp_path_factory: pytest.TempPathFactory) -> Diagnosis:
-    boat = silverbox.written(tmp_path_factory.mktemp(silverbox.NAME))
-    return silverbox.diagnosed(silverbox.opened(RUNS / "train.csv"), boat)
+    boat = silverbox.write_vessel(tmp_path_factory.mktemp(silverbox.NAME))
+    return silverbox.diagnose(silverbox.open_set(RUNS / "train.csv"), boat)
 
 
 @there
@@ -109,6 +109,6 @@ def test_both_test_sets_are_simulated_to_far_less_than_a_millivolt(found: Diagno
     models = {"recalibrated": ranking.recalibrated, "patched": ranking.best}
     most = {silverbox.MULTISINE: 0.3, silverbox.ARROW: 0.4}  # [mV]
     for name, limit in most.items():
-        off = silverbox.missed(found, silverbox.opened(RUNS / f"{name}.csv"), models)
+        off = silverbox.simulation_errors(found, silverbox.open_set(RUNS / f"{name}.csv"), models)
         rms = {model: silverbox.rms(e) for model, e in off.items()}
         assert rms["patched"] < limit < silverbox.GOAL and rms["recalibrated"] > 7.0, rms

@@ -21,7 +21,7 @@ from boatsim.physics.base import Array
 from boatsim.physics.content import find
 from tests import pushed_three_metre
 from validation.real import esso_osaka_pond, esso_osaka_vessel
-from validation.real.common import RECORDINGS, table
+from validation.real.common import RECORDINGS, print_table
 
 GOAL = 1.3  # times the hand-made vessel's error, at most
 UNITS = {
@@ -120,15 +120,13 @@ def esso_osaka(_: Path) -> Case:
         kept = {n: log[n] for n in ("t_s", "x_m", "y_m", "psi_rad")}
         return {**kept, "delta_rad": log["rudder_rad"], "n_rps": shaft}
 
-    return Case(
-        boat, logs, sorted(logs)[2::4], lambda where: esso_osaka_vessel.written(where), theirs
-    )
+    return Case(boat, logs, sorted(logs)[2::4], esso_osaka_vessel.write_vessel, theirs)
 
 
 def longest(t: Array, leaps: Array) -> tuple[float, float]:
     """Begin and end [s] of the longest stretch between leaps of a run, as esso_osaka_pond cuts it."""
-    begins = [float(t[0]), *(leaps + esso_osaka_pond.SOON)]
-    ends = [*(leaps - esso_osaka_pond.LATE), float(t[-1])]
+    begins = [float(t[0]), *(leaps + esso_osaka_pond.AFTER_JUMP)]
+    ends = [*(leaps - esso_osaka_pond.BEFORE_JUMP), float(t[-1])]
     return max(zip(begins, ends, strict=True), key=lambda span: span[1] - span[0])
 
 
@@ -239,7 +237,7 @@ def main(names: Sequence[str]) -> None:
         "to fitted",
         "goal",
     ]
-    table(
+    print_table(
         f"errors of free runs on logs no fit has seen; goal: at most {GOAL:g} times the hand-made",
         header,
         lines,

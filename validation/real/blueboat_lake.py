@@ -26,11 +26,14 @@ from boatsim.diagnosis.search.ranking import selection
 from boatsim.physics.base import Array, Measurement, Shown
 from boatsim.recordings.table import Recording
 from validation.real.common import (
+    by_name,
     fixed,
+    names_of,
     print_table,
     print_verdict,
     runs_except,
     runs_of,
+    selected,
     write_report,
 )
 
@@ -49,7 +52,7 @@ def instruments(problem: Problem, found: Fit) -> list[Measurement]:
     values: dict[str, dict[str, float]] = {}
     for f, x in zip(found.free, found.theta, strict=True):
         values.setdefault(f.effect, {})[f.name] = float(x)
-    candidates = {effect.name: effect for effect in problem.program.candidates}
+    candidates = by_name(problem.program.candidates)
     fitted = []
     for name in found.effects:
         effect = candidates.get(name)
@@ -118,7 +121,7 @@ def leave_one_out(diagnosis: Diagnosis, runs: dict[str, Path]) -> list[Fold]:
     vessel, program = diagnosis.vessel, diagnosis.problem.program
     noise, rate = shared_noise(vessel, opened), priors.rate(vessel)
     mapped = [map_recording(run.thinned(rate), program, noise) for run in opened]
-    by_name = {run.name: whole for run, whole in zip(mapped, opened, strict=True)}
+    whole = dict(zip(names_of(mapped), opened, strict=True))
     # the correlation time of this fit would use the held-out runs
     ambient = replace(diagnosis.problem.ambient, time_constant=priors.time_constant(vessel))
     usual = Problem(mapped, ambient, diagnosis.problem.uncertainty)
@@ -133,7 +136,7 @@ def leave_one_out(diagnosis: Diagnosis, runs: dict[str, Path]) -> list[Fold]:
             rest, selected = again, selection(again, names)
         for run in group:
             others = hold_out(rest, mapped, [run])
-            folds.append(judge(others, selected, run, by_name[run.name]))
+            folds.append(judge(others, selected, run, whole[run.name]))
     return sorted(folds, key=lambda fold: fold.run)
 
 
@@ -172,17 +175,17 @@ def print_leave_one_out(folds: Sequence[Fold]) -> None:
         before += fold.as_recorded
         after += fold.corrected
     whole = Fold("all", (), runs, before, after)
-    rows = [
-        [fold.run, *_free(fold.free_runs), *_medians(fold.as_recorded, fold.corrected)]
-        for fold in (*folds, whole)
-    ]
-    goals = [f"<= {goal}" for goal in GOALS.values()]
+    rows = []
+    for fold in (*folds, whole):
+        medians = _medians(fold.as_recorded, fold.corrected)
+        rows.append([fold.run, *_free(fold.free_runs), *medians])
+    goals = list(map("<= {}".format, GOALS.values()))
     rows.append(["goal", "", "", goals[0], "", "", goals[1]])
     header = ["held out", "recalibrated [m]", "patched [m]", "ratio"]
     header += ["as recorded", "corrected", "ratio"]
     title = "each run held out once: position rms of free runs of 10 s; "
     print_table(title + "error per path of dead reckoning", header, rows)
-    counts = [[name, str(number)] for name, number in chosen.most_common()]
+    counts = np.array(chosen.most_common(), dtype=str).reshape(-1, 2).tolist()
     print_table("selected without the run: number of runs", ["effect", "runs"], counts)
 
 
@@ -204,7 +207,7 @@ def _medians(before: Sequence[float], after: Sequence[float]) -> list[str]:
 def main() -> None:
     """Diagnose, then leave one run out."""
     runs = runs_of(NAME)
-    held_out = [runs[name] for name in HELD_OUT]
+    held_out = selected(runs, HELD_OUT)
     fitted = runs_except(runs, HELD_OUT)
     diagnosis = pipeline.diagnose(fitted, held_out, VESSEL, horizon=HORIZON)
     write_report(diagnosis, NAME)

@@ -2,11 +2,11 @@
 
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import TypeVar
+from typing import Any, TypeVar
 
-from boatsim.cli import diagnosis as commands
 from boatsim.diagnosis.evaluation import MODELS as MODELS
 from boatsim.diagnosis.pipeline import Diagnosis
+from boatsim.diagnosis.report.output_files import write
 from boatsim.diagnosis.report.schema import EffectEntry
 
 RECORDINGS = Path(__file__).parents[3] / "shared" / "recordings"
@@ -40,9 +40,24 @@ def runs_except(runs: Mapping[str, T], names: Iterable[str]) -> list[T]:
 
 def write_report(diagnosis: Diagnosis, name: str) -> None:
     """Write the files of a diagnosis to out/real/<name>/ and print its summary."""
-    commands.write(diagnosis, OUT / name)
+    write(diagnosis, OUT / name)
     print(diagnosis.findings.answer["sentence"])
     print(f"report: {OUT / name / 'report.html'}")
+
+
+def selected(runs: Mapping[str, T], names: Iterable[str]) -> list[T]:
+    """Return the values of the named runs."""
+    return list(map(runs.__getitem__, names))
+
+
+def names_of(items: Iterable[Any]) -> list[str]:
+    """Return the names of effects, recordings or cases."""
+    return [item.name for item in items]
+
+
+def by_name(items: Sequence[T]) -> dict[str, T]:
+    """Return effects, recordings or cases by name; the last one of each name."""
+    return dict(zip(names_of(items), items, strict=True))
 
 
 def fixed(digits: int, *values: float) -> list[str]:
@@ -70,6 +85,11 @@ def print_table(title: str, header: Sequence[str], rows: Sequence[Sequence[str]]
 def effects_of(diagnosis: Diagnosis) -> list[EffectEntry]:
     """Return the identified effects of an answer."""
     return diagnosis.findings.answer["effects"]
+
+
+def values_of(effect: EffectEntry) -> dict[str, float]:
+    """Return the values of an identified effect by parameter with unit."""
+    return {name: parameter["value"] for name, parameter in effect["parameters"].items()}
 
 
 def parameter_text(effect: EffectEntry, sign: str = "+-") -> str:

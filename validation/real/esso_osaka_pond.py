@@ -14,9 +14,10 @@ recorded.
 import json
 import time
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import astuple, dataclass, replace
 from functools import cache
 from itertools import chain
+from operator import attrgetter, itemgetter
 from pathlib import Path
 
 import numpy as np
@@ -42,6 +43,7 @@ from validation.real.common import (
     print_verdict,
     runs_of,
     scaled,
+    selected,
     write_report,
 )
 from validation.real.esso_osaka_vessel import NAME, SOURCE, write_vessel
@@ -179,18 +181,17 @@ def print_consistency(runs: Mapping[str, Path]) -> None:
     rows = []
     for kind in (*FITTED, *JUDGED):
         found = [consistency_of(path) for name, path in runs.items() if name.startswith(kind)]
-        bridged = float(np.mean([run.bridged for run in found]))
-        jumps = sum(run.jumps for run in found)
-        middle = np.median([(run.delay_s, run.aft_m, run.sway_ratio) for run in found], axis=0)
-        rows.append([kind, str(len(found)), f"{100 * bridged:.1f} %", str(jumps)])
-        rows[-1] += fixed(2, *middle)
+        bridged, jumps, *others = np.transpose(list(map(astuple, found)))
+        row = [kind, str(len(found)), f"{100 * np.mean(bridged):.1f} %", f"{sum(jumps):.0f}"]
+        rows.append([*row, *fixed(2, *np.median(others, axis=1))])
     header = ["", "runs", "bridged", "jumps"]
     header += ["delay of u, v [s]", "v's point aft [m]", "v / that of x, y"]
     print_table("defects of the recordings (medians over runs)", header, rows)
     print(
-        "(Bridged fixes were held over and are not fitted. After some of them position or heading\n"
-        " jumps, by up to 10 deg that the yaw rate does not show; runs are cut there. Recorded u, v\n"
-        " are delayed against x, y and belong to another point of the ship; they are not used.)"
+        "(Bridged fixes were held over and are not fitted. After some of them position or\n"
+        " heading jumps, by up to 10 deg that the yaw rate does not show; runs are cut there.\n"
+        " Recorded u, v are delayed against x, y and belong to another point of the ship; they\n"
+        " are not used.)"
     )
 
 
@@ -238,7 +239,7 @@ Mapper = Callable[[Sequence[Recording]], list[MappedRecording]]
 
 
 class Weather:
-    """A fit of a ship in which every run may have a wind of its own."""
+    """A fit of a ship in which each run may have a different wind."""
 
     def __init__(self, problem: Problem, ship: Fit) -> None:
         """Begin with a fit of the ship, with or without a wind common to all runs."""
@@ -259,7 +260,7 @@ class Weather:
         self.ship = Fit(names, free, np.array(theta), _prior(free), ship.levels, -np.inf)
 
     def _without_wind(self) -> Fit:
-        free = tuple(self.ship.free[i] for i in self.rest)
+        free = itemgetter(*self.rest)(self.ship.free)
         theta = self.ship.theta[self.rest]
         return Fit(self.ship.effects, free, theta, _prior(free), self.ship.levels, -np.inf)
 
@@ -278,7 +279,7 @@ class Weather:
 
         def score(x: Array) -> float:
             wind = wind_of_force(x)
-            problem = self.problem.on([self.in_wind(run, wind) for run in fixed_ship])
+            problem = self.problem.on(self.in_wind(fixed_ship, wind))
             likelihood = problem.log_likelihood((), np.zeros(0), on, self.ship.levels)
             return likelihood - 0.5 * float(x @ x) / self.prior_sd**2
 
@@ -288,19 +289,22 @@ class Weather:
             found.append(maximize(score, start, START_FORCE, TOLERANCE))
         return wind_of_force(max(found, key=lambda best: best[0])[1])
 
-    def in_wind(self, recording: MappedRecording, wind: Wind) -> MappedRecording:
-        """Return a recording with a wind among its own values."""
-        values = recording.values.copy()
-        for name in WEATHER:
-            values[self.problem.program.index("wind", name)] = getattr(wind, name)
-        return replace(recording, values=values)
+    def in_wind(self, recordings: Sequence[MappedRecording], wind: Wind) -> list[MappedRecording]:
+        """Return recordings with a wind among their own values."""
+        found = []
+        for recording in recordings:
+            values = recording.values.copy()
+            for name in WEATHER:
+                values[self.problem.program.index("wind", name)] = getattr(wind, name)
+            found.append(replace(recording, values=values))
+        return found
 
     def refit(self, runs: Sequence[Sequence[MappedRecording]]) -> None:
         """Fit the winds of all runs and the ship in turn."""
         for _ in range(ROUNDS):
             recordings = []
             for stretches, wind in zip(runs, list(map(self.find_wind, runs)), strict=True):
-                recordings += [self.in_wind(stretch, wind) for stretch in stretches]
+                recordings += self.in_wind(stretches, wind)
             found = fit(self.problem.on(recordings), self._without_wind())
             self.ship.theta[self.rest] = found.theta
             self.ship = replace(self.ship, levels=found.levels)
@@ -308,7 +312,7 @@ class Weather:
     def free_runs(self, recording: MappedRecording, wind: Wind) -> list[FreeRun]:
         """Return free runs of the ship over a recording in a wind."""
         models = {"patched": self._without_wind()}
-        return free_runs(self.problem, models, [self.in_wind(recording, wind)], HORIZON)
+        return free_runs(self.problem, models, self.in_wind([recording], wind), HORIZON)
 
 
 def _prior(free: Sequence[FreeParameter]) -> Array:
@@ -373,7 +377,7 @@ def print_judged(runs: Sequence[FreeRun], title: str) -> None:
         for family, (what, factor) in UNITS.items():
             goals = ["", ""]
             if not kind and family.startswith("position"):
-                goals = [f"<= {goal:g}" for goal in GOALS.values()]
+                goals = list(map("<= {:g}".format, GOALS.values()))
             a, b, c = scaled(off[family], factor)
             row = [f"{kind or 'all'}, {what}", str(len(some)), *fixed(3, a, b, c)]
             rows.append([*row, f"{c / a:.2f}", goals[0], f"{c / b:.2f}", goals[1]])
@@ -442,9 +446,9 @@ def open_runs(
     found = {}
     for name, path in runs.items():
         recording = completed(name, loading.open_recording(path, vessel_name, ())[0])
-        stretches = [r.thinned(rate) for r in sound_stretches(recording, path, SHORTEST)]
         whole = drop_position_outliers(recording.thinned(rate), vessel)
-        found[name] = OpenedRun(whole, stretches)
+        stretches = sound_stretches(recording, path, SHORTEST)
+        found[name] = OpenedRun(whole, [stretch.thinned(rate) for stretch in stretches])
     return found, vessel
 
 
@@ -454,11 +458,22 @@ def diagnose(runs: Mapping[str, OpenedRun], vessel: Vessel) -> Diagnosis:
     for name, run in runs.items():
         if name.startswith(FITTED) and name not in HELD_OUT:
             fitted.append(run.longest)
-    held_out = [runs[name].whole for name in HELD_OUT]
-    vessels = {r.path: vessel for r in (*fitted, *held_out)}
+    held_out = [run.whole for run in selected(runs, HELD_OUT)]
+    vessels = dict.fromkeys(map(attrgetter("path"), (*fitted, *held_out)), vessel)
     note = f"{', '.join(HELD_OUT)}; of the other runs only the longest stretch without a jump, "
     note += f"{WINDOW:g} s at most"
     return pipeline.diagnose_loaded(Loaded(fitted, held_out, vessels, note, horizon=HORIZON))
+
+
+def mapper_of(diagnosis: Diagnosis, runs: Mapping[str, OpenedRun]) -> Mapper:
+    """Return the mapping of recordings on a diagnosed program, with the noise of all runs."""
+    stretches = chain.from_iterable(run.stretches for run in runs.values())
+    noise = shared_noise(diagnosis.vessel, list(stretches))
+
+    def mapper(recordings: Sequence[Recording]) -> list[MappedRecording]:
+        return [diagnosis.map_recording(recording, noise) for recording in recordings]
+
+    return mapper
 
 
 def main() -> None:
@@ -470,11 +485,7 @@ def main() -> None:
     diagnosis = diagnose(runs, vessel)
     write_report(diagnosis, NAME)
     print_verdict(diagnosis)
-    noise = shared_noise(vessel, list(chain.from_iterable(r.stretches for r in runs.values())))
-
-    def mapper(recordings: Sequence[Recording]) -> list[MappedRecording]:
-        return [diagnosis.map_recording(r, noise) for r in recordings]
-
+    mapper = mapper_of(diagnosis, runs)
     mapped = {name: mapper(run.stretches) for name, run in runs.items()}
     fitted = [stretches for name, stretches in mapped.items() if name.startswith(FITTED)]
     problem = diagnosis.problem.on(list(chain.from_iterable(fitted)))

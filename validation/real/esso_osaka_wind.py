@@ -13,7 +13,6 @@ from itertools import chain
 
 import numpy as np
 
-from boatsim.diagnosis.filter import shared_noise
 from boatsim.diagnosis.fit import converge
 from boatsim.diagnosis.free_runs import FreeRun, errors, free_runs
 from boatsim.recordings.table import Recording
@@ -36,6 +35,7 @@ from validation.real.esso_osaka_pond import (
     TITLE,
     UNITS,
     diagnose,
+    mapper_of,
     open_runs,
     runs_of_kind,
 )
@@ -105,14 +105,13 @@ def main() -> None:
     diagnosis = diagnose(runs, vessel)
     write_report(diagnosis, WIND_NAME)
     print_verdict(diagnosis)
-    stretches = list(chain.from_iterable(run.stretches for run in runs.values()))
-    noise = shared_noise(vessel, stretches)
+    mapper = mapper_of(diagnosis, runs)
     fitted, judged = [], []
     for name, run in runs.items():
         if name.startswith(FITTED):
-            fitted += [diagnosis.map_recording(stretch, noise) for stretch in run.stretches]
+            fitted += mapper(run.stretches)
         if name.startswith(JUDGED):
-            judged.append(diagnosis.map_recording(run.whole, noise))
+            judged += mapper([run.whole])
     problem = diagnosis.problem.on(fitted)
     recalibrated = converge(problem, diagnosis.ranking.recalibrated)
     fits = {

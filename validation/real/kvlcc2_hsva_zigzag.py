@@ -7,6 +7,7 @@ the couplings are kept, and every coefficient is refitted on the other nine.
 """
 
 from collections.abc import Mapping
+from operator import attrgetter
 
 from boatsim.diagnosis import loading, pipeline, priors
 from boatsim.diagnosis.filter import MappedRecording
@@ -21,6 +22,7 @@ from validation.real.common import (
     runs_except,
     runs_of,
     scaled,
+    selected,
     write_report,
 )
 
@@ -47,7 +49,7 @@ def print_held_out(diagnosis: Diagnosis, goals: Mapping[str, float] = GOALS) -> 
 def print_couplings(diagnosis: Diagnosis) -> None:
     """Print what is missing, in order of gain, and the candidates that gain nothing."""
     ranking = diagnosis.ranking
-    identified = {effect.name: effect.gain for effect in ranking.named}
+    identified = dict(map(attrgetter("name", "gain"), ranking.named))
     on_top = {name: fit.evidence - ranking.best.evidence for name, fit in ranking.last.items()}
     alone = sorted(ranking.first.items(), key=lambda item: -item[1])
     rows = []
@@ -89,15 +91,13 @@ def print_leave_one_out(diagnosis: Diagnosis, recordings: list[MappedRecording])
         f"better than the recalibrated model in {heading} of {len(rows)} runs in heading, "
         f"{position} in position"
     )
-    print(
-        "(the hull is directionally unstable: in the 1 degree zig-zags any error at the start grows)"
-    )
+    print("(the hull is directionally unstable: in the 1 degree zig-zags initial errors grow)")
 
 
 def main() -> None:
     """Diagnose, then leave one run out."""
     runs = runs_of(NAME)
-    held_out = [runs[name] for name in HELD_OUT]
+    held_out = selected(runs, HELD_OUT)
     diagnosis = pipeline.diagnose(runs_except(runs, HELD_OUT), held_out, horizon=HORIZON)
     write_report(diagnosis, NAME)
     print_held_out(diagnosis)

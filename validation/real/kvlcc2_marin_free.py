@@ -1,11 +1,11 @@
-"""A tanker's zig-zags and turning circle at full scale: `python -m validation.real.kvlcc2_marin_free`.
+"""Zig-zags and turning circle of a tanker: `python -m validation.real.kvlcc2_marin_free`.
 
-The recordings are those of MARIN. The nominal is linear about the approach speed with published
-derivatives; the centrifugal force of the rigid hull, which slows it in a turn, is exact. The
-baseline is the same structure with all its coefficients refitted. The zig-zags zz_10, zz_m10 and
-zz_m20 are fitted. The turning circle tc_35 is held out: 600 s of it are predicted as one free run
-and judged by speed and yaw rate, because the positions have steps of 10 m. In the circle the speed
-falls far below any speed of the fit.
+The recordings are full-scale values of MARIN. The nominal is linear about the approach speed with
+published derivatives; the centrifugal force of the rigid hull, which slows it in a turn, is exact.
+The baseline is the same structure with all its coefficients refitted. The zig-zags zz_10, zz_m10
+and zz_m20 are fitted. The turning circle tc_35 is held out: 600 s of it are predicted as one free
+run and judged by speed and yaw rate, because the positions have steps of 10 m. In the circle the
+speed falls far below any speed of the fit.
 """
 
 from collections.abc import Mapping
@@ -18,7 +18,14 @@ from boatsim.diagnosis.filter import MappedRecording
 from boatsim.diagnosis.pipeline import Diagnosis
 from boatsim.diagnosis.problem import Fit
 from boatsim.physics.base import Array
-from validation.real.common import MODEL_COLUMNS, fixed, print_table, runs_of, write_report
+from validation.real.common import (
+    MODEL_COLUMNS,
+    fixed,
+    print_table,
+    runs_of,
+    selected,
+    write_report,
+)
 
 NAME = "kvlcc2_marin_free"
 HORIZON = 400.0  # [s] of a free run: ten lengths
@@ -57,8 +64,7 @@ def print_circle(
 def main() -> None:
     """Diagnose the zig-zags and judge on the circle."""
     runs = runs_of(NAME)
-    fitted = [runs[name] for name in FITTED]
-    diagnosis = pipeline.diagnose(fitted, [runs[HELD_OUT]], horizon=HORIZON)
+    diagnosis = pipeline.diagnose(selected(runs, FITTED), [runs[HELD_OUT]], horizon=HORIZON)
     write_report(diagnosis, NAME)
     recording, vessel = loading.open_recording(runs[HELD_OUT], None, ())
     circle = diagnosis.map_recording(recording.thinned(priors.rate(vessel)))

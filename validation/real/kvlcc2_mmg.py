@@ -3,7 +3,8 @@
 Arguments: `hsva`, `marin` or both (default). The nominal is the published model with the
 derivatives of captive tests in another tank, the baseline the same with these, a_H, gamma_R and the
 gains of propeller and rudder refitted. The free-running tests and the held-out runs are those of
-kvlcc2_hsva_zigzag (7 m model) and kvlcc2_marin_free (full-scale values), which judge a linear model.
+kvlcc2_hsva_zigzag (7 m model) and kvlcc2_marin_free (full-scale values), where a linear model is
+judged.
 """
 
 import sys
@@ -17,7 +18,7 @@ from boatsim.diagnosis import loading, pipeline, priors
 from boatsim.diagnosis.checks.position_outliers import drop_position_outliers
 from boatsim.diagnosis.evaluation import models
 from boatsim.diagnosis.filter import MappedRecording
-from boatsim.diagnosis.fit import converge, gauss_newton
+from boatsim.diagnosis.fit import ParameterSpace, converge, gauss_newton
 from boatsim.diagnosis.free_runs import errors, free_runs
 from boatsim.diagnosis.loading import Loaded
 from boatsim.diagnosis.noise_levels import fit_force, force_prior
@@ -25,15 +26,18 @@ from boatsim.diagnosis.pipeline import Diagnosis
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.errors import BadInput, unknown_name
 from boatsim.physics.base import Array
+from boatsim.physics.vessel import Vessel
 from boatsim.recordings.table import Recording
 from validation.real import kvlcc2_hsva_zigzag as hsva
 from validation.real import kvlcc2_marin_free as marin
 from validation.real.common import (
+    by_name,
     fixed,
     print_table,
     print_verdict,
     runs_except,
     runs_of,
+    selected,
     write_report,
 )
 
@@ -103,7 +107,7 @@ def overshoots_by_model(diagnosis: Diagnosis, run: Recording) -> list[list[float
         values = problem.values(mapped, fit.free, fit.theta)
         on = problem.program.switches(fit.effects)
         first, states = mapped.free_runs(values, on, fit.levels, duration)[0]
-        found.append(overshoots(states[:, heading], delta[first:], [i - first for i in at]))
+        found.append(overshoots(states[:, heading], delta[first:], (np.array(at) - first).tolist()))
     return found
 
 
@@ -156,7 +160,7 @@ def print_residual(diagnosis: Diagnosis) -> None:
 
 
 def open_runs(runs: dict[str, Path], vessel_name: str) -> dict[str, Recording]:
-    """Return the recordings as they are diagnosed, by run."""
+    """Return the recordings of a diagnosis by run."""
     opened = {}
     for name, path in runs.items():
         run, vessel = loading.open_recording(path, vessel_name, ())
@@ -170,11 +174,11 @@ def diagnose(
     runs: dict[str, Recording], held_out: Sequence[str], vessel_name: str, horizon: float
 ) -> Diagnosis:
     """Diagnose the model with all runs that are not held out."""
-    vessels = {}
+    vessels: dict[Path | None, Vessel] = {}
     for run in runs.values():
         if run.path:
             vessels[run.path] = loading.vessel_for(run.path, vessel_name, ())
-    kept = [runs[name] for name in held_out]
+    kept = selected(runs, held_out)
     note = ", ".join(held_out)
     fitted = runs_except(runs, held_out)
     return pipeline.diagnose_loaded(Loaded(fitted, kept, vessels, note, horizon=horizon))
@@ -209,10 +213,10 @@ def print_error_sources(
     whole = converge(everything, gauss_newton(everything, before, 6, 0.1))
     with_held_out = errors_of(whole)
     rng = np.random.default_rng(0)
-    low = [f.low for f in before.free]
-    high = [f.high for f in before.free]
     samples = rng.multivariate_normal(before.theta, before.covariance, SAMPLES)
-    expected = [errors_of(replace(before, theta=x)) for x in np.clip(samples, low, high)]
+    expected = []
+    for theta in ParameterSpace(before.free).clipped(samples):
+        expected.append(errors_of(replace(before, theta=theta)))
     rows = []
     for what, error in errors_of(before).items():
         least, most = np.quantile([sample[what] for sample in expected], [0.1, 0.9])
@@ -243,7 +247,7 @@ def report_on(
 def judge_hsva() -> None:
     """Diagnose the 7 m model in HSVA's tank; all runs are zig-zags."""
     diagnosis, runs = report_on("hsva", hsva.NAME, NAME, hsva.HELD_OUT, hsva.HORIZON)
-    held_out = [diagnosis.map_recording(runs[name]) for name in hsva.HELD_OUT]
+    held_out = list(map(diagnosis.map_recording, selected(runs, hsva.HELD_OUT)))
 
     def errors_of(fit: Fit) -> Errors:
         off = errors(free_runs(diagnosis.problem, {"": fit}, held_out, hsva.HORIZON))
@@ -265,7 +269,7 @@ def judge_marin() -> None:
         off = marin.turn_errors(diagnosis, fit, circle)
         return dict(zip(marin.GOALS, off.tolist(), strict=True))
 
-    print_overshoots(diagnosis, {name: runs[name] for name in marin.FITTED})
+    print_overshoots(diagnosis, by_name(selected(runs, marin.FITTED)))
     marin.print_circle(diagnosis, circle, dict.fromkeys(marin.GOALS, GOAL))
     print_error_sources(diagnosis, [circle], errors_of)
 

@@ -10,6 +10,7 @@ The recordings are in tests/data/kvlcc2_roll_decay, so this benchmark needs no o
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -31,7 +32,9 @@ from boatsim.recordings.table import Recording
 from validation.real.common import (
     DEG,
     MODEL_COLUMNS,
+    by_name,
     fixed,
+    names_of,
     print_table,
     scaled,
     write_report,
@@ -114,7 +117,7 @@ def with_effects(problem: Problem, base: Fit, names: Sequence[str]) -> Fit:
 def one_at_a_time(diagnosis: Diagnosis) -> dict[str, Fit]:
     """Return the linear boat, the boat with each identified effect alone, and that with all."""
     problem, base = diagnosis.problem, diagnosis.ranking.recalibrated
-    names = [effect.name for effect in diagnosis.ranking.named]
+    names = names_of(diagnosis.ranking.named)
     fits = {"linear": base}
     for name in names:
         fits[f"+ {name}"] = with_effects(problem, base, [name])
@@ -160,7 +163,7 @@ def polar_errors(
     problem: Problem, fits: Mapping[str, Fit], recordings: Sequence[MappedRecording]
 ) -> dict[str, tuple[float, float]]:
     """Return the rms errors of envelope and phase [rad] of each model over whole recordings."""
-    runs = [polar_runs(problem, fits, mapped) for mapped in recordings]
+    runs = list(map(partial(polar_runs, problem, fits), recordings))
     found = {}
     for label in fits:
         off = np.hstack([run[label] - run["recorded"] for run in runs])
@@ -241,7 +244,7 @@ def coefficients(problem: Problem, fitted: Fit) -> dict[str, tuple[float, float]
         "period of small rolls [s]": (period, 0.5 * period * sd / stiffness),
         "GM at the roll inertia of the vessel file [mm]": (stiffness * arm, sd * arm),
     }
-    effects = {effect.name: effect for effect in problem.program.candidates}
+    effects = by_name(problem.program.candidates)
     for f in fitted.free:
         if not f.relative:
             unit = type(effects[f.effect]).params()[f.name].unit
@@ -254,7 +257,7 @@ def speed_rows(at_rest: Diagnosis, at_speed: Diagnosis, releases: Sequence[Recor
 
     The structure identified at rest is fitted to the whole of each release.
     """
-    names = [effect.name for effect in at_rest.ranking.named]
+    names = names_of(at_rest.ranking.named)
     found = []
     for diagnosis, whole in zip((at_rest, at_speed), releases, strict=True):
         old = diagnosis.problem
@@ -307,7 +310,10 @@ def last_third(diagnosis: Diagnosis, whole: Recording) -> tuple[Rows, Ranking]:
         fits[label] = with_effects(alone, ranking.recalibrated, [name])
         gains[label] = f"{gain:+.1f}"
     rms = errors(free_runs(alone, fits, [tail], float(np.ptp(tail.times))))["roll_rms_rad"]
-    return [[label, f"{x * DEG:.4f}", gains.get(label, "")] for label, x in rms.items()], ranking
+    rows = []
+    for label, x in rms.items():
+        rows.append([label, f"{x * DEG:.4f}", gains.get(label, "")])
+    return rows, ranking
 
 
 def split_table(splits: Mapping[str, Diagnosis]) -> Table:

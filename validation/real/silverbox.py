@@ -1,17 +1,17 @@
 """Silverbox, a public benchmark of system identification: `python -m validation.real.silverbox`.
 
-The Silverbox is an electronic oscillator with a stiffening spring. It is treated as a hull that only
-rolls: the displacement [V] is a roll angle [rad], and the input [V] is a thrust [N] that pushes
-sideways far above the mass centre. The vessel is a linear oscillator without a cubic spring. It is
-written to out/real/silverbox/vessel, because the circuit is no boat of this project. Its clock is
-slower than the circuit's: 20 rows are one second. It then oscillates twice a second, as a boat of
-its length might, so the defaults of a diagnosis apply unchanged.
+The Silverbox is an electronic oscillator with a stiffening spring. It is treated as a hull that
+only rolls: the displacement [V] is a roll angle [rad], and the input [V] is a thrust [N] that
+pushes sideways far above the mass centre. The vessel is a linear oscillator without a cubic spring.
+It is written to out/real/silverbox/vessel, because the circuit is no boat of this project. Its
+clock is slower than the circuit's: 20 rows are one second. It then oscillates twice a second, as a
+boat of its length might, so the defaults of a diagnosis apply unchanged.
 
 Stretches of the training data are fitted. Free runs over the two whole test sets are judged. Each
 starts from a state estimated from its first 50 rows, whose error is not counted, as is usual.
 
-The input is filtered to 200 Hz and sampled at 610 Hz, so its course between the rows is known: it is
-the only signal through the rows that has no content beyond half their rate. A held or linearly
+The input is filtered to 200 Hz and sampled at 610 Hz, so its course between the rows is known: it
+is the only signal through the rows that has no content beyond half their rate. A held or linearly
 interpolated input is a different signal. The interpolation uses ten rows of the input before and
 after each instant, and nothing of the displacement.
 """
@@ -19,6 +19,8 @@ after each instant, and nothing of the displacement.
 import time
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import partial
+from itertools import starmap
 from math import pi
 from pathlib import Path
 
@@ -36,7 +38,15 @@ from boatsim.physics import vessel as vessels
 from boatsim.physics.base import Array
 from boatsim.physics.vessel import Vessel
 from boatsim.recordings.table import Orders, Recording
-from validation.real.common import OUT, fixed, print_table, runs_of, write_report
+from validation.real.common import (
+    OUT,
+    fixed,
+    names_of,
+    print_table,
+    runs_of,
+    selected,
+    write_report,
+)
 from validation.real.kvlcc2_roll_decay import simulate, with_effects
 
 NAME = "silverbox"
@@ -68,8 +78,8 @@ INTERPOLATIONS = {
 COMPARED = ("righting_arm_stiffening", "steady_force")
 
 VESSEL = """\
-about = "Silverbox: an electronic oscillator treated as a hull that only rolls; 1 V is 1 rad, {second} rows are 1 s"
-source = "T. Wigren, J. Schoukens, Three free data sets for ... nonlinear system identification, ECC 2013"
+about = "Silverbox: an oscillator as a hull that only rolls; 1 V is 1 rad, {second} rows are 1 s"
+source = "T. Wigren, J. Schoukens, Three free data sets for ... system identification, ECC 2013"
 freedoms = ["roll"]
 length = 1.2                    # [m] arbitrary: sets the time constants of a diagnosis
 beam = 0.3                      # [m]
@@ -93,7 +103,7 @@ on = {{ thrust = "force_V", angle = {abeam:.9g} }}
 z = {lever:.6g}                 # [m] a steady 1 V then heels it by 1 V
 
 [diagnosis]
-coefficient_uncertainty = {{ damping = 0.5, restoring = 0.2, thrust = 0.2 }}  # the numbers are round
+coefficient_uncertainty = {{ damping = 0.5, restoring = 0.2, thrust = 0.2 }}  # rounded
 facts = {{ indoors = true }}
 """
 HULL = (
@@ -195,7 +205,7 @@ def rows_of(whole: Recording, begin: int, end: int) -> Recording:
 
 def diagnose(whole: Recording, vessel: Vessel) -> Diagnosis:
     """Diagnose the linear oscillator from stretches of the training data."""
-    fitted = [rows_of(whole, *rows) for rows in FITTED]
+    fitted = list(starmap(partial(rows_of, whole), FITTED))
     held_out = rows_of(whole, *HELD_OUT)
     return pipeline.diagnose_loaded(Loaded(fitted, [held_out], {whole.path: vessel}, held_out.name))
 
@@ -230,10 +240,10 @@ def rms(off: Array, begin: int = START, end: int | None = None) -> float:
 
 
 def models_of(diagnosis: Diagnosis) -> dict[str, Fit]:
-    """Return the linear oscillator, nominal and refitted, with one more effect each, and patched."""
+    """Return the linear oscillator, that with one more effect at a time, and the patched one."""
     ranking = diagnosis.ranking
     models = {"linear, as written": ranking.nominal, "linear, recalibrated": ranking.recalibrated}
-    identified = {effect.name for effect in ranking.named}
+    identified = names_of(ranking.named)
     names: list[str] = []
     for name in ranking.best.effects:
         if name in identified:
@@ -270,7 +280,8 @@ def input_rows(whole: Path, diagnosis: Diagnosis) -> list[list[str]]:
     rows = []
     for interpolation, words in INTERPOLATIONS.items():
         recording = open_set(whole, interpolation)
-        fitted = [map_recording(rows_of(recording, *ends), problem.program) for ends in FITTED]
+        parts = starmap(partial(rows_of, recording), FITTED)
+        fitted = [map_recording(part, problem.program) for part in parts]
         refitted = Problem(fitted, problem.ambient, problem.uncertainty)
         _, base = baseline(refitted)
         models = {"linear": base, "found": with_effects(refitted, base, COMPARED)}
@@ -327,14 +338,16 @@ def main() -> None:
     diagnosis = diagnose(open_set(runs["train"]), vessel)
     took = time.perf_counter() - begin
     write_report(diagnosis, NAME)
-    rows = sum(b - a for a, b in FITTED)
+    rows = int(np.diff(FITTED).sum())
     print(
         f"fitted on {rows} rows ({rows * ROW:.1f} s of the circuit) in {took:.0f} s; "
         f"{diagnosis.findings.held_out_note}"
     )
     models = models_of(diagnosis)
-    tests = {name: open_set(runs[name]) for name in (MULTISINE, ARROW)}
-    off = {name: simulation_errors(diagnosis, test, models) for name, test in tests.items()}
+    off = {}
+    for name in (MULTISINE, ARROW):
+        test = open_set(runs[name])
+        off[name] = simulation_errors(diagnosis, test, models)
     header = ["model", MULTISINE, ARROW, "arrow without its tip", "source"]
     print_table("Rms error [mV] of one free run over each whole test set", header, score_rows(off))
     nominal, linear, *_, arrow = map(rms, off[ARROW].values())
@@ -349,10 +362,10 @@ def main() -> None:
     title = "Rms error [mV] over a held-out stretch of the training data, by interpolation of input"
     print_table(title, header, input_rows(runs["train"], diagnosis))
     few = ["linear, recalibrated", *list(models)[-2:]]
-    left = {model: off[ARROW][model] for model in few}
+    left = dict(zip(few, selected(off[ARROW], few), strict=True))
     header = ["of the arrow", "recorded [mV]", *few, "patched [% of recorded]"]
     title = "Residual, rms error [mV], by amplitude"
-    print_table(title, header, amplitude_rows(left, tests[ARROW]))
+    print_table(title, header, amplitude_rows(left, test))
     title = "Residual over the arrow, share of its square [%] by frequency"
     print_table(title, ["band", *few], band_rows(left))
     print(f"\n{residual_text(diagnosis)}")

@@ -23,6 +23,7 @@ from boatsim.simulate import scenario
 from boatsim.simulate.camera_metric import CameraFrames, CameraMetricSet
 from boatsim.simulate.cases import content
 from boatsim.simulate.scenario import Scenario
+from validation.real.common import names_of
 
 TESTS = ("sway_1", "sway_2", "sway_3", "sway_4", "yaw_1", "yaw_2", "yaw_3", "yaw_4")
 WINDY = ("yaw_2", "yaw_4")  # T18
@@ -79,7 +80,7 @@ class Bench:
             nominal: Tables `[set]` of the scenario.
             replayed: Every boat gets the commands that the scenario's own boat gets.
         """
-        raw = content(f"joystick_boat/{name}")[0]
+        raw: dict[str, Any] = content(f"joystick_boat/{name}")[0]
         added = {effect["use"]: dict(effect) for effect in extra}
         kept = []
         for table in raw.get("effect", []):
@@ -115,10 +116,14 @@ class Bench:
         self, knobs: Sequence[Knob], values: Sequence[float], seeds: Sequence[int]
     ) -> dict[str, float]:
         """Return the metrics, averaged over seeds; empty if a run ends before they are defined."""
-        found = [self.measure.from_frames(self._film(knobs, values, seed)) for seed in seeds]
-        if not all(found):
-            return {}
-        return {name: float(np.mean([run[name] for run in found])) for name in found[0]}
+        by_metric: dict[str, list[float]] = {}
+        for seed in seeds:
+            found = self.measure.from_frames(self._film(knobs, values, seed))
+            if not found:
+                return {}
+            for name, x in found.items():
+                by_metric.setdefault(name, []).append(x)
+        return {name: float(np.mean(samples)) for name, samples in by_metric.items()}
 
     def _film(self, knobs: Sequence[Knob], values: Sequence[float], seed: int) -> CameraFrames:
         """Return the frames of the camera during one run."""
@@ -156,7 +161,7 @@ class Bench:
         frames = np.arange(0.0, t[-1] + 1e-9, 1.0 / camera.rate)
         noise = marks.standard_normal((len(frames), 2 * len(camera.marks)))[::every]
         frames = frames[::every]
-        x, east, psi = (np.interp(frames, t, y[:, i]) for i in (0, 1, 2))
+        x, east, psi = (np.interp(frames, t, column) for column in y[:, :3].T)
         seen = camera.seen(x + 1j * east, psi, noise)
         points = {}
         for name, z in zip(camera.marks, seen.T, strict=True):
@@ -229,7 +234,7 @@ def _over(until: Any, y: Array) -> bool:
 def _links(program: Program) -> list[tuple[int, int]]:
     """Return the positions of parameters that follow another effect: (copy, source)."""
     found = []
-    owners = {effect.name for effect in program.effects}
+    owners = names_of(program.effects)
     for effect in program.effects:
         for name in effect.filled:
             owner, _, key = type(effect).params()[name].follows.removesuffix("?").partition(".")

@@ -18,21 +18,23 @@ The 1-norm of the yaw tests is printed, not fitted: the number of frames it need
 tests of one length.
 
 A residual is a log ratio, for the heading the error over 10 deg, for the distance moved over 0.1 m;
-outside the bounds of the text a log ratio, and for the surge the error over 0.15 m. Beyond 3 it grows
-logarithmically. Its standard deviation is set to 0.3. The norms of one test are computed from one
-curve: together they count as two numbers, each bound of the text as one.
+outside the bounds of the text a log ratio, and for the surge the error over 0.15 m. Beyond 3 it
+grows logarithmically. Its standard deviation is set to 0.3. The norms of one test are computed from
+one curve: together they count as two numbers, each bound of the text as one.
 
-The nominal is the thesis' simulation as far as it is physical: rigid body and added mass, ideal
-thrust in both directions, no drag, no Coriolis force, no lags, no wind. Its own coefficients are the
-thrust at PWM 150 in the sway and in the yaw program; refitted they give the baseline. Candidates are
-added as in `boatsim diagnose`: by Laplace evidence, from 4 nats on. The search replays the commands
-of the turns with one seed; the norms printed at the end are closed loop with six seeds.
+The nominal is the physical part of the thesis' simulation: rigid body and added mass, ideal thrust
+in both directions, no drag, no Coriolis force, no lags, no wind. Its own coefficients are the
+thrust at PWM 150 in the sway and in the yaw program; refitted they give the baseline. Candidates
+are added as in `boatsim diagnose`: by Laplace evidence, from 4 nats on. The search replays the
+commands of the turns with one seed; the norms printed at the end are closed loop with six seeds.
 """
 
 from collections.abc import Mapping, Sequence
 from copy import copy
 from dataclasses import dataclass
+from functools import partial
 from math import asinh, log, sqrt
+from operator import attrgetter
 from typing import Any
 
 import numpy as np
@@ -40,7 +42,7 @@ import numpy as np
 from boatsim.diagnosis.config import DEFAULT
 from boatsim.diagnosis.fit import ParameterSpace, log_prior
 from boatsim.physics.base import Array
-from validation.real.common import fixed, print_table
+from validation.real.common import fixed, print_table, selected
 from validation.real.thesis_runs import TESTS, WINDY, Bench, Knob
 from validation.real.thesis_score import CLIP, J, residual
 
@@ -147,7 +149,7 @@ class Tables:
     def only(self, tests: Sequence[str], facts: bool = True) -> "Tables":
         """Return some of the tests, with or without the bounds of the text; runs are shared."""
         found = copy(self)
-        found.benches = {test: self.benches[test] for test in tests}
+        found.benches = dict(zip(tests, selected(self.benches, tests), strict=True))
         found.facts = facts
         return found
 
@@ -165,7 +167,8 @@ class Tables:
 
     def residuals(self, knobs: Sequence[Knob], theta: Sequence[float]) -> Array:
         """Return the weighted residuals (R,) of all tests."""
-        return np.concatenate([self.of_test(test, knobs, theta) for test in self.benches])
+        of_test = partial(self.of_test, knobs=knobs, theta=theta)
+        return np.concatenate(list(map(of_test, self.benches)))
 
     def of_test(self, test: str, knobs: Sequence[Knob], theta: Sequence[float]) -> Array:
         """Return the weighted residuals of one test: its norms, then the bounds of the text."""
@@ -297,9 +300,9 @@ def with_candidate(tables: Tables, base: Fit, name: str, most: int = 3) -> Fit:
 
 def without(tables: Tables, base: Fit, name: str) -> Fit:
     """Return `base` refitted without one of its candidates."""
-    names = tuple(n for n in base.names if n != name)
+    names = tuple(filter(name.__ne__, base.names))
     known = dict(zip(base.knobs, base.theta.tolist(), strict=True))
-    return gauss_newton(tables, names, np.array([known[k] for k in knobs_of(names)]))
+    return gauss_newton(tables, names, np.array(list(map(known.__getitem__, knobs_of(names)))))
 
 
 @dataclass(frozen=True)
@@ -319,10 +322,6 @@ class Ranking:
         return fit.evidence - self.best.evidence
 
 
-def _evidence(fit: Fit) -> float:
-    return fit.evidence
-
-
 def rank(
     tables: Tables, candidates: Sequence[str] = tuple(CANDIDATES), most: int = MAX_EFFECTS
 ) -> Ranking:
@@ -333,12 +332,11 @@ def rank(
     tested: dict[tuple[str, ...], dict[str, Fit]] = {}
 
     def with_each(fit: Fit) -> dict[str, Fit]:
-        others = [name for name in candidates if name not in best.names]
-        return {name: with_candidate(tables, fit, name) for name in others}
+        return {n: with_candidate(tables, fit, n) for n in candidates if n not in best.names}
 
     while len(best.names) < most:
         tested[best.names] = with_each(best)
-        front = max(tested[best.names].values(), key=_evidence)
+        front = max(tested[best.names].values(), key=attrgetter("evidence"))
         if front.evidence < best.evidence + MIN_GAIN:
             break
         best = pruned(tables, gauss_newton(tables, front.names, front.theta))
@@ -358,7 +356,7 @@ def rank(
 def pruned(tables: Tables, best: Fit) -> Fit:
     """Return the set without members that others have made unnecessary."""
     while best.names:
-        fewer = max([without(tables, best, name) for name in best.names], key=_evidence)
+        fewer = max(map(partial(without, tables, best), best.names), key=attrgetter("evidence"))
         if fewer.evidence < best.evidence - MIN_GAIN:
             break
         best = fewer
@@ -373,11 +371,11 @@ def fit_without_test(tables: Tables, fitted: Fit, test: str) -> Fit:
 
     The starts are the old strengths, and strengths nearer to the prior.
     """
-    rest = tables.only([t for t in tables.benches if t != test])
-    mean = np.array([knob.mean for knob in fitted.knobs])
+    rest = tables.only(list(filter(test.__ne__, tables.benches)))
+    mean = ParameterSpace(fitted.knobs).mean  # type: ignore[arg-type]
     near = gauss_newton(rest, fitted.names, fitted.theta)
     far = gauss_newton(rest, fitted.names, 0.7 * fitted.theta + 0.3 * mean)
-    return max(near, far, key=_evidence)
+    return max(near, far, key=attrgetter("evidence"))
 
 
 def distance(tables: Tables, fitted: Fit, tests: Sequence[str]) -> float:
@@ -411,7 +409,7 @@ def print_ranking(ranking: Ranking) -> None:
 
 def strengths(fitted: Fit, name: str) -> str:
     """Return the fitted values of a candidate as text."""
-    return ", ".join(strength(fitted, knob) for knob in CANDIDATES[name])
+    return ", ".join(map(partial(strength, fitted), CANDIDATES[name]))
 
 
 def strength(fitted: Fit, knob: Knob) -> str:
@@ -435,7 +433,8 @@ def print_sources(tables: Tables, ranking: Ranking) -> None:
     best = ranking.best
     rows = []
     for name in best.names:
-        rows.append([name, *fixed(1, *(gain_in(part, best, name) for part in parts.values()))])
+        gain = partial(gain_in, best, name)
+        rows.append([name, *fixed(1, *map(gain, parts.values()))])
     title = "gain of each effect by part of the data, all else refitted to that part [nats]"
     print_table(title, ["effect", *parts], rows)
     shares = []
@@ -449,7 +448,7 @@ def print_sources(tables: Tables, ranking: Ranking) -> None:
     print_table(title, ["strength", *tables.benches], shares)
 
 
-def gain_in(part: Tables, best: Fit, name: str) -> float:
+def gain_in(best: Fit, name: str, part: Tables) -> float:
     """Return the evidence of one effect in a part of the data [nats]."""
     return gauss_newton(part, best.names, best.theta).evidence - without(part, best, name).evidence
 
@@ -528,9 +527,9 @@ def run(bench: Bench, fitted: Fit) -> dict[str, float]:
 
 
 def alike(ranking: Ranking, name: str) -> dict[str, Fit]:
-    """Return the fits with another effect in the place of an identified one that cannot be excluded.
+    """Return fits with another effect in the place of an identified one, the best first.
 
-    The best one is first.
+    Only those that the data do not exclude are returned.
     """
     rivals = sorted(ranking.rivals[name].items(), key=lambda item: -item[1].evidence)
     return {rival: fit for rival, fit in rivals if ranking.gain(fit) > -DEFAULT.select.alike}
@@ -559,7 +558,7 @@ def print_undetermined(ranking: Ranking) -> None:
             )
             print(
                 f"    thrust ahead over thrust astern: {thrust_ratio(ranking.best):.3f} with the "
-                f"first, {thrust_ratio(fitted):.3f} with the second; the tables determine this ratio"
+                f"first, {thrust_ratio(fitted):.3f} with the second (determined by the tables)"
             )
     idle, vague = [], []
     for name, fitted in ranking.last.items():

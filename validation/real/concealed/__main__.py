@@ -8,11 +8,11 @@ Each case then alters the recordings as its cause would have, by closed form, or
 identified effects from the patched vessel. The truth is printed together with a fit of the same
 cause to the unaltered recordings: a real boat has a little of everything, to which an alteration
 adds, so the size of both together is right too. A cause is visible if the true structure, with
-fitted sizes, gains more than 6 nats in the filter of the diagnosis. A cause that is not visible must
-not be reported.
+fitted sizes, gains more than 6 nats in the filter of the diagnosis. A cause that is not visible
+must not be reported.
 
---only takes names of sets or parts of names of cases; --list prints the cases. The two releases take
-a minute or two. Short pieces of a few runs are used of the other sets, as printed; a single
+--only takes names of sets or parts of names of cases; --list prints the cases. The two releases
+take a minute or two. Short pieces of a few runs are used of the other sets, as printed; a single
 diagnosis may still take ten minutes, because so much is missing from their plain vessels. Sets
 whose recordings are not on this machine are skipped.
 """
@@ -26,7 +26,7 @@ from validation.real.common import OUT, print_table
 from validation.real.concealed.alterations import unaltered
 from validation.real.concealed.base import Patched
 from validation.real.concealed.cases import STUDIES, Case, Study
-from validation.real.concealed.judging import Verdict, names_of, shares, sizes_of
+from validation.real.concealed.judging import Verdict, identified_names, shares, sizes_of
 
 HEADER = ["set", "concealed", "truth", "unaltered", "gain [nats]", "outcome", "answer"]
 
@@ -41,7 +41,7 @@ def row(study: Study, case: Case, verdict: Verdict) -> list[str]:
 
 
 def requested(study: Study, case: str, only: Sequence[str]) -> bool:
-    """Whether a case is requested by the name of its set or a part of its own name."""
+    """Whether a case is requested by the name of its set or by a part of its name."""
     return not only or study.name in only or any(part in case for part in only)
 
 
@@ -49,12 +49,14 @@ def any_requested(study: Study, only: Sequence[str]) -> bool:
     """Whether any case of a set is requested."""
     if not only or study.name in only or any("removed" in part for part in only):
         return True
-    cases = study.cases(study.open(None, unaltered).vessel)
-    return any(requested(study, case.name, only) for case in cases)
+    for case in study.cases(study.open(None, unaltered).vessel):
+        if requested(study, case.name, only):
+            return True
+    return False
 
 
 def main() -> None:
-    """Run every set, print each case as it is judged, then all of them with the goals."""
+    """Run every set, print each case when it is judged, then all of them with the goals."""
     parser = argparse.ArgumentParser(
         prog="python -m validation.real.concealed", description=__doc__
     )
@@ -99,7 +101,7 @@ def run(
     patched = Patched(study, out)
     print(f"\n{study.name}: {study.about}")
     print(f"  the vessel lacks: {sizes_of(patched.found) or 'nothing'}")
-    left = ", ".join(sorted(names_of(patched.before))) or "nothing"
+    left = ", ".join(sorted(identified_names(patched.before))) or "nothing"
     verdict = patched.before.findings.answer["verdict"]
     print(f"  still identified with the patched vessel: {left} ({verdict})", flush=True)
     for case in patched.cases():

@@ -1,8 +1,8 @@
 """Alterations of real recordings: what a known fault would have recorded.
 
-Each alteration takes a recording as it was read, before rows are thinned, and returns another. Commands
-are altered by the inverse of a fault: a boat with the fault that receives the altered commands moves
-exactly as recorded.
+Each alteration takes a recording with all of its rows and returns another. Commands are altered by
+the inverse of a fault: a boat with the fault that receives the altered commands moves exactly as
+recorded.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -85,7 +85,7 @@ def off_by(names: Sequence[str], offset: float) -> Alteration:
 
 
 def steering_harder(names: Sequence[str], gain: float) -> Alteration:
-    """Rudders that add a share of the size of every angle, so that they steer harder to one side."""
+    """Rudders that add a share of the size of every angle: they steer harder to one side."""
     return rewritten(names, lambda given: given / (1.0 + gain * np.sign(given)))
 
 
@@ -112,7 +112,7 @@ def delayed_commands(names: Sequence[str], seconds: float) -> Alteration:
 
 
 def current(north: float, east: float) -> Alteration:
-    """The same motion through water that moves over the ground [m/s], by a Galilean transformation.
+    """A current [m/s] that carries the same motion through the water: a Galilean transformation.
 
     Positions drift, and speeds over the ground change; speeds through the water stay the same.
     """
@@ -171,7 +171,7 @@ def of_another_point(forward: float, starboard: float) -> Alteration:
 
 
 def stretched(x: float, y: float) -> Alteration:
-    """Positions (1 + x) and (1 + y) times as far from the origin of the tank, and the same speeds."""
+    """Positions (1 + x) and (1 + y) times as far from the origin, and unchanged speeds."""
 
     def alter(recording: Recording) -> Recording:
         factors = {"x_m": 1.0 + x, "y_m": 1.0 + y}

@@ -1,6 +1,7 @@
 """The vessel of the cases: the published one, patched until nothing more is identified."""
 
 from functools import cached_property
+from itertools import chain
 from pathlib import Path
 
 import tomlkit
@@ -12,21 +13,23 @@ from boatsim.diagnosis.report import patched_vessel
 from boatsim.physics.base import Release
 from boatsim.physics.content import load_class
 from boatsim.physics.vessel import Vessel, load
-from validation.real.common import effects_of
+from validation.real.common import by_name, effects_of, names_of, values_of
 from validation.real.concealed.alterations import Alteration, unaltered
 from validation.real.concealed.cases import Case, Study, removed
-from validation.real.concealed.judging import Cause, Verdict, accepted_names, judge
+from validation.real.concealed.judging import (
+    Cause,
+    Verdict,
+    accepted_names,
+    identified_names,
+    judge,
+)
 
 MAX_ROUNDS = 3  # of patching a vessel with what is still identified with it
 
 
 def causes_of(diagnosis: Diagnosis) -> list[Cause]:
     """Return the identified effects of an answer with their sizes."""
-    causes = []
-    for effect in effects_of(diagnosis):
-        sizes = {name: p["value"] for name, p in effect["parameters"].items()}
-        causes.append(Cause(effect["name"], sizes))
-    return causes
+    return [Cause(effect["name"], values_of(effect)) for effect in effects_of(diagnosis)]
 
 
 class Patched:
@@ -62,10 +65,8 @@ class Patched:
     @property
     def found(self) -> list[Cause]:
         """Effects of the patched vessel; the last sizes of one that was found in several rounds."""
-        found = {}
-        for diagnosis in self.rounds:
-            found |= {cause.name: cause for cause in causes_of(diagnosis)}
-        return list(found.values())
+        causes = chain.from_iterable(map(causes_of, self.rounds))
+        return list(by_name(list(causes)).values())
 
     def cases(self) -> list[Case]:
         """Return the cases of the set, and those with one identified effect removed."""
@@ -100,20 +101,23 @@ class Patched:
         return path
 
     def _rounds_with(self, name: str) -> list[Diagnosis]:
-        return [d for d in self.rounds if name in [cause.name for cause in causes_of(d)]]
+        return [d for d in self.rounds if name in identified_names(d)]
 
     def _is_removable(self, name: str) -> bool:
-        """Whether an effect is in the vessel file, or its changes of numbers come from one round."""
+        """Whether an effect is in the vessel file, or its changes come from one round only."""
         return len(self._rounds_with(name)) == 1 or name in map(called, self.vessel.found)
 
     def _restore(self, document: tomlkit.TOMLDocument, name: str) -> None:
         """Restore the numbers that a release changed."""
         release = load_class("effect", name)
         fit = self._rounds_with(name)[0].ranking.best
-        fitted = [f.name for f in fit.free if f.effect == name and not f.relative]
-        effect = release.from_settings({n: fit.value(name, n)[0] for n in fitted})
+        settings = {}
+        for f in fit.free:
+            if f.effect == name and not f.relative:
+                settings[f.name] = fit.value(name, f.name)[0]
+        effect = release.from_settings(settings)
         assert isinstance(effect, Release)
-        names = [own.name for own in self.vessel.effects]
+        names = names_of(self.vessel.effects)
         for change in effect.changes(self.vessel):
             if change.how == "sets":
                 raise ValueError(f"{name}: the numbers before the change are not known")

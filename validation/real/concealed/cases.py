@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from operator import attrgetter
 from pathlib import Path
 
 from boatsim.diagnosis import loading, priors
@@ -51,9 +52,9 @@ class Study:
 
 
 def split(fitted: Sequence[Recording], held_out: Sequence[Recording], vessel: Vessel) -> Loaded:
-    """Return recordings of one vessel as they are diagnosed."""
-    vessels = {recording.path: vessel for recording in (*fitted, *held_out)}
-    return Loaded(fitted, held_out, vessels, "one recording")
+    """Return recordings of one vessel as a diagnosis takes them."""
+    paths = map(attrgetter("path"), (*fitted, *held_out))
+    return Loaded(fitted, held_out, dict.fromkeys(paths, vessel), "one recording")
 
 
 def planar(
@@ -255,8 +256,10 @@ def release_cases(vessel: Vessel) -> list[Case]:
     if damping is not None:
         bent.append(Cause("cubic_damping", {"roll_Nms3": number(damping, "roll") * growth}))
     slow = Cause("metacentric_height_error", {"factor": slower**-2})
-    forces = [e for e in vessel.effects if type(e).idea() == "steady_force"]
-    moment = sum(number(effect, "roll") for effect in forces)
+    moment = 0.0
+    for effect in vessel.effects:
+        if type(effect).idea() == "steady_force":
+            moment += number(effect, "roll")
     reversed_roll: tuple[Cause, ...] = ()
     if moment:
         steady = Cause("steady_force", {"roll_Nm": -2.0 * moment})
@@ -286,7 +289,7 @@ def tank_cases(vessel: Vessel) -> list[Case]:
     """Return the cases of one rudder, with recorded positions and speeds over the ground."""
     U = number(vessel.effect("approach_balance"), "speed")
     step = 0.5 * vessel.length / U  # [s] half a length
-    delay = round(0.2 * step)
+    delay: float = round(0.2 * step)
     if vessel.length < 100.0:
         delay = round(0.2 * step, 1)
     shaft = "n_rps"

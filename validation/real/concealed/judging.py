@@ -2,6 +2,7 @@
 
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 
 import numpy as np
 
@@ -13,7 +14,13 @@ from boatsim.diagnosis.report.answer import key_of
 from boatsim.diagnosis.report.schema import EffectEntry
 from boatsim.diagnosis.search.screening import add_effect
 from boatsim.physics.base import Effect
-from validation.real.common import effects_of, parameter_text
+from validation.real.common import (
+    by_name,
+    effects_of,
+    names_of,
+    parameter_text,
+    values_of,
+)
 
 VISIBLE = 6.0  # [nats] gained by the true structure, from which a cause is visible
 # a size is right within so many sds, or within this share of it
@@ -89,7 +96,7 @@ def judge(
         others: Causes that this vessel lacks anyway; they must be identified too.
     """
     every = (*truth, *others)
-    known = {cause.name for cause in others} or names_of(before)
+    known = set(names_of(others)) or identified_names(before)
     answer = diagnosis.findings.answer
     doubt = answer["unknown"]["flag"] and not before.findings.answer["unknown"]["flag"]
     gain = gain_of(diagnosis, truth, known)
@@ -101,7 +108,7 @@ def judge(
             continue
         new.append(effect)
         words.append(effect_text(effect))
-        if any(_matches(effect, cause) for cause in every):
+        if any(map(partial(_matches, effect), every)):
             continue
         if is_of_the_boat(before, effect, known):
             words[-1] += " (also in the unaltered recordings)"
@@ -116,8 +123,8 @@ def judge(
         outcome = FAINT
         if visible:
             outcome = RIGHT
-            for effect, cause in zip(hits, truth, strict=False):
-                if effect and not right_size(effect, cause, own.get(effect["name"])):
+            for hit, cause in zip(hits, truth, strict=False):
+                if hit and not right_size(hit, cause, own.get(hit["name"])):
                     outcome = SIZE
     elif visible or doubt:
         outcome = MISSED
@@ -139,8 +146,7 @@ def is_of_the_boat(before: Diagnosis, entry: EffectEntry, known: Collection[str]
     if effect is None or not before.findings.answer["unknown"]["flag"]:
         return False
     base = _with_known(before, (), known)
-    values = {name: p["value"] for name, p in entry["parameters"].items()}
-    whole = with_effect(before.problem, base, effect, values)
+    whole = with_effect(before.problem, base, effect, values_of(entry))
     if not whole.evidence - base.evidence > VISIBLE:
         return False
     for key, (value, sd, _) in _parameters(whole, effect).items():
@@ -151,7 +157,7 @@ def is_of_the_boat(before: Diagnosis, entry: EffectEntry, known: Collection[str]
     return True
 
 
-def names_of(diagnosis: Diagnosis) -> set[str]:
+def identified_names(diagnosis: Diagnosis) -> set[str]:
     """Return the names of the identified effects."""
     return {effect["name"] for effect in effects_of(diagnosis)}
 
@@ -160,7 +166,7 @@ def accepted_names(truth: Sequence[Cause]) -> set[str]:
     """Return all names that are right for some causes."""
     names: set[str] = set()
     for cause in truth:
-        names.update(one.name for one in cause.either)
+        names.update(names_of(cause.either))
     return names
 
 
@@ -180,10 +186,9 @@ def right_size(entry: EffectEntry, cause: Cause, own: Mapping[str, Size] | None 
         own: Sizes of the same cause in the unaltered recordings, by parameter with unit.
     """
     alone: dict[str, Size] = {}
-    for one in cause.either:
+    for one in reversed(cause.either):
         if one.name == entry["name"]:
             alone = {key: Size(x, 0.0) for key, x in one.values.items()}
-            break
     both = dict(alone)
     for key in alone.keys() & (own or {}).keys():
         both[key] = alone[key].with_own((own or {})[key])
@@ -283,7 +288,7 @@ def _with_known(diagnosis: Diagnosis, truth: Sequence[Cause], known: Collection[
 
 def candidate(problem: Problem, name: str) -> Effect | None:
     """Return the candidate effect of that name in a compiled program, if it has one."""
-    candidates = {effect.name: effect for effect in problem.program.candidates}
+    candidates = by_name(problem.program.candidates)
     return candidates.get(FURTHER + name) or candidates.get(name)
 
 
@@ -301,10 +306,10 @@ def with_effect(problem: Problem, base: Fit, effect: Effect, values: Mapping[str
 
 def _fitted(diagnosis: Diagnosis, effect: Effect) -> dict[str, float]:
     """Return the values of an effect in an answer."""
-    values = {}
+    values: dict[str, float] = {}
     for entry in effects_of(diagnosis):
         if entry["name"] == called(effect.name):
-            values |= {name: p["value"] for name, p in entry["parameters"].items()}
+            values |= values_of(entry)
     return values
 
 
