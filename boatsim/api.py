@@ -50,7 +50,7 @@ Names = Name | Sequence[Name]
 
 @dataclass(frozen=True)
 class Run:
-    """What a run left."""
+    """Result of a run."""
 
     scenario: str
     seed: int

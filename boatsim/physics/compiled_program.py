@@ -41,7 +41,7 @@ Rows = NDArray[np.int64]
 
 
 class CompiledProgram(Protocol):
-    """What the package that `boatsim.physics.cache` composes for a vessel offers."""
+    """Interface of the compiled package that `boatsim.physics.cache` composes for a vessel."""
 
     __name__: str
     __file__: str

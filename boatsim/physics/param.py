@@ -207,7 +207,11 @@ class Checked:
     @classmethod
     def params(cls) -> dict[str, Param]:
         """Return the `Param` of every checked field by name, in the order of declaration."""
-        return {f.name: f.metadata["param"] for f in fields(cls) if "param" in f.metadata}  # type: ignore[arg-type]
+        params = {}
+        for field in fields(cls):  # type: ignore[arg-type]
+            if "param" in field.metadata:
+                params[field.name] = field.metadata["param"]
+        return params
 
     @classmethod
     def from_settings(cls, settings: Mapping[str, object]) -> Self:
@@ -220,7 +224,10 @@ class Checked:
             BadInput: A setting does not exist (the message contains the nearest valid name), or a
                 value is not allowed.
         """
-        names = [f.name for f in fields(cls) if f.init and "ours" not in f.metadata]  # type: ignore[arg-type]
+        names = []
+        for field in fields(cls):  # type: ignore[arg-type]
+            if field.init and "ours" not in field.metadata:
+                names.append(field.name)
         for key in settings:
             if key not in names:
                 raise BadInput(unknown_name(f"{cls.__name__}: setting", key, names))

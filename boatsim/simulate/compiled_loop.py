@@ -64,7 +64,7 @@ class Orders(NamedTuple):
 
 
 class Loop(NamedTuple):
-    """What the closed loop takes of the controllers."""
+    """Inputs of the closed loop that come from the controllers."""
 
     control: Control
     sensing: Sensing

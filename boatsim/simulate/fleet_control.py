@@ -23,7 +23,7 @@ Vectorised: TypeAlias = Callable[[Records, Mapping[str, float]], Mapping[str, Ar
 
 @dataclass
 class Aboard:
-    """What all kinds of control share.
+    """Base class of all kinds of control.
 
     Attributes:
         batch: The vessels.

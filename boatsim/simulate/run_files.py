@@ -55,7 +55,7 @@ class Steering(Protocol):
 
     @property
     def pace(self) -> Pace:
-        """What holds the run back to the pace of a clock."""
+        """Protocol of an object that delays a run to the pace of a clock."""
 
     @property
     def refresh(self) -> float:

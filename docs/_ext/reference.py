@@ -19,15 +19,15 @@ from boatsim.simulate import cases
 if TYPE_CHECKING:
     from sphinx.application import Sphinx
 
-EFFECTS = """Each page describes one effect of physics or of measurement from `boatsim/physics/effects/`.
+EFFECTS = """Each page describes one effect of physics or measurement in `boatsim/physics/effects/`.
 
 A diagnosis fits the parameters marked *fitted: yes* when it tests the effect as a candidate.
 Parameters *fitted as damping, thrust, added mass, restoring* or *wind* are coefficients of the
 vessel that are never known exactly; a diagnosis refits them within their specified uncertainty."""
 SETTINGS = """Every number that influences a verdict of the diagnosis is a setting.
 
-`boatsim diagnose --set GROUP.NAME=VALUE` and the argument `settings` of `boatsim.diagnose` change one;
-`diagnosis.json` records the values used under `config`."""
+`boatsim diagnose --set GROUP.NAME=VALUE` and the argument `settings` of `boatsim.diagnose` change
+one; `diagnosis.json` records the values used under `config`."""
 SECTIONS = {  # folder of pages -> heading and introduction of its index
     "commands": ("Commands", "Each page is the output of `--help`."),
     "effects": ("Effects", EFFECTS),

@@ -202,8 +202,8 @@ class DampingError(Release):
     shown_by: ClassVar[str] = "coasting down in each axis"
 
     surge_factor: float = factor(
-        "linear_damping.surge|surge_drag.linear|approach_balance.damping|mmg_hull.R_0|abkowitz_hull.X_u"
-        "|mmg_low_speed_hull.X_0F",
+        "linear_damping.surge|surge_drag.linear|approach_balance.damping|mmg_hull.R_0"
+        "|abkowitz_hull.X_u|mmg_low_speed_hull.X_0F",
         "surge_drag.quadratic",
         words="factor on the surge damping",
         axis="surge",

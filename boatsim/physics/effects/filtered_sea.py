@@ -35,10 +35,11 @@ def law(m: Any, q: Any) -> Wrench:
 class FilteredSea(Force):
     """Coloured noise for wave forces, as in the design of rudder controllers.
 
-    F(s) = sigma 2 z w0 s / (s^2 + 2 z w0 s + w0^2) applied to white noise, as a sum of cosines
+    F = sigma n(t),  n(t) a process of unit rms shaped by 2 z w0 s / (s^2 + 2 z w0 s + w0^2)
 
     sigma is the rms force of the axis, w0 the `frequency` [rad/s], z the `damping` of the shaping
-    filter. The sway force also heels the hull with the lever `arm` [m].
+    filter. n(t) is realised as a sum of cosines. The sway force also heels the hull with the lever
+    `arm` [m].
     """
 
     words: ClassVar[str] = "waves exert independent narrow-band forces in sway, yaw and roll"

@@ -60,7 +60,7 @@ def swell(q: Any) -> Swell:
 class WaveForcing(Unsteady):
     """Narrow-band wave forces in body axes, independent from axis to axis.
 
-    F(s) = sigma 2 z w0 s / (s^2 + 2 z w0 s + w0^2) applied to white noise
+    F = sigma n(t),  n(t) a process of unit rms shaped by 2 z w0 s / (s^2 + 2 z w0 s + w0^2)
 
     sigma is the rms force of the axis, w0 the `frequency` [rad/s], z the `damping` of the filter.
     """

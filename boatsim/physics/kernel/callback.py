@@ -32,7 +32,7 @@ def passive(t: float, q: Array, qd: Array, user: Array, n: int, f: Array, M: Arr
 
 @lean
 def passive_in_place(t: float, q: Array, qd: Array, user: Array, f: Array, M: Array) -> None:
-    """The same as the native callback, for a callback in Python."""
+    """Add forces and inertia from a callback in Python, as the native callback does."""
     passive(t, q, qd, user, user.size - 3 * HELD - 2 - K, f, M)
 
 

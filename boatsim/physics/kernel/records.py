@@ -81,7 +81,7 @@ class FilterStart(NamedTuple):
 
 
 class PassOptions(NamedTuple):
-    """What one pass of the filter computes and what it reuses."""
+    """Options of a pass of the filter: what it computes and what it reuses."""
 
     max_step: float  # [s] longest integration step
     gains: bool  # compute the gains; else reuse those of the last pass that did
@@ -90,7 +90,7 @@ class PassOptions(NamedTuple):
 
 
 class PassArrays(NamedTuple):
-    """What a pass of the filter computes for each row, or reuses as its options demand."""
+    """Results of a pass of the filter for each row, computed or reused according to its options."""
 
     transitions: Array  # (N, 3 NQ, 3 NQ) of motion and latent forces
     steps: Array  # (N,) [s] longest integration step that follows the quickest motion
@@ -100,7 +100,7 @@ class PassArrays(NamedTuple):
 
 
 class History(NamedTuple):
-    """What the smoother takes from a pass of the filter; it replaces means and covariances."""
+    """Results of a pass that the smoother needs; it overwrites the means and covariances."""
 
     means: Array  # (N, NZ)
     covariances: Array  # (N, NZ, NZ)
@@ -166,7 +166,7 @@ class Work(NamedTuple):
 
 
 class Pass(NamedTuple):
-    """What all steps of one pass of the filter share."""
+    """Inputs that are common to all steps of a pass of the filter."""
 
     inputs: Inputs
     laws: Laws

@@ -177,7 +177,7 @@ class Effect(Checked):
         for name, about in type(self).params().items():
             if about.follows and not self.stated(name):
                 own = own.having({name: self.followed(about.follows, vessel)})
-        if own._left():
+        if own._unset_parameters():
             rules = own.rules(vessel)
             own = own.having({n: x for n, x in rules.items() if not own.stated(n)})
         for fact, names in type(self).facts.items():
@@ -187,8 +187,8 @@ class Effect(Checked):
                     "among the facts of a recording or of the vessel's diagnosis"
                 )
         return replace(
-            own.having(dict.fromkeys(own._left(), 0.0)),
-            filled=frozenset(self._left()) | self.filled,
+            own.having(dict.fromkeys(own._unset_parameters(), 0.0)),
+            filled=frozenset(self._unset_parameters()) | self.filled,
         )
 
     def ratios(self, vessel: "Boat") -> dict[str, tuple[float, str]]:
@@ -230,7 +230,7 @@ class Effect(Checked):
             if {"param", "ours"} <= set(f.metadata)
         )
 
-    def _left(self) -> list[str]:
+    def _unset_parameters(self) -> list[str]:
         """Return the parameters without a value."""
         return [n for n in type(self).params() if not self.stated(n)]
 
