@@ -208,9 +208,9 @@ class Checked:
     def params(cls) -> dict[str, Param]:
         """Return the `Param` of every checked field by name, in the order of declaration."""
         params = {}
-        for field in fields(cls):  # type: ignore[arg-type]
-            if "param" in field.metadata:
-                params[field.name] = field.metadata["param"]
+        for declared in fields(cls):  # type: ignore[arg-type]
+            if "param" in declared.metadata:
+                params[declared.name] = declared.metadata["param"]
         return params
 
     @classmethod
@@ -225,9 +225,9 @@ class Checked:
                 value is not allowed.
         """
         names = []
-        for field in fields(cls):  # type: ignore[arg-type]
-            if field.init and "ours" not in field.metadata:
-                names.append(field.name)
+        for declared in fields(cls):  # type: ignore[arg-type]
+            if declared.init and "ours" not in declared.metadata:
+                names.append(declared.name)
         for key in settings:
             if key not in names:
                 raise BadInput(unknown_name(f"{cls.__name__}: setting", key, names))

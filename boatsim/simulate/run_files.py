@@ -55,7 +55,7 @@ class Steering(Protocol):
 
     @property
     def pace(self) -> Pace:
-        """Protocol of an object that delays a run to the pace of a clock."""
+        """Object that delays the run to the pace of a clock."""
 
     @property
     def refresh(self) -> float:
