@@ -15,7 +15,7 @@ from boatsim.diagnosis.loading import Loaded
 from boatsim.diagnosis.locate import missing_force as locate
 from boatsim.diagnosis.locate.regions import regions
 from boatsim.diagnosis.locate.residual_structure import Structure
-from boatsim.diagnosis.problem import Fit, Problem
+from boatsim.diagnosis.problem import Fit, FreeParameter, Problem
 from boatsim.diagnosis.question import Question
 from boatsim.diagnosis.report.assumptions import excluded_candidates, rules_entry
 from boatsim.diagnosis.report.described_terms import described_entries
@@ -65,9 +65,13 @@ def compose(
         seconds: Duration of the diagnosis [s].
     """
     vessel = problem.program.vessel
-    effects = [_effect(problem, ranking.best, one) for one in ranking.named]
+    effects = []
+    for identified in ranking.named:
+        effects.append(_effect(problem, ranking.best, identified))
     formulas = described_entries(ranking.description, vessel)
-    limits = {called(name): _limits(problem, f, name) for name, f in ranking.last.items()}
+    limits = {}
+    for name, fitted in ranking.last.items():
+        limits[called(name)] = _limits(problem, fitted, name)
     answer: Answer = {
         "verdict": _verdict(ranking, effects, bool(formulas)),
         "sentence": "",
@@ -83,7 +87,7 @@ def compose(
         "next_experiment": next_experiment.plan_entry(plan, NEXT_SCENARIO),
         "patch": "patched.toml",
         "mean_left": dict(evaluation.mean_force),
-        "tried": sorted({called(name) for name in question.candidates}),
+        "tried": sorted(set(map(called, question.candidates))),
         "left_out": excluded_candidates(question),
         "facts": dict(problem.recordings[0].facts),
         "rules": rules_entry(problem, len(question.candidates)),
@@ -96,11 +100,15 @@ def compose(
 
 
 def _verdict(ranking: Ranking, effects: Sequence[EffectEntry], described: bool) -> str:
+    if ranking.unknown and described:
+        return "described"
     if ranking.unknown:
-        return "described" if described else "unknown"
+        return "unknown"
     if any(effect["tied_with"] for effect in effects):
         return "ambiguous"
-    return "named" if effects else "nothing_missing"
+    if effects:
+        return "named"
+    return "nothing_missing"
 
 
 def _unknown(problem: Problem, ranking: Ranking, evaluation: Evaluation) -> UnknownEntry:
@@ -127,7 +135,7 @@ def _structure(found: Structure) -> StructureEntry:
 
 
 def _where(problem: Problem, ranking: Ranking, evaluation: Evaluation) -> WhereEntry:
-    """Axes, intervals and regions in which a force is missing."""
+    """Return the axes, intervals and regions in which a force is missing."""
     entry: WhereEntry = {
         "axes": locate.strength(problem, evaluation.missing),
         "intervals": [],
@@ -145,7 +153,7 @@ def _where(problem: Problem, ranking: Ranking, evaluation: Evaluation) -> WhereE
 
 
 def _log(loaded: Loaded, findings: Sequence[Finding]) -> list[LogEntry]:
-    """Entries of what is wrong with the recordings themselves."""
+    """Return the problems of the recordings."""
     by_file = {str(path): vessel for path, vessel in loaded.vessels.items()}
     entries = []
     for finding in findings:
@@ -155,13 +163,13 @@ def _log(loaded: Loaded, findings: Sequence[Finding]) -> list[LogEntry]:
 
 
 def _with_log_first(verdict: str, findings: Sequence[Finding], problem: Problem) -> str:
-    """The verdict after the findings that certainly concern the whole log."""
+    """Return the verdict, preceded by the findings that certainly concern the whole log."""
     config = problem.config.checks
     certain = [finding.description for finding in findings if finding.invalidates_log(config)]
     if not certain:
         return verdict
     rest = f"{verdict[:1].lower()}{verdict[1:]}"
-    return f"{capital(LOG_NOT_BOAT)}: {listed(certain)}. Taken as it is: {rest}"
+    return f"{capital(LOG_NOT_BOAT)}: {listed(certain)}. If the log is correct: {rest}"
 
 
 def meanings(candidates: Iterable[Effect], vessel: Vessel) -> dict[str, str]:
@@ -192,11 +200,13 @@ def key_of(name: str, unit: str) -> str:
         unit: Its unit; "" for a ratio, whose key is its name.
     """
     suffix = unit.replace("1/", "per").replace("/", "p").replace("^", "").replace(" ", "")
-    return f"{name}_{suffix}" if suffix else name
+    if suffix:
+        return f"{name}_{suffix}"
+    return name
 
 
 def _fit(evaluation: Evaluation, held_out: Sequence[str]) -> FitEntry:
-    """Errors of the free runs; that of roll only where it was recorded."""
+    """Return the errors of the free runs; that of roll only where it was recorded."""
     errors = evaluation.errors
     fit: FitEntry = {
         "horizon_s": evaluation.horizon,
@@ -210,12 +220,14 @@ def _fit(evaluation: Evaluation, held_out: Sequence[str]) -> FitEntry:
 
 
 def _effect(problem: Problem, best: Fit, named: IdentifiedEffect) -> EffectEntry:
-    """Entry of an identified effect."""
+    """Return the entry of an identified effect."""
     effect = next(e for e in problem.program.candidates if e.name == named.name)
     kind, config = type(effect), problem.config.answer
-    acting: Acting = {"on": list(effect.on)} if effect.on else {}
+    acting: Acting = {}
+    if effect.on:
+        acting["on"] = list(effect.on)
     parameters = {}
-    for name in _own(best, effect):
+    for name in _fitted_parameters(best, effect):
         key = key_of(name, kind.params()[name].unit)
         parameters[key] = _parameter(best, effect, name, config)
     return {
@@ -225,20 +237,20 @@ def _effect(problem: Problem, best: Fit, named: IdentifiedEffect) -> EffectEntry
         "probability": round(named.probability, 4),
         "gain_nats": round(named.gain, 2),
         "words": _words(best, effect),
-        "tied_with": [called(name) for name in named.tied_with],
+        "tied_with": list(map(called, named.tied_with)),
         "parameters": parameters | _ratios(problem, best, effect),
     }
 
 
-def _own(best: Fit, effect: Effect) -> list[str]:
-    """Names of the fitted parameters of an effect."""
-    return [f.name for f in best.free if f.effect == effect.name and not f.relative]
+def _fitted_parameters(best: Fit, effect: Effect) -> dict[str, FreeParameter]:
+    """Return the fitted parameters of an effect by name."""
+    return {f.name: f for f in best.free if f.effect == effect.name and not f.relative}
 
 
 def _ratios(problem: Problem, best: Fit, effect: Effect) -> dict[str, ParameterEntry]:
-    """Ratios of parameters, where recordings determine no more than that."""
+    """Return the ratios of parameters, where the recordings determine only ratios."""
     vessel, config = problem.program.vessel, problem.config.answer
-    own = {f.name: f for f in best.free if f.effect == effect.name and not f.relative}
+    own = _fitted_parameters(best, effect)
     fitted = {name: best.value(effect.name, name)[0] for name in own}
 
     def moved(name: str, step: float) -> Mapping[str, tuple[float, str]]:
@@ -260,9 +272,9 @@ def _ratios(problem: Problem, best: Fit, effect: Effect) -> dict[str, ParameterE
 
 
 def _words(best: Fit, effect: Effect) -> str:
-    """Meaning of an effect; of its opposite where its factor is above 1."""
+    """Return the meaning of an effect, or of its opposite where its factor is above 1."""
     kind = type(effect)
-    words, own = kind.words, _own(best, effect)
+    words, own = kind.words, list(_fitted_parameters(best, effect))
     if own and kind.words_above and best.value(effect.name, own[0])[0] > 1.0:
         words = kind.words_above
     if isinstance(effect, Channel) and effect.other_side:
@@ -288,19 +300,23 @@ def reported_sd(best: Fit, effect: Effect, name: str, config: AnswerConfig) -> f
         # some laws are absent at an infinite value
         strength = min(abs(value - param.absent), abs(value) or np.inf)
         return float(np.hypot(sd, config.law_error * strength))
-    return float(np.hypot(sd, config.law_error)) if param.unit == "rad" else sd
+    if param.unit == "rad":
+        return float(np.hypot(sd, config.law_error))
+    return sd
 
 
 def _parameter(best: Fit, effect: Effect, name: str, config: AnswerConfig) -> ParameterEntry:
-    """Value, sd and unit of a fitted parameter; angles within half a turn."""
+    """Return value, sd and unit of a fitted parameter; angles are within half a turn."""
     param = type(effect).params()[name]
     value, _ = best.value(effect.name, name)
     entry: ParameterEntry = {
-        "value": wrap(value) if param.unit == "rad" else value,
+        "value": value,
         "sd": reported_sd(best, effect, name, config),
         "unit": param.unit,
     }
-    free = next(f for f in best.free if f.effect == effect.name and f.name == name)
+    if param.unit == "rad":
+        entry["value"] = wrap(value)
+    free = _fitted_parameters(best, effect)[name]
     for end in (free.low, free.high):
         if end != param.absent and abs(value - end) <= config.at_bound * abs(end):
             entry["at_bound"] = True
@@ -308,12 +324,15 @@ def _parameter(best: Fit, effect: Effect, name: str, config: AnswerConfig) -> Pa
 
 
 def _candidates(ranking: Ranking) -> list[CandidateEntry]:
-    """Every candidate alone, best first, with its probability against the others and none."""
+    """Return each candidate alone, best first, with its probability against the others and none."""
     names = sorted(ranking.first, key=lambda n: -ranking.first[n])
-    gains = np.array([0.0, *(ranking.first[n] for n in names)])
-    weights = np.exp(gains - gains.max())
+    gains = [0.0]
+    for name in names:
+        gains.append(ranking.first[name])
+    weights = np.exp(np.array(gains) - np.max(gains))
     weights /= weights.sum()
-    found: dict[str, CandidateEntry] = {}  # of an idea that was tested in two places the better one
+    # an effect that was tested in two places is listed with the larger gain
+    found: dict[str, CandidateEntry] = {}
     for name, gain, weight in zip(names, gains[1:], weights[1:], strict=True):
         entry: CandidateEntry = {
             "name": called(name),
@@ -325,7 +344,7 @@ def _candidates(ranking: Ranking) -> list[CandidateEntry]:
 
 
 def _limits(problem: Problem, fitted: Fit, name: str) -> dict[str, float]:
-    """Upper limits (95 %) of the distance of each parameter from zero effect."""
+    """Return upper limits (95 %) of the distance of each parameter from zero effect."""
     config = problem.config.answer
     kind = next(type(e) for e in problem.program.candidates if e.name == name)
     params = kind.params()

@@ -22,8 +22,10 @@ def excluded_candidates(question: Question) -> list[LeftOutEntry]:
     for name in question.library.tested:
         if name not in question.candidates:
             reasons[name] = BY_USER
-    by_idea = {called(name): why for name, why in sorted(reasons.items())}
-    return [{"name": name, "reason": why} for name, why in by_idea.items()]
+    entries: dict[str, LeftOutEntry] = {}
+    for name, reason in sorted(reasons.items()):
+        entries[called(name)] = {"name": called(name), "reason": reason}
+    return list(entries.values())
 
 
 def rules_entry(problem: Problem, tested: int) -> RulesEntry:

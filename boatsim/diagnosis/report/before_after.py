@@ -34,9 +34,12 @@ def error_table(evaluation: Evaluation) -> Table | None:
     for part in evaluation.parts:
         unit = _unit_of(part.family)
         ratio = part.rms["patched"] / part.rms["recalibrated"]
-        row = [part.name, "fitted" if part.fitted else "held out", f"{unit.signal} [{unit.unit}]"]
-        row += [unit.text(part.rms[model]) for model in (*MODELS, ALONE)]
-        rows.append([*row, f"{ratio:.2f}"])
+        data = "held out"
+        if part.fitted:
+            data = "fitted"
+        errors = [unit.text(part.rms[model]) for model in (*MODELS, ALONE)]
+        label = f"{unit.signal} [{unit.unit}]"
+        rows.append([part.name, data, label, *errors, f"{ratio:.2f}"])
     header = [
         "part",
         "data",
@@ -64,7 +67,7 @@ def remarks(problem: Problem, ranking: Ranking, evaluation: Evaluation) -> tuple
 
 
 def _no_gain(ranking: Ranking, evaluation: Evaluation) -> list[str]:
-    """Families of signals in which the patch does not help on held-out data."""
+    """Return a sentence for each error on held-out data that the patch does not reduce."""
     found: list[str] = []
     if not ranking.adds:
         return found
@@ -80,9 +83,10 @@ def _no_gain(ranking: Ranking, evaluation: Evaluation) -> list[str]:
 
 
 def _unexplained(problem: Problem, ranking: Ranking) -> list[str]:
-    """The force beyond the assumed disturbance that remains."""
-    described = ranking.description
-    remaining = described.left_over if described else ranking.left_over
+    """Return a sentence on the force beyond the assumed disturbance that remains."""
+    described, remaining = ranking.description, ranking.left_over
+    if described:
+        remaining = described.left_over
     if not remaining > ranking.told_from:
         return []
     if described:
@@ -99,7 +103,7 @@ def _unexplained(problem: Problem, ranking: Ranking) -> list[str]:
 
 
 def _uninformative(evaluation: Evaluation) -> list[str]:
-    """Fitted parts of the data that do not show what is missing."""
+    """Return a sentence for each fitted part of the data that does not show what is missing."""
     found = []
     for name in evaluation.uninformative:
         own = [part for part in evaluation.parts if part.name == name]
@@ -112,9 +116,9 @@ def _uninformative(evaluation: Evaluation) -> list[str]:
 
 
 def _compared(part: PartErrors) -> str:
-    """Error of the nominal model refitted to a part, and that of the patched vessel."""
+    """Return the errors of the nominal model refitted to a part and of the patched vessel."""
     unit = _unit_of(part.family)
-    alone, patched = (unit.text(part.rms[model], 2) for model in (ALONE, "patched"))
+    alone, patched = unit.text(part.rms[ALONE], 2), unit.text(part.rms["patched"], 2)
     return f"{alone} {unit.unit} in {unit.signal} (patched vessel: {patched} {unit.unit})"
 
 

@@ -59,7 +59,7 @@ def findings_of(
 
 
 def _missing(vessel: Vessel, evaluation: Evaluation) -> tuple[Missing, ...]:
-    """The missing force of each recording, by axis."""
+    """Return the missing force of each recording, by axis."""
     axes = axes_of(vessel)
     units = {axis: FORCE_UNITS[axis] for axis in axes}
 
@@ -74,7 +74,7 @@ def _missing(vessel: Vessel, evaluation: Evaluation) -> tuple[Missing, ...]:
 
 
 def _coefficients(recalibrated: Fit) -> dict[str, tuple[float, float]]:
-    """Factor of each recalibrated coefficient, and its standard deviation."""
+    """Return the factor of each recalibrated coefficient, and its standard deviation."""
     sd = np.sqrt(np.diag(recalibrated.covariance))
     found = {}
     for f, x, s in zip(recalibrated.free, recalibrated.theta, sd, strict=True):
