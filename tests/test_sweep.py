@@ -453,7 +453,7 @@ def test_an_interruption_keeps_what_there_is_and_the_same_command_goes_on(
     once_it_has(tmp_path / "out", 5, running)
     running.send_signal(signal.SIGINT)
     said = running.communicate()[1]
-    assert running.returncode == 130 and "the same command goes on" in said
+    assert running.returncode == 130 and "the same command continues" in said
     assert 5 <= len(columns(tmp_path / "out")["run"]) < 1000
 
 

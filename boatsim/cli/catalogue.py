@@ -3,6 +3,8 @@
 from collections.abc import Sequence
 from dataclasses import fields
 from fnmatch import fnmatchcase
+from functools import partial
+from itertools import starmap
 from math import isnan
 from pathlib import Path
 
@@ -27,7 +29,11 @@ def list_content(kind: str | None, like: str | None = None) -> list[str]:
     Raises:
         BadInput: No name is like `like`.
     """
-    kinds = LISTED_KINDS if kind is None else (kind,)
+    kinds: tuple[str, ...] = LISTED_KINDS
+    what = "name"
+    if kind is not None:
+        kinds = (kind,)
+        what = kind.removesuffix("s")
     lines: list[str] = []
     every_name: list[str] = []
     for plural in kinds:
@@ -35,7 +41,7 @@ def list_content(kind: str | None, like: str | None = None) -> list[str]:
         names = content.all_names(one)
         every_name += names
         if like is not None:
-            names = [name for name in names if _is_like(name, like)]
+            names = list(filter(partial(_is_like, like=like), names))
             if not names:
                 continue
         if lines:
@@ -45,13 +51,12 @@ def list_content(kind: str | None, like: str | None = None) -> list[str]:
         for name in names:
             lines.append(f"  {name:{width}}  {_summary(one, name)}")
     if like is not None and not lines:
-        what = "name" if kind is None else kind.removesuffix("s")
         raise BadInput(unknown_name(what, like, every_name))
     return lines
 
 
 def _is_like(name: str, like: str) -> bool:
-    if any(sign in like for sign in "*?["):
+    if not set("*?[").isdisjoint(like):
         return fnmatchcase(name, like)
     return like in name
 
@@ -106,10 +111,10 @@ def _class_lines(kind: str, name: str) -> list[str]:
     """Description of an effect, controller, measure or sensor."""
     item = class_entry(kind, name)
     lines = [f"{item.name}: {kind}", f"  {item.words}"]
-    lines += [f"  {line}".rstrip() for line in item.doc]
-    lines += [f"  {label}: {text}" for label, text in item.facts]
+    lines += map(str.rstrip, map("  {}".format, item.doc))
+    lines += starmap("  {}: {}".format, item.facts)
     lines += _align(item.parameters, "  ")
-    return [*lines, "example:", *(f"  {line}" for line in item.example)]
+    return [*lines, "example:", *map("  {}".format, item.example)]
 
 
 def _vessel_lines(name: str) -> list[str]:
@@ -137,13 +142,17 @@ def _vessel_lines(name: str) -> list[str]:
     if boat.loads:
         lines.append(f"  loads: {', '.join(boat.loads)}")
     if uncertainty := boat.diagnosis.coefficient_uncertainty:
-        shares = ", ".join(f"{key} {100 * share:g} %" for key, share in uncertainty.items())
-        lines.append(f"  uncertainty: {shares}")
+        shares = []
+        for key, share in uncertainty.items():
+            shares.append(f"{key} {100 * share:g} %")
+        lines.append(f"  uncertainty: {', '.join(shares)}")
     address = boat.name
     file = boat.name
     if content.vessel_address(boat.file).endswith(".toml"):  # the vessel of a user
         address = name
-        file = name if name.endswith(".toml") else f"{name}/vessel.toml"
+        file = name
+        if not name.endswith(".toml"):
+            file = f"{name}/vessel.toml"
     example = [f'  vessel = "{file}"', f"  boatsim diagnose RUN.csv --vessel {address}"]
     return [*lines, "example:", *example]
 
@@ -167,7 +176,9 @@ def _align(rows: Sequence[Sequence[str]], indent: str) -> list[str]:
 def _effect_line(effect: Effect) -> str:
     """Name of an effect, and its parameters that differ from their defaults, with units."""
     kind = type(effect)
-    name = effect.name if effect.name == kind.idea() else f"{effect.name} ({kind.idea()})"
+    name = effect.name
+    if name != kind.idea():
+        name = f"{name} ({kind.idea()})"
     default = {field.name: field.default for field in fields(effect)}
     cells = []
     for key, param in kind.params().items():
@@ -180,7 +191,7 @@ def _effect_line(effect: Effect) -> str:
 def _scenario_lines(name: str) -> list[str]:
     """Description of a scenario, with the values of the files it builds on."""
     if name.endswith(".toml") and cases.cases(content.find("scenario", name)):
-        return [f"{Path(name).name}: scenarios", *(f"  {case}" for case in cases.matching(name))]
+        return [f"{Path(name).name}: scenarios", *map("  {}".format, cases.matching(name))]
     table, place = cases.content(name)
     lines = [
         f"{place.name}: scenario",
@@ -191,17 +202,23 @@ def _scenario_lines(name: str) -> list[str]:
     for key, unit in units.items():
         if key in table:
             value = table[key]
-            text = ", ".join(map(str, value)) if isinstance(value, list) else value
-            lines.append(f"  {key}: {text}{unit}")
+            if isinstance(value, list):
+                value = ", ".join(map(str, value))
+            lines.append(f"  {key}: {value}{unit}")
     for key in ("controller", "measure"):
         inner = table.get(key)
         if isinstance(inner, dict):
             values = ", ".join(f"{k} = {v}" for k, v in inner.items() if k != "use")
-            lines.append(f"  {key}: {inner.get('use', '')}" + (f" ({values})" if values else ""))
+            line = f"  {key}: {inner.get('use', '')}"
+            if values:
+                line += f" ({values})"
+            lines.append(line)
     if effects := [str(effect.get("use")) for effect in tables(table.get("effect"))]:
         lines.append(f"  effects: {', '.join(effects)}")
     metrics = table.get("norms")
     if isinstance(metrics, dict) and metrics:
         lines.append(f"  metrics: {', '.join(metrics)}")
-    address = name if name.endswith(".toml") else place.name
+    address = place.name
+    if name.endswith(".toml"):
+        address = name
     return [*lines, "example:", f"  boatsim run {address}", f'  base = "{address}"']

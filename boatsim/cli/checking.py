@@ -39,7 +39,7 @@ def print_checks(runs: list[Path], vessel: str | None, load: list[str]) -> int:
         if wrong or not refused:
             print_lines([f"{printable(str(path))}: {summary}"])
         for entry in wrong:
-            print_lines(f"  {line}" for line in entry_text(entry))
+            print_lines(map("  {}".format, entry_text(entry)))
         for entry in entries:
             if entry["kind"] == "limit":
                 remedy = entry.get("remedy", "")
@@ -49,4 +49,6 @@ def print_checks(runs: list[Path], vessel: str | None, load: list[str]) -> int:
     sys.stdout.flush()
     if refused:
         return Exit.BAD_INPUT
-    return Exit.MISSED if any_finding else Exit.MET
+    if any_finding:
+        return Exit.MISSED
+    return Exit.MET

@@ -272,7 +272,9 @@ def run(
         raise BadInput(f"--speed = {speed:g} applies only with --live or --serve")
     viewer = None
     if live or serve:
-        viewer = ViewerOptions(serve, 1.0 if speed is None else speed)
+        if speed is None:
+            speed = 1.0
+        viewer = ViewerOptions(serve, speed)
     controllers = controller or []
     with trusted_content(content, trust, [*scenarios, *controllers]):
         side_by_side = side_by_side or len(controllers) > 1

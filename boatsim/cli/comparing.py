@@ -4,7 +4,7 @@ import os
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import chain, compress, count
+from itertools import chain, compress, count, filterfalse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -58,7 +58,7 @@ def compare_runs(runs: Sequence[FinishedRun]) -> None:
 
 
 def _heads(runs: Sequence[FinishedRun]) -> list[tuple[str, ...]]:
-    """Heading of each run: scenario, controller or both, whichever differ between runs."""
+    """Heading of each run: scenario, controller or both, those that differ between runs."""
     scenarios = [run.content["scenario"] for run in runs]
     short = [name.rpartition("/")[2] for name in scenarios]
     if len(set(short)) == len(set(scenarios)):
@@ -68,7 +68,8 @@ def _heads(runs: Sequence[FinishedRun]) -> list[tuple[str, ...]]:
     differs = [len(set(scenarios)) > 1, len(set(controllers)) > 1]
     if not any(differs):
         return list(heads)
-    return [tuple(compress(head, differs)) for head in heads]
+    columns = compress([scenarios, controllers], differs)
+    return list(zip(*columns, strict=True))
 
 
 def _rows(runs: Sequence[FinishedRun]) -> list[list[str]]:
@@ -90,7 +91,9 @@ def _rows(runs: Sequence[FinishedRun]) -> list[list[str]]:
                 entries.append(None)
         best = _best(scenarios, entries)
         cells = [_cell(entry, index in best) for index, entry in enumerate(entries)]
-        rows.append([f"{name} [{unit}]" if unit else name, kind, *cells])
+        if unit:
+            name = f"{name} [{unit}]"
+        rows.append([name, kind, *cells])
     return rows
 
 
@@ -106,8 +109,9 @@ def _best(scenarios: Sequence[str], entries: Sequence["MetricEntry | None"]) -> 
     groups: dict[str, dict[int, float]] = {}
     for index, entry in enumerate(entries):
         if entry and entry["value"] is not None:
-            group = groups.setdefault(scenarios[index] if per_scenario else "", {})
-            group[index] = float(f"{entry['value']:.4g}")  # as it is printed
+            key = scenarios[index] if per_scenario else ""
+            group = groups.setdefault(key, {})
+            group[index] = float(f"{entry['value']:.4g}")  # rounded like the printed value
     best: set[int] = set()
     for values in groups.values():
         lowest = min(values.values())
@@ -120,8 +124,9 @@ def _cell(entry: "MetricEntry | None", best: bool) -> str:
     if entry is None:
         return ""
     plain = format_value({**entry, "unit": ""})
-    missed = MISSED if entry["ok"] is False else " "
-    return f"{plain} {BEST if best else ' '}{missed}"
+    best_mark = BEST if best else " "
+    missed_mark = MISSED if entry["ok"] is False else " "
+    return f"{plain} {best_mark}{missed_mark}"
 
 
 def _print(
@@ -137,7 +142,11 @@ def _print(
     for head in heads:
         table.add_column(Text("\n".join(map(printable, head))), justify="right", no_wrap=True)
     for row in rows:
-        table.add_row(*(Text(printable(cell), "bold" if BEST in cell else "") for cell in row))
+        texts = []
+        for cell in row:
+            style = "bold" if BEST in cell else ""
+            texts.append(Text(printable(cell), style))
+        table.add_row(*texts)
     print_table(table)
     used = " ".join(chain.from_iterable(row[2:] for row in rows))
     marks = {BEST: "the best, where lower is better", MISSED: "outside its regression band"}
@@ -170,7 +179,8 @@ def _write_log(
     """Write compare.rrd from the recordings in the folders of the runs."""
     from boatsim.view.rerun_log import log_side_by_side
 
-    names = _make_unique([re.sub(r"\W", "_", "_".join(head)) for head in heads])
+    joined = map("_".join, heads)
+    names = _make_unique([re.sub(r"\W", "_", name) for name in joined])
     markdown = f"| metric | kind | {' | '.join(names)} |\n|:---|:---|" + "---:|" * len(names) + "\n"
     for row in rows:
         markdown += f"| {' | '.join(map(str.strip, row))} |\n"
@@ -183,7 +193,7 @@ def _make_unique(names: Sequence[str]) -> list[str]:
     unique: list[str] = []
     for name in names:
         numbered = chain([name], map(f"{name}_{{}}".format, count(2)))
-        unique.append(next(one for one in numbered if one not in unique))
+        unique.append(next(filterfalse(unique.__contains__, numbered)))
     return unique
 
 
@@ -209,6 +219,8 @@ def _boats(runs: Sequence[FinishedRun]) -> "list[Boat]":
             scene = water.around(vessel, {"all": logs})
         goals = ""
         if names.index(names[index]) == index:
-            goals = f"goal of {scenario.name}" if len(set(names)) > 1 else "goal"
+            goals = "goal"
+            if len(set(names)) > 1:
+                goals = f"goal of {scenario.name}"
         boats.append(Boat(log, scene, goals))
     return boats

@@ -82,8 +82,10 @@ def diagnose(runs: list[Path], options: DiagnosisOptions, out: Path) -> int:
     print_lines(printed(found.findings))
     if write_error:
         raise write_error
-    plan = [NEXT_SCENARIO] if found.plan else []
-    files = ["report.html", "report.md", "diagnosis.json", "patched.toml", *plan, "diagnosis.rrd"]
+    files = ["report.html", "report.md", "diagnosis.json", "patched.toml"]
+    if found.plan:
+        files.append(NEXT_SCENARIO)
+    files.append("diagnosis.rrd")
     print_lines([f"written to {out}: {', '.join(files)}"])
     return 0
 

@@ -19,7 +19,7 @@ TABLES = {
 }
 CLASSES = tuple(TABLES)
 MOST_IN_EXAMPLE = 6  # parameters of an example; more would hide the ones that matter
-OPEN_ENDED = -1e9  # lower bound of a parameter whose range says nothing
+OPEN_ENDED = -1e9  # lower bound of a parameter whose range has no lower limit
 
 
 @dataclass(frozen=True)
@@ -82,7 +82,10 @@ def _facts(cls: type[Any]) -> Iterator[tuple[str, str]]:
     if issubclass(cls, Effect):
         yield from _effect_facts(cls)
     if units := getattr(cls, "units", None):
-        yield "metrics", ", ".join(f"{n} [{u}]" if u else n for n, u in units.items())
+        metrics = []
+        for metric, unit in units.items():
+            metrics.append(f"{metric} [{unit}]" if unit else metric)
+        yield "metrics", ", ".join(metrics)
     if goals := getattr(cls, "goals", ()):
         yield "goals", ", ".join(goals)
 
@@ -92,7 +95,9 @@ def _effect_facts(cls: type[Effect]) -> Iterator[tuple[str, str]]:
     if cls.shown_by:
         yield "shows in", cls.shown_by
     for role, port in cls.roles.items():
-        default = "" if port.fixed is None else f"; {port.fixed:g} if omitted"
+        default = ""
+        if port.fixed is not None:
+            default = f"; {port.fixed:g} if omitted"
         yield f"on.{role}", f"{port.words} [{port.unit}]{default}"
     if issubclass(cls, Channel) and cls.acts_on:
         yield "acts on", f"commands of {cls.acts_on.replace('|', ' or ')}"
@@ -101,9 +106,9 @@ def _effect_facts(cls: type[Effect]) -> Iterator[tuple[str, str]]:
     if cls.needs:
         yield "needs", f"degrees of freedom {' and '.join(cls.needs)}"
     if cls.ruled_out_by:
-        excluding = []
+        excluding: list[str] = []
         for fact, values in cls.ruled_out_by.items():
-            excluding += [f"{fact} = {_toml(value)}" for value in values]
+            excluding += map(f"{fact} = {{}}".format, map(_toml, values))
         yield "ruled out by", " or ".join(excluding)
     if cls.facts:
         yield "needs the facts", ", ".join(cls.facts)
@@ -112,7 +117,9 @@ def _effect_facts(cls: type[Effect]) -> Iterator[tuple[str, str]]:
 
 
 def _toml(value: object) -> str:
-    return str(value).lower() if isinstance(value, bool) else f'"{value}"'
+    if isinstance(value, bool):
+        return str(value).lower()
+    return f'"{value}"'
 
 
 def _parameter_rows(
@@ -137,7 +144,9 @@ def _fitted(param: Param) -> str:
     """Whether a diagnosis fits a parameter: of a candidate effect, or of the nominal model."""
     if param.fit:
         return "yes"
-    return f"as {param.calibrates}" if param.calibrates else ""
+    if param.calibrates:
+        return f"as {param.calibrates}"
+    return ""
 
 
 def _is_number(value: Any) -> bool:
@@ -159,11 +168,15 @@ def _example(
     yield table
     yield f'use = "{name}"'
     if issubclass(cls, Effect) and cls.roles:
-        required = [role for role, port in cls.roles.items() if port.fixed is None]
-        bound = ", ".join(f'{role} = "CHANNEL"' for role in required)
-        yield f"on = {{ {bound} }}"
+        bound = []
+        for role, port in cls.roles.items():
+            if port.fixed is None:
+                bound.append(f'{role} = "CHANNEL"')
+        yield f"on = {{ {', '.join(bound)} }}"
     fitted = [key for key, param in params.items() if param.fit or param.calibrates]
     for key in (fitted or list(params))[:MOST_IN_EXAMPLE]:
         if _is_number(defaults[key]):
-            unit = f"  # [{params[key].unit}]" if params[key].unit else ""
-            yield f"{key} = {defaults[key]!r}{unit}"
+            line = f"{key} = {defaults[key]!r}"
+            if params[key].unit:
+                line += f"  # [{params[key].unit}]"
+            yield line

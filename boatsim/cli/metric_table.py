@@ -25,8 +25,10 @@ def print_metrics(run: "RunEntry", folder: Path) -> None:
     from rich.table import Table
     from rich.text import Text
 
-    state = "" if run["complete"] else ", interrupted"
-    title = Text(printable(f"{run['scenario']}, {run['controller']}, seed {run['seed']}{state}"))
+    words = f"{run['scenario']}, {run['controller']}, seed {run['seed']}"
+    if not run["complete"]:
+        words += ", interrupted"
+    title = Text(printable(words))
     metrics = run["norms"]
     table = Table(title=title, pad_edge=False)
     for heading, justify in _columns(metrics.values()).items():
@@ -58,10 +60,12 @@ def _cells(metric: "MetricEntry") -> dict[str, str]:
     # Short words, so that the table fits into 80 columns.
     verdicts = {REPRODUCED: "same", MISSED: "[bold]differs[/]", NO_TOLERANCE: "unstated"}
     met = {None: "", True: "[green]yes[/]", False: "[bold red]no[/]"}
-    published = metric["published"]
+    published_text = ""
+    if metric["published"] is not None:
+        published_text = f"{metric['published']:.4g}"
     return {
         "value": format_value(metric),
-        "published": "" if published is None else f"{published:.4g}",
+        "published": published_text,
         "verdict": verdicts.get(metric["verdict"] or "", ""),
         "band": _format_band(metric["guard"]),
         "met": met[metric["ok"]],
@@ -94,8 +98,9 @@ def meanings(metrics: Mapping[str, "MetricEntry"]) -> list[str]:
         ending = name.rpartition("_")[2]
         if metric["kind"] not in ("", ending):
             kinds.setdefault(metric["kind"], ending)
-    line = "; ".join(f"{ending}: {kind}" for kind, ending in kinds.items())
-    return [line] if line else []
+    if not kinds:
+        return []
+    return ["; ".join(f"{ending}: {kind}" for kind, ending in kinds.items())]
 
 
 def reasons(metrics: Mapping[str, "MetricEntry"]) -> list[str]:

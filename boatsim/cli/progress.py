@@ -112,7 +112,9 @@ def _bar() -> Iterator[Report]:
     row = bars.add_task("", total=1.0, left="")
 
     def report(stage: str, share: float = 0.0, detail: str = "") -> None:
-        words = f"{stage}: {detail}" if detail else stage
+        words = stage
+        if detail:
+            words += f": {detail}"
         elapsed = bars.tasks[row].elapsed or 0.0
         done = max(share, bars.tasks[row].completed)
         bars.update(

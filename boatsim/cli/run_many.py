@@ -8,7 +8,7 @@ from concurrent.futures.process import BrokenProcessPool
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, replace
 from functools import partial
-from itertools import chain
+from itertools import chain, starmap
 from multiprocessing import get_context, parent_process
 from multiprocessing.sharedctypes import SynchronizedArray
 from multiprocessing.synchronize import Event
@@ -92,11 +92,15 @@ class Outcome:
     def code(self) -> Exit:
         """Exit code."""
         if self.content is None:
-            return Exit.BAD_INPUT if self.error else Exit.INTERRUPTED
+            if self.error:
+                return Exit.BAD_INPUT
+            return Exit.INTERRUPTED
         if not self.content["complete"]:
             return Exit.INTERRUPTED
         missed = any(metric["ok"] is False for metric in self.content["norms"].values())
-        return Exit.MISSED if missed else Exit.MET
+        if missed:
+            return Exit.MISSED
+        return Exit.MET
 
 
 def run_all(
@@ -140,7 +144,9 @@ def run_all(
         if jobs > 1:
             outcomes = _run_parallel(tasks, jobs, report)
         else:
-            speed = viewer.speed if viewer and address else 0.0
+            speed = 0.0
+            if viewer and address:
+                speed = viewer.speed
             outcomes = _run_in_turn(planned, report, address, speed)
     _print_outcomes(outcomes, side_by_side)
     return max(outcome.code for outcome in outcomes)
@@ -183,16 +189,19 @@ def open_viewer(serve: bool) -> Iterator[str | None]:
     with viewer_for(serve) as viewer:
         if viewer is None:
             print_error(
-                "no viewer can be shown (is there a display?); the run continues without one. "
+                "no viewer can be shown (check the display); the run continues without one. "
                 f"With --serve in place of --live a browser shows it at http://{HERE}:{PAGE}"
             )
         elif viewer.page:
             print_note(f"watch in a browser on this machine: {viewer.page}")
-        yield viewer.address if viewer else None
+        address = None
+        if viewer:
+            address = viewer.address
+        yield address
 
 
 def run_manoeuvre(scenario: Scenario, folder: Path) -> int:
-    """Run a standard manoeuvre and print its figures beside the IMO limits.
+    """Run a standard manoeuvre and print its figures with the IMO limits.
 
     A missed limit does not change the exit code: the limits are for large ships.
 
@@ -212,7 +221,9 @@ def run_manoeuvre(scenario: Scenario, folder: Path) -> int:
         content = run_into_folder(folder, scenario, options, rerun_observers()).to_json()
     print_metrics(content, folder)
     report_saturation(content)
-    return Exit.MET if content["complete"] else Exit.INTERRUPTED
+    if content["complete"]:
+        return Exit.MET
+    return Exit.INTERRUPTED
 
 
 def report_saturation(content: RunEntry) -> None:
@@ -222,7 +233,7 @@ def report_saturation(content: RunEntry) -> None:
         content: Content of norms.json.
     """
     if saturated := content["saturated_steps"]:
-        steps = ", ".join(f"{name} in {count}" for name, count in saturated.items())
+        steps = ", ".join(starmap("{} in {}".format, saturated.items()))
         print_error(
             f"{content['scenario']}: commands beyond the range of the vessel were limited: {steps} "
             f"of {content['steps']} steps (sent_... in recording.csv)"
@@ -277,7 +288,8 @@ def _folders(names: Sequence[str], out: Path | None) -> list[Path]:
         return [out]
     if repeated := _first_repeated(names):
         raise BadInput(f"scenario {repeated!r} is named twice; both would write to one folder")
-    return [(out or Path("out")) / name for name in names]
+    parent = out or Path("out")
+    return [parent / name for name in names]
 
 
 def run_task(
@@ -365,7 +377,8 @@ def _wait(
     while waiting:
         waiting = bool(wait(futures, timeout=POLL).not_done)
         for index, (task, future) in enumerate(zip(tasks, futures, strict=True)):
-            report(index, task.duration if future.done() else reached[index])
+            t = task.duration if future.done() else reached[index]
+            report(index, t)
 
 
 def _result(task: Task, future: Future[Outcome]) -> Outcome:
@@ -399,7 +412,9 @@ def _run_in_worker(index: int, task: Task) -> Outcome:
             raise KeyboardInterrupt
 
     with _at_work:
-        return Outcome(task) if _stop.is_set() else run_task(task, report)
+        if _stop.is_set():
+            return Outcome(task)
+        return run_task(task, report)
 
 
 _stop: Event

@@ -3,7 +3,7 @@
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import islice
+from itertools import islice, starmap
 from pathlib import Path
 
 from boatsim.cli.exits import Exit, print_error, print_lines
@@ -25,7 +25,7 @@ MOST_REASONS = 5  # of failed runs that are printed, the most frequent first
 
 @dataclass(frozen=True)
 class SweepOptions:
-    """What varies in a sweep.
+    """Varied and sampled quantities of a sweep.
 
     Attributes:
         vary: Axes of the grid, `KEY=VALUES`.
@@ -126,7 +126,7 @@ def diagnose_each(
     if len(rows) > MOST_ROWS:
         print_lines([f"{len(rows) - MOST_ROWS} more rows are in {diagnoses.NAME}"])
     verdicts = Counter(row[1] for row in rows)
-    print_lines([", ".join(f"{verdict} {count}" for verdict, count in verdicts.items())])
+    print_lines([", ".join(starmap("{} {}".format, verdicts.items()))])
     print_lines([f"written to {out}: {diagnoses.NAME}, and a folder for each recording"])
     if done.complete:
         return Exit.MET

@@ -42,7 +42,9 @@ class Case:
     @property
     def metrics(self) -> Mapping[str, Metric]:
         """Metrics with the scenario's own seed."""
-        return self.runs[0] if self.runs else {}
+        if not self.runs:
+            return {}
+        return self.runs[0]
 
     @property
     def faults(self) -> list[str]:
@@ -63,7 +65,9 @@ class Case:
         """Exit code."""
         if self.error:
             return Exit.BAD_INPUT
-        return Exit.MISSED if self.faults else Exit.MET
+        if self.faults:
+            return Exit.MISSED
+        return Exit.MET
 
 
 def run_regression(folder: Path, pin: bool, seeds: int, junit: Path | None, as_json: bool) -> int:
@@ -102,8 +106,10 @@ def run_regression(folder: Path, pin: bool, seeds: int, junit: Path | None, as_j
         _print(folder, cases)
     for case in cases:
         if case.error:
-            named = case.name in case.error
-            print_error(case.error if named else f"{case.name}: {case.error}")
+            message = case.error
+            if case.name not in message:
+                message = f"{case.name}: {message}"
+            print_error(message)
     return max(case.code for case in cases)
 
 

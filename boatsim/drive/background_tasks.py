@@ -20,7 +20,7 @@ def background_listener(listen: Listener, interval: float) -> Iterator[Listener]
         interval: Time between two calls [s].
 
     Yields:
-        Listener that returns at once.
+        Listener that returns immediately.
     """
     rows: SimpleQueue[Recording] = SimpleQueue()
     finished = threading.Event()

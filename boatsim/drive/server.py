@@ -159,12 +159,9 @@ class Server:
                 403, "the address lacks its token; boatsim drive prints the full address\n"
             )
         if rest == "socket":
-            mine = request.headers.get_all("Origin") == [f"http://{own}"]
-            return (
-                None
-                if mine
-                else connection.respond(403, "this request is not from the page of this server\n")
-            )
+            if request.headers.get_all("Origin") == [f"http://{own}"]:
+                return None
+            return connection.respond(403, "this request is not from the page of this server\n")
         if rest or request.headers.get("Upgrade"):
             return connection.respond(404, "there is only the page\n")
         return self._page_response(connection.respond(200, self._page), own)

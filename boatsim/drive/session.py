@@ -101,7 +101,7 @@ class Session:
             listen: Listener that writes files.
 
         Yields:
-            Listener that returns at once.
+            Listener that returns immediately.
         """
         with background_listener(listen, self._interval) as files:
 
@@ -138,7 +138,9 @@ class Session:
     @property
     def latency(self) -> float | None:
         """Delay from the last stick movement to the log [s]; None before the first."""
-        return self.latencies[-1] if self.latencies else None
+        if not self.latencies:
+            return None
+        return self.latencies[-1]
 
     def _update_goal(self, t: float, dt: float) -> None:
         sticks, moved = self.hands.sticks(), self.hands.moved
@@ -160,7 +162,8 @@ class Session:
         if moved > self._moved and NO_DRIVER not in (goal, self._goal):
             self.latencies.append(time.time() - moved)
         self._goal, self._moved = goal, moved
-        self._goals.append((t, None if goal is NO_DRIVER else goal))
+        logged = None if goal is NO_DRIVER else goal
+        self._goals.append((t, logged))
 
 
 def folder_name(vessel: str, now: float) -> Path:

@@ -83,8 +83,9 @@ class Dials:
         for dial in self.dials:
             found[dial.key] += dial.at(sticks)
         if HEADING in found:
-            before = heading if self._heading is None else self._heading
-            self._heading = found[HEADING] = wrap(before + dt * found[HEADING])
+            if self._heading is None:
+                self._heading = heading
+            self._heading = found[HEADING] = wrap(self._heading + dt * found[HEADING])
         for key, value in found.items():
             low, high = self.limits.get(key, (value, value))
             found[key] = round(clip(value, low, high), DIGITS)
@@ -130,14 +131,15 @@ def _with_channels(vessel: Vessel, dials: Sequence[Dial]) -> Dials:
     limits = {}
     for dial in dials:
         channel = vessel.commands.get(dial.key)
-        neutral[dial.key] = channel.neutral if channel else 0.0
+        neutral[dial.key] = 0.0
         if channel:
+            neutral[dial.key] = channel.neutral
             limits[dial.key] = (channel.low, channel.high)
     return Dials(tuple(dials), neutral, limits)
 
 
 def _manoeuvring_table(vessel: Vessel) -> ManoeuvringTable:
-    """Channels that drive and steer the vessel, as far as they are known."""
+    """Channels that drive and steer the vessel; incomplete if not all are known."""
     try:
         return handled(vessel)
     except BadInput:
@@ -190,17 +192,17 @@ def _channel_dials(vessel: Vessel, table: ManoeuvringTable) -> list[Dial]:
         room, back = _room(vessel, name, ahead), table.astern.get(name, channels[name].neutral)
         found.append(Dial(name, "surge", _room(vessel, name, back), room))
     for name, per_rad in table.steer.items():
-        ends = [
-            _room(vessel, name, channels[name].neutral + side * per_rad) for side in (-1.0, 1.0)
-        ]
-        found.append(Dial(name, "yaw", *ends))
+        found.append(Dial(name, "yaw", *_both_ends(vessel, name, per_rad)))
     for name, share in transverse_thrusters(vessel).items():
         if name in channels and name not in table.steer:
-            ends = [
-                _room(vessel, name, channels[name].neutral + side * share) for side in (-1.0, 1.0)
-            ]
-            found.append(Dial(name, "sway", *ends))
+            found.append(Dial(name, "sway", *_both_ends(vessel, name, share)))
     return found
+
+
+def _both_ends(vessel: Vessel, channel: str, share: float) -> tuple[float, float]:
+    """Distances from neutral to the ends of a channel for a full stick to port and to starboard."""
+    neutral = vessel.commands[channel].neutral
+    return _room(vessel, channel, neutral - share), _room(vessel, channel, neutral + share)
 
 
 def _room(vessel: Vessel, channel: str, towards: float) -> float:

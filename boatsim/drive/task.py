@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from itertools import starmap
 from pathlib import Path
 
 import tomlkit
@@ -70,7 +71,9 @@ class Task:
         use = str(loaded.file.controller["use"])
         self.dials: Dials = dials_of(self.vessel, loaded.controller, Path(use).stem)
         self._table = {"step": min(STEP, loaded.controller.period), **table}
-        water = f", in {place.name}" if scenario else ""
+        water = ""
+        if scenario:
+            water = f", in {place.name}"
         self._table["about"] = f"{self.vessel.name} driven by hand{water}."
         self.scenario: Scenario = replace(
             from_table({**self._table, "goal": [{**self.dials.neutral}]}, place),
@@ -98,13 +101,15 @@ class Task:
         """
         table = {key: value for key, value in self._table.items() if key != "goal"}
         head = tomlkit.dumps({**table, "duration": duration})
-        rows = "".join(f"  {_row(t, goal)},\n" for t, goal in goals)
+        rows = "".join(map("  {},\n".format, starmap(_row, goals)))
         # The goals are a top-level array, which must precede the first table.
         top, _, tables = head.partition("\n[")
         text = f"{top.rstrip()}\ngoal = [\n{rows}]\n"
         if tables:
             text += f"\n[{tables}"
-        return text if len(text.encode()) <= MAX_TOML_BYTES else None
+        if len(text.encode()) > MAX_TOML_BYTES:
+            return None
+        return text
 
 
 def _row(t: float, goal: Mapping[str, float] | None) -> str:
@@ -141,7 +146,9 @@ def _environment(
 
 def _vessel(name: str, path: Path) -> str:
     """Name of a vessel of the library, or its absolute path."""
-    return name if name in names("vessel") else str(path.resolve())
+    if name in names("vessel"):
+        return name
+    return str(path.resolve())
 
 
 def _find_scenario(vessel: str, scenario: str) -> str:

@@ -1,9 +1,9 @@
 """Fit of the coefficients of a new boat to its logs, with validation on held-out parts.
 
 The first two thirds of each log are fitted, the last third is held out. A few candidate effects are
-tested besides the coefficients, and kept if the evidence increases enough: effects of the boat
-(added mass, thrust lag, weak reverse, ...) are written into its file, a current belongs to the day
-and is only reported.
+tested in addition to the coefficients, and kept if the evidence increases enough. Effects of the
+boat (added mass, thrust lag, weak reverse, ...) are written into its file. A current belongs to the
+day and is only reported.
 """
 
 import re
@@ -190,12 +190,12 @@ def _key(parameter: FreeParameter) -> tuple[str, str]:
 
 def _without(best: Fit, names: Sequence[str]) -> Fit:
     """The fit without some effects."""
-    keep = [j for j, f in enumerate(best.free) if f.effect not in names]
+    keep = [index for index, f in enumerate(best.free) if f.effect not in names]
     effects = tuple(n for n in best.effects if n not in names)
     return replace(
         best,
         effects=effects,
-        free=tuple(best.free[j] for j in keep),
+        free=tuple(map(best.free.__getitem__, keep)),
         theta=best.theta[keep],
         covariance=best.covariance[np.ix_(keep, keep)],
     )
@@ -229,7 +229,9 @@ def _written(problem: Problem, boat: Vessel, own: Fit, logs: str) -> str:
     by_rule = boat.diagnosis.coefficient_uncertainty
     sd = dict.fromkeys(map(str, by_rule), MIN_SD)
     for f, x, variance in zip(own.free, own.theta, np.diag(own.covariance), strict=True):
-        names = boat.names_of(f.effect) if f.relative else []
+        names = []
+        if f.relative:
+            names = boat.names_of(f.effect)
         for number, effect in enumerate(boat.effects):
             if effect.name not in names:
                 continue
@@ -286,7 +288,11 @@ def _error_lines(found: Fitted, on: str) -> list[str]:
     """Lines that report the errors on held-out data before and after the fit."""
     lines = [f"free runs of {found.judge.horizon:g} s on {on}, which were held out:"]
     for key in found.before:
-        scale, unit = (1.0, "m") if key.endswith("_m") else (57.29578, "deg")
+        scale = 57.29578
+        unit = "deg"
+        if key.endswith("_m"):
+            scale = 1.0
+            unit = "m"
         before, after = found.before[key] * scale, found.after[key] * scale
         lines.append(
             f"  {key.partition('_')[0]} rms [{unit}]: from particulars {before:.4g}, fitted "

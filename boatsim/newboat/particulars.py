@@ -31,7 +31,9 @@ class Mount:
 
     def largest_astern(self, ahead: float) -> float:
         """Return the largest thrust astern [N]; if it is unknown, that ahead."""
-        return ahead if self.astern is None else self.astern
+        if self.astern is None:
+            return ahead
+        return self.astern
 
 
 @dataclass(frozen=True)
@@ -72,14 +74,16 @@ class Particulars:
 
         A single one is `motor`.
         """
-        sides = [_side(mount) for mount in self.thrusters]
+        sides = list(map(_side, self.thrusters))
         if len(sides) == 1:
             return [("motor", self.thrusters[0])]
         seen = dict.fromkeys(sides, 0)
         found = []
         for side, mount in zip(sides, self.thrusters, strict=True):
             seen[side] += 1
-            name = f"{side}{seen[side]}" if sides.count(side) > 1 else side
+            name = side
+            if sides.count(side) > 1:
+                name = f"{side}{seen[side]}"
             found.append((name, mount))
         return found
 
@@ -148,8 +152,10 @@ def _numbers(option: str, text: str, least: int, most: int) -> list[float]:
         values = list(map(float, text.split(",")))
     except ValueError:
         values = []
-    if not least <= len(values) <= most or not all(math.isfinite(x) for x in values):
-        form = "X,Y[,MAX_N[,ASTERN_N]]" if most == 4 else "X[,AREA]"
+    if not least <= len(values) <= most or not all(map(math.isfinite, values)):
+        form = "X[,AREA]"
+        if most == 4:
+            form = "X,Y[,MAX_N[,ASTERN_N]]"
         raise BadInput(
             f"{option} {text}; allowed is {form}, numbers in m and N, as {option} -1.2,0.6"
         )
@@ -166,8 +172,13 @@ def _mount(option: str, text: str, thrust: float | None, length: float, turns: b
         )
     if (most and abs(most[0]) < 1e-6) or max(map(abs, most), default=0.0) > 1e8:
         raise BadInput(f"{option} {text}; allowed is a largest thrust of more than 0 N")
-    ahead = abs(most[0]) if most else thrust
-    return Mount(x, y, ahead, abs(most[1]) if len(most) > 1 else None, turns)
+    ahead = thrust
+    astern = None
+    if most:
+        ahead = abs(most[0])
+    if len(most) > 1:
+        astern = abs(most[1])
+    return Mount(x, y, ahead, astern, turns)
 
 
 def _blade(text: str, length: float) -> Blade:
@@ -180,4 +191,6 @@ def _blade(text: str, length: float) -> Blade:
         )
     if area and not 0.0 < area[0] <= 500.0:
         raise BadInput(f"--rudder {text}; allowed is an area of more than 0 to 500 m^2")
-    return Blade(x, area[0] if area else None)
+    if not area:
+        return Blade(x, None)
+    return Blade(x, area[0])

@@ -33,7 +33,8 @@ def _lines(boat: Particulars) -> Iterator[str]:
     yield from ("", "[controller]", 'use = "open_loop"')
     for i, commands in enumerate(parts):
         yield from ("", "[[goal]]", f"from = {number(i * stage)}")
-        yield from (f"{channel} = {number(value)}" for channel, value in commands.items())
+        for channel, value in commands.items():
+            yield f"{channel} = {number(value)}"
 
 
 def _stages(boat: Particulars) -> list[dict[str, float]]:

@@ -56,7 +56,9 @@ def number(value: float) -> str:
 def line(key: str, value: float, unit: str, rule: str) -> str:
     """Return the line `key = value  # [unit] rule`."""
     entry = f"{key} = {number(value)}"
-    comment = f"[{unit}] {rule}" if unit else rule
+    comment = rule
+    if unit:
+        comment = f"[{unit}] {rule}"
     return f"{entry:{COMMENT_COLUMN - 1}} # {comment}"
 
 
@@ -88,10 +90,9 @@ def steer_channel(name: str) -> str:
 def _head(boat: Particulars) -> Iterator[str]:
     hull = boat.hull
     kind = "one hull" if hull.hulls == 1 else "two hulls"
-    yield (
-        "about = "
-        f"{_text(f'{boat.name}: {hull.length:g} m, {hull.mass:g} kg, {kind}, from its particulars')}"
-    )
+    size = f"{hull.length:g} m, {hull.mass:g} kg"
+    about = f"{boat.name}: {size}, {kind}, from its particulars"
+    yield f"about = {_text(about)}"
     yield (
         "source = \"boatsim new: sizes are the owner's, each other number follows the rule in "
         'its comment"'
@@ -140,7 +141,8 @@ def _channels(boat: Particulars) -> Iterator[str]:
                 f'"{about}" }}  # [rad] 40 deg'
             )
     if boat.rudder is not None:
-        turns = f'turns = "{"starboard" if boat.rudder.x < 0 else "port"}"'
+        side = "starboard" if boat.rudder.x < 0 else "port"
+        turns = f'turns = "{side}"'
         yield f"rudder_rad = {{ low = -{MAX_ANGLE}, high = {MAX_ANGLE}, {turns} }}  # [rad] 40 deg"
 
 
@@ -188,12 +190,16 @@ def service(boat: Particulars) -> float:
 def stated_thrust(boat: Particulars) -> float | None:
     """Return the full thrust of all thrusters [N], None if the owner gave none."""
     full, stated = full_thrust(boat)
-    return math.fsum(full) if stated else None
+    if not stated:
+        return None
+    return math.fsum(full)
 
 
 def _thruster(name: str, mount: Mount) -> Iterator[str]:
     yield from ("", "[[effect]]", 'use = "thruster"', f"name = {_text(name)}")
-    steer = f', angle = "{steer_channel(name)}"' if mount.turns else ""
+    steer = ""
+    if mount.turns:
+        steer = f', angle = "{steer_channel(name)}"'
     yield f'on = {{ thrust = "{thrust_channel(name)}"{steer} }}'
     yield line("x", mount.x, "m", f"{OWNER}, ahead of the mass centre")
     yield line("y", mount.y, "m", f"{OWNER}, to starboard")
@@ -234,7 +240,9 @@ def _washing(boat: Particulars, blade: Blade) -> str:
     "" if there is none or several.
     """
     ahead = [name for name, m in boat.named() if m.y == 0.0 and not m.turns and m.x > blade.x]
-    return ahead[0] if len(ahead) == 1 else ""
+    if len(ahead) != 1:
+        return ""
+    return ahead[0]
 
 
 def approach(boat: Particulars) -> float:
@@ -289,9 +297,12 @@ def steering(boat: Particulars) -> dict[str, float]:
 def _diagnosis(boat: Particulars) -> Iterator[str]:
     _, stated = full_thrust(boat)
     yield from ("", "[diagnosis]")
-    thrust_sd = GIVEN_THRUST_SD if stated else ESTIMATED_THRUST_SD
+    thrust_sd = ESTIMATED_THRUST_SD
+    thrust_reason = "no thrust was given"
+    if stated:
+        thrust_sd = GIVEN_THRUST_SD
+        thrust_reason = "a given thrust is one at rest"
     sds = f"damping = {DAMPING_SD}, thrust = {thrust_sd}, added_mass = {ADDED_MASS_SD}"
     yield f"coefficient_uncertainty = {{ {sds} }}  # relative sd"
-    reason = "rules of thumb for damping are off by a factor of two; "
-    reason += "a given thrust is one at rest" if stated else "no thrust was given"
+    reason = f"rules of thumb for damping are off by a factor of two; {thrust_reason}"
     yield f'reasons.coefficient_uncertainty = "{reason}"'

@@ -69,7 +69,10 @@ def make_axis(key: str, values: str | Sequence[Value]) -> Axis:
         BadInput: The values are wrong or repeat.
     """
     if isinstance(values, str):
-        values = _parse_range(key, values) if ":" in values else parse_values(values)
+        if ":" in values:
+            values = _parse_range(key, values)
+        else:
+            values = parse_values(values)
     if not values or len(set(values)) < len(values):
         raise BadInput(f"--vary {key}: {len(values)} values, of which two are equal")
     return Axis(parse_target(key), tuple(values))
@@ -98,7 +101,7 @@ def _parse_value(text: str) -> Value:
 
 def _parse_range(key: str, text: str) -> list[Value]:
     """Values of LOW:HIGH:COUNT or LOW:HIGH:COUNT:log, both ends included."""
-    parts = [_parse_value(part) for part in text.split(":")]
+    parts = list(map(_parse_value, text.split(":")))
     log = len(parts) == 4 and parts[3] == "log"
     numbers = [part for part in parts[:3] if isinstance(part, int | float) and isfinite(part)]
     if len(numbers) != 3 or len(parts) != 3 + log:

@@ -34,8 +34,9 @@ def design_matrix(design: Design, names: Sequence[str], runs: int, seed: int) ->
     """
     if design == "sobol":
         return _saltelli(len(names), runs, seed)
-    columns = [_column(design, name, runs, seed) for name in names]
-    return np.column_stack(columns) if columns else np.empty((runs, 0))
+    if not names:
+        return np.empty((runs, 0))
+    return np.column_stack([_column(design, name, runs, seed) for name in names])
 
 
 def _column(design: Design, name: str, runs: int, seed: int) -> Array:

@@ -6,6 +6,7 @@ from dataclasses import asdict, dataclass
 from hashlib import sha256
 from itertools import chain
 from json import dumps
+from operator import itemgetter
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -60,7 +61,7 @@ class DiagnosisTask(NamedTuple):
 
 
 def find_recordings(inputs: Sequence[Path]) -> list[Path]:
-    """Return files as they are, and of folders the recordings in them.
+    """Return the given files, and the recordings in the given folders.
 
     Args:
         inputs: Files, and folders with boatsim runs (camera.csv) or other recordings.
@@ -140,7 +141,9 @@ def output_folders(paths: Sequence[Path]) -> list[str]:
     short = list(map(_without_suffix, full))
     names = []
     for name, path in zip(short, full, strict=True):
-        names.append(name if short.count(name) == 1 else str(path))
+        if short.count(name) > 1:
+            name = str(path)
+        names.append(name)
     return names
 
 
@@ -193,10 +196,16 @@ def diagnose_task(task: DiagnosisTask) -> Entry:
     return {
         "failure": None,
         "verdict": answer["verdict"],
-        "causes": [effect["name"] for effect in answer["effects"]],
+        "causes": list(map(itemgetter("name"), answer["effects"])),
         "values": values,
         "rms": rms,
     }
+
+
+def _joined_causes(entry: Entry) -> str | None:
+    if "causes" not in entry:
+        return None
+    return ", ".join(entry["causes"])
 
 
 def table_columns(done: Outcome, paths: Sequence[str]) -> dict[str, list[Any]]:
@@ -208,9 +217,9 @@ def table_columns(done: Outcome, paths: Sequence[str]) -> dict[str, list[Any]]:
     """
     entries = list(done.entries.values())
     columns: dict[str, list[Any]] = {
-        "recording": [paths[number] for number in done.entries],
+        "recording": list(map(paths.__getitem__, done.entries)),
         "verdict": [entry.get("verdict") for entry in entries],
-        "causes": [", ".join(entry["causes"]) if "causes" in entry else None for entry in entries],
+        "causes": list(map(_joined_causes, entries)),
     }
     parameters: dict[str, None] = {}
     errors: dict[str, None] = {}
@@ -221,5 +230,5 @@ def table_columns(done: Outcome, paths: Sequence[str]) -> dict[str, list[Any]]:
         columns[name] = [entry.get("values", {}).get(name, (None,))[0] for entry in entries]
     for name in errors:
         columns[name] = [entry.get("rms", {}).get(name) for entry in entries]
-    columns["failure"] = [entry["failure"] for entry in entries]
+    columns["failure"] = list(map(itemgetter("failure"), entries))
     return columns

@@ -68,4 +68,6 @@ def choose_backend(jobs: int | None, ray: str | None) -> Backend:
         return Cluster(ray)
     if jobs is None:
         jobs = len(os.sched_getaffinity(0))
-    return run_here if jobs == 1 else Processes(jobs)
+    if jobs == 1:
+        return run_here
+    return Processes(jobs)

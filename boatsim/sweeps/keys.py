@@ -8,6 +8,7 @@ then added with its defaults.
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from math import isfinite
+from operator import attrgetter
 from typing import Literal, NamedTuple, TypeAlias
 
 from boatsim.errors import BadInput, unknown_name
@@ -42,7 +43,7 @@ class Slot(NamedTuple):
 
 @dataclass(frozen=True)
 class Target:
-    """What an axis or a sampled quantity changes.
+    """Keys that an axis or a sampled quantity changes.
 
     Attributes:
         keys: One key, or several that get the same value.
@@ -130,7 +131,8 @@ def set_values(
         elif path == ("controller", "use"):
             table = {**table, "controller": _controller(table, str(value))}
         elif value == NONE and len(path) == 1:
-            table = {key: rest for key, rest in table.items() if key != path[0]}
+            table = dict(table)
+            table.pop(str(path[0]), None)
         else:
             table = _with_value(table, path, new)
     return table
@@ -190,7 +192,7 @@ def _find_effect(
         return added, [("effect", len(scenario_effects), *rest[1:])]
     allowed = set(ScenarioFile.model_fields).difference(NOT_VARIED)
     allowed |= {*OF_VESSEL, *scenario_effects, *library}
-    allowed |= {effect.name for effect in vessel.effects}
+    allowed.update(map(attrgetter("name"), vessel.effects))
     raise BadInput(unknown_name("key", name, allowed))
 
 
@@ -255,8 +257,12 @@ def _effect_value(scenario: Scenario, path: KeyPath) -> object:
         # An effect that has changed the vessel's parameters is not among its effects any more.
         kind: type[Effect] = load_class("effect", str(table["use"]))
         return table.get(name, getattr(kind, name, None))
-    part = getattr(vessel, owner) if owner in OF_VESSEL else vessel.effect(owner)
-    return part.get(name) if isinstance(part, dict) else getattr(part, name, None)
+    part = vessel.effect(owner)
+    if owner in OF_VESSEL:
+        part = getattr(vessel, owner)
+    if isinstance(part, dict):
+        return part.get(name)
+    return getattr(part, name, None)
 
 
 def _value_at(table: object, path: KeyPath) -> object:
@@ -265,14 +271,18 @@ def _value_at(table: object, path: KeyPath) -> object:
         if isinstance(table, list) and isinstance(step, int):
             table = table[step]
         else:
-            table = table.get(step) if isinstance(table, dict) else None
+            if not isinstance(table, dict):
+                return None
+            table = table.get(step)
     return table
 
 
 def _loads(table: ScenarioTable, place: Place, value: str) -> list[str]:
     """Loads of the scenario; `heavy` or `heavy+wide` replace those that they exclude."""
     specified = table.get("load", [])
-    before = list(map(str, specified)) if isinstance(specified, list) else []
+    before = []
+    if isinstance(specified, list):
+        before = list(map(str, specified))
     more = list(filter(None, map(str.strip, value.split("+"))))
     return vessels.merged_loads(str(table.get("vessel")), before, more, place.path.parent)
 
@@ -280,7 +290,9 @@ def _loads(table: ScenarioTable, place: Place, value: str) -> list[str]:
 def _controller(table: ScenarioTable, name: str) -> Mapping[str, object]:
     """A controller with its defaults; the scenario's own controller keeps its settings."""
     load_class("controller", name, named=True)
-    use = name if name in names("controller") else str(find("controller", name))
+    use = name
+    if name not in names("controller"):
+        use = str(find("controller", name))
     own = table.get("controller")
     if isinstance(own, dict) and own.get("use") == use:
         return own
@@ -297,7 +309,9 @@ def _with_value(table: object, path: KeyPath, value: object) -> dict[str, object
     elif isinstance(rest[0], int):
         items = list(inner) if isinstance(inner, list) else []
         index = rest[0]
-        items[index] = _with_value(items[index], tuple(rest[1:]), value) if rest[1:] else value
+        if rest[1:]:
+            value = _with_value(items[index], tuple(rest[1:]), value)
+        items[index] = value
         copy[str(head)] = items
     else:
         copy[str(head)] = _with_value(inner, tuple(rest), value)

@@ -38,7 +38,9 @@ def write(results: Results, folder: Path) -> None:
 
 def _title(results: Results) -> str:
     names = results.plan.scenarios
-    what = names[0] if len(names) == 1 else f"{len(names)} scenarios"
+    what = f"{len(names)} scenarios"
+    if len(names) == 1:
+        what = names[0]
     return f"{what}: {len(results.numbers)} runs"
 
 

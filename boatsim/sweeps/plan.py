@@ -5,8 +5,9 @@ from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property
 from hashlib import sha256
-from itertools import chain, compress, product
+from itertools import chain, compress, product, starmap
 from json import dumps
+from operator import attrgetter
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -71,13 +72,13 @@ class Plan:
     @cached_property
     def points(self) -> tuple[Point, ...]:
         """Grid points by scenario, the last axis fastest; raises BadInput for wrong keys."""
-        grid = product(*(axis.values for axis in self.axes))
-        return tuple(self._point(name, values) for name, values in product(self.scenarios, grid))
+        grid = product(*map(attrgetter("values"), self.axes))
+        return tuple(starmap(self._point, product(self.scenarios, grid)))
 
     @cached_property
     def probabilities(self) -> Array:
         """Design matrix (N, D) of the samples at every point."""
-        names = [one.target.name for one in self.sampled]
+        names = list(map(attrgetter("target.name"), self.sampled))
         return design_matrix(self.design, names, self.runs, self.seed)
 
     @cached_property
@@ -85,9 +86,9 @@ class Plan:
         """Values of the sampled quantities in each of the N samples."""
         if not self.sampled:
             return [()] * self.runs
-        columns = [
-            one.quantiles(p) for one, p in zip(self.sampled, self.probabilities.T, strict=True)
-        ]
+        columns = []
+        for sampled, probabilities in zip(self.sampled, self.probabilities.T, strict=True):
+            columns.append(sampled.quantiles(probabilities))
         return list(zip(*columns, strict=True))
 
     @property
@@ -98,13 +99,12 @@ class Plan:
     @property
     def targets(self) -> list[Target]:
         """Targets of the axes, then of the sampled quantities."""
-        axes = [axis.target for axis in self.axes]
-        return [*axes, *(one.target for one in self.sampled)]
+        return list(map(attrgetter("target"), chain(self.axes, self.sampled)))
 
     @property
     def columns(self) -> list[str]:
         """Names of the columns of varied and sampled values."""
-        return [*self._scenario_column, *(target.name for target in self.targets)]
+        return [*self._scenario_column, *map(attrgetter("name"), self.targets)]
 
     @cached_property
     def differing(self) -> list[str]:
@@ -114,7 +114,9 @@ class Plan:
 
     @property
     def _scenario_column(self) -> list[str]:
-        return ["scenario"] if len(self.scenarios) > 1 else []
+        if len(self.scenarios) == 1:
+            return []
+        return ["scenario"]
 
     def point(self, number: int) -> tuple[Value, ...]:
         """Return the values of a grid point in the columns `differing`.
@@ -238,7 +240,7 @@ def make_plan(
     """
     names = tuple(chain.from_iterable(map(matching, scenarios)))
     plan = Plan(names, tuple(axes), tuple(sampled), runs, seed, design)
-    unique = [*names, *chain.from_iterable(target.keys for target in plan.targets)]
+    unique = [*names, *chain.from_iterable(map(attrgetter("keys"), plan.targets))]
     for name in unique:
         if unique.count(name) > 1:
             raise BadInput(f"{name} is given twice")

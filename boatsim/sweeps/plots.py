@@ -88,7 +88,9 @@ def plot_metric(results: Results, name: str, rows: Array) -> list[str]:
     finite = rows & np.isfinite(values)
     if not finite.any():
         return []
-    title = f"{name} [{unit}]" if unit else name
+    title = name
+    if unit:
+        title = f"{name} [{unit}]"
     y = limits([values[finite]], zero=False)
     metric = _Metric(values, groups(results, finite), y, title)
     plots = []

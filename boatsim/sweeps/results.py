@@ -5,6 +5,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from json import dumps
+from operator import itemgetter
 from pathlib import Path
 from typing import Any
 
@@ -51,7 +52,7 @@ class Results:
         """Metrics to show; the table holds all."""
         if not self.selection:
             return list(self.units)
-        return [name for name in self.units if name in self.selection]
+        return list(filter(self.selection.__contains__, self.units))
 
     @cached_property
     def point(self) -> Array:
@@ -66,14 +67,18 @@ class Results:
     @cached_property
     def failed(self) -> Array:
         """Whether each run failed (R,)."""
-        failures = [entry["failure"] is not None for entry in self.entries.values()]
-        return np.array(failures, dtype=bool)
+        return np.array([reason is not None for reason in self._failures], dtype=bool)
 
     @cached_property
     def metrics(self) -> dict[str, Array]:
         """Values (R,) of each metric, nan where a run has none."""
         # A float array holds None as nan.
         return {name: np.array(self._values_of(name), dtype=float) for name in self.units}
+
+    @property
+    def _failures(self) -> list[str | None]:
+        """Reason of each failed run; None for the others."""
+        return list(map(itemgetter("failure"), self.entries.values()))
 
     def _values_of(self, metric: str) -> list[float | None]:
         return [entry.get("norms", {}).get(metric, (None,))[0] for entry in self.entries.values()]
@@ -90,8 +95,7 @@ class Results:
     @property
     def reasons(self) -> dict[str, int]:
         """Reasons of failed runs with their numbers, the most frequent first."""
-        failures = [entry["failure"] for entry in self.entries.values()]
-        return dict(Counter(filter(None, failures)).most_common())
+        return dict(Counter(filter(None, self._failures)).most_common())
 
     def columns(self) -> dict[str, Sequence[Any]]:
         """Return all columns of the table."""
@@ -102,13 +106,13 @@ class Results:
         }
         rows = list(map(self.plan.values, self.numbers))
         for index, name in enumerate(self.plan.columns):
-            columns[name] = [row[index] for row in rows]
+            columns[name] = list(map(itemgetter(index), rows))
         if "seed" not in self.plan.columns:
             columns["seed"] = list(map(self.plan.seed_of, self.numbers))
         for name in self.units:
             columns[name] = self._values_of(name)
         columns["guards_met"] = [entry.get("met") for entry in self.entries.values()]
-        columns["failure"] = [entry["failure"] for entry in self.entries.values()]
+        columns["failure"] = self._failures
         return columns
 
     def write(self, folder: Path) -> None:

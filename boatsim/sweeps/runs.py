@@ -48,13 +48,19 @@ def perform_run(task: RunTask) -> Entry:
         return failure_of(str(error))
     except Exception as error:  # An error in a controller, an effect or a metric of the user.
         return failure_of(f"{type(error).__name__}: {error}")
-    judged = [metric.ok for metric in metrics.values() if metric.ok is not None]
-    norms = {name: [_finite_or_none(m.value), m.unit] for name, m in metrics.items()}
-    return {"failure": None, "met": all(judged) if judged else None, "norms": norms}
+    met: bool | None = None
+    norms = {}
+    for name, metric in metrics.items():
+        norms[name] = [_finite_or_none(metric.value), metric.unit]
+        if metric.ok is not None:
+            met = metric.ok and met is not False
+    return {"failure": None, "met": met, "norms": norms}
 
 
 def _finite_or_none(value: float | None) -> float | None:
-    return value if value is not None and isfinite(value) else None
+    if value is None or not isfinite(value):
+        return None
+    return value
 
 
 def _stop_if_interrupted(t: float) -> None:

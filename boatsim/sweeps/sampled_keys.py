@@ -31,11 +31,15 @@ class Distribution(NamedTuple):
 
 
 def _positive_sd(mean: float, sd: float) -> str:
-    return "" if sd > 0.0 else "its spread must be above 0"
+    if sd > 0.0:
+        return ""
+    return "its spread must be above 0"
 
 
 def _ascending(low: float, high: float) -> str:
-    return "" if low < high else "its low end must be below its high end"
+    if low < high:
+        return ""
+    return "its low end must be below its high end"
 
 
 def _fault_of_lognormal(median: float, spread: float) -> str:
@@ -114,7 +118,7 @@ class SampledKey:
         if self.distribution == CHOICE:
             last = len(self.numbers) - 1
             indices = np.minimum((probabilities * len(self.numbers)).astype(int), last)
-            return [self.numbers[index] for index in indices.tolist()]
+            return list(map(self.numbers.__getitem__, indices.tolist()))
         from scipy import stats  # its import takes half a second
 
         frozen = DISTRIBUTIONS[self.distribution].frozen(stats, *self.numbers)

@@ -30,7 +30,9 @@ def write(columns: Columns, units: Mapping[str, str], about: str, path: Path) ->
     fields = []
     arrays = []
     for name, values in columns.items():
-        metadata = {"unit": units[name]} if name in units else None
+        metadata = None
+        if name in units:
+            metadata = {"unit": units[name]}
         field = pa.field(name, _type_of(values), metadata=metadata)
         fields.append(field)
         arrays.append(pa.array(values, field.type))
@@ -48,4 +50,6 @@ def _type_of(values: Sequence[Any]) -> "pa.DataType":
         return pa.bool_()
     if types == {int}:
         return pa.int64()
-    return pa.float64() if types <= {int, float, bool} else pa.string()
+    if types <= {int, float, bool}:
+        return pa.float64()
+    return pa.string()

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from operator import attrgetter
 
 from boatsim.sweeps import indices, summary
 from boatsim.sweeps.keys import Value
@@ -40,7 +41,7 @@ def tables(results: Results) -> list[TextTable]:
         *_pairs(others, summary.pairs(results)),
         _indices(names, indices.indices(results)),
     ]
-    return [table for table in every_table if table.rows]
+    return list(filter(attrgetter("rows"), every_table))
 
 
 def _spreads(names: Sequence[str], results: Results) -> TextTable:
@@ -104,7 +105,10 @@ def blank_repeats(table: TextTable) -> list[list[str]]:
     found = []
     for row in table.rows:
         words = row[:left]
-        found.append([*([""] * left if words == previous else words), *row[left:]])
+        shown = words
+        if words == previous:
+            shown = [""] * left
+        found.append([*shown, *row[left:]])
         previous = words
     return found
 
@@ -128,4 +132,6 @@ def format_values(values: Sequence[Value]) -> list[str]:
 
 
 def _with_unit(metric: str, unit: str) -> str:
-    return f"{metric} [{unit}]" if unit else metric
+    if not unit:
+        return metric
+    return f"{metric} [{unit}]"

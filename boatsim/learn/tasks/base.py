@@ -40,8 +40,8 @@ class Task(Checked):
     """Base class of tasks.
 
     Lengths are in boat lengths `scale.length` and speeds in `scale.speed`, unless a name or unit
-    shows another one. A task computes `observed` quantities once per control step, each an array (n,). The
-    first ones are those of `signals`; the others are used only by its own methods.
+    shows another one. A task computes `observed` quantities once per control step, each an array
+    (n,). The first ones are those of `signals`; the others are used only by its own methods.
     """
 
     words: ClassVar[str] = ""

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from multiprocessing import get_context
 from multiprocessing.connection import Connection, wait
 from multiprocessing.context import SpawnProcess
+from operator import attrgetter
 
 from boatsim.interruption import ignored_signals
 from boatsim.physics import trust
@@ -72,7 +73,7 @@ class Processes:
                     workers.append(_start(work, task))
                 if not workers:
                     return
-                ready = wait([worker.pipe for worker in workers], POLL)
+                ready = wait(list(map(attrgetter("pipe"), workers)), POLL)
                 for worker in [worker for worker in workers if worker.pipe in ready]:
                     number = worker.task[0]
                     try:
