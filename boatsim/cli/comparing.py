@@ -4,7 +4,7 @@ import os
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import chain, compress, count, filterfalse
+from itertools import chain, compress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -192,8 +192,12 @@ def _make_unique(names: Sequence[str]) -> list[str]:
     """Names with a number appended to those that occur earlier in the list."""
     unique: list[str] = []
     for name in names:
-        numbered = chain([name], map(f"{name}_{{}}".format, count(2)))
-        unique.append(next(filterfalse(unique.__contains__, numbered)))
+        candidate = name
+        number = 1
+        while candidate in unique:
+            number += 1
+            candidate = f"{name}_{number}"
+        unique.append(candidate)
     return unique
 
 

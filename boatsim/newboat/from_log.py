@@ -190,12 +190,17 @@ def _key(parameter: FreeParameter) -> tuple[str, str]:
 
 def _without(best: Fit, names: Sequence[str]) -> Fit:
     """The fit without some effects."""
-    keep = [index for index, f in enumerate(best.free) if f.effect not in names]
+    keep = []
+    free = []
+    for index, parameter in enumerate(best.free):
+        if parameter.effect not in names:
+            keep.append(index)
+            free.append(parameter)
     effects = tuple(n for n in best.effects if n not in names)
     return replace(
         best,
         effects=effects,
-        free=tuple(map(best.free.__getitem__, keep)),
+        free=tuple(free),
         theta=best.theta[keep],
         covariance=best.covariance[np.ix_(keep, keep)],
     )

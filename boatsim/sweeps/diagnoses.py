@@ -217,7 +217,7 @@ def table_columns(done: Outcome, paths: Sequence[str]) -> dict[str, list[Any]]:
     """
     entries = list(done.entries.values())
     columns: dict[str, list[Any]] = {
-        "recording": list(map(paths.__getitem__, done.entries)),
+        "recording": [paths[number] for number in done.entries],
         "verdict": [entry.get("verdict") for entry in entries],
         "causes": list(map(_joined_causes, entries)),
     }

@@ -114,9 +114,9 @@ class Plan:
 
     @property
     def _scenario_column(self) -> list[str]:
-        if len(self.scenarios) == 1:
-            return []
-        return ["scenario"]
+        if len(self.scenarios) > 1:
+            return ["scenario"]
+        return []
 
     def point(self, number: int) -> tuple[Value, ...]:
         """Return the values of a grid point in the columns `differing`.

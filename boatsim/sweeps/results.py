@@ -52,7 +52,7 @@ class Results:
         """Metrics to show; the table holds all."""
         if not self.selection:
             return list(self.units)
-        return list(filter(self.selection.__contains__, self.units))
+        return [name for name in self.units if name in self.selection]
 
     @cached_property
     def point(self) -> Array:

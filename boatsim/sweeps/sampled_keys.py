@@ -118,7 +118,7 @@ class SampledKey:
         if self.distribution == CHOICE:
             last = len(self.numbers) - 1
             indices = np.minimum((probabilities * len(self.numbers)).astype(int), last)
-            return list(map(self.numbers.__getitem__, indices.tolist()))
+            return [self.numbers[index] for index in indices.tolist()]
         from scipy import stats  # its import takes half a second
 
         frozen = DISTRIBUTIONS[self.distribution].frozen(stats, *self.numbers)
