@@ -13,7 +13,7 @@ def main() -> None:
         for action, words in zip(game.controls.names, game.controls.words, strict=True):
             print(f"  action {action:21s} -1 to 1    {words}")
         for signal in game.signals:
-            print(f"  sees {signal.name:23s} +- {signal.bound:<7.3g} {signal.words}")
+            print(f"  observed {signal.name:19s} +- {signal.bound:<7.3g} {signal.words}")
         print()
 
 

@@ -1,4 +1,4 @@
-"""Berth: from a few lengths off alongside a quay, and lie there."""
+"""Berth alongside a quay, starting a few lengths away, and stay there."""
 
 from dataclasses import dataclass
 from math import radians
@@ -38,7 +38,7 @@ class Berth(Task):
     leaving. A completed berthing adds 10.
     """
 
-    words: ClassVar[str] = "from a few lengths off alongside a quay, and lie there"
+    words: ClassVar[str] = "berth alongside a quay, starting a few lengths away"
     random_numbers: ClassVar[int] = 6
     memory: ClassVar[int] = 2
 

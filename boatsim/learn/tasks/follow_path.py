@@ -1,4 +1,4 @@
-"""Follow path: along a winding path at a steady speed."""
+"""Follow a winding path at a steady speed."""
 
 from dataclasses import dataclass
 from math import pi
@@ -28,7 +28,7 @@ class FollowPath(Task):
     5, when the boat is `reach` away from the path.
     """
 
-    words: ClassVar[str] = "along a winding path at a steady speed"
+    words: ClassVar[str] = "follow a winding path at a steady speed"
     use: ClassVar[Use] = "underway"
     random_numbers: ClassVar[int] = 6
     goals: ClassVar[int] = 3

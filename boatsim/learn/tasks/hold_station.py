@@ -1,4 +1,4 @@
-"""Hold station: stay at a place on a heading while wind and current push."""
+"""Hold a position and a heading in wind and current."""
 
 from dataclasses import dataclass
 from math import pi, radians
@@ -26,7 +26,7 @@ class HoldStation(Task):
     An episode ends when the time is over, or, with a penalty of 10, when the boat is `reach` away.
     """
 
-    words: ClassVar[str] = "stay at a place on a heading while wind and current push"
+    words: ClassVar[str] = "hold a position and a heading in wind and current"
     random_numbers: ClassVar[int] = 3
     memory: ClassVar[int] = 3
 

@@ -1,4 +1,4 @@
-"""Joystick: move sideways and turn as a stick asks that is moved now and then."""
+"""Follow a joystick that requests sway velocity and yaw rate and moves at intervals."""
 
 from dataclasses import dataclass
 from typing import ClassVar
