@@ -12,7 +12,10 @@ COMMENT = "Drawn by boatsim new from the boat's sizes; forces and masses are in 
 def hull_xml(boat: Particulars) -> str:
     """Return the MJCF of a boat, with the origin at the transom in the water surface.
 
-    X forward, y to port, z up.
+    The axes are x forward, y to port and z up.
+
+    Args:
+        boat: Particulars of the boat.
     """
     return plain_hull.hull_xml(boat.hull, boat.name, COMMENT, _fittings(boat))
 

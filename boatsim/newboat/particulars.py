@@ -30,7 +30,11 @@ class Mount:
     turns: bool = False
 
     def largest_astern(self, ahead: float) -> float:
-        """Return the largest thrust astern [N]; if it is unknown, that ahead."""
+        """Return the largest thrust astern [N]; that ahead if it is unknown.
+
+        Args:
+            ahead: Largest thrust ahead [N].
+        """
         if self.astern is None:
             return ahead
         return self.astern
@@ -56,7 +60,7 @@ class Particulars:
     Attributes:
         name: Name of the boat.
         hull: Dimensions and mass.
-        draught_stated: Whether the owner gave the draught.
+        draught_given: Whether the owner gave the draught.
         speed: Speed at full thrust [m/s], None if unknown.
         thrusters: Thrusters.
         rudder: Rudder, None without one.
@@ -64,7 +68,7 @@ class Particulars:
 
     name: str
     hull: Hull
-    draught_stated: bool
+    draught_given: bool
     speed: float | None
     thrusters: tuple[Mount, ...]
     rudder: Blade | None = None
@@ -143,8 +147,14 @@ def particulars(
     blade = None
     if rudder is not None:
         blade = _blade(rudder, length)
-    made = hull(length, beam, mass, hulls, draught)
-    return Particulars(name, made, draught is not None, speed, tuple(mounts), blade)
+    return Particulars(
+        name,
+        hull(length, beam, mass, hulls, draught),
+        draught is not None,
+        speed,
+        tuple(mounts),
+        blade,
+    )
 
 
 def _numbers(option: str, text: str, least: int, most: int) -> list[float]:

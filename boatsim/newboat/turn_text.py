@@ -19,7 +19,11 @@ HELM = 0.35  # [rad] 20 deg
 
 
 def turn_text(boat: Particulars) -> str:
-    """Return the text of the file."""
+    """Return the text of turn.toml.
+
+    Args:
+        boat: Particulars of the boat.
+    """
     return "\n".join([*_lines(boat), ""])
 
 

@@ -31,7 +31,11 @@ ADDED_MASS_SD = 0.4  # difference of strip theory, regressions and measurements
 
 
 def vessel_text(boat: Particulars) -> str:
-    """Return the text of the file."""
+    """Return the text of vessel.toml.
+
+    Args:
+        boat: Particulars of the boat.
+    """
     return "\n".join(
         [
             *_head(boat),
@@ -46,7 +50,11 @@ def vessel_text(boat: Particulars) -> str:
 
 
 def number(value: float) -> str:
-    """Return a number with four digits as a TOML float."""
+    """Return a number with four digits as a TOML float.
+
+    Args:
+        value: The number.
+    """
     text = f"{value:.4g}"
     if "." in text or "e" in text:
         return text
@@ -54,7 +62,14 @@ def number(value: float) -> str:
 
 
 def line(key: str, value: float, unit: str, rule: str) -> str:
-    """Return the line `key = value  # [unit] rule`."""
+    """Return the line `key = value  # [unit] rule`.
+
+    Args:
+        key: Name of the entry.
+        value: Its value.
+        unit: Its unit; "" for none.
+        rule: The rule that the value follows.
+    """
     entry = f"{key} = {number(value)}"
     comment = rule
     if unit:
@@ -71,19 +86,38 @@ def _text(value: str) -> str:
 
 
 def full_thrust(boat: Particulars) -> tuple[list[float], bool]:
-    """Return the largest thrust of each thruster [N], and whether the owner gave all."""
+    """Return the largest thrust of each thruster [N], and whether the owner gave all.
+
+    Args:
+        boat: Particulars of the boat.
+    """
     by_rule = thrust.full(boat.hull).value / len(boat.thrusters)
-    stated = all(m.ahead is not None for m in boat.thrusters)
-    return [by_rule if m.ahead is None else m.ahead for m in boat.thrusters], stated
+    all_given = True
+    largest = []
+    for mount in boat.thrusters:
+        if mount.ahead is None:
+            largest.append(by_rule)
+            all_given = False
+        else:
+            largest.append(mount.ahead)
+    return largest, all_given
 
 
 def thrust_channel(name: str) -> str:
-    """Return the name of the thrust command of a thruster."""
+    """Return the name of the thrust command of a thruster.
+
+    Args:
+        name: Name of the thruster.
+    """
     return f"thrust_{name}_N"
 
 
 def steer_channel(name: str) -> str:
-    """Return the name of the angle command of a thruster that turns."""
+    """Return the name of the angle command of a thruster that turns.
+
+    Args:
+        name: Name of the thruster.
+    """
     return f"steer_{name}_rad"
 
 
@@ -102,7 +136,7 @@ def _head(boat: Particulars) -> Iterator[str]:
     yield line("length", hull.length, "m", OWNER)
     yield line("beam", hull.beam, "m", OWNER)
     rule = OWNER
-    if not boat.draught_stated:
+    if not boat.draught_given:
         rule = displacement.draught(hull.length, hull.beam, hull.mass, hull.hulls).rule
     yield line("draught", hull.draught, "m", rule)
 
@@ -153,7 +187,7 @@ def _effects(boat: Particulars) -> Iterator[str]:
     yield _of("surge", added_mass.surge(hull), "kg")
     yield _of("sway", added_mass.sway(hull), "kg")
     yield _of("yaw", added_mass.yaw(hull), "kg m^2")
-    linear, quadratic = resistance.coefficients(hull, stated_thrust(boat), boat.speed)
+    linear, quadratic = resistance.coefficients(hull, given_thrust(boat), boat.speed)
     yield from ("", "[[effect]]", 'use = "linear_damping"')
     yield _of("surge", linear, "N s/m")
     yield _of("sway", sway, "N s/m")
@@ -180,17 +214,25 @@ def _effects(boat: Particulars) -> Iterator[str]:
 
 
 def service(boat: Particulars) -> float:
-    """Return the speed of the rudder coefficients [m/s]: service speed, at most top speed."""
+    """Return the speed of the rudder coefficients [m/s]: service speed, at most top speed.
+
+    Args:
+        boat: Particulars of the boat.
+    """
     easy = resistance.service_speed(boat.hull)
     if boat.speed is None:
         return easy
     return min(easy, boat.speed)
 
 
-def stated_thrust(boat: Particulars) -> float | None:
-    """Return the full thrust of all thrusters [N], None if the owner gave none."""
-    full, stated = full_thrust(boat)
-    if not stated:
+def given_thrust(boat: Particulars) -> float | None:
+    """Return the full thrust of all thrusters [N]; None if the owner did not give all.
+
+    Args:
+        boat: Particulars of the boat.
+    """
+    full, all_given = full_thrust(boat)
+    if not all_given:
         return None
     return math.fsum(full)
 
@@ -246,7 +288,11 @@ def _washing(boat: Particulars, blade: Blade) -> str:
 
 
 def approach(boat: Particulars) -> float:
-    """Return the part of full thrust at the approach of manoeuvres."""
+    """Return the part of full thrust at the approach of manoeuvres.
+
+    Args:
+        boat: Particulars of the boat.
+    """
     full, _ = full_thrust(boat)
     return min(
         APPROACH_PART,
@@ -276,7 +322,11 @@ def _manoeuvring(boat: Particulars) -> Iterator[str]:
 
 
 def steering(boat: Particulars) -> dict[str, float]:
-    """Return the commands per rad of helm: of rudder, turned thrusters or differential thrust."""
+    """Return the commands per rad of helm: of rudder, turned thrusters or differential thrust.
+
+    Args:
+        boat: Particulars of the boat.
+    """
     if boat.rudder is not None:
         return {"rudder_rad": 1.0}
     turning: dict[str, float] = {}
@@ -295,11 +345,11 @@ def steering(boat: Particulars) -> dict[str, float]:
 
 
 def _diagnosis(boat: Particulars) -> Iterator[str]:
-    _, stated = full_thrust(boat)
+    _, all_given = full_thrust(boat)
     yield from ("", "[diagnosis]")
     thrust_sd = ESTIMATED_THRUST_SD
     thrust_reason = "no thrust was given"
-    if stated:
+    if all_given:
         thrust_sd = GIVEN_THRUST_SD
         thrust_reason = "a given thrust is one at rest"
     sds = f"damping = {DAMPING_SD}, thrust = {thrust_sd}, added_mass = {ADDED_MASS_SD}"

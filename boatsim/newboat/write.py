@@ -9,5 +9,9 @@ VESSEL = "vessel.toml"
 
 
 def files(boat: Particulars) -> dict[str, str]:
-    """Return the file name -> text of each file of a boat's folder."""
+    """Return the texts of the files of a boat's folder by file name.
+
+    Args:
+        boat: Particulars of the boat.
+    """
     return {VESSEL: vessel_text(boat), "hull.xml": hull_xml(boat), "turn.toml": turn_text(boat)}

@@ -80,7 +80,7 @@ class FollowPath(Task):
         )
 
     def begin(self, uniforms: Array, scale: Scale) -> tuple[Array, Array]:
-        """Return starts within half a length and half a radian of the path, and goals."""
+        """Return starts within half a length and half a radian of the path; see `Task`."""
         length = scale.length
         wave = 2.0 * pi / (length * (8.0 + 16.0 * uniforms[:, 0]))
         steepest = np.minimum(0.7 / wave, 1.0 / (self.tightest * length * wave**2))

@@ -73,7 +73,7 @@ class HoldStation(Task):
         )
 
     def begin(self, uniforms: Array, scale: Scale) -> tuple[Array, Array]:
-        """Return starts at rest near the station, within half a radian of its heading."""
+        """Return starts at rest near the station and its heading; see `Task`."""
         offset = 2.0 * uniforms - 1.0
         place = self.start_within * scale.length * offset[:, :2]
         at_rest = np.zeros((len(offset), 3))
