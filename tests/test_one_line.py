@@ -75,7 +75,7 @@ def test_a_scenario_that_can_not_be_run(tmp_path: Path, text: str, said: str) ->
         ("draught = 0.1", "draught = 1e300", "draught = 1e+300"),
         ("mass = 6.0", "mass = 0.0", "body.mass = 0.0"),
         ("mass = 6.0", "mass = nan", "body.mass = nan"),
-        ("thrust_port_N =", "t_s =", "'t_s' can not be the name"),
+        ("thrust_port_N =", "t_s =", "'t_s' is not allowed as a name"),
     ],
 )
 def test_a_vessel_that_can_not_be(tmp_path: Path, old: str, new: str, said: str) -> None:
