@@ -112,7 +112,7 @@ def test_a_scenario_that_lets_go_of_the_boat_is_refused() -> None:
         "joystick_boat/berth",
         {"tank": None, "goal": [{"yaw_radps": 0.1}, {"from": 5.0, "off": True}]},
     )
-    with pytest.raises(BadInput, match="says off"):
+    with pytest.raises(BadInput, match="off = true"):
         Fleet(let_go, 2)
 
 
