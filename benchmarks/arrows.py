@@ -98,7 +98,9 @@ def _by_name(node: ast.AST) -> str | None:
     if not isinstance(node, ast.Call) or ast.unparse(node.func).split(".")[-1] not in DYNAMIC:
         return None
     first = node.args[0] if node.args else None
-    return first.value if isinstance(first, ast.Constant) and isinstance(first.value, str) else ""
+    if isinstance(first, ast.Constant) and isinstance(first.value, str):
+        return first.value
+    return ""
 
 
 def own(path: Path) -> set[str]:
@@ -212,11 +214,10 @@ def _lane(
     """The way of all imports of one folder: from each importer down, left, and up to it."""
     place, bottom = folders.index(lane), EDGE + HIGH
     y, x, colour = bottom + FIRST + depth * LANE, _left(place) + 20, COLOURS[place]
-    taps = [
-        (_left(i) + _tap(a, depth, lanes, found), found[a, lane])
-        for i, a in enumerate(folders)
-        if (a, lane) in found
-    ]
+    taps = []
+    for i, a in enumerate(folders):
+        if (a, lane) in found:
+            taps.append((_left(i) + _tap(a, depth, lanes, found), found[a, lane]))
     far = max(at for at, _ in taps)
     yield f'<path stroke="{colour}" d="M{far} {y}H{x}V{bottom + 7}"/>'
     yield f'<path style="fill:{colour}" d="M{x - 6} {bottom + 11}L{x} {bottom}L{x + 6} {bottom + 11}z"/>'

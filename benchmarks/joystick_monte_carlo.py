@@ -90,7 +90,9 @@ def main(arguments: list[str] | None = None) -> int:
     if given.plot and done.complete:
         given.plot.write_text(_picture(done), encoding="utf-8")
     print(f"written to {given.out}: sweep.parquet, report.html")
-    return 0 if done.complete else 130
+    if done.complete:
+        return 0
+    return 130
 
 
 def _sizes(columns: Mapping[str, Array], scenario: str, controller: str, name: str) -> list[float]:

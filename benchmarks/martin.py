@@ -208,10 +208,9 @@ def sea_line(e: Entry, pid: Entry) -> str:
     """Rms of rudder, yaw and roll [deg] with the spread between seeds, and %PID."""
     names = ("rudder_rms", "yaw_rms", "roll_rms")
     printed = list(e.printed) or [nan] * 3
-    cells = [
-        f"{p:6.2f} {e.each(n).mean():6.2f} +-{e.each(n).std():5.2f}"
-        for p, n in zip(printed, names, strict=True)
-    ]
+    cells = []
+    for p, n in zip(printed, names, strict=True):
+        cells.append(f"{p:6.2f} {e.each(n).mean():6.2f} +-{e.each(n).std():5.2f}")
     base, ours = pid.printed[2], reduction(e, pid)
     return f"{e.kind:11}  {'  '.join(cells)}   {100 * (1 - printed[2] / base):5.0f} {ours.mean():5.0f} +-{ours.std():3.0f}"
 
@@ -293,11 +292,10 @@ def faster_rudder(seeds: int) -> list[str]:
     """%PID of VSS RRS at 5 and 15 deg/s, sea by sea."""
     lines, gains = [], {}
     for vessel, test in product(VESSELS, (*SEAS, "broad")):
-        names = (
-            [f"{vessel}/puzzle_rudder_{n}" for n in ("pid", "5", "15")]
-            if test == "broad"
-            else [f"{vessel}/{test}{n}" for n in ("", "_sliding_roll", "_fast")]
-        )
+        if test == "broad":
+            names = [f"{vessel}/puzzle_rudder_{n}" for n in ("pid", "5", "15")]
+        else:
+            names = [f"{vessel}/{test}{n}" for n in ("", "_sliding_roll", "_fast")]
         pid, slow, fast = (mean_over(name, seeds)[0] for name in names)
         at = [float((100.0 * (1.0 - roll / pid)).mean()) for roll in (slow, fast)]
         gains[vessel, test] = at[1] - at[0]
@@ -306,9 +304,9 @@ def faster_rudder(seeds: int) -> list[str]:
             f"  {vessel:12} {where:22} %PID {at[0]:4.0f} at 5 deg/s, {at[1]:4.0f} at 15 deg/s"
         )
     off = [g for (_, test), g in gains.items() if test in SEAS[1:]]
-    near = {
-        v: [g for (w, test), g in gains.items() if w == v and test not in SEAS[1:]] for v in VESSELS
-    }
+    near = {}
+    for v in VESSELS:
+        near[v] = [g for (w, test), g in gains.items() if w == v and test not in SEAS[1:]]
     lines.append(
         f"answer: no in quartering seas ({min(off):+.0f} to {max(off):+.0f} points), whose energy the ship meets below "
         "her roll frequency, where few commands ask for more than 5 deg/s. At resonance, in beam seas, it does where "
@@ -324,10 +322,11 @@ def better_course(seeds: int) -> list[str]:
     """Roll in kynoc's quartering seas under better and better course keeping."""
     names = {"idle": "no rudder", "pid": "PID", "sliding": "VSS", "locked": "yaw locked"}
     found = {n: mean_over(f"kynoc/puzzle_course_{n}", seeds) for n in names}
-    lines = [
-        f"  {said:11} yaw {found[n][1].mean():5.2f}  roll {found[n][0].mean():5.2f} +-{found[n][0].std():.2f} deg"
-        for n, said in names.items()
-    ]
+    lines = []
+    for n, said in names.items():
+        lines.append(
+            f"  {said:11} yaw {found[n][1].mean():5.2f}  roll {found[n][0].mean():5.2f} +-{found[n][0].std():.2f} deg"
+        )
     rolls = {n: float(found[n][0].mean()) for n in names}
     lines.append(
         f"answer: here yes: turning heels her, and with her yaw locked she rolls {rolls['locked']:.1f} deg against "

@@ -45,21 +45,19 @@ def force(boat: Vessel, **moved: float) -> Array:
     """Yaw moment, sway force and roll moment at the approach speed, the hull's own Coriolis force in it."""
     angle = {"angle": moved.pop("rudder", 0.0)}
     m = motion(**{"u": speed_of(boat), **moved})
-    forces = [
-        e.wrench(m, **(angle if type(e).roles else {}))
-        for e in boat.effects
-        if isinstance(e, Force)
-    ]
+    forces = []
+    for e in boat.effects:
+        if isinstance(e, Force):
+            forces.append(e.wrench(m, **(angle if type(e).roles else {})))
     w = Wrench(*np.sum(forces, axis=0))
     return np.array([w.N, w.Y - boat.body.mass * speed_of(boat) * m.r, w.K])
 
 
 def linear(boat: Vessel) -> tuple[Array, Array, Array]:
     """Continuous A (5, 5) over (psi, r, v, phi, p), B (5,) of the rudder, K (5, 3) of waves as (yaw, sway, roll)."""
-    rates = {
-        n: np.linalg.solve(inertia(boat), force(boat, **{n: 1.0}))
-        for n in ("r", "v", "phi", "p", "rudder")
-    }
+    rates = {}
+    for n in ("r", "v", "phi", "p", "rudder"):
+        rates[n] = np.linalg.solve(inertia(boat), force(boat, **{n: 1.0}))
     A, K, mass = np.zeros((5, 5)), np.zeros((5, 3)), inertia(boat).diagonal()
     A[0, 1] = A[3, 4] = K[1, 0] = K[2, 1] = K[4, 2] = 1.0
     A[np.ix_([1, 2, 4], [1, 2, 3, 4])] = np.column_stack([rates[n] for n in ("r", "v", "phi", "p")])

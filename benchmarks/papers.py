@@ -78,12 +78,10 @@ def _row(table: Mapping[str, Any], file: Path) -> Row:
         raise BadInput(
             f"{file.name}: {table.get('what')}: has {sorted(found)}; allowed are {[*map(sorted, OURS)]}"
         )
-    ours, published, unit, command = (
-        table.get("ours"),
-        table.get("published"),
-        table.get("unit"),
-        "",
-    )
+    ours = table.get("ours")
+    published = table.get("published")
+    unit = table.get("unit")
+    command = ""
     if "norm" in table:
         values = _golden(table["scenario"])
         if table["norm"] not in values:
@@ -92,20 +90,16 @@ def _row(table: Mapping[str, Any], file: Path) -> Row:
             )
         pinned = values[table["norm"]]
         ours, command = pinned["today"], f"`boatsim run {table['scenario']}`"
-        published, unit = (
-            pinned["published"] if published is None else published,
-            unit or pinned["unit"],
-        )
+        published = pinned["published"] if published is None else published
+        unit = unit or pinned["unit"]
     elif "figure" in table:
         ours, command = _figures(table["module"])[table["figure"]], f"`python -m {table['module']}`"
     elif "command" in table:
         command = f"`{table['command']}`"
     if published is None:
         raise BadInput(f"{file.name}: {table['what']}: nothing published to compare with")
-    tolerance, span = (
-        _tolerance(table, published),
-        tuple(table["span"]) if "span" in table else None,
-    )
+    tolerance = _tolerance(table, published)
+    span = tuple(table["span"]) if "span" in table else None
     verdict = verdict_on(published, ours, tolerance, span)
     because, reason = table.get("because", ""), table.get("reason", "")
     if because not in ("", *BECAUSE):
@@ -129,7 +123,9 @@ def _tolerance(table: Mapping[str, Any], published: Any) -> float | None:
     if "within" in table:
         return float(table["within"] * abs(published))
     norm = _norms(table["scenario"]).get(table["norm"]) if "norm" in table else None
-    return norm.tolerance if norm is not None and norm.published == published else None
+    if norm is not None and norm.published == published:
+        return norm.tolerance
+    return None
 
 
 def verdict_on(
@@ -139,21 +135,25 @@ def verdict_on(
     if isinstance(ours, str) or (isinstance(published, str) and span is None):
         return WORDS
     if span is not None:
-        return REPRODUCED if ours is not None and span[0] <= ours <= span[1] else MISSED
+        if ours is not None and span[0] <= ours <= span[1]:
+            return REPRODUCED
+        return MISSED
     if tolerance is None:
         return NO_TOLERANCE
-    return REPRODUCED if ours is not None and within(ours, published, tolerance) else MISSED
+    if ours is not None and within(ours, published, tolerance):
+        return REPRODUCED
+    return MISSED
 
 
 def _margin(tolerance: float | None, span: tuple[float, float] | None, unit: str) -> str:
     """The margin of a verdict in words."""
     if span is not None:
-        return (
-            f"at least {_shown(span[0], unit)}"
-            if isinf(span[1])
-            else f"{span[0]:.4g} to {_shown(span[1], unit)}"
-        )
-    return "" if tolerance is None else f"within {_shown(tolerance, unit)}"
+        if isinf(span[1]):
+            return f"at least {_shown(span[0], unit)}"
+        return f"{span[0]:.4g} to {_shown(span[1], unit)}"
+    if tolerance is None:
+        return ""
+    return f"within {_shown(tolerance, unit)}"
 
 
 @cache
@@ -177,7 +177,9 @@ def _figures(module: str) -> dict[str, float]:
 def _shown(value: float | str | None, unit: str) -> str:
     if value is None:
         return "never reached"
-    return value if isinstance(value, str) else f"{value:.4g} {unit}".strip()
+    if isinstance(value, str):
+        return value
+    return f"{value:.4g} {unit}".strip()
 
 
 def document() -> str:

@@ -117,10 +117,8 @@ def tanker() -> Pair:
         N_rrr_dash=-0.013,
     )  # fmt: skip
     times = np.linspace(0.0, seconds, 2001)
-    rudder, propeller = (
-        np.full(len(times), RUDDER["delta_rad"]),
-        np.full(len(times), RUDDER["n_rps"]),
-    )
+    rudder = np.full(len(times), RUDDER["delta_rad"])
+    propeller = np.full(len(times), RUDDER["n_rps"])
 
     def theirs() -> None:
         simulate_mmg_3dof(hull, polynomials, times, rudder, propeller, u0=1.179, ρ=rho)

@@ -267,7 +267,7 @@ TRIALS = {  # as a row of the page begins -> rows of the benchmark that give its
         "with a term of its kind",
     ],
     "their error on held-out": ["described: error ratio"],
-    "skill with these": ["skill, truth taken out", "of these by a description"],
+    "skill with these": ["skill, truth removed", "of these by a description"],
     "unknown causes flagged": [
         "visible unknown cause flagged, pilot",
         "visible unknown cause flagged, concealed",

@@ -1,8 +1,8 @@
-"""What a tool hands in to the benchmark, read and checked: a folder of answers, one for each trial.
+"""Reads and checks the answers of a tool: a folder with one answer for each trial.
 
-RESULTS/Txxx/diagnosis.json needs `effects`, a list of tables with `name` and, where they are told, `parameters` (by
-name with unit, each with `value` and `sd`), and `unknown` with `flag`. RESULTS/Txxx/replay.csv has free runs over
-run_3, if the tool makes any.
+RESULTS/Txxx/diagnosis.json needs `effects`, a list of tables with `name` and optionally
+`parameters` (by name with unit, each with `value` and `sd`), and `unknown` with `flag`.
+RESULTS/Txxx/replay.csv holds free runs over run_3; it is optional.
 """
 
 import csv
@@ -12,36 +12,38 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-VESSEL, HORIZON, LENGTH = (
-    "trial_boat",
-    6.0,
-    1.2,
-)  # where none is named; [s] of free runs at this length [m]
+VESSEL = "trial_boat"  # default if recording.toml names no vessel
+HORIZON = 6.0  # [s] duration of a free run of a boat of LENGTH
+LENGTH = 1.2  # [m]
 OPTIONAL: Mapping[str, Any] = {"verdict": "", "described": [], "candidates": [], "fit": {}}
-SPAN = 0.05  # of the horizon that a free run may be shorter or longer
-COVERED = 0.95  # of the rows that free runs must reach
+SPAN = 0.05  # tolerance of a free run's duration, share of the horizon
+COVERED = 0.95  # share of the rows that the free runs must cover
 
 
 class BadEntry(Exception):
-    """What is wrong with a folder of answers, in one line."""
+    """The folder of answers is invalid; the message is one line."""
 
 
 def vessel_of(trial: Path) -> str:
-    """The vessel its recording.toml names."""
+    """Return the vessel that the trial's recording.toml names."""
     from boatsim.recordings.notes import notes_for
 
     return notes_for(trial / "run_1.csv").notes.vessel or VESSEL
 
 
 def horizon_of(trial: Path) -> float:
-    """Seconds of a free run: 6 for a boat of 1.2 m, for others by Froude's scale of time."""
+    """Return the duration [s] of a free run: 6 s at 1.2 m, Froude-scaled for others."""
     from boatsim.physics import vessel as vessels
 
     return HORIZON * math.sqrt(vessels.load(vessel_of(trial), []).length / LENGTH)
 
 
 def answers_in(results: Path, trials: list[str]) -> dict[str, dict[str, Any]]:
-    """The answers of a tool, by trial. Raises BadEntry."""
+    """Return the answers of a tool by trial.
+
+    Raises:
+        BadEntry: if the folder or an answer is missing or invalid.
+    """
     if not results.is_dir():
         raise BadEntry(
             f"{results}: there is no such folder; a folder of answers holds T001.../diagnosis.json and so on"
@@ -50,7 +52,11 @@ def answers_in(results: Path, trials: list[str]) -> dict[str, dict[str, Any]]:
 
 
 def read_answer(file: Path) -> dict[str, Any]:
-    """One answer, what need not be there filled in. Raises BadEntry."""
+    """Return one answer with defaults for the optional keys.
+
+    Raises:
+        BadEntry: if the file is missing or invalid.
+    """
     if not file.is_file():
         raise BadEntry(
             f"{file}: there is no such file; every trial needs an answer, be it that nothing is missing"
@@ -61,10 +67,8 @@ def read_answer(file: Path) -> dict[str, Any]:
         raise BadEntry(f"{file}: not JSON: {error}") from None
     if not isinstance(found, dict):
         raise BadEntry(f"{file}: a table is needed, with effects and unknown")
-    effects, unknown = (
-        _needed(found, "effects", list, file, ""),
-        _needed(found, "unknown", dict, file, ""),
-    )
+    effects = _needed(found, "effects", list, file, "")
+    unknown = _needed(found, "unknown", dict, file, "")
     _needed(unknown, "flag", bool, file, "unknown.")
     for i, effect in enumerate(effects):
         where = f"effects[{i}]."
@@ -88,7 +92,7 @@ def read_answer(file: Path) -> dict[str, Any]:
 
 
 def _needed(table: dict[str, Any], key: str, kind: type, file: Path, where: str) -> Any:
-    """A key's value. Raises BadEntry."""
+    """Return the value of a required key; raise BadEntry if it is missing or of another type."""
     words = {list: "a list", dict: "a table", bool: "true or false", str: "a text"}[kind]
     if key not in table:
         raise BadEntry(f"{file}: {where}{key} is missing; it is {words}")
@@ -98,7 +102,7 @@ def _needed(table: dict[str, Any], key: str, kind: type, file: Path, where: str)
 
 
 def _check_number(found: object, where: str, file: Path) -> None:
-    """A parameter has a finite value and an sd. Raises BadEntry."""
+    """Raise BadEntry unless a parameter has a finite value and a positive sd."""
     for key in ("value", "sd"):
         x = found.get(key) if isinstance(found, dict) else None
         if (
@@ -114,7 +118,19 @@ def _check_number(found: object, where: str, file: Path) -> None:
 
 
 def replay_errors(trial: Path, file: Path, horizon: float) -> float | None:
-    """Position rms [m] of free runs over run_3; None unless they last `horizon` s each and together cover it."""
+    """Return the position rms error [m] of free runs over run_3.
+
+    Args:
+        trial: folder of the trial.
+        file: replay.csv of the tool.
+        horizon: duration of a free run [s].
+
+    Returns:
+        The rms error, or None unless the runs last `horizon` each and together cover run_3.
+
+    Raises:
+        BadEntry: if the file lacks a column or has a time that run_3 has not.
+    """
     if not file.is_file():
         return None
     with (trial / "run_3.csv").open() as opened:
@@ -124,11 +140,10 @@ def replay_errors(trial: Path, file: Path, horizon: float) -> float | None:
         with file.open() as opened:
             for row in csv.DictReader(opened):
                 runs.setdefault(row["segment"], []).append((round(float(row["t_s"]), 3), row))
-        whole = {
-            k: rows
-            for k, rows in runs.items()
-            if abs(rows[-1][0] - rows[0][0] - horizon) <= SPAN * horizon
-        }
+        whole = {}
+        for k, rows in runs.items():
+            if abs(rows[-1][0] - rows[0][0] - horizon) <= SPAN * horizon:
+                whole[k] = rows
         pairs = [(row, recorded[t]) for rows in whole.values() for t, row in rows]
         squares = [(float(a[c]) - float(b[c])) ** 2 for a, b in pairs for c in ("x_m", "y_m")]
     except (KeyError, ValueError, TypeError) as error:
@@ -142,4 +157,6 @@ def replay_errors(trial: Path, file: Path, horizon: float) -> float | None:
     whole_way = (
         squares and all(map(math.isfinite, squares)) and len(reached) >= COVERED * len(needed)
     )
-    return math.sqrt(sum(squares) / len(squares)) if whole_way else None
+    if whole_way:
+        return math.sqrt(sum(squares) / len(squares))
+    return None

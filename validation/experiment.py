@@ -1,12 +1,13 @@
-"""What the next experiment is worth: `python -m validation.experiment [--jobs N] [--quick]`.
+"""Benefit of the suggested next experiment: `python -m validation.experiment`.
 
-Every entry of trial_boat's suspects acts once per seed on a boat simulated with the project's own twin, at half the
-strength that its prior expects (half of each strength's prior sd; directions and places drawn from their prior), with
-damping and thrust off by 5 %, ambient force and camera noise as in the practice trials. A first, short recording of
-gentle steering is diagnosed. Then it is diagnosed with one more recording beside it, three times: of the suggested
-manoeuvre, of another manoeuvre drawn from the same menu, and of gentle steering again; all three last as long. The
-probability of the truth is its weight, by evidence, among all single entries and nothing: what diagnosis.json says
-under candidates. A case without a suggestion takes the run of gentle steering for it.
+Options: `--jobs N`, `--quick`. Each candidate effect of trial_boat acts once per seed on a boat
+simulated with the compiled engine. Its strength is half of the prior standard deviation; directions
+and places are sampled from their prior. Damping and thrust are off by 5 %; ambient force and camera
+noise are as in the practice trials. A first, short recording of gentle steering is diagnosed. The
+diagnosis is repeated three times with one additional recording of equal length: the suggested
+manoeuvre, a random manoeuvre of the same menu, and gentle steering again. The probability of the
+truth is its posterior weight among all single effects and the nominal model, as under `candidates`
+in diagnosis.json. A case without a suggestion uses the run of gentle steering instead.
 """
 
 import argparse
@@ -38,15 +39,18 @@ from boatsim.physics.program import Program
 from boatsim.recordings.table import Recording
 
 BOAT, STRENGTH, ERROR = "trial_boat", 0.5, 0.05
-SHORT, LONG = 20.0, 40.0  # [s] of the first run, and of one more
-RATE, SUBSTEPS = 6.0, 8  # rows per second, steps of integration per row
-POSITION_SD, HEADING_SD = (0.002, 0.005), (0.009, 0.018)  # [m], [rad] range of the camera's noise
+SHORT, LONG = 20.0, 40.0  # [s] duration of the first and of the additional run
+RATE, SUBSTEPS = 6.0, 8  # rows per second, integration steps per row
+POSITION_SD, HEADING_SD = (
+    (0.002, 0.005),
+    (0.009, 0.018),
+)  # [m], [rad] ranges of the camera noise (sd)
 NOTHING = "nothing"
 
 
 @dataclass(frozen=True)
 class Boat:
-    """A boat that differs from its vessel file: parameters and switches of the compiled program, and its camera."""
+    """Differences of a boat from its vessel file: parameters, active effects and camera noise."""
 
     values: Array
     on: Array
@@ -56,7 +60,7 @@ class Boat:
 
 @dataclass(frozen=True)
 class Outcome:
-    """One case: probability of the truth, and what was suggested."""
+    """Result of one case: probability of the true effect, and the suggestion."""
 
     truth: str
     before: float
@@ -65,19 +69,19 @@ class Outcome:
     same: float
     manoeuvre: str
     expected: float  # [nats]
-    # [nats] evidence of the truth over its best rival, after the suggested run less before
+    # [nats] log Bayes factor of the truth over its best rival: after minus before the suggested run
     gained: float
 
 
 @cache
 def program() -> Program:
-    """The vessel with all its suspects, compiled once for all cases."""
+    """Return the compiled program of the vessel with all its candidates."""
     boat = vessel.load(BOAT)
     return Program(boat, library_for(boat).compiled)
 
 
 def drawn(truth: str, rng: np.random.Generator) -> Boat:
-    """A boat with one entry acting at half strength, its own coefficients off."""
+    """Return a boat on which one effect acts at half strength, with perturbed coefficients."""
     boat, values = program().vessel, program().values()
     for effect in boat.effects:
         for name, about in type(effect).params().items():
@@ -87,11 +91,10 @@ def drawn(truth: str, rng: np.random.Generator) -> Boat:
     for name, about in kind.params().items():
         if about.fit:
             spread = about.spread * froude_scale(about.unit, boat)
-            away = (
-                rng.choice((-1.0, 1.0)) * STRENGTH
-                if name in (kind.strength or kind.params())
-                else rng.normal()
-            )
+            if name in (kind.strength or kind.params()):
+                away = rng.choice((-1.0, 1.0)) * STRENGTH
+            else:
+                away = rng.normal()
             inside = about.low <= about.absent + away * spread <= about.high
             value = about.absent + (away if inside else -away) * spread
             values[program().index(truth, name)] = np.clip(value, about.low, about.high)
@@ -101,17 +104,15 @@ def drawn(truth: str, rng: np.random.Generator) -> Boat:
 
 
 def gentle(rng: np.random.Generator, length: float) -> tuple[Array, Array]:
-    """Start (x, y, psi, 0, 0, 0) and commands (N, C) of a pilot who moves slowly and hardly steers."""
+    """Return start (x, y, psi, 0, 0, 0) and commands (N, C) of slow, almost straight driving."""
     rows = round(length * RATE)
     commands = np.zeros((rows, 4))
     begin = 0
     while begin < rows:
         end = begin + round(rng.uniform(3.0, 6.0) * RATE)
-        thrust, turn, steer = (
-            0.3 * rng.choice((-1.0, 1.0)),
-            rng.uniform(-0.1, 0.1),
-            rng.uniform(-0.2, 0.2),
-        )
+        thrust = 0.3 * rng.choice((-1.0, 1.0))
+        turn = rng.uniform(-0.1, 0.1)
+        steer = rng.uniform(-0.2, 0.2)
         commands[begin:end] = thrust + turn, thrust - turn, steer, steer
         begin = end
     return np.array(
@@ -120,7 +121,7 @@ def gentle(rng: np.random.Generator, length: float) -> tuple[Array, Array]:
 
 
 def played(plan: Plan) -> tuple[Array, Array]:
-    """Start and commands of a plan."""
+    """Return start and commands of a plan."""
     t = np.arange(round(plan.duration * RATE)) / RATE
     now = np.searchsorted(np.array(plan.times) - 1e-6, t, side="right") - 1
     rows = np.array([program().command_array(level) for level in plan.levels])
@@ -131,7 +132,7 @@ def played(plan: Plan) -> tuple[Array, Array]:
 def recorded(
     name: str, boat: Boat, start: Array, commands: Array, rng: np.random.Generator
 ) -> Recording:
-    """What the camera sees of a boat under commands, with ambient force."""
+    """Return the recording of a boat under the commands, with ambient force and camera noise."""
     code, y, out = program().module, start.copy(), np.zeros((2, 6))
     memory, act = np.zeros(program().memory_size), np.zeros(program().held_size)
     code.settle(commands[0], memory, boat.values, boat.on, act)
@@ -160,7 +161,7 @@ def recorded(
 
 
 def diagnosed(recordings: Sequence[Recording]) -> tuple[Problem, Ranking]:
-    """All entries ranked."""
+    """Return the ranking of all candidates."""
     boat = program().vessel
     uncertainty = priors.uncertainty(boat)
     problem = Problem(
@@ -172,20 +173,20 @@ def diagnosed(recordings: Sequence[Recording]) -> tuple[Problem, Ranking]:
 
 
 def probability(ranking: Ranking, name: str) -> float:
-    """Weight of one entry among all single ones and nothing."""
+    """Return the posterior weight of one effect among all single effects and the nominal model."""
     gains = {NOTHING: 0.0, **ranking.first}
     return float(np.exp(gains[name] - np.logaddexp.reduce(list(gains.values()))))
 
 
 def lead(ranking: Ranking, name: str) -> float:
-    """Evidence of one entry over the best of the others and nothing [nats]."""
+    """Return the log Bayes factor [nats] of one effect over the best of the others."""
     return ranking.first[name] - max(
         g for n, g in {NOTHING: 0.0, **ranking.first}.items() if n != name
     )
 
 
 def case(truth: str, seed: int) -> Outcome:
-    """One boat, diagnosed four times."""
+    """Return the outcome of one boat, diagnosed four times."""
     rng = np.random.default_rng([seed, *truth.encode()])
     boat = drawn(truth, rng)
     first = recorded("first", boat, *gentle(rng, SHORT), rng)
@@ -212,7 +213,7 @@ def case(truth: str, seed: int) -> Outcome:
 
 
 def print_table(found: Sequence[Outcome]) -> None:
-    """Every case, then the means."""
+    """Print every case, then the means."""
     columns = f"{'before':>7s} {'suggested':>9s} {'other':>6s} {'same':>6s} {'expected':>8s} {'gained':>7s}"
     print(f"{'truth':22s} {columns}  suggested manoeuvre")
     for o in found:
@@ -225,7 +226,7 @@ def print_table(found: Sequence[Outcome]) -> None:
     print(f"  with one more run of gentle steering  {np.mean([o.same for o in found]):.2f}")
     print(f"cases with a suggestion: {sum(bool(o.manoeuvre) for o in found)}")
     print(
-        "expected, gained: evidence of the truth over its best rival [nats], foreseen and after the suggested run"
+        "expected, gained: evidence of the truth over its best rival [nats], predicted and after the suggested run"
     )
 
 
@@ -238,12 +239,11 @@ def main() -> None:
     parser.add_argument("--quick", action="store_true", help="one seed, every third entry")
     args = parser.parse_args()
     names = [e.name for e in program().candidates if type(e).kind == "physics"]
-    chosen = (
-        [(n, 0) for n in names[::3]]
-        if args.quick
-        else [(n, seed) for n in names for seed in (0, 1)]
-    )
-    program().module  # noqa: B018  # compiled before the processes start, so that each need not
+    if args.quick:
+        chosen = [(n, 0) for n in names[::3]]
+    else:
+        chosen = [(n, seed) for n in names for seed in (0, 1)]
+    program().module  # noqa: B018  # compile before the processes start
     begin = time.time()
     with ProcessPoolExecutor(args.jobs) as pool:
         found = list(shown(pool.map(case, *zip(*chosen, strict=True)), "diagnosing", len(chosen)))

@@ -1,20 +1,22 @@
-"""How well the missing force is located: `python -m validation.locate [TRIALS]`.
+"""Accuracy of locating the missing force: `python -m validation.locate [TRIALS]`.
 
-TRIALS/Txxx/ holds run_1.csv, run_2.csv, answer.json and missing_force_1.csv, missing_force_2.csv: the force missing on
-the vessel as written (body axes, 1 s averages) at times t_s. Each trial's noise is fitted, its coefficients are
-recalibrated, and the force that `boatsim.diagnosis.locate.missing_force` finds, an average over 1 s too, is compared
-sample by sample, one sample per time and axis:
+TRIALS/Txxx/ holds run_1.csv, run_2.csv, answer.json, missing_force_1.csv and missing_force_2.csv:
+the force that the nominal vessel lacks (body axes, 1 s averages) at times t_s. For each trial the
+noise levels and the nominal coefficients are fitted. The force that
+`boatsim.diagnosis.locate.missing_force` estimates, also averaged over 1 s, is compared with the
+true force; a sample is one time and axis:
 
-inside     share of samples at which the true force lies within 2 sd of the found one, the mean over trials
-flagged    samples at which zero lies outside the 2-sd band of the found force
+inside     share of samples whose true force lies within 2 sd of the estimate, mean over trials
+flagged    samples at which zero lies outside the 2-sd band of the estimate
 false      flagged samples whose true force is below the ambient rms of that axis
 precision  share of the flagged samples that are not false
-there      samples whose true force is beyond twice the ambient rms
+there      samples whose true force exceeds twice the ambient rms
 recall     share of those that are flagged
 
-by axis and by concealed effect, a trial with two effects counting under both and one without under "nothing missing".
-A region found in a nothing-missing trial is an accident; at the level at which regions are told, one in a hundred
-trials may have one. Last, the processor seconds for locating, regions included.
+by axis and by concealed effect. A trial with two effects counts under both, one without an effect
+under "nothing missing". A region found in such a trial is a false alarm; the significance level
+allows one in a hundred trials. The last line is the processor time for locating, including the
+regions.
 """
 
 import argparse
@@ -49,7 +51,7 @@ NOTHING = "nothing missing"
 
 @dataclass(frozen=True)
 class Located:
-    """One trial: what was found and what was there, (samples, axes) each, forces in ambient ones."""
+    """Estimated and true force of one trial, (samples, axes), in units of the ambient rms."""
 
     causes: tuple[str, ...]
     found: Array
@@ -60,12 +62,12 @@ class Located:
 
     @property
     def flagged(self) -> Any:
-        """(samples, axes) zero lies outside the band."""
+        """Return where zero lies outside the band, (samples, axes)."""
         return np.abs(self.found) > DEFAULT.locate.band_sds * self.sd
 
 
 def problem_of(trial: Path) -> Problem:
-    """The recordings of a trial laid on the vessel's program, as a diagnosis does it."""
+    """Map the recordings of a trial on the vessel's program, as a diagnosis does."""
     opened = [open_recording(trial / f"run_{k}.csv", None, ()) for k in RUNS]
     recordings, boat = [r.thinned(priors.rate(b)) for r, b in opened], opened[0][1]
     program = Program(boat, library_for(boat).compiled)
@@ -79,12 +81,12 @@ def problem_of(trial: Path) -> Problem:
 
 
 def recalibrated(problem: Problem) -> Fit:
-    """The vessel as written with noise, force levels and its own coefficients fitted."""
+    """Return the nominal vessel with fitted noise, force levels and coefficients."""
     return baseline(problem)[1]
 
 
 def located(trial: Path) -> Located:
-    """Locate in one trial."""
+    """Locate the missing force in one trial."""
     problem = problem_of(trial)
     known = recalibrated(problem)
     begin = time.process_time()
@@ -92,13 +94,12 @@ def located(trial: Path) -> Located:
     found_in = regions(problem, known)
     seconds = time.process_time() - begin
     samples = []
-    columns = [
-        f"{axis}_{'Nm' if axis in ('roll', 'yaw') else 'N'}"
-        for axis in axes_of(problem.program.vessel)
-    ]
+    columns = []
+    for axis in axes_of(problem.program.vessel):
+        columns.append(f"{axis}_{'Nm' if axis in ('roll', 'yaw') else 'N'}")
     for k, force in zip(RUNS, forces, strict=True):
         truth = np.genfromtxt(trial / f"missing_force_{k}.csv", delimiter=",", names=True)
-        # an average over an even number of rows lies half a row behind the row it is about
+        # an average over an even number of rows is delayed by half a row
         rows = np.searchsorted(force.t, truth["t_s"], side="right") - 1
         samples.append(
             (force.mean[rows], force.sd[rows], np.column_stack([truth[c] for c in columns]))
@@ -111,7 +112,7 @@ def located(trial: Path) -> Located:
 
 
 def figures(trials: Sequence[Located], axis: int | slice = slice(None)) -> list[str]:
-    """The row of a table."""
+    """Return one row of the table."""
 
     def count(which: Callable[[Located], Any]) -> int:
         return sum(int(which(t)[:, axis].sum()) for t in trials)
@@ -123,10 +124,8 @@ def figures(trials: Sequence[Located], axis: int | slice = slice(None)) -> list[
         ]
     )
     flagged, false = count(lambda t: t.flagged), count(lambda t: t.flagged & (np.abs(t.true) < 1.0))
-    there, hit = (
-        count(lambda t: np.abs(t.true) > 2.0),
-        count(lambda t: t.flagged & (np.abs(t.true) > 2.0)),
-    )
+    there = count(lambda t: np.abs(t.true) > 2.0)
+    hit = count(lambda t: t.flagged & (np.abs(t.true) > 2.0))
     shares = [
         f"{1.0 - false / flagged:.3f}" if flagged else "-",
         f"{hit / there:.3f}" if there else "-",
@@ -135,7 +134,7 @@ def figures(trials: Sequence[Located], axis: int | slice = slice(None)) -> list[
 
 
 def table(trials: Sequence[Located], axes: Sequence[str]) -> Table:
-    """Figures of all, by axis and by effect."""
+    """Print the figures of all samples, by axis and by effect."""
     out = Table("", *("trials", "inside", "precision", "recall", "flagged", "there"))
     out.columns[0].no_wrap = True
     for column in out.columns[1:]:
@@ -158,8 +157,8 @@ def main() -> None:
         t for t in parser.parse_args().trials.glob("T*") if (t / "missing_force_1.csv").exists()
     )
     if not folders:
-        raise SystemExit(f"{parser.parse_args().trials}: no trials with missing_force_1.csv there")
-    located(folders[0])  # compiles
+        raise SystemExit(f"{parser.parse_args().trials}: no trials with missing_force_1.csv")
+    located(folders[0])  # compile before the time is measured
     trials = {t.name: located(t) for t in folders}
     console = Console()
     console.print(

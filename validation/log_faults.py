@@ -1,8 +1,9 @@
-"""Whether faults of a log are named, and good logs left in peace: `python -m validation.log_faults [--seeds N]`.
+"""Detection rate of log faults and false alarms on good logs: `python -m validation.log_faults`.
 
-Logs are sailed by the project's own twin under commands that step at random, seen with noise, as rows of a CSV file.
-Each fault is written into them as a logger would; `boatsim check` is asked. A log of which nothing is found is given to
-a diagnosis, which may blame the boat: "called physics".
+The option `--seeds N` sets the number of logs. Logs are simulated with the compiled engine under
+random step commands and written with noise as CSV files. Each fault is written into them as a
+logger would produce it, and `boatsim check` is run. A log without findings is diagnosed; if the
+diagnosis attributes the fault to the boat, the log counts as "called physics".
 """
 
 import argparse
@@ -25,17 +26,17 @@ from boatsim.recordings.table import Recording, write_csv
 from boatsim.simulate.batch import Batch
 
 VESSELS = ("trial_boat", "blueboat", "otter", "mariner")
-LASTS, HOLDS = 80.0, 4.0  # [s] of a log, of a command, on a boat of 1.2 m
-RATE, SUBSTEPS = 6.0, 10  # [Hz] of rows there, steps of integration for a row
-PLACE_SD, HEADING_SD = 0.002, 0.009  # [lengths], [rad] of a camera or a good receiver
-Columns = dict[str, Array]  # of a log, `t_s` among them
-EARTH = 111_320.0  # [m] a degree of latitude, as people have it
-LATITUDE, LONGITUDE = 63.44, 10.35  # [deg] of a place in Norway
+LASTS, HOLDS = 80.0, 4.0  # [s] duration of a log and of a command, boat of 1.2 m
+RATE, SUBSTEPS = 6.0, 10  # [Hz] row rate at 1.2 m, integration steps per row
+PLACE_SD, HEADING_SD = 0.002, 0.009  # [lengths], [rad] noise of a camera or good receiver
+Columns = dict[str, Array]  # columns of a log, including `t_s`
+EARTH = 111_320.0  # [m] a degree of latitude, the common approximation
+LATITUDE, LONGITUDE = 63.44, 10.35  # [deg] a place in Norway
 
 
 @dataclass(frozen=True)
 class Fault:
-    """What is done to a log, and what that may be called."""
+    """A fault of a log and the findings that identify it."""
 
     apply: Callable[[Columns, Vessel], Columns]
     named: tuple[str, ...]
@@ -43,7 +44,7 @@ class Fault:
 
 
 def sailed(boat: Vessel, seed: int, lasts: float = LASTS) -> Columns:
-    """A good log: positions and heading with noise, and the commands that were given."""
+    """Return a good log: positions and heading with noise, and the commands."""
     rng, slow = np.random.default_rng(seed), froude_time(boat)
     rows, held = round(lasts * RATE), round(HOLDS * RATE)
     compiled = Batch(boat, step=slow / RATE / SUBSTEPS)
@@ -67,7 +68,7 @@ def sailed(boat: Vessel, seed: int, lasts: float = LASTS) -> Columns:
 
 
 def write(columns: Columns, path: Path) -> None:
-    """The log as a file."""
+    """Write the log to a file."""
     write_csv(
         Recording(path.stem, columns["t_s"], {n: v for n, v in columns.items() if n != "t_s"}), path
     )
@@ -82,10 +83,9 @@ def _twins(boat: Vessel) -> bool:
 
 
 def _exchanged(columns: Columns, boat: Vessel) -> Columns:
-    swap = {
-        n: n.replace("port", "#").replace("starboard", "port").replace("#", "starboard")
-        for n in boat.commands
-    }
+    swap = {}
+    for n in boat.commands:
+        swap[n] = n.replace("port", "#").replace("starboard", "port").replace("#", "starboard")
     return columns | {n: columns[other] for n, other in swap.items()}
 
 
@@ -187,7 +187,7 @@ FAULTS: dict[str, Fault] = {
 def judged(
     boat: Vessel, columns: Columns, fault: Fault | None, ask: bool
 ) -> tuple[bool, bool, list[str]]:
-    """Whether a log's fault is named, whether the boat is blamed instead, and all that is found."""
+    """Return whether the fault is named, whether the boat is blamed instead, and all findings."""
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "run.csv"
         write(fault.apply(columns, boat) if fault else columns, path)
@@ -204,7 +204,7 @@ def judged(
 
 
 def table(names: Sequence[str], seeds: int, ask: bool = True) -> Iterator[str]:
-    """A row a fault, a column a vessel: logs named / called physics / of how many; then good logs accused."""
+    """Print the rates for each fault and vessel, then the false alarms on good logs."""
     boats = [vessels.load(n) for n in names]
     yield f"{'fault':24s}" + "".join(f"{n:>24s}" for n in names)
     yield f"{'':24s}" + f"{'named / physics / of':>24s}" * len(names)
@@ -213,11 +213,10 @@ def table(names: Sequence[str], seeds: int, ask: bool = True) -> Iterator[str]:
     for title, fault in FAULTS.items():
         cells = []
         for boat in boats:
-            results = (
-                [judged(boat, log, fault, ask) for log in logs[boat.name]]
-                if fault.needs(boat)
-                else []
-            )
+            if fault.needs(boat):
+                results = [judged(boat, log, fault, ask) for log in logs[boat.name]]
+            else:
+                results = []
             counts = [sum(r[0] for r in results), sum(r[1] for r in results), len(results)]
             total += counts
             instead = sorted({n for named, _, found in results if not named for n in found})

@@ -1,8 +1,8 @@
-"""Boats made from their particulars and part of their logs, beside hand-made ones: `python -m validation.new_boat`.
+"""Accuracy of vessels from `boatsim new` with logs: `python -m validation.new_boat`.
 
-Each boat is made as `boatsim new ... --from-log` makes it, from what an owner knows, fitted to some logs and judged
-by free runs on others. The hand-made vessel is judged on the same, as it is written, and fitted in the same way to the
-same logs. Boats whose recordings are not there are skipped.
+Each boat is made by `boatsim new ... --from-log` from its particulars, fitted to some logs and
+evaluated by free runs on other logs. The hand-made vessel is evaluated on the same logs as written,
+and after the same fit. Boats without recordings are skipped.
 """
 
 import json
@@ -23,16 +23,16 @@ from tests import pushed_three_metre
 from validation.real import esso_osaka_pond, esso_osaka_vessel
 from validation.real.common import RECORDINGS, print_table
 
-GOAL = 1.3  # times the hand-made vessel's error, at most
+GOAL = 1.3  # largest ratio to the hand-made vessel's error
 UNITS = {
     "position_rms_m": ("position [m]", np.sqrt(2.0)),
     "heading_rms_rad": ("heading [deg]", 57.29578),
 }
-# K_T of a propeller of P/D 0.7 under way: M. M. Bernitsas et al. 1981, Wageningen B-series at J =
+# K_T of a propeller of P/D 0.7: M. M. Bernitsas et al. 1981, Wageningen B-series at J =
 # 0.35
 THRUST_COEFFICIENT = 0.2
-LONGEST = 150.0  # [s] of a run of the tanker, for the time it takes
-MOST = 17.0  # [1/s] the fastest shaft of the manoeuvres that are fitted and judged
+LONGEST = 150.0  # [s] longest run of the tanker, to limit the computing time
+MOST = 17.0  # [1/s] fastest shaft of the manoeuvres used for fit and evaluation
 
 
 @dataclass(frozen=True)
@@ -42,13 +42,13 @@ class Case:
     boat: Particulars
     logs: Mapping[str, Mapping[str, Array]]  # columns
     held_out: Sequence[str]
-    hand_made: Callable[[Path], Path]  # its file, written into a folder if it has to be
-    # columns as the hand-made vessel has them
+    hand_made: Callable[[Path], Path]  # returns its file, written into the folder if needed
+    # columns under the hand-made vessel's names
     its_logs: Callable[[Mapping[str, Array]], Mapping[str, Array]] = dict
 
 
 def three_metre(folder: Path) -> Case:
-    """The 3 m boat of the independent integrator."""
+    """Return the case of the 3 m boat of the independent integrator."""
     logs = {}
     for seed in (1, 2, 3):
         pushed_three_metre.write(folder / f"run_{seed}.csv", seed)
@@ -64,7 +64,10 @@ def three_metre(folder: Path) -> Case:
 
 
 def blueboat(_: Path) -> Case:
-    """The catamaran on the lake; its makers' page has the sizes, its source the thrusters."""
+    """Return the case of the catamaran on the lake.
+
+    Sizes are from the maker's page, thrusters from its source.
+    """
     boat = particulars(
         "blueboat_new",
         1.2,
@@ -90,20 +93,25 @@ def blueboat(_: Path) -> Case:
 
 
 def esso_osaka(_: Path) -> Case:
-    """The 3 m model of the tanker: zig-zags and turns, thrust by the square of the shaft's speed."""
-    told = json.loads((RECORDINGS / "esso_osaka" / "vessel.json").read_text(encoding="utf-8"))
-    ahead, propeller, rudder = told["x_G_m"], told["propeller"], told["rudder"]
-    per = THRUST_COEFFICIENT * told["density_water_kgm3"] * propeller["D_m"] ** 4  # [N s^2]
-    at = propeller["x_over_Lpp"] * told["Lpp_m"] - ahead
+    """Return the case of the 3 m tanker model: zig-zags and turns.
+
+    Thrust is proportional to the square of the shaft speed.
+    """
+    particulars = json.loads(
+        (RECORDINGS / "esso_osaka" / "vessel.json").read_text(encoding="utf-8")
+    )
+    ahead, propeller, rudder = particulars["x_G_m"], particulars["propeller"], particulars["rudder"]
+    per = THRUST_COEFFICIENT * particulars["density_water_kgm3"] * propeller["D_m"] ** 4  # [N s^2]
+    at = propeller["x_over_Lpp"] * particulars["Lpp_m"] - ahead
     boat = particulars(
         "esso_osaka_new",
-        told["Lpp_m"],
-        told["beam_m"],
-        told["mass_kg"],
+        particulars["Lpp_m"],
+        particulars["beam_m"],
+        particulars["mass_kg"],
         [f"{at},0,{per * MOST**2}"],
         [],
         rudder=f"{rudder['x_from_midship_m'] - ahead},{rudder['area_m2']}",
-        draught=told["draught_m"],
+        draught=particulars["draught_m"],
     )
     logs = {}
     for path in [p for p in runs("esso_osaka") if p.stem.startswith(("zigzag", "turn"))]:
@@ -124,7 +132,10 @@ def esso_osaka(_: Path) -> Case:
 
 
 def longest(t: Array, leaps: Array) -> tuple[float, float]:
-    """Begin and end [s] of the longest stretch between leaps of a run, as esso_osaka_pond cuts it."""
+    """Return begin and end [s] of the longest stretch between jumps of a run.
+
+    The cuts are those of esso_osaka_pond.
+    """
     begins = [float(t[0]), *(leaps + esso_osaka_pond.AFTER_JUMP)]
     ends = [*(leaps - esso_osaka_pond.BEFORE_JUMP), float(t[-1])]
     return max(zip(begins, ends, strict=True), key=lambda span: span[1] - span[0])
@@ -139,18 +150,18 @@ SETS = {"blueboat": "blueboat_lake", "esso_osaka": "esso_osaka"}
 
 
 def runs(name: str) -> list[Path]:
-    """Recordings of a set."""
+    """Return the recordings of a set."""
     return sorted((RECORDINGS / name / "runs").glob("*.csv"))
 
 
 def columns(path: Path) -> dict[str, Array]:
-    """Every column of a csv."""
+    """Return every column of a CSV file."""
     read = np.genfromtxt(path, delimiter=",", names=True)
     return {name: read[name] for name in read.dtype.names or ()}
 
 
 def judged(case: Case, folder: Path) -> Iterator[tuple[str, Fitted]]:
-    """The new boat, then the hand-made one."""
+    """Return the errors of the new boat, then of the hand-made one."""
     own = folder / case.boat.name
     own.mkdir()
     for name, text in files(case.boat).items():
@@ -183,22 +194,21 @@ def _write(file: Path, log: Mapping[str, Array]) -> None:
 
 
 def rows(name: str) -> Iterator[list[str]]:
-    """Lines of the table of one boat."""
+    """Return the lines of the table for one boat."""
     with tempfile.TemporaryDirectory() as made:
         folder = Path(made)
         case = CASES[name](folder)
         found = dict(judged(case, folder))
     for family, (words, scale) in UNITS.items():
         new, hand = found["new"], found["hand-made"]
-        cells = [
-            scale * x
-            for x in (
-                new.before[family],
-                new.after[family],
-                hand.before[family],
-                hand.after[family],
-            )
-        ]
+        cells = []
+        for x in (
+            new.before[family],
+            new.after[family],
+            hand.before[family],
+            hand.after[family],
+        ):
+            cells.append(scale * x)
         ratios = [cells[1] / cells[2], cells[1] / cells[3]]
         verdict = "yes" if ratios[0] <= GOAL else "no"
         yield [
@@ -210,7 +220,7 @@ def rows(name: str) -> Iterator[list[str]]:
             verdict,
         ]
     print(
-        f"{name}: {', '.join(found['new'].best.effects) or 'nothing'} found beside its coefficients",
+        f"{name}: {', '.join(found['new'].best.effects) or 'nothing'} found in addition to its coefficients",
         file=sys.stderr,
     )
 
@@ -220,9 +230,7 @@ def main(names: Sequence[str]) -> None:
     lines = []
     for name in names or CASES:
         if name in SETS and not runs(SETS[name]):
-            print(
-                f"{name}: skipped, there are no recordings in ../shared/recordings/{SETS[name]}/runs"
-            )
+            print(f"{name}: skipped, no recordings in ../shared/recordings/{SETS[name]}/runs")
             continue
         lines += list(rows(name))
     header = [
@@ -238,7 +246,7 @@ def main(names: Sequence[str]) -> None:
         "goal",
     ]
     print_table(
-        f"errors of free runs on logs no fit has seen; goal: at most {GOAL:g} times the hand-made",
+        f"errors of free runs on held-out logs; goal: at most {GOAL:g} times the hand-made",
         header,
         lines,
     )

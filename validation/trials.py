@@ -1,22 +1,28 @@
-"""Diagnoses a folder of trials: `python -m validation.trials [TRIALS] [--out RESULTS] [--unknowns] [--jobs N]`.
+"""Diagnose a folder of trials and score the answers: `python -m validation.trials [TRIALS]`.
 
-`--make DIR --seed N` makes such a folder (the second practice set) and no more. `--answers RESULTS` scores what any
-tool answered, `RESULTS/Txxx/diagnosis.json` and `replay.csv`, and diagnoses nothing: see docs/benchmark.md.
+Options: `--out RESULTS`, `--unknowns`, `--jobs N`. `--make DIR --seed N` only writes such a folder
+(the second practice set). `--answers RESULTS` scores the answers of any tool,
+`RESULTS/Txxx/diagnosis.json` and `replay.csv`, without a diagnosis: see docs/benchmark.md.
 
-TRIALS/Txxx/ holds run_1.csv, run_2.csv (to diagnose from), run_3.csv (held out) and answer.json. Writes
-RESULTS/Txxx/diagnosis.json, patched.toml and replay.csv (free runs over run_3: 6 s for a boat of 1.2 m,
-for others by Froude's scale of time), then prints how the answers compare with the truth, vessel by vessel where there
-are several (their recording.toml names them; `python -m validation.practice` makes such a set):
+TRIALS/Txxx/ holds run_1.csv, run_2.csv (to diagnose from), run_3.csv (held out) and answer.json.
+The script writes RESULTS/Txxx/diagnosis.json, patched.toml and replay.csv (free runs over run_3: 6
+s for a boat of 1.2 m, Froude-scaled for others). It then prints how the answers compare with the
+truth, by vessel if there are several (named in recording.toml; `python -m validation.practice`
+makes such a set):
 
-- a trial is exact if every true effect is named and nothing else; an effect counts if it is visible (adds more than
-  6 nats in the program that made the trials);
-- a name is wrong unless it is true, or the answer says that it cannot be told from a true one;
-- held-out skill is 1 where the patched boat follows run_3 as closely as the fitted true structure, 0 where it is no
-  better than the recalibrated nominal;
-- coverage is the share of true parameters within two stated standard deviations, over exact answers;
-- reliability: of all entries given a probability in some range in trials with one effect or none, how many were true.
+- a trial is exact if every true effect is named and no other; an effect counts if it is visible
+  (adds more than 6 nats in the program that made the trials);
+- a name is wrong unless it is true, or the answer says that it cannot be distinguished from a true
+  one;
+- held-out skill is 1 if the patched boat follows run_3 as closely as the fitted true structure, 0
+  if it is no better than the recalibrated nominal;
+- coverage is the share of true parameters within two reported standard deviations, over exact
+  answers;
+- reliability: the share of true effects among all effects reported with a probability in some
+  range, in trials with one effect or none.
 
---unknowns adds the table made by taking the true entry, what counts as the same and its look-alikes out of the library.
+--unknowns adds a table of diagnoses without the true effect, its equivalents and its look-alikes in
+the library.
 """
 
 import argparse
@@ -40,7 +46,7 @@ from validation.entry import BadEntry, answers_in, horizon_of, replay_errors, ve
 SHARED = Path(__file__).parents[2] / "shared" / "recordings" / "trials" / "practice"
 BINS = (0.0, 0.02, 0.1, 0.3, 0.7, 0.95, 1.0)
 Answers = dict[str, dict[str, Any]]  # by trial
-KINDS = {  # cause outside the library -> axis and factors of a described law that is of its kind
+KINDS = {  # cause outside the library -> axis and factors of a described law of its kind
     "sag": "^thrust",
     "seized_motor": "^thrust",
     "eddies": "(north|east).*repeats every",
@@ -49,13 +55,13 @@ KINDS = {  # cause outside the library -> axis and factors of a described law th
     "bilge_pump": "^(sway|yaw|roll).*(swinging|, from)",
     "shifting_cargo": "^roll.*(swinging|, from)",
 }
-SLACK = 1.05  # of the recalibrated error on run_3: a description must not do worse
-# share of the recalibrated error that the true structure must save for a skill to be told
+SLACK = 1.05  # largest error ratio to the recalibrated vessel on run_3
+# the true structure must remove this share of the recalibrated error for a skill to be defined
 WORTH = 0.15
 
 
 def diagnose_one(trial: Path, out: Path, without: Sequence[str] = ()) -> dict[str, Any]:
-    """Diagnose one trial and replay its held-out run with the patched vessel; the answer."""
+    """Diagnose one trial, replay run_3 with the patched vessel, and return the answer."""
     from boatsim.cli import diagnosis as commands
     from boatsim.diagnosis import pipeline
     from boatsim.diagnosis.report import patched_vessel
@@ -77,7 +83,7 @@ def diagnose_one(trial: Path, out: Path, without: Sequence[str] = ()) -> dict[st
 
 
 def all_of(jobs: int, todo: dict[str, tuple[Path, Path, tuple[str, ...]]], what: str) -> Answers:
-    """Answers of many diagnoses, by name."""
+    """Return the answers of many diagnoses by name."""
     with ProcessPoolExecutor(jobs) as pool, Progress() as progress:
         task = progress.add_task(what, total=len(todo))
         waiting = {pool.submit(diagnose_one, *args): name for name, args in todo.items()}
@@ -92,12 +98,14 @@ def all_of(jobs: int, todo: dict[str, tuple[Path, Path, tuple[str, ...]]], what:
 
 
 def truth_of(answer: dict[str, Any]) -> set[str]:
-    """Names that would be exactly right."""
-    return {"unknown"} if answer["kind"] == "unknown" else {e["name"] for e in answer["effects"]}
+    """Return the names of a correct answer."""
+    if answer["kind"] == "unknown":
+        return {"unknown"}
+    return {e["name"] for e in answer["effects"]}
 
 
 def said_of(answer: dict[str, Any], found: dict[str, Any]) -> set[str]:
-    """Names the tool stands for, in the answer's own names where several count as the same."""
+    """Return the reported names, equivalents replaced by the names in the answer."""
     truth = truth_of(answer)
     same = {
         other: name for name, others in answer.get("equivalent", {}).items() for other in others
@@ -109,18 +117,17 @@ def said_of(answer: dict[str, Any], found: dict[str, Any]) -> set[str]:
 
 
 def meant_by(answer: dict[str, Any], found: dict[str, Any]) -> set[str]:
-    """The same, a name that the answer says it cannot tell from a true one taken for that one."""
+    """Return the reported names, each ambiguous one replaced by a true one it is tied with."""
     truth, said = truth_of(answer), said_of(answer, found)
-    tied = {
-        e["name"]: truth & set(e["tied_with"])
-        for e in found["effects"]
-        if found["verdict"] == "ambiguous"
-    }
+    tied = {}
+    for e in found["effects"]:
+        if found["verdict"] == "ambiguous":
+            tied[e["name"]] = truth & set(e["tied_with"])
     return {n if n in truth else min(tied.get(n, ()), default=n) for n in said}
 
 
 def deviations(answer: dict[str, Any], found: dict[str, Any]) -> list[float]:
-    """Errors of the parameters that can be compared, in stated standard deviations."""
+    """Return the errors of the comparable parameters in reported standard deviations."""
     out = []
     stated = {e["name"]: e["parameters"] for e in found["effects"]}
     for effect in answer["effects"]:
@@ -135,9 +142,10 @@ def deviations(answer: dict[str, Any], found: dict[str, Any]) -> list[float]:
 
 
 def skill(trial: Path, out: Path, answer: dict[str, Any]) -> float | None:
-    """Share of the error that the true structure saves on run_3 and the patched boat too; None if it saves none.
+    """Return the held-out skill on run_3; None if the true structure saves no error.
 
-    -1 where free runs are missing, or do not cover run_3.
+    The skill is the error saved by the patched boat per error saved by the true structure. It is -1
+    if free runs are missing or do not cover run_3.
     """
     reference = answer.get("reference_position_rms_m", {})
     recalibrated, true = reference.get("recalibrated"), reference.get("true_structure")
@@ -148,15 +156,13 @@ def skill(trial: Path, out: Path, answer: dict[str, Any]) -> float | None:
     ):
         return None
     patched = replay_errors(trial, out / "replay.csv", horizon_of(trial))
-    return (
-        -1.0
-        if patched is None
-        else max(-1.0, min(1.0, (recalibrated - patched) / (recalibrated - true)))
-    )
+    if patched is None:
+        return -1.0
+    return max(-1.0, min(1.0, (recalibrated - patched) / (recalibrated - true)))
 
 
 def of_its_kind(answer: dict[str, Any], found: dict[str, Any]) -> bool:
-    """Whether a described law holds a term of the kind of the unknown cause."""
+    """Return whether a described law has a term of the kind of the unknown cause."""
     (cause,) = answer["effects"]
     kind = KINDS[cause["name"].partition(":")[2]]
     return any(
@@ -167,31 +173,37 @@ def of_its_kind(answer: dict[str, Any], found: dict[str, Any]) -> bool:
 
 
 def of_recalibrated(found: dict[str, Any]) -> float | None:
-    """Error of the patched boat on run_3 in errors of the recalibrated one, all signals alike; None if none is told."""
+    """Return the error of the patched boat on run_3 per error of the recalibrated one.
+
+    The value is the geometric mean over all signals, or None if no errors are reported.
+    """
     rms = [v for k, v in found["fit"].items() if k.endswith(("_rms_m", "_rms_rad")) and v]
     ratios = [v["patched"] / v["recalibrated"] for v in rms if v["recalibrated"] > 0.0]
-    return statistics.geometric_mean(ratios) if ratios else None
+    if ratios:
+        return statistics.geometric_mean(ratios)
+    return None
 
 
 # ---- all trials
 
 
 def share(rows: Sequence[bool]) -> str:
-    """5/6 of the rows."""
-    return f"{sum(rows)}/{len(rows)}" if rows else "none there"
+    """Return the share of true rows as text, such as 5/6."""
+    if rows:
+        return f"{sum(rows)}/{len(rows)}"
+    return "none"
 
 
 def quantile(values: Sequence[float], q: float) -> float:
-    """The value below which a share q of them lies."""
+    """Return the value below which a share q of the values lies."""
     return sorted(values)[int(q * (len(values) - 1))]
 
 
 def figures(answers: Answers, found: Answers) -> dict[str, str]:
-    """Names right and wrong, by kind of trial."""
-    kind = {
-        k: [n for n in found if answers[n]["kind"] == k]
-        for k in ("none", "single", "pair", "unknown")
-    }
+    """Return the counts of right and wrong names by kind of trial."""
+    kind = {}
+    for k in ("none", "single", "pair", "unknown"):
+        kind[k] = [n for n in found if answers[n]["kind"] == k]
     visible = {
         k: [n for n in v if answers[n].get("visible") and not answers[n].get("borderline")]
         for k, v in kind.items()
@@ -203,14 +215,14 @@ def figures(answers: Answers, found: Answers) -> dict[str, str]:
     wrong = {n: meant[n] - truth_of(answers[n]) - {"unknown"} for n in found}
     concealed = [n for n in visible["single"] if answers[n]["concealed"]]
     known = [*kind["none"], *kind["single"], *kind["pair"]]
-    unknown = {
-        c: [n for n in visible["unknown"] if answers[n]["concealed"] is c] for c in (False, True)
-    }
+    unknown = {}
+    for c in (False, True):
+        unknown[c] = [n for n in visible["unknown"] if answers[n]["concealed"] is c]
     return {
         "false alarms among nothing-missing trials": share([bool(said[n]) for n in kind["none"]]),
         "visible single effects, exactly named": share([exact[n] for n in visible["single"]]),
         "  of these concealed by the tracker": share([exact[n] for n in concealed]),
-        "  exactly named, or told to be tied": share([fair[n] for n in visible["single"]]),
+        "  exactly named, or reported as tied": share([fair[n] for n in visible["single"]]),
         "visible pairs, both named and nothing else": share([exact[n] for n in visible["pair"]]),
         "wrong names (none, singles, pairs)": share([bool(wrong[n]) for n in known]),
         "visible unknown cause flagged, pilot": share(
@@ -232,7 +244,7 @@ def figures(answers: Answers, found: Answers) -> dict[str, str]:
 
 
 def fit_figures(trials: Path, out: Path, answers: Answers, found: Answers) -> dict[str, str]:
-    """Held-out skill, parameters, seconds."""
+    """Return held-out skill, parameter errors and computing time."""
     skills = [
         s
         for n in found
@@ -260,7 +272,12 @@ def fit_figures(trials: Path, out: Path, answers: Answers, found: Answers) -> di
 
 
 def reliability(answers: Answers, found: Answers) -> list[tuple[str, int, float, float]]:
-    """(range, entries, mean stated probability, share true) over trials with one effect or none."""
+    """Return the calibration table of the reported probabilities.
+
+    Returns:
+            Rows of (range, effects, mean reported probability, share true), over trials with one
+        effect or none.
+    """
     pairs = []
     for n, f in found.items():
         if answers[n]["kind"] not in ("none", "single") or answers[n].get("tolerated"):
@@ -289,7 +306,7 @@ def reliability(answers: Answers, found: Answers) -> list[tuple[str, int, float,
 
 
 def unknowns(trials: Path, out: Path, jobs: int, answers: Answers, found: Answers) -> None:
-    """Every visible single effect once more, with its entry and the look-alikes taken out of the library."""
+    """Diagnose every visible single effect again without it and its look-alikes."""
     left_out = {}
     for n, answer in answers.items():
         if n in found and answer["kind"] == "single" and answer.get("visible"):
@@ -301,7 +318,7 @@ def unknowns(trials: Path, out: Path, jobs: int, answers: Answers, found: Answer
     todo = {n: (trials / n, out / "unknowns" / n, names) for n, names in left_out.items()}
     again = all_of(jobs, todo, "without the truth")
     flagged = {n: f["unknown"]["flag"] for n, f in again.items()}
-    print("\nunknowns: the true entry and its look-alikes taken out of the library")
+    print("\nunknowns: the true effect and its look-alikes removed from the library")
     for what, concealed in (("pilot", False), ("concealed", True)):
         print(
             f"  flagged, {what:10s} {share([flagged[n] for n in again if answers[n]['concealed'] is concealed])}"
@@ -310,9 +327,11 @@ def unknowns(trials: Path, out: Path, jobs: int, answers: Answers, found: Answer
         f"  flagged, or nothing named  {share([flagged[n] or not f['effects'] for n, f in again.items()])}"
     )
     skills = {n: skill(trials / n, out / "unknowns" / n, answers[n]) for n in again}
-    told = [s for s in skills.values() if s is not None]
-    if told:
-        print(f"  skill, truth taken out     {statistics.median(told):.3f} ({len(told)} trials)")
+    skilled = [s for s in skills.values() if s is not None]
+    if skilled:
+        print(
+            f"  skill, truth removed       {statistics.median(skilled):.3f} ({len(skilled)} trials)"
+        )
     by_law = [s for n, s in skills.items() if s is not None and again[n]["described"]]
     if by_law:
         print(
@@ -326,7 +345,7 @@ def unknowns(trials: Path, out: Path, jobs: int, answers: Answers, found: Answer
 
 
 def print_figures(trials: Path, out: Path, answers: Answers, found: Answers) -> None:
-    """Of all trials, then of each vessel where there are several."""
+    """Print the figures of all trials, then of each vessel if there are several."""
     vessels = {n: vessel_of(trials / n) for n in found}
     several = sorted(set(vessels.values())) if len(set(vessels.values())) > 1 else []
     for vessel in ("", *several):
@@ -341,16 +360,22 @@ def print_figures(trials: Path, out: Path, answers: Answers, found: Answers) -> 
 
 
 def print_wrong(answers: Answers, found: Answers) -> None:
-    """Trials that are not exactly right."""
+    """Print the trials whose answer is not exact."""
     for n, f in found.items():
         said, truth = said_of(answers[n], f), truth_of(answers[n])
         if said != truth:
             seen = "" if answers[n].get("visible", True) else " (invisible)"
-            print(f"  {n} {answers[n]['kind']}: truth {sorted(truth)}, said {sorted(said)}{seen}")
+            print(
+                f"  {n} {answers[n]['kind']}: truth {sorted(truth)}, reported {sorted(said)}{seen}"
+            )
 
 
 def score(trials: Path, results: Path, answers: Answers) -> None:
-    """Print how the answers of any tool compare with the truth. Raises BadEntry."""
+    """Print how the answers of any tool compare with the truth.
+
+    Raises:
+        BadEntry: if an answer is missing or invalid.
+    """
     found = answers_in(results, list(answers))
     print(f"{len(found)} trials; answers in {results}")
     print_figures(trials, results, answers, found)
@@ -367,23 +392,23 @@ def main() -> None:
     parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1)
     parser.add_argument("--unknowns", action="store_true", help="also the table of unknowns")
     parser.add_argument(
-        "--answers", type=Path, metavar="RESULTS", help="score these answers, diagnose nothing"
+        "--answers", type=Path, metavar="RESULTS", help="score these answers, without a diagnosis"
     )
     parser.add_argument(
-        "--make", type=Path, metavar="DIR", help="make the second practice set there, and no more"
+        "--make", type=Path, metavar="DIR", help="only write the second practice set to this folder"
     )
-    parser.add_argument("--seed", type=int, default=1, help="of the set that is made")
+    parser.add_argument("--seed", type=int, default=1, help="seed of the new set")
     args = parser.parse_args()
     if args.make:
         from validation.practice.__main__ import make_set
 
         make_set(args.make, args.seed)
         return
-    answers = {
-        t.name: json.loads((t / "answer.json").read_text()) for t in sorted(args.trials.glob("T*"))
-    }
+    answers = {}
+    for t in sorted(args.trials.glob("T*")):
+        answers[t.name] = json.loads((t / "answer.json").read_text())
     if not answers:
-        raise SystemExit(f"{args.trials}: no trials there")
+        raise SystemExit(f"{args.trials}: no trials found")
     if args.answers:
         try:
             score(args.trials, args.answers, answers)
@@ -399,9 +424,9 @@ def main() -> None:
     )
     print_figures(args.trials, args.out, answers, found)
     print_wrong(answers, found)
-    print("\nreliability: entries by stated probability, in trials with one effect or none")
+    print("\nreliability: effects by reported probability, in trials with one effect or none")
     for span, count, mean, true in reliability(answers, found):
-        print(f"  {span}   {count:5d} entries, mean {mean:.3f}, true {true:.3f}")
+        print(f"  {span}   {count:5d} effects, mean {mean:.3f}, true {true:.3f}")
     if args.unknowns:
         unknowns(args.trials, args.out, args.jobs, answers, found)
 

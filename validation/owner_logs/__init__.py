@@ -1,4 +1,4 @@
-"""A rehearsal with strangers' logs: boats of no file here, simulated by a program of its own, judged by the commands.
+"""Rehearsal with logs of unknown boats, simulated by an independent program.
 
-Nothing in the simulator imports boatsim; the judge calls the commands that a user has.
+The simulator does not import boatsim; the judge calls the commands that a user has.
 """

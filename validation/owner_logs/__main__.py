@@ -1,7 +1,7 @@
-"""Runs the rehearsal: `python -m validation.owner_logs --out DIR [--seed N] [--cases K] [--jobs 1]`.
+"""Run the rehearsal: `python -m validation.owner_logs --out DIR [--seed N] [--cases K]`.
 
-Every case has a folder: the logs, the vessel that `boatsim new` made, the map, the answer, and history.txt with each
-command and what it said. The same seed gives the same logs.
+Every case has a folder with the logs, the vessel that `boatsim new` made, the map, the answer, and
+history.txt with each command and its output. The same seed gives the same logs.
 """
 
 import argparse
@@ -16,12 +16,12 @@ from validation.owner_logs.table import goals, line
 
 
 def judged(case: Case, out: Path, log_only: bool) -> Result:
-    """One case in its folder."""
+    """Judge one case in its folder."""
     return Judge(case, out / f"case_{case.number:02d}", log_only).judge()
 
 
 def show(results: list[Result]) -> None:
-    """A line a case, then the goals."""
+    """Print a line for each case, then the goals."""
     print("\n".join([*map(line, results), "", *goals(results)]))
 
 
@@ -39,9 +39,7 @@ def main() -> None:
     parser.add_argument(
         "--log-only", action="store_true", help="import and check alone, no diagnosis"
     )
-    parser.add_argument(
-        "--show", action="store_true", help="the table of what lies in the folder, nothing run"
-    )
+    parser.add_argument("--show", action="store_true", help="only print the table of the folder")
     parser.add_argument("--jobs", type=int, default=1)
     given = parser.parse_args()
     if given.show:

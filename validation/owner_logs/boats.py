@@ -1,4 +1,4 @@
-"""Three boats drawn from a seed among plausible kinds: what they are, and what their owners know of them."""
+"""Three boats sampled from a seed among plausible kinds, and the particulars their owners know."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -13,11 +13,11 @@ Rng = np.random.Generator
 
 @dataclass(frozen=True)
 class Boat:
-    """A boat with its drives, as it is and as its owner states it."""
+    """A boat with its drives and the particulars that its owner specifies."""
 
     name: str
     plant: Plant
-    helm_most: float  # [rad] of rudder or outboards; 0: it is steered by its thrusters
+    helm_most: float  # [rad] largest angle of rudder or outboards; 0: steered by thrusters
     # revolutions are this power of the command: 0.5 where the controller is linear in thrust
     curve: float
     lag: float  # [s] of the drives
@@ -26,7 +26,7 @@ class Boat:
     options: tuple[str, ...]  # of `boatsim new`
     channels: tuple[str, ...]  # thrust commands as `boatsim new` calls them
     helms: tuple[str, ...]  # angle commands
-    helm_sign: float  # of the vessel's angles for helm to starboard
+    helm_sign: float  # sign of the vessel's angles for helm to starboard
     stated: tuple[float, ...]  # [N] full thrusts as the vessel has them
 
     @property
@@ -36,17 +36,17 @@ class Boat:
 
     @property
     def scale(self) -> float:
-        """Froude's scale of time against a boat of 2 m."""
+        """Return Froude's time scale relative to a boat of 2 m."""
         return sqrt(self.length / 2.0)
 
 
 def about(rng: Rng, value: float, share: float) -> float:
-    """A value within a share of another."""
+    """Sample a value within a share of another."""
     return float(value * (1.0 + share * rng.uniform(-1.0, 1.0)))
 
 
 def hull(rng: Rng, length: float, beam: float, draught: float, mass: float, hulls: int = 1) -> Hull:
-    """A hull of these sizes, what the water does drawn about usual values."""
+    """Sample a hull of these sizes with hydrodynamic coefficients around usual values."""
     wide = 0.3 * beam if hulls == 2 else beam
     wetted = hulls * about(rng, 1.7 * length * draught + 0.75 * length * wide, 0.1)
     sway = about(rng, 0.45 * RHO * pi * draught**2 * length * hulls, 0.3)
@@ -75,7 +75,7 @@ def hull(rng: Rng, length: float, beam: float, draught: float, mass: float, hull
 
 
 def top_speed(plant: Plant) -> float:
-    """[m/s] at full ahead, in still water and air."""
+    """Return the speed [m/s] at full ahead, in still water and air."""
     low, high = 0.0, 20.0
     for _ in range(50):
         u = 0.5 * (low + high)
@@ -84,8 +84,8 @@ def top_speed(plant: Plant) -> float:
     return low
 
 
-def told(rng: Rng, plant: Plant, thrusts: bool, draught: bool, top: bool) -> list[str]:
-    """Sizes as an owner states them; `top`: he knows the top speed."""
+def owner_particulars(rng: Rng, plant: Plant, thrusts: bool, draught: bool, top: bool) -> list[str]:
+    """Return the sizes that the owner specifies; with `top` including the top speed."""
     h = plant.hull
     found = [
         "--length",
@@ -102,7 +102,7 @@ def told(rng: Rng, plant: Plant, thrusts: bool, draught: bool, top: bool) -> lis
 def mounts(
     rng: Rng, plant: Plant, option: str, thrusts: bool, astern: bool
 ) -> tuple[list[str], list[float]]:
-    """Where the drives are and how hard they push, and the full thrusts [N] that are stated."""
+    """Return positions and thrusts of the drives, and the full thrusts [N] that are specified."""
     found, full = [], []
     factor = about(rng, 1.0, 0.12)
     for p in plant.propellers:
@@ -115,12 +115,10 @@ def mounts(
 
 
 def named(plant: Plant) -> tuple[str, ...]:
-    """Drives as `boatsim new` calls them."""
-    return (
-        ("motor",)
-        if len(plant.propellers) == 1
-        else tuple("starboard" if p.y > 0 else "port" for p in plant.propellers)
-    )
+    """Return the drives under their names in `boatsim new`."""
+    if len(plant.propellers) == 1:
+        return ("motor",)
+    return tuple("starboard" if p.y > 0 else "port" for p in plant.propellers)
 
 
 def built(
@@ -138,19 +136,19 @@ def built(
     top: bool = True,
     astern: bool = True,
 ) -> Boat:
-    """The boat with its owner's words."""
+    """Return the boat with the options its owner would give to `boatsim new`."""
     places, full = mounts(rng, plant, option, thrusts, astern)
-    options = [*told(rng, plant, thrusts, draught, top), *places]
+    options = [*owner_particulars(rng, plant, thrusts, draught, top), *places]
     if plant.rudder:
         options.append(f"--rudder={plant.rudder.x:.2f},{about(rng, plant.rudder.area, 0.1):.2g}")
     names = named(plant)
-    steers = (
-        ("rudder_rad",)
-        if plant.rudder
-        else tuple(f"steer_{n}_rad" for n in names)
-        if helm_most
-        else ()
-    )
+    if plant.rudder:
+        steers = ("rudder_rad",)
+    else:
+        if helm_most:
+            steers = tuple(f"steer_{n}_rad" for n in names)
+        else:
+            steers = ()
     return Boat(
         name,
         plant,
@@ -168,7 +166,7 @@ def built(
 
 
 def workboat(rng: Rng) -> Boat:
-    """4 to 5 m of aluminium with two steered outboards on one wheel."""
+    """Sample a boat of 4 to 5 m of aluminium with two steered outboards on one wheel."""
     L = rng.uniform(4.2, 5.2)
     mass = about(rng, 620.0, 0.15) * (L / 4.6) ** 3
     full, y = about(rng, 650.0, 0.15), about(rng, 0.38, 0.1)
@@ -183,7 +181,7 @@ def workboat(rng: Rng) -> Boat:
 
 
 def survey_catamaran(rng: Rng) -> Boat:
-    """About 2 m with two fixed electric thrusters."""
+    """Sample a boat of about 2 m with two fixed electric thrusters."""
     L = rng.uniform(1.6, 2.4)
     mass = about(rng, 60.0, 0.15) * (L / 2.0) ** 3
     full, y, astern = about(rng, 95.0, 0.2), about(rng, 0.36, 0.1), about(rng, 0.75, 0.1)
@@ -195,7 +193,7 @@ def survey_catamaran(rng: Rng) -> Boat:
 
 
 def launch(rng: Rng) -> Boat:
-    """6 to 8 m with one screw and a rudder."""
+    """Sample a boat of 6 to 8 m with one screw and a rudder."""
     L = rng.uniform(6.2, 7.8)
     mass = about(rng, 3600.0, 0.15) * (L / 7.0) ** 3
     screw = Propeller(
@@ -208,7 +206,7 @@ def launch(rng: Rng) -> Boat:
 
 
 def ship_model(rng: Rng) -> Boat:
-    """A 3 m model with a screw and a rudder."""
+    """Sample a 3 m model with a screw and a rudder."""
     L = rng.uniform(2.7, 3.4)
     mass = about(rng, 150.0, 0.15) * (L / 3.0) ** 3
     screw = Propeller(
@@ -223,7 +221,7 @@ def ship_model(rng: Rng) -> Boat:
 
 
 def rib(rng: Rng) -> Boat:
-    """5 to 6 m with one steered outboard, driven at displacement speeds."""
+    """Sample a boat of 5 to 6 m with one steered outboard, driven at displacement speeds."""
     L = rng.uniform(4.8, 6.0)
     mass = about(rng, 850.0, 0.15) * (L / 5.4) ** 3
     motor = (
@@ -241,7 +239,7 @@ KINDS: tuple[Callable[[Rng], Boat], ...] = (workboat, survey_catamaran, launch, 
 
 
 def fleet(seed: int) -> list[Boat]:
-    """Three boats: one steered by its outboards, one by fixed thrusters, one by a rudder, in any order."""
+    """Return three boats in random order: steered by outboards, fixed thrusters, and a rudder."""
     rng = np.random.default_rng([seed, 1])
     outboards, rudders = (workboat, rib), (launch, ship_model)
     chosen = [outboards[int(rng.integers(2))], survey_catamaran, rudders[int(rng.integers(2))]]

@@ -1,4 +1,4 @@
-"""The cases of a seed: a boat, a format, a fault or none, a cause or none, and the two logs."""
+"""Cases of a seed: a boat, a format, an optional fault, an optional cause, and two logs."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -31,7 +31,7 @@ KINDS = (
     "fault",
     "both",
 )
-SHORTEST, LONGEST = 240.0, 360.0  # [s] of a log
+SHORTEST, LONGEST = 240.0, 360.0  # [s] duration of a log
 
 
 @dataclass(frozen=True)
@@ -51,11 +51,13 @@ class Case:
     @property
     def wrong(self) -> Fault | None:
         """Its fault."""
-        return FAULTS[self.fault] if self.fault else None
+        if self.fault:
+            return FAULTS[self.fault]
+        return None
 
 
 def cases(seed: int, count: int) -> list[Case]:
-    """All of them; faults and causes come in random order, none twice before all have been."""
+    """Return all cases; faults and causes come in random order, each once before any repeats."""
     boats, rng = fleet(seed), np.random.default_rng([seed, 2])
     faults, causes, forms, turns = list[str](), list[str](), list[str](), list[int]()
     found = []
@@ -78,7 +80,7 @@ def cases(seed: int, count: int) -> list[Case]:
 
 
 def _may(boat: Boat, kind: str, name: str) -> bool:
-    """Whether a boat's log may have a fault; a table in newtons needs an owner who stated some."""
+    """Return whether a boat's log may have a fault; tables in newtons need specified thrusts."""
     fault = FAULTS[name]
     in_newtons = "plain.csv" in fault.formats
     return (
@@ -89,12 +91,12 @@ def _may(boat: Boat, kind: str, name: str) -> bool:
 
 
 def _can(boat: Boat, name: str) -> bool:
-    """Whether a boat can have a cause."""
+    """Return whether a boat can have a cause."""
     return CAUSES[name].fits(boat)
 
 
 def _next(bag: list[str], everything: Sequence[str], fits: Callable[[str], bool], rng: Rng) -> str:
-    """The first in the bag that fits, taken out of it; the bag is filled again when none is left that does."""
+    """Remove and return the first suitable item of the bag; refill the bag if there is none."""
     if not any(map(fits, bag)):
         bag += [str(n) for n in rng.permutation(everything) if n not in bag]
     chosen = next(n for n in bag if fits(n))
@@ -104,12 +106,18 @@ def _next(bag: list[str], everything: Sequence[str], fits: Callable[[str], bool]
 
 def _dialect(form: str, boat: Boat, rng: Rng) -> str:
     if form in ("csv", "parquet"):
-        return f"plain.{form}" if boat.stated and rng.integers(2) else form
-    return str(rng.choice(["ros1", "ros2"])) if form == "ros" else form
+        if boat.stated and rng.integers(2):
+            return f"plain.{form}"
+        return form
+    if form == "ros":
+        return str(rng.choice(["ros1", "ros2"]))
+    return form
 
 
 def _possible(fault: Fault, form: str, rng: Rng) -> str:
-    return form if not fault.formats or form in fault.formats else str(rng.choice(fault.formats))
+    if not fault.formats or form in fault.formats:
+        return form
+    return str(rng.choice(fault.formats))
 
 
 @dataclass(frozen=True)
@@ -118,11 +126,11 @@ class Logs:
 
     first: Written
     second: Written
-    truth: dict[str, float]  # what is worth knowing: sd of a fix, ...
+    truth: dict[str, float]  # true values, such as the sd of a fix
 
 
 def make(case: Case, folder: Path) -> tuple[Logs, Case]:
-    """Sail and write both logs."""
+    """Simulate and write both logs."""
     rng = np.random.default_rng(case.seed)
     boat, link, strength = case.boat, Linkage(gains=(1.0,) * len(case.boat.plant.propellers)), ""
     if case.cause:
@@ -160,7 +168,7 @@ def _log(
 def write(
     case: Case, boat: Boat, seen: Seen, wrong: Fault | None, folder: Path, stem: str
 ) -> Written:
-    """In the format of the case."""
+    """Write a log in the format of the case."""
     form = case.form
     if form.startswith("plain."):
         columns = tables.plain(seen, boat)

@@ -1,4 +1,4 @@
-"""Physics that a boat has and its particulars have not, and what may rightly be named for each."""
+"""Physical effects that a boat has but its particulars lack, and the accepted names of each."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -13,7 +13,7 @@ from validation.owner_logs.sail import Linkage
 
 @dataclass(frozen=True)
 class Cause:
-    """One cause: what it does to surroundings and linkage, and the entries that name it."""
+    """One cause: its change of surroundings and linkage, and the effects that name it."""
 
     make: Callable[[Boat, Rng], tuple[Around, Linkage, str]]
     named: tuple[str, ...]
@@ -35,69 +35,69 @@ def _vector(rng: Rng, size: float) -> tuple[float, float]:
 
 
 def wind(boat: Boat, rng: Rng) -> tuple[Around, Linkage, str]:
-    """A fresh breeze."""
+    """Add a fresh breeze."""
     speed = rng.uniform(6.0, 9.0)
     return *_around(wind=_vector(rng, speed)), f"{speed:.1f} m/s"
 
 
 def current(boat: Boat, rng: Rng) -> tuple[Around, Linkage, str]:
-    """The water moves."""
+    """Add a current."""
     speed = rng.uniform(0.2, 0.5)
     return *_around(current=_vector(rng, speed)), f"{speed:.2f} m/s"
 
 
 def weak_reverse(boat: Boat, rng: Rng) -> tuple[Around, Linkage, str]:
-    """Astern the drives push far less than stated."""
+    """Reduce the thrust astern far below the specified value."""
     factor = rng.uniform(0.3, 0.5)
     return *_link(boat, astern=factor), f"times {factor:.2f}"
 
 
 def weak_motor(boat: Boat, rng: Rng) -> tuple[Around, Linkage, str]:
-    """One of two drives is weaker."""
+    """Weaken one of two drives."""
     factor = rng.uniform(0.55, 0.75)
     gains = (factor, 1.0) if rng.integers(2) else (1.0, factor)
     return *_link(boat, gains=gains), f"times {factor:.2f}"
 
 
 def lag(boat: Boat, rng: Rng) -> tuple[Around, Linkage, str]:
-    """The drives are slow to follow."""
+    """Let the drives follow slowly."""
     time = rng.uniform(1.0, 2.0) * boat.scale
     return *_link(boat, lag=time), f"{time:.1f} s"
 
 
 def delay(boat: Boat, rng: Rng) -> tuple[Around, Linkage, str]:
-    """Orders arrive late."""
+    """Delay the orders."""
     time = rng.uniform(0.6, 1.2) * boat.scale
     return *_link(boat, delay=time), f"{time:.1f} s"
 
 
 def dead_band(boat: Boat, rng: Rng) -> tuple[Around, Linkage, str]:
-    """Small throttle turns nothing."""
+    """Add a dead band of the throttle."""
     share = rng.uniform(0.15, 0.28)
     return *_link(boat, dead=share), f"{share:.2f} of full"
 
 
 def steering_offset(boat: Boat, rng: Rng) -> tuple[Around, Linkage, str]:
-    """Midships is not."""
+    """Offset the neutral helm angle."""
     angle = float(rng.choice([-1.0, 1.0]) * rng.uniform(0.07, 0.14))
     return *_link(boat, helm_offset=angle), f"{np.degrees(angle):.1f} deg"
 
 
 def slow_helm(boat: Boat, rng: Rng) -> tuple[Around, Linkage, str]:
-    """The steering gear is slow."""
+    """Slow down the steering gear."""
     rate = boat.helm_most / (rng.uniform(3.0, 5.0) * boat.scale)
     return *_link(boat, helm_rate=rate), f"{np.degrees(rate):.1f} deg/s"
 
 
 def load(boat: Boat, rng: Rng) -> tuple[Around, Linkage, str]:
-    """Cargo ahead or astern."""
+    """Add cargo ahead or astern."""
     mass = rng.uniform(0.25, 0.4) * boat.plant.hull.mass
     at = float(rng.choice([-1.0, 1.0]) * rng.uniform(0.2, 0.32) * boat.length)
     return *_around(load=mass, load_at=at), f"{mass:.0f} kg {at:+.1f} m ahead"
 
 
 def fouling(boat: Boat, rng: Rng) -> tuple[Around, Linkage, str]:
-    """Weed on the hull, or something in tow."""
+    """Add weed on the hull, or a towed object."""
     factor = rng.uniform(2.5, 4.0)
     return *_around(drag=factor), f"times {factor:.1f}"
 

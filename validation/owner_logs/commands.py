@@ -1,4 +1,4 @@
-"""The commands as a user gives them, in this process: exit code and what was printed."""
+"""The commands of a user, run in this process: exit code and printed output."""
 
 import contextlib
 import io
@@ -14,7 +14,7 @@ from typing import Any
 
 @dataclass(frozen=True)
 class Said:
-    """What a command left behind."""
+    """Result of a command."""
 
     code: int
     out: str
@@ -23,13 +23,15 @@ class Said:
 
     @property
     def last(self) -> str:
-        """The last line of complaint."""
+        """The last line of the error output."""
         lines = [line for line in self.err.splitlines() if line.strip()]
-        return lines[-1] if lines else ""
+        if lines:
+            return lines[-1]
+        return ""
 
 
 def boatsim(*arguments: str | Path) -> Said:
-    """Run a command; a crash is exit code 99."""
+    """Run a command; a crash gives exit code 99."""
     from boatsim.cli.commands import app
 
     out, err, begin = io.StringIO(), io.StringIO(), time.time()
@@ -39,7 +41,7 @@ def boatsim(*arguments: str | Path) -> Said:
             app([str(a) for a in arguments])
         except SystemExit as left:
             code = left.code
-        except BaseException as crash:  # what a user would see as a traceback
+        except BaseException as crash:  # a user would get a traceback
             if isinstance(crash, KeyboardInterrupt):
                 raise
             code = 99
@@ -49,12 +51,12 @@ def boatsim(*arguments: str | Path) -> Said:
 
 @dataclass(frozen=True)
 class Finding:
-    """A fault that `boatsim check` told of."""
+    """A fault that `boatsim check` reported."""
 
     name: str
     sure: float
     lines: tuple[str, ...] = ()
-    allowed: bool = False  # a diagnosis allows for it by itself
+    allowed: bool = False  # a diagnosis accounts for it without advice
 
 
 FOUND = re.compile(r"^  (?P<name>[a-z][a-z _]*) \(probability (?P<sure>[\d.]+) %\)")
@@ -63,7 +65,7 @@ WRITE = "    write into recording.toml: "
 
 
 def findings(said: Said) -> list[Finding]:
-    """Of the printed text."""
+    """Parse the findings in the printed text."""
     found: list[Finding] = []
     for line in said.out.splitlines():
         if match := FOUND.match(line):
@@ -78,7 +80,7 @@ def findings(said: Said) -> list[Finding]:
 
 
 def limits(said: Said) -> list[str]:
-    """What `boatsim check` can not identify."""
+    """Return the lines of `boatsim check` about quantities that cannot be identified."""
     return [
         line.strip()
         for line in said.out.splitlines()
@@ -87,7 +89,7 @@ def limits(said: Said) -> list[str]:
 
 
 def write_into(file: Path, lines: Sequence[str]) -> None:
-    """Do what check advised: add the lines to a recording.toml."""
+    """Follow the advice of `boatsim check`: add the lines to a recording.toml."""
     table = tomllib.loads(file.read_text(encoding="utf-8")) if file.exists() else {}
     file.write_text(
         "\n".join(_text(_together(table, tomllib.loads("\n".join(lines))))) + "\n", encoding="utf-8"
@@ -95,14 +97,14 @@ def write_into(file: Path, lines: Sequence[str]) -> None:
 
 
 def _together(table: dict[str, Any], more: dict[str, Any]) -> dict[str, Any]:
-    merged = {
-        k: _together(table.get(k, {}), v) if isinstance(v, dict) else v for k, v in more.items()
-    }
+    merged = {}
+    for k, v in more.items():
+        merged[k] = _together(table.get(k, {}), v) if isinstance(v, dict) else v
     return {**table, **merged}
 
 
 def _text(table: dict[str, Any], above: str = "") -> list[str]:
-    """TOML of a table, its own keys before the tables in it."""
+    """Return the TOML lines of a table, its own keys before nested tables."""
     own = [f"{_key(k)} = {json.dumps(v)}" for k, v in table.items() if not isinstance(v, dict)]
     head = [f"[{above}]"] if above and own else []
     inner = [
@@ -115,4 +117,6 @@ def _text(table: dict[str, Any], above: str = "") -> list[str]:
 
 
 def _key(name: str) -> str:
-    return name if re.fullmatch(r"[A-Za-z0-9_-]+", name) else json.dumps(name)
+    if re.fullmatch(r"[A-Za-z0-9_-]+", name):
+        return name
+    return json.dumps(name)

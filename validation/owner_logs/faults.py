@@ -1,4 +1,4 @@
-"""What may be wrong with a log, where it may be, and what it may rightly be called."""
+"""Possible faults of a log, the formats in which they occur, and their accepted names."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -17,23 +17,27 @@ MIRROR = (
     "thrusters_exchanged",
     "rudder_reversed",
     "rudder_sense",
-)  # no boat can tell these apart
+)  # these cannot be distinguished on any boat
 
 
 @dataclass(frozen=True)
 class Fault:
-    """One fault; a hook for what the instruments give, one for a table in our own names, and how the log was driven."""
+    """One fault.
+
+    It has hooks for the instruments' values, for a table in boatsim's own names, and for the way of
+    driving.
+    """
 
     named: tuple[str, ...]  # findings of `boatsim check`
-    entries: tuple[str, ...] = ()  # of the library, that say the same and are "not physics"
+    entries: tuple[str, ...] = ()  # equivalent effects of the library that are "not physics"
     seen: Callable[[Seen, Boat, Rng], Seen] | None = None
     columns: Callable[[Columns, Boat], Columns] | None = None
-    formats: tuple[str, ...] = ()  # in which alone it comes; empty: any
-    without: tuple[str, ...] = ()  # manoeuvres that are not driven
+    formats: tuple[str, ...] = ()  # the only formats with this fault; empty: any
+    without: tuple[str, ...] = ()  # manoeuvres that are omitted
     limit: float = 1.0
-    ned: bool = False  # ROS messages in our axes
-    mendable: bool = True  # whether a line of recording.toml can put it right
-    blind: bool = False  # with it no cause can be seen
+    ned: bool = False  # ROS messages in boatsim's axes
+    mendable: bool = True  # whether a line of recording.toml can correct it
+    blind: bool = False  # no cause can be identified with it
     fits: Callable[[Boat], bool] = lambda boat: True
 
 

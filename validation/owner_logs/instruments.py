@@ -1,4 +1,4 @@
-"""What is on board: satellite receiver, compass, gyro and the orders, each at its own rate, with its own noise."""
+"""Instruments on board: receiver, compass, gyro and orders, each with own rate and noise."""
 
 from dataclasses import dataclass, replace
 
@@ -16,27 +16,27 @@ class Series:
     values: dict[str, Array]  # (N,) each
 
     def having(self, **made: Array) -> "Series":
-        """With some values in place of its own."""
+        """Return the series with some values replaced."""
         return replace(self, values=self.values | made)
 
     def at(self, rows: Array) -> "Series":
-        """These rows alone."""
+        """Return the given rows."""
         return Series(self.t[rows], {n: v[rows] for n, v in self.values.items()})
 
 
 @dataclass(frozen=True)
 class Seen:
-    """A voyage as its instruments saw it; orders are shares of full, helm in rad to starboard."""
+    """Recorded signals of a voyage; orders are shares of full, helm in rad to starboard."""
 
     fixes: Series  # north, east [m], speed [m/s], course [rad]
     compass: Series  # psi [rad], unbounded
     gyro: Series  # r [rad/s]
-    orders: Series  # a channel each: drives by name, and helm [rad]
+    orders: Series  # one channel per drive by name, and helm [rad]
 
 
 @dataclass(frozen=True)
 class Fit:
-    """How well a boat is equipped."""
+    """Quality of a boat's instruments."""
 
     fix_rate: float  # [Hz]
     fix_sd: float  # [m]
@@ -47,7 +47,7 @@ class Fit:
 
 
 def fit(boat: Boat, rng: Rng) -> Fit:
-    """Some equipment; the better receivers are as likely as the plain ones."""
+    """Sample the instruments; good receivers are as likely as plain ones."""
     sd = float(np.exp(rng.uniform(np.log(0.02), np.log(0.3))))
     return Fit(
         float(rng.choice([5.0, 10.0])),
@@ -60,17 +60,17 @@ def fit(boat: Boat, rng: Rng) -> Fit:
 
 
 def names(boat: Boat) -> tuple[str, ...]:
-    """Of the drives: motor, or port and starboard."""
+    """Return the names of the drives: motor, or port and starboard."""
     return tuple(c.removeprefix("thrust_").removesuffix("_N") for c in boat.channels)
 
 
 def sampled(v: Voyage, rate: float) -> Array:
-    """Rows of the voyage at a rate [Hz]."""
+    """Return rows of the voyage at a rate [Hz]."""
     return np.arange(0, len(v.t), round(1.0 / rate / DT))
 
 
 def see(boat: Boat, v: Voyage, on: Fit, rng: Rng) -> Seen:
-    """The voyage through the instruments."""
+    """Return the voyage as recorded by the instruments."""
     rows = sampled(v, on.fix_rate)
     north, east, psi = v.states[rows, :3].T
     noise = on.fix_sd * rng.standard_normal((2, len(rows)))

@@ -1,4 +1,4 @@
-"""One case judged: the commands an owner gives, one behind the other, and what each made of the log."""
+"""Evaluation of one case: the commands an owner gives in sequence, and their results."""
 
 import json
 import re
@@ -12,16 +12,16 @@ from validation.owner_logs.commands import Finding, Said, boatsim, findings, lim
 from validation.owner_logs.formats.log import Written
 from validation.owner_logs.owner import accept, wanted
 
-HORIZON = 8.0  # [s] of the free runs of the second log, on a boat of 2 m
+HORIZON = 8.0  # [s] free runs of the second log, boat of 2 m
 POSITION = re.compile(r"position_rms_m: ([\d.e+-]+)")
-HALF = 0.5  # of the error of the vessel from particulars
-PLAIN_SIGHT = 4.0  # sd of a fix: where that vessel is off by less, nothing is there to be gained
+HALF = 0.5  # goal: error relative to the vessel from particulars
+PLAIN_SIGHT = 4.0  # sd of a fix; a smaller error of that vessel leaves nothing to improve
 LIMITS = {"never_turned": "turn", "saturated": "full|limit|saturat|highest", "one_speed": "speed"}
 
 
 @dataclass
 class Result:
-    """What came of a case."""
+    """Result of a case."""
 
     number: int
     kind: str
@@ -31,12 +31,12 @@ class Result:
     cause: str
     strength: str
     read: bool = False
-    need: str = ""  # where it could not be read, what was said
+    need: str = ""  # message if the log could not be read
     edits: list[str] = field(default_factory=list)
     found: list[str] = field(default_factory=list)  # by check
     fault_named: bool | None = None
-    mended: bool | None = None  # by the advised lines; None: no line can
-    accused: bool = False  # a good log
+    mended: bool | None = None  # corrected by the advised lines; None: no line can
+    accused: bool = False  # false alarm on a good log
     verdict: str = ""
     effects: list[str] = field(default_factory=list)
     physics_named: bool | None = None
@@ -49,12 +49,12 @@ class Result:
 
     @property
     def ratio(self) -> float:
-        """Of the errors of the second log."""
+        """Ratio of the errors on the second log."""
         return self.answer_m / self.nominal_m
 
 
 class Judge:
-    """Of one case, in a folder of its own."""
+    """Evaluation of one case in a folder of its own."""
 
     def __init__(self, case: Case, folder: Path, log_only: bool = False) -> None:
         shutil.rmtree(folder, ignore_errors=True)
@@ -67,7 +67,7 @@ class Judge:
         self.history: list[str] = []
 
     def call(self, *arguments: str | Path) -> Said:
-        """A command, kept in history.txt."""
+        """Run a command and record it in history.txt."""
         said = boatsim(*arguments)
         shown = " ".join(str(a) for a in arguments)
         self.history.append(
@@ -78,7 +78,7 @@ class Judge:
         return said
 
     def judge(self) -> Result:
-        """All of it, kept in result.json."""
+        """Run all commands and write result.json."""
         made = self.call("new", self.vessel, *self.case.boat.options)
         if made.code:
             self.result.trouble = f"new: {made.last}"
@@ -92,7 +92,7 @@ class Judge:
         return self.result
 
     def recording(self, log: Written, number: int) -> Path | None:
-        """The log as a recording; a table in our own names is one."""
+        """Return the log as a recording; a table in boatsim's own names already is one."""
         home = self.folder / f"run_{number}"
         home.mkdir()
         if self.case.form.startswith("plain."):
@@ -106,7 +106,7 @@ class Judge:
         return self.imported(log, home, number)
 
     def imported(self, log: Written, home: Path, number: int) -> Path | None:
-        """Through a proposed map."""
+        """Import the log with the proposed map."""
         map, run = home / "map.toml", home / "run.csv"
         asked = self.call("import", log.path, "--vessel", self.vessel, "--propose", map)
         if asked.code:
@@ -127,7 +127,7 @@ class Judge:
         self.result.trouble = f"import {number}: {said.last}"
 
     def log(self, run: Path) -> None:
-        """What check says, and whether its advice puts the log right."""
+        """Record the findings of `boatsim check` and whether its advice corrects the log."""
         r, wrong = self.result, self.case.wrong
         said = self.call("check", run)
         found = findings(said)
@@ -157,7 +157,7 @@ class Judge:
         write_into(run.parent / "recording.toml", first.lines)
 
     def physics(self, run: Path) -> None:
-        """What diagnose names, and how well its vessel foretells the second log."""
+        """Record the effects that diagnose names and the prediction of the second log."""
         r, out = self.result, self.folder / "diagnosis"
         said = self.call("diagnose", run, "--out", out)
         if said.code:
@@ -182,7 +182,7 @@ class Judge:
         self.foretell(out / "patched.toml")
 
     def foretell(self, patched: Path) -> None:
-        """The second log by both vessels."""
+        """Simulate the second log with both vessels."""
         r = self.result
         second = self.recording(self.logs.second, 2)
         if second is None:
@@ -193,11 +193,13 @@ class Judge:
         r.possible = r.nominal_m > PLAIN_SIGHT * self.logs.truth["fix_sd"]
 
     def error(self, run: Path, vessel: Path, horizon: str) -> float:
-        """[m] rms of free runs."""
+        """Return the rms error [m] of free runs."""
         said = self.call(
             "replay", run, "--vessel", vessel, "--horizon", horizon, "--out", self.folder / "replay"
         )
         match = POSITION.search(said.out)
         if not match:
             self.result.trouble = f"replay: {said.last}"
-        return float(match[1]) if match else float("nan")
+        if match:
+            return float(match[1])
+        return float("nan")

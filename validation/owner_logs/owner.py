@@ -1,4 +1,4 @@
-"""The owner: accepts the proposed map, and puts in what he alone knows: the signal of each order, its full scale."""
+"""The owner accepts the proposed map and adds each order's signal and full scale."""
 
 import re
 import tomllib
@@ -13,7 +13,7 @@ from validation.owner_logs.instruments import names
 
 @dataclass(frozen=True)
 class Line:
-    """A line of the map as it should be."""
+    """A correct line of the map."""
 
     channel: str
     text: str
@@ -25,7 +25,7 @@ class Line:
 
 
 def wanted(boat: Boat, vessel: Path, scales: dict[str, Scale]) -> list[Line]:
-    """The lines of the commands, by the limits of the vessel's own channels."""
+    """Return the command lines, with the limits of the vessel's own channels."""
     channels = tomllib.loads(vessel.read_text(encoding="utf-8"))["channels"]
     found = []
     for name, channel in zip(names(boat), boat.channels, strict=True):
@@ -51,7 +51,10 @@ def _line(channel: str, s: Scale, least: float, most: float) -> Line:
 
 
 def accept(text: str, lines: list[Line]) -> tuple[str, list[str]]:
-    """The map with the owner's lines, and what he had to put in or right: 'absent', 'signal', 'sign', 'scale'."""
+    """Return the map with the owner's lines, and what had to be added or corrected.
+
+    The latter is 'absent', 'signal', 'sign' or 'scale'.
+    """
     edits = []
     for line in lines:
         pattern = re.compile(rf'^(# )?"?{re.escape(line.channel)}"? = .*$', re.MULTILINE)
@@ -82,4 +85,8 @@ def _fault(proposed: str, line: Line) -> str:
     if signal != line.signal:
         return "signal"
     right = (line.most - line.least) / (line.high - line.low)
-    return "sign" if slope * right < 0.0 else "scale" if not 0.9 < slope / right < 1.1 else ""
+    if slope * right < 0.0:
+        return "sign"
+    if not 0.9 < slope / right < 1.1:
+        return "scale"
+    return ""

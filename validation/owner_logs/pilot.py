@@ -1,4 +1,4 @@
-"""How an owner drives for a log: stretches of straight runs, zigzags, turns, stops and some way astern."""
+"""An owner's driving for a log: straight runs, zigzags, turns, stops and some way astern."""
 
 from dataclasses import dataclass, field
 
@@ -20,7 +20,7 @@ LEG = {
 
 @dataclass(frozen=True)
 class Stretch:
-    """One thing that is done."""
+    """One manoeuvre of the plan."""
 
     kind: str
     until: float  # [s]
@@ -31,7 +31,7 @@ class Stretch:
 
 @dataclass
 class Owner:
-    """Follows a plan; steady of hand, a quarter of a second late."""
+    """A pilot that follows a plan with a delay of a quarter of a second."""
 
     plan: list[Stretch]
     course: float | None = None
@@ -40,7 +40,7 @@ class Owner:
     at: int = field(default=0)
 
     def order(self, t: float, psi: float, u: float, r: float) -> tuple[float, float]:
-        """Throttle and helm for now."""
+        """Return the present throttle and helm."""
         while self.at < len(self.plan) - 1 and t >= self.plan[self.at].until:
             self.at, self.course, self.side, self.stopped = self.at + 1, None, 1.0, False
         now = self.plan[self.at]
@@ -60,7 +60,7 @@ class Owner:
 
 
 def plan(boat: Boat, rng: Rng, lasts: float, without: tuple[str, ...] = ()) -> list[Stretch]:
-    """Stretches in random order, each kind before any comes again."""
+    """Return stretches in random order, each kind once before any repeats."""
     kinds = [k for k in LEG if k not in without]
     found, t, bag = list[Stretch](), 0.0, list[str]()
     while t < lasts:
@@ -82,5 +82,5 @@ def plan(boat: Boat, rng: Rng, lasts: float, without: tuple[str, ...] = ()) -> l
 
 
 def pilot(boat: Boat, rng: Rng, lasts: float, without: tuple[str, ...] = ()) -> Owner:
-    """Somebody at the helm."""
+    """Return a pilot with a random plan."""
     return Owner(plan(boat, rng, lasts, without))

@@ -1,9 +1,10 @@
-"""The real boats: a hull in the plane with propellers and a rudder, and one Runge-Kutta step of it.
+"""Simulated boats: a hull in the plane with propellers and a rudder, and one Runge-Kutta step.
 
-Axes are SNAME, the origin is the mass centre; velocities are through the water, which a steady current carries along.
-Resistance: ITTC 1957 friction and a wave term; across: strips of cross-flow drag, a low aspect wing (R. T. Jones
-1946), Munk's moment by Kirchhoff's equations; propellers lose thrust linearly with the inflow; the rudder works in
-their race (A. F. Molland, S. R. Turnock, Marine Rudders and Control Surfaces, 2007).
+Axes are SNAME, the origin is the mass centre; velocities are relative to the water, which moves
+with a steady current. Resistance: ITTC 1957 friction and a wave term; across: strips of cross-flow
+drag, a low aspect wing (R. T. Jones 1946), Munk's moment by Kirchhoff's equations; propeller thrust
+falls linearly with the inflow; the rudder works in the propeller race (A. F. Molland, S. R.
+Turnock, Marine Rudders and Control Surfaces, 2007).
 """
 
 from dataclasses import dataclass, field
@@ -24,9 +25,9 @@ class Propeller:
 
     x: float  # [m] ahead of the mass centre
     y: float  # [m] to starboard
-    full: float  # [N] at rest, full ahead
+    full: float  # [N] bollard thrust, full ahead
     astern: float  # share of it full astern
-    pitch_speed: float  # [m/s] of inflow at which full ahead pushes no more
+    pitch_speed: float  # [m/s] inflow at which the thrust at full ahead is zero
     wake: float = 0.1  # share by which the inflow is slower than the boat
     disc: float = 0.05  # [m^2]
     turns: bool = False
@@ -43,7 +44,7 @@ class Rudder:
 
 @dataclass(frozen=True)
 class Hull:
-    """What the water does to it."""
+    """Inertia and hydrodynamic coefficients of the hull."""
 
     length: float  # [m]
     beam: float
@@ -56,7 +57,7 @@ class Hull:
     form: float  # friction is times 1 + form
     wave: float  # coefficient at a Froude number of 0.4
     section: float  # cross-flow drag coefficient
-    rake: float  # by which the draught grows from amidships to the bow, of the draught
+    rake: float  # growth of the draught from amidships to the bow, share of the draught
     lift: float  # of Jones' value
     lift_at: float  # [lengths] ahead of the mass centre
     turning: float  # [N m s] linear damping in yaw
@@ -65,7 +66,7 @@ class Hull:
 
 @dataclass(frozen=True)
 class Around:
-    """The surroundings, and what the boat carries that nobody told."""
+    """Surroundings, and load and drag that the particulars lack."""
 
     current: tuple[float, float] = (0.0, 0.0)  # [m/s] north, east
     wind: tuple[float, float] = (0.0, 0.0)  # [m/s] towards north, east
@@ -76,7 +77,7 @@ class Around:
 
 @dataclass(frozen=True)
 class Plant:
-    """A boat as it is."""
+    """The true boat."""
 
     hull: Hull
     propellers: tuple[Propeller, ...]
@@ -84,7 +85,7 @@ class Plant:
     around: Around = field(default_factory=Around)
 
     def masses(self) -> tuple[float, float, float, float]:
-        """Surge, sway [kg], yaw [kg m^2] and sway by yaw [kg m], the water and the load in them."""
+        """Return surge, sway [kg], yaw [kg m^2] and sway-yaw mass [kg m] with water and load."""
         h, a = self.hull, self.around
         return (
             h.mass + a.load + h.added[0],
@@ -95,7 +96,7 @@ class Plant:
 
 
 def resistance(hull: Hull, u: float) -> float:
-    """[N] against the way ahead."""
+    """Return the resistance [N] in surge."""
     speed = abs(u)
     reynolds = max(speed * hull.length / VISCOSITY, 1e4)
     friction = 0.075 / (log10(reynolds) - 2.0) ** 2 * (1.0 + hull.form)
@@ -104,7 +105,7 @@ def resistance(hull: Hull, u: float) -> float:
 
 
 def across(hull: Hull, u: float, v: float, r: float) -> tuple[float, float]:
-    """Side force [N] and moment [N m] of cross flow and lift."""
+    """Return side force [N] and moment [N m] of cross flow and lift."""
     Y = N = 0.0
     width = hull.length / len(STRIPS)
     k = 0.5 * RHO * hull.section * hull.draught * width * (1.7 if hull.hulls == 2 else 1.0)
@@ -120,16 +121,18 @@ def across(hull: Hull, u: float, v: float, r: float) -> tuple[float, float]:
 
 
 def thrust(p: Propeller, share: float, u: float) -> float:
-    """[N] at a share of full revolutions, in the way of the boat."""
+    """Return the thrust [N] at a share of full revolutions, with the boat under way."""
     ahead = (1.0 - p.wake) * u / p.pitch_speed
     found = p.full * (share * abs(share) - abs(share) * ahead)
-    return found if share >= 0.0 else p.astern * found
+    if share >= 0.0:
+        return found
+    return p.astern * found
 
 
 def steered(
     rudder: Rudder, p: Propeller, push: float, angle: float, u: float, v: float, r: float
 ) -> float:
-    """[N] normal force of the blade, positive to port."""
+    """Return the normal force [N] of the blade, positive to port."""
     own = (1.0 - p.wake) * u
     race = sqrt(own * own + RACE * max(push, 0.0) / (0.5 * RHO * p.disc)) if u > -0.05 else abs(u)
     attack = angle * (1.0 if u > -0.05 else -1.0) + 0.6 * atan2(v + rudder.x * r, race + 0.05)
@@ -139,7 +142,10 @@ def steered(
 def forces(
     plant: Plant, s: State, revs: tuple[float, ...], helm: float
 ) -> tuple[float, float, float]:
-    """X, Y [N], N [N m] of hull, drives and wind; `helm` [rad] is positive to starboard."""
+    """Return X, Y [N] and N [N m] of hull, drives and wind.
+
+    The angle `helm` [rad] is positive to starboard.
+    """
     _, _, psi, u, v, r = s
     Y, N = across(plant.hull, u, v, r)
     X = -plant.around.drag * resistance(plant.hull, u)
@@ -160,7 +166,7 @@ def forces(
 def blown(
     plant: Plant, psi: float, u: float, v: float, X: float, Y: float, N: float
 ) -> tuple[float, float, float]:
-    """With what the wind adds."""
+    """Return the forces with the wind added."""
     wind, current = plant.around.wind, plant.around.current
     if wind == (0.0, 0.0):
         return X, Y, N
@@ -179,7 +185,7 @@ def blown(
 def slope(
     plant: Plant, s: State, revs: tuple[float, ...], helm: float, push: tuple[float, float, float]
 ) -> State:
-    """Rate of change of the state."""
+    """Return the rate of change of the state."""
     _, _, psi, u, v, r = s
     X, Y, N = forces(plant, s, revs, helm)
     mx, my, mz, myz = plant.masses()
@@ -206,7 +212,7 @@ def step(
     dt: float,
     push: tuple[float, float, float],
 ) -> State:
-    """One Runge-Kutta step with drives and ambient push held."""
+    """Take one Runge-Kutta step with drives and ambient force held."""
 
     def off(k: State, h: float) -> State:
         a, b, c, d, e, f = s

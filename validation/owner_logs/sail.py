@@ -1,4 +1,4 @@
-"""One voyage: the pilot's orders, what the drives make of them, and where the boat goes, at 50 Hz."""
+"""Simulation of one voyage at 50 Hz: the pilot's orders, the drives and the motion."""
 
 from collections import deque
 from dataclasses import dataclass, field
@@ -12,25 +12,25 @@ from validation.owner_logs.plant import State, step
 
 Array = NDArray[np.float64]
 DT = 0.02  # [s]
-AMBIENT = 2.0e-4  # of the weight: rms of what pushes at random
+AMBIENT = 2.0e-4  # rms of the ambient force, share of the weight
 
 
 class Pilot(Protocol):
-    """Whoever gives the orders."""
+    """Interface of a pilot."""
 
     def order(self, t: float, psi: float, u: float, r: float) -> tuple[float, float]:
-        """Throttle and helm, each -1 to 1, helm to starboard positive."""
+        """Return throttle and helm, each -1 to 1, helm to starboard positive."""
 
 
 @dataclass(frozen=True)
 class Linkage:
-    """What is between the orders and the drives."""
+    """Transmission from the orders to the drives."""
 
     gains: tuple[float, ...] = (1.0, 1.0)  # of each drive's thrust
     astern: float = 1.0  # further factor of the thrust astern
-    lag: float = 0.0  # [s] beyond the usual one
+    lag: float = 0.0  # [s] added to the usual lag
     delay: float = 0.0  # [s]
-    dead: float = 0.0  # share of full throttle below which nothing turns
+    dead: float = 0.0  # share of full throttle below which the propeller stands still
     helm_offset: float = 0.0  # [rad]
     helm_rate: float = np.inf  # [rad/s] at most
     limit: float = 1.0  # of the throttle
@@ -38,7 +38,7 @@ class Linkage:
 
 @dataclass
 class Drives:
-    """They follow the orders."""
+    """Drives that follow the orders."""
 
     boat: Boat
     link: Linkage
@@ -50,7 +50,7 @@ class Drives:
         self.queue = deque([((0.0,) * len(self.push), 0.0)] * (1 + round(self.link.delay / DT)))
 
     def follow(self, throttles: tuple[float, ...], helm: float) -> tuple[tuple[float, ...], float]:
-        """Revolutions (shares of full) and angle [rad] after a step."""
+        """Return revolutions (shares of full) and angle [rad] after a step."""
         self.queue.append((throttles, helm))
         given, wheel = self.queue.popleft()
         keep = np.exp(-DT / (self.boat.lag + self.link.lag))
@@ -67,7 +67,7 @@ class Drives:
 
 @dataclass(frozen=True)
 class Voyage:
-    """Truth and orders on the fine grid."""
+    """True states and orders on the fine grid."""
 
     t: Array  # (N,) s
     states: Array  # (N, 6)
@@ -76,7 +76,7 @@ class Voyage:
 
 
 def shares(boat: Boat, throttle: float, helm: float) -> tuple[float, ...]:
-    """The order of each drive; thrusters that do not turn steer by their difference."""
+    """Return the order of each drive; fixed thrusters steer by their difference."""
     if boat.helm_most:
         return (throttle,) * len(boat.plant.propellers)
     return tuple(
@@ -86,7 +86,7 @@ def shares(boat: Boat, throttle: float, helm: float) -> tuple[float, ...]:
 
 
 def sail(boat: Boat, link: Linkage, pilot: Pilot, lasts: float, rng: Rng) -> Voyage:
-    """From rest, heading anywhere."""
+    """Simulate a voyage from rest with a random heading."""
     count = round(lasts / DT)
     plant, drives = boat.plant, Drives(boat, link)
     mass, L = plant.hull.mass, boat.length
@@ -95,11 +95,9 @@ def sail(boat: Boat, link: Linkage, pilot: Pilot, lasts: float, rng: Rng) -> Voy
     kicks = rng.standard_normal((count, 3)) * rms * np.sqrt(1.0 - keep * keep)
     push = np.zeros(3)
     s: State = (0.0, 0.0, float(rng.uniform(0.0, 2.0 * np.pi)), 0.0, 0.0, 0.0)
-    states, throttles, helms = (
-        np.empty((count, 6)),
-        np.empty((count, len(plant.propellers))),
-        np.empty(count),
-    )
+    states = np.empty((count, 6))
+    throttles = np.empty((count, len(plant.propellers)))
+    helms = np.empty(count)
     for k in range(count):
         if k % 5 == 0:
             throttle, helm = pilot.order(k * DT, s[2], s[3], s[5])

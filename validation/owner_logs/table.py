@@ -1,4 +1,4 @@
-"""The table: a line a case, and the goals."""
+"""Result table: one line for each case, and the goals."""
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 
@@ -11,22 +11,25 @@ def line(r: Result) -> str:
         "" if r.mended is None else f", mended {_mark(r.mended)}"
     )
     cause = f"{r.cause or '-'}: {_mark(r.physics_named)}"
-    ratio = (
-        "-"
-        if r.nominal_m != r.nominal_m
-        else f"{r.nominal_m:.2f} -> {r.answer_m:.2f} m ({r.ratio:.2f})"
-    )
+    if r.nominal_m != r.nominal_m:
+        ratio = "-"
+    else:
+        ratio = f"{r.nominal_m:.2f} -> {r.answer_m:.2f} m ({r.ratio:.2f})"
     said = ", ".join(r.effects) or r.verdict or r.need or r.trouble
     found = "" if not r.found else f" [{'; '.join(r.found)}]"
     return f"{r.number:3d} {r.kind:5s} {r.boat:16s} {r.form:13s} {fault}; {cause}; {said}; {ratio}{found}"
 
 
 def _mark(value: bool | None) -> str:
-    return "-" if value is None else "yes" if value else "NO"
+    if value is None:
+        return "-"
+    if value:
+        return "yes"
+    return "NO"
 
 
 def goals(results: Sequence[Result]) -> Iterator[str]:
-    """A row each: what is asked, how often it is so, the goal."""
+    """Return a row for each goal: the criterion, its rate, the goal."""
     yield f"{'goal':58s} {'reached':>14s} {'of':>4s} {'asked':>7s}"
     for title, asked, counts, hit in _rows():
         there = [r for r in results if counts(r)]
@@ -48,7 +51,7 @@ Test = Callable[[Result], bool]
 def _rows() -> Iterable[tuple[str, str, Test, Test]]:
     return (
         (
-            "log read, or its need said in one line",
+            "log read, or its need stated in one line",
             "all",
             lambda r: True,
             lambda r: r.read or bool(r.need),
@@ -61,7 +64,7 @@ def _rows() -> Iterable[tuple[str, str, Test, Test]]:
         ),
         ("the log's fault named", "80 %", lambda r: bool(r.fault), lambda r: bool(r.fault_named)),
         (
-            "of faults that a line mends: mended by the advised one",
+            "of faults that a line corrects: corrected by the advice",
             "-",
             lambda r: r.mended is not None,
             lambda r: bool(r.mended),
@@ -92,7 +95,7 @@ def _rows() -> Iterable[tuple[str, str, Test, Test]]:
             lambda r: not r.effects,
         ),
         (
-            "second log foretold with at most half the error",
+            "second log predicted with at most half the error",
             "75 %",
             lambda r: bool(r.possible),
             lambda r: r.ratio <= HALF,

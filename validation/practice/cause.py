@@ -65,11 +65,9 @@ def water(causes: Sequence[Cause]) -> Callable[[Array, Array, Whole], Flow | Non
     def velocity(t: Array, q: Array, run: Whole) -> Flow | None:
         found = [f(t, q, run) for f in flows]
         still = np.zeros(())
-        return (
-            Flow(sum((f.north for f in found), still), sum((f.east for f in found), still))
-            if found
-            else None
-        )
+        if found:
+            return Flow(sum((f.north for f in found), still), sum((f.east for f in found), still))
+        return None
 
     return velocity
 

@@ -61,11 +61,10 @@ def trials(seed: int, per_vessel: int) -> Iterator[Trial]:
         known, strange = Deck(plan.single, rng), Deck(plan.strange, rng)
         for i in range(per_vessel):
             kind, number = KINDS[i % len(KINDS)], number + 1
-            drawn = (
-                strange.draw(1)
-                if kind == "unknown"
-                else known.draw({"none": 0, "single": 1, "pair": 2}[kind])
-            )
+            if kind == "unknown":
+                drawn = strange.draw(1)
+            else:
+                drawn = known.draw({"none": 0, "single": 1, "pair": 2}[kind])
             concealed = plan.kept and kind != "none" and (i // len(KINDS) + i) % 2 == 1
             yield Trial(
                 f"T{number:03d}_{vessel}", vessel, kind, concealed, kind == "none" and i > 0, drawn
@@ -142,10 +141,11 @@ def sailed(trial: Trial, lots: tuple[int, int], strengths: Array) -> Oracle:
     nominal, plan = BOATS[trial.vessel](), PLANS[trial.vessel]
     grid, rng = plan.grid(), np.random.default_rng([*lots, 2])
     noise, real = instruments(nominal, plan, rng), own(nominal, rng)
-    causes = [
-        on_grid(maker(nominal, np.random.default_rng([*lots, 3, i]), float(s)), grid.dt)
-        for i, (maker, s) in enumerate(zip(trial.makers, strengths, strict=True))
-    ]
+    causes = []
+    for i, (maker, s) in enumerate(zip(trial.makers, strengths, strict=True)):
+        causes.append(
+            on_grid(maker(nominal, np.random.default_rng([*lots, 3, i]), float(s)), grid.dt)
+        )
     pilot = Keeper(nominal, grid, rng) if trial.concealed else hand(nominal, grid, rng)
     return Oracle(nominal, real, causes, sail(real, causes, pilot, grid, noise, rng), noise)
 
@@ -204,7 +204,9 @@ def same(trial: Trial, causes: tuple[Cause, ...]) -> dict[str, Any]:
     """Entries that count as the true ones."""
     found = {c.name: [*c.same, *(() if trial.concealed else c.same_by_hand)] for c in causes}
     found = {name: others for name, others in found.items() if others}
-    return {"equivalent": found} if found else {}
+    if found:
+        return {"equivalent": found}
+    return {}
 
 
 def spoilt(voyage: Voyage, noise: Array, rng: Rng) -> Voyage:

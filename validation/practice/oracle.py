@@ -40,13 +40,11 @@ class Oracle:
         self, nominal: Boat, real: Boat, causes: Sequence[Cause], voyage: Voyage, noise: Array
     ) -> None:
         """`real` has its own coefficients and no cause yet; `noise` (6,) of the instruments."""
-        self.nominal, self.real, self.causes, self.voyage, self.noise = (
-            nominal,
-            real,
-            tuple(causes),
-            voyage,
-            noise,
-        )
+        self.nominal = nominal
+        self.real = real
+        self.causes = tuple(causes)
+        self.voyage = voyage
+        self.noise = noise
         grid = voyage.grid
         self.inside = slice(grid.lead, grid.lead + grid.steps + 1)
         count = grid.steps + 1
@@ -243,10 +241,9 @@ class Oracle:
             )[:, None]
             B, z = (A / rms).reshape(len(names), -1), (y / rms).ravel()
             theta = -np.linalg.solve(B @ B.T + np.eye(len(names)), B @ z)
-        fitted = {
-            n: self.nominal.c[n] * max(1 + s * x, 0.05)
-            for n, s, x in zip(names, sd, theta, strict=True)
-        }
+        fitted = {}
+        for n, s, x in zip(names, sd, theta, strict=True):
+            fitted[n] = self.nominal.c[n] * max(1 + s * x, 0.05)
         return replace(self.nominal, c={**self.nominal.c, **fitted})
 
     def free_runs(self, horizon: float, rng: np.random.Generator) -> dict[str, float]:
@@ -299,12 +296,10 @@ class Oracle:
         if start is not None:
             q, nu = start.q[first, :, HELD_OUT].T, start.nu[first, :, HELD_OUT].T
         q, nu = q + off[0, :, : len(first)], nu + off[1, :, : len(first)]
-        force, flow, inverse, none = (
-            extra(boat, causes),
-            water(causes),
-            boat.inverse(),
-            np.zeros_like(q),
-        )
+        force = extra(boat, causes)
+        flow = water(causes)
+        inverse = boat.inverse()
+        none = np.zeros_like(q)
         squares = []
         for i in range(rows * grid.every + 1):
             if i % grid.every == 0:

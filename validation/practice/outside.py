@@ -19,10 +19,8 @@ def wind(boat: Boat, rng: Rng, s: float) -> Cause:
         def force(b: Boat, m: Motion) -> Array:
             air = speed * (1.0 + gusty * gusts(m.t, m.run))
             psi = m.q[5]
-            along, across = (
-                air * np.cos(toward - psi) - m.nu[0],
-                air * np.sin(toward - psi) - m.nu[1],
-            )
+            along = air * np.cos(toward - psi) - m.nu[0]
+            across = air * np.sin(toward - psi) - m.nu[1]
             pressure, angle = beam * (along**2 + across**2) / speed**2, np.arctan2(across, along)
             Y = pressure * np.sin(angle) * (1.0 - 0.08 * np.cos(2 * angle))
             X = pressure * 0.5 * np.cos(angle) * (1.0 + 0.1 * np.cos(2 * angle))
@@ -55,10 +53,11 @@ def wave_forcing(boat: Boat, rng: Rng, s: float) -> Cause:
     """Irregular waves of a narrow band in all of the plane, in roll where the boat rolls."""
     w = float(rng.uniform(2.6, 4.0)) / boat.scale
     sizes = np.array([4.0, 5.0, 0.0, 25.0 * boat.draught, 0.0, 0.6 * boat.length]) * s * boat.push
-    courses = [
-        wavy(rng, 0.85 * w, 1.15 * w, 12) if axis in boat.free and sizes[axis] else None
-        for axis in range(6)
-    ]
+    courses = []
+    for axis in range(6):
+        courses.append(
+            wavy(rng, 0.85 * w, 1.15 * w, 12) if axis in boat.free and sizes[axis] else None
+        )
 
     def force(b: Boat, m: Motion) -> Array:
         return np.array(

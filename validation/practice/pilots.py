@@ -65,10 +65,8 @@ def drawn(boat: Boat, rng: Rng) -> Array:
         angle, toe = rng.uniform(-0.6, 0.6), rng.choice([0.0, 0.0, 0.15])
         return np.array([0.0, 0.0, angle + toe, angle - toe, port, starboard])
     if boat.name == "otter":
-        both, turn = (
-            rng.choice([-50.0, 0.0, 40.0, 60.0, 78.0]),
-            rng.choice([-25.0, -10.0, 0.0, 10.0, 25.0]),
-        )
+        both = rng.choice([-50.0, 0.0, 40.0, 60.0, 78.0])
+        turn = rng.choice([-25.0, -10.0, 0.0, 10.0, 25.0])
         return np.array([both + turn, both - turn])
     helm = rng.choice([*HELM, 0.0])
     return np.array([helm if rng.integers(2) else -helm])

@@ -92,10 +92,11 @@ class Voyage:
     def acts(self, boat: Boat, causes: Sequence[Cause]) -> Acts:
         """What another boat's actuators would have done of the same commands."""
         chain = Actuators(boat, causes, self.grid.dt)
-        found = [
-            chain.step(self.commands[self.row_of(i - self.grid.lead)], i - self.grid.lead)
-            for i in range(len(self.q))
-        ]
+        found = []
+        for i in range(len(self.q)):
+            found.append(
+                chain.step(self.commands[self.row_of(i - self.grid.lead)], i - self.grid.lead)
+            )
         return Acts(*(np.array(part) for part in zip(*found, strict=True)))
 
 
@@ -116,12 +117,10 @@ def sail(
     push = ambient(boat, count, grid.dt, rng)
     errors = noise[:, None] * rng.standard_normal((grid.rows, 6, RUNS))
     late = round(max((c.late for c in causes), key=abs, default=0.0) / grid.dt)
-    chain, force, flow, inverse = (
-        Actuators(real, causes, grid.dt),
-        extra(real, causes),
-        water(causes),
-        real.inverse(),
-    )
+    chain = Actuators(real, causes, grid.dt)
+    force = extra(real, causes)
+    flow = water(causes)
+    inverse = real.inverse()
     q, nu = pilot.begin()
     u = pilot.command(0, shown(causes, q))
     Q, NU, commands, recorded = [], [], [], []

@@ -1,4 +1,5 @@
-"""Two textbook ways to say what a boat leaves out, over the same library and compiled laws as the diagnosis.
+"""Two textbook methods of finding missing effects, with the same candidates and laws.
 
-They enter the benchmark as any other tool may: they read a trial's recordings and write an answer for each.
+They take part in the benchmark as any other tool: they read a trial's recordings and write an
+answer for each trial.
 """

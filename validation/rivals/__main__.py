@@ -1,7 +1,8 @@
-"""Has a rival answer a set of trials: `python -m validation.rivals least_squares SET --out RESULTS [--plain]`.
+"""Answer trials with a textbook method: `python -m validation.rivals METHOD SET --out DIR`.
 
-Writes RESULTS/Txxx/diagnosis.json, patched.toml and replay.csv, as the diagnosis itself does;
-`python -m validation.trials SET --answers RESULTS` scores them. `--plain`: BIC as in a textbook.
+METHOD is `least_squares` or `sparse_regression`. The script writes DIR/Txxx/diagnosis.json,
+patched.toml and replay.csv, as the diagnosis does; `python -m validation.trials SET --answers DIR`
+scores them. `--plain` uses the textbook BIC.
 """
 
 import argparse
@@ -10,7 +11,7 @@ from pathlib import Path
 from rich.progress import track
 
 from validation.rivals.least_squares import LeastSquares
-from validation.rivals.question import answer, asked
+from validation.rivals.question import answer, read_question
 from validation.rivals.sparse_regression import SparseRegression
 
 RIVALS = {"least_squares": LeastSquares, "sparse_regression": SparseRegression}
@@ -18,7 +19,7 @@ RIVALS = {"least_squares": LeastSquares, "sparse_regression": SparseRegression}
 
 def enter(rival: str, trial: Path, out: Path, plain: bool = False) -> None:
     """Answer one trial."""
-    question = asked(trial)
+    question = read_question(trial)
     answer(question, *RIVALS[rival](question, plain).answer(), trial, out)
 
 
@@ -36,7 +37,7 @@ def main() -> None:
     args = parser.parse_args()
     trials = sorted(t for t in args.trials.glob("T*") if t.is_dir())
     if not trials:
-        raise SystemExit(f"{args.trials}: no trials there")
+        raise SystemExit(f"{args.trials}: no trials found")
     for trial in track(trials, args.rival):
         enter(args.rival, trial, args.out / trial.name, args.plain)
 

@@ -1,7 +1,7 @@
-"""Accelerations of a recording by smoothed differences, and those that a boat's laws give at the same motion.
+"""Accelerations of a recording by smoothed differences, and accelerations predicted by the laws.
 
-Savitzky and Golay's filter blurs what it differentiates. The laws' accelerations are blurred alike, so that a step of
-the thrust is no error of the model.
+A Savitzky-Golay filter blurs the signal that it differentiates. The predicted accelerations are
+blurred in the same way, so that a step of the thrust causes no model error.
 """
 
 from collections.abc import Mapping
@@ -16,28 +16,29 @@ from boatsim.diagnosis.filter import MappedRecording, NoiseLevels, body_of
 from boatsim.diagnosis.locate.nominal_forces import actuator_states
 from boatsim.physics.base import Array
 
-ORDER, NARROWEST = 3, 5  # of the polynomials, and rows of the narrowest window
-WIDEST = 1 / 6  # of a recording
-ALLOWED = 1.02  # errors of smoothed positions in those that noise alone leaves
-LOUDER = 1.0  # times the power of the ambient force that noise may have in accelerations
-SHORT = 1e-4  # [s] of a step whose change of speed is an acceleration
+ORDER, NARROWEST = 3, 5  # polynomial order, rows of the narrowest window
+WIDEST = 1 / 6  # widest window, share of a recording
+ALLOWED = 1.02  # largest smoothing error, relative to that of noise alone
+LOUDER = 1.0  # largest noise power in accelerations, relative to the ambient force
+SHORT = 1e-4  # [s] integration step from which an acceleration is computed
 
 
 @dataclass(frozen=True)
 class Smoother:
-    """Windows (rows, odd) of one recording's freedoms."""
+    """Windows (rows, odd) for the degrees of freedom of one recording."""
 
     track: MappedRecording
-    windows: tuple[int, ...]  # in which accelerations are told
-    narrow: tuple[int, ...]  # in which states are: what is blurred twice would seem damped
+    windows: tuple[int, ...]  # for accelerations
+    narrow: tuple[int, ...]  # for states: blurring twice would look like damping
 
     @classmethod
     def of(
         cls, track: MappedRecording, ambient: NoiseLevels, noise: Mapping[str, float]
     ) -> "Smoother":
-        """Windows in which noise [m, rad] moves accelerations less than the ambient force; x and y have the same.
+        """Choose windows in which noise moves accelerations less than the ambient force does.
 
-        Those of states are as wide as leaves the errors of smoothed positions to noise, and at most half as wide.
+        Windows of x and y are equal. Windows of states are as wide as the noise [m, rad] allows and
+        at most half as wide as those of accelerations.
         """
         families, recorded = of_freedoms(track), positions(track)
         wide, narrow = dict[str, int](), dict[str, int]()
@@ -57,23 +58,27 @@ class Smoother:
 
     @property
     def margin(self) -> int:
-        """Rows at either end that no window reaches whole."""
+        """Rows at either end without a complete window."""
         return max(self.windows) // 2
 
     def motion(self, recorded: Array) -> tuple[Array, Array]:
-        """States (N, 2 NQ) and joint accelerations (N, NQ) of positions (N, NQ); those at the ends are poor."""
+        """Return states (N, 2 NQ) and joint accelerations (N, NQ) of positions (N, NQ).
+
+        Rows within the margin are inaccurate.
+        """
         h = float(np.median(np.diff(self.track.times)))
         windows = (self.narrow, self.narrow, self.windows)
-        parts = [
-            np.column_stack(
-                [derived(y, n, d, h) for y, n in zip(recorded.T, windows[d], strict=True)]
+        parts = []
+        for d in range(3):
+            parts.append(
+                np.column_stack(
+                    [derived(y, n, d, h) for y, n in zip(recorded.T, windows[d], strict=True)]
+                )
             )
-            for d in range(3)
-        ]
         return np.ascontiguousarray(np.hstack(parts[:2])), parts[2]
 
     def blurred(self, accelerations: Array) -> Array:
-        """(N, NQ) as the second differences of a window see them."""
+        """Return accelerations (N, NQ) smoothed like the second differences of a window."""
         return np.column_stack(
             [
                 np.convolve(a, kernel(n), "same")
@@ -82,9 +87,9 @@ class Smoother:
         )
 
     def pushed(self, ambient: NoiseLevels, times: float) -> Array:
-        """(NQ,) variance of accelerations in water that pushes `times` as hard as is tolerated, as the windows see it.
+        """Return the variance (NQ,) of smoothed accelerations under `times` the ambient force.
 
-        Along x and y it is the mean of all headings.
+        Along x and y it is the mean over all headings.
         """
         power = (times * ambient.force / self.track.inertia) ** 2
         level = [j for j, free in enumerate(self.track.program.module.FREE) if free < 2]
@@ -94,35 +99,35 @@ class Smoother:
         )
 
     def noisy(self, noise: Mapping[str, float], rng: np.random.Generator) -> Array:
-        """(N, NQ) noise as the instruments have it [m, rad]."""
+        """Return sampled instrument noise (N, NQ) [m, rad]."""
         sd = np.array([noise[f] for f in of_freedoms(self.track)])
         return sd * rng.standard_normal((len(self.track.times), len(sd)))
 
 
 def step(track: MappedRecording) -> float:
-    """Seconds from row to row."""
+    """Return the sampling interval [s]."""
     return float(np.median(np.diff(track.times)))
 
 
 def of_freedoms(track: MappedRecording) -> list[str]:
-    """Noise family of each recorded position."""
+    """Return the noise family of each recorded position."""
     families = dict(zip(track.codes.tolist(), track.families, strict=True))
     return [families[j] for j in range(track.program.module.NQ)]
 
 
 def kept(n: int, h: float, lasts: float) -> float:
-    """Share of the power of a force that lasts so long [s] which a window of n rows sees."""
+    """Return the share of the power of a coloured force that a window of n rows passes."""
     apart = h * np.abs(np.subtract.outer(np.arange(n), np.arange(n)))
     return float(kernel(n) @ np.exp(-apart / lasts) @ kernel(n))
 
 
 def loud(n: int, h: float) -> float:
-    """Variance of a window's accelerations per variance of the noise [1/s^4]."""
+    """Return the variance of a window's accelerations per variance of the noise [1/s^4]."""
     return float(np.sum(coefficients(n, 2) ** 2)) / h**4
 
 
 def calm(track: MappedRecording, ambient: float, lasts: float, noise: float) -> int:
-    """Rows of the narrowest window in which noise moves accelerations less than the ambient one [m/s^2] does."""
+    """Return the rows of the narrowest window with less noise than ambient acceleration."""
     h, most = step(track), int(WIDEST * len(track.times))
     for n in range(NARROWEST, most, 2):
         if noise**2 * loud(n, h) < LOUDER * ambient**2 * kept(n, h, lasts):
@@ -131,7 +136,7 @@ def calm(track: MappedRecording, ambient: float, lasts: float, noise: float) -> 
 
 
 def positions(track: MappedRecording) -> Array:
-    """(N, NQ) recorded positions, gaps bridged by straight lines."""
+    """Return recorded positions (N, NQ), with gaps interpolated linearly."""
     out = np.zeros((len(track.times), track.program.module.NQ))
     for c, code in enumerate(track.codes):
         if code < out.shape[1]:
@@ -141,7 +146,7 @@ def positions(track: MappedRecording) -> Array:
 
 
 def widest(y: Array, noise: float) -> int:
-    """Rows of the widest window whose errors are no larger than those of noise alone."""
+    """Return the rows of the widest window whose errors do not exceed those of noise alone."""
     best = NARROWEST
     for n in range(NARROWEST, max(int(WIDEST * len(y)), NARROWEST + 1), 2):
         inside = slice(n // 2, len(y) - n // 2)
@@ -155,25 +160,25 @@ def widest(y: Array, noise: float) -> int:
 
 @cache
 def coefficients(n: int, order: int) -> Array:
-    """(n,) of a derivative per row, for a convolution."""
+    """Return the convolution weights (n,) of a derivative per row."""
     return np.asarray(savgol_coeffs(n, ORDER, order))
 
 
 def derived(y: Array, n: int, order: int, h: float) -> Array:
-    """A derivative (N,) of a signal by windows of n rows, h s apart."""
+    """Return a derivative (N,) of a signal by windows of n rows at intervals of h seconds."""
     padded = np.concatenate([np.full(n // 2, y[0]), y, np.full(n // 2, y[-1])])
     return np.asarray(np.convolve(padded, coefficients(n, order), "valid")) / h**order
 
 
 @cache
 def kernel(n: int) -> Array:
-    """(n,) weights with which the second differences of a window of n rows see accelerations; their sum is 1."""
+    """Return the weights (n,) of accelerations in second differences; their sum is 1."""
     twice = np.cumsum(np.cumsum(coefficients(n, 2)))
     return np.append(0.0, twice[:-1])
 
 
 def shown_by(track: MappedRecording, recorded: Array, values: Array, on: Array) -> Array:
-    """Positions (N, NQ) of the boat behind what instruments showed."""
+    """Return positions (N, NQ) of the boat from instrument readings."""
     nq, out = track.program.module.NQ, np.zeros((len(recorded), track.program.module.NZ))
     out[:, :nq] = recorded
     for row in out:
@@ -182,7 +187,7 @@ def shown_by(track: MappedRecording, recorded: Array, values: Array, on: Array) 
 
 
 def held_by(track: MappedRecording, effects: tuple[str, ...], values: Array) -> Array:
-    """(N, HELD) mean actuators around each row."""
+    """Return the mean actuator states (N, HELD) around each row."""
     after = actuator_states(track, effects, values)
     before = np.vstack([after[:1], after[:-1]])
     return np.asarray(0.5 * (before + after))
@@ -191,7 +196,7 @@ def held_by(track: MappedRecording, effects: tuple[str, ...], values: Array) -> 
 def predicted(
     track: MappedRecording, states: Array, held: Array, values: Array, on: Array
 ) -> Array:
-    """(N, NQ) joint accelerations by the laws at states (N, 2 NQ) under actuators (N, HELD)."""
+    """Return joint accelerations (N, NQ) at states (N, 2 NQ) and actuators (N, HELD)."""
     code = track.program.module
     k, nothing, nq = np.zeros(code.K), np.zeros(code.NQ), code.NQ
     code.constants(body_of(values), values, on, k)

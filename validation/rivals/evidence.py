@@ -1,4 +1,4 @@
-"""What one hypothesis gains over another by BIC, plain or with the colour of the errors counted in."""
+"""Comparison of hypotheses by BIC, plain or with correlated errors taken into account."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -7,34 +7,39 @@ import numpy as np
 
 from boatsim.physics.base import Array
 
-DIES_OUT = 0.05  # correlation of errors, from which on they count as independent
+DIES_OUT = 0.05  # errors with a smaller correlation count as independent
 
 
 @dataclass(frozen=True)
 class Judge:
-    """How hypotheses are compared.
+    """Comparison of hypotheses.
 
-    `plain`: as in a textbook, every value an independent one, one hypothesis as likely as another however many were
-    tried. Otherwise errors that are alike from row to row count as so many fewer values, and what was tried is paid
-    for (extended BIC: J. Chen, Z. Chen, Biometrika 95, 2008).
+    With `plain`, the textbook BIC: all values are independent, and all hypotheses are equally
+    likely. Otherwise correlated errors reduce the effective number of values, and the number of
+    tested effects is penalised (extended BIC: J. Chen, Z. Chen, Biometrika 95, 2008).
     """
 
     plain: bool
-    tried: int  # entries
+    tried: int  # number of candidates tested
 
     def alike(self, stretches: Sequence[Array]) -> Array:
-        """(C,) rows that together tell as much as one, of errors (M, C) over stretches of time, nan where missing."""
+        """Return the rows (C,) per independent value, for errors (M, C) with gaps as nan."""
         channels = stretches[0].shape[1]
-        return (
-            np.ones(channels)
-            if self.plain
-            else np.array([_alike(stretches, c) for c in range(channels)])
-        )
+        if self.plain:
+            return np.ones(channels)
+        return np.array([_alike(stretches, c) for c in range(channels)])
 
     def gain(
         self, before: Sequence[Array], after: Sequence[Array], more: int, entries: int = 1
     ) -> float:
-        """Half of what BIC falls by [nats], errors over stretches of time, `more` parameters of so many entries."""
+        """Return half of the decrease of BIC [nats].
+
+        Args:
+            before: errors (M, C) of the first hypothesis by stretch of time.
+            after: errors of the second hypothesis.
+            more: additional parameters.
+            entries: additional effects.
+        """
         one, two, counts = squares(before), squares(after), rows(after)
         independent = counts / self.alike(after)
         fit = 0.5 * float(np.sum(independent * np.log(one / two)))
@@ -43,22 +48,22 @@ class Judge:
 
 
 def squares(stretches: Sequence[Array]) -> Array:
-    """(C,) sum of squares."""
+    """Return the sum of squares (C,)."""
     return np.asarray(np.sum([np.nansum(e**2, axis=0) for e in stretches], axis=0)) + 1e-30
 
 
 def rows(stretches: Sequence[Array]) -> Array:
-    """(C,) how many there are."""
+    """Return the number of values (C,)."""
     return np.asarray(np.sum([np.isfinite(e).sum(axis=0) for e in stretches], axis=0), dtype=float)
 
 
 def sizes(stretches: Sequence[Array]) -> Array:
-    """(C,) rms."""
+    """Return the rms (C,)."""
     return np.sqrt(squares(stretches) / np.maximum(rows(stretches), 1.0))
 
 
 def _alike(stretches: Sequence[Array], channel: int) -> float:
-    """One and twice the sum of the correlations, up to the first that is next to nothing."""
+    """Return one plus twice the sum of the correlations, up to the first negligible one."""
     errors = [np.nan_to_num(e[:, channel]) for e in stretches]
     whole, total = sum(float(e @ e) for e in errors), 1.0
     for lag in range(1, max(len(e) for e in errors) // 2):

@@ -1,4 +1,4 @@
-"""What a trial asks of a rival: two recordings on the same compiled program, the same library; and how it answers."""
+"""One trial as a textbook method sees it: recordings, program and candidates; and its answer."""
 
 import contextlib
 import io
@@ -25,35 +25,35 @@ from boatsim.physics.program import Program
 from boatsim.physics.vessel import Vessel
 from validation.entry import horizon_of, vessel_of
 
-LEAST_SD = 1e-9  # of a parameter that a fit takes for exactly known
+LEAST_SD = 1e-9  # smallest reported sd of a parameter
 
 
 @dataclass(frozen=True)
 class Question:
-    """Recordings to explain, and what may be named."""
+    """Recordings of a trial and the candidates that may be named."""
 
     vessel: Vessel
     problem: Problem
-    entries: dict[
-        str, Effect
-    ]  # of the library, those that are tried on this vessel and have a course to be fitted
-    noise: dict[str, float]  # by family, as found in the recordings [m, rad]
-    # what hypotheses fit, once asked
+    entries: dict[str, Effect]  # candidates of this vessel that are not stochastic
+    noise: dict[str, float]  # by family, estimated from the recordings [m, rad]
+    # free parameters of hypotheses, cached
     known: dict[tuple[str, ...], tuple[FreeParameter, ...]] = field(default_factory=dict)
 
     def start(self) -> Array:
-        """The vessel's own coefficients as written."""
+        """Return the nominal coefficients."""
         return np.array([f.mean for f in self.problem.parameters(())])
 
 
-def asked(trial: Path) -> Question:
-    """The question of one trial: rows, noise and library as the diagnosis has them, random forces left out."""
+def read_question(trial: Path) -> Question:
+    """Return the question of one trial.
+
+    Rows, noise and candidates are those of the diagnosis, without stochastic forces.
+    """
     opened = [open_recording(trial / f"run_{i}.csv", vessel_of(trial), ()) for i in (1, 2)]
     vessel = opened[0][1]
-    runs = [
-        drop_position_outliers(drop_repeated_positions(r.thinned(priors.rate(b))), b)
-        for r, b in opened
-    ]
+    runs = []
+    for r, b in opened:
+        runs.append(drop_position_outliers(drop_repeated_positions(r.thinned(priors.rate(b))), b))
     columns = sorted({c for r in runs for c in r.signals})
     library = library_for(vessel, (), runs[0].notes.facts, columns)
     program = Program(vessel, library.compiled)
@@ -61,23 +61,24 @@ def asked(trial: Path) -> Question:
     tracks = [map_recording(r, program, stated) for r in runs]
     uncertainty = priors.uncertainty(vessel) | runs[0].notes.coefficient_uncertainty
     problem = Problem(tracks, prior_levels(vessel, runs), uncertainty)
-    entries = {
-        e.name: e for e in library.entries if e.name in library.tested and not type(e).random
-    }
+    entries = {}
+    for e in library.entries:
+        if e.name in library.tested and not type(e).random:
+            entries[e.name] = e
     families = {f for t in tracks for f in t.families}
     noise = {f: priors.sensed_noise(vessel, runs, f) or stated[f] for f in families}
     return Question(vessel, problem, entries, noise)
 
 
 def free_of(question: Question, effects: tuple[str, ...]) -> tuple[FreeParameter, ...]:
-    """What a hypothesis may fit: the vessel's own coefficients, then the parameters of its entries."""
+    """Return the free parameters: the nominal coefficients, then those of the effects."""
     if effects not in question.known:
         question.known[effects] = question.problem.parameters(effects)
     return question.known[effects]
 
 
 def fit_of(question: Question, effects: tuple[str, ...], theta: Array, covariance: Array) -> Fit:
-    """A rival's fit as the diagnosis writes one, for the patched vessel."""
+    """Return the fit in the form of the diagnosis, for the patched vessel."""
     problem = question.problem
     return Fit(effects, free_of(question, effects), theta, covariance, problem.ambient, 0.0)
 
@@ -105,7 +106,7 @@ def answer(
 
 
 def parameters(question: Question, found: Fit, entry: str) -> dict[str, dict[str, Any]]:
-    """Value, sd and unit of an entry's parameters, by the names that answers use."""
+    """Return value, sd and unit of an effect's parameters by their names in answers."""
     kind = type(question.entries[entry])
     stated = {}
     for f in found.free:

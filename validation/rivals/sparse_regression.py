@@ -1,9 +1,10 @@
-"""Sparse regression of accelerations: all entries at once, the least needed taken out one by one while BIC falls.
+"""Sparse regression of accelerations: all effects at once, the least needed removed one by one.
 
-Positions are smoothed and differentiated twice; what the vessel's laws do not explain is regressed on what each entry
-changes (Brunton, Proctor, Kutz 2016), thresholded one entry at a time (Boninsegna, Nueske, Clementi 2018). Entries that
-are not linear in their parameters are first fitted alone, and stand in the regression with that shape and what it
-changes by near it. Random forces have no course to be regressed on, and a clock that is off no column: left out.
+Positions are smoothed and differentiated twice. The accelerations that the vessel's laws do not
+explain are regressed on the change that each effect causes (Brunton, Proctor, Kutz 2016),
+thresholded one effect at a time (Boninsegna, Nueske, Clementi 2018); BIC selects the set. Effects
+that are not linear in their parameters are first fitted alone and enter the regression with that
+shape and its derivatives. Stochastic forces and clock offsets have no column and are excluded.
 """
 
 from collections.abc import Sequence
@@ -21,43 +22,42 @@ from validation.rivals.evidence import Judge, sizes
 from validation.rivals.linear import descended, solved
 from validation.rivals.question import Question, fit_of, free_of
 
-STEP = 1e-3  # prior sds by which a parameter is moved for derivatives
-RIDGE = 1e-8  # of a column's square
+STEP = 1e-3  # step of finite differences, in prior sds
+RIDGE = 1e-8  # relative to a column's square
 ROUNDS = 3  # Gauss-Newton steps
-MOST = 4  # effects
-SURE = 1e-3  # of the chance that what is left over is no more than twice the ambient force
-TOLERATED = 2.0  # times that force
-DRAWS, SEED = 5, 1  # of the noise
+MOST = 4  # largest number of effects
+SURE = 1e-3  # p-value below which the residual exceeds the tolerated ambient force
+TOLERATED = 2.0  # tolerated multiple of the ambient force
+DRAWS, SEED = 5, 1  # samples of the noise and their seed
 
 
 @dataclass(frozen=True)
 class State:
-    """A hypothesis where its fit has come to."""
+    """A hypothesis and its present fit."""
 
     effects: tuple[str, ...]
     theta: Array  # (F,)
-    errors: tuple[Array, ...]  # (M, NQ) recorded less predicted accelerations of each run
-    square: float  # weighted, with the stated spread of the vessel's own coefficients
+    errors: tuple[Array, ...]  # (M, NQ) recorded minus predicted accelerations of each run
+    square: float  # weighted sum of squares, including the prior of the nominal coefficients
 
 
 @dataclass(frozen=True)
 class Group:
-    """What an entry can change about the nominal's errors."""
+    """Influence of one effect on the errors of the nominal model."""
 
-    columns: Array  # (R, K) its shape as fitted alone, and how that changes by its parameters
+    columns: Array  # (R, K) change by the effect as fitted alone, and its derivatives
     alone: State
 
 
 class SparseRegression:
-    """One question put to sparse regression."""
+    """Sparse-regression answer to one trial."""
 
     def __init__(self, question: Question, plain: bool) -> None:
         self.question, self.problem = question, question.problem
-        late = [
-            n
-            for n, e in question.entries.items()
-            if isinstance(e, Measurement) and type(e).late is not None
-        ]
+        late = []
+        for n, e in question.entries.items():
+            if isinstance(e, Measurement) and type(e).late is not None:
+                late.append(n)
         self.entries = {n: e for n, e in question.entries.items() if n not in late}
         self.judge = Judge(plain, len(self.entries))
         self.smoothers = [
@@ -68,41 +68,36 @@ class SparseRegression:
         self.held = [held_by(t, (), t.values) for t in self.problem.recordings]
 
     def answer(self) -> tuple[Fit, dict[str, float], bool]:
-        """The effects found, what each gains [nats], whether the cause is unknown."""
+        """Return the fit, the evidence gain of each effect [nats], and the unknown flag."""
         nominal = self.nominal()
         known = self.slopes(nominal)
         groups = {n: g for n in self.entries if (g := self.group(nominal, n, known)) is not None}
-        sets = [
-            self.refitted(nominal, groups, names)
-            for names in self.thresholded(nominal, groups, known)
-        ]
+        sets = []
+        for names in self.thresholded(nominal, groups, known):
+            sets.append(self.refitted(nominal, groups, names))
         best = max([nominal, *sets], key=lambda s: self.gain(nominal, s))
         best = self.pruned(nominal, best)
-        gains = {
-            n: self.gain(nominal, best) - self.gain(nominal, self.without(best, n))
-            for n in best.effects
-        }
+        gains = {}
+        for n in best.effects:
+            gains[n] = self.gain(nominal, best) - self.gain(nominal, self.without(best, n))
         fit = fit_of(self.question, best.effects, best.theta, self.covariance(best))
         return fit, gains, self.beyond_the_water(best)
 
     # ---- one fit
 
     def at(self, effects: tuple[str, ...], theta: Array) -> State:
-        """A hypothesis evaluated along the recordings."""
-        free, on, errors = (
-            free_of(self.question, effects),
-            self.problem.program.switches(effects),
-            list[Array](),
-        )
+        """Evaluate a hypothesis along the recordings."""
+        free = free_of(self.question, effects)
+        on = self.problem.program.switches(effects)
+        errors = list[Array]()
         kinds = [self.entries[n] for n in effects]
         for smoother, recorded, held in zip(self.smoothers, self.recorded, self.held, strict=True):
             track = smoother.track
             values = self.problem.values(track, free, theta)
-            true = (
-                shown_by(track, recorded, values, on)
-                if any(isinstance(e, Measurement) for e in kinds)
-                else recorded
-            )
+            if any(isinstance(e, Measurement) for e in kinds):
+                true = shown_by(track, recorded, values, on)
+            else:
+                true = recorded
             states, accelerations = smoother.motion(true)
             if held.any() and any(not isinstance(e, Measurement | Force) for e in kinds):
                 held = held_by(track, effects, values)
@@ -116,13 +111,13 @@ class SparseRegression:
         return State(effects, theta, tuple(errors), square if np.isfinite(square) else np.inf)
 
     def row(self, state: State) -> Array:
-        """(R,) weighted errors of both runs, then those of the vessel's own coefficients by what is stated."""
+        """Return weighted errors (R,) of both runs, then those of the prior of the coefficients."""
         free = free_of(self.question, state.effects)
         prior = [(x - f.mean) / f.sd for f, x in zip(free, state.theta, strict=True) if f.relative]
         return np.concatenate([*((e * self.weights).ravel() for e in state.errors), prior])
 
     def slopes(self, state: State, only: str = "") -> Array:
-        """(R, F) derivatives of that row by the parameters, or by those of one entry."""
+        """Return derivatives (R, F) of `row` by the parameters, or by those of one effect."""
         here, columns = self.row(state), []
         for j, f in enumerate(free_of(self.question, state.effects)):
             if only and (f.relative or f.effect != only):
@@ -132,12 +127,17 @@ class SparseRegression:
             moved[j] += h
             column = (self.row(self.at(state.effects, moved)) - here) / h
             columns.append(np.where(np.isfinite(column), column, 0.0))
-        return np.column_stack(columns) if columns else np.zeros((len(here), 0))
+        if columns:
+            return np.column_stack(columns)
+        return np.zeros((len(here), 0))
 
     def fitted(self, state: State, rounds: int = ROUNDS, known: Array | None = None) -> State:
-        """Gauss-Newton steps, each shortened until it is one for the better.
+        """Take Gauss-Newton steps, each shortened until it improves.
 
-        `known`: derivatives by the vessel's own coefficients, held.
+        Args:
+            state: the start.
+            rounds: largest number of steps.
+            known: held derivatives by the nominal coefficients.
         """
         free = free_of(self.question, state.effects)
         low, high = [f.low for f in free], [f.high for f in free]
@@ -145,11 +145,10 @@ class SparseRegression:
         def stepped(s: State) -> State | None:
             if not np.isfinite(s.square):
                 return None
-            J = (
-                self.slopes(s)
-                if known is None
-                else np.hstack([known, self.slopes(s, s.effects[-1])])
-            )
+            if known is None:
+                J = self.slopes(s)
+            else:
+                J = np.hstack([known, self.slopes(s, s.effects[-1])])
             move = solved(J, self.row(s), low, high, s.theta)
             nearer = (
                 np.clip(s.theta + share * move, low, high) for share in (1.0, 0.5, 0.25, 0.125)
@@ -160,7 +159,7 @@ class SparseRegression:
         return descended(state, stepped, rounds)
 
     def nominal(self) -> State:
-        """The vessel recalibrated, each axis weighed by the rms of its errors, those alike counted as fewer."""
+        """Return the recalibrated vessel, axes weighted by rms and correlation of their errors."""
         state = self.at((), self.question.start())
         for _ in range(2):
             self.weights = 1.0 / (sizes(state.errors) * np.sqrt(self.judge.alike(state.errors)))
@@ -168,22 +167,20 @@ class SparseRegression:
         return state
 
     def covariance(self, state: State) -> Array:
-        """(F, F) of a fit; what nothing is known of keeps about its prior spread."""
+        """Return the covariance (F, F) of a fit; undetermined values keep their prior spread."""
         sd = np.array([f.sd for f in free_of(self.question, state.effects)])
         J = self.slopes(state) * sd
         return np.asarray(np.linalg.inv(J.T @ J + 1e-6 * np.eye(len(sd))) * np.outer(sd, sd))
 
     def gain(self, before: State, after: State) -> float:
-        """What a set gains over another [nats]."""
-        more, entries = (
-            len(after.theta) - len(before.theta),
-            len(after.effects) - len(before.effects),
-        )
+        """Return the evidence gain of a set over another [nats]."""
+        more = len(after.theta) - len(before.theta)
+        entries = len(after.effects) - len(before.effects)
         prior = self.prior(before) - self.prior(after)
         return self.judge.gain(before.errors, after.errors, more, entries) + 0.5 * prior
 
     def prior(self, state: State) -> float:
-        """How far the vessel's own coefficients are from what is stated, squares of sds."""
+        """Return the sum of squared deviations of the nominal coefficients in specified sds."""
         free = free_of(self.question, state.effects)
         return sum(
             ((x - f.mean) / f.sd) ** 2 for f, x in zip(free, state.theta, strict=True) if f.relative
@@ -192,7 +189,7 @@ class SparseRegression:
     # ---- the sparse regression
 
     def group(self, nominal: State, entry: str, known: Array) -> Group | None:
-        """An entry fitted alone, and its columns; None if it runs away or changes nothing."""
+        """Fit an effect alone and return its columns; None if it diverges or changes nothing."""
         base = fit_of(self.question, (), nominal.theta, np.zeros((0, 0)))
         begun = [
             hand_over(add_effect(self.problem, base, entry, s), self.entries[entry])
@@ -210,10 +207,12 @@ class SparseRegression:
             nominal
         )
         columns = np.column_stack([shape, slopes])
-        return Group(columns, alone) if np.isfinite(columns).all() and shape.any() else None
+        if np.isfinite(columns).all() and shape.any():
+            return Group(columns, alone)
+        return None
 
     def placed(self, effects: tuple[str, ...], states: Sequence[State]) -> Array:
-        """(F,) parameters of a set, as later ones of some states have them where several do."""
+        """Return parameters (F,) of a set, taken from the last state that has each."""
         known = {
             (f.effect, f.name, f.relative): x
             for s in states
@@ -226,7 +225,7 @@ class SparseRegression:
     def thresholded(
         self, nominal: State, groups: dict[str, Group], own: Array
     ) -> list[tuple[str, ...]]:
-        """The sets that are left when the entry which is needed least is taken out again and again."""
+        """Return the sets left while the least needed effect is removed repeatedly."""
         names = list(groups)
         blocks = [own, *(g.columns for g in groups.values())]
         A = np.column_stack(blocks)
@@ -250,17 +249,17 @@ class SparseRegression:
         return found
 
     def refitted(self, nominal: State, groups: dict[str, Group], names: tuple[str, ...]) -> State:
-        """A set fitted by its own laws, from the fits of its entries alone."""
+        """Fit a set by its own laws, starting from the fits of its effects alone."""
         alone = [groups[n].alone for n in names]
         return self.fitted(self.at(names, self.placed(names, [*alone, nominal])))
 
     def without(self, state: State, name: str) -> State:
-        """A set without one of its entries, fitted again."""
+        """Return the refitted set without one of its effects."""
         left = tuple(n for n in state.effects if n != name)
         return self.fitted(self.at(left, self.placed(left, [state])))
 
     def pruned(self, nominal: State, best: State) -> State:
-        """Without entries that BIC is better off without."""
+        """Return the set without effects whose removal lowers BIC."""
         while best.effects:
             fewer = max(
                 (self.without(best, n) for n in best.effects), key=lambda s: self.gain(nominal, s)
@@ -271,7 +270,7 @@ class SparseRegression:
         return best
 
     def beyond_the_water(self, best: State) -> bool:
-        """Whether what is left over is surely more than noise and twice the ambient force: a chi-square test."""
+        """Test whether the residual exceeds noise plus the tolerated ambient force (chi-square)."""
         pushed = np.mean(
             [s.pushed(self.problem.ambient, TOLERATED) for s in self.smoothers], axis=0
         )
@@ -280,7 +279,10 @@ class SparseRegression:
         return bool(chi2.sf(square, sum(float(np.sum(len(e) / alike)) for e in best.errors)) < SURE)
 
     def by_noise(self, best: State) -> Array:
-        """(NQ,) variance of the errors by noise alone, carried through smoothing and laws: as much again is put in."""
+        """Return the variance (NQ,) of the errors by noise alone.
+
+        Noise of the same size is added to the recordings and carried through smoothing and laws.
+        """
         rng, recorded, found = np.random.default_rng(SEED), self.recorded, list[Array]()
         for _ in range(DRAWS):
             self.recorded = [

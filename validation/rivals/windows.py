@@ -1,7 +1,8 @@
-"""Trajectories of a recording simulated in windows, each from a start of its own that is fitted too.
+"""Trajectories of a recording simulated in windows, each with a fitted start.
 
-Over a whole run of 40 s the water's unsteady push alone carries a model decimetres away, more than any effect does. In
-windows as long as the free runs by which patched boats are judged it does not: multiple shooting without ties.
+Over a run of 40 s the ambient force alone moves the model by decimetres, more than any effect does.
+In windows as long as the free runs that evaluate patched boats it does not. This is multiple
+shooting without continuity constraints.
 """
 
 from collections.abc import Sequence
@@ -13,8 +14,8 @@ from boatsim.diagnosis.filter import MappedRecording, body_of, segments
 from boatsim.physics.base import Array
 from boatsim.physics.kernel.records import Inputs, Model
 
-FIRST = 1.0  # [s] from which a window's start is guessed
-STEP = 1e-4  # [m, rad and per s] by which starts are moved for derivatives
+FIRST = 1.0  # [s] duration from which a window's start is estimated
+STEP = 1e-4  # [m, rad and per s] step of finite differences of starts
 
 
 @dataclass(frozen=True)
@@ -22,17 +23,17 @@ class Windows:
     """One recording cut into windows."""
 
     track: MappedRecording
-    begins: Array  # (W,) rows, integers
+    begins: Array  # (W,) row numbers
     ends: Array
 
     @classmethod
     def of(cls, track: MappedRecording, horizon: float) -> "Windows":
-        """Windows of `horizon` s from the first row on."""
+        """Cut a recording into windows of `horizon` seconds."""
         begins, ends = segments(track.times, horizon)
         return cls(track, np.array(begins), np.array(ends))
 
     def guess(self) -> Array:
-        """(W, 2 NQ) positions and earth-axes rates by straight lines through the first second of each window."""
+        """Fit positions and earth-axes rates (W, 2 NQ) linearly to each window's first second."""
         t, nq = self.track.times, self.track.program.module.NQ
         out = np.zeros((len(self.begins), 2 * nq))
         for w, begin in enumerate(self.begins):
@@ -46,7 +47,7 @@ class Windows:
         return out
 
     def errors(self, values: Array, on: Array, starts: Array) -> list[Array]:
-        """Recorded less simulated, (M, C) for each window, nan where nothing was recorded."""
+        """Return recorded minus simulated, (M, C) for each window, nan for missing values."""
         track, program = self.track, self.track.program
         out = np.full((len(starts), len(track.times), starts.shape[1]), np.nan)
         program.module.free_runs(
@@ -64,13 +65,13 @@ class Windows:
     def by_starts(
         self, values: Array, on: Array, starts: Array, errors: Sequence[Array]
     ) -> list[Array]:
-        """Derivatives (M, C, 2 NQ) of the errors of each window by its start."""
+        """Return derivatives (M, C, 2 NQ) of the errors of each window by its start."""
         slopes = [np.zeros((*e.shape, starts.shape[1])) for e in errors]
         for j in range(starts.shape[1]):
-            beside = starts.copy()
-            beside[:, j] += STEP
+            shifted = starts.copy()
+            shifted[:, j] += STEP
             for slope, there, here in zip(
-                slopes, self.errors(values, on, beside), errors, strict=True
+                slopes, self.errors(values, on, shifted), errors, strict=True
             ):
                 slope[:, :, j] = (there - here) / STEP
         return slopes

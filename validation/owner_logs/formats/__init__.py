@@ -1,1 +1,1 @@
-"""The seven kinds of files that loggers write."""
+"""The seven file formats of loggers."""

@@ -1,4 +1,4 @@
-"""ArduPilot's dataflash log of a rover frame of a boat, byte by byte."""
+"""ArduPilot dataflash log of a boat, written byte by byte."""
 
 import struct
 from pathlib import Path
@@ -78,16 +78,17 @@ def _head(outputs: list[str], us: int) -> list[bytes]:
 
 
 def write(seen: Seen, boat: Boat, folder: Path, stem: str) -> Written:
-    """ATT at 10 Hz, IMU at 25, GPS and RCOU at theirs."""
+    """Write ATT at 10 Hz, IMU at 25 Hz, GPS and RCOU at their own rates."""
     outputs = [n for n in ("helm", "motor", "port", "starboard") if n in seen.orders.values]
     us = round(earth.BOOT * 1e6)
     out = [*_head(outputs, us), _packed("GPS", us - 400_000, 0, 1, 0, 0, 0, 0.0, 0.0)]
     lat, lon = earth.geodetic(seen.fixes.values["north"], seen.fixes.values["east"])
     yaw = earth.compass(seen.compass.values["psi"])
-    pulses = {
-        n: np.round(1500.0 + 400.0 * v / (boat.helm_most if n == "helm" else 1.0)).astype(int)
-        for n, v in seen.orders.values.items()
-    }
+    pulses = {}
+    for n, v in seen.orders.values.items():
+        pulses[n] = np.round(1500.0 + 400.0 * v / (boat.helm_most if n == "helm" else 1.0)).astype(
+            int
+        )
     for t, kind, i in earth.merged(seen.compass.t, seen.gyro.t, seen.fixes.t, seen.orders.t):
         at = us + round(t * 1e6) + (0, 1300, 2100, 400)[kind]
         if kind == 0:

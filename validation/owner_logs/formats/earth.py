@@ -1,4 +1,4 @@
-"""Places on the ellipsoid, times and attitudes as formats have them."""
+"""Positions on the ellipsoid, times and attitudes in the conventions of log formats."""
 
 from math import atan2, cos, degrees, hypot, radians, sin, sqrt
 
@@ -13,7 +13,10 @@ BOOT = 63.4  # [s] since the autopilot started
 
 
 def geodetic(north: Array, east: Array) -> tuple[Array, Array]:
-    """Latitudes, longitudes [deg] of places on the tangent plane at ORIGIN, by earth-centred coordinates."""
+    """Return latitudes and longitudes [deg] of points on the tangent plane at ORIGIN.
+
+    The conversion goes through earth-centred coordinates.
+    """
     lat0, lon0 = (radians(a) for a in ORIGIN)
     e2 = F * (2.0 - F)
     n0 = A / sqrt(1.0 - e2 * sin(lat0) ** 2)
@@ -33,20 +36,20 @@ def geodetic(north: Array, east: Array) -> tuple[Array, Array]:
 
 
 def quaternion(yaw: float) -> tuple[float, float, float, float]:
-    """w, x, y, z of a turn about the vertical."""
+    """Return w, x, y, z of a rotation about the vertical."""
     return cos(yaw / 2), 0.0, 0.0, sin(yaw / 2)
 
 
 def compass(psi: Array) -> Array:
-    """Heading in degrees from 0 to 360."""
+    """Return the heading in degrees from 0 to 360."""
     return np.degrees(psi) % 360.0
 
 
 def held(t: Array, values: Array, at: Array) -> Array:
-    """The last value of each time."""
+    """Return the last value before each time."""
     return values[np.clip(np.searchsorted(t, at + 1e-9, side="right") - 1, 0, len(t) - 1)]
 
 
 def merged(*times: Array) -> list[tuple[float, int, int]]:
-    """(time, stream, row) of several streams in the order of time."""
+    """Return (time, stream, row) of several streams in order of time."""
     return sorted((float(t), k, i) for k, stream in enumerate(times) for i, t in enumerate(stream))

@@ -1,4 +1,4 @@
-"""What a logger has to write, and what an owner knows of what it wrote."""
+"""Interface of the log writers, and the owner's knowledge of the signals."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -10,7 +10,7 @@ from validation.owner_logs.instruments import Seen
 
 @dataclass(frozen=True)
 class Scale:
-    """A signal of an order: its values full astern (or helm to port), at rest, full ahead (to starboard)."""
+    """Signal of an order: values at full astern (helm to port), rest, full ahead (starboard)."""
 
     signal: str
     low: float
@@ -20,10 +20,10 @@ class Scale:
 
 @dataclass(frozen=True)
 class Written:
-    """A log, and of each order (`port`, `helm`, ...) the signal."""
+    """A log and the signal of each order (`port`, `helm`, ...)."""
 
     path: Path
     orders: dict[str, Scale] = field(default_factory=dict)
 
 
-Writer = Callable[[Seen, Boat, Path, str], Written]  # of a stem and a folder
+Writer = Callable[[Seen, Boat, Path, str], Written]  # the last two arguments are stem and folder

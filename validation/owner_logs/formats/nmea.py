@@ -1,4 +1,4 @@
-"""NMEA 0183 as a boat's network has it: RMC, VTG, HDT, ROT, RPM of each engine, RSA."""
+"""NMEA 0183 of a boat's network: RMC, VTG, HDT, ROT, RPM of each engine, RSA."""
 
 from datetime import UTC, datetime
 from pathlib import Path
@@ -24,7 +24,7 @@ def _angle(value: float, digits: int, ends: str) -> str:
 
 
 def write(seen: Seen, boat: Boat, folder: Path, stem: str) -> Written:
-    """A burst of sentences with each fix."""
+    """Write a burst of sentences with each fix."""
     out, t = [], seen.fixes.t
     lat, lon = earth.geodetic(seen.fixes.values["north"], seen.fixes.values["east"])
     psi = earth.compass(np.interp(t, seen.compass.t, seen.compass.values["psi"]))
@@ -50,10 +50,9 @@ def write(seen: Seen, boat: Boat, folder: Path, stem: str) -> Written:
             out.append(_sentence(f"IIRSA,{np.degrees(orders['helm'][i]):.1f},A,,V"))
     path = folder / f"{stem}.nmea"
     path.write_text("".join(out), encoding="ascii", newline="")
-    scales = {
-        n: Scale(f"RPM[{k}].shaft", -boat.top_rpm, 0.0, boat.top_rpm)
-        for k, n in enumerate(engines, 1)
-    }
+    scales = {}
+    for k, n in enumerate(engines, 1):
+        scales[n] = Scale(f"RPM[{k}].shaft", -boat.top_rpm, 0.0, boat.top_rpm)
     most = float(np.degrees(boat.helm_most))
     return Written(
         path,

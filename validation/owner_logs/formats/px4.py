@@ -1,4 +1,4 @@
-"""PX4's ULog of a boat, byte by byte."""
+"""PX4 ULog of a boat, written byte by byte."""
 
 import struct
 from pathlib import Path
@@ -29,7 +29,7 @@ def _message(kind: str, body: bytes) -> bytes:
 
 
 def write(seen: Seen, boat: Boat, folder: Path, stem: str) -> Written:
-    """Attitude as quaternions, local position north and east, outputs as pulses."""
+    """Write attitude as quaternions, local position north and east, outputs as pulses."""
     us = round(earth.BOOT * 1e6)
     out = [b"\x55\x4c\x6f\x67\x01\x12\x35\x01" + struct.pack("<Q", us), _message("B", bytes(40))]
     out += [_message("F", f"{name}:{fields}".encode()) for name, (fields, _) in TOPICS.items()]

@@ -1,4 +1,7 @@
-"""ROS: the messages of a boat's nodes, in MCAP and in bags of both versions; x east, y north, yaw counterclockwise."""
+"""ROS messages of a boat's nodes, in MCAP and in bags of both versions.
+
+Axes: x east, y north, yaw counterclockwise.
+"""
 
 import shutil
 from collections.abc import Iterator
@@ -17,13 +20,13 @@ Message = tuple[str, str, int, Any]  # topic, type, time [ns], message
 
 
 class Nodes:
-    """Builds messages of one set of types."""
+    """Builder of messages of one set of types."""
 
     def __init__(self, store: Any) -> None:
         self.types = store.types
 
     def make(self, kind: str, **fields: object) -> Any:
-        """A message of a type."""
+        """Return a message of a type."""
         package, name = kind.split("/")
         return self.types[f"{package}/msg/{name}"](**fields)
 
@@ -45,7 +48,10 @@ class Nodes:
 
 
 def messages(seen: Seen, boat: Boat, store: Any, local: bool, ned: bool) -> Iterator[Message]:
-    """All of a voyage; `local`: poses on a map and not satellite fixes; `ned`: those that do not keep to ROS's axes."""
+    """Return all messages of a voyage.
+
+    With `local`, poses on a map replace satellite fixes; with `ned`, the axes are not those of ROS.
+    """
     nodes, psi, fixes = Nodes(store), seen.compass.values["psi"], seen.fixes.values
     lat, lon = earth.geodetic(fixes["north"], fixes["east"])
     shown = np.interp(seen.fixes.t, seen.compass.t, psi)
@@ -108,14 +114,18 @@ def messages(seen: Seen, boat: Boat, store: Any, local: bool, ned: bool) -> Iter
 
 
 def topic(name: str, boat: Boat) -> str:
-    """Of an order."""
+    """Return the topic of an order."""
     if name == "helm":
-        return "/rudder/cmd" if boat.plant.rudder else "/steering/cmd"
-    return "/thruster/cmd" if name == "motor" else f"/thrusters/{name}/cmd"
+        if boat.plant.rudder:
+            return "/rudder/cmd"
+        return "/steering/cmd"
+    if name == "motor":
+        return "/thruster/cmd"
+    return f"/thrusters/{name}/cmd"
 
 
 def scales(seen: Seen, boat: Boat) -> dict[str, Scale]:
-    """Throttles from -1 to 1, the helm in rad."""
+    """Return the scales: throttles from -1 to 1, the helm in rad."""
     return {
         n: Scale(f"{topic(n, boat)}.data", -boat.helm_most, 0.0, boat.helm_most)
         if n == "helm"
@@ -125,7 +135,7 @@ def scales(seen: Seen, boat: Boat) -> dict[str, Scale]:
 
 
 def mcap(seen: Seen, boat: Boat, folder: Path, stem: str, local: bool, ned: bool) -> Written:
-    """ROS 2 messages in MCAP."""
+    """Write ROS 2 messages in MCAP."""
     from mcap.writer import CompressionType, Writer
     from rosbags.typesys import Stores, get_typestore
 
@@ -149,7 +159,7 @@ def mcap(seen: Seen, boat: Boat, folder: Path, stem: str, local: bool, ned: bool
 
 
 def bag1(seen: Seen, boat: Boat, folder: Path, stem: str, local: bool, ned: bool) -> Written:
-    """A bag of ROS 1."""
+    """Write a bag of ROS 1."""
     from rosbags.rosbag1 import Writer
     from rosbags.typesys import Stores, get_typestore
 
@@ -166,7 +176,7 @@ def bag1(seen: Seen, boat: Boat, folder: Path, stem: str, local: bool, ned: bool
 
 
 def bag2(seen: Seen, boat: Boat, folder: Path, stem: str, local: bool, ned: bool) -> Written:
-    """The folder of a bag of ROS 2."""
+    """Write the folder of a bag of ROS 2."""
     from rosbags.rosbag2 import StoragePlugin, Writer
     from rosbags.typesys import Stores, get_typestore
 

@@ -1,4 +1,4 @@
-"""CSV and Parquet: a table that a script wrote, either in our own names and units or as instruments have them."""
+"""CSV and Parquet tables of a script, in boatsim's own names and units or in instrument units."""
 
 from pathlib import Path
 
@@ -14,7 +14,7 @@ Columns = dict[str, Array]
 
 
 def plain(seen: Seen, boat: Boat) -> Columns:
-    """Rows at the rate of the fixes, in the names and units of a recording."""
+    """Return rows at the rate of the fixes, in the names and units of a recording."""
     t = seen.fixes.t
     orders = {n: earth.held(seen.orders.t, v, t) for n, v in seen.orders.values.items()}
     thrusts = {}
@@ -34,7 +34,7 @@ def plain(seen: Seen, boat: Boat) -> Columns:
 
 
 def instrument(seen: Seen, boat: Boat) -> tuple[Columns, dict[str, Scale]]:
-    """Rows at 10 Hz: degrees, per cent, knots, fixes repeated until the next."""
+    """Return rows at 10 Hz: degrees, per cent, knots, each fix held until the next."""
     t = seen.compass.t
     lat, lon = earth.geodetic(seen.fixes.values["north"], seen.fixes.values["east"])
     columns: Columns = {
@@ -84,6 +84,6 @@ def parquet(columns: Columns, path: Path) -> None:
 
 
 def write(columns: Columns, scales: dict[str, Scale], path: Path) -> Written:
-    """By the suffix."""
+    """Write the table in the format of its suffix."""
     (csv if path.suffix == ".csv" else parquet)(columns, path)
     return Written(path, scales)
