@@ -1,10 +1,10 @@
-"""Which of our modules imports which, read from their text; docs/arrows.svg is the picture of it.
+"""Imports between boatsim's modules, read from the source text; docs/arrows.svg shows them.
 
 python -m benchmarks.arrows           draw docs/arrows.svg
-python -m benchmarks.arrows --check   whether it is up to date; exit 1 if it is not
+python -m benchmarks.arrows --check   check whether it is up to date; exit 1 if not
 
-A shelf (effects, kinds, measures, readers: one idea a file, found by name) counts as one module, so that a further file
-on it, which imports what its neighbours do, leaves the picture as it is.
+A folder of plug-ins (effects, kinds, measures, readers: one idea per file, found by name) counts as
+one module, so that a further file in it with the same imports leaves the picture unchanged.
 """
 
 import argparse
@@ -36,7 +36,7 @@ LAYERS = (  # a module may import from its own folder and from those in the line
     "api",
     "cli __main__ __init__",
 )
-ABOUT = {  # what the picture says of each folder
+ABOUT = {  # captions of the folders in the picture
     "physics": "what a boat is",
     "recordings": "what was logged",
     "control": "blocks of controllers",
@@ -72,7 +72,13 @@ OURS = {  # "physics.effects.fan_wind" -> its file; "physics.effects" is the pac
 
 @cache
 def imported(path: Path) -> frozenset[str]:
-    """Full names of all a file imports, inside functions and by `import_module("name")` too. Raises ValueError."""
+    """Return the full names of all imports of a file.
+
+    Imports inside functions and calls of `import_module("name")` are included.
+
+    Raises:
+        ValueError: for a name that is not written in full.
+    """
     names = set[str]()
     for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
         if isinstance(node, ast.Import):
@@ -80,7 +86,8 @@ def imported(path: Path) -> frozenset[str]:
         elif isinstance(node, ast.ImportFrom) and node.level:
             if path.parent != KERNEL:
                 raise ValueError(
-                    f"{path}:{node.lineno}: write the full name, so that it can be seen where it points"
+                    f"{path}:{node.lineno}: write the full name, so that it can be seen "
+                    "where it points"
                 )
             names.add(
                 "boatsim.physics.kernel"
@@ -94,7 +101,10 @@ def imported(path: Path) -> frozenset[str]:
 
 
 def _by_name(node: ast.AST) -> str | None:
-    """What a call imports by its name, "" where only a run would tell; None if it imports nothing so."""
+    """Return the name that a call imports.
+
+    It is "" if the name is only known at run time, and None if the call imports nothing by name.
+    """
     if not isinstance(node, ast.Call) or ast.unparse(node.func).split(".")[-1] not in DYNAMIC:
         return None
     first = node.args[0] if node.args else None
@@ -104,7 +114,10 @@ def _by_name(node: ast.AST) -> str | None:
 
 
 def own(path: Path) -> set[str]:
-    """Our modules among them: boatsim.physics.effects.fan_wind.law is `physics.effects.fan_wind`."""
+    """Return boatsim's modules among the names.
+
+    boatsim.physics.effects.fan_wind.law becomes `physics.effects.fan_wind`.
+    """
     names = [name.split(".")[1:] for name in imported(path) if name.split(".")[0] == "boatsim"]
     parts = [[".".join(name[:n]) for n in range(len(name), 0, -1)] for name in names]
     return {
@@ -114,7 +127,11 @@ def own(path: Path) -> set[str]:
 
 
 def level(name: str) -> int:
-    """Layer of a module, from the left. Raises ValueError."""
+    """Return the layer of a module, counted from the left.
+
+    Raises:
+        ValueError: if no layer contains it.
+    """
     first = name.split(".")[0]
     found = next((i for i, names in enumerate(LAYERS) if first in names.split()), None)
     if found is None:
@@ -125,12 +142,12 @@ def level(name: str) -> int:
 
 
 def on_shelf(name: str) -> str:
-    """A module's name, that of its shelf for one that stands on one."""
+    """Return a module's name, or that of its plug-in folder."""
     return next((shelf for shelf in PACKAGES.values() if name.startswith(f"{shelf}.")), name)
 
 
 def counts() -> Counter[tuple[str, str]]:
-    """Imports from folder to folder (importer, imported)."""
+    """Return the number of imports by (importing, imported) folder."""
     modules = {
         (on_shelf(name), on_shelf(other)) for name, path in OURS.items() for other in own(path)
     }
@@ -139,11 +156,11 @@ def counts() -> Counter[tuple[str, str]]:
 
 
 # The picture
-# --------------------------------------------------------------------------------------------------------
+# -----------------------------------------------------------------------------
 
-WIDE, HIGH, GAP, EDGE = 132, 46, 14, 12  # [px] a box, between two, around all
-LANE, FIRST = 27, 40  # [px] from lane to lane, from the boxes to the first
-TAP, TAPS = 15, 44  # [px] between the lines that leave a box, and where in it they begin
+WIDE, HIGH, GAP, EDGE = 132, 46, 14, 12  # [px] box width and height, gap between boxes, margin
+LANE, FIRST = 27, 40  # [px] distance of lanes, distance of the first from the boxes
+TAP, TAPS = 15, 44  # [px] distance of the lines of a box, offset of the first
 COLOURS = (
     "#3b7dc4",
     "#a06c14",
@@ -168,7 +185,10 @@ STYLE = (
 
 
 def picture(found: Mapping[tuple[str, str], int]) -> str:
-    """The folders from left to right, a lane below for each that is imported, a line down to it from each importer."""
+    """Draw the folders from left to right and one lane below for each imported folder.
+
+    A line connects each importing folder to the lane.
+    """
     folders = [name for names in LAYERS[1:] for name in names.split() if name in ABOUT]
     lanes = [b for b in reversed(folders) if any((a, b) in found for a in folders)]
     width = 2 * EDGE + len(folders) * (WIDE + GAP) - GAP
@@ -191,15 +211,18 @@ def picture(found: Mapping[tuple[str, str], int]) -> str:
     )
 
 
-def _left(i: int) -> int:
-    """Left edge of a box."""
+def _left_edge(i: int) -> int:
+    """Return the left edge of a box."""
     return EDGE + i * (WIDE + GAP)
 
 
 def _box(name: str, i: int) -> Iterator[str]:
-    """A folder, and what it is."""
-    middle = _left(i) + WIDE // 2
-    yield f'<rect x="{_left(i)}" y="{EDGE}" width="{WIDE}" height="{HIGH}" rx="7" fill="{COLOURS[i]}"/>'
+    """Draw a folder and its caption."""
+    middle = _left_edge(i) + WIDE // 2
+    yield (
+        f'<rect x="{_left_edge(i)}" y="{EDGE}" width="{WIDE}" height="{HIGH}" rx="7" '
+        f'fill="{COLOURS[i]}"/>'
+    )
     yield f'<text class="name" x="{middle}" y="{EDGE + 20}">{name}</text>'
     yield f'<text class="about" x="{middle}" y="{EDGE + 37}">{escape(ABOUT[name])}</text>'
 
@@ -211,16 +234,19 @@ def _lane(
     folders: list[str],
     found: Mapping[tuple[str, str], int],
 ) -> Iterator[str]:
-    """The way of all imports of one folder: from each importer down, left, and up to it."""
+    """Draw the imports of one folder: from each importing folder down, left, and up to it."""
     place, bottom = folders.index(lane), EDGE + HIGH
-    y, x, colour = bottom + FIRST + depth * LANE, _left(place) + 20, COLOURS[place]
+    y, x, colour = bottom + FIRST + depth * LANE, _left_edge(place) + 20, COLOURS[place]
     taps = []
     for i, a in enumerate(folders):
         if (a, lane) in found:
-            taps.append((_left(i) + _tap(a, depth, lanes, found), found[a, lane]))
+            taps.append((_left_edge(i) + _tap(a, depth, lanes, found), found[a, lane]))
     far = max(at for at, _ in taps)
     yield f'<path stroke="{colour}" d="M{far} {y}H{x}V{bottom + 7}"/>'
-    yield f'<path style="fill:{colour}" d="M{x - 6} {bottom + 11}L{x} {bottom}L{x + 6} {bottom + 11}z"/>'
+    yield (
+        f'<path style="fill:{colour}" d="M{x - 6} {bottom + 11}L{x} {bottom}L{x + 6} '
+        f'{bottom + 11}z"/>'
+    )
     for at, number in taps:
         yield f'<path stroke="{colour}" d="M{at} {bottom}V{y}"/>'
         yield f'<rect x="{at - 11}" y="{y - 8}" width="22" height="16" rx="8" fill="{colour}"/>'
@@ -228,27 +254,33 @@ def _lane(
 
 
 def _tap(importer: str, depth: int, lanes: list[str], found: Mapping[tuple[str, str], int]) -> int:
-    """Where in a box its line to a lane begins: the deeper the lane, the further right, so that they do not cross."""
+    """Return the offset in a box at which its line to a lane begins.
+
+    Lines to deeper lanes begin further right, so that they do not cross.
+    """
     return TAPS + TAP * sum((importer, lane) in found for lane in lanes[:depth])
 
 
 def _notes(found: Mapping[tuple[str, str], int], height: int) -> Iterator[str]:
-    """What the arrows mean, and those that are not drawn."""
+    """Explain the arrows and list the imports that are not drawn."""
     ground = sum(n for (a, b), n in found.items() if b in LAYERS[0].split() and a in ABOUT)
     text = (
-        "Data go from left to right. An arrow goes from the folder that imports to the one imported, with the number "
-        f"of imports. Not drawn: {ground} of the files that lie in no folder (errors.py, files.py, ...)."
+        "Data go from left to right. An arrow goes from the folder that imports to the "
+        "one imported, with the number "
+        f"of imports. Not drawn: {ground} of the files that lie in no folder (errors.py, "
+        "files.py, ...)."
     )
     yield f'<text class="note" x="{EDGE}" y="{height - 12}">{escape(text)}</text>'
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """0 drawn or up to date, 1 out of date."""
+    """Return 0 if the picture is drawn or up to date, 1 if it is out of date."""
     parser = argparse.ArgumentParser(
-        prog="python -m benchmarks.arrows", description="A picture of our imports."
+        prog="python -m benchmarks.arrows",
+        description="Draw the imports between boatsim's folders.",
     )
     parser.add_argument(
-        "--check", action="store_true", help="only say whether docs/arrows.svg is up to date"
+        "--check", action="store_true", help="only check whether docs/arrows.svg is up to date"
     )
     text = picture(counts())
     if not parser.parse_args(arguments).check:

@@ -1,7 +1,9 @@
-"""Today's norms of every measured scenario, kept so that no change goes unseen.
+"""Stored metrics of every scenario that has any, so that no change is overlooked.
 
-python -m benchmarks.golden                           what has drifted; exit 1 if anything has
-python -m benchmarks.golden --update --reason "..."   store the new values; the reason goes into tests/golden/HISTORY.md
+python -m benchmarks.golden                           list the changes; exit 1 if there are any
+python -m benchmarks.golden --update --reason "..."   store the new values
+
+The reason is written to tests/golden/HISTORY.md.
 """
 
 import argparse
@@ -24,10 +26,10 @@ from boatsim.simulate.run import run
 HOME = Path(__file__).parents[1]
 HISTORY_TITLE = "# History of the pinned metrics"
 NEW = "is new"
-# Loops that run away, as published controllers may, forget how they began: what such a start moves
-# there is kept.
-NUDGE, NUDGES = 1e-12, 6  # SI units off in every freedom; so many ways of it
-REACH = 3.0  # of what the nudges moved, within which another machine's arithmetic may end
+# Unstable loops, which some published controllers have, amplify rounding differences of the start.
+# The resulting change of their metrics is stored.
+NUDGE, NUDGES = 1e-12, 6  # perturbation in SI units in every dof, number of directions
+REACH = 3.0  # tolerance on other machines, relative to the change by the perturbations
 FIELDS = {
     "today": "",
     "at_reported": " at the rate reported",
@@ -40,7 +42,7 @@ Values = dict[
 
 
 def tracked() -> list[str]:
-    """Scenarios that measure something."""
+    """Return the scenarios that have metrics."""
     return [
         name
         for name in names("scenario")
@@ -49,12 +51,12 @@ def tracked() -> list[str]:
 
 
 def measured(name: str) -> dict[str, Metric]:
-    """Norms of a scenario with seed 0."""
+    """Return the metrics of a scenario with seed 0."""
     return requested_metrics(run(scenario.load(name), 0))
 
 
 def nudged(name: str) -> list[dict[str, Metric]]:
-    """The same, started a little beside, each time in another direction."""
+    """Return the metrics with a perturbed start, once for each direction."""
     start = scenario.load(name)
     chance = np.random.default_rng(0)
     off = NUDGE * chance.choice([-1.0, 1.0], (NUDGES, len(start.vessel.dof)))
@@ -74,7 +76,10 @@ def nudged(name: str) -> list[dict[str, Metric]]:
 
 
 def values(found: Mapping[str, Metric], beside: Sequence[Mapping[str, Metric]] = ()) -> Values:
-    """What is kept of each norm, and how far those of starts beside it lie where that is more than the tolerance."""
+    """Return the stored values of each metric.
+
+    They include the range under perturbed starts if it exceeds the tolerance.
+    """
     kept = {}
     for name, n in found.items():
         kept[name] = {
@@ -94,12 +99,12 @@ def values(found: Mapping[str, Metric], beside: Sequence[Mapping[str, Metric]] =
 
 
 def path_of(name: str, home: Path = HOME) -> Path:
-    """File of a scenario's values: that of its folder, which holds one vessel's."""
+    """Return the file of a scenario's values; each holds the scenarios of one vessel."""
     return home / "tests" / "golden" / f"{name.partition('/')[0]}.json"
 
 
 def table(path: Path) -> dict[str, Values]:
-    """The values kept in a file, by scenario; none if there is no such file."""
+    """Return the values in a file by scenario; empty if there is no such file."""
     found: dict[str, Values] = (
         json.loads(path.read_text(encoding="utf-8"))["scenarios"] if path.is_file() else {}
     )
@@ -107,12 +112,12 @@ def table(path: Path) -> dict[str, Values]:
 
 
 def kept(name: str, home: Path = HOME) -> Values:
-    """The values kept of a scenario; none if it is new."""
+    """Return the stored values of a scenario; empty if it is new."""
     return table(path_of(name, home)).get(name, {})
 
 
 def text_of(scenarios: Mapping[str, Values]) -> str:
-    """Content of a vessel's file: a line for each norm, so that a change of one is a change of one line."""
+    """Return the content of a vessel's file, with a line for each metric."""
     parts = []
     for name, values in sorted(scenarios.items()):
         rows = ",\n".join(
@@ -123,14 +128,14 @@ def text_of(scenarios: Mapping[str, Values]) -> str:
 
 
 def drifts(name: str, old: Values, new: Values) -> list[str]:
-    """A line for everything that is not as it was: scenario, norm, old, new and the paper's value."""
+    """Return a line for every change: scenario, metric, old, new and the paper's value."""
     return [
         line for norm in {**old, **new} for line in _drift(name, norm, old.get(norm), new.get(norm))
     ]
 
 
 def update(changed: Mapping[str, tuple[Values, list[str]]], reason: str, home: Path = HOME) -> None:
-    """Write the new values of the scenarios that drifted, and add the reason with every drift to the history."""
+    """Write the new values of the changed scenarios, and add the reason to the history."""
     for path in {path_of(name, home) for name in changed}:
         new = {name: values for name, (values, _) in changed.items() if path_of(name, home) == path}
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -142,7 +147,7 @@ def update(changed: Mapping[str, tuple[Values, list[str]]], reason: str, home: P
 
 
 def with_reason(history: str, reason: str, lines: list[str]) -> str:
-    """Return the history with a new entry above the older ones; new metrics are counted, not listed."""
+    """Return the history with a new entry above the older ones; new metrics are only counted."""
     changes = [line for line in lines if not line.endswith(NEW)]
     entry = [f"- {reason}"]
     for line in changes:
@@ -178,18 +183,19 @@ def _write(path: Path, text: str) -> None:
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """0 nothing drifted or taken over, 1 drifted, 2 wrong use."""
+    """Return 0 if nothing changed or values were stored, 1 if values changed, 2 for wrong use."""
     parser = argparse.ArgumentParser(
-        prog="python -m benchmarks.golden", description="Norms kept of every scenario."
+        prog="python -m benchmarks.golden",
+        description="Check the stored metrics of every scenario.",
     )
-    parser.add_argument("--update", action="store_true", help="take today's values")
+    parser.add_argument("--update", action="store_true", help="store the present values")
     parser.add_argument(
-        "--reason", default="", help="why they changed; goes into tests/golden/HISTORY.md"
+        "--reason", default="", help="reason for the change; written to tests/golden/HISTORY.md"
     )
     given = parser.parse_args(arguments)
     reason = " ".join(given.reason.split())
     if given.update and not reason:
-        print('--update needs --reason "why the norms changed"', file=sys.stderr)
+        print('--update needs --reason "why the metrics changed"', file=sys.stderr)
         return 2
     changed: dict[str, tuple[Values, list[str]]] = {}
     for name in tracked():
@@ -201,7 +207,7 @@ def main(arguments: list[str] | None = None) -> int:
         update(changed, reason)
         print(f"{len(changed)} scenarios written, reason in tests/golden/HISTORY.md")
         return 0
-    print("no norm has drifted" if not changed else f"{len(changed)} scenarios have drifted")
+    print("no metric has changed" if not changed else f"{len(changed)} scenarios have changed")
     return int(bool(changed))
 
 

@@ -1,9 +1,12 @@
-"""The L1 joystick beside a PID autopilot on the same 120 boats, over the eight manoeuvres of the scale boat's thesis.
+"""Comparison of the L1 joystick with a PID autopilot on the same 120 boats and eight manoeuvres.
 
-python -m benchmarks.joystick_monte_carlo [--runs 120] [--jobs N] [--out out/joystick_monte_carlo] [--plot FILE.svg]
+python -m benchmarks.joystick_monte_carlo [--runs 120] [--jobs N] [--out out/joystick_monte_carlo]
+[--plot FILE.svg]
 
-Prints for every manoeuvre what each controller's norms are on 95 % of the boats and which is lower on how many, and
-where L1 does not win. A killed run goes on where it was. The page with all figures is report.html in the folder.
+The manoeuvres are those of the scale boat's thesis. For each, the script prints the 95th percentile
+of every metric for both controllers, and the number of boats on which each is lower. It then lists
+where L1 is not better. An interrupted run resumes. The page with all figures is report.html in the
+folder.
 """
 
 import argparse
@@ -23,16 +26,16 @@ from boatsim.sweeps.keys import Value
 
 SCENARIOS = ["joystick_boat/sway_[1-4]", "joystick_boat/yaw_[1-4]"]
 FIRST, SECOND = "pid_autopilot", "l1_joystick"
-NORMS = {  # that the thesis' requirements and tables are about
+NORMS = {  # metrics of the thesis' requirements and tables
     "sway": ["heading_at_end", "surge_offset", "yaw_rate_inf", "yaw_rate_l2", "time_to_end"],
     "yaw": ["moved", "position_inf", "position_rms", "excursion", "turn_time"],
 }
 VARIED: dict[str, str | Sequence[Value]] = {
     "controller.use": [FIRST, SECOND],
-    "controller.rated_thrust": [0.35],  # [N] both believe the same
+    "controller.rated_thrust": [0.35],  # [N] the same in both controllers
     "controller.sway_thrust": [0.55],  # [N]
-    "tank": ["none"],  # no wall holds a boat that drifts
-    "engine": ["twin"],  # compiled code alone, the same to rounding
+    "tank": ["none"],  # no walls, so that a drifting boat is not stopped
+    "engine": ["twin"],  # compiled engine, equal up to rounding
     "log": [0.1],  # [s]
     "duration": [90.0],  # [s] the weakest boats need longer than the thesis' runs
 }
@@ -42,7 +45,7 @@ DRAWN = {
     "pwm_thrust.exponent": "uniform(1.0, 1.6)",
     "cross_flow_drag.section_drag_coefficient": "uniform(0.7, 2.5)",
     "weak_reverse.astern_factor": "uniform(0.55, 0.85)",
-    # [m] both motors ahead or astern of where they are drawn
+    # [m] offset of both motors ahead or astern
     "port.x,starboard.x+": "uniform(-0.08, 0.08)",
     "steering_offset.port": f"uniform({-SERVO:.5f}, {SERVO:.5f})",  # [rad]
     "steering_offset.starboard": f"uniform({-SERVO:.5f}, {SERVO:.5f})",
@@ -54,15 +57,15 @@ HEAD = ["manoeuvre", "norm", "pid p95", "L1 p95", "L1 - pid, mean", "L1 lower", 
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Carry out, print; 0 if all runs are done."""
+    """Run the sweep and print; return 0 if all runs are done."""
     parser = argparse.ArgumentParser(
-        prog="python -m benchmarks.joystick_monte_carlo", description="L1 beside PID."
+        prog="python -m benchmarks.joystick_monte_carlo", description="Compare L1 and PID."
     )
     parser.add_argument("--runs", type=int, default=120, help="boats for each manoeuvre")
     parser.add_argument("--jobs", type=int, default=None, help="runs at the same time")
     parser.add_argument("--out", default="out/joystick_monte_carlo", help="folder of the sweep")
     parser.add_argument(
-        "--plot", type=Path, help="draw the norms of both controllers into this SVG"
+        "--plot", type=Path, help="write a chart of both controllers' metrics to this SVG file"
     )
     given = parser.parse_args(arguments)
     told = [name for names in NORMS.values() for name in names]
@@ -80,7 +83,9 @@ def main(arguments: list[str] | None = None) -> int:
             report=report,
         )
     rows, lost = _rows(done)
-    print_rows(f"{SECOND} beside {FIRST}: sizes of the norms on {given.runs} boats", HEAD, rows, 2)
+    print_rows(
+        f"{SECOND} beside {FIRST}: sizes of the metrics on {given.runs} boats", HEAD, rows, 2
+    )
     print(
         f"{SECOND} is not lower on most boats, or the mean difference is not below 0 with 95 %, in:"
     )
@@ -96,13 +101,13 @@ def main(arguments: list[str] | None = None) -> int:
 
 
 def _sizes(columns: Mapping[str, Array], scenario: str, controller: str, name: str) -> list[float]:
-    """The size of a norm on each boat; of one that never got there it is above all."""
+    """Return the size of a metric on each boat; infinite if the boat never reached the goal."""
     among = (columns["scenario"] == scenario) & (columns["controller.use"] == controller)
     return [inf if value is None else abs(value) for value in columns[name][among]]
 
 
 def _rows(done: boatsim.Sweep) -> tuple[list[list[str]], list[str]]:
-    """A row for each manoeuvre and norm, and where the second controller does not win."""
+    """Return a row for each manoeuvre and metric, and where the second controller is not better."""
     columns = {name: np.array(values) for name, values in done.columns.items()}
     rows, lost = list[list[str]](), list[str]()
     for pair in done.pairs:
@@ -133,38 +138,43 @@ def _rows(done: boatsim.Sweep) -> tuple[list[list[str]], list[str]]:
 
 
 def _p95(columns: Mapping[str, Array], scenario: str, controller: str, name: str) -> float:
-    """95 % of the boats lie below; one that never got there lies above all."""
+    """Return the 95th percentile; boats that never reached the goal count as the largest."""
     return float(
         np.quantile(_sizes(columns, scenario, controller, name), 0.95, method="inverted_cdf")
     )
 
 
 # The picture
-# ----------------------------------------------------------------------------------------------------------
+# -----------------------------------------------------------------------------
 
 DRAWN_NORMS = {
     "sway": ("heading_at_end", "surge_offset", "yaw_rate_l2"),
     "yaw": ("moved", "position_inf", "excursion"),
 }
-WIDE, HIGH, LEFT, TOP = 300, 170, 44, 46  # [px] a panel, and the room beside and above it
+WIDE, HIGH, LEFT, TOP = 300, 170, 44, 46  # [px] panel size, left and top margins
 LOOKS = {FIRST: "#0067b1", SECOND: "#c65102"}
 BELOW = (0.05, 0.25, 0.5, 0.75, 0.95)
 STYLE = (
-    "text{font:12px system-ui,Helvetica,Arial,sans-serif;fill:#59636e}.title{font-weight:600;fill:#16202a}"
+    "text{font:12px system-ui,Helvetica,Arial,sans-serif;"
+    "fill:#59636e}.title{font-weight:600;fill:#16202a}"
     ".middle{text-anchor:middle}.end{text-anchor:end}path{fill:none}.grid{stroke:#8a94a04d}"
     "@media(prefers-color-scheme:dark){text{fill:#a8b1bb}.title{fill:#e8ecef}}"
 )
 
 
 def _picture(done: boatsim.Sweep) -> str:
-    """Boxes of both controllers for each manoeuvre, a panel each norm: half of the boats in a box, 90 % in whiskers."""
+    """Draw boxes of both controllers for each manoeuvre, one panel for each metric.
+
+    A box holds half of the boats, the whiskers 90 %.
+    """
     columns = {name: np.array(values) for name, values in done.columns.items()}
     width, height = 3 * (WIDE + LEFT) + 10, 2 * (HIGH + TOP) + 40
     parts = [
-        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}"><style>{STYLE}</style>'
+        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} '
+        f'{height}"><style>{STYLE}</style>'
     ]
     parts.append(
-        "<title>Norms of the PID autopilot and of the L1 joystick on the same boats</title>"
+        "<title>Metrics of the PID autopilot and of the L1 joystick on the same boats</title>"
     )
     for row, (kind, names) in enumerate(DRAWN_NORMS.items()):
         for column, name in enumerate(names):
@@ -180,7 +190,7 @@ def _picture(done: boatsim.Sweep) -> str:
 def _panel(
     columns: Mapping[str, Array], scenarios: Sequence[str], name: str, unit: str, x: int, y: int
 ) -> Iterator[str]:
-    """One norm over its manoeuvres."""
+    """Draw one metric over its manoeuvres."""
     spread = {
         (s, c): np.quantile(_sizes(columns, s, c, name), BELOW, method="inverted_cdf")
         for s in scenarios
@@ -195,14 +205,18 @@ def _panel(
         yield f'<text class="end" x="{x - 5}" y="{down + 4:.1f}">{tick:g}</text>'
     for at, scenario in enumerate(scenarios):
         middle = x + WIDE * (at + 0.5) / len(scenarios)
-        yield f'<text class="middle" x="{middle:.1f}" y="{y + HIGH + 15}">{scenario.rpartition("/")[2]}</text>'
+        yield (
+            f'<text class="middle" x="{middle:.1f}" '
+            f'y="{y + HIGH + 15}">{scenario.rpartition("/")[2]}</text>'
+        )
         for side, (controller, colour) in zip((-13, 13), LOOKS.items(), strict=True):
             low, lower, half, upper, high = (
                 y + HIGH * (1.0 - v / top) for v in spread[scenario, controller]
             )
             c = middle + side
             yield (
-                f'<path stroke="{colour}" stroke-width="1.6" d="M{c} {low:.1f}V{lower:.1f}M{c} {upper:.1f}V{high:.1f}'
+                f'<path stroke="{colour}" stroke-width="1.6" d="M{c} '
+                f"{low:.1f}V{lower:.1f}M{c} {upper:.1f}V{high:.1f}"
                 f'M{c - 9} {lower:.1f}h18V{upper:.1f}h-18ZM{c - 9} {half:.1f}h18"/>'
             )
 

@@ -1,11 +1,15 @@
-"""Martin's whole comparison: eleven autopilots, eleven tests, two fishing vessels, his figures beside ours.
+"""Martin's comparison: eleven autopilots, eleven tests, two vessels; published and computed.
 
-python -m benchmarks.martin                     every test; in seas the mean of 10 seeds, the same for every autopilot
-python -m benchmarks.martin --vessel kynoc      one vessel only; --tests, --autopilots likewise, by part of the name
-python -m benchmarks.martin --puzzles           his two puzzles: does a faster rudder, does better course keeping help?
+python -m benchmarks.martin                  every test; in seas the mean of 10 seeds, the same for
+every autopilot
+python -m benchmarks.martin --vessel kynoc   one vessel only; --tests, --autopilots likewise, by
+part of the name
+python -m benchmarks.martin --puzzles        his two puzzles: does a faster rudder, does better
+course keeping help?
 
-Runs are those of `scenarios/eastward_ho` and `scenarios/kynoc` with the autopilot changed, on the compiled twin; the
-first line says how far it is from the MuJoCo engine. %PID is how much less a ship rolls than under the PID.
+Runs are those of `scenarios/eastward_ho` and `scenarios/kynoc` with the autopilot changed, on the
+compiled engine; the first line gives its difference from the MuJoCo engine. %PID is the relative
+reduction of roll against the PID.
 """
 
 import argparse
@@ -44,7 +48,7 @@ SEAS = ("seas_90", "seas_45", "seas_60", "seas_30")
 PUBLISHED = tomllib.loads(
     Path(__file__).with_name("martin_published.toml").read_text(encoding="utf-8")
 )
-# what the thesis sets by vessel, section 3.2; Eastward Ho's are the controllers' defaults
+# settings by vessel, thesis section 3.2; Eastward Ho's are the controllers' defaults
 TUNING = {
     "eastward_ho": {},
     "kynoc": {
@@ -81,7 +85,7 @@ AT_15 = (
 
 
 def autopilot(vessel: str, kind: str, rate: float = 5.0) -> dict[str, Any]:
-    """The [controller] table of one of the eleven, for a rudder of `rate` [deg/s]."""
+    """Return the [controller] table of one of the eleven, for a rudder of `rate` [deg/s]."""
     table = KINDS[kind] | {"rudder_rate": radians(rate)}
     table |= TUNING[vessel].get(table["use"], {})
     if table["use"] == "sliding":
@@ -95,12 +99,12 @@ def autopilot(vessel: str, kind: str, rate: float = 5.0) -> dict[str, Any]:
     return table
 
 
-# A run on the twin
-# ----------------------------------------------------------------------------------------------------
+# A run on the compiled engine
+# -----------------------------------------------------------------------------
 
 
 def sailed(test: Scenario, seed: int = 0) -> Recording:
-    """The log of a scenario's course, roll and rudder, a row each control period, without the simulator around it."""
+    """Return the log of course, roll and rudder of a scenario, a row each control period."""
     boat = replace(test.vessel, effects=tuple(e.seeded(seed) for e in test.vessel.effects))
     program, start = Program(boat), State(**test.file.start.motion())
     code, p, on = program.module, program.values(), program.switches()
@@ -132,25 +136,28 @@ def sailed(test: Scenario, seed: int = 0) -> Recording:
 
 
 def measured(test: Scenario, seed: int = 0) -> dict[str, float]:
-    """The scenario's own measure on such a run."""
+    """Return the scenario's own metrics of such a run."""
     assert test.measure is not None
     return test.measure.values(sailed(test, seed))
 
 
 def apart() -> float:
-    """Largest yaw or roll [deg] between twin and engine over 600 s of waves under the relay with roll reduction."""
+    """Return the largest difference of yaw or roll [deg] between the two engines.
+
+    The run is 600 s of waves under the relay with roll reduction.
+    """
     test = scenario.load("eastward_ho/seas_60_sliding_roll")
     one, other = sailed(test), run(test).recording
     return float(max(np.degrees(np.abs(one[n] - other[n])).max() for n in ("psi_rad", "phi_rad")))
 
 
 # The table
-# ------------------------------------------------------------------------------------------------------------
+# -----------------------------------------------------------------------------
 
 
 @dataclass(frozen=True)
 class Entry:
-    """One autopilot in one test, and what its runs gave: a row for each seed."""
+    """One autopilot in one test and the results of its runs, a row for each seed."""
 
     vessel: str
     test: str
@@ -160,18 +167,18 @@ class Entry:
     values: tuple[Mapping[str, float], ...] = ()
 
     def run(self) -> "Entry":
-        """With its runs made."""
+        """Return the entry with its runs made."""
         table = autopilot(self.vessel, self.kind, self.rate)
         test = scenario.load(f"{self.vessel}/{self.test}", {"controller": table})
         return replace(self, values=tuple(measured(test, seed) for seed in range(self.seeds)))
 
     def each(self, norm: str) -> Array:
-        """A norm of every seed; nan where a run has none."""
+        """Return a metric of every seed; nan where a run has none."""
         return np.array([value.get(norm, nan) for value in self.values])
 
     @property
     def printed(self) -> Sequence[float]:
-        """The row of the thesis; empty where there is none."""
+        """Return the row of the thesis; empty if there is none."""
         part = "calm" if self.test in CALM else "fast" if self.rate > 10 else "seas"
         found: Sequence[float] = PUBLISHED[part][self.vessel][self.test].get(self.kind, ())
         return found
@@ -180,7 +187,7 @@ class Entry:
 def entries(
     vessels: Iterable[str], tests: Sequence[str], kinds: Sequence[str], seeds: int
 ) -> list[Entry]:
-    """All that is asked for; the PID always, as others are measured by it."""
+    """Return the requested entries, and always the PID as the reference."""
     wanted = [k for k in KINDS if k == "PID" or k in kinds]
     found = []
     for vessel, test, kind in product(vessels, tests, wanted):
@@ -192,12 +199,12 @@ def entries(
 
 
 def reduction(entry: Entry, pid: Entry) -> Array:
-    """%PID, seed by seed."""
+    """Return %PID by seed."""
     return 100.0 * (1.0 - entry.each("roll_rms") / pid.each("roll_rms"))
 
 
 def calm_line(e: Entry) -> str:
-    """Settling and rise [s], late swing [deg]."""
+    """Return settling and rise [s], late swing [deg]."""
     ours = [float(e.each(n)[0]) for n in ("settling", "rise", "lowest", "highest")]
     shown = [f"{p:7.1f} {o:6.1f}" for p, o in zip(e.printed[:2], ours[:2], strict=True)]
     swings = f"{e.printed[2]:8.2f} {e.printed[3]:7.2f} {ours[2]:8.2f} {ours[3]:7.2f}"
@@ -205,18 +212,21 @@ def calm_line(e: Entry) -> str:
 
 
 def sea_line(e: Entry, pid: Entry) -> str:
-    """Rms of rudder, yaw and roll [deg] with the spread between seeds, and %PID."""
+    """Return rms of rudder, yaw and roll [deg] with the spread between seeds, and %PID."""
     names = ("rudder_rms", "yaw_rms", "roll_rms")
     printed = list(e.printed) or [nan] * 3
     cells = []
     for p, n in zip(printed, names, strict=True):
         cells.append(f"{p:6.2f} {e.each(n).mean():6.2f} +-{e.each(n).std():5.2f}")
     base, ours = pid.printed[2], reduction(e, pid)
-    return f"{e.kind:11}  {'  '.join(cells)}   {100 * (1 - printed[2] / base):5.0f} {ours.mean():5.0f} +-{ours.std():3.0f}"
+    return (
+        f"{e.kind:11}  {'  '.join(cells)}   {100 * (1 - printed[2] / base):5.0f} "
+        f"{ours.mean():5.0f} +-{ours.std():3.0f}"
+    )
 
 
 def table(done: Sequence[Entry]) -> str:
-    """Every test with its autopilots."""
+    """Print every test with its autopilots."""
     lines = []
     for vessel, test, rate in dict.fromkeys((e.vessel, e.test, e.rate) for e in done):
         rows = [e for e in done if (e.vessel, e.test, e.rate) == (vessel, test, rate)]
@@ -235,7 +245,7 @@ def table(done: Sequence[Entry]) -> str:
 
 
 def agreements(done: Sequence[Entry]) -> str:
-    """The qualitative agreements that the review asks for, each with its figures; only where their runs were made."""
+    """Print the qualitative agreements that the review requires, where their runs were made."""
     by = {(e.vessel, e.test, e.kind): e for e in done if e.rate == 5.0}
 
     def roll_rank(vessel: str, test: str) -> int:
@@ -257,7 +267,7 @@ def agreements(done: Sequence[Entry]) -> str:
     }
     return "\n".join(
         [
-            "\nAgreements asked for",
+            "\nRequired agreements",
             "(a) place of VSS RRS as roll reducer: "
             + ", ".join(f"{v} {t} {roll_rank(v, t)}" for v, t in best),
             "(b) yaw of VSS per PID (< 0.65): "
@@ -276,20 +286,20 @@ def agreements(done: Sequence[Entry]) -> str:
 
 
 # The puzzles
-# ----------------------------------------------------------------------------------------------------------
+# -----------------------------------------------------------------------------
 
 
 def mean_over(
     name: str, seeds: int, overrides: Mapping[str, Any] | None = None
 ) -> tuple[Array, Array]:
-    """Roll and yaw rms [deg] of a scenario, seed by seed."""
+    """Return roll and yaw rms [deg] of a scenario, by seed."""
     test = scenario.load(name, overrides)
     values = [measured(test, seed) for seed in range(seeds)]
     return np.array([v["roll_rms"] for v in values]), np.array([v["yaw_rms"] for v in values])
 
 
 def faster_rudder(seeds: int) -> list[str]:
-    """%PID of VSS RRS at 5 and 15 deg/s, sea by sea."""
+    """Print %PID of VSS RRS at 5 and 15 deg/s for each sea."""
     lines, gains = [], {}
     for vessel, test in product(VESSELS, (*SEAS, "broad")):
         if test == "broad":
@@ -308,8 +318,10 @@ def faster_rudder(seeds: int) -> list[str]:
     for v in VESSELS:
         near[v] = [g for (w, test), g in gains.items() if w == v and test not in SEAS[1:]]
     lines.append(
-        f"answer: no in quartering seas ({min(off):+.0f} to {max(off):+.0f} points), whose energy the ship meets below "
-        "her roll frequency, where few commands ask for more than 5 deg/s. At resonance, in beam seas, it does where "
+        f"answer: no in quartering seas ({min(off):+.0f} to {max(off):+.0f} points), whose "
+        "energy the ship meets below "
+        "her roll frequency, where few commands ask for more than 5 deg/s. At resonance, "
+        "in beam seas, it does where "
         "the rudder is strong: "
         + ", ".join(
             f"{v} {min(found):+.0f} to {max(found):+.0f} points" for v, found in near.items()
@@ -319,25 +331,29 @@ def faster_rudder(seeds: int) -> list[str]:
 
 
 def better_course(seeds: int) -> list[str]:
-    """Roll in kynoc's quartering seas under better and better course keeping."""
+    """Print roll in kynoc's quartering seas under increasingly accurate course keeping."""
     names = {"idle": "no rudder", "pid": "PID", "sliding": "VSS", "locked": "yaw locked"}
     found = {n: mean_over(f"kynoc/puzzle_course_{n}", seeds) for n in names}
     lines = []
-    for n, said in names.items():
+    for n, name in names.items():
         lines.append(
-            f"  {said:11} yaw {found[n][1].mean():5.2f}  roll {found[n][0].mean():5.2f} +-{found[n][0].std():.2f} deg"
+            f"  {name:11} yaw {found[n][1].mean():5.2f}  roll {found[n][0].mean():5.2f} "
+            f"+-{found[n][0].std():.2f} deg"
         )
     rolls = {n: float(found[n][0].mean()) for n in names}
     lines.append(
-        f"answer: here yes: turning heels her, and with her yaw locked she rolls {rolls['locked']:.1f} deg against "
-        f"{rolls['pid']:.1f} under the PID, which rolls her more than no rudder does ({rolls['idle']:.1f}): "
-        "she meets this sea where the PID amplifies. No law of nature: see the other seas of the table"
+        "answer: here yes: turning heels her, and with her yaw locked she rolls "
+        f"{rolls['locked']:.1f} deg against "
+        f"{rolls['pid']:.1f} under the PID, which rolls her more than no rudder does "
+        f"({rolls['idle']:.1f}): "
+        "she meets this sea where the PID amplifies. No law of nature: see the other seas "
+        "of the table"
     )
     return lines
 
 
 def puzzles(seeds: int) -> str:
-    """Both, with their answers."""
+    """Print both puzzles with their answers."""
     return "\n".join(
         ["Does a faster rudder reduce roll?", *faster_rudder(seeds)]
         + ["Does better course keeping reduce roll? kynoc, 45 degrees", *better_course(seeds)]
@@ -345,7 +361,7 @@ def puzzles(seeds: int) -> str:
 
 
 def main() -> None:
-    """Parse, run in two processes, print."""
+    """Parse the options, run in two processes, and print."""
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
@@ -359,7 +375,7 @@ def main() -> None:
     if asked.puzzles:
         print(puzzles(asked.seeds))
         return
-    print(f"twin and engine differ by {apart():.1e} deg at most")
+    print(f"compiled and MuJoCo engine differ by {apart():.1e} deg at most")
     tests = [t for t in (*CALM, *SEAS) if asked.tests in t]
     kinds = [k for k in KINDS if asked.autopilots in k]
     todo = entries([v for v in VESSELS if asked.vessel in v], tests, kinds, asked.seeds)

@@ -1,8 +1,9 @@
-"""Martin's fishing vessels as linear models, their seas, and MuJoCo's error: `python -m benchmarks.martin_vessels`.
+"""Linear models of Martin's fishing vessels, their seas, and MuJoCo's error.
 
-Prints the coefficients of every condition, the rms of what the thesis' seas do to the ships, the largest difference of
-MuJoCo from the exact step of the linear model, and processor time per simulated time. About ten seconds once the
-vessels are compiled.
+Run `python -m benchmarks.martin_vessels`. It prints the coefficients of every condition, the rms
+response of the ships to the thesis' seas, the largest difference of MuJoCo from the exact step of
+the linear model, and processor time per simulated time. It takes about ten seconds once the vessels
+are compiled.
 """
 
 from math import degrees, pi, radians, sqrt
@@ -25,11 +26,11 @@ REALISATIONS = 2000
 SEAS = (
     (4, 90, 0.0, 0.0), (3, 45, 0.88, 7.5), (1, 60, 0.88, 7.5), (2, 30, 1.88, 8.8),
 )  # fmt: skip
-WAVES = ("yaw", "sway", "roll")  # freedoms they push
+WAVES = ("yaw", "sway", "roll")  # dof in which they act
 
 
 def inertia(boat: Vessel) -> Array:
-    """(3, 3) over (yaw, sway, roll), water included."""
+    """Return the mass matrix (3, 3) over (yaw, sway, roll), with added mass."""
     body, water = boat.body, boat.effect("added_mass")
     at = [AXES.index(axis) for axis in WAVES]
     hull = np.diag([body.yaw_inertia, body.mass, body.roll_inertia])
@@ -37,12 +38,15 @@ def inertia(boat: Vessel) -> Array:
 
 
 def speed_of(boat: Vessel) -> float:
-    """The speed it holds [m/s]."""
+    """Return the speed that the vessel holds [m/s]."""
     return float(boat.effect("speed_hold").speed)  # type: ignore[union-attr]
 
 
 def force(boat: Vessel, **moved: float) -> Array:
-    """Yaw moment, sway force and roll moment at the approach speed, the hull's own Coriolis force in it."""
+    """Return yaw moment, sway force and roll moment at the approach speed.
+
+    The hull's own Coriolis force is included.
+    """
     angle = {"angle": moved.pop("rudder", 0.0)}
     m = motion(**{"u": speed_of(boat), **moved})
     forces = []
@@ -54,7 +58,12 @@ def force(boat: Vessel, **moved: float) -> Array:
 
 
 def linear(boat: Vessel) -> tuple[Array, Array, Array]:
-    """Continuous A (5, 5) over (psi, r, v, phi, p), B (5,) of the rudder, K (5, 3) of waves as (yaw, sway, roll)."""
+    """Return the continuous linear model.
+
+    Returns:
+            A (5, 5) over (psi, r, v, phi, p), B (5,) of the rudder, and K (5, 3) of waves as (yaw,
+        sway, roll).
+    """
     rates = {}
     for n in ("r", "v", "phi", "p", "rudder"):
         rates[n] = np.linalg.solve(inertia(boat), force(boat, **{n: 1.0}))
@@ -66,7 +75,7 @@ def linear(boat: Vessel) -> tuple[Array, Array, Array]:
 
 
 def held(A: Array, B: Array, period: float = PERIOD) -> tuple[Array, Array]:
-    """A and B (5, n) over a period [s] with the inputs held."""
+    """Return A and B (5, n) over a period [s] with the inputs held."""
     n = B.shape[1]
     block = np.zeros((5 + n, 5 + n))
     block[:5, :5], block[:5, 5:] = A, B
@@ -75,7 +84,10 @@ def held(A: Array, B: Array, period: float = PERIOD) -> tuple[Array, Array]:
 
 
 def zigzag(boat: Vessel, waves: Array) -> tuple[Array, Array]:
-    """States (N + 1, 5) of the exact step, rudder angles (N,) of a 10/10 zig-zag in accelerations (N, 3) held."""
+    """Return states (N + 1, 5) and rudder angles (N,) of a 10/10 zig-zag by exact steps.
+
+    The wave accelerations (N, 3) are held over each step.
+    """
     A, B, K = linear(boat)
     step, drive = held(A, np.column_stack([B, K]))
     x, side, states, rudder = np.zeros(5), radians(10.0), [np.zeros(5)], []
@@ -89,12 +101,15 @@ def zigzag(boat: Vessel, waves: Array) -> tuple[Array, Array]:
 
 
 def random_waves(periods: int = 240) -> Array:
-    """(N, 3) accelerations in yaw, sway, roll [rad/s^2, m/s^2, rad/s^2] drawn anew every period: 120 s of them."""
+    """Sample accelerations (N, 3) in yaw, sway, roll for 120 s, new every period.
+
+    Units: rad/s^2, m/s^2, rad/s^2.
+    """
     return np.radians([1.0, 5.0, 2.0]) * np.random.default_rng(1).standard_normal((periods, 3))
 
 
 def on_mujoco(boat: Vessel, rudder: Array, waves: Array, step: float = 0.02) -> Array:
-    """(N + 1, 5) states of the same run in the engine."""
+    """Return the states (N + 1, 5) of the same run in MuJoCo."""
     engine, mass = Engine(boat, step=step), inertia(boat).diagonal()
     engine.reset(State(u=speed_of(boat)))
     at, rows = [engine.program.index("push", n) for n in WAVES], [[0.0] * 5]
@@ -109,7 +124,10 @@ def on_mujoco(boat: Vessel, rudder: Array, waves: Array, step: float = 0.02) -> 
 
 
 def accelerations(boat: Vessel, sea: IrregularSea) -> tuple[list[float], float]:
-    """Rms of yaw, sway and direct roll acceleration [deg/s^2] over realisations, and of the slope [deg]."""
+    """Return rms accelerations over realisations, and rms slope [deg].
+
+    The accelerations are yaw, sway and direct roll [deg/s^2].
+    """
     law, m = IrregularSea.law, motion()
     w = Wrench(*np.array([law(m, sea.seeded(i).values()) for i in range(REALISATIONS)]).T)
     direct = w.K - sea.arm * w.Y
@@ -119,7 +137,10 @@ def accelerations(boat: Vessel, sea: IrregularSea) -> tuple[list[float], float]:
 
 
 def sea_of(boat: Vessel, angle: float, height: float, period: float) -> IrregularSea:
-    """The thesis' sea for a condition; the beam sea is as long as the roll period and a hundredth as high."""
+    """Return the thesis' sea for a condition.
+
+    The beam sea has the roll period, and a height of a hundredth of its length.
+    """
     A = linear(boat)[0]
     period = period or 2 * pi / sqrt(-A[4, 3])
     height = height or 0.01 * 9.81 * period**2 / (2 * pi)
@@ -135,7 +156,7 @@ def sea_of(boat: Vessel, angle: float, height: float, period: float) -> Irregula
 
 
 def coefficients() -> Table:
-    """The linear model of every condition."""
+    """Print the linear model of every condition."""
     names = (
         "a_rr",
         "a_rv",
@@ -163,7 +184,7 @@ def coefficients() -> Table:
 
 
 def seas() -> Table:
-    """What the thesis' seas do to the ships."""
+    """Print the response of the ships to the thesis' seas."""
     table = Table(
         "vessel", "encounter", "yaw", "sway", "direct roll", "slope [deg]", title="rms [deg/s^2]"
     )
@@ -178,7 +199,7 @@ def seas() -> Table:
 
 
 def main() -> None:
-    """Print all of it."""
+    """Print all results."""
     console = Console(width=150)
     console.print(coefficients(), seas())
     boat = vessel.load("eastward_ho", ["condition_3"])
@@ -186,7 +207,8 @@ def main() -> None:
     for step in (0.02, 0.1):
         off = np.degrees(np.abs(on_mujoco(boat, rudder, random_waves(), step) - truth).max(axis=0))
         console.print(
-            f"120 s zig-zag in random waves, RK4 at {step} s: yaw {off[0]:.1e} deg, roll {off[3]:.1e} deg"
+            f"120 s zig-zag in random waves, RK4 at {step} s: yaw {off[0]:.1e} deg, roll "
+            f"{off[3]:.1e} deg"
         )
     engine = Engine(
         vessel.load(

@@ -1,15 +1,17 @@
-"""Every published figure beside ours: docs/papers.md from docs/papers/*.toml and the norms pinned in tests/golden.
+"""Comparison of published figures with boatsim's results, written to docs/papers.md.
 
-python -m benchmarks.papers            whether docs/papers.md is up to date; exit 1 if it is not
+python -m benchmarks.papers            check whether docs/papers.md is up to date; exit 1 if not
 python -m benchmarks.papers --update   write it
 
-A paper's file has `title`, `source`, [[scenario]] tables (`name`, and what holds for all its published norms) and
-[[row]] tables. Ours is the pinned `norm` of a `scenario`, a `figure` of a `module` here, or a number `ours` that
-`command` prints.
+Sources are docs/papers/*.toml and the metrics stored in tests/golden. A paper's file has `title`,
+`source`, [[scenario]] tables (`name`, and keys that apply to all its published metrics) and [[row]]
+tables. Boatsim's result is the stored `norm` of a `scenario`, a `figure` of a `module` here, or a
+number `ours` that `command` prints.
 
-The verdict is computed, signs and all: from the figures and the `tolerance` of the published one (or `within`, its
-share of it; else that of the scenario's norm), or from the `span` of ours that published words stand for. Words alone
-are not judged. `because` and `reason` say why a figure differs; they do not make it another verdict.
+The verdict is computed from the signed figures and the `tolerance` of the published one (or
+`within`, as a share of it; otherwise that of the scenario's metric), or from the `span` that
+represents published words. Words alone are not evaluated. `because` and `reason` explain a
+difference; they do not change the verdict.
 """
 
 import argparse
@@ -31,16 +33,16 @@ from boatsim.simulate.evaluation import MISSED, NO_TOLERANCE, REPRODUCED, within
 
 HOME = Path(__file__).parents[1]
 OUT = HOME / "docs" / "papers.md"
-WORDS = "in words"  # nothing to compute with
+WORDS = "in words"  # no numbers to compare
 VERDICTS = (REPRODUCED, MISSED, NO_TOLERANCE, WORDS)
-BECAUSE = ("corrected", "can't be", "diagnosed")  # the last: a concealed case of the paper's
+BECAUSE = ("corrected", "can't be", "diagnosed")  # the last: a concealed case of the paper
 KEYS = {"what", "unit", "published", "tolerance", "within", "span", "because", "reason"}
 OURS = ({"scenario", "norm"}, {"module", "figure"}, {"ours", "command"}, {"ours"}, set[str]())
 
 
 @dataclass(frozen=True)
 class Row:
-    """One published figure. A figure is a number, or a word where the paper only says so."""
+    """One published figure: a number, or a word if the paper gives no number."""
 
     what: str
     published: float | str
@@ -49,17 +51,26 @@ class Row:
     verdict: str
     reason: str
     command: str
-    tolerance: float | None = None  # of the published figure, either way
-    span: tuple[float, float] | None = None  # of ours, that the published words stand for
+    tolerance: float | None = None  # of the published figure, in both directions
+    span: tuple[float, float] | None = (
+        None  # range of our result that the published words represent
+    )
 
     def line(self) -> str:
-        """Row of the table."""
-        shown = [_shown(self.published, self.unit), _shown(self.ours, self.unit)]
-        return f"| {self.what} | {' | '.join(shown)} | {self.verdict} | {self.reason} | {self.command} |"
+        """Return the row of the table."""
+        cells = [_figure_text(self.published, self.unit), _figure_text(self.ours, self.unit)]
+        return (
+            f"| {self.what} | {' | '.join(cells)} | {self.verdict} | {self.reason} | "
+            f"{self.command} |"
+        )
 
 
 def rows(file: Path) -> Iterator[Row]:
-    """The figures of one paper. Raises BadInput for a key or a norm that does not exist."""
+    """Return the figures of one paper.
+
+    Raises:
+        BadInput: for an unknown key or metric.
+    """
     paper = read_toml(file)
     for table in paper.get("scenario", []):
         name = table["name"]
@@ -76,7 +87,8 @@ def _row(table: Mapping[str, Any], file: Path) -> Row:
     found = set(table) - KEYS
     if found not in OURS:
         raise BadInput(
-            f"{file.name}: {table.get('what')}: has {sorted(found)}; allowed are {[*map(sorted, OURS)]}"
+            f"{file.name}: {table.get('what')}: has {sorted(found)}; allowed are "
+            f"{[*map(sorted, OURS)]}"
         )
     ours = table.get("ours")
     published = table.get("published")
@@ -86,7 +98,8 @@ def _row(table: Mapping[str, Any], file: Path) -> Row:
         values = _golden(table["scenario"])
         if table["norm"] not in values:
             raise BadInput(
-                f"{file.name}: {table['scenario']} has no norm {table['norm']}; it has {[*values]}"
+                f"{file.name}: {table['scenario']} has no metric {table['norm']}; it has "
+                f"{[*values]}"
             )
         pinned = values[table["norm"]]
         ours, command = pinned["today"], f"`boatsim run {table['scenario']}`"
@@ -115,7 +128,7 @@ def _row(table: Mapping[str, Any], file: Path) -> Row:
 
 
 def _tolerance(table: Mapping[str, Any], published: Any) -> float | None:
-    """Either way of a published number: the row's own, or what the scenario's norm has for the same figure."""
+    """Return the tolerance of a published number: the row's own or the scenario metric's."""
     if isinstance(published, str):
         return None
     if "tolerance" in table:
@@ -131,7 +144,7 @@ def _tolerance(table: Mapping[str, Any], published: Any) -> float | None:
 def verdict_on(
     published: Any, ours: Any, tolerance: float | None, span: tuple[float, float] | None
 ) -> str:
-    """What figures alone say."""
+    """Return the verdict that follows from the figures."""
     if isinstance(ours, str) or (isinstance(published, str) and span is None):
         return WORDS
     if span is not None:
@@ -146,14 +159,14 @@ def verdict_on(
 
 
 def _margin(tolerance: float | None, span: tuple[float, float] | None, unit: str) -> str:
-    """The margin of a verdict in words."""
+    """Return the margin of a verdict in words."""
     if span is not None:
         if isinf(span[1]):
-            return f"at least {_shown(span[0], unit)}"
-        return f"{span[0]:.4g} to {_shown(span[1], unit)}"
+            return f"at least {_figure_text(span[0], unit)}"
+        return f"{span[0]:.4g} to {_figure_text(span[1], unit)}"
     if tolerance is None:
         return ""
-    return f"within {_shown(tolerance, unit)}"
+    return f"within {_figure_text(tolerance, unit)}"
 
 
 @cache
@@ -164,7 +177,9 @@ def _norms(name: str) -> Mapping[str, scenario.MetricTable]:
 @cache
 def _golden(name: str) -> dict[str, Any]:
     if not (found := golden.kept(name)):
-        raise BadInput(f"{name}: no norms pinned; python -m benchmarks.golden --update pins them")
+        raise BadInput(
+            f"{name}: no stored metrics; python -m benchmarks.golden --update stores them"
+        )
     return found
 
 
@@ -174,7 +189,7 @@ def _figures(module: str) -> dict[str, float]:
     return found
 
 
-def _shown(value: float | str | None, unit: str) -> str:
+def _figure_text(value: float | str | None, unit: str) -> str:
     if value is None:
         return "never reached"
     if isinstance(value, str):
@@ -183,15 +198,19 @@ def _shown(value: float | str | None, unit: str) -> str:
 
 
 def document() -> str:
-    """The whole of docs/papers.md."""
+    """Return the text of docs/papers.md."""
     parts = [
-        "# The papers' figures beside ours\n\nMade by `python -m benchmarks.papers --update`; not meant to be edited."
+        "# Published figures and boatsim's results\n\nGenerated by `python -m "
+        "benchmarks.papers --update`; do not edit."
     ]
     counts: Counter[str] = Counter()
     for file in sorted((HOME / "docs" / "papers").glob("*.toml")):
         paper, found = read_toml(file), list(rows(file))
         counts.update(r.verdict for r in found)
-        head = "| figure | published | ours | verdict | margin, reason | from |\n| --- | --- | --- | --- | --- | --- |"
+        head = (
+            "| figure | published | boatsim | verdict | margin, reason | from |\n| --- | "
+            "--- | --- | --- | --- | --- |"
+        )
         parts.append(
             f"## {paper['title']}\n\n{paper['source']}\n\n{head}\n"
             + "\n".join(r.line() for r in found)
@@ -201,9 +220,10 @@ def document() -> str:
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """0 up to date or written, 1 out of date."""
+    """Return 0 if the page is up to date or written, 1 if it is out of date."""
     parser = argparse.ArgumentParser(
-        prog="python -m benchmarks.papers", description="Published figures beside ours."
+        prog="python -m benchmarks.papers",
+        description="Compare published figures with boatsim's results.",
     )
     parser.add_argument("--update", action="store_true", help="write docs/papers.md")
     given = parser.parse_args(arguments)

@@ -1,8 +1,9 @@
-"""Side by side with neighbours: `python -m benchmarks.peers [--rounds 5]`.
+"""Speed comparison with other simulators: `python -m benchmarks.peers [--rounds 5]`.
 
-The same manoeuvre for the same simulated time, in one process and taking turns, so that a busy machine slows both;
-medians of the rounds, and the median of the rounds' ratios. Where a neighbour is not installed its row says so.
-`pip install "boatsim[peers]"` brings those that PyPI has, the Python vehicle simulator comes from its repository.
+Each pair runs the same manoeuvre for the same simulated time alternately in one process, so that
+other load slows both. The table has medians over the rounds and the median of the rounds' ratios.
+Simulators that are not installed are marked. `pip install "boatsim[peers]"` installs those on
+PyPI; the Python vehicle simulator comes from its repository.
 """
 
 import argparse
@@ -31,7 +32,8 @@ PWM = {
 ELLIPSOID = """<mujoco>
   <option timestep="{step}" gravity="0 0 0" density="1000" viscosity="0.001" integrator="RK4"/>
   <worldbody><body>
-    <joint type="slide" axis="1 0 0"/><joint type="slide" axis="0 1 0"/><joint type="hinge" axis="0 0 1"/>
+    <joint type="slide" axis="1 0 0"/><joint type="slide" axis="0 1 0"/>
+    <joint type="hinge" axis="0 0 1"/>
     <inertial pos="0 0 0" mass="4.6" diaginertia="0.3 1 1.05"/>
     <geom type="ellipsoid" size="0.6 0.15 0.06" fluidshape="ellipsoid" contype="0" conaffinity="0"/>
     <site name="hull" pos="-0.5 0 0"/>
@@ -43,7 +45,7 @@ Work = Callable[[], object]
 
 @dataclass(frozen=True)
 class Pair:
-    """A manoeuvre for some simulated time: theirs, and ours by one or two of our ways."""
+    """A manoeuvre in another simulator and in one or two modes of boatsim."""
 
     name: str
     theirs: Work
@@ -51,7 +53,10 @@ class Pair:
 
 
 def otter() -> Pair:
-    """Fossen's simulator: the Otter from rest with two constant shaft speeds, Euler steps as in its own loop."""
+    """Return the pair for Fossen's simulator.
+
+    The Otter starts from rest with two constant shaft speeds; Euler steps as in its own loop.
+    """
     from python_vehicle_simulator.lib.gnc import attitudeEuler  # type: ignore[import-not-found]
     from python_vehicle_simulator.vehicles import otter as make  # type: ignore[import-not-found]
 
@@ -74,7 +79,10 @@ def otter() -> Pair:
 
 
 def tanker() -> Pair:
-    """ShipMMG: turning circle of the KVLCC2 model; theirs by scipy's own steps, ours of 0.1 s."""
+    """Return the pair for ShipMMG: turning circle of the KVLCC2 model.
+
+    ShipMMG uses scipy's adaptive steps, boatsim steps of 0.1 s.
+    """
     from shipmmg.mmg_3dof import (  # type: ignore[import-not-found]
         Mmg3DofBasicParams,
         Mmg3DofManeuveringParams,
@@ -111,10 +119,11 @@ def tanker() -> Pair:
         x_P=-0.48,
     )
     polynomials = Mmg3DofManeuveringParams(
-        k_0=0.2931, k_1=-0.2753, k_2=-0.1385, R_0_dash=0.022, X_vv_dash=-0.040, X_vr_dash=0.002, X_rr_dash=0.011,
-        X_vvvv_dash=0.771, Y_v_dash=-0.315, Y_r_dash=0.083, Y_vvv_dash=-1.607, Y_vvr_dash=0.379, Y_vrr_dash=-0.391,
-        Y_rrr_dash=0.008, N_v_dash=-0.137, N_r_dash=-0.049, N_vvv_dash=-0.030, N_vvr_dash=-0.294, N_vrr_dash=0.055,
-        N_rrr_dash=-0.013,
+        k_0=0.2931, k_1=-0.2753, k_2=-0.1385, R_0_dash=0.022,
+        X_vv_dash=-0.040, X_vr_dash=0.002, X_rr_dash=0.011, X_vvvv_dash=0.771,
+        Y_v_dash=-0.315, Y_r_dash=0.083, Y_vvv_dash=-1.607, Y_vvr_dash=0.379,
+        Y_vrr_dash=-0.391, Y_rrr_dash=0.008, N_v_dash=-0.137, N_r_dash=-0.049,
+        N_vvv_dash=-0.030, N_vvr_dash=-0.294, N_vrr_dash=0.055, N_rrr_dash=-0.013,
     )  # fmt: skip
     times = np.linspace(0.0, seconds, 2001)
     rudder = np.full(len(times), RUDDER["delta_rad"])
@@ -129,7 +138,10 @@ def tanker() -> Pair:
 
 
 def fluid() -> Pair:
-    """MuJoCo's own ellipsoid in fluid of the joystick boat's size: no added mass in its inertia, no outboards."""
+    """Return the pair for MuJoCo's ellipsoid fluid model, at the size of the joystick boat.
+
+    It has no added mass in its inertia and no outboards.
+    """
     import mujoco
 
     model = mujoco.MjModel.from_xml_string(ELLIPSOID.format(step=STEP))
@@ -146,7 +158,11 @@ def fluid() -> Pair:
 
 
 def gym_boat() -> Pair:
-    """A motor boat of Gymnasium, one Euler step a control step, against ours through dm_env, four of Runge-Kutta."""
+    """Return the pair for a motor boat of Gymnasium.
+
+    It takes one Euler step per control step; boatsim runs through dm_env with four Runge-Kutta
+    steps.
+    """
     import gym_sailing  # type: ignore[import-not-found] # noqa: F401
     import gymnasium
 
@@ -178,7 +194,7 @@ def of_us(
     steps: int,
     step: float = STEP,
 ) -> dict[str, Work]:
-    """Compiled engine and MuJoCo engine on so many steps of Runge-Kutta under constant commands."""
+    """Return runs of the compiled engine and of the MuJoCo engine under constant commands."""
     compiled, engine = Batch(made, step=step), Engine(made, step=step, show=False)
     moving = State(u=start[len(start) // 2])
 
@@ -198,17 +214,17 @@ PEERS: dict[str, Callable[[], Pair]] = {
 
 
 def took(work: Work) -> float:
-    """Wall time [s]."""
+    """Return the wall time [s]."""
     begin = perf_counter()
     work()
     return perf_counter() - begin
 
 
 def rows(pair: Pair, rounds: int) -> Iterator[str]:
-    """Lines of the table: theirs, and each of ours with how many times as fast it is."""
+    """Return the lines of the table: the other simulator, then each mode and its speed-up."""
     works = {"theirs": pair.theirs, **pair.ours}
     for work in works.values():
-        work()  # imports, compiles
+        work()  # import and compile before the time is measured
     seconds = {name: [took(work)] for name, work in works.items()}
     for _ in range(rounds - 1):
         for name, work in works.items():

@@ -84,7 +84,7 @@ def test_an_update_without_a_reason_is_refused(
     reason: list[str], capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert main(["--update", *reason]) == 2
-    assert capsys.readouterr().err == '--update needs --reason "why the norms changed"\n'
+    assert capsys.readouterr().err == '--update needs --reason "why the metrics changed"\n'
 
 
 def test_an_update_writes_the_values_and_the_reason(tmp_path: Path) -> None:

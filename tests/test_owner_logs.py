@@ -209,14 +209,14 @@ def test_advice_goes_into_a_recording_toml_beside_what_is_there(tmp_path: Path) 
 
 
 def test_findings_are_read_from_what_check_prints() -> None:
-    from validation.owner_logs.commands import Said
+    from validation.owner_logs.commands import CommandResult
 
     text = (
         "run.csv: probably your log, not your boat\n"
         "  heading in degrees (probability 99 %): psi_rad goes from 1 to 300\n"
         '    write into recording.toml: [columns] / psi_rad = "psi_rad * deg"\n'
     )
-    found = findings(Said(1, text, "", 0.0))
+    found = findings(CommandResult(1, text, "", 0.0))
     assert [(f.name, f.sure, f.lines) for f in found] == [
         ("heading_in_degrees", 0.99, ("[columns]", 'psi_rad = "psi_rad * deg"'))
     ]

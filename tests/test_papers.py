@@ -83,8 +83,8 @@ def test_published_words_are_judged_by_what_they_stand_for(
     [
         ('ours = 1.0\ncommand = "c"\npublished = 2.0\nwithin = 0.1', "needs a reason"),
         ('norm = "speed"\npublished = 2.0', r"has \['norm'\]; allowed are"),
-        ('scenario = "joystick_boat/sway_1"\nnorm = "speed"', "has no norm speed"),
-        ('scenario = "joystick_boat/nowhere"\nnorm = "speed"', "no norms pinned"),
+        ('scenario = "joystick_boat/sway_1"\nnorm = "speed"', "has no metric speed"),
+        ('scenario = "joystick_boat/nowhere"\nnorm = "speed"', "no stored metrics"),
         (
             'ours = 1.0\ncommand = "c"\npublished = 1.0\nverdict = "reproduced"',
             "'verdict'.*; allowed are",

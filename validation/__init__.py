@@ -1,6 +1,6 @@
-"""Accuracy of the diagnosis on simulated trials and on real recordings; prints tables, asserts nothing."""
+"""Accuracy of the diagnosis on simulated trials and real recordings; prints tables only."""
 
 import os
 
-# Must be set before numpy is imported: the matrices of a diagnosis are too small for several threads.
+# Must be set before numpy is imported: the matrices are too small for several threads.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")

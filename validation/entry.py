@@ -46,7 +46,8 @@ def answers_in(results: Path, trials: list[str]) -> dict[str, dict[str, Any]]:
     """
     if not results.is_dir():
         raise BadEntry(
-            f"{results}: there is no such folder; a folder of answers holds T001.../diagnosis.json and so on"
+            f"{results}: there is no such folder; a folder of answers holds "
+            "T001.../diagnosis.json and so on"
         )
     return {name: read_answer(results / name / "diagnosis.json") for name in trials}
 
@@ -59,7 +60,8 @@ def read_answer(file: Path) -> dict[str, Any]:
     """
     if not file.is_file():
         raise BadEntry(
-            f"{file}: there is no such file; every trial needs an answer, be it that nothing is missing"
+            f"{file}: there is no such file; every trial needs an answer, be it that "
+            "nothing is missing"
         )
     try:
         found = json.loads(file.read_text(encoding="utf-8"))

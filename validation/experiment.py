@@ -214,10 +214,16 @@ def case(truth: str, seed: int) -> Outcome:
 
 def print_table(found: Sequence[Outcome]) -> None:
     """Print every case, then the means."""
-    columns = f"{'before':>7s} {'suggested':>9s} {'other':>6s} {'same':>6s} {'expected':>8s} {'gained':>7s}"
+    columns = (
+        f"{'before':>7s} {'suggested':>9s} {'other':>6s} {'same':>6s} {'expected':>8s} "
+        f"{'gained':>7s}"
+    )
     print(f"{'truth':22s} {columns}  suggested manoeuvre")
     for o in found:
-        figures = f"{o.before:7.2f} {o.suggested:9.2f} {o.other:6.2f} {o.same:6.2f} {o.expected:8.1f} {o.gained:7.1f}"
+        figures = (
+            f"{o.before:7.2f} {o.suggested:9.2f} {o.other:6.2f} {o.same:6.2f} "
+            f"{o.expected:8.1f} {o.gained:7.1f}"
+        )
         print(f"{o.truth:22s} {figures}  {o.manoeuvre or '(none suggested)'}")
     print(f"\nmean probability of the truth over {len(found)} cases")
     print(f"  after a short run of gentle steering  {np.mean([o.before for o in found]):.2f}")
@@ -226,7 +232,8 @@ def print_table(found: Sequence[Outcome]) -> None:
     print(f"  with one more run of gentle steering  {np.mean([o.same for o in found]):.2f}")
     print(f"cases with a suggestion: {sum(bool(o.manoeuvre) for o in found)}")
     print(
-        "expected, gained: evidence of the truth over its best rival [nats], predicted and after the suggested run"
+        "expected, gained: evidence of the truth over its best rival [nats], predicted "
+        "and after the suggested run"
     )
 
 

@@ -167,7 +167,8 @@ def main() -> None:
     none = {n: t for n, t in trials.items() if t.causes == (NOTHING,)}
     accidents = sum(bool(t.regions) for t in none.values())
     console.print(
-        f"regions found in nothing-missing trials: {accidents} of {len(none)}, at p < {DEFAULT.locate.region_max_p} a trial"
+        f"regions found in nothing-missing trials: {accidents} of {len(none)}, at p < "
+        f"{DEFAULT.locate.region_max_p} a trial"
     )
     for name, t in trials.items():
         for region in t.regions:
@@ -178,7 +179,8 @@ def main() -> None:
             )
     seconds = [t.seconds for t in trials.values()]
     console.print(
-        f"processor seconds for locating: median {statistics.median(seconds):.3f}, most {max(seconds):.3f}"
+        f"processor seconds for locating: median {statistics.median(seconds):.3f}, most "
+        f"{max(seconds):.3f}"
     )
 
 

@@ -233,7 +233,10 @@ def table(names: Sequence[str], seeds: int, ask: bool = True) -> Iterator[str]:
             f"{len(accused)} of {seeds} {','.join(sorted({n for ns in accused for n in ns}))}".strip()
         )
     yield f"{'good logs accused':24s}" + "".join(f"{c:>24s}" for c in good)
-    yield f"named {total[0]} of {total[2]} ({100.0 * total[0] / total[2]:.0f} %), called physics {total[1]}"
+    yield (
+        f"named {total[0]} of {total[2]} ({100.0 * total[0] / total[2]:.0f} %), called "
+        f"physics {total[1]}"
+    )
 
 
 def main() -> None:

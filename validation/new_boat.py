@@ -220,7 +220,8 @@ def rows(name: str) -> Iterator[list[str]]:
             verdict,
         ]
     print(
-        f"{name}: {', '.join(found['new'].best.effects) or 'nothing'} found in addition to its coefficients",
+        f"{name}: {', '.join(found['new'].best.effects) or 'nothing'} found in addition to "
+        "its coefficients",
         file=sys.stderr,
     )
 

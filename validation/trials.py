@@ -12,7 +12,7 @@ makes such a set):
 
 - a trial is exact if every true effect is named and no other; an effect counts if it is visible
   (adds more than 6 nats in the program that made the trials);
-- a name is wrong unless it is true, or the answer says that it cannot be distinguished from a true
+- a name is wrong unless it is true, or the answer states that it cannot be distinguished from a true
   one;
 - held-out skill is 1 if the patched boat follows run_3 as closely as the fitted true structure, 0
   if it is no better than the recalibrated nominal;
@@ -158,7 +158,8 @@ def skill(trial: Path, out: Path, answer: dict[str, Any]) -> float | None:
     patched = replay_errors(trial, out / "replay.csv", horizon_of(trial))
     if patched is None:
         return -1.0
-    return max(-1.0, min(1.0, (recalibrated - patched) / (recalibrated - true)))
+    saved: float = (recalibrated - patched) / (recalibrated - true)
+    return max(-1.0, min(1.0, saved))
 
 
 def of_its_kind(answer: dict[str, Any], found: dict[str, Any]) -> bool:
@@ -258,7 +259,10 @@ def fit_figures(trials: Path, out: Path, answers: Answers, found: Answers) -> di
         words = f"{statistics.median(seconds):.2f} / {quantile(seconds, 0.95):.2f}"
         table["seconds per diagnosis, median / p95"] = words
     if skills and any((out / n / "replay.csv").is_file() for n in found):
-        tenth = f"{statistics.median(skills):.3f} / {sorted(skills)[len(skills) // 10]:.3f} ({len(skills)} trials)"
+        tenth = (
+            f"{statistics.median(skills):.3f} / {sorted(skills)[len(skills) // 10]:.3f} "
+            f"({len(skills)} trials)"
+        )
         table["held-out skill, median / lowest tenth"] = tenth
     carried = [n for n in found if any(law["carries_over"] for law in found[n]["described"])]
     if ratios := [r for n in carried if (r := of_recalibrated(found[n])) is not None]:
@@ -321,10 +325,12 @@ def unknowns(trials: Path, out: Path, jobs: int, answers: Answers, found: Answer
     print("\nunknowns: the true effect and its look-alikes removed from the library")
     for what, concealed in (("pilot", False), ("concealed", True)):
         print(
-            f"  flagged, {what:10s} {share([flagged[n] for n in again if answers[n]['concealed'] is concealed])}"
+            f"  flagged, {what:10s} "
+            f"{share([flagged[n] for n in again if answers[n]['concealed'] is concealed])}"
         )
     print(
-        f"  flagged, or nothing named  {share([flagged[n] or not f['effects'] for n, f in again.items()])}"
+        "  flagged, or nothing named  "
+        f"{share([flagged[n] or not f['effects'] for n, f in again.items()])}"
     )
     skills = {n: skill(trials / n, out / "unknowns" / n, answers[n]) for n in again}
     skilled = [s for s in skills.values() if s is not None]
@@ -420,7 +426,8 @@ def main() -> None:
         args.jobs, {n: (args.trials / n, args.out / n, ()) for n in answers}, "diagnosing"
     )
     print(
-        f"{len(found)} trials in {time.time() - begin:.0f} s on {args.jobs} processes; answers in {args.out}"
+        f"{len(found)} trials in {time.time() - begin:.0f} s on {args.jobs} processes; "
+        f"answers in {args.out}"
     )
     print_figures(args.trials, args.out, answers, found)
     print_wrong(answers, found)

@@ -142,13 +142,11 @@ def built(
     if plant.rudder:
         options.append(f"--rudder={plant.rudder.x:.2f},{about(rng, plant.rudder.area, 0.1):.2g}")
     names = named(plant)
+    steers: tuple[str, ...] = ()
     if plant.rudder:
         steers = ("rudder_rad",)
-    else:
-        if helm_most:
-            steers = tuple(f"steer_{n}_rad" for n in names)
-        else:
-            steers = ()
+    elif helm_most:
+        steers = tuple(f"steer_{n}_rad" for n in names)
     return Boat(
         name,
         plant,

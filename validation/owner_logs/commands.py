@@ -13,7 +13,7 @@ from typing import Any
 
 
 @dataclass(frozen=True)
-class Said:
+class CommandResult:
     """Result of a command."""
 
     code: int
@@ -30,7 +30,7 @@ class Said:
         return ""
 
 
-def boatsim(*arguments: str | Path) -> Said:
+def boatsim(*arguments: str | Path) -> CommandResult:
     """Run a command; a crash gives exit code 99."""
     from boatsim.cli.commands import app
 
@@ -46,7 +46,7 @@ def boatsim(*arguments: str | Path) -> Said:
                 raise
             code = 99
             err.write(f"traceback: {type(crash).__name__}: {crash}\n")
-    return Said(int(code or 0), out.getvalue(), err.getvalue(), time.time() - begin)
+    return CommandResult(int(code or 0), out.getvalue(), err.getvalue(), time.time() - begin)
 
 
 @dataclass(frozen=True)
@@ -64,10 +64,10 @@ ALLOWED = "a diagnosis allows for it"
 WRITE = "    write into recording.toml: "
 
 
-def findings(said: Said) -> list[Finding]:
+def findings(result: CommandResult) -> list[Finding]:
     """Parse the findings in the printed text."""
     found: list[Finding] = []
-    for line in said.out.splitlines():
+    for line in result.out.splitlines():
         if match := FOUND.match(line):
             found.append(
                 Finding(match["name"].strip().replace(" ", "_"), float(match["sure"]) / 100.0)
@@ -79,11 +79,11 @@ def findings(said: Said) -> list[Finding]:
     return found
 
 
-def limits(said: Said) -> list[str]:
+def limits(result: CommandResult) -> list[str]:
     """Return the lines of `boatsim check` about quantities that cannot be identified."""
     return [
         line.strip()
-        for line in said.out.splitlines()
+        for line in result.out.splitlines()
         if line.startswith("  can not be identified: ")
     ]
 

@@ -8,7 +8,14 @@ from pathlib import Path
 
 from validation.owner_logs.cases import Case, make
 from validation.owner_logs.causes import CAUSES
-from validation.owner_logs.commands import Finding, Said, boatsim, findings, limits, write_into
+from validation.owner_logs.commands import (
+    CommandResult,
+    Finding,
+    boatsim,
+    findings,
+    limits,
+    write_into,
+)
 from validation.owner_logs.formats.log import Written
 from validation.owner_logs.owner import accept, wanted
 
@@ -54,7 +61,7 @@ class Result:
 
 
 class Judge:
-    """Evaluation of one case in a folder of its own."""
+    """Evaluation of one case in a separate folder."""
 
     def __init__(self, case: Case, folder: Path, log_only: bool = False) -> None:
         shutil.rmtree(folder, ignore_errors=True)
@@ -66,16 +73,17 @@ class Judge:
         self.vessel = folder / c.boat.name
         self.history: list[str] = []
 
-    def call(self, *arguments: str | Path) -> Said:
+    def call(self, *arguments: str | Path) -> CommandResult:
         """Run a command and record it in history.txt."""
-        said = boatsim(*arguments)
+        result = boatsim(*arguments)
         shown = " ".join(str(a) for a in arguments)
         self.history.append(
-            f"$ boatsim {shown}\n{said.out}{said.err}[exit {said.code}, {said.seconds:.1f} s]\n"
+            f"$ boatsim {shown}\n{result.out}{result.err}[exit {result.code}, "
+            f"{result.seconds:.1f} s]\n"
         )
         (self.folder / "history.txt").write_text("\n".join(self.history), encoding="utf-8")
-        self.result.seconds += said.seconds
-        return said
+        self.result.seconds += result.seconds
+        return result
 
     def judge(self) -> Result:
         """Run all commands and write result.json."""
@@ -121,19 +129,19 @@ class Judge:
             self.result.read, self.result.edits = True, edits
         return run
 
-    def _refused(self, said: Said, number: int) -> None:
+    def _refused(self, result: CommandResult, number: int) -> None:
         if number == 1:
-            self.result.need = said.last if said.code != 99 else ""
-        self.result.trouble = f"import {number}: {said.last}"
+            self.result.need = result.last if result.code != 99 else ""
+        self.result.trouble = f"import {number}: {result.last}"
 
     def log(self, run: Path) -> None:
         """Record the findings of `boatsim check` and whether its advice corrects the log."""
         r, wrong = self.result, self.case.wrong
-        said = self.call("check", run)
-        found = findings(said)
-        r.found = [f.name for f in found] + [f"limit: {text[17:60]}" for text in limits(said)]
-        if said.code == 2 or said.code == 99:
-            r.trouble = f"check: {said.last}"
+        result = self.call("check", run)
+        found = findings(result)
+        r.found = [f.name for f in found] + [f"limit: {text[17:60]}" for text in limits(result)]
+        if result.code == 2 or result.code == 99:
+            r.trouble = f"check: {result.last}"
         if wrong is None:
             r.accused = any(f.name not in ("position_held",) for f in found)
             return
@@ -141,7 +149,7 @@ class Judge:
             re.search(LIMITS[n], text.lower())
             for n in wrong.named
             if n in LIMITS
-            for text in limits(said)
+            for text in limits(result)
         )
         advice = [f for f in found if f.lines]
         if not wrong.mendable:
@@ -159,10 +167,10 @@ class Judge:
     def physics(self, run: Path) -> None:
         """Record the effects that diagnose names and the prediction of the second log."""
         r, out = self.result, self.folder / "diagnosis"
-        said = self.call("diagnose", run, "--out", out)
-        if said.code:
-            r.trouble = "" if r.fault_named and said.code == 2 else f"diagnose: {said.last}"
-            r.need = said.last
+        result = self.call("diagnose", run, "--out", out)
+        if result.code:
+            r.trouble = "" if r.fault_named and result.code == 2 else f"diagnose: {result.last}"
+            r.need = result.last
             r.physics_named = False if self.case.cause else None
             r.called_physics = False if self.case.fault else None
             return
@@ -174,11 +182,13 @@ class Judge:
         if self.case.cause:
             r.physics_named = bool(set(r.effects) & set(CAUSES[self.case.cause].named))
         if self.case.wrong:
-            told = r.fault_named or any(
+            identified = r.fault_named or any(
                 e["name"] in self.case.wrong.named for e in answer.get("log", [])
             )
-            told = r.fault_named = bool(told or set(r.effects) & set(self.case.wrong.entries))
-            r.called_physics = not told and r.verdict != "nothing_missing"
+            identified = r.fault_named = bool(
+                identified or set(r.effects) & set(self.case.wrong.entries)
+            )
+            r.called_physics = not identified and r.verdict != "nothing_missing"
         self.foretell(out / "patched.toml")
 
     def foretell(self, patched: Path) -> None:
@@ -194,12 +204,12 @@ class Judge:
 
     def error(self, run: Path, vessel: Path, horizon: str) -> float:
         """Return the rms error [m] of free runs."""
-        said = self.call(
+        result = self.call(
             "replay", run, "--vessel", vessel, "--horizon", horizon, "--out", self.folder / "replay"
         )
-        match = POSITION.search(said.out)
+        match = POSITION.search(result.out)
         if not match:
-            self.result.trouble = f"replay: {said.last}"
+            self.result.trouble = f"replay: {result.last}"
         if match:
             return float(match[1])
         return float("nan")

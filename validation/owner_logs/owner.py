@@ -38,7 +38,10 @@ def wanted(boat: Boat, vessel: Path, scales: dict[str, Scale]) -> list[Line]:
 
 
 def _line(channel: str, s: Scale, least: float, most: float) -> Line:
-    ends = f"low = {s.low:g}, neutral = {s.neutral:g}, high = {s.high:g}, least = {least:.4g}, most = {most:.4g}"
+    ends = (
+        f"low = {s.low:g}, neutral = {s.neutral:g}, high = {s.high:g}, least = "
+        f"{least:.4g}, most = {most:.4g}"
+    )
     return Line(
         channel,
         f'{channel} = {{ signal = "{s.signal}", {ends} }}',

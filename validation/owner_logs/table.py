@@ -17,7 +17,10 @@ def line(r: Result) -> str:
         ratio = f"{r.nominal_m:.2f} -> {r.answer_m:.2f} m ({r.ratio:.2f})"
     said = ", ".join(r.effects) or r.verdict or r.need or r.trouble
     found = "" if not r.found else f" [{'; '.join(r.found)}]"
-    return f"{r.number:3d} {r.kind:5s} {r.boat:16s} {r.form:13s} {fault}; {cause}; {said}; {ratio}{found}"
+    return (
+        f"{r.number:3d} {r.kind:5s} {r.boat:16s} {r.form:13s} {fault}; {cause}; {said}; "
+        f"{ratio}{found}"
+    )
 
 
 def _mark(value: bool | None) -> str:

@@ -1,4 +1,5 @@
-"""A second practice set: boats of this repository that differ from their files, recorded by a program of its own.
+"""Second practice set: modified vessels of this repository, recorded by an independent program.
 
-Nothing here imports boatsim: the vessel files give numbers, the equations of motion are written and integrated anew.
+Nothing here imports boatsim: only the numbers come from the vessel files; the equations of motion
+are written and integrated independently.
 """

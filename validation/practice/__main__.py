@@ -1,7 +1,7 @@
-"""Writes the second practice set: `python -m validation.practice --out DIR [--seed N] [--per-vessel 12]`.
+"""Write the second practice set: `python -m validation.practice --out DIR [--seed N]`.
 
-The same seed gives the same files; `python -m validation.trials --make DIR --seed N` makes them too, and
-`python -m validation.trials DIR --out RESULTS` diagnoses and scores them.
+The same seed gives the same files; `python -m validation.trials --make DIR --seed N` makes them
+too, and `python -m validation.trials DIR --out RESULTS` diagnoses and scores them.
 """
 
 import argparse
@@ -15,7 +15,7 @@ PER_VESSEL = 12  # trials
 
 
 def make_set(out: Path, seed: int, per_vessel: int = PER_VESSEL, vessel: str | None = None) -> None:
-    """Make all trials, or those of one vessel, a line printed for each."""
+    """Make all trials, or those of one vessel, and print a line for each."""
     begin = time.time()
     for trial in trials(seed, per_vessel):
         if vessel not in (None, trial.vessel):
@@ -43,7 +43,7 @@ def main() -> None:
     parser.add_argument(
         "--vessel",
         choices=sorted(PLANS),
-        help="this one alone; its trials are those of the whole set",
+        help="only this vessel; its trials are those of the whole set",
     )
     args = parser.parse_args()
     make_set(args.out, args.seed, args.per_vessel, args.vessel)

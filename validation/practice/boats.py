@@ -1,8 +1,9 @@
-"""The vessels of the set as their files state them, their laws written anew from the documented formulas.
+"""Vessels of the set from their files, with laws written from the documented formulas.
 
-Sources of the laws: linear and quadratic damping, added mass, hydrostatics, propellers: T. I. Fossen, Handbook of
-Marine Craft Hydrodynamics, 2nd ed. 2021; cross-flow drag: O. M. Faltinsen, Sea Loads, 1990; the ship: C. R. Martin,
-Rudder Roll Reduction for Small Ships, UBC 1993, after S. Inoue, M. Hirano, K. Kijima 1981.
+Sources of the laws: linear and quadratic damping, added mass, hydrostatics, propellers: T. I.
+Fossen, Handbook of Marine Craft Hydrodynamics, 2nd ed. 2021; cross-flow drag: O. M. Faltinsen, Sea
+Loads, 1990; the ship: C. R. Martin, Rudder Roll Reduction for Small Ships, UBC 1993, after S.
+Inoue, M. Hirano, K. Kijima 1981.
 """
 
 import tomllib
@@ -32,13 +33,13 @@ class File:
         )
 
     def effect(self, name: str) -> dict[str, Any]:
-        """The table of an effect."""
+        """Return the table of an effect."""
         return next(e for e in self.table["effect"] if e.get("name", e["use"]) == name)
 
     def boat(
         self, mass: tuple[Array, Array], law: Any, drive: Drive, c: Mapping[str, float], **more: Any
     ) -> Boat:
-        """With what every file states."""
+        """Return a boat with the values that every file specifies."""
         t = self.table
         free = tuple(i for i, a in enumerate(AXES) if a in t["freedoms"])
         kinds = {k: kind for kind in ("damping", "thrust", "restoring") for k in more.pop(kind, ())}
@@ -60,7 +61,7 @@ class File:
 
 
 def rigid(body: Mapping[str, Any]) -> Array:
-    """(6, 6) of a body whose mass centre is `centre` ahead of and below the origin."""
+    """Return the mass matrix (6, 6) of a body with `centre` ahead of and below the origin."""
     x, z = body.get("centre", (0.0, 0.0))
     lever = np.array([[0.0, -z, 0.0], [z, 0.0, -x], [0.0, x, 0.0]])
     m = body["mass"]
@@ -71,7 +72,7 @@ def rigid(body: Mapping[str, Any]) -> Array:
 
 
 def added(table: Mapping[str, float]) -> Array:
-    """(6, 6) of an added_mass table, its sway acting `sway_at` ahead."""
+    """Return the matrix (6, 6) of an added_mass table, with sway acting `sway_at` ahead."""
     found = np.diag([table.get(a, 0.0) for a in AXES])
     sway, at = table.get("sway", 0.0), table.get("sway_at", 0.0)
     found[1, 5] = found[5, 1] = sway * at
@@ -80,7 +81,7 @@ def added(table: Mapping[str, float]) -> Array:
 
 
 def forces(size: int, **parts: Any) -> Array:
-    """(6, B) from X Y Z K M N."""
+    """Stack X Y Z K M N as (6, B)."""
     found = np.zeros((6, size))
     for name, value in parts.items():
         found["XYZKMN".index(name)] = value
@@ -88,7 +89,7 @@ def forces(size: int, **parts: Any) -> Array:
 
 
 def strips(v: Array, r: Array, stern: float, bow: float) -> tuple[Array, Array]:
-    """Integrals of w|w| and x w|w|, w = v + x r, from stern to bow, by their antiderivatives in w."""
+    """Integrate w|w| and x w|w| with w = v + x r from stern to bow, in closed form."""
     slow = np.abs(r) < 1e-3
     turn = np.where(slow, 1.0, r)
     low, high = v + stern * r, v + bow * r
@@ -104,16 +105,16 @@ def strips(v: Array, r: Array, stern: float, bow: float) -> tuple[Array, Array]:
 
 
 def pushed(size: int, thrust: Array, angle: Array, x: float, y: float) -> Array:
-    """(6, B) of a thrust at a mount."""
+    """Return the force (6, B) of a thrust at a mount."""
     X, Y = thrust * np.cos(angle), thrust * np.sin(angle)
     return forces(size, X=X, Y=Y, N=x * Y - y * X)
 
 
-# ---- one function a vessel
+# ---- one function for each vessel
 
 
 def catamaran() -> Boat:
-    """Huang and Ji's azimuth boat: linear damping, one steered thruster ahead."""
+    """Return Huang and Ji's azimuth boat: linear damping, one steered thruster ahead."""
     file = File("catamaran")
     x = file.effect("thruster")["x"]
     c = {k: file.effect("linear_damping")[k] for k in ("surge", "sway", "yaw")} | {"gain": 1.0}
@@ -129,7 +130,10 @@ def catamaran() -> Boat:
 
 
 def joystick_boat() -> Boat:
-    """The thesis' boat: cross-flow drag, two steered outboards behind lags and servos, fed by motor duty."""
+    """Return the thesis' boat.
+
+    It has cross-flow drag and two steered outboards with lags and servos, driven by motor duty.
+    """
     file = File("joystick_boat")
     flow, drag, pwm, servo = (
         file.effect(n) for n in ("cross_flow_drag", "surge_drag", "pwm_thrust", "servo")
@@ -178,7 +182,7 @@ def joystick_boat() -> Boat:
 
 
 def otter() -> Boat:
-    """Fossen's Otter in six freedoms: two propellers, pontoons with cross-flow drag, hydrostatics."""
+    """Return Fossen's Otter: six dof, two propellers, cross-flow drag, hydrostatics."""
     file = File("otter")
     float_, flow = file.effect("hydrostatics"), file.effect("cross_flow_drag")
     at, half, mounts = float_["flotation"], file.table["length"] / 2, (-0.395, 0.395)
@@ -218,7 +222,7 @@ def otter() -> Boat:
 
 
 def martin_tank_model() -> Boat:
-    """The tank model that rolls."""
+    """Return the tank model that rolls."""
     file = File("martin_tank_model")
     c = {
         "roll": file.effect("linear_damping")["roll"],
@@ -234,7 +238,7 @@ def martin_tank_model() -> Boat:
 
 
 def eastward_ho() -> Boat:
-    """Martin's fishing vessel: linear in sway, yaw and roll, her speed held, one rudder."""
+    """Return Martin's fishing vessel: linear in sway, yaw and roll, speed held, one rudder."""
     file = File("eastward_ho")
     t, hull, rudder = file.table, file.effect("linear_hull"), file.effect("rudder")
     L, T, m, hold = t["length"], t["draught"], t["body"]["mass"], file.effect("speed_hold")
@@ -290,7 +294,10 @@ def eastward_ho() -> Boat:
 
 
 def spheroid(t: Mapping[str, Any]) -> Array:
-    """(6, 6) added mass of a prolate spheroid of length and draught (H. Lamb, Hydrodynamics, 1932), 0.2 in roll."""
+    """Return the added mass (6, 6) of a prolate spheroid of this length and draught.
+
+    Source: H. Lamb, Hydrodynamics, 1932; in roll the coefficient is 0.2.
+    """
     flat = (2 * t["draught"] / t["length"]) ** 2
     e = sqrt(1 - flat)
     a = 2 * flat / e**3 * (atanh(e) - e)
@@ -312,7 +319,10 @@ def spheroid(t: Mapping[str, Any]) -> Array:
 def hull_derivatives(
     t: Mapping[str, Any], hull: Mapping[str, float], U: float, m_x: float
 ) -> dict[str, float]:
-    """Linear derivatives about the mass centre at speed U [m/s]; `m_x` added mass of surge [kg]."""
+    """Return linear derivatives about the mass centre.
+
+    The speed U is in m/s; `m_x` is the added mass of surge [kg].
+    """
     L, T = t["length"], t["draught"]
     k, tau = 2 * T / L, hull["trim"] / T
     lift = 0.5 * pi * k + 1.4 * hull["block"] * t["beam"] / L

@@ -1,4 +1,4 @@
-"""What a cause may do to a boat; every cause of the set is made of these few hooks."""
+"""Hooks through which a cause changes a boat; every cause of the set uses a few of them."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -8,48 +8,50 @@ import numpy as np
 from validation.practice.motion import RUNS, Array, Boat, Flow, Motion, Whole
 
 Rng = np.random.Generator
-Given = Callable[
+GoalMap = Callable[
     [Array, int], Array
 ]  # goals (A, RUNS) and number of the step, from the first row on -> goals
-Shown = Callable[[Array], Array]  # pose (6, B) -> as the recording shows it
+PoseMap = Callable[[Array], Array]  # pose (6, B) -> as the recording shows it
 
 
 @dataclass(frozen=True)
 class Cause:
-    """One thing that a real boat has and its vessel file has not."""
+    """One property that a real boat has and its vessel file lacks."""
 
-    name: str  # as the library calls it, or outside_library:what
-    parameters: Mapping[str, float] = field(default_factory=dict)  # those the library's law has too
+    name: str  # name of the effect in the library, or outside_library:NAME
+    parameters: Mapping[str, float] = field(
+        default_factory=dict
+    )  # parameters shared with the library's law
     boat: Callable[[Boat], Boat] | None = None
-    # of the step [s]; the closure keeps what it remembers
-    drive: Callable[[Boat, float], Given] | None = None
+    # of the step [s]; the closure holds the state
+    drive: Callable[[Boat, float], GoalMap] | None = None
     force: Callable[[Boat, Motion], Array] | None = None
     water: Callable[[Array, Array, Whole], Flow] | None = None
-    show: Shown | None = None
-    late: float = 0.0  # [s] the pose in row t is that of t - late
-    known: "Cause | None" = None  # what of it could be known beforehand; None: all of it
+    show: PoseMap | None = None
+    late: float = 0.0  # [s] latency: the pose in row t is that of t - late
+    known: "Cause | None" = None  # the part that is predictable; None: all of it
     not_compared: tuple[str, ...] = ()
-    same: tuple[str, ...] = ()  # entries that count as the same
-    same_by_hand: tuple[str, ...] = ()  # and those that do where no controller closes the loop
+    same: tuple[str, ...] = ()  # equivalent effects
+    same_by_hand: tuple[str, ...] = ()  # further ones in open-loop trials
 
     @property
     def measured(self) -> bool:
-        """Whether it changes what is recorded, not what the boat does."""
+        """Whether it changes the recording and not the motion."""
         return self.show is not None or self.late != 0.0
 
 
-Maker = Callable[[Boat, Rng, float], Cause]  # of a strength from 0 to 1
+Maker = Callable[[Boat, Rng, float], Cause]  # the last argument is a strength from 0 to 1
 
 
 def changed(boat: Boat, causes: Sequence[Cause]) -> Boat:
-    """The boat with the numbers that its causes change."""
+    """Return the boat with the numbers that its causes change."""
     for cause in causes:
         boat = cause.boat(boat) if cause.boat else boat
     return boat
 
 
 def extra(boat: Boat, causes: Sequence[Cause]) -> Callable[[Motion], Array]:
-    """Sum of the forces of the causes."""
+    """Return the sum of the forces of the causes."""
     acting = [c.force for c in causes if c.force]
 
     def total(m: Motion) -> Array:
@@ -59,7 +61,7 @@ def extra(boat: Boat, causes: Sequence[Cause]) -> Callable[[Motion], Array]:
 
 
 def water(causes: Sequence[Cause]) -> Callable[[Array, Array, Whole], Flow | None]:
-    """The water's velocity where the hulls are; None for still water."""
+    """Return the velocity of the water at the hulls; None for still water."""
     flows = [c.water for c in causes if c.water]
 
     def velocity(t: Array, q: Array, run: Whole) -> Flow | None:
@@ -72,33 +74,36 @@ def water(causes: Sequence[Cause]) -> Callable[[Array, Array, Whole], Flow | Non
     return velocity
 
 
-def shown(causes: Sequence[Cause], q: Array) -> Array:
-    """A pose (6, B) as the recording shows it, lateness aside."""
+def instrument_pose(causes: Sequence[Cause], q: Array) -> Array:
+    """Return a pose (6, B) as the instruments show it, without latency."""
     for cause in causes:
         q = cause.show(q) if cause.show else q
     return q
 
 
 def known(causes: Sequence[Cause]) -> tuple[Cause, ...]:
-    """The causes less what nobody could know beforehand."""
+    """Return the predictable parts of the causes."""
     return tuple(c.known or c for c in causes)
 
 
-# ---- what several causes need
+# ---- helpers of several causes
 
 
 def scaled(boat: Boat, **factors: float) -> Boat:
-    """The boat with some coefficients times factors."""
+    """Return the boat with some coefficients multiplied by factors."""
     return replace(boat, c={k: v * factors.get(k, 1.0) for k, v in boat.c.items()})
 
 
 def sign(rng: Rng) -> float:
-    """Either."""
+    """Sample a sign."""
     return float(rng.choice([-1.0, 1.0]))
 
 
 def wavy(rng: Rng, low: float, high: float, n: int = 10) -> Callable[[Array, Whole], Array]:
-    """A random course of rms 1 for each run: n sines of circular frequencies from low to high [rad/s]."""
+    """Return a random signal of rms 1 for each run.
+
+    It is a sum of n sines with circular frequencies from low to high [rad/s].
+    """
     w, phase = rng.uniform(low, high, (n, 1)), rng.uniform(0.0, 2 * np.pi, (RUNS, n, 1))
 
     def course(t: Array, run: Whole) -> Array:
@@ -108,7 +113,7 @@ def wavy(rng: Rng, low: float, high: float, n: int = 10) -> Callable[[Array, Who
 
 
 def resistance(boat: Boat, axis: int, speed: float) -> float:
-    """What the nominal hull resists one rate with, per rate [N s/m, N m s]."""
+    """Return the nominal hull's resistance to one rate, per rate [N s/m, N m s]."""
     nu = np.zeros((6, 2))
     nu[0] = boat.cruise
     nu[axis, 0] += speed

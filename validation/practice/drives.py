@@ -1,45 +1,45 @@
-"""Causes in motors and steering: what the actuators do of what they are told."""
+"""Causes in motors and steering: deviations of the actuators from their commands."""
 
 from collections.abc import Callable
 
 import numpy as np
 
 from validation.practice.boats import forces, pushed
-from validation.practice.cause import Cause, Given, Rng, sign
+from validation.practice.cause import Cause, GoalMap, Rng, sign
 from validation.practice.motion import RUNS, Array, Boat, Motion
 
 
 def strongest(boat: Boat) -> float:
-    """A usual thrust [N] of one drive."""
+    """Return a usual thrust [N] of one drive."""
     return {"catamaran": 6.0, "joystick_boat": 0.6}.get(boat.name, 1.0)
 
 
-def each(rows: tuple[int, ...], by: Callable[[Array], Array]) -> Given:
-    """A memoryless curve on some actuators."""
+def each(rows: tuple[int, ...], by: Callable[[Array], Array]) -> GoalMap:
+    """Apply a memoryless curve to some actuators."""
     at = list(rows)
 
-    def given(goal: Array, k: int) -> Array:
+    def apply(goal: Array, k: int) -> Array:
         goal = goal.copy()
         goal[at] = by(goal[at])
         return goal
 
-    return given
+    return apply
 
 
-def remembering(rows: tuple[int, ...], follow: Callable[[Array, Array], Array]) -> Given:
-    """Some actuators that go from where they are towards their goal; settled at the first one."""
+def remembering(rows: tuple[int, ...], follow: Callable[[Array, Array], Array]) -> GoalMap:
+    """Let some actuators follow their goals with a state; the first goal initialises it."""
     at, memory = list(rows), dict[str, Array]()
 
-    def given(goal: Array, k: int) -> Array:
+    def apply(goal: Array, k: int) -> Array:
         goal, y = goal.copy(), memory.get("y", goal[at])
         memory["y"] = goal[at] = follow(y, goal[at])
         return goal
 
-    return given
+    return apply
 
 
 def weak_reverse(boat: Boat, rng: Rng, s: float) -> Cause:
-    """Astern thrust k T, coming in by and by."""
+    """Reduce the thrust astern to k T with a smooth transition."""
     k, soft = 1.0 - 0.45 * s, 0.04 * strongest(boat)
 
     def curve(T: Array) -> Array:
@@ -51,10 +51,10 @@ def weak_reverse(boat: Boat, rng: Rng, s: float) -> Cause:
 
 
 def thrust_lag(boat: Boat, rng: Rng, s: float) -> Cause:
-    """Two lags behind each other, in all as late as the library's one."""
+    """Add two lags in series with the same total time as the library's single lag."""
     T = 0.6 * s * boat.scale
 
-    def drive(b: Boat, dt: float) -> Given:
+    def drive(b: Boat, dt: float) -> GoalMap:
         keep = np.exp(-dt / (T / 2))
         first = remembering(b.drive.thrusts, lambda y, goal: goal + (y - goal) * keep)
         second = remembering(b.drive.thrusts, lambda y, goal: goal + (y - goal) * keep)
@@ -64,25 +64,25 @@ def thrust_lag(boat: Boat, rng: Rng, s: float) -> Cause:
 
 
 def command_delay(boat: Boat, rng: Rng, s: float) -> Cause:
-    """Commands late by a time that wanders by a tenth from second to second."""
+    """Delay the commands by a time that varies by a tenth from second to second."""
     late, lots = 0.5 * s * boat.scale, rng.uniform(0.9, 1.1, 4000)
 
-    def drive(b: Boat, dt: float) -> Given:
+    def drive(b: Boat, dt: float) -> GoalMap:
         past: list[Array] = []
 
-        def given(goal: Array, k: int) -> Array:
+        def apply(goal: Array, k: int) -> Array:
             past.append(goal)
             at = max(len(past) - 1 - late * lots[int(len(past) * dt / b.scale)] / dt, 0.0)
             first, part = int(at), at % 1.0
             return np.asarray((1 - part) * past[first] + part * past[min(first + 1, len(past) - 1)])
 
-        return given
+        return apply
 
     return Cause("command_delay", {"delay_s": late}, drive=drive, same_by_hand=("clock_offset",))
 
 
 def thrust_deadband(boat: Boat, rng: Rng, s: float) -> Cause:
-    """Friction of the shaft, smooth where it lets go."""
+    """Add friction of the shaft with a smooth transition."""
     w = 0.2 * s * strongest(boat)
     return Cause(
         "thrust_deadband",
@@ -92,7 +92,7 @@ def thrust_deadband(boat: Boat, rng: Rng, s: float) -> Cause:
 
 
 def thrust_imbalance(boat: Boat, rng: Rng, s: float) -> Cause:
-    """One side pushes harder, a little more so at high thrust."""
+    """Strengthen one side, slightly more at high thrust."""
     f, usual = 0.2 * s * sign(rng), strongest(boat)
 
     def curve(T: Array) -> Array:
@@ -105,7 +105,7 @@ def thrust_imbalance(boat: Boat, rng: Rng, s: float) -> Cause:
 
 
 def steering_offset(boat: Boat, rng: Rng, s: float) -> Cause:
-    """Bent mounts, and a linkage that for the same reason gives a little less than asked."""
+    """Bend the mounts and reduce the steering angle slightly."""
     sides = ("middle",) if len(boat.drive.angles) == 1 else ("port", "starboard")
     off = np.array([[0.15 * s * sign(rng)] for _ in sides])
     stated = {f"{n}_rad": float(a[0]) for n, a in zip(sides, off, strict=True)}
@@ -119,10 +119,10 @@ def steering_offset(boat: Boat, rng: Rng, s: float) -> Cause:
 
 
 def steering_backlash(boat: Boat, rng: Rng, s: float) -> Cause:
-    """Play of the linkage; friction lets the angle creep after it instead of following at once."""
+    """Add play of the linkage; with friction the angle follows gradually."""
     width = 0.3 * s
 
-    def drive(b: Boat, dt: float) -> Given:
+    def drive(b: Boat, dt: float) -> GoalMap:
         def play(y: Array, goal: Array) -> Array:
             return np.clip(y, goal - width / 2, goal + width / 2)
 
@@ -135,10 +135,10 @@ def steering_backlash(boat: Boat, rng: Rng, s: float) -> Cause:
 
 
 def steering_rate_limit(boat: Boat, rng: Rng, s: float) -> Cause:
-    """A steering machine that is slow, and slower still close to its goal."""
+    """Limit the rate of the steering gear, more so close to its goal."""
     rate = 0.12 / s / boat.scale
 
-    def drive(b: Boat, dt: float) -> Given:
+    def drive(b: Boat, dt: float) -> GoalMap:
         near = 0.03  # [rad]
         return remembering(
             b.drive.angles, lambda y, goal: np.asarray(y + rate * dt * np.tanh((goal - y) / near))
@@ -148,7 +148,7 @@ def steering_rate_limit(boat: Boat, rng: Rng, s: float) -> Cause:
 
 
 def rudder_stall(boat: Boat, rng: Rng, s: float) -> Cause:
-    """The force bends over about an angle and falls a little beyond it."""
+    """Let the force saturate near an angle and decrease slightly beyond it."""
     stall = 0.7 - 0.45 * s
 
     def curve(x: Array) -> Array:
@@ -164,7 +164,10 @@ def rudder_stall(boat: Boat, rng: Rng, s: float) -> Cause:
 
 
 def prop_walk(boat: Boat, rng: Rng, s: float) -> Cause:
-    """Side force of the turning propellers, an odd smooth curve that is three times as strong astern."""
+    """Add a side force of the propellers.
+
+    It is an odd smooth curve that is three times as strong astern.
+    """
     k = 0.15 * s * sign(rng)
 
     def force(b: Boat, m: Motion) -> Array:
@@ -179,7 +182,10 @@ def prop_walk(boat: Boat, rng: Rng, s: float) -> Cause:
 
 
 def thrust_loss_with_speed(boat: Boat, rng: Rng, s: float) -> Cause:
-    """Thrust falls with the advance of the propeller, as K_T does with J: a little faster at high speed."""
+    """Reduce the thrust with the propeller's advance, as K_T falls with J.
+
+    The decrease is slightly steeper at high speed.
+    """
     loss = 0.4 * s / boat.scale
 
     def force(b: Boat, m: Motion) -> Array:
@@ -193,7 +199,7 @@ def thrust_loss_with_speed(boat: Boat, rng: Rng, s: float) -> Cause:
 
 
 def thrust_gain_error(boat: Boat, rng: Rng, s: float) -> Cause:
-    """Another propeller than the one in the file; a bend would be evidence of a bend, not of a gain."""
+    """Scale the thrust; a nonlinear curve would be another effect."""
     factor = 1.0 + 0.5 * s * sign(rng)
     return Cause(
         "thrust_gain_error",
@@ -206,19 +212,19 @@ def thrust_gain_error(boat: Boat, rng: Rng, s: float) -> Cause:
 
 
 def seized_motor(boat: Boat, rng: Rng, s: float) -> Cause:
-    """Weed in the first propeller for some seconds of each run: it stutters."""
+    """Foul the first propeller for some seconds of each run, so that it stutters."""
     begin, lasts = rng.uniform(6.0, 24.0, RUNS) * boat.scale, 9.0 * boat.scale
     quick = rng.uniform(1.2, 1.8) / boat.scale  # [1/s]
     at = boat.drive.thrusts[0]
 
-    def drive(b: Boat, dt: float) -> Given:
-        def given(goal: Array, k: int) -> Array:
+    def drive(b: Boat, dt: float) -> GoalMap:
+        def apply(goal: Array, k: int) -> Array:
             t = k * dt
             caught = (begin <= t) & (t < begin + lasts) & ((quick * t) % 1.0 < 0.3 + 0.6 * s)
             goal = goal.copy()
             goal[at] = np.where(caught, 0.15 * goal[at], goal[at])
             return goal
 
-        return given
+        return apply
 
     return Cause("outside_library:seized_motor", drive=drive)

@@ -1,4 +1,4 @@
-"""Causes in the hull: mass, damping, righting; and what instruments show of its motion."""
+"""Causes in mass, damping and restoring forces, and in the instruments."""
 
 from dataclasses import replace
 
@@ -12,20 +12,20 @@ UNITS = {0: "surge_Ns{p}pm{p}", 1: "sway_Ns{p}pm{p}", 3: "roll_Nms{p}", 5: "yaw_
 
 
 def usual_rate(boat: Boat, axis: int) -> float:
-    """A rate of the boat's manoeuvres [m/s, rad/s]."""
+    """Return a rate of the boat's manoeuvres [m/s, rad/s]."""
     return {0: 0.4 * boat.scale, 1: 0.15 * boat.scale, 3: 0.6 / boat.scale, 5: 0.35 / boat.scale}[
         axis
     ]
 
 
 def point(mass: float, x: float, y: float = 0.0) -> Array:
-    """(6, 6) of a mass point at the height of the origin."""
+    """Return the mass matrix (6, 6) of a point mass at the height of the origin."""
     lever = np.array([[0.0, 0.0, y], [0.0, 0.0, -x], [-y, x, 0.0]])
     return np.block([[mass * np.eye(3), -mass * lever], [mass * lever, -mass * lever @ lever]])
 
 
 def extra_mass(boat: Boat, rng: Rng, s: float) -> Cause:
-    """A battery of its own size forward or aft; where the hull floats free, it sinks and trims it."""
+    """Add a battery forward or aft; a free-floating hull sinks and trims."""
     mass, x = 0.2 * s * boat.mass, float(rng.uniform(-0.25, 0.25)) * boat.length
     own = np.diag([0.0, 0.0, 0.0, *[mass * (0.04 * boat.length) ** 2] * 3])
 
@@ -43,7 +43,7 @@ def extra_mass(boat: Boat, rng: Rng, s: float) -> Cause:
 
 
 def mass_centre_shift(boat: Boat, rng: Rng, s: float) -> Cause:
-    """Gear stowed at the other end: half of the mass lies twice as far off."""
+    """Move the stowed gear: half of the mass lies twice as far off."""
     shift = 0.09 * s * boat.length * sign(rng)
     moved = point(boat.mass / 2, 2 * shift) - point(boat.mass / 2, 0.0)
     return Cause(
@@ -52,7 +52,7 @@ def mass_centre_shift(boat: Boat, rng: Rng, s: float) -> Cause:
 
 
 def lateral_centre_shift(boat: Boat, rng: Rng, s: float) -> Cause:
-    """A skeg takes a part of the sway damping with it, to where it is."""
+    """Move part of the sway damping to the position of a skeg."""
     shift = 0.08 * s * boat.length * sign(rng)
     at = 0.4 * boat.length * np.sign(shift)
     share = shift / at
@@ -69,7 +69,10 @@ def lateral_centre_shift(boat: Boat, rng: Rng, s: float) -> Cause:
 def steeper(
     boat: Boat, s: float, name: str, power: float, like: int, axes: tuple[int, ...]
 ) -> Cause:
-    """Damping of a power that is not whole, on top of the boat's own; at a usual rate a share of it."""
+    """Add damping with a non-integer power to the boat's own damping.
+
+    At a usual rate it is a given share of the boat's own.
+    """
     gains = {
         a: 0.9 * s * resistance(boat, a, usual_rate(boat, a)) * usual_rate(boat, a) for a in axes
     }
@@ -88,26 +91,26 @@ def steeper(
 
 
 def quadratic_damping(boat: Boat, rng: Rng, s: float) -> Cause:
-    """Power 1.85."""
+    """Add damping in the manner of the library's quadratic damping."""
     axes = (3,) if boat.free == (3,) else (1, 5) if boat.cruise else (0, 1, 5)
     return replace(steeper(boat, s, "quadratic_damping", 1.85, 2, axes), same=("damping_exponent",))
 
 
 def cubic_damping(boat: Boat, rng: Rng, s: float) -> Cause:
-    """Power 2.9."""
+    """Add damping in the manner of the library's cubic damping."""
     axes = (3,) if 3 in boat.free else (0, 5)
     return steeper(boat, s, "cubic_damping", 2.9, 3, axes)
 
 
 def damping_error(boat: Boat, rng: Rng, s: float) -> Cause:
-    """Weed on the hull: linear damping off by a factor in each axis."""
+    """Scale the linear damping in each axis, as by weed on the hull."""
     factors = {a: 1.0 + s * rng.uniform(0.3, 0.8) for a in ("surge", "sway", "yaw") if a in boat.c}
     stated = {f"{a}_factor": f for a, f in factors.items()}
     return Cause("damping_error", stated, boat=lambda b: scaled(b, **factors))
 
 
 def added_mass_coriolis(boat: Boat, rng: Rng, s: float) -> Cause:
-    """Separation takes a part of the Munk moment away, or the model has it too small."""
+    """Reduce the Munk moment, as by separation, or raise it."""
     missing = 0.7 * s * sign(rng)
     return Cause(
         "added_mass_coriolis",
@@ -120,7 +123,7 @@ def added_mass_coriolis(boat: Boat, rng: Rng, s: float) -> Cause:
 
 
 def righting_arm_stiffening(boat: Boat, rng: Rng, s: float) -> Cause:
-    """A curve of levers: a sine that bends over, or the wall-sided formula that hardens."""
+    """Add a righting arm curve: a saturating sine or the wall-sided formula."""
     bends = bool(rng.integers(2))
     n, wall = 3.0 * np.sqrt(s), 1 / 3 + 4.0 * s
 
@@ -139,7 +142,7 @@ def righting_arm_stiffening(boat: Boat, rng: Rng, s: float) -> Cause:
 
 
 def metacentric_height_error(boat: Boat, rng: Rng, s: float) -> Cause:
-    """Ballast higher or lower than stated."""
+    """Place ballast higher or lower than specified."""
     factor = 1.0 + 0.3 * s * sign(rng)
     return Cause(
         "metacentric_height_error", {"factor": factor}, boat=lambda b: scaled(b, righting=factor)
@@ -147,7 +150,7 @@ def metacentric_height_error(boat: Boat, rng: Rng, s: float) -> Cause:
 
 
 def steady_force(boat: Boat, rng: Rng, s: float) -> Cause:
-    """Ballast off the centre line: a moment that falls with the cosine of the heel."""
+    """Place ballast off the centre line: a moment that falls with the cosine of heel."""
     K = 0.05 * s * boat.c["righting"] * sign(rng)
     return Cause(
         "steady_force", {"roll_Nm": K}, force=lambda b, m: forces(m.t.size, K=K * np.cos(m.q[3]))
@@ -158,7 +161,7 @@ def steady_force(boat: Boat, rng: Rng, s: float) -> Cause:
 
 
 def camera_scale(boat: Boat, rng: Rng, s: float) -> Cause:
-    """Each axis of the camera has a length of its own."""
+    """Scale each axis of the camera differently."""
     x, y = 0.12 * s * sign(rng), 0.12 * s * sign(rng)
     stretch = np.array([[1 + x], [1 + y], [1.0], [1.0], [1.0], [1.0]])
     return Cause(
@@ -167,7 +170,7 @@ def camera_scale(boat: Boat, rng: Rng, s: float) -> Cause:
 
 
 def heading_deviation(boat: Boat, rng: Rng, s: float) -> Cause:
-    """A compass near iron: semicircular, and a little quadrantal."""
+    """Add a compass deviation: semicircular and slightly quadrantal."""
     size, phase = 0.2 * s, rng.uniform(-np.pi, np.pi)
     cos, sin = float(size * np.cos(phase)), float(size * np.sin(phase))
 
@@ -179,14 +182,14 @@ def heading_deviation(boat: Boat, rng: Rng, s: float) -> Cause:
 
 
 def heading_offset(boat: Boat, rng: Rng, s: float) -> Cause:
-    """A compass mounted askew."""
+    """Mount the compass askew."""
     off = 0.15 * s * sign(rng)
     stated = {"offset_rad": off}
     return Cause("heading_offset", stated, show=lambda q: np.concatenate([q[:5], q[5:] + off]))
 
 
 def position_frame_error(boat: Boat, rng: Rng, s: float) -> Cause:
-    """The antenna stands elsewhere."""
+    """Move the antenna."""
     ahead, side = 0.18 * s * boat.length * sign(rng), 0.05 * s * boat.length * sign(rng)
 
     def show(q: Array) -> Array:
@@ -197,7 +200,7 @@ def position_frame_error(boat: Boat, rng: Rng, s: float) -> Cause:
 
 
 def clock_offset(boat: Boat, rng: Rng, s: float) -> Cause:
-    """Poses late behind commands."""
+    """Delay the poses relative to the commands."""
     late = 0.4 * s * boat.scale
     return Cause("clock_offset", {"pose_late_s": late}, late=late, same_by_hand=("command_delay",))
 
@@ -206,7 +209,7 @@ def clock_offset(boat: Boat, rng: Rng, s: float) -> Cause:
 
 
 def bilge_pump(boat: Boat, rng: Rng, s: float) -> Cause:
-    """A jet to one side for a second, every few seconds."""
+    """Add a jet to one side for a second, every few seconds."""
     every, push = rng.uniform(4.0, 7.0) * boat.scale, 40.0 * s * boat.push
     begin = rng.uniform(0.0, every, RUNS)
 
@@ -219,7 +222,7 @@ def bilge_pump(boat: Boat, rng: Rng, s: float) -> Cause:
 
 
 def eddies(boat: Boat, rng: Rng, s: float) -> Cause:
-    """Forces that belong to places: a row of eddies a few lengths apart."""
+    """Add forces that depend on position: a row of eddies a few lengths apart."""
     k, push = 2 * np.pi / (3.0 * boat.length), 25.0 * s * boat.push
     a, b = rng.uniform(0.0, 2 * np.pi, 2)
 
@@ -232,7 +235,7 @@ def eddies(boat: Boat, rng: Rng, s: float) -> Cause:
 
 
 def lifting_hull(boat: Boat, rng: Rng, s: float) -> Cause:
-    """A dented bow: beyond a speed the hull is lifted to one side."""
+    """Dent the bow: beyond a speed the hull lifts to one side."""
     push, side, from_ = 60.0 * s * boat.push, sign(rng), 0.3 * boat.scale
 
     def force(b: Boat, m: Motion) -> Array:
@@ -243,7 +246,7 @@ def lifting_hull(boat: Boat, rng: Rng, s: float) -> Cause:
 
 
 def stiction(boat: Boat, rng: Rng, s: float) -> Cause:
-    """A rubbing stern gland or guide: dry friction in roll."""
+    """Add dry friction in roll, as of a rubbing stern gland or guide."""
     K = 0.004 * s * boat.c["righting"]
     return Cause(
         "outside_library:stiction",
@@ -252,7 +255,7 @@ def stiction(boat: Boat, rng: Rng, s: float) -> Cause:
 
 
 def shifting_cargo(boat: Boat, rng: Rng, s: float) -> Cause:
-    """Something loose that rolls from side to side every now and then."""
+    """Add a weight that moves from side to side at intervals."""
     K, slow = 0.04 * s * boat.c["righting"], wavy(rng, 0.3 / boat.scale, 1.2 / boat.scale, 4)
     return Cause(
         "outside_library:shifting_cargo",

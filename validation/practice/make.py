@@ -1,4 +1,4 @@
-"""Makes trials: draws what is concealed, sails three runs, asks the oracle, writes recordings and answers."""
+"""Generation of trials: sample causes, simulate three runs, compute evidence, write files."""
 
 import json
 from collections.abc import Iterator
@@ -19,7 +19,7 @@ from validation.practice.sail import Voyage, sail
 COLUMNS = ("x_m", "y_m", "z_m", "phi_rad", "theta_rad", "psi_rad")
 FAMILIES = ("position", "position", "heave", "roll", "pitch", "heading")
 UNITS = {"position": "m", "heave": "m", "roll": "rad", "pitch": "rad", "heading": "rad"}
-STATED = ("position_sd_m", "heading_sd_rad", "roll_sd_rad")  # what a recording.toml may say
+STATED = ("position_sd_m", "heading_sd_rad", "roll_sd_rad")  # keys of recording.toml
 AXES = ("surge", "sway", "heave", "roll", "pitch", "yaw")
 KINDS = (
     "none",
@@ -28,22 +28,22 @@ KINDS = (
     "single",
     "pair",
     "unknown",
-)  # by turns steered by hand and kept on its track
-CALIBRATION = 0.03  # sd of a real boat's own damping and thrust
-RIGHTING = 0.005  # and of its righting levers
+)  # alternating open-loop and track-keeping trials
+CALIBRATION = 0.03  # relative sd of a real boat's damping and thrust
+RIGHTING = 0.005  # relative sd of its righting levers
 SEEN, SURE = 12.0, (5.0, 20.0)  # [nats] visible from, borderline between
 STRANGE_SEEN, STRANGE_SURE = 20.0, (10.0, 40.0)  # [nats] the same of causes outside the library
 FIRST, WEAK_TO_STRONG = (
     0.5,
     (0.03, 1.2),
-)  # strength of a first try, from which that with the wanted evidence follows
-WANTED, STRANGE_WANTED = (6.0, 300.0), (40.0, 400.0)  # [nats] drawn evenly by ratio
-OUTLIERS, FAR = 0.02, 15.0  # share of the rows, and how far off in sd of the instrument
+)  # initial strength, scaled to reach the target evidence
+WANTED, STRANGE_WANTED = (6.0, 300.0), (40.0, 400.0)  # [nats] sampled log-uniformly
+OUTLIERS, FAR = 0.02, 15.0  # share of the rows, and size in sd of the instrument
 
 
 @dataclass(frozen=True)
 class Trial:
-    """What is to be made."""
+    """Specification of a trial."""
 
     name: str
     vessel: str
@@ -54,7 +54,7 @@ class Trial:
 
 
 def trials(seed: int, per_vessel: int) -> Iterator[Trial]:
-    """All trials of a set: kinds in turn, causes by lot without putting back."""
+    """Return all trials of a set: kinds in turn, causes sampled without replacement."""
     number = 0
     for index, (vessel, plan) in enumerate(PLANS.items()):
         rng = np.random.default_rng([seed, index])
@@ -62,23 +62,28 @@ def trials(seed: int, per_vessel: int) -> Iterator[Trial]:
         for i in range(per_vessel):
             kind, number = KINDS[i % len(KINDS)], number + 1
             if kind == "unknown":
-                drawn = strange.draw(1)
+                sampled_causes = strange.draw(1)
             else:
-                drawn = known.draw({"none": 0, "single": 1, "pair": 2}[kind])
+                sampled_causes = known.draw({"none": 0, "single": 1, "pair": 2}[kind])
             concealed = plan.kept and kind != "none" and (i // len(KINDS) + i) % 2 == 1
             yield Trial(
-                f"T{number:03d}_{vessel}", vessel, kind, concealed, kind == "none" and i > 0, drawn
+                f"T{number:03d}_{vessel}",
+                vessel,
+                kind,
+                concealed,
+                kind == "none" and i > 0,
+                sampled_causes,
             )
 
 
 class Deck:
-    """Causes to draw from, shuffled anew when they run out."""
+    """Causes to sample from, shuffled again when none remain."""
 
     def __init__(self, makers: tuple[Maker, ...], rng: Rng) -> None:
         self.makers, self.rng, self.left = makers, rng, list[Maker]()
 
     def draw(self, n: int) -> tuple[Maker, ...]:
-        """The next n, all different."""
+        """Return the next n, all different."""
         found: list[Maker] = []
         while len(found) < n:
             if not self.left:
@@ -89,7 +94,7 @@ class Deck:
 
 
 def make(trial: Trial, seed: int, out: Path) -> dict[str, Any]:
-    """Write one trial to its folder; its answer."""
+    """Write one trial to its folder and return its answer."""
     lots = (seed, int(trial.name[1:4]))
     plan, strange = PLANS[trial.vessel], trial.kind == "unknown"
     strengths, oracle, gains = chosen(trial, lots)
@@ -106,7 +111,7 @@ def make(trial: Trial, seed: int, out: Path) -> dict[str, Any]:
             for f, s in zip(FAMILIES, oracle.noise, strict=True)
             if s
         },
-        **told(strange, gains),
+        **evidence_entries(strange, gains),
         **same(trial, oracle.causes),
     }
     rng = np.random.default_rng([*lots, 1])
@@ -122,7 +127,11 @@ def make(trial: Trial, seed: int, out: Path) -> dict[str, Any]:
 
 
 def chosen(trial: Trial, lots: tuple[int, int]) -> tuple[Array, Oracle, Array]:
-    """Strengths of the causes with which they give about the evidence that is wanted, the trial, its gains [nats]."""
+    """Return the trial with strengths that give about the target evidence.
+
+    Returns:
+        The strengths of the causes, the trial, and the gains [nats].
+    """
     strange, count = trial.kind == "unknown", len(trial.makers)
     low, high = np.log(STRANGE_WANTED if strange else WANTED)
     wanted = np.exp([np.random.default_rng([*lots, 0, i]).uniform(low, high) for i in range(count)])
@@ -137,7 +146,7 @@ def chosen(trial: Trial, lots: tuple[int, int]) -> tuple[Array, Oracle, Array]:
 
 
 def sailed(trial: Trial, lots: tuple[int, int], strengths: Array) -> Oracle:
-    """The trial with causes of these strengths; all else is drawn alike."""
+    """Simulate the trial with causes of these strengths; all other samples are unchanged."""
     nominal, plan = BOATS[trial.vessel](), PLANS[trial.vessel]
     grid, rng = plan.grid(), np.random.default_rng([*lots, 2])
     noise, real = instruments(nominal, plan, rng), own(nominal, rng)
@@ -151,7 +160,7 @@ def sailed(trial: Trial, lots: tuple[int, int], strengths: Array) -> Oracle:
 
 
 def on_grid(cause: Cause, dt: float) -> Cause:
-    """A late clock is late by whole fine steps."""
+    """Round the latency of a clock to whole fine steps."""
     if not cause.late:
         return cause
     late = max(round(cause.late / dt), 1) * dt
@@ -159,20 +168,20 @@ def on_grid(cause: Cause, dt: float) -> Cause:
 
 
 def instruments(boat: Boat, plan: Plan, rng: Rng) -> Array:
-    """(6,) sd of this trial's."""
+    """Return the instrument noise (6,) of this trial (sd)."""
     usual = {f: sd * rng.uniform(0.7, 1.3) for f, sd in plan.noise.items()}
     return np.array([usual[f] if i in boat.free else 0.0 for i, f in enumerate(FAMILIES)])
 
 
 def own(nominal: Boat, rng: Rng) -> Boat:
-    """A boat as boats are: its own coefficients near those of the file."""
+    """Return a boat with coefficients sampled near those of the file."""
     sd = {"damping": CALIBRATION, "thrust": CALIBRATION, "restoring": RIGHTING}
     factors = {n: 1.0 + sd[kind] * rng.standard_normal() for n, kind in nominal.kinds.items()}
     return replace(nominal, c={n: x * factors.get(n, 1.0) for n, x in nominal.c.items()})
 
 
 def described(cause: Cause) -> dict[str, Any]:
-    """An effect of an answer."""
+    """Return the entry of a cause in answer.json."""
     found: dict[str, Any] = {
         "name": cause.name,
         "parameters": {k: float(v) for k, v in cause.parameters.items()},
@@ -181,14 +190,14 @@ def described(cause: Cause) -> dict[str, Any]:
 
 
 def evidence(oracle: Oracle, strange: bool) -> Array:
-    """Nats that each cause adds to the others, or to the library."""
+    """Return the evidence gain [nats] of each cause over the others, or over the library."""
     return np.array(
         [oracle.beyond_library(c) if strange else oracle.marginal(c) for c in oracle.causes]
     )
 
 
-def told(strange: bool, gains: Array) -> dict[str, Any]:
-    """What the oracle says of the evidence."""
+def evidence_entries(strange: bool, gains: Array) -> dict[str, Any]:
+    """Return the entries about evidence in answer.json."""
     if not len(gains):
         return {}
     seen, (low, high) = (STRANGE_SEEN, STRANGE_SURE) if strange else (SEEN, SURE)
@@ -201,7 +210,7 @@ def told(strange: bool, gains: Array) -> dict[str, Any]:
 
 
 def same(trial: Trial, causes: tuple[Cause, ...]) -> dict[str, Any]:
-    """Entries that count as the true ones."""
+    """Return the effects that are equivalent to the true ones."""
     found = {c.name: [*c.same, *(() if trial.concealed else c.same_by_hand)] for c in causes}
     found = {name: others for name, others in found.items() if others}
     if found:
@@ -210,7 +219,7 @@ def same(trial: Trial, causes: tuple[Cause, ...]) -> dict[str, Any]:
 
 
 def spoilt(voyage: Voyage, noise: Array, rng: Rng) -> Voyage:
-    """Two per cent of the rows far off: reflections, another mark, a jump of the receiver."""
+    """Add outliers to two per cent of the rows, as by reflections or receiver jumps."""
     hit = rng.random((len(voyage.recorded), RUNS)) < OUTLIERS
     jump = FAR * noise[:, None] * rng.standard_normal((len(voyage.recorded), 6, RUNS))
     jump[:, 5] = 0.0
@@ -218,7 +227,7 @@ def spoilt(voyage: Voyage, noise: Array, rng: Rng) -> Voyage:
 
 
 def write(folder: Path, boat: Boat, plan: Plan, voyage: Voyage, answer: dict[str, Any]) -> None:
-    """recording.toml, three runs, answer.json."""
+    """Write recording.toml, three runs and answer.json."""
     folder.mkdir(parents=True, exist_ok=True)
     noise = {f"{f}_sd_{UNITS[f]}": sd for f, sd in plan.noise.items()}
     size = dict(zip(AXES, boat.ambient(), strict=True))

@@ -1,7 +1,8 @@
-"""Newton's law of a hull with any of six freedoms, many hulls at once, and one Runge-Kutta step of it.
+"""Newton's law of hulls with up to six dof, vectorised, with one Runge-Kutta step.
 
-Axes are SNAME; vectors have the order (surge, sway, heave, roll, pitch, yaw), held freedoms are zero. M nu' = tau -
-C(nu) nu with Kirchhoff's form of C (T. I. Fossen, Handbook of Marine Craft Hydrodynamics, 2nd ed. 2021, chapters 3, 6).
+Axes are SNAME; vectors have the order (surge, sway, heave, roll, pitch, yaw), held dof are zero. M
+nu' = tau - C(nu) nu with Kirchhoff's form of C (T. I. Fossen, Handbook of Marine Craft
+Hydrodynamics, 2nd ed. 2021, chapters 3, 6).
 """
 
 from collections.abc import Callable, Mapping
@@ -19,13 +20,13 @@ RUNS = 3  # of a trial
 
 
 class Motion(NamedTuple):
-    """What a force may depend on, for B hulls at once."""
+    """Arguments of a force, for B hulls."""
 
     t: Array  # (B,) s
-    run: Whole  # (B,) which run of the trial, for what differs from run to run
+    run: Whole  # (B,) number of the run in the trial
     q: Array  # (6, B) x y z [m], phi theta psi [rad]
     nu: Array  # (6, B) u v w [m/s], p q r [rad/s] over ground
-    through: Array  # (6, B) the same through the water
+    through: Array  # (6, B) velocity relative to the water
     act: Array  # (A, B) thrusts [N], angles [rad], shaft rates [rad/s]
 
 
@@ -34,17 +35,20 @@ Law = Callable[[Mapping[str, float], Motion], Array]
 
 @dataclass(frozen=True)
 class Drive:
-    """From commands to what the actuators do: a map, then a lag and a rate of each."""
+    """From commands to actuators: a map, then a lag and a rate limit of each."""
 
     goals: Callable[[Array], Array]  # commands (C, B) -> goals (A, B)
-    lag: Array  # (A,) s, 0: at once
+    lag: Array  # (A,) s, 0: no lag
     rate: Array  # (A,) per s
     thrusts: tuple[int, ...] = ()  # which of them push
     angles: tuple[int, ...] = ()  # which of them steer
     mounts: tuple[tuple[float, float], ...] = ()  # x, y [m] of each thrust
 
     def follow(self, y: Array, goal: Array, dt: float) -> Array:
-        """Where the actuators (A, B) are after dt: at the largest rate until the lag is as slow, then as the lag."""
+        """Return the actuators (A, B) after dt.
+
+        They move at the largest rate until the lag is as slow, then with the lag.
+        """
         lag, gap = np.maximum(self.lag, 1e-9)[:, None], goal - y
         left: Array | float = dt
         limited = np.isfinite(self.rate)
@@ -67,24 +71,22 @@ class Boat:
     hull: Array  # (6, 6) rigid body about the origin
     water: Array  # (6, 6) added mass
     c: Mapping[str, float]
-    kinds: Mapping[
-        str, str
-    ]  # of the coefficients that are never known exactly: damping, thrust, restoring
-    uncertainty: Mapping[str, float]  # relative sd of each kind, as the vessel's file states it
+    kinds: Mapping[str, str]  # kinds of the uncertain coefficients: damping, thrust, restoring
+    uncertainty: Mapping[str, float]  # relative sd of each kind from the vessel's file
     law: Law
     drive: Drive
     channels: Mapping[str, tuple[float, float]]  # low, high
     coriolis: float = 1.0  # share of the water's Coriolis force
-    cruise: float = 0.0  # [m/s] speed about which the model is made
+    cruise: float = 0.0  # [m/s] speed about which the model is linearised
 
     @property
     def tilts(self) -> bool:
-        """Axes fixed in the hull; else level ones that turn with the heading alone."""
+        """Whether axes are fixed in the hull; otherwise they stay level and only turn in yaw."""
         return 4 in self.free
 
     @property
     def scale(self) -> float:
-        """Froude's scale of time against the 1.2 m boat of the first practice set."""
+        """Froude's time scale relative to the 1.2 m boat of the first practice set."""
         return float(np.sqrt(self.length / 1.2))
 
     @property
@@ -93,27 +95,27 @@ class Boat:
         return 2.2e-4 * self.mass * GRAVITY
 
     def ambient(self) -> Array:
-        """(6,) rms of the ambient forces [N, N m]."""
+        """Rms of the ambient forces (6,) [N, N m]."""
         lever = np.array([1.0, 1.0, 1.0, self.draught, 0.25 * self.length, 0.25 * self.length])
         held = np.isin(np.arange(6), self.free)
         return np.asarray(self.push * lever * held)
 
     def inverse(self) -> Array:
-        """(6, 6) of the whole mass over the free axes, zero elsewhere."""
+        """Inverse (6, 6) of the total mass over the free axes, zero elsewhere."""
         found, rows = np.zeros((6, 6)), np.ix_(self.free, self.free)
         found[rows] = np.linalg.inv((self.hull + self.water)[rows])
         return found
 
 
 def cross(a: Array, b: Array) -> Array:
-    """Vector product of (3, B)."""
+    """Return the vector product of (3, B)."""
     return np.array(
         [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
     )
 
 
 def kirchhoff(mass: Array, nu: Array) -> Array:
-    """-C(nu) nu (6, B) of a mass matrix, in axes fixed in the hull."""
+    """Return -C(nu) nu (6, B) of a mass matrix, in axes fixed in the hull."""
     momentum = mass @ nu
     v, spin = nu[:3], nu[3:]
     return -np.concatenate(
@@ -122,7 +124,7 @@ def kirchhoff(mass: Array, nu: Array) -> Array:
 
 
 def level(mass: Array, nu: Array) -> Array:
-    """The same of a hull in level axes, which only yaw turns."""
+    """Return -C(nu) nu (6, B) in level axes, which only yaw turns."""
     momentum, found = mass @ nu, np.zeros_like(nu)
     found[0], found[1] = momentum[1] * nu[5], -momentum[0] * nu[5]
     found[5] = nu[1] * momentum[0] - nu[0] * momentum[1]
@@ -130,7 +132,7 @@ def level(mass: Array, nu: Array) -> Array:
 
 
 def earthward(boat: Boat, q: Array) -> Array:
-    """(3, 3, B) body axes to earth axes."""
+    """Return the rotations (3, 3, B) from body to earth axes."""
     psi = q[5]
     cp, sp, zero = np.cos(psi), np.sin(psi), np.zeros_like(psi)
     if not boat.tilts:
@@ -146,7 +148,7 @@ def earthward(boat: Boat, q: Array) -> Array:
 
 
 def pose_rates(boat: Boat, q: Array, nu: Array, R: Array) -> Array:
-    """Rates of the pose (6, B)."""
+    """Return the rates of the pose (6, B)."""
     moved = R[:, 0] * nu[0] + R[:, 1] * nu[1] + R[:, 2] * nu[2]
     if not boat.tilts:
         return np.concatenate([moved, nu[3:]])
@@ -156,7 +158,7 @@ def pose_rates(boat: Boat, q: Array, nu: Array, R: Array) -> Array:
 
 
 class Flow(NamedTuple):
-    """Water (2, B) m/s north and east where the hulls are."""
+    """Velocity (2, B) of the water at the hulls, north and east [m/s]."""
 
     north: Array
     east: Array
@@ -169,7 +171,7 @@ Water = Callable[[Array, Array, Whole], Flow | None]  # of t, q, run
 def seen(
     boat: Boat, t: Array, run: Whole, q: Array, nu: Array, act: Array, water: Water
 ) -> tuple[Motion, Array, Array]:
-    """The motion as forces see it, R, and the water's velocity (3, B) in body axes."""
+    """Return the motion relative to the water, R, and the water's velocity (3, B) in body axes."""
     R, flow = earthward(boat, q), water(t, q, run)
     carried = np.zeros_like(nu[:3]) if flow is None else R[0] * flow.north + R[1] * flow.east
     through = np.concatenate([nu[:3] - carried, nu[3:]])
@@ -177,7 +179,7 @@ def seen(
 
 
 def load(boat: Boat, m: Motion, carried: Array, extra: Extra) -> Array:
-    """(6, B) all that drives M nu': laws, Coriolis forces, water that turns with a uniform current."""
+    """Return M nu' (6, B): laws, Coriolis forces, and the rotation of a uniform current."""
     coriolis = kirchhoff if boat.tilts else level
     found = boat.law(boat.c, m) + extra(m)
     if not carried.any():
@@ -200,7 +202,11 @@ def step(
     water: Water,
     inverse: Array,
 ) -> tuple[Array, Array]:
-    """One Runge-Kutta step; `acts` at its begin, middle and end, `push` (6, B) a force held over it."""
+    """Take one Runge-Kutta step.
+
+    `acts` holds the actuators at begin, middle and end of the step, `push` (6, B) a force held over
+    it.
+    """
 
     def slopes(ahead: float, q: Array, nu: Array, act: Array) -> tuple[Array, Array]:
         m, R, carried = seen(boat, t + ahead, run, q, nu, act, water)

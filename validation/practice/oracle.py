@@ -1,9 +1,10 @@
-"""How much a record tells of a cause to one who knows its true force; and what free runs of the truth are off by.
+"""Evidence of a cause given its true force, and errors of free runs of the true model.
 
-The force that a model without the cause lacks along the true motion is a known signal in coloured noise: ambient force
-plus what noise of the instruments is taken for. Gain = 1/2 sum |F|^2 / S over all frequencies that the rows resolve,
-after all that the model's own coefficients and a stronger ambient force can take up (a matched filter: H. L. Van Trees,
-Detection, Estimation, and Modulation Theory, part I, 1968, section 4.3).
+The force that a model without the cause lacks along the true motion is a known signal in coloured
+noise: the ambient force plus the apparent force of the instrument noise. Gain = 1/2 sum |F|^2 / S
+over all frequencies that the rows resolve, after projecting out the influence of the model's
+coefficients and of a stronger ambient force (a matched filter: H. L. Van Trees, Detection,
+Estimation, and Modulation Theory, part I, 1968, section 4.3).
 """
 
 from collections.abc import Sequence
@@ -11,7 +12,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from validation.practice.cause import Cause, changed, extra, known, shown, water
+from validation.practice.cause import Cause, changed, extra, instrument_pose, known, water
 from validation.practice.motion import RUNS, Array, Boat, load, seen, step
 from validation.practice.sail import Acts, Voyage
 
@@ -29,17 +30,20 @@ class Course:
 
 
 def flat(x: Array) -> Array:
-    """(K, n, RUNS) -> (n, K RUNS)."""
+    """Reshape (K, n, RUNS) to (n, K RUNS)."""
     return np.ascontiguousarray(np.moveaxis(x, 1, 0).reshape(x.shape[1], x.shape[0] * x.shape[2]))
 
 
 class Oracle:
-    """One trial's truth."""
+    """Evidence and reference errors of one trial."""
 
     def __init__(
         self, nominal: Boat, real: Boat, causes: Sequence[Cause], voyage: Voyage, noise: Array
     ) -> None:
-        """`real` has its own coefficients and no cause yet; `noise` (6,) of the instruments."""
+        """Simulate the trial.
+
+        `real` has perturbed coefficients and no cause yet; `noise` (6,) is that of the instruments.
+        """
         self.nominal = nominal
         self.real = real
         self.causes = tuple(causes)
@@ -63,11 +67,11 @@ class Oracle:
         self.spectra = self._spectra()
 
     def acts(self, causes: Sequence[Cause]) -> Acts:
-        """Actuators of the real boat with some of the causes."""
+        """Return the actuators of the real boat with some of the causes."""
         return self.voyage.acts(self.real, causes)
 
     def needed(self, boat: Boat, causes: Sequence[Cause], acts: Acts, course: Course) -> Array:
-        """(K, 6, RUNS) force that a model lacks to move as the course does."""
+        """Return the force (K, 6, RUNS) that a model lacks on this motion."""
         model = changed(boat, causes)
         q, nu, act = flat(course.q), flat(course.nu), flat(acts.begin[self.inside])
         m, _, carried = seen(model, self.t, self.run, q, nu, act, water(causes))
@@ -77,7 +81,7 @@ class Oracle:
         return np.moveaxis(found.reshape(6, -1, RUNS), 0, 1)
 
     def recorded(self, causes: Sequence[Cause]) -> Course:
-        """The true motion as instruments with these errors show it, without noise."""
+        """Return the true motion with these instrument errors, without noise."""
         measured = [c for c in causes if c.measured]
         if not measured:
             return self.true
@@ -87,13 +91,16 @@ class Oracle:
             late_q = np.concatenate(
                 [late_q, np.repeat(late_q[-1:], len(self.true.q) - len(late_q), axis=0)]
             )
-        q = shown(measured, flat(late_q)).reshape(6, -1, RUNS)
+        q = instrument_pose(measured, flat(late_q)).reshape(6, -1, RUNS)
         q = np.moveaxis(q, 0, 1)
         off = level_rates(q, dt) - level_rates(self.true.q, dt)
         return Course(q, self.true.nu + off, self.true.nudot + np.gradient(off, dt, axis=0))
 
     def force_of(self, cause: Cause) -> Array:
-        """(K, 6, RUNS) what a model with all but this cause lacks, ambient forces aside."""
+        """Return the force (K, 6, RUNS) that a model without this cause lacks.
+
+        Ambient forces are excluded.
+        """
         if cause.measured:
             acts = self.acts(self.causes)
             return self.needed(self.real, self.causes, acts, self.recorded([cause])) - self.needed(
@@ -105,7 +112,10 @@ class Oracle:
         )
 
     def _spectra(self) -> Array:
-        """(6, F) two-sided [N^2 s]: ambient force, and noise of the instruments through the hull's impedance."""
+        """Return two-sided spectra (6, F) [N^2 s] of ambient force and instrument noise.
+
+        The noise is converted to force by the hull's impedance.
+        """
         grid, b = self.voyage.grid, self.nominal
         w = 2 * np.pi * np.fft.rfftfreq(grid.steps + 1, grid.dt)
         tau = b.scale
@@ -116,7 +126,7 @@ class Oracle:
         return np.asarray(self.ambient + impedance * self.noise[:, None] ** 2 * grid.row)
 
     def _slopes(self) -> tuple[Array, Array]:
-        """(6,), (6,) stiffness and damping of the nominal hull at its usual speed, each axis for itself."""
+        """Return stiffness and damping (6,) of the nominal hull at its usual speed, by axis."""
         b, none = self.nominal, np.zeros(13)
         q, nu = np.zeros((6, 13)), np.zeros((6, 13))
         nu[0] = b.cruise or 0.3 * b.scale
@@ -129,7 +139,7 @@ class Oracle:
         return np.diag(off[:, 1:7]), np.diag(off[:, 7:])
 
     def white(self, force: Array, runs: Sequence[int] = FITTED) -> Array:
-        """A force in the metric in which half its square is its gain [nats], as one vector, axis after axis."""
+        """Return a force as one vector scaled so that half its square is its gain [nats]."""
         grid = self.voyage.grid
         heard = np.fft.rfftfreq(grid.steps + 1, grid.dt) < 0.5 / grid.row
         axes = list(self.nominal.free)
@@ -142,7 +152,7 @@ class Oracle:
         return np.stack([scaled.real, scaled.imag], 1).ravel()
 
     def coefficients(self) -> dict[str, Array]:
-        """(K, 6, RUNS) what one stated sd of each of the nominal's own coefficients changes."""
+        """Return the force change (K, 6, RUNS) per specified sd of each nominal coefficient."""
         base = self.needed(self.nominal, (), self.own, self.seen)
         found = {}
         for name, kind in self.nominal.kinds.items():
@@ -154,9 +164,10 @@ class Oracle:
         return found
 
     def gain(self, force: Array, others: Sequence[Array]) -> float:
-        """Nats that remain of a force when coefficients, and others of any size, take up what they can.
+        """Return the evidence [nats] of a force after projecting out alternatives.
 
-        Who does not know the force may also take the ambient one of each axis to be stronger than it is, and does.
+        The alternatives are the coefficients, other forces of any size, and a stronger ambient
+        force in each axis.
         """
         y = self.white(force)
         columns = [self.white(f) for f in self.coefficients().values()]
@@ -182,17 +193,21 @@ class Oracle:
         return float(nats.min(axis=0).sum() + 0.5 * theta @ theta)
 
     def marginal(self, cause: Cause) -> float:
-        """Gain of a true cause on top of the trial's others."""
+        """Return the evidence gain of a true cause given the trial's others."""
         return self.gain(
             self.force_of(cause), [self.force_of(c) for c in self.causes if c is not cause]
         )
 
     def beyond_library(self, cause: Cause) -> float:
-        """Gain of a cause on top of simple forces like those of the library, each of any size."""
+        """Return the evidence gain of a cause over simple forces like those of the library."""
         return self.gain(self.force_of(cause), self.simple())
 
     def simple(self) -> list[Array]:
-        """Steady forces of earth and hull, inertia, squares and products of rates, shares and delays of actuators."""
+        """Return simple forces.
+
+        They are steady forces in earth and hull axes, inertia, squares and products of rates, and
+        gains and delays of actuators.
+        """
         c, found = self.seen, []
         psi, zero = c.q[:, 5], np.zeros_like(c.q)
 
@@ -226,9 +241,10 @@ class Oracle:
         return found
 
     def recalibrated(self) -> Boat:
-        """The nominal with its own coefficients fitted to what it lacks in the runs to diagnose from.
+        """Return the nominal with coefficients fitted to the force it lacks.
 
-        Each axis counts as little as what is left of it asks for, as if the ambient force were that strong.
+        The fit uses the runs to diagnose from. Each axis is weighted by the residual, as if the
+        ambient force were that strong.
         """
         names, axes = list(self.nominal.kinds), len(self.nominal.free)
         sd = np.array([self.nominal.uncertainty.get(self.nominal.kinds[n], 0.05) for n in names])
@@ -247,9 +263,10 @@ class Oracle:
         return replace(self.nominal, c={**self.nominal.c, **fitted})
 
     def free_runs(self, horizon: float, rng: np.random.Generator) -> dict[str, float]:
-        """Rms of the position [m] over free runs of the held-out run: nominal, recalibrated, true structure.
+        """Return the position rms [m] over free runs of the held-out run.
 
-        All start where a smoother would: at the truth, off by what it leaves of the noise.
+        The models are nominal, recalibrated and true structure. All start from the truth with the
+        errors that a smoother leaves.
         """
         off = self.left_by_smoother()[:, :, None] * rng.standard_normal((2, 6, 64))
         causes, real = known(self.causes), changed(self.real, self.causes)
@@ -265,9 +282,11 @@ class Oracle:
         }
 
     def left_by_smoother(self) -> Array:
-        """(2, 6) sd of pose and rates: white acceleration q and white noise r leave r w / sqrt(8), times w^2 of rates.
+        """Return the sd (2, 6) of smoothed pose and rates.
 
-        w^4 = q / r; of a double integrator (B. D. O. Anderson, J. B. Moore, Optimal Filtering, 1979, chapter 7).
+        White acceleration q and white noise r leave r w / sqrt(8), times w^2 for rates, with w^4 =
+        q / r, of a double integrator (B. D. O. Anderson, J. B. Moore, Optimal Filtering, 1979,
+        chapter 7).
         """
         r = self.noise**2 * self.voyage.grid.row + 1e-18
         mass = np.maximum(np.diag(self.nominal.hull + self.nominal.water), 1e-9)
@@ -287,7 +306,10 @@ class Oracle:
         start: Course | None,
         late: int,
     ) -> float:
-        """Rms over all free runs at once, one a column; `start` None: from the true state, shown as recorded."""
+        """Return the rms over all free runs, which are simulated as columns.
+
+        With `start` None they begin at the true state and are compared as recorded.
+        """
         grid, v = self.voyage.grid, self.voyage
         rows = round(horizon / grid.row)
         first = np.arange(0, grid.rows - rows, rows) * grid.every
@@ -304,7 +326,9 @@ class Oracle:
         for i in range(rows * grid.every + 1):
             if i % grid.every == 0:
                 row = first // grid.every + i // grid.every
-                squares.append((shown(causes, q)[:2] - v.recorded[row, :2, HELD_OUT].T) ** 2)
+                squares.append(
+                    (instrument_pose(causes, q)[:2] - v.recorded[row, :2, HELD_OUT].T) ** 2
+                )
             now = np.minimum(at + i, len(v.q) - 1)
             three = tuple(part[now, :, HELD_OUT].T for part in acts)
             t = (now - grid.lead) * grid.dt
@@ -325,7 +349,7 @@ class Oracle:
 
 
 def level_rates(q: Array, dt: float) -> Array:
-    """(K, 6, RUNS) surge, sway and yaw rates of recorded positions and headings."""
+    """Return surge, sway and yaw rates (K, 6, RUNS) of recorded positions and headings."""
     found, moved = np.zeros_like(q), np.gradient(q, dt, axis=0)
     c, s = np.cos(q[:, 5]), np.sin(q[:, 5])
     found[:, 0], found[:, 1] = c * moved[:, 0] + s * moved[:, 1], c * moved[:, 1] - s * moved[:, 0]
@@ -334,7 +358,7 @@ def level_rates(q: Array, dt: float) -> Array:
 
 
 def along(like: Array, surge: Array, sway: Array) -> Array:
-    """A force with these two components."""
+    """Return a force with these two components."""
     f = like.copy()
     f[:, 0], f[:, 1] = surge, sway
     return f

@@ -1,4 +1,4 @@
-"""Causes around the hull: wind, current, waves, a line. Each differs in shape from the library's law."""
+"""Causes around the hull: wind, current, waves, a line; shapes differ from the library's laws."""
 
 import numpy as np
 
@@ -8,9 +8,10 @@ from validation.practice.motion import Array, Boat, Flow, Motion, Whole
 
 
 def wind(boat: Boat, rng: Rng, s: float) -> Cause:
-    """Gusty air, force with the square of the air's speed past the hull, by coefficient curves of its angle.
+    """Add gusty wind with coefficient curves of its angle.
 
-    Curves after R. M. Isherwood, RINA 1973, rounded; end-on about half of beam-on.
+    The force is proportional to the square of the relative wind speed. Curves after R. M.
+    Isherwood, RINA 1973, rounded; end-on about half of beam-on.
     """
     beam, toward, speed = 20.0 * s * boat.push, float(rng.uniform(-np.pi, np.pi)), 4.0 * boat.scale
     gusts = wavy(rng, 0.4 / boat.scale, 2.5 / boat.scale)
@@ -33,7 +34,7 @@ def wind(boat: Boat, rng: Rng, s: float) -> Cause:
 
 
 def current(boat: Boat, rng: Rng, s: float) -> Cause:
-    """A stream that breathes and is a little faster to one side."""
+    """Add a current that varies in time and across."""
     speed, toward = 0.08 * s * boat.scale, rng.uniform(-np.pi, np.pi)
     north, east = float(speed * np.cos(toward)), float(speed * np.sin(toward))
     slow, shear = 2 * np.pi / (30.0 * boat.scale), 0.01 / boat.length
@@ -50,7 +51,7 @@ def current(boat: Boat, rng: Rng, s: float) -> Cause:
 
 
 def wave_forcing(boat: Boat, rng: Rng, s: float) -> Cause:
-    """Irregular waves of a narrow band in all of the plane, in roll where the boat rolls."""
+    """Add narrow-band irregular waves in the plane, and in roll if the boat rolls."""
     w = float(rng.uniform(2.6, 4.0)) / boat.scale
     sizes = np.array([4.0, 5.0, 0.0, 25.0 * boat.draught, 0.0, 0.6 * boat.length]) * s * boat.push
     courses = []
@@ -72,7 +73,10 @@ def wave_forcing(boat: Boat, rng: Rng, s: float) -> Cause:
 
 
 def tether(boat: Boat, rng: Rng, s: float) -> Cause:
-    """A slack line from the stern to a fixed point: hangs, then hardens as it straightens, and drags."""
+    """Add a line from the stern to a fixed point.
+
+    It is slack, then stiffens as it straightens, and has drag.
+    """
     L, bearing = boat.length, rng.uniform(-np.pi, np.pi)
     north, east = float(3.0 * L * np.cos(bearing)), float(3.0 * L * np.sin(bearing))
     pull, reach = 6.0 * s * boat.push, 5.0 * L

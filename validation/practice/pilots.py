@@ -1,4 +1,4 @@
-"""Who steers: a hand that moves the joystick by steps, and a keeper of tracks who conceals what is missing."""
+"""Pilots: open-loop step commands, and a track keeper whose feedback conceals effects."""
 
 from dataclasses import dataclass, field
 
@@ -8,12 +8,12 @@ from validation.practice.cause import Rng
 from validation.practice.motion import RUNS, Array, Boat
 from validation.practice.sail import Grid
 
-HELM = np.radians([5.0, 10.0, 20.0, 30.0])  # of the ship's zig-zags
+HELM = np.radians([5.0, 10.0, 20.0, 30.0])  # rudder angles of the ship's zig-zags
 RELEASES = (
     0.32,
     0.12,
     0.22,
-)  # [rad] heel from which the tank model is let go; the last lies between the others
+)  # [rad] heel at which the tank model is released; the last lies between the others
 
 
 @dataclass
@@ -25,16 +25,19 @@ class Hand:
     start: tuple[Array, Array]
 
     def begin(self) -> tuple[Array, Array]:
-        """As it was drawn."""
+        """Return the sampled start."""
         return self.start
 
     def command(self, row: int, pose: Array) -> Array:
-        """Whatever the boat does."""
+        """Return the command of a row, independent of the boat."""
         return np.asarray(self.table[row])
 
 
 def hand(boat: Boat, grid: Grid, rng: Rng) -> Hand:
-    """A pilot by lot; the ship zig-zags at several helms, the tank model is released from several heels."""
+    """Sample an open-loop pilot.
+
+    The ship runs zig-zags at several rudder angles; the tank model is released from several heels.
+    """
     table = np.zeros((grid.rows, len(boat.channels), RUNS))
     shortest, longest = (
         (8.0, 28.0) if boat.name == "eastward_ho" else (1.5 * boat.scale, 4.0 * boat.scale)
@@ -43,7 +46,7 @@ def hand(boat: Boat, grid: Grid, rng: Rng) -> Hand:
         row = 0
         while row < grid.rows and len(boat.channels):
             until = row + max(round(rng.uniform(shortest, longest) / grid.row), 1)
-            table[row:until, :, run] = drawn(boat, rng)
+            table[row:until, :, run] = sample_level(boat, rng)
             row = until
     q, nu = np.zeros((6, RUNS)), np.zeros((6, RUNS))
     q[:2] = rng.uniform(-boat.length, boat.length, (2, RUNS)) if 0 in boat.free else 0.0
@@ -54,8 +57,8 @@ def hand(boat: Boat, grid: Grid, rng: Rng) -> Hand:
     return Hand(boat, table, (q, nu))
 
 
-def drawn(boat: Boat, rng: Rng) -> Array:
-    """Commands of one level."""
+def sample_level(boat: Boat, rng: Rng) -> Array:
+    """Sample the commands of one level."""
     if boat.name == "catamaran":
         return np.array(
             [rng.choice([0.0, 1.5, 3.0, 6.0, 9.0]), rng.choice([0.0, *rng.uniform(-1.2, 1.2, 4)])]
@@ -74,9 +77,10 @@ def drawn(boat: Boat, rng: Rng) -> Array:
 
 @dataclass
 class Keeper:
-    """Follows legs of a polygon at two speeds: PI on speed, PID on the heading towards the next corner.
+    """Track keeper on a polygon at two speeds.
 
-    It knows recorded poses alone; rates come from a filter of its own. The ship keeps courses instead.
+    It has PI control of the speed and PID control of the heading to the next corner. It uses
+    recorded poses only and estimates rates by its own filter. The ship keeps courses instead.
     """
 
     boat: Boat
@@ -102,7 +106,7 @@ class Keeper:
         self.sums = np.zeros((2, RUNS))  # integrals of speed and heading errors
 
     def begin(self) -> tuple[Array, Array]:
-        """Heading for the first corner."""
+        """Return the start with the heading to the first corner."""
         q, nu = np.zeros((6, RUNS)), np.zeros((6, RUNS))
         q[5] = (
             self.wanted(0)[0] if self.boat.cruise else np.arctan2(self.legs[0, 1], self.legs[0, 0])
@@ -113,7 +117,7 @@ class Keeper:
         return q, nu
 
     def wanted(self, row: int) -> tuple[Array, Array]:
-        """Heading [rad] and speed [m/s] (RUNS,)."""
+        """Return desired heading [rad] and speed [m/s] (RUNS,)."""
         runs = np.arange(RUNS)
         if self.boat.cruise:
             leg = int(row * self.grid.row / 25.0)
@@ -128,7 +132,7 @@ class Keeper:
         return np.arctan2(ahead[1], ahead[0]), self.speeds[self.leg, runs]
 
     def command(self, row: int, pose: Array) -> Array:
-        """Of the recorded pose."""
+        """Return the command for the recorded pose."""
         b, h = self.boat, self.grid.row
         if row:
             self.filtered[:3] += h * self.filtered[3:]
@@ -150,7 +154,7 @@ class Keeper:
 
 
 def allocated(boat: Boat, X: Array, N: Array) -> Array:
-    """Commands (C, RUNS) that push ahead with X [N] and turn with N [N m], as far as they can."""
+    """Return commands (C, RUNS) for X [N] ahead and N [N m], within the limits."""
     if boat.name == "eastward_ho":
         return np.clip(N / (-12.997 * boat.c["steer"]), -0.5, 0.5)[None]
     if boat.name == "catamaran":

@@ -1,4 +1,4 @@
-"""What is recorded with each vessel: rows, instruments, and the causes that make sense on it."""
+"""Recording plan of each vessel: rows, instruments and plausible causes."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -8,7 +8,7 @@ from validation.practice import drives, hulls, outside
 from validation.practice.cause import Maker
 from validation.practice.sail import LEAD, Grid
 
-AROUND = (  # any boat in the plane
+AROUND = (  # causes of any boat in the plane
     outside.wind,
     outside.current,
     outside.wave_forcing,
@@ -30,20 +30,20 @@ PUSHED = (drives.thrust_deadband, drives.thrust_gain_error, drives.thrust_loss_w
 
 @dataclass(frozen=True)
 class Plan:
-    """Of one vessel."""
+    """Recording plan of one vessel."""
 
     length: float  # [m]
     dt: float  # [s] fine step
-    every: int  # fine steps in a row
+    every: int  # fine steps per row
     noise: Mapping[
         str, float
-    ]  # usual sd of each family of instruments [m, rad]; a trial's own is 0.7 to 1.3 of it
+    ]  # usual sd by instrument family [m, rad]; a trial has 0.7 to 1.3 of it
     single: tuple[Maker, ...]
-    strange: tuple[Maker, ...]  # outside the library
-    kept: bool = True  # a keeper of tracks can conceal what is missing
+    strange: tuple[Maker, ...]  # causes outside the library
+    kept: bool = True  # whether a track keeper may conceal effects
 
     def grid(self) -> Grid:
-        """40 s, by Froude's scale of time against 1.2 m."""
+        """Return the grid of 40 s, Froude-scaled from 1.2 m."""
         scale = sqrt(self.length / 1.2)
         rows = max(round(40.0 * scale / (self.dt * self.every)) + 1, 241)
         return Grid(self.dt, self.every, rows, round(1.0 + LEAD * scale / self.dt))

@@ -1,4 +1,4 @@
-"""Three runs of a real boat at once: actuators, ambient forces, Runge-Kutta steps, and what the instruments show."""
+"""Simulation of three runs: actuators, ambient forces, Runge-Kutta steps and instruments."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -7,10 +7,10 @@ from typing import NamedTuple, Protocol
 import numpy as np
 from scipy.signal import lfilter
 
-from validation.practice.cause import Cause, Rng, changed, extra, shown, water
+from validation.practice.cause import Cause, Rng, changed, extra, instrument_pose, water
 from validation.practice.motion import RUNS, Array, Boat, step
 
-LEAD = 1.0  # [s at 1.2 m] for which the first commands act before the first row
+LEAD = 1.0  # [s at 1.2 m] duration of the first commands before the first row
 
 
 @dataclass(frozen=True)
@@ -18,33 +18,33 @@ class Grid:
     """Fine steps and rows."""
 
     dt: float  # [s]
-    every: int  # steps in a row
+    every: int  # steps per row
     rows: int
     lead: int  # steps before the first row
 
     @property
     def row(self) -> float:
-        """Seconds from row to row."""
+        """Interval of the rows [s]."""
         return self.dt * self.every
 
     @property
     def steps(self) -> int:
-        """From the first row to the last."""
+        """Number of steps from the first row to the last."""
         return self.every * (self.rows - 1)
 
 
 class Pilot(Protocol):
-    """Whoever gives the commands."""
+    """Interface of a pilot."""
 
     def begin(self) -> tuple[Array, Array]:
-        """Pose and rates (6, RUNS) to start from."""
+        """Return pose and rates (6, RUNS) at the start."""
 
     def command(self, row: int, pose: Array) -> Array:
-        """Commands (C, RUNS) of a row, of the recorded pose (6, RUNS)."""
+        """Return the commands (C, RUNS) of a row for the recorded pose (6, RUNS)."""
 
 
 class Acts(NamedTuple):
-    """Actuators at the begin, in the middle and at the end of every step, each (K, A, RUNS)."""
+    """Actuators at begin, middle and end of every step, each (K, A, RUNS)."""
 
     begin: Array
     middle: Array
@@ -52,7 +52,7 @@ class Acts(NamedTuple):
 
 
 class Actuators:
-    """What the actuators do of the commands, settled at the first ones."""
+    """Actuators of a boat, settled at the first commands."""
 
     def __init__(self, boat: Boat, causes: Sequence[Cause], dt: float) -> None:
         self.boat, self.dt = boat, dt
@@ -61,7 +61,7 @@ class Actuators:
         self.y: Array | None = None
 
     def step(self, commands: Array, k: int) -> tuple[Array, Array, Array]:
-        """Over step k from the first row on, commands (C, RUNS)."""
+        """Advance over step k from the first row on, with commands (C, RUNS)."""
         goal = self.boat.drive.goals(commands)
         for cause in self.causes:
             goal = cause(goal, k)
@@ -76,7 +76,7 @@ class Actuators:
 
 @dataclass(frozen=True)
 class Voyage:
-    """Runs on the fine grid, K steps of which the first `grid.lead` come before the first row."""
+    """Runs on the fine grid, K steps; the first `grid.lead` come before the first row."""
 
     grid: Grid
     q: Array  # (K, 6, RUNS)
@@ -86,11 +86,11 @@ class Voyage:
     recorded: Array  # (rows, 6, RUNS) with noise
 
     def row_of(self, k: int) -> int:
-        """Row of commands that step k before or after the first row belongs to."""
+        """Return the row of commands of step k, which may lie before the first row."""
         return min(max(k, 0) // self.grid.every, self.grid.rows - 1)
 
     def acts(self, boat: Boat, causes: Sequence[Cause]) -> Acts:
-        """What another boat's actuators would have done of the same commands."""
+        """Return the actuators of another boat under the same commands."""
         chain = Actuators(boat, causes, self.grid.dt)
         found = []
         for i in range(len(self.q)):
@@ -101,7 +101,7 @@ class Voyage:
 
 
 def ambient(boat: Boat, n: int, dt: float, rng: Rng) -> Array:
-    """(n, 6, RUNS) Ornstein-Uhlenbeck forces in body axes, 1 s scaled by Froude."""
+    """Return Ornstein-Uhlenbeck forces (n, 6, RUNS) in body axes, 1 s Froude-scaled."""
     keep = np.exp(-dt / boat.scale)
     white = rng.standard_normal((n, 6, RUNS))
     white[1:] *= np.sqrt(1.0 - keep * keep)
@@ -111,7 +111,7 @@ def ambient(boat: Boat, n: int, dt: float, rng: Rng) -> Array:
 def sail(
     boat: Boat, causes: Sequence[Cause], pilot: Pilot, grid: Grid, noise: Array, rng: Rng
 ) -> Voyage:
-    """The real boat, `noise` (6,) of its instruments."""
+    """Simulate the real boat; `noise` (6,) is that of its instruments."""
     real = changed(boat, causes)
     count = grid.lead + grid.steps + 1
     push = ambient(boat, count, grid.dt, rng)
@@ -122,7 +122,7 @@ def sail(
     flow = water(causes)
     inverse = real.inverse()
     q, nu = pilot.begin()
-    u = pilot.command(0, shown(causes, q))
+    u = pilot.command(0, instrument_pose(causes, q))
     Q, NU, commands, recorded = [], [], [], []
     run = np.arange(RUNS)
     for i in range(count):
@@ -130,7 +130,7 @@ def sail(
         Q.append(q)
         NU.append(nu)
         if k >= 0 and k % grid.every == 0:
-            recorded.append(shown(causes, Q[max(i - late, 0)]) + errors[k // grid.every])
+            recorded.append(instrument_pose(causes, Q[max(i - late, 0)]) + errors[k // grid.every])
             u = pilot.command(k // grid.every, recorded[-1]) if k else u
             commands.append(u)
         q, nu = step(

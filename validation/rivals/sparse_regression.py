@@ -1,4 +1,4 @@
-"""Sparse regression of accelerations: all effects at once, the least needed removed one by one.
+"""Sparse regression of accelerations on all effects; the least needed are removed one by one.
 
 Positions are smoothed and differentiated twice. The accelerations that the vessel's laws do not
 explain are regressed on the change that each effect causes (Brunton, Proctor, Kutz 2016),
