@@ -37,14 +37,19 @@ def unknown_name(what: str, found: str, allowed: Iterable[str]) -> str:
     """
     names = sorted(allowed)
     nearest = _nearest(found, names)
-    hint = f"; did you mean {nearest!r}?" if nearest else ""
+    hint = ""
+    if nearest:
+        hint = f"; did you mean {nearest!r}?"
     if len(names) <= MAX_LISTED:
         return f"{what} {found!r} does not exist{hint} (there are: {', '.join(names) or 'none'})"
     similar = [name for name in names if found and found in name][:NEAREST_LISTED]
     if not similar:
         similar = get_close_matches(found, names, n=NEAREST_LISTED, cutoff=0.4)
-    others = ", ".join(name for name in similar if name != nearest)
-    examples = f", such as {others}" if others else ""
+    if nearest in similar:
+        similar.remove(nearest)
+    examples = ""
+    if similar:
+        examples = f", such as {', '.join(similar)}"
     return f"{what} {found!r} does not exist{hint} ({len(names)} do{examples})"
 
 
@@ -53,8 +58,17 @@ def _nearest(found: str, names: list[str]) -> str | None:
     if near := get_close_matches(found, names, n=1, cutoff=0.5):
         return near[0]
     last_parts = {name.rpartition("/")[2]: name for name in reversed(names)}
-    near = get_close_matches(found, last_parts, n=1, cutoff=0.5)
-    return last_parts[near[0]] if near else None
+    if near := get_close_matches(found, last_parts, n=1, cutoff=0.5):
+        return last_parts[near[0]]
+    return None
+
+
+def nearest_hint(found: str, allowed: Iterable[str]) -> str:
+    """Return "; did you mean NAME?" with the most similar of the allowed names; "" without one."""
+    near = get_close_matches(found, list(allowed), n=1, cutoff=0.5)
+    if near:
+        return f"; did you mean {near[0]!r}?"
+    return ""
 
 
 def printable(text: str, longest: int | None = None) -> str:
@@ -67,7 +81,9 @@ def printable(text: str, longest: int | None = None) -> str:
     """
     characters = []
     for c in text:
-        characters.append(c if c.isprintable() else c.encode("unicode_escape").decode("ascii"))
+        if not c.isprintable():
+            c = c.encode("unicode_escape").decode("ascii")
+        characters.append(c)
     plain = "".join(characters)
     if longest is None or len(plain) <= longest:
         return plain

@@ -9,9 +9,8 @@ import math
 import re
 from collections.abc import Collection
 from dataclasses import dataclass
-from difflib import get_close_matches
 
-from boatsim.errors import BadInput
+from boatsim.errors import BadInput, nearest_hint
 from boatsim.physics.base import Array
 
 UNITS = {  # word -> factor to the SI unit (rad, s, m, m/s, rad/s, N, m/s^2, 1)
@@ -63,8 +62,10 @@ def parse(text: str, known: Collection[str] = ()) -> Expression:
     rest = text.strip()
     if rest in known:
         return Expression(rest)
-    sign = -1.0 if rest.startswith("-") else 1.0
-    rest = rest.removeprefix("-").strip()
+    sign = 1.0
+    if rest.startswith("-"):
+        sign = -1.0
+        rest = rest[1:].strip()
     if rest in known:
         return Expression(rest, sign)
     offset, factor = 0.0, sign
@@ -74,13 +75,18 @@ def parse(text: str, known: Collection[str] = ()) -> Expression:
             offset *= _unit(found[3])
         rest = rest[: found.start()]
     for _ in range(MAX_FACTORS):
-        found = None if rest in known else FACTOR.search(rest)
+        if rest in known:
+            break
+        found = FACTOR.search(rest)
         if found is None:
             break
         value = _value(found[2])
-        if found[1] and value == 0.0:
+        if not found[1]:
+            factor *= value
+        elif value == 0.0:
             raise BadInput(f"{text!r} divides by zero")
-        factor = factor / value if found[1] else factor * value
+        else:
+            factor /= value
         rest = rest[: found.start()]
     name = rest.strip()
     if not name or "*" in name:
@@ -93,12 +99,13 @@ def parse(text: str, known: Collection[str] = ()) -> Expression:
 
 
 def _value(word: str) -> float:
-    return float(word) if re.fullmatch(rf"[+-]?{NUMBER}", word) else _unit(word)
+    if re.fullmatch(rf"[+-]?{NUMBER}", word):
+        return float(word)
+    return _unit(word)
 
 
 def _unit(word: str) -> float:
     if word in UNITS:
         return UNITS[word]
-    near = get_close_matches(word, UNITS, n=1, cutoff=0.5)
-    hint = f"; did you mean {near[0]!r}?" if near else ""
+    hint = nearest_hint(word, UNITS)
     raise BadInput(f"there is no unit {word[:40]!r}{hint} (there are: {', '.join(sorted(UNITS))})")

@@ -3,7 +3,6 @@
 A log of 10 h at 50 Hz with 25 columns has 45 million cells.
 """
 
-from collections.abc import Iterable
 from contextlib import suppress
 from pathlib import Path
 
@@ -15,7 +14,7 @@ MAX_FILE_BYTES = 4 << 30  # bytes
 MAX_HEADER_BYTES = 1 << 20  # bytes of the first line of a text
 # Memory to read a text file per byte of it: a cell of 8 characters is an object of 57 bytes
 MEMORY_PER_BYTE = 12
-# Memory of a binary table: as it is read, as floats, and in computations
+# Memory of a binary table: the content of the file, floats, and copies in computations
 BYTES_PER_CELL = 24
 # Memory limit of a container, cgroup versions 2 and 1
 CGROUP_LIMITS = (
@@ -63,16 +62,13 @@ def check_memory(path: Path, needed: float) -> None:
 def free_memory() -> float:
     """Return the free memory of machine and container [bytes]; infinity where it is unknown."""
     found = [float("inf")]
-    with suppress(OSError, ValueError, StopIteration):
+    with suppress(OSError, ValueError):
         lines = Path("/proc/meminfo").read_text(encoding="ascii").splitlines()
-        found.append(
-            1024.0 * int(_second(line for line in lines if line.startswith("MemAvailable:")))
-        )
+        for line in lines:
+            if line.startswith("MemAvailable:"):
+                found.append(1024.0 * int(line.split()[1]))
+                break
     for file in CGROUP_LIMITS:
         with suppress(OSError, ValueError):  # "max" where there is no limit
             found.append(float(int(Path(file).read_text(encoding="ascii"))))
     return min(found)
-
-
-def _second(lines: Iterable[str]) -> str:
-    return next(iter(lines)).split()[1]

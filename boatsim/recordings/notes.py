@@ -4,6 +4,7 @@ import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from difflib import get_close_matches
+from functools import partial
 from itertools import pairwise
 from pathlib import Path
 from stat import S_IWOTH
@@ -60,7 +61,9 @@ def unit_of(name: str) -> str:
     for bound in ("_low", "_high"):  # bounds of an adaptive estimate have the unit of the estimate
         name = name.removesuffix(bound)
     _, separator, ending = name.rpartition("_")
-    return UNITS.get(ending, "") if separator else ""
+    if not separator:
+        return ""
+    return UNITS.get(ending, "")
 
 
 class Ambient(TypedDict, total=False):
@@ -79,7 +82,7 @@ class Ambient(TypedDict, total=False):
 
 @dataclass(frozen=True)
 class Notes:
-    """What is known of a recording besides its columns; all empty without a `recording.toml`.
+    """Facts about a recording from its `recording.toml`; all empty without the file.
 
     Attributes:
         vessel: Name or path of the vessel.
@@ -156,9 +159,8 @@ def _own_folders(folder: Path) -> Iterator[Path]:
 def _parse(file: Path, stem: str) -> NotesFile:
     table = read_toml(file)
     runs = _Reader(file, table).table("runs")
-    merged = _merge(
-        {k: v for k, v in table.items() if k != "runs"}, _Reader(file, runs, "runs.").table(stem)
-    )
+    table.pop("runs", None)
+    merged = _merge(table, _Reader(file, runs, "runs.").table(stem))
     return _Reader(file, merged).notes()
 
 
@@ -225,7 +227,9 @@ class _Reader:
     def texts(self, key: str) -> tuple[str, ...]:
         value = self.content.get(key, [])
         texts: list[str] = []
-        for text in value if isinstance(value, list) else [value]:
+        if not isinstance(value, list):
+            value = [value]
+        for text in value:
             if not isinstance(text, str):
                 raise self.bad(key, "a text or a list of texts")
             texts.append(text)
@@ -236,10 +240,13 @@ class _Reader:
         if isinstance(value, int | float) and not isinstance(value, bool):
             if low <= value <= MAX_NUMBER:
                 return float(value)
-        raise self.bad(key, "a number" if low < 0 else f"a number of at least {low:g}")
+        if low < 0:
+            raise self.bad(key, "a number")
+        raise self.bad(key, f"a number of at least {low:g}")
 
     def numbers(self, *, low: float = -math.inf) -> dict[str, float]:
-        return {key: self.number(key, low=low) for key in self.content}
+        read = partial(self.number, low=low)
+        return dict(zip(self.content, map(read, self.content), strict=True))
 
     def use(self) -> tuple[float, float] | None:
         if "use" not in self.content:
@@ -251,7 +258,12 @@ class _Reader:
 
     def columns(self) -> dict[str, str]:
         inner = self.inner("columns")
-        return {name: column for name in inner.content if (column := inner.text(name)) is not None}
+        columns: dict[str, str] = {}
+        for name in inner.content:
+            column = inner.text(name)
+            if column is not None:
+                columns[name] = column
+        return columns
 
     def ambient(self) -> Ambient:
         inner, found = self.inner("ambient"), Ambient()
@@ -269,12 +281,13 @@ class _Reader:
     def sizes(self, key: str) -> list[float] | dict[str, float]:
         """Numbers of at least 0, by axis or in a list."""
         value = self.content[key]
+        listed: list[Value] = [value]
         if isinstance(value, dict):
             listed = list(value.values())
-        else:
-            listed = value if isinstance(value, list) else [value]
+        elif isinstance(value, list):
+            listed = value
         found = _numbers(listed)
-        if len(found) < len(listed) or any(x < 0 for x in found):
+        if len(found) < len(listed) or min(found, default=0.0) < 0:
             raise self.bad(key, "a number of at least 0 for each axis")
         if isinstance(value, dict):
             return dict(zip(value, found, strict=True))
@@ -287,9 +300,15 @@ class _Reader:
 
     def notes(self) -> NotesFile:
         """The notes of the whole file. Raises one BadInput with all mistakes."""
-        known = [key for key in self.content if key in KEYS]
-        # A key with a unit, such as `forward_speed_mps`, is a fact about the run
-        facts = {key: self.content[key] for key in self.content if key not in KEYS and unit_of(key)}
+        facts: dict[str, Value] = {}
+        unknown: list[str] = []
+        for key, value in self.content.items():
+            if key in KEYS:
+                continue
+            if unit_of(key):  # such as `forward_speed_mps`: a fact about the run
+                facts[key] = value
+            else:
+                unknown.append(_with_hint(key, KEYS))
         mistakes: list[str] = []
         notes = Notes(
             vessel=_collect(mistakes, lambda: self.text("vessel"), None),
@@ -304,27 +323,31 @@ class _Reader:
             ),
             facts=_collect(mistakes, lambda: self.all_facts(facts), {}),
         )
-        notes = replace(notes, noise={k: v for k, v in notes.noise.items() if k in NOISE})
+        noise = {name: sd for name, sd in notes.noise.items() if name in NOISE}
         columns: dict[str, str] = _collect(mistakes, self.columns, dict[str, str]())
         if mistakes:
             raise BadInput(joined_mistakes(mistakes, self.file))
-        unknown: list[str] = []
-        for key in self.content:
-            if key not in known and key not in facts:
-                unknown.append(_with_hint(key, KEYS))
         for table, allowed in (("noise", NOISE), ("ambient", AMBIENT)):
             for key in self.table(table):
                 if key not in allowed:
                     unknown.append(_with_hint(f"{table}.{key}", allowed))
-        remarks = (f"{self.file}: not used: {', '.join(unknown)}",) if unknown else ()
-        return NotesFile(notes, columns, remarks, self.file.parent)
+        remarks = []
+        if unknown:
+            remarks.append(f"{self.file}: not used: {', '.join(unknown)}")
+        notes = replace(notes, noise=noise)
+        return NotesFile(notes, columns, tuple(remarks), self.file.parent)
 
     def settings(self) -> dict[str, dict[str, float]]:
         settings = self.inner("set")
-        return {effect: settings.inner(effect).numbers() for effect in settings.content}
+        values: dict[str, dict[str, float]] = {}
+        for effect in settings.content:
+            values[effect] = settings.inner(effect).numbers()
+        return values
 
     def scale(self) -> float | None:
-        return self.number("scale", low=1e-9) if "scale" in self.content else None
+        if "scale" not in self.content:
+            return None
+        return self.number("scale", low=1e-9)
 
     def all_facts(self, outside: Mapping[str, Value]) -> dict[str, Value]:
         """The [facts] table, with the facts outside it."""
@@ -335,7 +358,9 @@ class _Reader:
 def _with_hint(key: str, allowed: tuple[str, ...]) -> str:
     """An unknown key, with the nearest valid one."""
     near = get_close_matches(key.rpartition(".")[2], allowed, n=1, cutoff=0.5)
-    return f"{key} (did you mean {near[0]}?)" if near else key
+    if near:
+        return f"{key} (did you mean {near[0]}?)"
+    return key
 
 
 def joined_mistakes(mistakes: Sequence[str], file: Path) -> str:

@@ -1,11 +1,12 @@
 """Tables as readers return them: columns of numbers, with the first invalid cells."""
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from boatsim.errors import BadInput
 from boatsim.physics.base import Array
@@ -28,6 +29,21 @@ class Raw:
     text: dict[str, tuple[int, str]] = field(default_factory=dict)
 
 
+def select_rows(
+    columns: Mapping[str, Array], rows: "slice | NDArray[np.bool_] | NDArray[np.int64]"
+) -> dict[str, Array]:
+    """Return some rows of a table.
+
+    Args:
+        columns: Name -> values (N,).
+        rows: A slice, a mask (N,) or numbers of rows.
+    """
+    selected = {}
+    for name, values in columns.items():
+        selected[name] = values[rows]
+    return selected
+
+
 def file_error(
     path: Path, message: str, row: int | None = None, column: str | None = None
 ) -> BadInput:
@@ -44,7 +60,9 @@ def file_error(
         places.append(f"row {row}")
     if column is not None:
         places.append(f"column {column}")
-    where = f"{path}: {', '.join(places)}:" if places else f"{path}:"
+    where = f"{path}:"
+    if places:
+        where += f" {', '.join(places)}:"
     return BadInput(" ".join(f"{where} {message}".split()))
 
 

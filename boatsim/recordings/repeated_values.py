@@ -16,4 +16,6 @@ def repeated_rows(fixes: NDArray[np.float64]) -> NDArray[np.bool_]:
     if len(gaps) < MIN_GAPS or (usual := float(np.median(gaps))) < 2.0:
         return none
     regular = np.abs(gaps - usual) <= max(1.0, 0.1 * usual)
-    return ~new if regular.mean() >= MIN_REGULAR_SHARE else none
+    if regular.mean() < MIN_REGULAR_SHARE:
+        return none
+    return ~new

@@ -20,7 +20,7 @@ from boatsim.physics.signals import POSE, RATES, Array
 from boatsim.recordings import limits, units
 from boatsim.recordings.expression import Expression, parse
 from boatsim.recordings.notes import Notes, joined_mistakes, notes_for, unit_of
-from boatsim.recordings.raw_table import Raw, file_error
+from boatsim.recordings.raw_table import Raw, file_error, select_rows
 
 __all__ = ["POSE", "RATES", "Notes", "Recording", "read", "write_csv"]
 
@@ -63,7 +63,7 @@ class Orders:
         """Return the commands that are in force between two times [s]."""
         begin = max(int(np.searchsorted(self.t, from_s + 1e-9, side="right")) - 1, 0)
         end = int(np.searchsorted(self.t, to_s + 1e-9, side="right"))
-        return Orders(self.t[begin:end], {k: v[begin:end] for k, v in self.signals.items()})
+        return Orders(self.t[begin:end], select_rows(self.signals, slice(begin, end)))
 
 
 @dataclass(frozen=True)
@@ -115,8 +115,10 @@ class Recording:
                 f"no rows from {from_s:g} to {to_s:g} s; it has {self.t[0]:g} to {self.t[-1]:g} s"
             )
             raise file_error(self.path or Path(self.name), message, column="t_s")
-        signals = {k: v[inside] for k, v in self.signals.items()}
-        orders = self.orders.between(from_s, to_s) if self.orders else None
+        orders = self.orders
+        if orders:
+            orders = orders.between(from_s, to_s)
+        signals = select_rows(self.signals, inside)
         return replace(self, t=self.t[inside], signals=signals, orders=orders)
 
     def thinned(self, rate: float) -> "Recording":
@@ -128,21 +130,23 @@ class Recording:
         Args:
             rate: Rows per second of the result, approximately [Hz].
         """
-        measured = {k: v for k, v in self.signals.items() if k in MOTION}
-        if any(np.isnan(v).any() for v in measured.values()):
-            return self._thinned_each(rate, measured)
+        measured, commands = _motion_and_others(self.signals)
+        if any(np.isnan(values).any() for values in measured.values()):
+            return self._thinned_each(rate, measured, commands)
         n = max(1, round(1.0 / (rate * float(np.median(np.diff(self.t))))))
         if n == 1:
             return self
-        commands = {k: v for k, v in self.signals.items() if k not in MOTION}
         ends = np.append(np.arange(0, len(self.t), n), len(self.t))
-        signals = {k: v[::n] for k, v in self.signals.items()}
-        signals |= {k: np.add.reduceat(v, ends[:-1]) / np.diff(ends) for k, v in commands.items()}
+        signals = select_rows(self.signals, slice(None, None, n))
+        for name, values in commands.items():
+            signals[name] = np.add.reduceat(values, ends[:-1]) / np.diff(ends)
         return replace(
             self, t=self.t[::n], signals=signals, orders=self.orders or Orders(self.t, commands)
         )
 
-    def _thinned_each(self, rate: float, measured: Mapping[str, Array]) -> "Recording":
+    def _thinned_each(
+        self, rate: float, measured: Mapping[str, Array], commands: dict[str, Array]
+    ) -> "Recording":
         """Return the rows in which at least one signal keeps a sample."""
         kept = {}
         for name, values in measured.items():
@@ -164,14 +168,26 @@ class Recording:
             else:  # the mean until the next row, by time
                 lasts = np.append(np.diff(self.t), np.median(np.diff(self.t)))
                 signals[name] = np.add.reduceat(values * lasts, rows) / np.add.reduceat(lasts, rows)
-        commands = {k: v for k, v in self.signals.items() if k not in measured}
         return replace(
             self, t=self.t[rows], signals=signals, orders=self.orders or Orders(self.t, commands)
         )
 
     def used(self) -> "Recording":
         """Return the part that `use` of the notes selects, or the whole recording."""
-        return self.between(*self.notes.use) if self.notes.use else self
+        if self.notes.use:
+            return self.between(*self.notes.use)
+        return self
+
+
+def _motion_and_others(signals: Mapping[str, Array]) -> tuple[dict[str, Array], dict[str, Array]]:
+    """Poses and rates, and the other signals."""
+    motion, others = {}, {}
+    for name, values in signals.items():
+        if name in MOTION:
+            motion[name] = values
+        else:
+            others[name] = values
+    return motion, others
 
 
 def read(
@@ -193,9 +209,10 @@ def read(
     path, channels = Path(path), channels or {}
     found = notes_for(path)
     raw, _, absent = _renamed(_raw(path), columns or {}, found.columns)
-    needed = [
-        n for n in raw.columns if n == "t_s" or n in (*POSE, *RATES, *channels) or is_command(n)
-    ]
+    needed = []
+    for name in raw.columns:
+        if name in ("t_s", *MOTION, *channels) or is_command(name):
+            needed.append(name)
     _check_columns(raw, needed)
     _check_cells(raw, needed)
     mistakes: list[str] = []
@@ -240,8 +257,9 @@ def read_unchecked(
     if "t_s" not in raw.columns or len(raw.rows) < 2:
         _check_columns(raw, list(raw.columns))
         raise file_error(path, f"has {len(raw.rows)} rows; at least {FEWEST_ROWS} are needed")
-    signals = {n: v for n, v in raw.columns.items() if n != "t_s"}
-    return Recording(path.stem, raw.columns["t_s"], signals, found.notes, path), made
+    signals = dict(raw.columns)
+    t = signals.pop("t_s")
+    return Recording(path.stem, t, signals, found.notes, path), made
 
 
 def write_csv(recording: Recording, path: Path | str) -> None:
@@ -287,7 +305,9 @@ def _raw(path: Path) -> Raw:
     try:
         limits.check_file(path)
         suffix = path.suffix.removeprefix(".").lower()
-        format = suffix if suffix in names("reader") else "csv"
+        format = "csv"
+        if suffix in names("reader"):
+            format = suffix
         found = module_of("reader", format).read(path)
         if not isinstance(found, Raw):
             raise file_error(
@@ -328,13 +348,18 @@ def _renamed(
                     f"{found.signal!r}; did you mean {near[0]!r}? (there are: "
                     f"{', '.join(raw.columns)[:200]})"
                 )
-    used = {e.signal for e in made.values()}
-    kept = {n: v for n, v in raw.columns.items() if n not in used and n not in made}
-    text = {n: raw.text[n] for n in kept if n in raw.text}
-    for ours, e in made.items():
-        kept[ours] = e.of(raw.columns[e.signal])
-        if e.signal in raw.text:
-            text[ours] = raw.text[e.signal]
+    used = {expression.signal for expression in made.values()}
+    kept: dict[str, Array] = {}
+    text: dict[str, tuple[int, str]] = {}
+    for name, values in raw.columns.items():
+        if name not in used and name not in made:
+            kept[name] = values
+            if name in raw.text:
+                text[name] = raw.text[name]
+    for ours, expression in made.items():
+        kept[ours] = expression.of(raw.columns[expression.signal])
+        if expression.signal in raw.text:
+            text[ours] = raw.text[expression.signal]
     remarks: tuple[str, ...] = ()
     if absent:
         remarks = (
@@ -353,9 +378,9 @@ def _check_columns(raw: Raw, needed: list[str]) -> None:
         raise file_error(
             raw.path, f"is missing (there are: {', '.join(raw.columns)[:200]})", 1, "t_s"
         )
-    if not any(name in (*POSE, *RATES) for name in needed):
+    if set(MOTION).isdisjoint(needed):
         raise file_error(
-            raw.path, f"no pose or rate; at least one is needed of {', '.join((*POSE, *RATES))}", 1
+            raw.path, f"no pose or rate; at least one is needed of {', '.join(MOTION)}", 1
         )
     if not len(raw.rows):
         raise file_error(raw.path, f"has a header and no rows; at least {FEWEST_ROWS} are needed")
@@ -366,8 +391,8 @@ def _check_cells(raw: Raw, needed: list[str]) -> None:
         if name in raw.text:
             row, cell = raw.text[name]
             raise file_error(raw.path, f"{cell!r} is not a number", row, name)
-    columns = {name: raw.columns[name] for name in needed}
-    _check_overlap(raw, {name: np.isnan(values) for name, values in columns.items()})
+    columns = dict(zip(needed, map(raw.columns.__getitem__, needed), strict=True))
+    _check_overlap(raw, columns)
     allowed = allowed_gaps(columns)
     first: list[tuple[int, str]] = []
     for name, values in columns.items():
@@ -396,32 +421,31 @@ def allowed_gaps(
     may be empty in the rows that exist for such a signal. Any other empty cell is a mistake in the
     file.
     """
-    empty = {n: np.isnan(v) for n, v in columns.items() if n in (*POSE, *RATES)}
-    slow = {
-        n: e
-        for n, e in empty.items()
-        if e.mean() >= SPARSE_SHARE and len(e) - int(e.sum()) >= FEWEST_ROWS
-    }
+    slow, others = {}, {}
+    for name, values in columns.items():
+        if name not in MOTION:
+            continue
+        empty = np.isnan(values)
+        if empty.mean() >= SPARSE_SHARE and len(empty) - int(empty.sum()) >= FEWEST_ROWS:
+            slow[name] = empty
+        else:
+            others[name] = empty
     if not slow:
         return {}
-    theirs = np.any([~e for e in slow.values()], axis=0)
-    return slow | {n: e & theirs for n, e in empty.items() if n not in slow}
+    has_slow_sample = ~np.all(list(slow.values()), axis=0)
+    for name, empty in others.items():
+        others[name] = empty & has_slow_sample
+    return slow | others
 
 
-def _check_overlap(
-    raw: Raw, empty: Mapping[str, "np.ndarray[tuple[int], np.dtype[np.bool_]]"]
-) -> None:
+def _check_overlap(raw: Raw, columns: Mapping[str, Array]) -> None:
     """Refuse logs merged by time that have poses in some rows and commands in others only."""
-    motion = []
-    commands = []
-    for name, where in empty.items():
-        if name in MOTION:
-            motion.append(where)
-        elif name != "t_s":
-            commands.append(where)
+    motion, commands = _motion_and_others(columns)
+    commands.pop("t_s")
     if not motion or not commands:
         return
-    posed, commanded = ~np.any(motion, axis=0), ~np.any(commands, axis=0)
+    posed = ~np.any(list(map(np.isnan, motion.values())), axis=0)
+    commanded = ~np.any(list(map(np.isnan, commands.values())), axis=0)
     if posed.any() and commanded.any() and not (posed & commanded).any():
         t = raw.columns["t_s"]
         spans = (_span(t[posed]), _span(t[commanded]))
@@ -483,7 +507,9 @@ def _signals(raw: Raw, needed: list[str]) -> tuple[dict[str, Array], list[str]]:
         if name == "t_s" or name in raw.text or (name in ignored and not unit_of(name)):
             continue
         is_heading = name == "psi_rad" or name.endswith("_psi_rad")
-        signals[name] = _unwrapped(values) if is_heading else values
+        if is_heading:
+            values = _unwrapped(values)
+        signals[name] = values
     return signals, ignored
 
 

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from boatsim.physics.base import Array
+from boatsim.recordings.raw_table import select_rows
 
 DEGREES = 180.0 / math.pi
 # Factor by which a ratio may differ from its expected value, for sensors have delay, drift and
@@ -23,6 +24,7 @@ MAX_NOISE = 0.15
 MAX_ROLL = 1.0
 MIN_ROWS = 4  # with increasing time
 MIN_CORRELATION = 0.8  # between two series of the same motion
+ANGLES = {"r_radps": "psi_rad", "p_radps": "phi_rad"}  # rate -> its integral
 
 
 def columns_in_degrees(columns: Mapping[str, Array]) -> dict[str, int]:
@@ -41,23 +43,27 @@ def columns_in_degrees(columns: Mapping[str, Array]) -> dict[str, int]:
     )
     if len(forward) < MIN_ROWS:
         return {}
-    found = _in_degrees({name: values[forward] for name, values in columns.items()})
-    return {name: int(forward[index]) for name, index in found.items()}
+    found = _in_degrees(select_rows(columns, forward))
+    for name, index in found.items():
+        found[name] = int(forward[index])
+    return found
 
 
 def _in_degrees(columns: Mapping[str, Array]) -> dict[str, int]:
-    found: dict[str, int | None] = {}
-    if "psi_rad" in columns:
-        rows, t, psi, others = _measured(columns, "psi_rad")
-        found["psi_rad"] = _row(rows, heading_in_degrees(t, psi, others))
-    if "phi_rad" in columns:
-        rows, t, phi, others = _measured(columns, "phi_rad")
-        found["phi_rad"] = _row(rows, roll_in_degrees(t, phi, others.get("p_radps")))
-    for name, angle in (("r_radps", "psi_rad"), ("p_radps", "phi_rad")):
-        if name in columns:
-            rows, t, rate, others = _measured(columns, name)
-            found[name] = _row(rows, rate_in_degrees(t, rate, others.get(angle)))
-    return {name: index for name, index in found.items() if index is not None}
+    found: dict[str, int] = {}
+    for name in ("psi_rad", "phi_rad", "r_radps", "p_radps"):
+        if name not in columns:
+            continue
+        rows, t, values, others = _measured(columns, name)
+        if name == "psi_rad":
+            index = heading_in_degrees(t, values, others)
+        elif name == "phi_rad":
+            index = roll_in_degrees(t, values, others.get("p_radps"))
+        else:
+            index = rate_in_degrees(t, values, others.get(ANGLES[name]))
+        if index is not None:
+            found[name] = int(rows[index])
+    return found
 
 
 def _measured(
@@ -65,12 +71,9 @@ def _measured(
 ) -> tuple[NDArray[np.int64], Array, Array, dict[str, Array]]:
     """Rows with values of a column: numbers, times, values, and columns without gaps there."""
     rows = np.flatnonzero(np.isfinite(columns[name]))
-    there = {n: v[rows] for n, v in columns.items()}
-    return rows, there["t_s"], there[name], {n: v for n, v in there.items() if np.isfinite(v).all()}
-
-
-def _row(rows: NDArray[np.int64], index: int | None) -> int | None:
-    return None if index is None else int(rows[index])
+    selected = select_rows(columns, rows)
+    others = {n: v for n, v in selected.items() if np.isfinite(v).all()}
+    return rows, selected["t_s"], selected[name], others
 
 
 def heading_in_degrees(t: Array, psi: Array, signals: Mapping[str, Array]) -> int | None:
@@ -101,9 +104,9 @@ def heading_in_degrees(t: Array, psi: Array, signals: Mapping[str, Array]) -> in
         and _follows_course(t, psi, signals["x_m"], signals["y_m"])
     ):
         return largest
-    return (
-        largest if _scatter(steps) > MAX_NOISE or _sustained_turning(t, psi) > MAX_TURNING else None
-    )
+    if _scatter(steps) > MAX_NOISE or _sustained_turning(t, psi) > MAX_TURNING:
+        return largest
+    return None
 
 
 def rate_in_degrees(t: Array, rate: Array, angle: Array | None) -> int | None:
@@ -111,16 +114,23 @@ def rate_in_degrees(t: Array, rate: Array, angle: Array | None) -> int | None:
     largest = int(np.argmax(np.abs(rate)))
     if angle is not None:
         ratio = _ratio(np.unwrap(angle), _turned(t, rate))
-        if _near(ratio, DEGREES) or _near(ratio, 1.0):
-            return largest if _near(ratio, DEGREES) else None
-    return largest if np.percentile(np.abs(rate), 75) > MAX_TURNING else None
+        if _near(ratio, DEGREES):
+            return largest
+        if _near(ratio, 1.0):
+            return None
+    if np.percentile(np.abs(rate), 75) > MAX_TURNING:
+        return largest
+    return None
 
 
 def roll_in_degrees(t: Array, phi: Array, rate: Array | None) -> int | None:
     """Return a row that shows that a roll (N,) is in degrees, None if it is in radians."""
     largest = int(np.argmax(np.abs(phi)))
-    against_rate = math.nan if rate is None else _ratio(_turned(t, rate), phi)
-    return largest if abs(phi[largest]) > MAX_ROLL or _near(against_rate, DEGREES) else None
+    if abs(phi[largest]) > MAX_ROLL:
+        return largest
+    if rate is not None and _near(_ratio(_turned(t, rate), phi), DEGREES):
+        return largest
+    return None
 
 
 def _turned(t: Array, rate: Array) -> Array:
@@ -155,9 +165,8 @@ def _follows_course(t: Array, psi: Array, x: Array, y: Array) -> bool:
     rows = _rows_in(t, 1.0)
     dx, dy = x[rows:] - x[:-rows], y[rows:] - y[:-rows]
     course, bow = np.arctan2(dy, dx), psi[rows // 2 : rows // 2 + len(dx)]
-    degrees, radians = (
-        float(np.median(np.abs(_wrapped(course - a)))) for a in (bow / DEGREES, bow)
-    )
+    degrees = float(np.median(np.abs(_wrapped(course - bow / DEGREES))))
+    radians = float(np.median(np.abs(_wrapped(course - bow))))
     return degrees < 0.3 and radians > 0.6 and float(np.ptp(bow)) > 0.5 * DEGREES
 
 

@@ -1,1 +1,1 @@
-"""From a log of many streams, each with a clock of its own, to one recording."""
+"""Conversion of a log, whose streams have separate clocks, to one recording."""

@@ -11,7 +11,8 @@ from boatsim.recordings.expression import UNITS
 
 # Names of columns that are times; a unit may follow
 CLOCK = re.compile(
-    r"^(t|time|timestamp|stamp|date_?time|utc|gps_?time|epoch|elapsed|seconds?|time_?(s|ms|us|ns)?)$"
+    r"^(t|time|timestamp|stamp|date_?time|utc|gps_?time|epoch|elapsed|seconds?"
+    r"|time_?(s|ms|us|ns)?)$"
 )
 ENDING = re.compile(
     r"[\s_.\[(/]*(?<![a-z])(seconds?|secs?|milliseconds?|s|ms|us|µs|ns|usec|msec|nsec)[\])]*$"
@@ -54,12 +55,15 @@ def seconds(name: str, values: Array) -> Array:
         values: Times (N,); the size of times since 1970 shows their unit.
     """
     finite = values[np.isfinite(values)]
-    middle = float(np.median(finite)) if len(finite) else 0.0
+    middle = 0.0
+    if len(finite):
+        middle = float(np.median(finite))
     for unit in EPOCH_UNITS:
         if YEAR_2000 < middle * unit < YEAR_2100:
             return values * unit
-    found = ENDING.search(name.lower())
-    word = UNIT_WORDS.get(found[1], found[1]) if found else "s"
+    word = "s"
+    if found := ENDING.search(name.lower()):
+        word = UNIT_WORDS.get(found[1], found[1])
     return values * UNITS[word]
 
 
@@ -75,5 +79,9 @@ def dates(cells: Sequence[str]) -> Array | None:
                 when = datetime.fromisoformat(text)
             except ValueError:
                 return None
-            found[i] = (when if when.tzinfo else when.replace(tzinfo=UTC)).timestamp()
-    return found if np.isfinite(found).any() else None
+            if not when.tzinfo:
+                when = when.replace(tzinfo=UTC)
+            found[i] = when.timestamp()
+    if np.isfinite(found).any():
+        return found
+    return None

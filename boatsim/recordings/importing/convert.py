@@ -6,13 +6,12 @@ Remarks of the recording list all samples that were left out or held.
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
-from difflib import get_close_matches
 from math import degrees, isfinite, radians
 from pathlib import Path
 
 import numpy as np
 
-from boatsim.errors import BadInput
+from boatsim.errors import BadInput, nearest_hint
 from boatsim.physics.base import Array
 from boatsim.physics.signals import POSE, RATES
 from boatsim.recordings.expression import Expression, parse
@@ -29,7 +28,7 @@ from boatsim.recordings.importing.resample import (
     placed,
     samples,
 )
-from boatsim.recordings.raw_table import file_error
+from boatsim.recordings.raw_table import file_error, select_rows
 from boatsim.recordings.repeated_values import repeated_rows
 from boatsim.recordings.table import FEWEST_ROWS, MAX_GAP, Recording, allowed_gaps, is_command
 
@@ -87,7 +86,10 @@ def convert(
             converted.
     """
     work = _Work(log, file, map, channels or {}, remarks=list(log.remarks))
-    starts = [float(np.nanmin(s.t)) for s in log.signals.values() if np.isfinite(s.t).any()]
+    starts = []
+    for signal in log.signals.values():
+        if np.isfinite(signal.t).any():
+            starts.append(float(np.nanmin(signal.t)))
     work.begin = min(starts, default=0.0)
     if map.position:
         _add_position(work, map.position)
@@ -122,8 +124,7 @@ def _signal(work: _Work, key: str, text: str) -> tuple[Signal, Expression]:
     except BadInput as error:
         raise BadInput(f"{work.file}: {key} = {text[:80]!r}: {error}") from None
     if found.signal not in work.log.signals:
-        near = get_close_matches(found.signal, list(work.log.signals), n=1, cutoff=0.5)
-        hint = f"; did you mean {near[0]!r}?" if near else ""
+        hint = nearest_hint(found.signal, work.log.signals)
         raise BadInput(
             f"{work.file}: {key} = {text[:80]!r}: {work.log.path.name} has no signal "
             f"{found.signal!r}{hint} (it has "
@@ -229,16 +230,20 @@ def _clock(work: _Work) -> tuple[Array, float]:
     The rows are the samples of the fastest signal and those of others at other times, or evenly
     spaced at the rate of the map.
     """
-    poses = {n: c for n, c in work.columns.items() if n in (*POSE, *RATES)}
-    orders = {n: c for n, c in work.columns.items() if c.held and not n.startswith(HELD)}
-    fastest = max(poses.values(), key=lambda c: c.given.rate)
-    quick = max(orders.values(), key=lambda c: c.given.rate, default=fastest)
-    if quick.given.rate > FASTER * fastest.given.rate:
+    poses, commands = [], []
+    for name, column in work.columns.items():
+        if name in (*POSE, *RATES):
+            poses.append(column.given)
+        if column.held and not name.startswith(HELD):
+            commands.append(column.given)
+    fastest = max(poses, key=lambda one: one.rate)
+    quick = max(commands, key=lambda one: one.rate, default=fastest)
+    if quick.rate > FASTER * fastest.rate:
         fastest = quick
-    begin = min(float(c.given.t[0]) for c in poses.values())
-    for order in orders.values():
-        begin = max(begin, float(order.given.t[0]))
-    end = max(float(c.given.t[-1]) for c in poses.values())
+    begin = min(float(one.t[0]) for one in poses)
+    for one in commands:
+        begin = max(begin, float(one.t[0]))
+    end = max(float(one.t[-1]) for one in poses)
     if work.map.rate:
         if (end - begin) * work.map.rate > MAX_ROWS:
             raise BadInput(
@@ -247,10 +252,12 @@ def _clock(work: _Work) -> tuple[Array, float]:
             )
         rows = begin + np.arange(0.0, max(end - begin, 0.0) + 1e-9, 1.0 / work.map.rate)
     else:
-        rows = fastest.given.t[(fastest.given.t >= begin - 1e-9) & (fastest.given.t <= end + 1e-9)]
+        rows = fastest.t[(fastest.t >= begin - 1e-9) & (fastest.t <= end + 1e-9)]
     rows = rows[_in_use(work, rows)]
     if len(rows) < FEWEST_ROWS:
-        span = f"{end - begin:.3g} s" if end > begin else "no time at all"
+        span = "no time at all"
+        if end > begin:
+            span = f"{end - begin:.3g} s"
         raise file_error(
             work.log.path,
             f"poses and commands have {span} in common, in which the fastest has {len(rows)} "
@@ -265,7 +272,8 @@ def _clock(work: _Work) -> tuple[Array, float]:
         )
         return rows, 1.0 / work.map.rate
     near = ROW_TOLERANCE * float(np.median(np.diff(rows)))
-    others = sorted((c.given for c in poses.values() if c is not fastest), key=lambda s: -s.rate)
+    others = [one for one in poses if one is not fastest]
+    others.sort(key=lambda one: -one.rate)
     rows = clock(rows, others, near)
     return rows[_in_use(work, rows)], near
 
@@ -316,7 +324,7 @@ def _complete_rows(
         if work.columns[name].held and not name.startswith(HELD):
             kept &= np.isfinite(values)
     for _ in range(MAX_ROUNDS):  # the removal of rows may change which columns are slow
-        allowed = allowed_gaps({n: v[kept] for n, v in signals.items()})
+        allowed = allowed_gaps(select_rows(signals, kept))
         missing = np.zeros(int(kept.sum()), dtype=np.bool_)
         for name, values in signals.items():
             if name in (*POSE, *RATES):
@@ -340,7 +348,7 @@ def _complete_rows(
                 f"{name} has fewer than {FEWEST_ROWS} samples in the rows",
                 column=name,
             )
-    return rows[kept], {name: values[kept] for name, values in signals.items()}
+    return rows[kept], select_rows(signals, kept)
 
 
 def _remark_times(work: _Work, rows: Array) -> None:
@@ -362,7 +370,9 @@ def _remark_times(work: _Work, rows: Array) -> None:
 
 def position_fix(map: Map) -> str | None:
     """Return the fact `position_fix` of a map: "gnss" where positions are latitudes, else None."""
-    return "gnss" if map.position else None
+    if map.position:
+        return "gnss"
+    return None
 
 
 def notes_of(path: Path, vessel: str, fix: str | None) -> str:
@@ -385,8 +395,10 @@ def notes_of(path: Path, vessel: str, fix: str | None) -> str:
 def _quoted(text: str) -> str:
     quoted = ""
     for c in text:
+        if ord(c) >= 0x10000:
+            continue
         if c.isprintable() and c not in '"\\':
-            quoted += c if ord(c) < 0x10000 else ""
-        elif ord(c) < 0x10000:
+            quoted += c
+        else:
             quoted += f"\\u{ord(c):04x}"
     return quoted

@@ -97,7 +97,7 @@ def quiet() -> Iterator[None]:
     """Suppress the output of a library, also of its native code."""
     for stream in (sys.stdout, sys.stderr):
         stream.flush()
-    kept = [os.dup(number) for number in (1, 2)]
+    kept = list(map(os.dup, (1, 2)))
     null = os.open(os.devnull, os.O_WRONLY)
     try:
         for number in (1, 2):
@@ -129,7 +129,9 @@ def open_log(path: Path) -> Log:
 
 def _plausible(values: Array) -> Array:
     beyond = np.abs(values) >= HUGE
-    return np.where(beyond, np.nan, values) if beyond.any() else values
+    if beyond.any():
+        return np.where(beyond, np.nan, values)
+    return values
 
 
 def reader_for(path: Path) -> Callable[[Path], Log]:
@@ -143,9 +145,11 @@ def reader_for(path: Path) -> Callable[[Path], Log]:
         )
     if not path.is_dir() and not path.is_file():
         raise file_error(path, "is a device or a pipe; a log is a file")
-    suffix = "/" if path.is_dir() else path.suffix.lower()
+    suffix = path.suffix.lower()
+    if path.is_dir():
+        suffix = "/"
     if suffix not in suffixes:
-        allowed = ", ".join(sorted(s for s in suffixes if s != "/"))
+        allowed = ", ".join(sorted(set(suffixes) - {"/"}))
         raise file_error(
             path, f"its suffix {suffix or '(none)'!r} is of no known format; there are: {allowed}"
         )
@@ -159,7 +163,10 @@ def reader_for(path: Path) -> Callable[[Path], Log]:
 
 def known_suffixes() -> dict[str, str]:
     """Return the suffix -> name of the module of each format; the suffix of a folder is "/"."""
-    return {suffix: name for name in names("log") for suffix in module_of("log", name).SUFFIXES}
+    found: dict[str, str] = {}
+    for name in names("log"):
+        found |= dict.fromkeys(module_of("log", name).SUFFIXES, name)
+    return found
 
 
 def signals_of(
@@ -173,7 +180,9 @@ def signals_of(
         fields: Name -> values (N,).
         units: Name -> unit.
     """
-    prefix = f"{stream}." if stream else ""
+    prefix = ""
+    if stream:
+        prefix = f"{stream}."
     signals: dict[str, Signal] = {}
     for name, values in fields.items():
         unit = (units or {}).get(name, "")
@@ -185,7 +194,9 @@ def rate_of(t: Array) -> float:
     """Return the rate [Hz] by the median step of times (N,) [s]; 0 for fewer than two."""
     steps = np.diff(t)
     steps = steps[steps > 0.0]
-    return float(1.0 / np.median(steps)) if len(steps) else 0.0
+    if not len(steps):
+        return 0.0
+    return float(1.0 / np.median(steps))
 
 
 def numbered(names: Sequence[tuple[str, int]]) -> dict[tuple[str, int], str]:
@@ -193,4 +204,9 @@ def numbered(names: Sequence[tuple[str, int]]) -> dict[tuple[str, int], str]:
     first: dict[str, int] = {}
     for name, instance in names:
         first[name] = min(instance, first.get(name, instance))
-    return {(n, i): n if i == first[n] else f"{n}[{i}]" for n, i in names}
+    found: dict[tuple[str, int], str] = {}
+    for name, instance in names:
+        found[name, instance] = name
+        if instance != first[name]:
+            found[name, instance] = f"{name}[{instance}]"
+    return found

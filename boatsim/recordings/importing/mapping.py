@@ -85,7 +85,9 @@ class Map(Table):
     @field_validator("columns", mode="before")
     @classmethod
     def _texts_or_ranges(cls, found: object) -> object:
-        for name, value in found.items() if isinstance(found, dict) else ():
+        if not isinstance(found, dict):
+            return found
+        for name, value in found.items():
             if isinstance(value, dict):
                 checked(Range, value, f"columns.{name}")
             elif not isinstance(value, str | Range):
@@ -98,12 +100,11 @@ class Map(Table):
 
     @model_validator(mode="after")
     def _fits(self) -> "Map":
-        taken = COMPUTED if self.position else COMPUTED[:1]
-        if twice := [name for name in self.columns if name in taken]:
-            raise ValueError(
-                f"columns.{twice[0]} is what {'time' if twice[0] == 't_s' else 'position'} "
-                "makes; leave it out"
-            )
+        for name in self.columns:
+            if name == "t_s":
+                raise ValueError("columns.t_s is what time makes; leave it out")
+            if self.position and name in COMPUTED:
+                raise ValueError(f"columns.{name} is what position makes; leave it out")
         if self.use and not self.use[0] < self.use[1]:
             raise ValueError("use must be [from_s, to_s], the second larger")
         if not self.position and not set(self.columns) & {*POSE, *RATES}:
@@ -123,4 +124,7 @@ def map_of(table: Mapping[str, object], file: str) -> Map:
     try:
         return checked(Map, table, file)
     except BadInput as error:
-        raise BadInput(str(error) if str(error).startswith(file) else f"{file}: {error}") from None
+        message = str(error)
+        if not message.startswith(file):
+            message = f"{file}: {message}"
+        raise BadInput(message) from None

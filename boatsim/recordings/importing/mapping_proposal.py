@@ -3,7 +3,7 @@
 import re
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import filterfalse
+from itertools import filterfalse, repeat
 
 import numpy as np
 
@@ -64,21 +64,18 @@ class Drive:
 
 def listing(log: Log) -> list[str]:
     """Return a table of the signals of a log: name, unit, rate, samples, range, classification."""
-    found = {g.name: g for g in guesses(log)}
+    columns: dict[str, str] = {}
+    for g in guesses(log):
+        columns[g.name] = g.column
     rows = [("signal", "unit", "Hz", "samples", "lowest", "highest", "probably")]
     listed = list(log.signals)
     if len(listed) > MAX_LISTED:
-        listed = [name for name in listed if name in found]
+        listed = list(filter(columns.__contains__, listed))
     for name in listed:
-        rows.append(
-            (_safe(name), *_figures(log.signals[name]), _words(found.get(name), log.signals[name]))
-        )
-    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-    lines: list[str] = []
-    for row in rows:
-        cells = [row[0].ljust(widths[0]), row[1].ljust(widths[1])]
-        cells += map(str.rjust, row[2:6], widths[2:6])
-        lines.append("  ".join([*cells, row[6]]).rstrip())
+        signal = log.signals[name]
+        probably = ", ".join(filter(None, (columns.get(name), signal.about)))
+        rows.append((_safe(name), *_figures(signal), probably))
+    lines = _aligned(rows)
     if len(listed) < len(log.signals):
         lines.append(f"and {len(log.signals) - len(listed)} unknown signals")
     return lines
@@ -98,14 +95,25 @@ def _figures(signal: Signal) -> tuple[str, str, str, str, str]:
     )
 
 
-def _words(guess: Guess | None, signal: Signal) -> str:
-    column = guess.column if guess else ""
-    return ", ".join(filter(None, (column, signal.about)))
+def _aligned(rows: Sequence[tuple[str, ...]]) -> list[str]:
+    """Lines of a table of seven columns, of which four are numbers."""
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    lines: list[str] = []
+    for row in rows:
+        cells = [row[0].ljust(widths[0]), row[1].ljust(widths[1])]
+        cells += map(str.rjust, row[2:6], widths[2:6])
+        lines.append("  ".join([*cells, row[6]]).rstrip())
+    return lines
 
 
 def _safe(name: str) -> str:
     """A name without control characters."""
-    return "".join(c if c.isprintable() else "?" for c in name)[:120]
+    safe = ""
+    for character in name[:120]:
+        if not character.isprintable():
+            character = "?"
+        safe += character
+    return safe
 
 
 def proposal(
@@ -138,7 +146,10 @@ def proposal(
     lines = [
         "# Proposed from the names, units and ranges of the signals in the log: check every line."
     ]
-    lines.append(f'vessel = "{vessel}"' if vessel else '# vessel = "NAME"')
+    if vessel:
+        lines.append(f'vessel = "{vessel}"')
+    else:
+        lines.append('# vessel = "NAME"')
     body, used = _poses(log, best, dof, known)
     for column, expression in known.items():
         body.append(f"{_key(column)} = {_text(expression)}  # by the vessel's file")
@@ -149,7 +160,9 @@ def proposal(
         commands = ["# all are above"]
     else:
         commands, driven = _commands(best, open_drives, turning)
-    fastest = max((rate_of(g.signal.t) for g in (*used, *driven)), default=0.0)
+    fastest = 0.0
+    for g in (*used, *driven):
+        fastest = max(fastest, rate_of(g.signal.t))
     if fastest > 1.01 * MAX_ROW_RATE:
         lines.append(
             f"rate = {MAX_ROW_RATE:g}  # [Hz] of rows; the fastest signal has {fastest:.3g}"
@@ -202,20 +215,23 @@ def _poses(
             "# assumed: x north or ahead, y east or to starboard, heading and its rate clockwise"
         )
     for column in (*POSE_COLUMNS, *INCLINATIONS):
-        source, sign = FROM_ENU.get(column, (column, "")) if enu else (column, "")
+        source, sign = column, ""
+        if enu:
+            source, sign = FROM_ENU.get(column, (column, ""))
         if column in ("x_m", "y_m") and pair or source not in best:
             continue
         g = best[source][0]
-        held = column in INCLINATIONS and (INCLINATIONS[column] not in dof or _still(g))
-        quarter = QUARTER_TURN if enu and column == "psi_rad" else ""
+        quarter = ""
         if column == "psi_rad" and "yaw" not in g.tokens:
-            # A compass heading is clockwise from north
-            sign = quarter = ""
-        lines.append(
-            f"{'# ' if held else ''}{column} = "
-            f"{_text(sign + _expression(g) + quarter)}{_note(g, best[source])}"
-        )
-        if not held:
+            sign = ""  # a compass heading is clockwise from north
+        elif column == "psi_rad" and enu:
+            quarter = QUARTER_TURN
+        expression = _text(sign + _expression(g) + quarter)
+        line = f"{column} = {expression}{_note(g, best[source])}"
+        if column in INCLINATIONS and (INCLINATIONS[column] not in dof or _still(g)):
+            lines.append(f"# {line}")
+        else:
+            lines.append(line)
             used.append(g)
     if "psi_rad" not in {*best, *known}:
         lines.append(
@@ -240,7 +256,9 @@ def _pair(latitudes: Sequence[Guess], longitudes: Sequence[Guess]) -> list[Guess
 
 
 def _expression(g: Guess) -> str:
-    return f"{g.name} * {g.word}" if g.word else g.name
+    if not g.word:
+        return g.name
+    return f"{g.name} * {g.word}"
 
 
 def _note(g: Guess, others: Sequence[Guess]) -> str:
@@ -256,14 +274,19 @@ def _note(g: Guess, others: Sequence[Guess]) -> str:
 def _text(value: str) -> str:
     """A TOML string."""
     plain = value.replace("\\", "\\\\").replace('"', '\\"')
-    return '"' + "".join(c if c.isprintable() else f"\\u{ord(c):04x}" for c in plain) + '"'
+    text = ""
+    for character in plain:
+        if not character.isprintable():
+            character = f"\\u{ord(character):04x}"
+        text += character
+    return f'"{text}"'
 
 
 def _commands(
     best: Mapping[str, Sequence[Guess]], drives: Sequence[Drive], turning: Turning
 ) -> tuple[list[str], list[Guess]]:
     """Lines of the vessel's channels, or without a vessel of all outputs that are not constant."""
-    channels = {drive.name for drive in drives}
+    channels = [drive.name for drive in drives]
     moving: list[Guess] = []
     for g in best.get("command", []):
         if g.name in channels or not _still(g):
@@ -302,7 +325,7 @@ def _chosen(
     turning: Turning,
 ) -> dict[str, tuple[Guess, str]]:
     """Signals of the channels by name, motion or order, and what the user must check."""
-    found = {n: (g, "") for n, g in _matched(drives, moving).items()}
+    found = _with_note(_matched(drives, moving), "")
     helms = [d for d in drives if d.name not in found and _steers(d)]
     if helms:
         named: list[Guess] = []
@@ -339,11 +362,16 @@ def _helms(
     rudders = [g for g in measured if g.tokens & HELM and _fits(helms[0], g)]
     if len(rudders) == 1:
         return _for_all(helms, rudders[0], why)
-    return {n: (g, why) for n, g in _matched(helms, rudders).items()}
+    return _with_note(_matched(helms, rudders), why)
+
+
+def _with_note(matched: Mapping[str, Guess], note: str) -> dict[str, tuple[Guess, str]]:
+    """The signals of channels, each with the same note."""
+    return dict(zip(matched, zip(matched.values(), repeat(note)), strict=True))
 
 
 def _for_all(helms: Sequence[Drive], g: Guess, why: str) -> dict[str, tuple[Guess, str]]:
-    return dict.fromkeys((helm.name for helm in helms), (g, why))
+    return dict.fromkeys([helm.name for helm in helms], (g, why))
 
 
 def _steers(drive: Drive) -> bool:
@@ -358,13 +386,16 @@ def _by_order(
     missing: Sequence[Drive], left: Sequence[Guess], turning: Turning
 ) -> dict[str, tuple[Guess, str]]:
     """Signals of channels by order; two sides are exchanged if the turning shows it."""
-    why = "; CHECK: by order only" if len(left) > 1 else "; CHECK: the only signal that is left"
+    why = "; CHECK: the only signal that is left"
+    if len(left) > 1:
+        why = "; CHECK: by order only"
     sides = [side_of(frozenset(tokens_of(d.name))) for d in missing]
     if len(left) == 2 and sorted(sides) == list(SIDED):
         port = sides.index(SIDED[0])
         sense = turning.by((left[port], 1.0), (left[1 - port], -1.0))
         if abs(sense) > MIN_CORRELATION:
-            left = list(left) if sense > 0.0 else [left[1], left[0]]
+            if sense < 0.0:
+                left = [left[1], left[0]]
             why = f"; CHECK: side by the turning of the boat (correlation {abs(sense):.2f})"
     found: dict[str, tuple[Guess, str]] = {}
     for drive, g in zip(missing, left, strict=False):
@@ -386,17 +417,22 @@ def _as_many(moving: Sequence[Guess], count: int) -> list[Guess]:
 
 def _order(name: str) -> list[tuple[int, str]]:
     """Sort key by which output 10 comes after output 9."""
-    parts = filter(None, re.split(r"(\d+)", name))
-    return [(int(p), "") if p.isdigit() else (-1, p) for p in parts]
+    key = []
+    for part in filter(None, re.split(r"(\d+)", name)):
+        if part.isdigit():
+            key.append((int(part), ""))
+        else:
+            key.append((-1, part))
+    return key
 
 
 def _matched(drives: Sequence[Drive], moving: Sequence[Guess]) -> dict[str, Guess]:
     """The signal with the most similar name of each channel; no signal is used twice."""
-    pairs = sorted(
-        ((_likeness(d, g), -i, d.name, g) for d in drives for i, g in enumerate(moving)),
-        key=lambda p: p[:2],
-        reverse=True,
-    )
+    pairs = []
+    for drive in drives:
+        for i, g in enumerate(moving):
+            pairs.append((_likeness(drive, g), -i, drive.name, g))
+    pairs.sort(key=lambda pair: pair[:2], reverse=True)
     found: dict[str, Guess] = {}
     for score, _, name, g in pairs:
         if score < 1.0 or name in found or g in found.values():
@@ -460,7 +496,9 @@ def _drive_line(name: str, g: Guess, drive: Drive | None, sense: float = 0.0) ->
             opposite side.
     """
     values = g.signal.values[np.isfinite(g.signal.values)]
-    low, high = (drive.low, drive.high) if drive else (-1.0, 1.0)
+    low, high = -1.0, 1.0
+    if drive:
+        low, high = drive.low, drive.high
     note = f"  # {rate_of(g.signal.t):.3g} Hz"
     if g.signal.about:
         note += f"; {_safe(g.signal.about)}"
@@ -472,13 +510,11 @@ def _drive_line(name: str, g: Guess, drive: Drive | None, sense: float = 0.0) ->
         )
     scale = _scale(g, values, drive)
     if scale is None:
-        expression = g.name if g.name == name else _converted(g, name)
+        expression = _converted(g, name)
         if turned:
             expression = f"-{expression}"
         return f"{_key(name)} = {_text(expression)}{note}"
     ends, why = scale
-    if drive is None and g.column == "command" and low >= 0.0:
-        low = 0.0
     if turned:
         low, high = high, low
     given = "low = {:g}, neutral = {:g}, high = {:g}".format(*ends)
@@ -505,7 +541,10 @@ def _scale(
     if drive and g.name == drive.name:
         return None
     if g.signal.pulse:
-        return g.signal.pulse, share if drive else ""
+        why = ""
+        if drive:
+            why = share
+        return g.signal.pulse, why
     if PULSE[0] <= values.min() and values.max() <= PULSE[1]:
         return USUAL_PULSE, f"usual pulses of 1100 to 1900 us are assumed, {share}"
     largest = float(np.max(np.abs(values)))
@@ -529,17 +568,21 @@ def _scale(
 
 def _converted(g: Guess, name: str) -> str:
     """An expression in the unit of the column."""
+    if g.name == name or g.word == "rpm" and name.endswith("_rpm"):
+        return g.name
     if g.word == "rpm" and name.endswith("_rps"):
         return f"{g.name} / 60"
-    return g.name if g.word == "rpm" and name.endswith("_rpm") else _expression(g)
+    return _expression(g)
 
 
 def _called(g: Guess) -> str:
     words = g.tokens | frozenset(tokens_of(g.signal.about))
-    kind = "steer" if words & HELM else "throttle"
-    unit = {"deg": "_rad", "rpm": "_radps"}.get(g.word, "")
-    side = side_of(words)
-    return f"{kind}_{side}{unit}" if side else f"{kind}{unit}"
+    name = "throttle"
+    if words & HELM:
+        name = "steer"
+    if side := side_of(words):
+        name += f"_{side}"
+    return name + {"deg": "_rad", "rpm": "_radps"}.get(g.word, "")
 
 
 def _names(names: Sequence[str]) -> list[str]:
@@ -548,10 +591,10 @@ def _names(names: Sequence[str]) -> list[str]:
     seen: dict[str, int] = {}
     for name in names:
         seen[name] = seen.get(name, 0) + 1
-        stem, _, unit = name.partition("_rad")
-        number = f"_{seen[name]}" if names.count(name) > 1 else ""
-        ending = f"_rad{unit}" if "_rad" in name else ""
-        found.append(f"{stem}{number}{ending}")
+        if names.count(name) > 1:
+            stem, separator, unit = name.partition("_rad")
+            name = f"{stem}_{seen[name]}{separator}{unit}"
+        found.append(name)
     return found
 
 
@@ -563,10 +606,14 @@ def _further_columns(kind: str, found: Sequence[Guess]) -> list[str]:
         names.append(f"{kind}_{plain}")
     lines = []
     for name, g in zip(_names(names), found, strict=True):
-        expression = g.name if g.word == "us" else _expression(g)
+        expression = _expression(g)
+        if g.word == "us":
+            expression = g.name
         lines.append(f"{_key(name)} = {_text(expression)}")
     return lines
 
 
 def _key(name: str) -> str:
-    return name if re.fullmatch(r"[A-Za-z0-9_-]+", name) else _text(name)
+    if re.fullmatch(r"[A-Za-z0-9_-]+", name):
+        return name
+    return _text(name)

@@ -1,6 +1,6 @@
 """Resampling of signals with different clocks to common rows, without interpolation.
 
-A measurement goes into one row, that of its own time; rows between samples are empty (nan). A
+A measurement is written to the row of its own time; rows between samples are empty (nan). A
 command is in force from its own time until the next one.
 """
 
@@ -45,7 +45,7 @@ def samples(t: Array, values: Array) -> Samples:
     t, values = t[finite], values[finite]
     order = np.argsort(t, kind="stable")
     t, values = t[order], values[order]
-    last = np.append(np.diff(t) > 0.0, True) if len(t) else np.zeros(0, dtype=bool)
+    last = np.append(np.diff(t) > 0.0, True)[: len(t)]
     return Samples(t[last], values[last])
 
 
@@ -110,4 +110,6 @@ def longest_hold(rows: Array, given: Samples) -> float:
     gaps = np.diff(np.append(given.t, max(float(rows[-1]), float(given.t[-1]))))
     usual = float(np.median(gaps))
     longest = float(gaps.max())
-    return longest if longest > max(LOST_STEPS * usual, MIN_LOST) else 0.0
+    if longest > max(LOST_STEPS * usual, MIN_LOST):
+        return longest
+    return 0.0

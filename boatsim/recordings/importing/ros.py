@@ -104,10 +104,13 @@ def definitions(text: str, root: str) -> dict[str, list[Part]]:
         | dict(zip(map(_full, pieces[1::2]), pieces[2::2], strict=True))
         | {_full(root): pieces[0]}
     )
-    return {
-        name: [part for line in body.splitlines() if (part := _part(line, name, texts))]
-        for name, body in texts.items()
-    }
+    found: dict[str, list[Part]] = {}
+    for name, body in texts.items():
+        found[name] = []
+        for line in body.splitlines():
+            if part := _part(line, name, texts):
+                found[name].append(part)
+    return found
 
 
 def _full(name: str) -> str:
@@ -122,15 +125,17 @@ def _part(line: str, owner: str, known: Mapping[str, str]) -> Part | None:
         return None
     kind, brackets, count, name = _full(found[1]), found[2], found[3], found[4]
     if kind not in NUMBERS and kind not in STAMP and kind not in ("string", "wstring"):
-        if kind not in known:
-            same_package = f"{owner.rpartition('/')[0]}/{kind}"
-            kind = "std_msgs/Header" if kind == "Header" else same_package
+        if kind == "Header" and kind not in known:
+            kind = "std_msgs/Header"
+        elif kind not in known:  # a message of the same package
+            kind = f"{owner.rpartition('/')[0]}/{kind}"
         if kind not in known:
             raise ValueError(f"{owner} has a part {found[1]} without a definition")
-    fixed = bool(count) and "<=" not in brackets
     if not brackets:
         return Part(name, kind)
-    return Part(name, kind, int(count) if fixed else -1)
+    if count and "<=" not in brackets:
+        return Part(name, kind, int(count))
+    return Part(name, kind, -1)
 
 
 class Decoder:
@@ -155,9 +160,10 @@ class Decoder:
         """Check that messages are not nested too deeply. Raises ValueError."""
         level = {self.root}
         for _ in range(MAX_NESTING + 1):
-            level = {
-                part.kind for name in level for part in self.parts[name] if part.kind in self.parts
-            }
+            inner: set[str] = set()
+            for name in level:
+                inner.update(part.kind for part in self.parts[name])
+            level = inner & self.parts.keys()
         if level:
             raise ValueError(f"{self.root} holds itself, or messages in messages too deep to read")
 
@@ -169,12 +175,15 @@ class Decoder:
         """
         if self.cdr and (len(data) < 4 or data[1] > 1):
             raise ValueError("message in an encoding other than plain CDR")
-        order = ">" if self.cdr and data[1] == 0 else "<"
+        order = "<"
+        content = data
+        if self.cdr:
+            content = data[4:]
+            if data[1] == 0:
+                order = ">"
         found: dict[str, float] = {}
         try:
-            _Cursor(data[4:] if self.cdr else data, order, self.cdr, self.parts).message(
-                self.root, "", found
-            )
+            _Cursor(content, order, self.cdr, self.parts).message(self.root, "", found)
         except (struct.error, IndexError) as error:
             raise ValueError(str(error)) from error
         return found
@@ -225,10 +234,15 @@ class _Cursor:
         elif kind in self.parts:
             self.message(kind, f"{name}.", found)
         else:  # a text
-            self.skip(int(self.number("uint32")) * (4 if kind == "wstring" else 1))
+            size = int(self.number("uint32"))
+            if kind == "wstring":
+                size *= 4
+            self.skip(size)
 
     def several(self, part: Part, name: str, found: dict[str, float] | None) -> None:
-        count = int(self.number("uint32")) if part.count == -1 else part.count or 0
+        count = part.count or 0
+        if count == -1:
+            count = int(self.number("uint32"))
         if count > len(self.data) - self.at:
             raise ValueError(
                 f"{name} has {count} elements by its length, more than the message has bytes"
@@ -239,11 +253,14 @@ class _Cursor:
                 self.align(size)
             if found is not None and count <= MAX_ELEMENTS and "covariance" not in name:
                 values = struct.unpack_from(f"{self.order}{count}{letter}", self.data, self.at)
-                found.update({f"{name}[{i}]": float(v) for i, v in enumerate(values)})
+                for i, value in enumerate(values):
+                    found[f"{name}[{i}]"] = float(value)
             self.skip(count * size)
             return
         for i in range(count):
-            self.one(part.kind, f"{name}[{i}]", found if i < MAX_PARTS else None)
+            if i == MAX_PARTS:
+                found = None  # the others are skipped
+            self.one(part.kind, f"{name}[{i}]", found)
 
     def skip(self, size: int) -> None:
         self.at += size
@@ -278,7 +295,7 @@ def log_of(path: Path, topics: Mapping[str, Topic], remarks: list[str]) -> Log:
                     f"{path}: the stamps of {name} are of another clock; the times of logging "
                     "are used"
                 )
-        units = {column: _unit_of(column) for column in columns}
+        units = dict(zip(columns, map(_unit_of, columns), strict=True))
         signals |= signals_of(name, t, columns, units)
         if len(signals) > MAX_SIGNALS:
             Room(path).take(0, len(signals))

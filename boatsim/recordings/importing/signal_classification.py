@@ -93,6 +93,13 @@ TURNS = {
     "q_radps": ("y", "pitch"),
     "p_radps": ("x", "roll"),
 }  # rate -> axis and name of the rotation
+POSE_WORDS = {
+    **dict.fromkeys(("yaw", "heading", "hdg", "psi", "compass"), "psi_rad"),
+    **dict.fromkeys(("roll", "phi", "heel"), "phi_rad"),
+    **dict.fromkeys(("pitch", "theta", "trim"), "theta_rad"),
+    **dict.fromkeys(("north", "northing", "pn"), "x_m"),
+    **dict.fromkeys(("east", "easting", "pe"), "y_m"),
+}  # last word of a name -> column
 SPEEDS = {"rate", "speed", "velocity", "vel"}
 BODY = {"odom", "odometry", "body", "base"}  # frames with x forward
 SUPERFLUOUS = set(
@@ -147,7 +154,10 @@ def tokens_of(name: str) -> list[str]:
     )
     words: list[str] = []
     for token in re.split(r"[^a-z0-9%°/]+", parted):
-        words += [token] if token in WORDS else token.split("/")
+        if token in WORDS:
+            words.append(token)
+        else:
+            words += token.split("/")
     return list(filter(None, words))
 
 
@@ -180,7 +190,7 @@ def guess(name: str, signal: Signal, log: Log, channels: Sequence[str] = ()) -> 
     words = tokens_of(name) or [""]  # a name may have no word
     tokens = frozenset(words)
     last = [w for w in words if w not in (*WORDS, *SUPERFLUOUS) or w == "n"] or words
-    moves = 10.0 if float(np.ptp(values)) > 0.0 else 0.0
+    moves = 10.0 * bool(np.ptp(values) > 0.0)
     rate = min(rate_of(signal.t), 50.0) / 100.0  # the faster of two equal signals is preferred
     for place, match in (
         ("latitude", ("lat", "latitude")),
@@ -202,7 +212,9 @@ def guess(name: str, signal: Signal, log: Log, channels: Sequence[str] = ()) -> 
         ):
             word, why = "deg", "degrees by its range"
         return Guess(name, signal, kind, word, moves + rate, why, tokens)
-    column = name if name in COLUMNS else _motion(last, tokens, log)
+    column: str | None = name
+    if name not in COLUMNS:
+        column = _motion(last, tokens, log)
     if column is None or tokens & NOT_MEASURED:
         return None
     word, why = _angle(column, signal, tokens, _word(name, signal))
@@ -223,9 +235,11 @@ def _angle(column: str, signal: Signal, tokens: frozenset[str], word: str) -> tu
         or tokens & {"rad", "radps", "rad/s"}
     ):
         return word, ""
-    angle = column.endswith("_rad")
-    if float(np.nanmax(np.abs(signal.values))) > (2.0 * pi + 0.3 if angle else pi):
-        return ("deg" if angle else "degps"), "degrees by its range"
+    unit, largest = "degps", pi
+    if column.endswith("_rad"):
+        unit, largest = "deg", 2.0 * pi + 0.3
+    if float(np.nanmax(np.abs(signal.values))) > largest:
+        return unit, "degrees by its range"
     return word, "radians by its range"
 
 
@@ -234,7 +248,9 @@ def _word(name: str, signal: Signal) -> str:
     if signal.unit:
         return WORDS.get(signal.unit.lower(), "")
     words = tokens_of(name) or [""]
-    return "rpm" if "rpm" in words else WORDS.get(words[-1], "")
+    if "rpm" in words:
+        return "rpm"
+    return WORDS.get(words[-1], "")
 
 
 def _degrees(
@@ -244,9 +260,12 @@ def _degrees(
     largest = float(np.nanmax(np.abs(signal.values)))
     if signal.unit == "rad" or "rad" in tokens:
         return Guess(name, signal, column, "", score, "", tokens)
-    if largest <= (90.0 if column == "latitude" else 360.0):
+    limit = 360.0
+    if column == "latitude":
+        limit = 90.0
+    if largest <= limit:
         return Guess(name, signal, column, "deg", score, "", tokens)
-    if largest <= (0.9e9 if column == "latitude" else 3.6e9):
+    if largest <= limit * 1e7:
         return Guess(
             name, signal, column, "deg * 1e-7", score, "in 1e-7 degrees by its range", tokens
         )
@@ -277,14 +296,8 @@ def _motion(last: list[str], tokens: frozenset[str], log: Log) -> str | None:
     end = last[-1]
     if found := _turn(end, tokens):
         return found
-    if end in ("yaw", "heading", "hdg", "psi", "compass"):
-        return "psi_rad"
-    if end in ("roll", "phi", "heel", "pitch", "theta", "trim"):
-        return "phi_rad" if end in ("roll", "phi", "heel") else "theta_rad"
-    if end in ("north", "northing", "pn"):
-        return "x_m"
-    if end in ("east", "easting", "pe"):
-        return "y_m"
+    if end in POSE_WORDS:
+        return POSE_WORDS[end]
     if (
         end in ("x", "y")
         and not tokens & MOTIONS
@@ -294,8 +307,12 @@ def _motion(last: list[str], tokens: frozenset[str], log: Log) -> str | None:
     if end in ("x", "y") and {"twist", "linear"} <= tokens and tokens & BODY and log.frame == "ENU":
         return {"x": "u_mps", "y": "v_mps"}[end]
     if end in ("surge", "sway") or tokens & {"surge", "sway"} and tokens & SPEEDS:
-        return "u_mps" if "surge" in tokens else "v_mps"
-    return {"u": "u_mps", "v": "v_mps"}.get(end) if len(last) == 1 else None
+        if "surge" in tokens:
+            return "u_mps"
+        return "v_mps"
+    if len(last) == 1:
+        return {"u": "u_mps", "v": "v_mps"}.get(end)
+    return None
 
 
 def _turn(end: str, tokens: frozenset[str]) -> str | None:
@@ -321,7 +338,9 @@ def _turn(end: str, tokens: frozenset[str]) -> str | None:
         or end == "r"
         and not tokens - {"r"} - set(WORDS)
     )
-    return "r_radps" if rates else None
+    if rates:
+        return "r_radps"
+    return None
 
 
 def side_of(tokens: frozenset[str]) -> str:

@@ -35,15 +35,16 @@ class Turning:
         for column in ("r_radps", "psi_rad"):
             if found := best.get(column):
                 g = found[0]
-                there = np.isfinite(g.signal.values) & np.isfinite(g.signal.t)
-                t, order = np.unique(g.signal.t[there], return_index=True)
-                values = g.signal.values[there][order]
+                t, values = _sorted_samples(g)
                 if column == "psi_rad" and len(t) > 2:
-                    values = np.gradient(
-                        np.unwrap(values, period=360.0 if g.word == "deg" else 2.0 * np.pi), t
-                    )
-                compass = column == "psi_rad" and "yaw" not in g.tokens
-                self.t, self.r = t, -values if enu and not compass else values
+                    turn = 2.0 * np.pi
+                    if g.word == "deg":
+                        turn = 360.0
+                    values = np.gradient(np.unwrap(values, period=turn), t)
+                is_compass = column == "psi_rad" and "yaw" not in g.tokens
+                if enu and not is_compass:
+                    values = -values
+                self.t, self.r = t, values
                 return
 
     def by(self, *signals: tuple[Guess, float]) -> float:
@@ -61,7 +62,16 @@ class Turning:
         if not len(order) or abs(turns[order[0]][1]) < MIN_CORRELATION:
             return None
         rivals = len(order) > 1 and scores[order[0]] < scores[order[1]] + MIN_LEAD
-        return None if rivals else turns[order[0]]
+        if rivals:
+            return None
+        return turns[int(order[0])]
+
+
+def _sorted_samples(g: Guess) -> tuple[Array, Array]:
+    """Times and values of a signal, sorted and one per time."""
+    finite = np.isfinite(g.signal.values) & np.isfinite(g.signal.t)
+    t, order = np.unique(g.signal.t[finite], return_index=True)
+    return t, g.signal.values[finite][order]
 
 
 def _speed(best: Mapping[str, Sequence[Guess]]) -> tuple[Array, Array]:
@@ -72,14 +82,16 @@ def _speed(best: Mapping[str, Sequence[Guess]]) -> tuple[Array, Array]:
         pair = _both(best, "latitude", "longitude")
     if not pair or len(pair[0].signal.t) != len(pair[1].signal.t):
         return np.empty(0), np.empty(0)
-    (north, east), t = (g.signal.values for g in pair), pair[0].signal.t
+    north, east, t = pair[0].signal.values, pair[1].signal.values, pair[0].signal.t
     there = np.isfinite(north) & np.isfinite(east) & np.isfinite(t)
     t, rows = np.unique(t[there], return_index=True)
     if len(t) < 3:
         return np.empty(0), np.empty(0)
     wide = 1.0
     if is_earth:
-        degrees = 1e-7 if "1e-7" in pair[0].word else 1.0
+        degrees = 1.0
+        if "1e-7" in pair[0].word:
+            degrees = 1e-7
         wide = float(np.cos(np.radians(degrees * np.median(north[there]))))
     z = north[there][rows] + 1j * wide * east[there][rows]
     after = np.searchsorted(t, t + SPEED_WINDOW).clip(max=len(t) - 1)
@@ -100,23 +112,24 @@ def _followed(signals: Sequence[tuple[Guess, float]], t: Array, values: Array) -
     """
     if len(t) < 2 or any(len(g.signal.t) < 2 for g, _ in signals):
         return 0.0
-    begin = max(float(t[0]), *(float(np.nanmin(g.signal.t)) for g, _ in signals)) + DELAYS[-1]
+    begin = float(t[0])
+    for g, _ in signals:
+        begin = max(begin, float(np.nanmin(g.signal.t)))
+    begin += DELAYS[-1]
     rows = np.arange(begin, min(float(t[-1]), begin + MAX_DURATION), 1.0 / RATE)
     if len(rows) < 10:
         return 0.0
     followed = np.interp(rows, t, values)
-
-    def given(lag: float) -> Array:
-        return np.asarray(np.sum([f * _held(g, rows - lag) for g, f in signals], axis=0))
-
-    return max((_alike(given(lag), followed) for lag in DELAYS), key=abs)
+    correlations = []
+    for delay in DELAYS:
+        weighted = [weight * _held(g, rows - delay) for g, weight in signals]
+        correlations.append(_alike(np.asarray(np.sum(weighted, axis=0)), followed))
+    return max(correlations, key=abs)
 
 
 def _held(g: Guess, rows: Array) -> Array:
     """Values (N,) in force at the rows."""
-    there = np.isfinite(g.signal.values) & np.isfinite(g.signal.t)
-    t, order = np.unique(g.signal.t[there], return_index=True)
-    values = g.signal.values[there][order]
+    t, values = _sorted_samples(g)
     return np.asarray(values[np.searchsorted(t, rows, side="right").clip(min=1) - 1])
 
 
@@ -124,4 +137,6 @@ def _alike(a: Array, b: Array) -> float:
     """Correlation; 0 for a constant signal."""
     a, b = a - np.mean(a), b - np.mean(b)
     size = float(np.linalg.norm(a) * np.linalg.norm(b))
-    return float(a @ b) / size if size > 0.0 else 0.0
+    if size > 0.0:
+        return float(a @ b) / size
+    return 0.0

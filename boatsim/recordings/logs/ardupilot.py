@@ -5,6 +5,7 @@ The log's parameters give the functions of outputs.
 
 from collections.abc import Mapping
 from dataclasses import replace
+from itertools import repeat
 from pathlib import Path
 from typing import Any
 
@@ -58,7 +59,14 @@ FUNCTIONS = {  # values of SERVOn_FUNCTION, from the parameter list of Rover
     70: "throttle",
     73: "throttle left",
     74: "throttle right",
-    **{32 + k: f"motor {k}" for k in range(1, 9)},
+    33: "motor 1",
+    34: "motor 2",
+    35: "motor 3",
+    36: "motor 4",
+    37: "motor 5",
+    38: "motor 6",
+    39: "motor 7",
+    40: "motor 8",
 }
 STICK, OUTPUT = "pilot's stick", "output"
 
@@ -116,10 +124,14 @@ def _log(path: Path, index: Any) -> Log:
     stream_names = numbered(list(streams))
     signals: dict[str, Signal] = {}
     for key, found in streams.items():
-        signals |= {f"{stream_names[key]}.{name}": signal for name, signal in found.items()}
-    remark = f"{path}: not read, its length is not that of its format: {', '.join(skipped)[:200]}"
+        for name, signal in found.items():
+            signals[f"{stream_names[key]}.{name}"] = signal
+    remarks = []
+    if skipped:
+        numbers = ", ".join(skipped)[:200]
+        remarks.append(f"{path}: not read, its length is not that of its format: {numbers}")
     described = _described(signals, _parameters(data, index))
-    return Log(path, described, "NED", (remark,) if skipped else ())
+    return Log(path, described, "NED", tuple(remarks))
 
 
 def _rows(
@@ -127,17 +139,19 @@ def _rows(
 ) -> "NDArray[Any] | None":
     """Complete records (N,) of a message; None where format and length disagree."""
     kinds = [LETTERS[letter][0] for letter in format.format]
-    names = [f"{i} {name}" for i, name in enumerate(format.columns)]
-    if len(names) != len(kinds):
+    if len(format.columns) != len(kinds):
         return None
-    kind = np.dtype([(n, f"<{k}") for n, k in zip(names, kinds, strict=True)])
-    if kind.itemsize != format.len - 3 or not kind.itemsize:
+    fields = []
+    for i, (name, kind) in enumerate(zip(format.columns, kinds, strict=True)):
+        fields.append((f"{i} {name}", f"<{kind}"))
+    record = np.dtype(fields)
+    if record.itemsize != format.len - 3 or not record.itemsize:
         return None
     offsets = offsets[offsets + format.len <= len(data)]
     if not len(offsets):
-        return np.zeros(0, dtype=kind)
-    windows = np.lib.stride_tricks.sliding_window_view(data, kind.itemsize)
-    return np.ascontiguousarray(windows[offsets + 3]).view(kind)[:, 0]
+        return np.zeros(0, dtype=record)
+    windows = np.lib.stride_tricks.sliding_window_view(data, record.itemsize)
+    return np.ascontiguousarray(windows[offsets + 3]).view(record)[:, 0]
 
 
 def _instances(rows: "NDArray[Any]", format: Any) -> list[tuple[int, "NDArray[Any]"]]:
@@ -157,9 +171,10 @@ def _field(format: Any, name: str) -> str:
 
 def _signals(rows: "NDArray[Any]", format: Any) -> dict[str, Signal]:
     """The signals of one stream; {} without a time."""
-    clock = next((c for c in CLOCKS if c in format.columns), None)
-    if clock is None:
+    clocks = list(filter(format.columns.__contains__, CLOCKS))
+    if not clocks:
         return {}
+    clock = clocks[0]
     t = rows[_field(format, clock)] * CLOCKS[clock]
     units = format.units or [""] * len(format.columns)
     fields, known = {}, {}
@@ -180,11 +195,13 @@ def _parameters(data: NDArray[np.uint8], index: Any) -> dict[str, float]:
     rows = _rows(data, np.asarray(index.offsets[number], dtype=np.int64), format)
     if rows is None or LETTERS[format.format[format.columns.index("Value")]][1] is None:
         return {}
-    names = [
-        bytes(n).split(b"\0")[0].decode("ascii", "replace") for n in rows[_field(format, "Name")]
-    ]
     values = rows[_field(format, "Value")].astype(float)
-    return {n: float(v) for n, v in zip(names, values, strict=True) if np.isfinite(v)}
+    parameters: dict[str, float] = {}
+    for raw_name, value in zip(rows[_field(format, "Name")], values, strict=True):
+        if np.isfinite(value):
+            name = bytes(raw_name).split(b"\0")[0].decode("ascii", "replace")
+            parameters[name] = float(value)
+    return parameters
 
 
 def _described(signals: Mapping[str, Signal], parameters: Mapping[str, float]) -> dict[str, Signal]:
@@ -206,8 +223,9 @@ def _described(signals: Mapping[str, Signal], parameters: Mapping[str, float]) -
 def _pulse(parameters: Mapping[str, float], servo: str) -> tuple[float, float, float] | None:
     """Low, neutral and high pulse [us] of an output; None where the log has no valid range."""
     keys = (f"{servo}_MIN", f"{servo}_TRIM", f"{servo}_MAX")
-    low, neutral, high = (parameters.get(key, np.nan) for key in keys)
+    low, neutral, high = map(parameters.get, keys, repeat(np.nan))
     if parameters.get(f"{servo}_REVERSED"):
         low, high = high, low
-    is_valid = low < neutral < high or low > neutral > high
-    return (low, neutral, high) if is_valid else None
+    if low < neutral < high or low > neutral > high:
+        return low, neutral, high
+    return None

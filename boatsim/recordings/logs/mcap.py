@@ -96,7 +96,9 @@ def _decoder(
     channel: Any, schema: Any, remarks: list[str], path: Path
 ) -> "Callable[[bytes], dict[str, float]] | None":
     """The decoder of the messages of a channel; None, with a remark, for an unknown encoding."""
-    encoding = (channel.message_encoding, schema.encoding if schema else "")
+    encoding = (channel.message_encoding, "")
+    if schema:
+        encoding = (channel.message_encoding, schema.encoding)
     try:
         if encoding in (("cdr", "ros2msg"), ("ros1", "ros1msg")):
             return Decoder(
@@ -127,5 +129,8 @@ def _flatten(value: object, name: str, found: dict[str, float], depth: int) -> N
     if isinstance(value, int | float) and abs(value) < 1e300 and len(found) < MAX_SIGNALS:
         found[name or "value"] = float(value)
     elif isinstance(value, dict) and depth < MAX_NESTING:
+        prefix = ""
+        if name:
+            prefix = f"{name}."
         for key, inner in value.items():
-            _flatten(inner, f"{name}.{key}" if name else str(key), found, depth + 1)
+            _flatten(inner, f"{prefix}{key}", found, depth + 1)

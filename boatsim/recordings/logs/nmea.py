@@ -104,18 +104,22 @@ def _sentences(
         name = getattr(sentence, "sentence_type", "")
         if name not in FIELDS:
             continue
-        when = _stamp(line) if stamped else clock.read(sentence)
+        if stamped:
+            when = _stamp(line)
+        else:
+            when = clock.read(sentence)
         valid = name not in STATUS or getattr(sentence, STATUS[name], "A") == "A"
         numbers: dict[str, float] = {}
         if valid:
             for signal, (attribute, _) in FIELDS[name].items():
                 numbers[signal] = _float(sentence, attribute)
-        number = _float(sentence, NUMBERED[name]) if name in NUMBERED else 0.0
         room.take(len(numbers) + 1)
-        found.append((when, f"{name}[{number:.0f}]" if name in NUMBERED else name, numbers))
-    if clock.midnight:
-        for i, (when, name, numbers) in enumerate(found):
-            found[i] = (None if when is None else when + clock.midnight, name, numbers)
+        if name in NUMBERED:
+            name += f"[{_float(sentence, NUMBERED[name]):.0f}]"
+        found.append((when, name, numbers))
+    for i, (when, name, numbers) in enumerate(found):
+        if when is not None:
+            found[i] = (when + clock.midnight, name, numbers)
     return found, bad
 
 
@@ -133,7 +137,8 @@ class _Clock:
         now = (
             of_day.hour * 3600.0 + of_day.minute * 60.0 + of_day.second + of_day.microsecond * 1e-6
         )
-        self.days += DAY if now < self.last - 0.5 * DAY else 0.0
+        if now < self.last - 0.5 * DAY:
+            self.days += DAY
         self.last = now
         day = getattr(sentence, "datestamp", None)
         if not self.midnight and isinstance(day, date):
@@ -169,7 +174,9 @@ def _stamp(line: str) -> float | None:
     if not found:
         return None
     value = float(found[1])
-    return value * 1e-3 if value > 1e11 else value
+    if value > 1e11:
+        return value * 1e-3
+    return value
 
 
 def _float(sentence: Any, name: str) -> float:
@@ -185,7 +192,7 @@ def _times(kept: "list[tuple[float | None, str, dict[str, float]]]") -> tuple[Ar
     A sentence that occurs once between two times has the first of them, for instruments send
     sentences in groups; several of one name are spread evenly.
     """
-    t = np.array([np.nan if when is None else when for when, *_ in kept])
+    t = np.array([when for when, *_ in kept], dtype=float)  # None becomes nan
     known = np.flatnonzero(np.isfinite(t))
     if len(known) < 2:
         return t, None
@@ -194,9 +201,9 @@ def _times(kept: "list[tuple[float | None, str, dict[str, float]]]") -> tuple[Ar
         return t, None
     usual = float(np.median(np.diff(t[first])))
     for begin, end in zip(first, np.append(first[1:], len(t)), strict=True):
-        step = (
-            min(t[end] - t[begin], usual) if end < len(t) else usual
-        )  # limited at a gap of the log
+        step = usual
+        if end < len(t):
+            step = min(t[end] - t[begin], usual)  # limited at a gap of the log
         rows = dict[str, list[int]]()
         for i in range(begin, end):
             if np.isnan(t[i]):

@@ -26,10 +26,15 @@ def read(path: Path) -> Log:
     topics: dict[str, Topic] = {}
     remarks: list[str] = []
     try:
-        folder = path if path.is_dir() else path.parent
-        if path.suffix.lower() != ".bag":
+        if path.suffix.lower() == ".bag":
+            opened: Any = Bag1(path)
+        else:
+            folder = path
+            if not path.is_dir():
+                folder = path.parent
             _check_folder(path, folder)
-        with Bag1(path) if path.suffix.lower() == ".bag" else Bag2(folder) as bag:
+            opened = Bag2(folder)
+        with opened as bag:
             _bound(bag)
             _fill(path, bag, topics, remarks)
     except BadInput:
@@ -76,7 +81,9 @@ def _unpacked(usual: "Callable[[bytes], bytes]", data: bytes) -> bytes:
     library = str(usual.__module__).partition(".")[0]
     if library not in ("bz2", "_bz2", "lz4"):  # not compressed at all
         return usual(data)
-    machine: Any = LZ4FrameDecompressor() if library == "lz4" else BZ2Decompressor()
+    machine: Any = BZ2Decompressor()
+    if library == "lz4":
+        machine = LZ4FrameDecompressor()
     found = bytes(machine.decompress(data, max_length=MAX_CHUNK))
     if not machine.eof:
         raise ValueError("a chunk that is cut, or too large to unpack")
@@ -93,7 +100,9 @@ def _fill(path: Path, bag: Any, topics: dict[str, Topic], remarks: list[str]) ->
             read.append(connection)
         except (ValueError, RecursionError) as error:
             remarks.append(f"{path}: {connection.topic} is not read ({error})")
-    for connection, when, data in bag.messages(connections=read) if read else ():
+    if not read:  # without connections the library returns the messages of all
+        return
+    for connection, when, data in bag.messages(connections=read):
         if len(data) <= MAX_SIZE:
             try:
                 topics[connection.topic].add(when * 1e-9, bytes(data), room)

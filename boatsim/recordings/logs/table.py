@@ -4,6 +4,7 @@ import csv
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from itertools import repeat
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -43,12 +44,17 @@ def _log(
 ) -> Log:
     clock = clock_of(columns)
     count = len(next(iter(columns.values()), ()))
-    t = np.arange(count, dtype=float) if clock is None else seconds(clock, columns[clock])
+    if clock is None:
+        t = np.arange(count, dtype=float)
+    else:
+        t = seconds(clock, columns[clock])
     signals: dict[str, Signal] = {}
     for name, values in columns.items():
         if np.isfinite(values).any():
             unit = units.get(name, "") or _unit(name)
-            signals[name] = Signal(t, values, "s" if name == clock else unit)
+            if name == clock:
+                unit = "s"
+            signals[name] = Signal(t, values, unit)
     if not clock:
         no_time = (
             f"{path}: no column is called a time: rows are counted; the map can name it with `time`"
@@ -60,7 +66,9 @@ def _log(
 def _unit(name: str) -> str:
     """The unit by the end of a name; `yaw_rate_deg_s` is in deg/s."""
     per = PER_SECOND.search(name.lower())
-    return f"{per[1]}/s" if per else unit_of(name)
+    if per:
+        return f"{per[1]}/s"
+    return unit_of(name)
 
 
 def _parquet(path: Path) -> dict[str, Array]:
@@ -72,9 +80,8 @@ def _parquet(path: Path) -> dict[str, Array]:
         Room(path).take(
             file.metadata.num_rows * file.metadata.num_columns, file.metadata.num_columns
         )
-        table = file.read(
-            columns=[f.name for f in file.schema_arrow if _is_number(pa.types, f.type)]
-        )
+        numeric = [f.name for f in file.schema_arrow if _is_number(pa.types, f.type)]
+        table = file.read(columns=numeric)
     except (pa.ArrowException, OSError, ValueError) as error:
         raise damaged(path, "Parquet", error) from error
     check_unique_names(path, table.column_names)
@@ -112,7 +119,8 @@ def _csv(path: Path) -> Log:
     columns = _read_fast(path, head)
     if columns is None:
         columns, remarks = _read_line_by_line(path, head)
-    return _log(path, {n: c for n, c in columns.items() if n}, head.units, remarks)
+    columns.pop("", None)
+    return _log(path, columns, head.units, remarks)
 
 
 def _head(path: Path) -> _Head:
@@ -122,26 +130,31 @@ def _head(path: Path) -> _Head:
     lines = [(i, line) for i, line in enumerate(begin.splitlines()) if line.strip()]
     while lines and lines[0][1].lstrip().startswith(COMMENT) and not _may_be_header(lines):
         lines.pop(0)
+    if not lines:
+        raise file_error(path, "is empty")
     if len(lines) < 2:
-        raise file_error(path, "has a header and no rows" if lines else "is empty")
+        raise file_error(path, "has a header and no rows")
     first = lines[0][1].lstrip("#%/ ")
     separator = max(SEPARATORS, key=first.count)
-    header = [name.strip() for name in next(csv.reader([first], delimiter=separator))]
+    header = list(map(str.strip, next(csv.reader([first], delimiter=separator))))
     if len(header) > MAX_SIGNALS:
         raise file_error(path, f"has {len(header)} columns; no log of a boat has as many")
     check_unique_names(path, header)
-    if all(_number(cell, separator) is not None for cell in header):
+    if None not in map(_number, header, repeat(separator)):
         raise file_error(
             path,
             "has no header: its first row is numbers; names of columns are needed",
             lines[0][0] + 1,
         )
-    units = {name: found[1].strip() for name in header if (found := BRACKETS.search(name))}
+    units: dict[str, str] = {}
+    for name in header:
+        if found := BRACKETS.search(name):
+            units[name] = found[1].strip()
     below = next(csv.reader([lines[1][1]], delimiter=separator), [])
     if len(below) == len(header) and _is_units(below, header, separator):
         if len(lines) < 3:
             raise file_error(path, "has a header and no rows")
-        units |= {n: u.strip("[]() ") for n, u in zip(header, below, strict=True)}
+        units = dict(zip(header, map(str.strip, below, repeat("[]() ")), strict=True))
         lines.pop(0)
     return _Head(header, separator, units, lines[1][0])
 
@@ -180,7 +193,9 @@ def _of_texts(column: "ChunkedArray", separator: str) -> Array:
     import pyarrow as pa
     from pyarrow import compute
 
-    texts = column if separator == "," else compute.replace_substring(column, ",", ".")
+    texts = column
+    if separator != ",":
+        texts = compute.replace_substring(column, ",", ".")
     empty = compute.is_in(compute.utf8_lower(texts), pa.array(EMPTY_WORDS))
     try:
         filled = compute.if_else(empty, pa.scalar(None, pa.string()), texts)
@@ -254,25 +269,34 @@ def _rows(
 
 def _is_units(row: Sequence[str], header: Sequence[str], separator: str) -> bool:
     """Whether the row below the header has units: short words and no numbers."""
-    filled = [cell for cell in row if cell.strip()]
+    filled = list(filter(str.strip, row))
     if not filled or 2 * len(filled) < len(header):
         return False
     for cell in filled:
         if _number(cell, separator) is not None or len(cell.strip()) > 10:
             return False
-    return all(dates([cell]) is None for cell in filled)
+        if dates([cell]) is not None:
+            return False
+    return True
 
 
 def _column(cells: Sequence[str], separator: str) -> Array:
     """Numbers (N,); nan where a cell is empty or a word. Dates become s since 1970."""
     try:
-        return np.array([float(c) if "_" not in c else np.nan for c in cells])
+        return np.array(list(map(_plain_number, cells)))
     except ValueError:
         pass
-    found = [_number(cell, separator) for cell in cells]
-    if all(x is None or x != x for x in found) and (when := dates(cells)) is not None:
+    found = np.array(list(map(_number, cells, repeat(separator))), dtype=float)  # None becomes nan
+    if np.isnan(found).all() and (when := dates(cells)) is not None:
         return when
-    return np.array(found, dtype=float)  # None becomes nan
+    return found
+
+
+def _plain_number(cell: str) -> float:
+    """The number of a cell without words. Python accepts 1_000, which is no number here."""
+    if "_" in cell:
+        return float("nan")
+    return float(cell)
 
 
 def _number(cell: str, separator: str) -> float | None:

@@ -39,7 +39,7 @@ LOCAL = {"x": "m", "y": "m", "z": "m", "vx": "m/s", "vy": "m/s", "vz": "m/s"}
 TOPICS = {
     "vehicle_local_position": LOCAL,
     "vehicle_visual_odometry": LOCAL,
-    "vehicle_angular_velocity": {f"xyz[{i}]": "rad/s" for i in range(3)},
+    "vehicle_angular_velocity": {"xyz[0]": "rad/s", "xyz[1]": "rad/s", "xyz[2]": "rad/s"},
     "vehicle_global_position": {"lat": "deg", "lon": "deg"},
 }
 # Reads without progress; a search byte by byte needs two for each of the 2^16 bytes of a message
@@ -56,8 +56,10 @@ class _ProgressingFile:
     def read(self, size: int) -> bytes:
         found = self._file.read(size)
         at = self._file.tell()
-        self._without_progress = 0 if at > self._furthest else self._without_progress + 1
-        self._furthest = max(at, self._furthest)
+        self._without_progress += 1
+        if at > self._furthest:
+            self._without_progress = 0
+            self._furthest = at
         if self._without_progress > MAX_READS_WITHOUT_PROGRESS:
             raise EOFError("its end is damaged")
         return found
@@ -100,12 +102,15 @@ def _log(path: Path, topics: list, corrupt: bool) -> Log:  # type: ignore[type-a
         known = UNITS | TOPICS.get(topic.name, {})
         units: dict[str, str] = {}
         for name in fields:
-            is_pulse = PULSES.match(topic.name) and "[" in name
-            units[name] = "us" if is_pulse else known.get(name, "")
+            units[name] = known.get(name, "")
+            if PULSES.match(topic.name) and "[" in name:
+                units[name] = "us"
             if (topic.name, name) in SCALED:
                 factor, units[name] = SCALED[topic.name, name]
                 fields[name] = fields[name] * factor
         stream = stream_names[topic.name, int(topic.multi_id)]
         signals |= signals_of(stream, np.asarray(t, dtype=float) * 1e-6, fields, units)
-    remark = f"{path}: is damaged in places; the readable part is used"
-    return Log(path, with_angles(signals), "NED", (remark,) if corrupt else ())
+    remarks = []
+    if corrupt:
+        remarks.append(f"{path}: is damaged in places; the readable part is used")
+    return Log(path, with_angles(signals), "NED", tuple(remarks))

@@ -57,7 +57,9 @@ def _read_fast(path: Path, first: bytes, content: bytes) -> Raw | None:
     for name, column in zip(header, table.columns, strict=True):
         raw.columns[name] = _numbers(raw, name, column)
     empty = np.isnan(list(raw.columns.values())).all(axis=0)
-    return None if empty.any() else raw
+    if empty.any():
+        return None
+    return raw
 
 
 def _header(first: bytes) -> list[str] | None:
@@ -68,8 +70,10 @@ def _header(first: bytes) -> list[str] | None:
         return None
     if not line.isprintable():
         return None
-    header = [name.strip() for name in next(csv.reader([line]), [])]
-    return header if len(set(header)) == len(header) > 1 else None
+    header = list(map(str.strip, next(csv.reader([line]), [])))
+    if len(set(header)) == len(header) > 1:
+        return header
+    return None
 
 
 def _table(header: list[str], content: bytes) -> "Table | None":
@@ -145,7 +149,7 @@ def _cells(path: Path, content: bytes) -> tuple[list[str], list[list[str]], list
         raise file_error(path, f"is not CSV ({error})", reader.line_num) from error
     if not rows:
         raise file_error(path, "is empty")
-    header = [name.strip() for name in rows[0]]
+    header = list(map(str.strip, rows[0]))
     for character, called in ((";", "semicolons"), ("\t", "tabs")):
         if len(header) == 1 and character in header[0]:
             raise file_error(

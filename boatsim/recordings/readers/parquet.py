@@ -64,8 +64,8 @@ def _cells(column: "ChunkedArray") -> list[object]:
     for chunk in column.chunks:
         if hasattr(chunk, "dictionary"):
             words = [str(word)[:MAX_CELL] for word in chunk.dictionary.to_pylist()]
-            for index in chunk.indices.to_pylist():
-                cells.append("" if index is None else words[index])
+            words.append("")  # for null
+            cells += map(words.__getitem__, chunk.indices.fill_null(len(words) - 1).to_pylist())
         else:
             cells += map(_cell, chunk.to_pylist())
     return cells
@@ -74,4 +74,6 @@ def _cells(column: "ChunkedArray") -> list[object]:
 def _cell(value: object) -> object:
     if value is None:
         return ""
-    return str(value)[:MAX_CELL] if isinstance(value, str | bytes) else value
+    if isinstance(value, str | bytes):
+        return str(value)[:MAX_CELL]
+    return value

@@ -60,7 +60,9 @@ def read(path: Path) -> Raw:
         if done.returncode != 0:
             raise BadInput(f"{path}: can not be read as .rrd (rerun's reader fails on it)")
         with np.load(table, allow_pickle=False) as found:
-            columns = {str(name): found[f"c{i}"] for i, name in enumerate(found["names"])}
+            columns = {}
+            for i, name in enumerate(found["names"]):
+                columns[str(name)] = found[f"c{i}"]
     return Raw(path, columns, range(1, 1 + len(columns["t_s"])))
 
 
