@@ -50,15 +50,25 @@ Names = Name | Sequence[Name]
 
 @dataclass(frozen=True)
 class Run:
-    """Result of a run."""
+    """The results of a run.
+
+    Attributes:
+        scenario: Name of the scenario.
+        seed: Seed of sensor noise and random effects.
+        complete: Whether the run reached its end.
+        recording: True signals at every step; `recording["psi_rad"]` is a signal.
+        camera: Poses measured by an overhead camera; None for a vessel that does not yaw.
+        metrics: Name -> metric with value, unit and regression band.
+        folder: Folder of the files; None where none were written.
+    """
 
     scenario: str
     seed: int
-    complete: bool  # whether it ran to its end
-    recording: Recording  # the truth at every step: t, signals by column, `recording["psi_rad"]`
-    camera: Recording | None  # what a camera above saw; None of a hull that it does not see move
-    metrics: Mapping[str, Metric]  # by name: value, unit, band, ok, lacking, ...
-    folder: Path | None = None  # of its files, where they were asked for
+    complete: bool
+    recording: Recording
+    camera: Recording | None
+    metrics: Mapping[str, Metric]
+    folder: Path | None = None
 
     @property
     def ok(self) -> bool:
@@ -113,8 +123,10 @@ class Diagnosis:
         """Parameters of the identified effects: effect -> parameter -> value and sd."""
         found: dict[str, dict[str, Parameter]] = {}
         for effect in self.answer["effects"]:
-            entries = effect["parameters"].items()
-            found[effect["name"]] = {k: Parameter(p["value"], p["sd"]) for k, p in entries}
+            parameters: dict[str, Parameter] = {}
+            for name, entry in effect["parameters"].items():
+                parameters[name] = Parameter(entry["value"], entry["sd"])
+            found[effect["name"]] = parameters
         return found
 
     @property
@@ -229,7 +241,7 @@ def load_scenario(
     >>> scenario.vessel.body.mass, len(boatsim.run(scenario).recording.t)
     (6.0, 251)
     """
-    return steered(str(name), None if controller is None else str(controller), vessel, changes)
+    return steered(str(name), _text(controller), vessel, changes)
 
 
 def run(
@@ -264,23 +276,26 @@ def run(
     True
     """
     loaded = _scenario(scenario, controller, vessel)
-    folder = None if out is None else Path(out)
-    if folder is None:
+    folder = None
+    if out is None:
         done = simulate(loaded, seed)
         metrics: Mapping[str, Metric] = all_metrics(done)
     else:
         from boatsim.view.run_observers import rerun_observers  # rerun takes half a second
 
+        folder = Path(out)
         options = RunOptions(seed=seed)
         done, metrics = run_into_folder(folder, loaded, options, rerun_observers(), in_memory=True)
-    camera = done.camera if "yaw" in loaded.vessel.dof else None
+    camera = None
+    if "yaw" in loaded.vessel.dof:
+        camera = done.camera
     return Run(loaded.name, done.seed, done.complete, done.recording, camera, metrics, folder)
 
 
 def _scenario(given: Name | Scenario, controller: Name | None, vessel: Vessel | None) -> Scenario:
-    """A scenario by name, with another controller or vessel; a `Scenario` as it is."""
+    """The scenario of a name with another controller or vessel, or the given `Scenario`."""
     if not isinstance(given, Scenario):
-        return steered(str(given), None if controller is None else str(controller), vessel)
+        return steered(str(given), _text(controller), vessel)
     if controller is not None or vessel is not None:
         raise BadInput(
             f"{given.name}: controller and vessel are allowed with the name of a scenario only; "
@@ -309,7 +324,8 @@ def read(path: Name, vessel: Name | None = None, load: Names = ()) -> Recording:
     file = Path(path)
     if vessel is None and not notes_for(file).notes.vessel:
         return table.read(file)
-    return open_recording(file, None if vessel is None else str(vessel), _names(load))[0]
+    recording, _ = open_recording(file, _text(vessel), _names(load))
+    return recording
 
 
 def diagnose(
@@ -329,7 +345,7 @@ def diagnose(
         hold_out: Recordings that are held out to judge the result; by default a part of `runs`.
         vessel: Name or file of the vessel; that of the recordings' recording.toml by default.
         load: Load conditions of the vessel.
-        library: Candidate effects to test besides the usual ones.
+        library: Candidate effects to test in addition to the usual ones.
         without: Candidate effects not to test.
         horizon: Length of the free runs by which the result is judged [s].
         settings: Dotted name of a setting of `boatsim.diagnosis.config`, such as "select.odds" ->
@@ -357,7 +373,7 @@ def diagnose(
         pipeline.diagnose(
             runs=_paths(runs),
             hold_out=_paths(hold_out),
-            vessel=None if vessel is None else str(vessel),
+            vessel=_text(vessel),
             load=_names(load),
             library=_names(library),
             without=_names(without),
@@ -392,10 +408,8 @@ def replay(
     >>> sorted(simulated.signals)
     ['psi_rad', 'segment', 'x_m', 'y_m']
     """
-    opened, boat = open_recording(
-        Path(recording), None if vessel is None else str(vessel), _names(load)
-    )
-    return joined(replayed(opened, boat, horizon))
+    opened, replayed_vessel = open_recording(Path(recording), _text(vessel), _names(load))
+    return joined(replayed(opened, replayed_vessel, horizon))
 
 
 def sweep(
@@ -446,17 +460,25 @@ def sweep(
     """
     axes = []
     for key, values in (vary or {}).items():
-        axes.append(make_axis(key, values if isinstance(values, str) else list(values)))
-    draws = [make_sampled_key(key, law) for key, law in (draw or {}).items()]
-    made = make_plan(_names(scenarios), axes, draws, runs, seed, design)
-    return Sweep(*run_plan(made, Path(out), jobs, ray, _names(norms), report), Path(out))
+        if not isinstance(values, str):
+            values = list(values)
+        axes.append(make_axis(key, values))
+    sampled = [make_sampled_key(key, law) for key, law in (draw or {}).items()]
+    plan = make_plan(_names(scenarios), axes, sampled, runs, seed, design)
+    return Sweep(*run_plan(plan, Path(out), jobs, ray, _names(norms), report), Path(out))
 
 
 def _paths(names: Names) -> list[Path]:
-    return [Path(name) for name in _names(names)]
+    return list(map(Path, _names(names)))
+
+
+def _text(name: Name | None) -> str | None:
+    if name is None:
+        return None
+    return str(name)
 
 
 def _names(names: Names) -> list[str]:
     if isinstance(names, str | Path):
         return [str(names)]
-    return [str(name) for name in names]
+    return list(map(str, names))

@@ -6,6 +6,7 @@ import tomllib
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from datetime import date, time
+from itertools import repeat
 from pathlib import Path
 from typing import IO, TypeAlias, TypeVar
 
@@ -76,9 +77,10 @@ def _check_sizes(content: Mapping[str, Value]) -> None:
         if depth > MAX_DEPTH:
             raise RecursionError
         if isinstance(value, dict):
-            pending += [(str(k), v, depth + 1) for k, v in value.items()]
+            for inner_key, inner in value.items():
+                pending.append((str(inner_key), inner, depth + 1))
         elif isinstance(value, list):
-            pending += [(key, v, depth + 1) for v in value]
+            pending += zip(repeat(key), value, repeat(depth + 1))
         elif isinstance(value, int) and abs(value) >= INTEGER_LIMIT:
             raise ValueError(
                 f"{key} is an integer of {len(str(abs(value)))} digits; allowed are those of 64 "
@@ -112,18 +114,21 @@ def tables(value: object) -> list[dict[str, Value]]:
 
 def _line(model: type[BaseModel], error: ValidationError) -> str:
     """Message of the first mistake of a validation."""
-    first = min(
-        error.errors(), key=lambda e: e["type"] != "extra_forbidden"
-    )  # a misspelt key is also a missing one
-    place = ".".join(str(p) for p in first["loc"])
+    # A misspelt key is also a missing one
+    first = min(error.errors(), key=lambda e: e["type"] != "extra_forbidden")
+    place = ".".join(map(str, first["loc"]))
     if first["type"] == "extra_forbidden":
-        table = ".".join(str(p) for p in first["loc"][:-1])
-        what = f"key in [{table}]" if table else "key"
+        table = ".".join(map(str, first["loc"][:-1]))
+        what = "key"
+        if table:
+            what = f"key in [{table}]"
         return unknown_name(what, str(first["loc"][-1]), _keys(model, first["loc"]))
     if first["type"] == "missing":
         return f"{place} is missing"
     message = first["msg"].removeprefix("Value error, ").lower()
-    return f"{place} = {first['input']!r}; {message}" if place else message
+    if not place:
+        return message
+    return f"{place} = {first['input']!r}; {message}"
 
 
 def _keys(model: type[BaseModel], place: tuple[int | str, ...]) -> list[str]:
@@ -135,7 +140,10 @@ def _keys(model: type[BaseModel], place: tuple[int | str, ...]) -> list[str]:
             model.model_fields[key].annotation,
             *getattr(model.model_fields[key].annotation, "__args__", ()),
         ]
-        model = next((k for k in kinds if isinstance(k, type) and issubclass(k, BaseModel)), model)
+        for kind in kinds:
+            if isinstance(kind, type) and issubclass(kind, BaseModel):
+                model = kind
+                break
     return list(model.model_fields)
 
 

@@ -1,6 +1,6 @@
 """Channel bindings of a vessel: which commands and measured signals each effect acts on."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -8,8 +8,6 @@ from boatsim.errors import BadInput, unknown_name
 from boatsim.physics.kinds.channel import Channel
 from boatsim.physics.kinds.effect import Effect
 from boatsim.physics.vessel.schema import Body, CommandChannel, MeasuredChannel
-
-ANGLE_PARTS = ("cos", "sin")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -50,12 +48,12 @@ class Bindings:
     @property
     def actuators(self) -> tuple[str, ...]:
         """Names of the commands that are bound to a role of an effect."""
-        return tuple(name for name in self.commands if name in self.roles)
+        return tuple(filter(self.roles.__contains__, self.commands))
 
     @property
     def readings(self) -> tuple[str, ...]:
         """Names of the measured channels that are bound to a role of an effect."""
-        return tuple(name for name in self.measured if name in self.roles)
+        return tuple(filter(self.roles.__contains__, self.measured))
 
     @cached_property
     def roles(self) -> Mapping[str, str]:
@@ -70,12 +68,12 @@ class Bindings:
     @cached_property
     def angles(self) -> tuple[str, ...]:
         """Names of the actuators that are angles. Laws have their cosine and sine too."""
-        return tuple(name for name in self.actuators if self.unit(name) == "rad")
+        return tuple(filter(self._is_angle, self.actuators))
 
     @cached_property
     def reading_angles(self) -> tuple[str, ...]:
         """Names of the readings that are angles. Laws have their cosine and sine too."""
-        return tuple(name for name in self.readings if self.unit(name) == "rad")
+        return tuple(filter(self._is_angle, self.readings))
 
     @cached_property
     def held(self) -> tuple[str, ...]:
@@ -92,7 +90,7 @@ class Bindings:
         """Role of several actuators -> their names; their sum is a signal of described laws."""
         sums: dict[str, tuple[str, ...]] = {}
         for role in self.roles.values():
-            names = tuple(name for name in self.actuators if self.roles[name] == role)
+            names = self._actuators_in((role,))
             if len(names) > 1 and role not in self.inputs:
                 sums[role] = names
         return sums
@@ -110,6 +108,13 @@ class Bindings:
                 if bound == first:
                     return type(effect).roles[role].unit
         return ""
+
+    def _is_angle(self, channel: str) -> bool:
+        return self.unit(channel) == "rad"
+
+    def _actuators_in(self, roles: Sequence[str]) -> tuple[str, ...]:
+        """The actuators that are bound to one of some roles."""
+        return tuple(name for name in self.actuators if self.roles[name] in roles)
 
     def side(self, channel: str) -> int:
         """Return the side of the hull on which the device of a channel is mounted.
@@ -149,7 +154,9 @@ class Bindings:
             if effect.name == name:
                 return effect
         same_type = [effect for effect in self.effects if type(effect).idea() == name]
-        return same_type[0] if len(same_type) == 1 else None
+        if len(same_type) == 1:
+            return same_type[0]
+        return None
 
     def names_of(self, name: str) -> list[str]:
         """Return the names of all effects that have a name or a type."""
@@ -162,19 +169,21 @@ class Bindings:
     @staticmethod
     def specified_bindings(effect: Effect) -> Mapping[str, str | float]:
         """Return what an effect's own table binds its roles to: a channel's name, or a constant."""
-        return effect.on if isinstance(effect.on, Mapping) else {}
+        if isinstance(effect.on, Mapping):
+            return effect.on
+        return {}
 
     def bindings(self, effect: Effect) -> dict[str, str | float]:
         """Return what each role of an effect is bound to: a channel's name, or a constant.
 
-        An effect without bindings of its own is bound to the vessel's only channel in each role. An
+        An effect whose table has no bindings is bound to the vessel's only channel in each role. An
         optional role stays unbound then: a fixed thruster does not turn with the only rudder.
         """
         bound = dict(self.specified_bindings(effect))
         if bound:
             return bound
         for role, about in type(effect).roles.items():
-            candidates = [name for name in self.actuators if self.roles[name] == role]
+            candidates = self._actuators_in((role,))
             if about.fixed is None and len(candidates) == 1:
                 bound[role] = candidates[0]
         return bound
@@ -189,11 +198,11 @@ class Bindings:
         if not isinstance(effect, Channel):
             return ()
         if effect.on:
-            return tuple(name for name in self.actuators if name in effect.on)
+            return tuple(filter(effect.on.__contains__, self.actuators))
         roles = type(effect).acts_on.split("|")
         if roles == [""]:
             return self.actuators
-        return tuple(name for name in self.actuators if self.roles[name] in roles)
+        return self._actuators_in(roles)
 
     def feeding_command(self, effect: Effect, actuator: str) -> str | None:
         """Return the command that feeds an actuator through a channel effect, None without one."""
@@ -203,7 +212,10 @@ class Bindings:
 
 
 def _parts_of(angles: tuple[str, ...]) -> list[str]:
-    return [f"{part}_{angle}" for angle in angles for part in ANGLE_PARTS]
+    parts = []
+    for angle in angles:
+        parts += [f"cos_{angle}", f"sin_{angle}"]
+    return parts
 
 
 def check_bindings(vessel: Bindings, label: str) -> None:

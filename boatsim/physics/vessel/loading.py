@@ -35,7 +35,9 @@ def load(
             file, key, value found, what is allowed and the nearest valid name.
     """
     path = find("vessel", name, base_folder)
-    vessel_name = path.parent.name if path.name == FILE_NAME else path.stem
+    vessel_name = path.stem
+    if path.name == FILE_NAME:
+        vessel_name = path.parent.name
     label = _label(path)
     raw: Mapping[str, object] = read_toml(path)
     conditions = checked(VesselFile, raw, label).loads
@@ -113,7 +115,7 @@ def _label(path: Path) -> str:
 def _check_new_names(
     extra: Sequence[Mapping[str, object]], content: VesselFile, vessel_name: str
 ) -> None:
-    own = [effect_name(table) for table in content.effect]
+    own = list(map(effect_name, content.effect))
     for name in map(effect_name, extra):
         if name in own:
             raise BadInput(

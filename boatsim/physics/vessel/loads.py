@@ -39,12 +39,11 @@ def conflicts(
 ) -> dict[str, tuple[object, object]]:
     """Return the keys ("body.mass") that two load conditions set differently -> both values."""
     flat_first, flat_second = _flat(first), _flat(second)
-    shared = [key for key in flat_first if key in flat_second]
-    return {
-        key: (flat_first[key], flat_second[key])
-        for key in shared
-        if flat_first[key] != flat_second[key]
-    }
+    different: dict[str, tuple[object, object]] = {}
+    for key, value in flat_first.items():
+        if key in flat_second and value != flat_second[key]:
+            different[key] = (value, flat_second[key])
+    return different
 
 
 def _flat(table: Mapping[str, object]) -> dict[str, object]:
@@ -53,7 +52,8 @@ def _flat(table: Mapping[str, object]) -> dict[str, object]:
     inner: dict[str, object] = {}
     for key, value in table.items():
         if isinstance(value, Mapping):
-            inner |= {f"{key}.{name}": x for name, x in value.items()}
+            for name, inner_value in value.items():
+                inner[f"{key}.{name}"] = inner_value
         else:
             values[key] = value
     return values | inner
@@ -74,7 +74,7 @@ def overlaid(
         BadInput: For an effect or a table that does not exist.
     """
     changed = dict(raw)
-    effects: list[dict[str, object]] = [dict(table) for table in tables(raw.get("effect"))]
+    effects: list[dict[str, object]] = list(map(dict, tables(raw.get("effect"))))
     by_name: dict[str, dict[str, object]] = {}
     for table in effects:
         by_name.setdefault(effect_name(table), table)
@@ -85,7 +85,9 @@ def overlaid(
             by_name[key].update(value)
         elif isinstance(value, dict) and key in INNER_TABLES:
             own = raw.get(key)
-            changed[key] = {**own, **value} if isinstance(own, Mapping) else value
+            if isinstance(own, Mapping):
+                value = {**own, **value}
+            changed[key] = value
         elif key in NUMBERS:
             changed[key] = value
         else:

@@ -406,7 +406,9 @@ class Vessel(Bindings):
         own_hull = place / self.hull
         if self.hull_xml and not own_hull.is_file():
             own_hull.write_text(self.hull_xml, encoding="utf-8")
-        path = place if self.hull_xml else self.path
+        path = self.path
+        if self.hull_xml:
+            path = place
         return dataclasses.replace(
             self,
             name=place.name,
@@ -454,7 +456,7 @@ class Vessel(Bindings):
 def _toml_value(value: object) -> object:
     """A value of a vessel's field as it stands in a file; {} for a table without values."""
     if isinstance(value, Mapping):
-        return {key: _toml_value(inner) for key, inner in value.items()}
+        return dict(zip(value, map(_toml_value, value.values()), strict=True))
     if isinstance(value, tuple):
         return list(value)
     if hasattr(value, "model_dump"):

@@ -118,7 +118,9 @@ def geom(
         default_class: "seen" for what is drawn, "touch" for what touches walls.
         material: "hull", "deck" or "dark"; "" for that of the class.
     """
-    of_material = f' material="{material}"' if material else ""
+    of_material = ""
+    if material:
+        of_material = f' material="{material}"'
     return (
         f'<geom name={quoteattr(name)} class="{default_class}" type="{kind}"{of_material} '
         f'pos="{numbers(*pos)}" size="{numbers(*size)}"/>'

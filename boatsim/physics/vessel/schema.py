@@ -18,10 +18,14 @@ Dof = Literal["surge", "sway", "heave", "roll", "pitch", "yaw"]
 
 # A channel becomes a column of every log
 CHANNEL_NAME = re.compile(r"[\w.+-]{1,60}")
-FORCE_COLUMNS = tuple(
-    f"{kind}_{component}" for kind in ("force", "wind") for component in COMPONENTS.values()
+RESERVED_COLUMNS = (
+    "t_s",
+    "contacts",
+    *POSE,
+    *RATES,
+    *map("force_{}".format, COMPONENTS.values()),
+    *map("wind_{}".format, COMPONENTS.values()),
 )
-RESERVED_COLUMNS = ("t_s", "contacts", *POSE, *RATES, *FORCE_COLUMNS)
 RESERVED_PREFIXES = (
     "sent_",
     "actual_",
