@@ -208,7 +208,7 @@ def test_a_log_becomes_a_recording_that_can_be_read_and_knows_its_vessel(tmp_pat
     assert np.isnan(found["x_m"]).any() and np.isfinite(found["n_port_radps"]).all()
     again = tmp_path / "runs" / "again.csv"
     _, said = ran(log, again, map, None, None)
-    assert "is there and left as it is" in said and again.read_bytes() == run.read_bytes()
+    assert "exists and is kept" in said and again.read_bytes() == run.read_bytes()
 
 
 def test_without_a_map_nothing_is_written(tmp_path):
@@ -222,7 +222,7 @@ def test_without_a_map_nothing_is_written(tmp_path):
 def test_the_log_itself_is_never_written_over(tmp_path):
     log = tmp_path / "t.csv"
     shutil.copy(LOGS / "truth.csv", log)
-    assert "that is what is read" in line_of(
+    assert "would overwrite the input" in line_of(
         import_log, log, log, tmp_path / "m.toml", None, None, []
     )
 

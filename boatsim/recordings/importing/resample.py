@@ -1,6 +1,6 @@
 """Resampling of signals with different clocks to common rows, without interpolation.
 
-A measurement is written to the row of its own time; rows between samples are empty (nan). A
+A measurement is written to the row at its time; rows between samples are empty (nan). A
 command is in force from its own time until the next one.
 """
 

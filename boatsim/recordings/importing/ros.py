@@ -269,7 +269,7 @@ class _Cursor:
 
 
 def log_of(path: Path, topics: Mapping[str, Topic], remarks: list[str]) -> Log:
-    """Return all topics as one log.
+    """Return all topics that have messages as one log.
 
     Messages have the time of their stamps if these agree with the time of logging, else the time of
     logging.
@@ -281,6 +281,8 @@ def log_of(path: Path, topics: Mapping[str, Topic], remarks: list[str]) -> Log:
     """
     signals: dict[str, Signal] = {}
     for name, topic in topics.items():
+        if not len(topic.logged):
+            continue
         logged = np.array(topic.logged)
         columns = {n: _filled(c, len(logged)) for n, c in topic.columns.items()}
         stamped = [columns.pop(f"header.stamp.{part}", None) for part in ("sec", "nanosec")]

@@ -59,14 +59,7 @@ FUNCTIONS = {  # values of SERVOn_FUNCTION, from the parameter list of Rover
     70: "throttle",
     73: "throttle left",
     74: "throttle right",
-    33: "motor 1",
-    34: "motor 2",
-    35: "motor 3",
-    36: "motor 4",
-    37: "motor 5",
-    38: "motor 6",
-    39: "motor 7",
-    40: "motor 8",
+    **{32 + k: f"motor {k}" for k in range(1, 9)},
 }
 STICK, OUTPUT = "pilot's stick", "output"
 

@@ -43,8 +43,7 @@ def read(path: Path) -> Log:
         if not any(len(topic.logged) for topic in topics.values()):
             raise damaged(path, "a bag of ROS", error) from error
         remarks.append(f"{path}: ends early or is damaged; the part before is used")
-    with_data = {name: topic for name, topic in topics.items() if len(topic.logged)}
-    return log_of(path, with_data, remarks)
+    return log_of(path, topics, remarks)
 
 
 def _check_folder(path: Path, folder: Path) -> None:

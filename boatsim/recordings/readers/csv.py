@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
 
 BLOCK_BYTES = 1 << 20
+NOT_TEXT = "is not a text file; a recording is CSV, Parquet or the .rrd of a run"
 
 
 def read(path: Path) -> Raw:
@@ -131,13 +132,9 @@ def _cells(path: Path, content: bytes) -> tuple[list[str], list[list[str]], list
     try:
         text = content.decode("utf-8-sig")
     except UnicodeDecodeError as error:
-        raise file_error(
-            path, "is not a text file; a recording is CSV, Parquet or the .rrd of a run"
-        ) from error
+        raise file_error(path, NOT_TEXT) from error
     if "\0" in text:
-        raise file_error(
-            path, "is not a text file; a recording is CSV, Parquet or the .rrd of a run"
-        )
+        raise file_error(path, NOT_TEXT)
     reader = csv.reader(StringIO(text, newline=None))
     rows, lines = [], []
     try:
