@@ -113,7 +113,10 @@ def _effect_facts(cls: type[Effect]) -> Iterator[tuple[str, str]]:
     if cls.facts:
         yield "needs the facts", ", ".join(cls.facts)
     if cls.confounded_with:
-        yield "only on request", f"looks the same as {' or '.join(cls.confounded_with)}"
+        yield (
+            "only on request",
+            f"recordings cannot distinguish it from {' or '.join(cls.confounded_with)}",
+        )
 
 
 def _toml(value: object) -> str:

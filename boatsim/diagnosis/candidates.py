@@ -106,7 +106,9 @@ def library_for(
             continue
         if kind.confounded_with and not source.requested:
             others = " or ".join(kind.confounded_with)
-            excluded[name] = f"looks the same as {others}; --library {name} tests it"
+            excluded[name] = (
+                f"recordings cannot distinguish it from {others}; --library {name} tests it"
+            )
             continue
         excluded.pop(name, None)
         reason = reasons.get(name) or excluding_fact(kind.ruled_out_by, known)
@@ -201,18 +203,21 @@ def lacking(
     """
     missing = [name for name in kind.needs if name not in vessel.dof]
     if missing:
-        return f"no freedom in {' and '.join(missing)}"
-    axes = {p.axis for p in kind.params().values() if p.fit}
+        return f"no degree of freedom in {' and '.join(missing)}"
+    axes = set()
+    for param in kind.params().values():
+        if param.fit:
+            axes.add(param.axis)
     if "" not in axes and not axes & set(vessel.dof):
-        return f"no freedom in {' or '.join(sorted(axes))}"
+        return f"no degree of freedom in {' or '.join(sorted(axes))}"
     for fact in kind.facts:
         if fact not in facts:
             return f"not specified: {describe_fact(fact)}"
     if issubclass(kind, Measurement) and kind.late is not None and not vessel.actuators:
-        return "no command to be late behind"
+        return "no commands relative to which a latency could be estimated"
     if kind.alone and vessel.names_of(kind.idea()):
         own = vessel.names_of(kind.idea())[0]
-        return f"its own {own}, whose numbers other effects release"
+        return f"the vessel has its own {own}, whose parameters other candidates adjust"
     try:
         found = placed(kind, vessel, facts, table)
     except BadInput as error:
@@ -220,7 +225,7 @@ def lacking(
     if isinstance(found, Channel) and not vessel.targets(found):
         return f"no command of {type(found).acts_on.replace('|', ' or ') or 'any kind'}"
     if isinstance(found, Release) and all(c.weight == 0.0 for c in found.changes(vessel)):
-        return "none of the numbers it releases"
+        return "none of the parameters that it would adjust"
     return ""
 
 
@@ -266,8 +271,10 @@ def absent(
     for fact, places in kind.facts.items():
         if facts and fact in facts:
             values = np.array(facts[fact], dtype=float)
-            settings |= {n: float(x) for n, x in zip(places, values, strict=True)}
-    settings |= {n: p.absent for n, p in kind.params().items() if p.fit}
+            settings |= dict(zip(places, values.tolist(), strict=True))
+    for name, param in kind.params().items():
+        if param.fit:
+            settings[name] = param.absent
     return kind.from_settings(settings | dict(given or {}))
 
 
@@ -318,9 +325,11 @@ def with_stated_errors(vessel: Vessel, facts: Mapping[str, object]) -> Vessel:
         facts: Facts of the recordings.
     """
     known = {**vessel.diagnosis.facts, **facts}
-    if not all(fact in known for fact in WANDER) or not {"surge", "sway"} <= set(vessel.dof):
+    if not set(WANDER) <= set(known) or not {"surge", "sway"} <= set(vessel.dof):
         return vessel
-    sd, time = (float(str(known[fact])) for fact in WANDER)
+    sd_fact, time_fact = WANDER
+    sd = float(str(known[sd_fact]))
+    time = float(str(known[time_fact]))
     error = load_class("effect", "position_wander").from_settings({"position": sd, "time": time})
     return replace(vessel, effects=(*vessel.effects, error.completed(vessel)))
 
@@ -333,9 +342,13 @@ def composed(vessel: Vessel) -> tuple[Program, tuple[str, ...]]:
     Args:
         vessel: Vessel file, or a patched one.
     """
-    own = tuple(e for e in vessel.effects if e.name not in vessel.found)
-    found = {e.name: e for e in vessel.effects if e.name in vessel.found}
-    nominal = replace(vessel, effects=own, found=())
+    own, found = list[Effect](), dict[str, Effect]()
+    for effect in vessel.effects:
+        if effect.name in vessel.found:
+            found[effect.name] = effect
+        else:
+            own.append(effect)
+    nominal = replace(vessel, effects=tuple(own), found=())
     candidates = {e.name: e for e in library_for(nominal).compiled} | found
     program = Program(nominal, tuple(candidates.values()))
     return program, tuple(name for name in candidates if name in found)

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from boatsim.diagnosis.fit import TINY, jacobian
-from boatsim.diagnosis.problem import Fit, Problem
+from boatsim.diagnosis.problem import Fit, Problem, priors_of
 
 
 def inflate_covariance(problem: Problem, found: Fit) -> Fit:
@@ -32,7 +32,7 @@ def inflate_covariance(problem: Problem, found: Fit) -> Fit:
     white = passes.whitened
     J = jacobian(problem, found.free, found.theta, on, found.levels, passes)
     gradients = np.array([J[rows].T @ white[rows] for rows in blocks])  # (blocks, F)
-    sd = np.array([f.sd for f in found.free])
+    sd = priors_of(found.free).sd
     inverse = found.covariance / np.outer(sd, sd)
     sandwich = inverse @ (np.eye(len(sd)) + gradients.T @ gradients) @ inverse
     ratio = np.diag(sandwich) / np.maximum(np.diag(inverse), TINY)

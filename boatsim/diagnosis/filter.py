@@ -303,9 +303,9 @@ class MappedRecording:
             states,
             out,
         )
-        runs = [
-            (a, out[i, a : b + 1].copy()) for i, (a, b) in enumerate(zip(starts, ends, strict=True))
-        ]
+        runs = []
+        for simulated, begin, end in zip(out, starts, ends, strict=True):
+            runs.append((begin, simulated[begin : end + 1].copy()))
         oscillators = 2 if self._oscillates(values, on) else 0
         for effect, acts in zip(self.program.effects, on, strict=True):
             if isinstance(effect, Wandering) and acts:
@@ -504,14 +504,20 @@ def map_recording(
     vessel = program.vessel
     axes = axes_of(vessel)
     where = _name_of(recording)
-    found = [s for s in signals_of(vessel.dof) if s.column in recording.signals]
+    found, families, codes = list[Signal](), list[str](), list[int]()
+    for signal in signals_of(vessel.dof):
+        if signal.column in recording.signals:
+            found.append(signal)
+            families.append(signal.noise)
+            codes.append(axes.index(signal.axis) + signal.rate * len(axes))
+    columns = tuple(signal.column for signal in found)
     _check_columns(recording, vessel, found)
     if len(recording) < FEWEST_IN_PART:
         raise BadInput(
             f"{where}: {recording.name} has {len(recording)} rows to use; at least "
             f"{FEWEST_IN_PART} are needed"
         )
-    measured = np.column_stack([recording.signals[s.column] for s in found])
+    measured = np.column_stack(list(map(recording.signals.__getitem__, columns)))
     own = checked_noise(recording)
     shared = shared_noise or NOISE | own
     scale = {family: own.get(family, sd) / sd for family, sd in shared.items()}
@@ -524,9 +530,9 @@ def map_recording(
         program,
         np.ascontiguousarray(recording.t),
         np.ascontiguousarray(measured),
-        tuple(s.noise for s in found),
-        tuple(s.column for s in found),
-        np.array([axes.index(s.axis) + s.rate * len(axes) for s in found]),
+        tuple(families),
+        columns,
+        np.array(codes),
         np.ascontiguousarray(commands),
         parameter_values(program, facts),
         scale | dict(noise_ratio or {}),

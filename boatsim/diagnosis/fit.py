@@ -8,7 +8,14 @@ import numpy as np
 
 from boatsim.diagnosis.filter import NoiseLevels
 from boatsim.diagnosis.noise_levels import fit_force, force_prior
-from boatsim.diagnosis.problem import FilterPasses, Fit, FreeParameter, Problem
+from boatsim.diagnosis.problem import (
+    FilterPasses,
+    Fit,
+    FreeParameter,
+    Problem,
+    priors_of,
+    theta_of,
+)
 from boatsim.physics.base import Array
 
 TINY = 1e-300  # variance of what is known exactly
@@ -74,9 +81,8 @@ def remove_effect(problem: Problem, found: Fit, name: str) -> Fit:
     """
     effects = tuple(n for n in found.effects if n != name)
     free = problem.parameters(effects)
-    known = {(f.effect, f.name): x for f, x in zip(found.free, found.theta, strict=True)}
-    theta = np.array([known[f.effect, f.name] for f in free])
-    nothing = np.array([f.mean for f in free])
+    theta = theta_of(free, found.values())
+    nothing = priors_of(free).mean
     on = problem.program.switches(effects)
     for _ in range(problem.config.fit.halvings):
         if np.isfinite(problem.log_likelihood(free, theta, on, found.levels)):
@@ -104,10 +110,7 @@ class ParameterSpace:
     """Bounds and priors of free parameters, for steps in units of the prior sd."""
 
     def __init__(self, free: Sequence[FreeParameter]) -> None:
-        self.mean = np.array([f.mean for f in free], dtype=float)
-        self.sd = np.array([f.sd for f in free], dtype=float)
-        self.low = np.array([f.low for f in free], dtype=float)
-        self.high = np.array([f.high for f in free], dtype=float)
+        self.mean, self.sd, self.low, self.high = priors_of(free)
 
     def clipped(self, theta: Array) -> Array:
         """Return parameters (F,) within the bounds."""
@@ -212,7 +215,7 @@ class _Point:
 
 @dataclass(frozen=True)
 class _Hypothesis:
-    """What stays the same while parameters are fitted."""
+    """Problem, free parameters, active effects and noise levels of a fit, which stay the same."""
 
     problem: Problem
     free: tuple[FreeParameter, ...]

@@ -23,7 +23,8 @@ class FreeRun:
     run: str  # name of the recording
     start_s: float
     t: Array  # (M,) s
-    # "recorded" or the name of a model -> those of x_m, y_m, psi_rad, phi_rad that were recorded, each (M,)
+    # "recorded" or the name of a model -> those of x_m, y_m, psi_rad, phi_rad that were recorded,
+    # each (M,)
     channels: dict[str, dict[str, Array]]
 
     def deviations(self, model: str, signals: Sequence[str]) -> list[Array]:

@@ -24,7 +24,7 @@ MOST_FOLDERS = 8  # in front of a file's name that may distinguish it from other
 
 @dataclass(frozen=True)
 class Request:
-    """What a user asks of a diagnosis."""
+    """Files and options of one diagnosis."""
 
     runs: Sequence[Path]  # recordings to fit
     hold_out: Sequence[Path] = ()  # recordings for validation
@@ -69,34 +69,40 @@ def load(request: Request, report: Report = silent, config: DiagnosisConfig = DE
     """
     paths = [*request.runs, *request.hold_out]
     _check_distinct(paths)
-    opened: list[tuple[Recording, Vessel]] = []
-    count = f"{len(paths)} recording{'' if len(paths) == 1 else 's'}"
+    opened, own_vessels = list[Recording](), list[Vessel]()
+    count = "1 recording"
+    if len(paths) > 1:
+        count = f"{len(paths)} recordings"
     for i, path in enumerate(paths):
         report(f"reading {count}", i / len(paths))
         recording, vessel = open_recording(path, request.vessel, request.load, config)
         facts = {**request.facts, **recording.notes.facts}
         notes = replace(recording.notes, facts=facts)
-        opened.append((replace(recording, notes=notes), vessel))
+        opened.append(replace(recording, notes=notes))
+        own_vessels.append(vessel)
     report("checking the log", 1.0)
-    check_same_vessel([vessel for _, vessel in opened])
-    duration = data_cleaning.total_duration([recording for recording, _ in opened])
-    findings, cleaned = list[Finding](), list[Recording]()
-    for (recording, vessel), name in zip(opened, _distinct_names(paths), strict=True):
+    check_same_vessel(own_vessels)
+    duration = data_cleaning.total_duration(opened)
+    findings, cleaned, remarks = list[Finding](), list[Recording](), list[str]()
+    by_path: dict[Path | None, Vessel] = {}
+    for recording, vessel, name in zip(opened, own_vessels, _distinct_names(paths), strict=True):
+        by_path[recording.path] = vessel
         clean = data_cleaning.clean_recording(recording, vessel, duration, config)
         findings += run_checks.check_recording(recording, clean, vessel, config.checks)
         cleaned.append(replace(clean, name=name))
+        remarks += clean.remarks
     first = len(request.runs)
     fitted, held_out, note = split(cleaned[:first], cleaned[first:])
     return Loaded(
         fitted,
         held_out,
-        {recording.path: vessel for recording, vessel in opened},
+        by_path,
         note,
         request.library,
         request.without,
         request.horizon,
         findings,
-        tuple(dict.fromkeys(remark for clean in cleaned for remark in clean.remarks)),
+        tuple(dict.fromkeys(remarks)),
     )
 
 
@@ -125,7 +131,7 @@ def vessel_for(
         raise BadInput(f"{path}: there is no such file")
     if not name:
         raise BadInput(
-            f"{path}: no vessel given; name one with --vessel or in a recording.toml beside it"
+            f"{path}: no vessel given; name one with --vessel or in a recording.toml next to it"
         )
     conditions = load_conditions or notes.load
     try:
@@ -191,13 +197,14 @@ def split(
         return list(recordings[:-1]), [last], note
     whole = recordings[0]
     begin, end = float(whole.t[0]), float(whole.t[-1])
-    a, b = (float(begin + share * (end - begin)) for share in (1 / 3, 2 / 3))
+    a = float(begin + 1 / 3 * (end - begin))
+    b = float(begin + 2 / 3 * (end - begin))
     half = 0.5 * float(np.median(np.diff(whole.t)))
     parts = (whole.between(begin, a), whole.between(a + half, b), whole.between(b + half, end))
-    first, middle, last = (
-        replace(part, name=_third(whole.name, which))
-        for part, which in zip(parts, THIRDS, strict=True)
-    )
+    thirds = []
+    for part, which in zip(parts, THIRDS, strict=True):
+        thirds.append(replace(part, name=_third(whole.name, which)))
+    first, middle, last = thirds
     note = f"the middle third of the only recording, {a:.1f} to {b:.1f} s"
     return [first, last], [middle], note
 
@@ -246,4 +253,4 @@ def _distinct_names(paths: Sequence[Path]) -> list[str]:
         short = ["/".join(path.resolve().with_suffix("").parts[-depth:]) for path in paths]
         if len(set(short)) == len(short):
             return short
-    return [str(path) for path in paths]
+    return list(map(str, paths))

@@ -52,10 +52,14 @@ def check_files(
     for path in runs:
         vessels[path] = vessel_for(path, vessel, load_conditions, config)
     check_same_vessel(list(vessels.values()))
-    checked = [_check_file(path, vessels[path], config) for path in runs]
-    findings = [finding for one in checked for finding in one.findings]
-    refused = [one.refused for one in checked if one.refused]
-    usable = [one.recording for one in checked if one.recording]
+    findings, refused, usable = list[Finding](), list[BadInput](), list[Recording]()
+    for path in runs:
+        checked = _check_file(path, vessels[path], config)
+        findings += checked.findings
+        if checked.refused:
+            refused.append(checked.refused)
+        if checked.recording:
+            usable.append(checked.recording)
     if usable:
         try:
             question = pose(Loaded(usable, (), vessels, ""), config)

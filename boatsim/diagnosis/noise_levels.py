@@ -8,7 +8,7 @@ import numpy as np
 from boatsim.diagnosis.coordinate_search import maximize
 from boatsim.diagnosis.filter import NoiseLevels
 from boatsim.diagnosis.priors import CHI_SQUARE_MEDIAN
-from boatsim.diagnosis.problem import FilterPasses, Fit, Problem
+from boatsim.diagnosis.problem import FilterPasses, Fit, Problem, priors_of
 from boatsim.physics.base import Array, Wandering
 
 # first steps along a coordinate, in logarithms of levels and prior sds of parameters
@@ -55,6 +55,12 @@ def _families(problem: Problem) -> list[str]:
     return sorted({family for mapped in problem.recordings for family in mapped.families})
 
 
+def _log_noise(levels: NoiseLevels, families: Sequence[str]) -> Array:
+    """Logarithms of the noise of some families."""
+    noise = np.array([levels.sensors[family] for family in families], dtype=float)
+    return np.asarray(np.log(noise), dtype=float)
+
+
 def _noise_prior(problem: Problem, logs: Array, specified: Array) -> float:
     """Sum of the squared deviations of the log noise in prior sds."""
     return float(np.sum(((logs - specified) / problem.config.fit.noise_sd) ** 2))
@@ -76,12 +82,11 @@ def fit_force(problem: Problem, found: Fit, enough: float | None = None) -> Fit:
     on = problem.program.switches(found.effects)
     searched = [j for j, f in enumerate(found.free) if f.searched]
     free = [found.free[j] for j in searched]
-    low, high = np.array([f.low for f in free]), np.array([f.high for f in free])
-    mean, sd = np.array([f.mean for f in free]), np.array([f.sd for f in free])
-    acting = [e for e in problem.program.candidates if e.name in found.effects]
-    drifts = any(isinstance(e, Wandering) for e in acting)
-    families = _families(problem) if drifts else []
-    specified = np.log([problem.ambient.sensors[f] for f in families])
+    mean, sd, low, high = priors_of(free)
+    families: list[str] = []
+    if any(isinstance(problem.candidates[name], Wandering) for name in found.effects):
+        families = _families(problem)
+    specified = _log_noise(problem.ambient, families)
     k, n = len(searched), len(searched) + len(families)
 
     def placed(x: Array) -> tuple[NoiseLevels, Array]:
@@ -100,7 +105,7 @@ def fit_force(problem: Problem, found: Fit, enough: float | None = None) -> Fit:
         likelihood = problem.log_likelihood(found.free, theta, on, levels, about)
         return likelihood + force_prior(problem, levels) + prior
 
-    noise = np.log([found.levels.sensors[f] for f in families])
+    noise = _log_noise(found.levels, families)
     begin = np.concatenate([found.theta[searched] / sd, noise, np.log(found.levels.force)])
     _, x = maximize(score, begin, FORCE_STEP, enough, problem.config.fit)
     levels, theta = placed(x)
@@ -118,8 +123,11 @@ def fit_noise(problem: Problem, found: Fit) -> Fit:
     families = _families(problem)
     n = len(prior_levels.force)
     on = problem.program.switches(found.effects)
-    specified = np.log([prior_levels.sensors[f] for f in families])
-    rough = np.log([_roughness(problem, f) or prior_levels.sensors[f] for f in families])
+    specified = _log_noise(prior_levels, families)
+    sensed = []
+    for family in families:
+        sensed.append(_roughness(problem, family) or prior_levels.sensors[family])
+    rough = np.log(np.array(sensed))
 
     def levels(x: Array) -> NoiseLevels:
         sensors = dict(prior_levels.sensors) | _sensors(problem, families, x[n:], specified)

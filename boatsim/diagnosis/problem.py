@@ -82,6 +82,13 @@ class Fit:
     levels: NoiseLevels
     evidence: float  # log of the Laplace evidence [nats]
 
+    def values(self) -> dict[tuple[str, str], float]:
+        """Return the fitted values by effect and name of the parameter."""
+        found = {}
+        for parameter, x in zip(self.free, self.theta, strict=True):
+            found[parameter.effect, parameter.name] = float(x)
+        return found
+
     def value(self, effect: str, name: str) -> tuple[float, float]:
         """Return the fitted value and the standard deviation of a parameter.
 
@@ -92,6 +99,38 @@ class Fit:
         names = [("" if f.relative else f.effect, f.name) for f in self.free]
         i = names.index((effect, name))
         return float(self.theta[i]), float(np.sqrt(self.covariance[i, i]))
+
+
+class Priors(NamedTuple):
+    """Priors of free parameters, each array (F,)."""
+
+    mean: Array
+    sd: Array
+    low: Array
+    high: Array
+
+
+def priors_of(free: Sequence[FreeParameter]) -> Priors:
+    """Return the prior means, standard deviations and bounds of free parameters.
+
+    Args:
+        free: Free parameters of a hypothesis.
+    """
+    rows = [(f.mean, f.sd, f.low, f.high) for f in free]
+    return Priors(*np.array(rows, dtype=float).reshape(-1, 4).T.copy())
+
+
+def theta_of(free: Sequence[FreeParameter], values: Mapping[tuple[str, str], float]) -> Array:
+    """Return the values (F,) of free parameters; those without one have their prior mean.
+
+    Args:
+        free: Free parameters of a hypothesis.
+        values: Values by effect and name of the parameter.
+    """
+    theta = priors_of(free).mean
+    for i, parameter in enumerate(free):
+        theta[i] = values.get((parameter.effect, parameter.name), theta[i])
+    return theta
 
 
 @dataclass(frozen=True)
@@ -204,6 +243,11 @@ class Problem:
         object.__setattr__(other, "recordings", recordings)
         return other
 
+    @cached_property
+    def candidates(self) -> Mapping[str, Effect]:
+        """Candidates of the program by name."""
+        return {effect.name: effect for effect in self.program.candidates}
+
     def parameters(self, effects: Sequence[str]) -> tuple[FreeParameter, ...]:
         """Return the nominal coefficients, then the parameters of effects, in their order.
 
@@ -211,9 +255,8 @@ class Problem:
             effects: Names of the candidates that act.
         """
         free = list(self.nominal_coefficients)
-        candidates = {e.name: e for e in self.program.candidates}
         for name in effects:
-            free += self._parameters_of(candidates[name])
+            free += self._parameters_of(self.candidates[name])
         return tuple(free)
 
     def _parameters_of(self, effect: Effect) -> list[FreeParameter]:
@@ -263,11 +306,14 @@ class Problem:
         """Places that a parameter of a candidate changes: its own, or those that it releases."""
         if not isinstance(effect, Release):
             return _Target((self.program.index(effect.name, name),), (1.0,))
-        changes = [c for c in effect.changes(self.program.vessel) if c.parameter == name]
-        if not changes:
+        at, weights = list[int](), list[float]()
+        for change in effect.changes(self.program.vessel):
+            if change.parameter == name:
+                at.append(self.place(change.owner, change.key))
+                weights.append(change.weight)
+        if not at:
             return None
-        at = tuple(self.place(c.owner, c.key) for c in changes)
-        return _Target(at, tuple(c.weight for c in changes))
+        return _Target(tuple(at), tuple(weights))
 
     def place(self, owner: str, key: str) -> int:
         """Return the place of a number in the parameter values of a run.
@@ -359,8 +405,9 @@ class Problem:
 
     def _bounds(self, param: Param) -> tuple[float, float]:
         """Bounds of a parameter: those of the file format and those of a hull of this size."""
-        low, high = (end * froude_scale(param.unit, self.program.vessel) for end in param.within)
-        return max(low, param.low), min(high, param.high)
+        scale = froude_scale(param.unit, self.program.vessel)
+        low, high = param.within
+        return max(low * scale, param.low), min(high * scale, param.high)
 
     def _has_actuator(self, effect: Effect, parameter: str) -> bool:
         """Whether the vessel has an actuator on the side to which a parameter belongs, if any."""

@@ -50,11 +50,14 @@ def columns(runs: Sequence[FreeRun]) -> dict[str, Array]:
     Args:
         runs: Free runs of one recording.
     """
-    poses = [run.channels["simulated"] for run in runs]
+    poses, times = list[dict[str, Array]](), list[Array]()
+    for run in runs:
+        poses.append(run.channels["simulated"])
+        times.append(run.t)
     numbers = np.arange(float(len(runs)))
     found = {
-        "t_s": np.concatenate([run.t for run in runs]),
-        "segment": np.repeat(numbers, [len(run.t) for run in runs]),
+        "t_s": np.concatenate(times),
+        "segment": np.repeat(numbers, list(map(len, times))),
     }
     for name in poses[0]:
         found[name] = np.concatenate([pose[name] for pose in poses])

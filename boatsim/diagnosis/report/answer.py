@@ -169,7 +169,7 @@ def _with_log_first(verdict: str, findings: Sequence[Finding], problem: Problem)
     if not certain:
         return verdict
     rest = f"{verdict[:1].lower()}{verdict[1:]}"
-    return f"{capital(LOG_NOT_BOAT)}: {listed(certain)}. If the log is correct: {rest}"
+    return f"{capital(LOG_NOT_BOAT)}: {listed(certain)}. If the log is used unchanged: {rest}"
 
 
 def meanings(candidates: Iterable[Effect], vessel: Vessel) -> dict[str, str]:

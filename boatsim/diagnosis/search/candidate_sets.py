@@ -12,6 +12,7 @@ from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.diagnosis.search.evidence import (
     front,
     left_over,
+    more_likely,
     required_gain,
     unknown_threshold,
 )
@@ -57,9 +58,13 @@ class CandidateSets:
         self.banned: set[str] = set()
         # effects without which held-out recordings are predicted worse, as free runs show
         self.supported: set[str] = set()
-        every = problem.program.candidates
-        self.random = {e.name for e in every if type(e).random}
-        self.unsteady = {e.name for e in every if isinstance(e, Unsteady)}  # stochastic forces
+        self.random = set[str]()  # stochastic forces, and drifts of instruments
+        self.unsteady = set[str]()  # stochastic forces
+        for name, effect in problem.candidates.items():
+            if type(effect).random:
+                self.random.add(name)
+            if isinstance(effect, Unsteady):
+                self.unsteady.add(name)
         self.required_gain = required_gain(len(candidates), self.config.select)
 
     def explained(self, best: Fit) -> float:
@@ -142,7 +147,19 @@ class CandidateSets:
 
     def tested(self, best: Fit, among: Sequence[str] = ()) -> dict[str, Fit]:
         """Return `screened` without candidates that were refuted."""
-        return {n: f for n, f in self.screened(best, among).items() if n not in self.banned}
+        return self._without_banned(self.screened(best, among))
+
+    def without_each(self, best: Fit) -> dict[str, Fit]:
+        """Return the fits of a set without one of its effects, by the name of that effect.
+
+        Args:
+            best: A fit.
+        """
+        return {name: self.without(best, name) for name in best.effects}
+
+    def _without_banned(self, fits: Mapping[str, Fit]) -> dict[str, Fit]:
+        """Fits of those candidates that were not refuted."""
+        return {name: found for name, found in fits.items() if name not in self.banned}
 
     def screened(self, best: Fit, among: Sequence[str] = ()) -> dict[str, Fit]:
         """Return the screenings of other candidates on top of a set, the best ones fitted in full.
@@ -156,12 +173,12 @@ class CandidateSets:
         """
         key = frozenset(best.effects)
         known = self.screenings.setdefault(key, {})
-        ideas = {called(n) for n in best.effects}
+        ideas = set(map(called, best.effects))
         rest = [n for n in among or self.candidates if called(n) not in ideas and n not in known]
         if rest:
             report = self._report_screening if len(self.screenings) == 1 else None
             known |= screen(self.problem, best, rest, report)
-        allowed = {n: f for n, f in known.items() if n not in self.banned}
+        allowed = self._without_banned(known)
         least = best.evidence + self.required_gain
         if not among and all(f.evidence < least for f in allowed.values()):
             allowed |= self._recheck_failed(best, allowed)
@@ -169,7 +186,7 @@ class CandidateSets:
         fits = 0
         # a screening may promise too much: the front is determined again after each full fit
         while fits < self.config.select.most_full_fits:
-            promising = {n: f for n, f in allowed.items() if f.evidence > best.evidence}
+            promising = more_likely(allowed, best.evidence)
             ahead = front(promising, best, self.config.select)
             ahead = [n for n in ahead if (key, n) not in self.fitted_in_full]
             if not ahead:
@@ -205,9 +222,12 @@ class CandidateSets:
         threshold = unknown_threshold(config.select, self.explained(best)) if failed else np.inf
         if not failed or left_over(self.problem, best) < threshold:
             return {}
-        self.rechecked |= {(key, name) for name in failed}
         steps, enough = config.select.recheck_steps, config.fit.refit_gain
-        return {n: gauss_newton(self.problem, allowed[n], steps, enough) for n in failed}
+        refitted = {}
+        for name in failed:
+            self.rechecked.add((key, name))
+            refitted[name] = gauss_newton(self.problem, allowed[name], steps, enough)
+        return refitted
 
     def fit_in_full(self, best: Fit, name: str, screening: Fit) -> Fit:
         """Return a candidate on top of a set fitted in full.
@@ -221,7 +241,7 @@ class CandidateSets:
         """
         problem = self.problem
         found = fit(problem, screening)
-        effect = next(e for e in problem.program.candidates if e.name == name)
+        effect = problem.candidates[name]
         single = len(starts(problem, effect)) == 1 or type(effect).random
         if single or left_over(problem, found) < self.config.select.unknown_gain:
             return found
@@ -242,9 +262,8 @@ class CandidateSets:
             best: A fit.
         """
         key = frozenset(best.effects)
-        gained = set()
+        gained = set[str]()
         for other, found in self.screenings.items():
             if other <= key:
-                least = self.fits[other].evidence
-                gained |= {n for n, f in found.items() if f.evidence > least}
+                gained.update(more_likely(found, self.fits[other].evidence))
         return [n for n in self.candidates if n in gained]

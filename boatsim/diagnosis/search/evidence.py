@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from boatsim.diagnosis.config import DEFAULT, SelectConfig
-from boatsim.diagnosis.problem import Fit, Problem
+from boatsim.diagnosis.problem import Fit, Problem, priors_of
 
 
 def required_gain(number: int, config: SelectConfig = DEFAULT.select) -> float:
@@ -57,8 +57,28 @@ def gain_by_curvature(best: Fit, name: str) -> float:
     own = [i for i, f in enumerate(best.free) if f.effect == name and not f.relative]
     if not own:
         return 0.0
-    off = best.theta[own] - np.array([best.free[i].mean for i in own])
+    off = best.theta[own] - priors_of(best.free).mean[own]
     return 0.5 * float(off @ np.linalg.solve(best.covariance[np.ix_(own, own)], off))
+
+
+def gains_over(fits: Mapping[str, Fit], base: Fit) -> dict[str, float]:
+    """Return the evidence that each of several fits gains over another one [nats].
+
+    Args:
+        fits: Fits by name.
+        base: The fit that they are compared with.
+    """
+    return {name: found.evidence - base.evidence for name, found in fits.items()}
+
+
+def more_likely(fits: Mapping[str, Fit], least: float) -> dict[str, Fit]:
+    """Return the fits with more evidence than a limit.
+
+    Args:
+        fits: Fits by name.
+        least: The limit [nats].
+    """
+    return {name: found for name, found in fits.items() if found.evidence > least}
 
 
 def front(fits: Mapping[str, Fit], base: Fit, config: SelectConfig = DEFAULT.select) -> list[str]:
@@ -71,7 +91,7 @@ def front(fits: Mapping[str, Fit], base: Fit, config: SelectConfig = DEFAULT.sel
         base: The fit on top of which they were added.
         config: Distances from the best candidate.
     """
-    gains = {n: f.evidence - base.evidence for n, f in fits.items()}
+    gains = gains_over(fits, base)
     order = sorted(gains, key=lambda n: -gains[n])
     if not order:
         return []

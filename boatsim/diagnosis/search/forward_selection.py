@@ -8,7 +8,7 @@ import numpy as np
 from boatsim.diagnosis.candidates import called
 from boatsim.diagnosis.problem import Fit
 from boatsim.diagnosis.search.candidate_sets import CandidateSets
-from boatsim.diagnosis.search.evidence import combined_gain, gain_by_curvature
+from boatsim.diagnosis.search.evidence import combined_gain, gain_by_curvature, gains_over
 
 # shares of the work of a selection, by experience: at its begin and end, and what remains of it
 # after each further effect
@@ -70,7 +70,7 @@ def _gain(fits: Mapping[str, Fit], best: Fit) -> float:
     """Evidence that any of several candidates gains on top of a set."""
     if not fits:
         return -np.inf
-    return combined_gain([f.evidence - best.evidence for f in fits.values()])
+    return combined_gain(list(gains_over(fits, best).values()))
 
 
 def _without_unnecessary(sets: CandidateSets, best: Fit) -> Fit:

@@ -58,5 +58,7 @@ def misfit(found: Squares, reference: Squares) -> float:
         found: Mean square errors of a model.
         reference: Those of the model that it is compared with.
     """
-    ratios = [np.log(np.mean(found[family]) / np.mean(reference[family])) for family in found]
+    ratios = []
+    for family, errors in found.items():
+        ratios.append(np.log(np.mean(errors) / np.mean(reference[family])))
     return float(np.exp(np.mean(ratios)))

@@ -13,6 +13,7 @@ from boatsim.diagnosis.search.candidate_sets import CandidateSets
 from boatsim.diagnosis.search.evidence import (
     combined_gain,
     front,
+    gains_over,
     left_over,
     unknown_threshold,
 )
@@ -57,8 +58,13 @@ def prune(sets: CandidateSets, best: Fit) -> tuple[Fit, tuple[IdentifiedEffect, 
         if frozenset(further.effects) not in examined:
             best = further
             continue
-        weak = [n for n in named if _too_weak(sets, best, n) or _corrects_shape(sets, best, n)]
-        calming = [n for n in named if n not in weak and not _predicts(sets, best, n)]
+        weak, calming = list[IdentifiedEffect](), list[IdentifiedEffect]()
+        for one in named:
+            if _too_weak(sets, best, one) or _corrects_shape(sets, best, one):
+                weak.append(one)
+        for one in named:
+            if one not in weak and not _predicts(sets, best, one):
+                calming.append(one)
         if not weak and not calming:
             return best, named
         removed = min(weak + calming, key=lambda n: n.gain)
@@ -153,7 +159,7 @@ def acts(sets: CandidateSets, best: Fit, name: str) -> bool:
         name: Name of one of its effects.
     """
     config = sets.config.select
-    kind = next(type(e) for e in sets.problem.program.candidates if e.name == name)
+    kind = type(sets.problem.candidates[name])
     own = {f.name: f for f in best.free if f.effect == name and not f.relative}
     params = kind.params()
     strength = [n for n in own if n in (kind.strength or params)]
@@ -207,7 +213,7 @@ def compare_rivals(
         config: Distance within which rivals are look-alikes.
     """
     gain = best.evidence - without.evidence
-    gains = {n: f.evidence - without.evidence for n, f in rivals.items()}
+    gains = gains_over(rivals, without)
     weights = np.exp(np.array([0.0, gain, *gains.values()]) - max(gain, 0.0, *gains.values()))
     # the same effect on the other side of an actuator's lag counts as this one
     same = np.array([False, True, *(called(n) == called(name) for n in gains)])

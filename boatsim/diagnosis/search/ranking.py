@@ -13,7 +13,7 @@ from boatsim.diagnosis.noise_levels import fit_noise
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.diagnosis.search.candidate_sets import CandidateSets
 from boatsim.diagnosis.search.energy_balance import braking_force, oscillating_force
-from boatsim.diagnosis.search.evidence import left_over, unknown_threshold
+from boatsim.diagnosis.search.evidence import gains_over, left_over, unknown_threshold
 from boatsim.diagnosis.search.forward_selection import restart, selected
 from boatsim.diagnosis.search.pruning import IdentifiedEffect, prune
 from boatsim.diagnosis.search.validation import (
@@ -119,7 +119,7 @@ def rank(
         best, named = _judged(sets, *pruned, held_out)
         remaining, correlated = left_over(problem, best), find_structure(problem, best)
     named = distinguish(sets, best, named, held_out)
-    alone = {n: f.evidence - sets.base.evidence for n, f in sets.screened(sets.base).items()}
+    alone = gains_over(sets.screened(sets.base), sets.base)
     last = sets.screened(best)
     for name in sets.banned & last.keys():  # an effect that was refuted is no hint
         last[name] = replace(last[name], evidence=min(last[name].evidence, best.evidence))

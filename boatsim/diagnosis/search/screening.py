@@ -20,7 +20,7 @@ from boatsim.diagnosis.fit import (
     unfitted,
 )
 from boatsim.diagnosis.noise_levels import force_prior
-from boatsim.diagnosis.problem import FilterPasses, Fit, Problem
+from boatsim.diagnosis.problem import FilterPasses, Fit, Problem, theta_of
 from boatsim.physics.base import Array, Effect, Unsteady
 
 
@@ -94,7 +94,7 @@ def screen(
         report: Receives the share of the candidates that have been screened.
     """
     about = linearise(problem, base)
-    effects = {e.name: e for e in problem.program.candidates}
+    effects = problem.candidates
     found: dict[str, Fit] = {}
     for name in sorted(candidates, key=lambda n: type(effects[n]).random):
         if type(effects[name]).random:
@@ -123,8 +123,7 @@ def recheck(problem: Problem, base: Fit, screened: Fit) -> Fit:
     at_base = problem.log_likelihood(base.free, base.theta, on_base, base.levels)
     at_base += log_prior(base.free, base.theta)
     predicted = screened.evidence - base.evidence
-    fitted = {(f.effect, f.name): x for f, x in zip(base.free, base.theta, strict=True)}
-    nothing = np.array([fitted.get((f.effect, f.name), f.mean) for f in screened.free])
+    nothing = theta_of(screened.free, base.values())
     theta, best = screened.theta, screened
     for i in range(config.recheck_points):
         likelihood = problem.log_likelihood(screened.free, theta, on, screened.levels)
@@ -164,7 +163,8 @@ def starts(problem: Problem, effect: Effect) -> list[dict[str, float]]:
     largest = excursion(problem.recordings, effect, problem.config.load)
     if largest:
         for name, shares in kind.thresholds.items():
-            specified += [{name: share * largest} for share in shares]
+            for share in shares:
+                specified.append({name: share * largest})
     return [default | start for start in specified or [{}]]
 
 
@@ -179,10 +179,10 @@ def add_effect(problem: Problem, base: Fit, name: str, start: Mapping[str, float
     """
     effects = (*base.effects, name)
     free = problem.parameters(effects)
-    values = {(name, parameter): x for parameter, x in start.items()}
-    values |= {(f.effect, f.name): x for f, x in zip(base.free, base.theta, strict=True)}
-    theta = np.array([values[f.effect, f.name] for f in free])
-    return unfitted(effects, free, theta, base.levels)
+    values = base.values()
+    for parameter, x in start.items():
+        values.setdefault((name, parameter), x)
+    return unfitted(effects, free, theta_of(free, values), base.levels)
 
 
 def hand_over(start: Fit, effect: Effect) -> Fit:
@@ -315,7 +315,7 @@ def _screen_stochastic(problem: Problem, base: Fit, effect: Effect, about: Linea
         evidence = base.evidence + score + force_prior(problem, at.levels) - before
         return replace(at, evidence=evidence)
 
-    best = _best([scored(start) for start in stochastic_starts(problem, base, effect)])
+    best = _best(list(map(scored, stochastic_starts(problem, base, effect))))
     if isinstance(effect, Unsteady):
         for i, axis in enumerate(axes_of(problem.program.vessel)):
             best = _best([best, scored(_without_axis(best, base, effect.name, i, axis))])
@@ -329,10 +329,12 @@ def _best(fits: Sequence[Fit]) -> Fit:
 
 def _without_axis(at: Fit, base: Fit, name: str, i: int, axis: str) -> Fit:
     """A start without a force along one axis, whose latent force is as it was."""
-    off = np.array([(f.effect, f.name) == (name, axis) for f in at.free])
     force = at.levels.force.copy()
     force[i] = base.levels.force[i]
-    theta = np.where(off, [f.mean for f in at.free], at.theta)
+    theta = at.theta.copy()
+    for j, parameter in enumerate(at.free):
+        if (parameter.effect, parameter.name) == (name, axis):
+            theta[j] = parameter.mean
     return replace(at, theta=theta, levels=replace(at.levels, force=force))
 
 

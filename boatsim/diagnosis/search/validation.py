@@ -30,7 +30,7 @@ def misleading_effect(sets: CandidateSets, best: Fit, held_out: Recordings) -> s
         Name of the effect without which they are best, or "".
     """
     config = sets.config.validate
-    without = {name: sets.without(best, name) for name in best.effects}
+    without = sets.without_each(best)
     runs = _free_runs(sets, {"none": sets.base, "all": best}, held_out)
     none = generalization.squares(runs, "none")
     stochastic = sets.random & set(best.effects)
@@ -63,7 +63,7 @@ def refuted_effect(
     if not held_out:
         return ""
     whole = predicted(sets, best, held_out)
-    without = {name: sets.without(best, name) for name in best.effects}
+    without = sets.without_each(best)
     gains = {name: whole - predicted(sets, f, held_out) for name, f in without.items()}
     threshold = unknown_threshold(sets.config.select, sets.explained(best))
     doubtful = {name for name, gain in gains.items() if gain < -threshold}
@@ -241,7 +241,7 @@ def remove_dwarfed(sets: CandidateSets, best: Fit, held_out: Recordings) -> Fit:
         remaining = left_over(sets.problem, best)
         if remaining < unknown_threshold(sets.config.select, sets.explained(best)):
             return best
-        without = {name: sets.without(best, name) for name in best.effects}
+        without = sets.without_each(best)
         little = []
         for name, fewer in without.items():
             if np.min(best.levels.force / fewer.levels.force) > config.unexplained_share:
@@ -271,7 +271,7 @@ def _grew(sets: CandidateSets, before: Squares, after: Squares, sure: float) -> 
 
 
 def _grew_alike(sets: CandidateSets, before: Squares, after: Squares) -> bool:
-    """The same with the certainty that decides between look-alikes."""
+    """Whether the errors have grown, with the certainty that decides between look-alikes."""
     return _grew(sets, before, after, sets.config.validate.certainty_alike)
 
 
