@@ -75,7 +75,7 @@ def nudged(name: str) -> list[dict[str, Metric]]:
     ]
 
 
-def values(found: Mapping[str, Metric], beside: Sequence[Mapping[str, Metric]] = ()) -> Values:
+def values(found: Mapping[str, Metric], perturbed: Sequence[Mapping[str, Metric]] = ()) -> Values:
     """Return the stored values of each metric.
 
     They include the range under perturbed starts if it exceeds the tolerance.
@@ -90,7 +90,7 @@ def values(found: Mapping[str, Metric], beside: Sequence[Mapping[str, Metric]] =
             "unit": n.unit,
         }
         moves = max(
-            (abs(x - n.value) for other in beside if (x := other[name].value) and n.value),
+            (abs(x - n.value) for other in perturbed if (x := other[name].value) and n.value),
             default=0.0,
         )
         if n.value and moves > TOLERANCE * abs(n.value):

@@ -226,7 +226,7 @@ def sea_line(e: Entry, pid: Entry) -> str:
 
 
 def table(done: Sequence[Entry]) -> str:
-    """Print every test with its autopilots."""
+    """Return the table of every test with its autopilots."""
     lines = []
     for vessel, test, rate in dict.fromkeys((e.vessel, e.test, e.rate) for e in done):
         rows = [e for e in done if (e.vessel, e.test, e.rate) == (vessel, test, rate)]
@@ -245,7 +245,7 @@ def table(done: Sequence[Entry]) -> str:
 
 
 def agreements(done: Sequence[Entry]) -> str:
-    """Print the qualitative agreements that the review requires, where their runs were made."""
+    """Return the qualitative agreements that the review requires, where their runs were made."""
     by = {(e.vessel, e.test, e.kind): e for e in done if e.rate == 5.0}
 
     def roll_rank(vessel: str, test: str) -> int:
@@ -299,7 +299,7 @@ def mean_over(
 
 
 def faster_rudder(seeds: int) -> list[str]:
-    """Print %PID of VSS RRS at 5 and 15 deg/s for each sea."""
+    """Return the lines on %PID of VSS RRS at 5 and 15 deg/s for each sea."""
     lines, gains = [], {}
     for vessel, test in product(VESSELS, (*SEAS, "broad")):
         if test == "broad":
@@ -331,7 +331,7 @@ def faster_rudder(seeds: int) -> list[str]:
 
 
 def better_course(seeds: int) -> list[str]:
-    """Print roll in kynoc's quartering seas under increasingly accurate course keeping."""
+    """Return the lines on roll in kynoc's quartering seas under better course keeping."""
     names = {"idle": "no rudder", "pid": "PID", "sliding": "VSS", "locked": "yaw locked"}
     found = {n: mean_over(f"kynoc/puzzle_course_{n}", seeds) for n in names}
     lines = []
@@ -353,7 +353,7 @@ def better_course(seeds: int) -> list[str]:
 
 
 def puzzles(seeds: int) -> str:
-    """Print both puzzles with their answers."""
+    """Return both puzzles with their answers."""
     return "\n".join(
         ["Does a faster rudder reduce roll?", *faster_rudder(seeds)]
         + ["Does better course keeping reduce roll? kynoc, 45 degrees", *better_course(seeds)]

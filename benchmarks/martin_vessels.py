@@ -61,7 +61,7 @@ def linear(boat: Vessel) -> tuple[Array, Array, Array]:
     """Return the continuous linear model.
 
     Returns:
-            A (5, 5) over (psi, r, v, phi, p), B (5,) of the rudder, and K (5, 3) of waves as (yaw,
+        A (5, 5) over (psi, r, v, phi, p), B (5,) of the rudder, and K (5, 3) of waves as (yaw,
         sway, roll).
     """
     rates = {}
@@ -156,7 +156,7 @@ def sea_of(boat: Vessel, angle: float, height: float, period: float) -> Irregula
 
 
 def coefficients() -> Table:
-    """Print the linear model of every condition."""
+    """Return the table of the linear model of every condition."""
     names = (
         "a_rr",
         "a_rv",
@@ -184,7 +184,7 @@ def coefficients() -> Table:
 
 
 def seas() -> Table:
-    """Print the response of the ships to the thesis' seas."""
+    """Return the table of the response of the ships to the thesis' seas."""
     table = Table(
         "vessel", "encounter", "yaw", "sway", "direct roll", "slope [deg]", title="rms [deg/s^2]"
     )

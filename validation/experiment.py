@@ -80,7 +80,7 @@ def program() -> Program:
     return Program(boat, library_for(boat).compiled)
 
 
-def drawn(truth: str, rng: np.random.Generator) -> Boat:
+def perturbed_boat(truth: str, rng: np.random.Generator) -> Boat:
     """Return a boat on which one effect acts at half strength, with perturbed coefficients."""
     boat, values = program().vessel, program().values()
     for effect in boat.effects:
@@ -188,7 +188,7 @@ def lead(ranking: Ranking, name: str) -> float:
 def case(truth: str, seed: int) -> Outcome:
     """Return the outcome of one boat, diagnosed four times."""
     rng = np.random.default_rng([seed, *truth.encode()])
-    boat = drawn(truth, rng)
+    boat = perturbed_boat(truth, rng)
     first = recorded("first", boat, *gentle(rng, SHORT), rng)
     again = recorded("same kind", boat, *gentle(rng, LONG), rng)
     problem, before = diagnosed([first])

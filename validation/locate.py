@@ -134,7 +134,7 @@ def figures(trials: Sequence[Located], axis: int | slice = slice(None)) -> list[
 
 
 def table(trials: Sequence[Located], axes: Sequence[str]) -> Table:
-    """Print the figures of all samples, by axis and by effect."""
+    """Return the table of all samples, by axis and by effect."""
     out = Table("", *("trials", "inside", "precision", "recall", "flagged", "there"))
     out.columns[0].no_wrap = True
     for column in out.columns[1:]:

@@ -10,6 +10,7 @@ import argparse
 import tempfile
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from itertools import chain
 from pathlib import Path
 
 import numpy as np
@@ -204,7 +205,7 @@ def judged(
 
 
 def table(names: Sequence[str], seeds: int, ask: bool = True) -> Iterator[str]:
-    """Print the rates for each fault and vessel, then the false alarms on good logs."""
+    """Yield the rates for each fault and vessel, then the false alarms on good logs."""
     boats = [vessels.load(n) for n in names]
     yield f"{'fault':24s}" + "".join(f"{n:>24s}" for n in names)
     yield f"{'':24s}" + f"{'named / physics / of':>24s}" * len(names)
@@ -213,25 +214,26 @@ def table(names: Sequence[str], seeds: int, ask: bool = True) -> Iterator[str]:
     for title, fault in FAULTS.items():
         cells = []
         for boat in boats:
+            counts = np.zeros(3, dtype=int)  # named, called physics, all
+            instead = set[str]()
             if fault.needs(boat):
-                results = [judged(boat, log, fault, ask) for log in logs[boat.name]]
-            else:
-                results = []
-            counts = [sum(r[0] for r in results), sum(r[1] for r in results), len(results)]
+                for log in logs[boat.name]:
+                    named, physics, found = judged(boat, log, fault, ask)
+                    counts += (named, physics, 1)
+                    if not named:
+                        instead.update(found)
             total += counts
-            instead = sorted({n for named, _, found in results if not named for n in found})
-            cells.append(
-                f"{','.join(instead)[:12]} {counts[0]} / {counts[1]} / {counts[2]}"
-                if results
-                else "-"
-            )
+            if counts[2]:
+                wrong = ",".join(sorted(instead))[:12]
+                cells.append(f"{wrong} {counts[0]} / {counts[1]} / {counts[2]}")
+            else:
+                cells.append("-")
         yield f"{title:24s}" + "".join(f"{c:>24s}" for c in cells)
     good = []
     for boat in boats:
         accused = [found for log in logs[boat.name] if (found := judged(boat, log, None, False)[2])]
-        good.append(
-            f"{len(accused)} of {seeds} {','.join(sorted({n for ns in accused for n in ns}))}".strip()
-        )
+        names_found = sorted(set(chain.from_iterable(accused)))
+        good.append(f"{len(accused)} of {seeds} {','.join(names_found)}".strip())
     yield f"{'good logs accused':24s}" + "".join(f"{c:>24s}" for c in good)
     yield (
         f"named {total[0]} of {total[2]} ({100.0 * total[0] / total[2]:.0f} %), called "

@@ -12,8 +12,8 @@ makes such a set):
 
 - a trial is exact if every true effect is named and no other; an effect counts if it is visible
   (adds more than 6 nats in the program that made the trials);
-- a name is wrong unless it is true, or the answer states that it cannot be distinguished from a true
-  one;
+- a name is wrong unless it is true, or the answer states that it cannot be distinguished from a
+  true one;
 - held-out skill is 1 if the patched boat follows run_3 as closely as the fitted true structure, 0
   if it is no better than the recalibrated nominal;
 - coverage is the share of true parameters within two reported standard deviations, over exact
@@ -28,6 +28,7 @@ the library.
 import argparse
 import contextlib
 import io
+import itertools
 import json
 import math
 import os
@@ -104,26 +105,40 @@ def truth_of(answer: dict[str, Any]) -> set[str]:
     return {e["name"] for e in answer["effects"]}
 
 
-def said_of(answer: dict[str, Any], found: dict[str, Any]) -> set[str]:
+def reported_names(answer: dict[str, Any], found: dict[str, Any]) -> set[str]:
     """Return the reported names, equivalents replaced by the names in the answer."""
     truth = truth_of(answer)
-    same = {
-        other: name for name, others in answer.get("equivalent", {}).items() for other in others
-    }
-    said = {e["name"] for e in found["effects"]} - set(answer.get("tolerated", []))
-    return {n if n in truth else same.get(n, n) for n in said} | (
-        {"unknown"} if found["unknown"]["flag"] else set()
-    )
+    same = {}
+    for name, others in answer.get("equivalent", {}).items():
+        same.update(dict.fromkeys(others, name))
+    names = set()
+    for effect in found["effects"]:
+        name = effect["name"]
+        if name in answer.get("tolerated", []):
+            continue
+        if name in truth:
+            names.add(name)
+        else:
+            names.add(same.get(name, name))
+    if found["unknown"]["flag"]:
+        names.add("unknown")
+    return names
 
 
 def meant_by(answer: dict[str, Any], found: dict[str, Any]) -> set[str]:
     """Return the reported names, each ambiguous one replaced by a true one it is tied with."""
-    truth, said = truth_of(answer), said_of(answer, found)
+    truth = truth_of(answer)
     tied = {}
     for e in found["effects"]:
         if found["verdict"] == "ambiguous":
             tied[e["name"]] = truth & set(e["tied_with"])
-    return {n if n in truth else min(tied.get(n, ()), default=n) for n in said}
+    names = set()
+    for name in reported_names(answer, found):
+        if name in truth:
+            names.add(name)
+        else:
+            names.add(min(tied.get(name, ()), default=name))
+    return names
 
 
 def deviations(answer: dict[str, Any], found: dict[str, Any]) -> list[float]:
@@ -136,7 +151,8 @@ def deviations(answer: dict[str, Any], found: dict[str, Any]) -> list[float]:
             if fitted is None or isinstance(true, bool) or key in effect.get("not_compared", []):
                 continue
             error = fitted["value"] - true
-            error = math.remainder(error, 2 * math.pi) if key == "toward_rad" else error
+            if key == "toward_rad":
+                error = math.remainder(error, 2 * math.pi)
             out.append(abs(error) / fitted["sd"])
     return out
 
@@ -202,59 +218,69 @@ def quantile(values: Sequence[float], q: float) -> float:
 
 def figures(answers: Answers, found: Answers) -> dict[str, str]:
     """Return the counts of right and wrong names by kind of trial."""
-    kind = {}
-    for k in ("none", "single", "pair", "unknown"):
-        kind[k] = [n for n in found if answers[n]["kind"] == k]
-    visible = {
-        k: [n for n in v if answers[n].get("visible") and not answers[n].get("borderline")]
-        for k, v in kind.items()
-    }
-    said = {n: said_of(answers[n], found[n]) for n in found}
-    exact = {n: said[n] == truth_of(answers[n]) for n in found}
-    meant = {n: meant_by(answers[n], found[n]) for n in found}
-    fair = {n: meant[n] == truth_of(answers[n]) and len(said[n]) == len(meant[n]) for n in found}
-    wrong = {n: meant[n] - truth_of(answers[n]) - {"unknown"} for n in found}
-    concealed = [n for n in visible["single"] if answers[n]["concealed"]]
-    known = [*kind["none"], *kind["single"], *kind["pair"]]
-    unknown = {}
-    for c in (False, True):
-        unknown[c] = [n for n in visible["unknown"] if answers[n]["concealed"] is c]
+    false_alarms: list[bool] = []
+    single: list[bool] = []
+    concealed_single: list[bool] = []
+    single_or_tied: list[bool] = []
+    pair: list[bool] = []
+    wrong: list[bool] = []
+    unknown: dict[bool, list[bool]] = {False: [], True: []}  # by whether it is concealed
+    described: list[bool] = []
+    described_by_kind: list[bool] = []
+    called_unknown: list[bool] = []
+    for n, answer in found.items():
+        truth = answers[n]
+        names = truth_of(truth)
+        reported = reported_names(truth, answer)
+        meant = meant_by(truth, answer)
+        kind = truth["kind"]
+        visible = truth.get("visible") and not truth.get("borderline")
+        if kind == "none":
+            false_alarms.append(bool(reported))
+        if kind in ("single", "pair"):
+            called_unknown.append("unknown" in reported)
+        if kind != "unknown":
+            wrong.append(bool(meant - names - {"unknown"}))
+        if visible and kind == "single":
+            single.append(reported == names)
+            single_or_tied.append(meant == names and len(reported) == len(meant))
+            if truth["concealed"]:
+                concealed_single.append(reported == names)
+        if visible and kind == "pair":
+            pair.append(reported == names)
+        if visible and kind == "unknown":
+            unknown[truth["concealed"]].append("unknown" in reported)
+            described.append(bool(answer["described"]))
+            described_by_kind.append(of_its_kind(truth, answer))
     return {
-        "false alarms among nothing-missing trials": share([bool(said[n]) for n in kind["none"]]),
-        "visible single effects, exactly named": share([exact[n] for n in visible["single"]]),
-        "  of these concealed by the tracker": share([exact[n] for n in concealed]),
-        "  exactly named, or reported as tied": share([fair[n] for n in visible["single"]]),
-        "visible pairs, both named and nothing else": share([exact[n] for n in visible["pair"]]),
-        "wrong names (none, singles, pairs)": share([bool(wrong[n]) for n in known]),
-        "visible unknown cause flagged, pilot": share(
-            ["unknown" in said[n] for n in unknown[False]]
-        ),
-        "visible unknown cause flagged, concealed": share(
-            ["unknown" in said[n] for n in unknown[True]]
-        ),
-        "visible unknown cause described": share(
-            [bool(found[n]["described"]) for n in visible["unknown"]]
-        ),
-        "  with a term of its kind": share(
-            [of_its_kind(answers[n], found[n]) for n in visible["unknown"]]
-        ),
-        "known cause called unknown": share(
-            ["unknown" in said[n] for n in (*kind["single"], *kind["pair"])]
-        ),
+        "false alarms among nothing-missing trials": share(false_alarms),
+        "visible single effects, exactly named": share(single),
+        "  of these concealed by the tracker": share(concealed_single),
+        "  exactly named, or reported as tied": share(single_or_tied),
+        "visible pairs, both named and nothing else": share(pair),
+        "wrong names (none, singles, pairs)": share(wrong),
+        "visible unknown cause flagged, pilot": share(unknown[False]),
+        "visible unknown cause flagged, concealed": share(unknown[True]),
+        "visible unknown cause described": share(described),
+        "  with a term of its kind": share(described_by_kind),
+        "known cause called unknown": share(called_unknown),
     }
 
 
 def fit_figures(trials: Path, out: Path, answers: Answers, found: Answers) -> dict[str, str]:
     """Return held-out skill, parameter errors and computing time."""
-    skills = [
-        s
-        for n in found
-        if answers[n]["kind"] in ("single", "pair")
-        and (s := skill(trials / n, out / n, answers[n])) is not None
-    ]
-    exact = [n for n in found if said_of(answers[n], found[n]) == truth_of(answers[n])]
-    z = [x for n in exact for x in deviations(answers[n], found[n])]
-    table, seconds = {}, [f["seconds"] for f in found.values() if "seconds" in f]
+    skills = []
+    for n in found:
+        if answers[n]["kind"] in ("single", "pair"):
+            value = skill(trials / n, out / n, answers[n])
+            if value is not None:
+                skills.append(value)
+    z = []
+    for n, answer in found.items():
+        if reported_names(answers[n], answer) == truth_of(answers[n]):
+            z.extend(deviations(answers[n], answer))
+    table = {}
+    seconds = [f["seconds"] for f in found.values() if "seconds" in f]
     if seconds:
         words = f"{statistics.median(seconds):.2f} / {quantile(seconds, 0.95):.2f}"
         table["seconds per diagnosis, median / p95"] = words
@@ -264,8 +290,13 @@ def fit_figures(trials: Path, out: Path, answers: Answers, found: Answers) -> di
             f"({len(skills)} trials)"
         )
         table["held-out skill, median / lowest tenth"] = tenth
-    carried = [n for n in found if any(law["carries_over"] for law in found[n]["described"])]
-    if ratios := [r for n in carried if (r := of_recalibrated(found[n])) is not None]:
+    ratios = []
+    for answer in found.values():
+        if any(law["carries_over"] for law in answer["described"]):
+            ratio = of_recalibrated(answer)
+            if ratio is not None:
+                ratios.append(ratio)
+    if ratios:
         words = f"{statistics.median(ratios):.2f} / {max(ratios):.2f} ({len(ratios)} trials)"
         table["described: error ratio, median / worst"] = words
         table[f"  above {SLACK:g} of the recalibrated"] = share([r > SLACK for r in ratios])
@@ -279,31 +310,34 @@ def reliability(answers: Answers, found: Answers) -> list[tuple[str, int, float,
     """Return the calibration table of the reported probabilities.
 
     Returns:
-            Rows of (range, effects, mean reported probability, share true), over trials with one
+        Rows of (range, effects, mean reported probability, share true), over trials with one
         effect or none.
     """
-    pairs = []
+    pairs: list[tuple[float, bool]] = []
     for n, f in found.items():
         if answers[n]["kind"] not in ("none", "single") or answers[n].get("tolerated"):
             continue
         truth = truth_of(answers[n])
-        same = truth | {o for t in truth for o in answers[n].get("equivalent", {}).get(t, [])}
+        same = set(truth)
+        for name in truth:
+            same.update(answers[n].get("equivalent", {}).get(name, []))
         stated = {c["name"]: c["probability"] for c in f["candidates"]}
         together = sum(stated.pop(name, 0.0) for name in same)
-        pairs += [(p, False) for p in stated.values()]
-        pairs += [(together, True)] if truth else []
+        pairs.extend(zip(stated.values(), itertools.repeat(False), strict=False))
+        if truth:
+            pairs.append((together, True))
         pairs.append((max(0.0, 1.0 - sum(stated.values()) - together), not truth))
     table = []
     for low, high in zip(BINS[:-1], BINS[1:], strict=True):
         inside = [(p, true) for p, true in pairs if low <= p < high or p == high == 1.0]
         if inside:
-            mean = statistics.mean(p for p, _ in inside)
+            probabilities, true = zip(*inside, strict=True)
             table.append(
                 (
                     f"{low:.2f} to {high:.2f}",
                     len(inside),
-                    mean,
-                    statistics.mean(float(t) for _, t in inside),
+                    statistics.mean(probabilities),
+                    statistics.mean(map(float, true)),
                 )
             )
     return table
@@ -346,8 +380,8 @@ def unknowns(trials: Path, out: Path, jobs: int, answers: Answers, found: Answer
     for n, f in again.items():
         instead = [f"{e['name']} ({e['gain_nats']:.0f} nats)" for e in f["effects"]]
         law = "described" if f["described"] else "unknown"
-        said = ", ".join([*([law] if flagged[n] else []), *instead]) or "nothing missing"
-        print(f"    {n} without {', '.join(left_out[n])}: {said}")
+        reported = ", ".join([*([law] if flagged[n] else []), *instead]) or "nothing missing"
+        print(f"    {n} without {', '.join(left_out[n])}: {reported}")
 
 
 def print_figures(trials: Path, out: Path, answers: Answers, found: Answers) -> None:
@@ -368,11 +402,12 @@ def print_figures(trials: Path, out: Path, answers: Answers, found: Answers) -> 
 def print_wrong(answers: Answers, found: Answers) -> None:
     """Print the trials whose answer is not exact."""
     for n, f in found.items():
-        said, truth = said_of(answers[n], f), truth_of(answers[n])
-        if said != truth:
+        reported, truth = reported_names(answers[n], f), truth_of(answers[n])
+        if reported != truth:
             seen = "" if answers[n].get("visible", True) else " (invisible)"
             print(
-                f"  {n} {answers[n]['kind']}: truth {sorted(truth)}, reported {sorted(said)}{seen}"
+                f"  {n} {answers[n]['kind']}: truth {sorted(truth)}, "
+                f"reported {sorted(reported)}{seen}"
             )
 
 

@@ -6,7 +6,7 @@ from validation.owner_logs.judge import HALF, Result
 
 
 def line(r: Result) -> str:
-    """One case."""
+    """Return the line of one case."""
     fault = f"{r.fault or '-'}: {_mark(r.fault_named)}" + (
         "" if r.mended is None else f", mended {_mark(r.mended)}"
     )
@@ -15,10 +15,10 @@ def line(r: Result) -> str:
         ratio = "-"
     else:
         ratio = f"{r.nominal_m:.2f} -> {r.answer_m:.2f} m ({r.ratio:.2f})"
-    said = ", ".join(r.effects) or r.verdict or r.need or r.trouble
+    answer = ", ".join(r.effects) or r.verdict or r.need or r.trouble
     found = "" if not r.found else f" [{'; '.join(r.found)}]"
     return (
-        f"{r.number:3d} {r.kind:5s} {r.boat:16s} {r.form:13s} {fault}; {cause}; {said}; "
+        f"{r.number:3d} {r.kind:5s} {r.boat:16s} {r.form:13s} {fault}; {cause}; {answer}; "
         f"{ratio}{found}"
     )
 
@@ -32,7 +32,7 @@ def _mark(value: bool | None) -> str:
 
 
 def goals(results: Sequence[Result]) -> Iterator[str]:
-    """Return a row for each goal: the criterion, its rate, the goal."""
+    """Yield a row for each goal: the criterion, its rate, the goal."""
     yield f"{'goal':58s} {'reached':>14s} {'of':>4s} {'asked':>7s}"
     for title, asked, counts, hit in _rows():
         there = [r for r in results if counts(r)]

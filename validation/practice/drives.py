@@ -65,14 +65,14 @@ def thrust_lag(boat: Boat, rng: Rng, s: float) -> Cause:
 
 def command_delay(boat: Boat, rng: Rng, s: float) -> Cause:
     """Delay the commands by a time that varies by a tenth from second to second."""
-    late, lots = 0.5 * s * boat.scale, rng.uniform(0.9, 1.1, 4000)
+    late, factors = 0.5 * s * boat.scale, rng.uniform(0.9, 1.1, 4000)
 
     def drive(b: Boat, dt: float) -> GoalMap:
         past: list[Array] = []
 
         def apply(goal: Array, k: int) -> Array:
             past.append(goal)
-            at = max(len(past) - 1 - late * lots[int(len(past) * dt / b.scale)] / dt, 0.0)
+            at = max(len(past) - 1 - late * factors[int(len(past) * dt / b.scale)] / dt, 0.0)
             first, part = int(at), at % 1.0
             return np.asarray((1 - part) * past[first] + part * past[min(first + 1, len(past) - 1)])
 

@@ -62,9 +62,9 @@ def trials(seed: int, per_vessel: int) -> Iterator[Trial]:
         for i in range(per_vessel):
             kind, number = KINDS[i % len(KINDS)], number + 1
             if kind == "unknown":
-                sampled_causes = strange.draw(1)
+                sampled_causes = strange.sample(1)
             else:
-                sampled_causes = known.draw({"none": 0, "single": 1, "pair": 2}[kind])
+                sampled_causes = known.sample({"none": 0, "single": 1, "pair": 2}[kind])
             concealed = plan.kept and kind != "none" and (i // len(KINDS) + i) % 2 == 1
             yield Trial(
                 f"T{number:03d}_{vessel}",
@@ -82,7 +82,7 @@ class Deck:
     def __init__(self, makers: tuple[Maker, ...], rng: Rng) -> None:
         self.makers, self.rng, self.left = makers, rng, list[Maker]()
 
-    def draw(self, n: int) -> tuple[Maker, ...]:
+    def sample(self, n: int) -> tuple[Maker, ...]:
         """Return the next n, all different."""
         found: list[Maker] = []
         while len(found) < n:
@@ -95,9 +95,9 @@ class Deck:
 
 def make(trial: Trial, seed: int, out: Path) -> dict[str, Any]:
     """Write one trial to its folder and return its answer."""
-    lots = (seed, int(trial.name[1:4]))
+    seeds = (seed, int(trial.name[1:4]))
     plan, strange = PLANS[trial.vessel], trial.kind == "unknown"
-    strengths, oracle, gains = chosen(trial, lots)
+    strengths, oracle, gains = chosen(trial, seeds)
     answer = {
         "kind": trial.kind,
         "vessel": trial.vessel,
@@ -114,7 +114,7 @@ def make(trial: Trial, seed: int, out: Path) -> dict[str, Any]:
         **evidence_entries(strange, gains),
         **same(trial, oracle.causes),
     }
-    rng = np.random.default_rng([*lots, 1])
+    rng = np.random.default_rng([*seeds, 1])
     if 0 in oracle.nominal.free:
         rms = oracle.free_runs(6.0 * oracle.nominal.scale, rng)
         left_out = "true_structure" if strange else ""
@@ -126,7 +126,7 @@ def make(trial: Trial, seed: int, out: Path) -> dict[str, Any]:
     return answer
 
 
-def chosen(trial: Trial, lots: tuple[int, int]) -> tuple[Array, Oracle, Array]:
+def chosen(trial: Trial, seeds: tuple[int, int]) -> tuple[Array, Oracle, Array]:
     """Return the trial with strengths that give about the target evidence.
 
     Returns:
@@ -134,26 +134,28 @@ def chosen(trial: Trial, lots: tuple[int, int]) -> tuple[Array, Oracle, Array]:
     """
     strange, count = trial.kind == "unknown", len(trial.makers)
     low, high = np.log(STRANGE_WANTED if strange else WANTED)
-    wanted = np.exp([np.random.default_rng([*lots, 0, i]).uniform(low, high) for i in range(count)])
+    wanted = np.exp(
+        [np.random.default_rng([*seeds, 0, i]).uniform(low, high) for i in range(count)]
+    )
     strengths = np.full(count, FIRST)
-    oracle = sailed(trial, lots, strengths)
+    oracle = sailed(trial, seeds, strengths)
     if not count:
         return strengths, oracle, strengths
     found = np.maximum(evidence(oracle, strange), 0.1)
     strengths = np.clip(strengths * np.sqrt(wanted / found), *WEAK_TO_STRONG)
-    oracle = sailed(trial, lots, strengths)
+    oracle = sailed(trial, seeds, strengths)
     return strengths, oracle, evidence(oracle, strange)
 
 
-def sailed(trial: Trial, lots: tuple[int, int], strengths: Array) -> Oracle:
+def sailed(trial: Trial, seeds: tuple[int, int], strengths: Array) -> Oracle:
     """Simulate the trial with causes of these strengths; all other samples are unchanged."""
     nominal, plan = BOATS[trial.vessel](), PLANS[trial.vessel]
-    grid, rng = plan.grid(), np.random.default_rng([*lots, 2])
+    grid, rng = plan.grid(), np.random.default_rng([*seeds, 2])
     noise, real = instruments(nominal, plan, rng), own(nominal, rng)
     causes = []
     for i, (maker, s) in enumerate(zip(trial.makers, strengths, strict=True)):
         causes.append(
-            on_grid(maker(nominal, np.random.default_rng([*lots, 3, i]), float(s)), grid.dt)
+            on_grid(maker(nominal, np.random.default_rng([*seeds, 3, i]), float(s)), grid.dt)
         )
     pilot = Keeper(nominal, grid, rng) if trial.concealed else hand(nominal, grid, rng)
     return Oracle(nominal, real, causes, sail(real, causes, pilot, grid, noise, rng), noise)
@@ -232,10 +234,11 @@ def write(folder: Path, boat: Boat, plan: Plan, voyage: Voyage, answer: dict[str
     noise = {f"{f}_sd_{UNITS[f]}": sd for f, sd in plan.noise.items()}
     size = dict(zip(AXES, boat.ambient(), strict=True))
     free = [AXES[i] for i in boat.free]
+    force_rms = ", ".join(f"{size[axis]:.3g}" for axis in free)
     (folder / "recording.toml").write_text(
         f'vessel = "{boat.name}"\n\n[noise]\n'
         + "".join(f"{k} = {noise[k]:g}\n" for k in STATED if k in noise)
-        + f"\n[ambient]\naxes = {json.dumps(free)}\nforce_rms = [{', '.join(f'{size[a]:.3g}' for a in free)}]\n"
+        + f"\n[ambient]\naxes = {json.dumps(free)}\nforce_rms = [{force_rms}]\n"
     )
     t = np.arange(voyage.grid.rows) * voyage.grid.row
     used = [i for i in range(len(boat.channels)) if np.any(voyage.commands[:, i])]

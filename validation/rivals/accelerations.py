@@ -177,7 +177,7 @@ def kernel(n: int) -> Array:
     return np.append(0.0, twice[:-1])
 
 
-def shown_by(track: MappedRecording, recorded: Array, values: Array, on: Array) -> Array:
+def true_positions(track: MappedRecording, recorded: Array, values: Array, on: Array) -> Array:
     """Return positions (N, NQ) of the boat from instrument readings."""
     nq, out = track.program.module.NQ, np.zeros((len(recorded), track.program.module.NZ))
     out[:, :nq] = recorded
@@ -186,7 +186,7 @@ def shown_by(track: MappedRecording, recorded: Array, values: Array, on: Array) 
     return out[:, :nq].copy()
 
 
-def held_by(track: MappedRecording, effects: tuple[str, ...], values: Array) -> Array:
+def mean_actuators(track: MappedRecording, effects: tuple[str, ...], values: Array) -> Array:
     """Return the mean actuator states (N, HELD) around each row."""
     after = actuator_states(track, effects, values)
     before = np.vstack([after[:1], after[:-1]])

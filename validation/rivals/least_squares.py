@@ -181,7 +181,7 @@ class LeastSquares:
         """Take Gauss-Newton steps until the improvement is negligible."""
         return descended(state, lambda s: self.damped_step(s, self.linear(s)), ROUNDS)
 
-    def stepped(self, state: State, linear: Linear) -> State | None:
+    def damped_step(self, state: State, linear: Linear) -> State | None:
         """Return the state after a step, halved until it improves; None if none improves."""
         free = free_of(self.question, state.effects)
         move = solved(
@@ -218,7 +218,7 @@ class LeastSquares:
             own = [next(errors) for _ in s]
             slopes += run.by_starts(self.problem.values(run.track, free, state.theta), on, s, own)
         linear = Linear.of(state.errors, state.weights, slopes)
-        return linear.add_effect(
+        return linear.with_columns(
             [self.column(state, linear, j) for j in range(len(free))], self.prior_rows(state)
         )
 
@@ -282,7 +282,7 @@ class LeastSquares:
             columns.append(
                 base.raw[:, self.before(state, j)] if j not in new else self.column(state, here, j)
             )
-        return self.damped_step(state, here.add_effect(columns, self.prior_rows(state)))
+        return self.damped_step(state, here.with_columns(columns, self.prior_rows(state)))
 
     def before(self, state: State, j: int) -> int:
         """Return the index of a parameter before the last effect was added."""

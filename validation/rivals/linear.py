@@ -79,7 +79,7 @@ class Linear:
         """Split rows by window."""
         return np.split(rows, np.cumsum([len(m) for m in self.masks])[:-1])
 
-    def joined(self, columns: Sequence[Array], prior: tuple[Array, Array]) -> "Linear":
+    def with_columns(self, columns: Sequence[Array], prior: tuple[Array, Array]) -> "Linear":
         """Add columns (R,) of parameters, and rows (N, F) and errors (N,) of their prior."""
         raw = np.column_stack(columns) if columns else np.zeros((len(self.errors), 0))
         rest = np.concatenate([self.projected(self.errors), prior[1]])

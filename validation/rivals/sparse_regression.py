@@ -17,7 +17,13 @@ from boatsim.diagnosis.candidates import called
 from boatsim.diagnosis.problem import Fit
 from boatsim.diagnosis.search.screening import add_effect, hand_over, starts
 from boatsim.physics.base import Array, Force, Measurement
-from validation.rivals.accelerations import Smoother, held_by, positions, predicted, shown_by
+from validation.rivals.accelerations import (
+    Smoother,
+    mean_actuators,
+    positions,
+    predicted,
+    true_positions,
+)
 from validation.rivals.evidence import Judge, sizes
 from validation.rivals.linear import descended, solved
 from validation.rivals.question import Question, fit_of, free_of
@@ -65,7 +71,7 @@ class SparseRegression:
         ]
         self.recorded = [positions(t) for t in self.problem.recordings]
         self.weights = np.ones(self.problem.program.module.NQ)
-        self.held = [held_by(t, (), t.values) for t in self.problem.recordings]
+        self.held = [mean_actuators(t, (), t.values) for t in self.problem.recordings]
 
     def answer(self) -> tuple[Fit, dict[str, float], bool]:
         """Return the fit, the evidence gain of each effect [nats], and the unknown flag."""
@@ -95,12 +101,12 @@ class SparseRegression:
             track = smoother.track
             values = self.problem.values(track, free, theta)
             if any(isinstance(e, Measurement) for e in kinds):
-                true = shown_by(track, recorded, values, on)
+                true = true_positions(track, recorded, values, on)
             else:
                 true = recorded
             states, accelerations = smoother.motion(true)
             if held.any() and any(not isinstance(e, Measurement | Force) for e in kinds):
-                held = held_by(track, effects, values)
+                held = mean_actuators(track, effects, values)
             left = accelerations - smoother.blurred(predicted(track, states, held, values, on))
             errors.append(left[smoother.margin : len(left) - smoother.margin])
         with np.errstate(over="ignore", invalid="ignore"):
