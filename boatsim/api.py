@@ -260,8 +260,8 @@ def run(
         seed: Seed of sensor noise and random effects; the scenario's by default.
         controller: Name or file of a controller in place of the scenario's; not for a `Scenario`.
         out: Folder for the files of the run; none are written by default.
-        vessel: Vessel in place of the scenario's; not for a `Scenario`. One that was not saved is
-            saved in `out`.
+        vessel: Vessel in place of the scenario's; not for a `Scenario`. With `out`, a vessel that
+            differs from its file is saved in the folder `<out>_vessel`, which the recording names.
 
     Raises:
         BadInput: If scenario, controller and vessel do not fit each other.
@@ -275,6 +275,8 @@ def run(
     >>> float(done.recording["y_m"][-1]) > 0.9  # [m] to starboard
     True
     """
+    if out is not None and vessel is not None and not _equals_its_file(vessel):
+        vessel = vessel.save(f"{out}_vessel")
     loaded = _scenario(scenario, controller, vessel)
     folder = None
     if out is None:
@@ -290,6 +292,13 @@ def run(
     if "yaw" in loaded.vessel.dof:
         camera = done.camera
     return Run(loaded.name, done.seed, done.complete, done.recording, camera, metrics, folder)
+
+
+def _equals_its_file(vessel: Vessel) -> bool:
+    """Whether loading the vessel's file again gives the same vessel."""
+    if not vessel.file.is_file():
+        return False
+    return vessels.load(str(vessel.file), vessel.load) == vessel
 
 
 def _scenario(given: Name | Scenario, controller: Name | None, vessel: Vessel | None) -> Scenario:

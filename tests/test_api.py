@@ -259,3 +259,15 @@ def test_every_vessel_is_the_same_after_saving(name: str, tmp_path: Path) -> Non
         again = boatsim.load_vessel(tmp_path / name)
         assert again == saved == replace(vessel, file=saved.file, load=(), loads=())
         assert [e.filled for e in again.effects] == [e.filled for e in vessel.effects]
+
+
+def test_the_recording_of_a_changed_vessel_names_the_vessel_that_moved(tmp_path: Path) -> None:
+    changed = boatsim.load_vessel("joystick_boat").with_parameters({"body": {"mass": 6.0}})
+    out = tmp_path / "out"
+    boatsim.run("joystick_boat/sway_1", vessel=changed, out=out)
+    named = boatsim.read(out / "camera.csv").notes.vessel
+    assert boatsim.load_vessel(out / named).body.mass == 6.0
+    boatsim.run(
+        "joystick_boat/sway_1", vessel=boatsim.load_vessel("joystick_boat"), out=tmp_path / "other"
+    )
+    assert not (tmp_path / "other_vessel").exists()
