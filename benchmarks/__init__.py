@@ -2,5 +2,6 @@
 
 import os
 
-# Must be set before numpy is imported: the matrices of a diagnosis are too small for several threads.
+# Must be set before numpy is imported: the matrices of a diagnosis are too small for several
+# threads.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")

@@ -52,9 +52,8 @@ class Row:
     reason: str
     command: str
     tolerance: float | None = None  # of the published figure, in both directions
-    span: tuple[float, float] | None = (
-        None  # range of our result that the published words represent
-    )
+    # range of our result that the published words represent
+    span: tuple[float, float] | None = None
 
     def line(self) -> str:
         """Return the row of the table."""

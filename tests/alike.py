@@ -7,7 +7,8 @@ import pytest
 
 
 def few(cases: Iterable[Any], kept: int = 3) -> list[Any]:
-    """Parameters of a test, each a value or a tuple of them; those beyond the first `kept` are slow tests."""
+    """Parameters of a test, each a value or a tuple of them; those beyond the first `kept` are slow
+    tests."""
     return [case if i < kept else slow(case) for i, case in enumerate(cases)]
 
 

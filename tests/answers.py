@@ -1,4 +1,5 @@
-"""A diagnosis of recordings made in a test, and what must be said of it where the truth is known."""
+"""A diagnosis of recordings made in a test, and what must be said of it where the truth is
+known."""
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -28,7 +29,8 @@ def diagnosed(
 def named(
     answer: Mapping[str, Any], name: str, true: Mapping[str, float], more: bool = False
 ) -> None:
-    """This effect and no other, none tied with it; every true value within 3.5 sd, and known to 30 %.
+    """This effect and no other, none tied with it; every true value within 3.5 sd, and known to 30
+    %.
 
     With `more` there is a force besides that is no effect's, and the answer must say so.
     """

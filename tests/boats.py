@@ -1,4 +1,5 @@
-"""Small vessels written into a test's own folder; they share one composition, so that values differ, not programs."""
+"""Small vessels written into a test's own folder; they share one composition, so that values
+differ, not programs."""
 
 from collections.abc import Mapping
 from pathlib import Path

@@ -1,4 +1,5 @@
-"""A real Chromium without a window, spoken to by its DevTools protocol: opens pages, runs scripts, takes pictures."""
+"""A real Chromium without a window, spoken to by its DevTools protocol: opens pages, runs scripts,
+takes pictures."""
 
 import json
 import re
@@ -82,7 +83,8 @@ class Page:
 
 @contextmanager
 def chromium(*more: str) -> Iterator[Any]:
-    """A browser; what it yields opens a page at an address, with a script that runs before those of the page."""
+    """A browser; what it yields opens a page at an address, with a script that runs before those of
+    the page."""
     from websockets.sync.client import connect
 
     assert PROGRAM

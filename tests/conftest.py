@@ -1,4 +1,5 @@
-"""What all tests share: a property is judged by its examples, not by how long one of them took on a busy machine."""
+"""What all tests share: a property is judged by its examples, not by how long one of them took on a
+busy machine."""
 
 from collections.abc import Iterator
 from pathlib import Path

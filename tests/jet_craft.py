@@ -1,4 +1,7 @@
-"""The water-jet craft of Svendsen et al. as it might really be, integrated by scipy from the printed equations."""
+"""The water-jet craft of Svendsen et al.
+
+as it might really be, integrated by scipy from the printed equations.
+"""
 
 import re
 from dataclasses import dataclass
@@ -46,7 +49,10 @@ class Craft:
 
 
 def power(h: float, q2: float = 154.9) -> float:
-    """Shaft power per mass, eq. 10 with Table 2 [m^2/s^3]."""
+    """Shaft power per mass, eq.
+
+    10 with Table 2 [m^2/s^3].
+    """
     if h < 2.0:
         return 12.10 * h - 11.30
     return -21.1 - 20.0 * h + 18.5 * h * h if h < 4.0 else 10.00 * h + q2
@@ -94,7 +100,8 @@ def sailed(
     seed: int = 0,
     name: str = "run",
 ) -> Recording:
-    """A run under commands (N,) held for dt [s] each; handle and jet move at their rates in `fine` steps of a row."""
+    """A run under commands (N,) held for dt [s] each; handle and jet move at their rates in `fine`
+    steps of a row."""
     rng = np.random.default_rng(seed)
     y, rows = np.array([0.0, 0.0, 0.0, 0.0, start, 0.0, 0.0, 0.0]), []
     h, delta, part = float(throttle[0]), float(jet[0]), dt / fine

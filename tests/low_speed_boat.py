@@ -1,4 +1,5 @@
-"""The water-jet craft at low speed as it might really be, integrated in steps of 10 ms by equations of its own."""
+"""The water-jet craft at low speed as it might really be, integrated in steps of 10 ms by equations
+of its own."""
 
 from dataclasses import dataclass
 from math import cos, exp, pi, sin, tanh
@@ -28,7 +29,8 @@ class Real:
 
 
 def commanded(seed: int, seconds_each: float = 12.0) -> tuple[Array, Array]:
-    """Nozzle and bucket [rad], a row every 0.1 s: +-6 or +-12 deg held for 3 s, six bucket angles in random order."""
+    """Nozzle and bucket [rad], a row every 0.1 s: +-6 or +-12 deg held for 3 s, six bucket angles
+    in random order."""
     rng = np.random.default_rng(seed)
     steps = round(seconds_each / 3.0) * len(BUCKETS)
     nozzle = np.radians(rng.choice([-12.0, -6.0, 6.0, 12.0], steps))
@@ -37,7 +39,8 @@ def commanded(seed: int, seconds_each: float = 12.0) -> tuple[Array, Array]:
 
 
 def waves(real: Real, n: int, seed: int) -> Array:
-    """The yaw rate r_w of second-order filter waves at every fine step, lambda_w 0.1: a hundred sines by lot."""
+    """The yaw rate r_w of second-order filter waves at every fine step, lambda_w 0.1: a hundred
+    sines by lot."""
     rng = np.random.default_rng(1000 + seed)
     w = real.sea_frequency * np.linspace(0.4, 2.5, 300)
     size = w**2 / ((w**2 - real.sea_frequency**2) ** 2 + (0.2 * real.sea_frequency * w) ** 2)
@@ -49,7 +52,8 @@ def waves(real: Real, n: int, seed: int) -> Array:
 
 
 def arrivals(real: Real, rows: int, seed: int) -> Array:
-    """Fine steps (rows,) at which the commands of each row arrive; those of 3 s are late by one time."""
+    """Fine steps (rows,) at which the commands of each row arrive; those of 3 s are late by one
+    time."""
     rng = np.random.default_rng(2000 + seed)
     late = real.late * np.repeat(rng.uniform(0.9, 1.1, rows // 30 + 1), 30)[:rows]
     return np.round((ROW * np.arange(rows) + late) / FINE)

@@ -1,10 +1,12 @@
-"""Writes tests/data/logs: one simulated run of the Otter as the logs of several programs; run again, the same bytes.
+"""Writes tests/data/logs: one simulated run of the Otter as the logs of several programs; run
+again, the same bytes.
 
 python tests/make_logs.py
 
-The boat is simulated (boatsim.simulate.batch, without noise); the logs are written by the library of each format where
-it has a writer (MCAP, bags, Parquet), else byte by byte as its documents say. Latitudes and longitudes come from the
-exact tangent plane by way of earth-centred coordinates, not from the formula that the readers use.
+The boat is simulated (boatsim.simulate.batch, without noise); the logs are written by the library
+of each format where it has a writer (MCAP, bags, Parquet), else byte by byte as its documents say.
+Latitudes and longitudes come from the exact tangent plane by way of earth-centred coordinates, not
+from the formula that the readers use.
 """
 
 import math
@@ -67,7 +69,8 @@ def simulated() -> dict[str, np.ndarray]:
 
 
 def geodetic(north: float, east: float) -> tuple[float, float]:
-    """Latitude, longitude [deg] of a place on the tangent plane at ORIGIN, by earth-centred coordinates."""
+    """Latitude, longitude [deg] of a place on the tangent plane at ORIGIN, by earth-centred
+    coordinates."""
     lat0, lon0 = ORIGIN
     e2 = F * (2.0 - F)
     n = A / math.sqrt(1.0 - e2 * math.sin(lat0) ** 2)
@@ -98,7 +101,7 @@ def every(run: dict[str, np.ndarray], rate: float) -> list[dict[str, float]]:
 
 
 def quaternion(roll: float, pitch: float, yaw: float) -> tuple[float, float, float, float]:
-    """w, x, y, z of yaw, then pitch, then roll."""
+    """W, x, y, z of yaw, then pitch, then roll."""
     (cr, sr), (cp, sp), (cy, sy) = ((math.cos(a / 2), math.sin(a / 2)) for a in (roll, pitch, yaw))
     return (
         cr * cp * cy + sr * sp * sy,
@@ -393,7 +396,8 @@ def nmea(run: dict[str, np.ndarray], path: Path) -> None:
 
 
 def table(run: dict[str, np.ndarray], path: Path) -> None:
-    """Semicolons and decimal commas, times since 1970 in ms, degrees, per cent, fixes at 2 Hz repeated between."""
+    """Semicolons and decimal commas, times since 1970 in ms, degrees, per cent, fixes at 2 Hz
+    repeated between."""
     out = [
         "Zeit [ms];Breite;GPS Lat [deg];GPS Lon [deg];Heading [deg];Yaw rate [deg/s];Motor left [%];Motor right [%]"
     ]
@@ -416,7 +420,8 @@ def table(run: dict[str, np.ndarray], path: Path) -> None:
 
 
 def parquet(run: dict[str, np.ndarray], path: Path) -> None:
-    """Times as dates, poses and commands in rows of their own: a table that two others were stacked into."""
+    """Times as dates, poses and commands in rows of their own: a table that two others were stacked
+    into."""
     import pyarrow as pa
     from pyarrow import parquet as pq
 

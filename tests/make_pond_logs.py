@@ -1,10 +1,11 @@
-"""Writes the two logs of the tutorial, docs/your_boat.md, into tests/data/pond; run again, the same bytes.
+"""Writes the two logs of the tutorial, docs/your_boat.md, into tests/data/pond; run again, the same
+bytes.
 
 python -m tests.make_pond_logs
 
-The boat is that of tests/pushed_three_metre.py, whose integrator shares no code with the tool. Two days on a pond: on
-the first its owner tries it out and an ArduPilot logs it; on the second a logger writes a table while weed round the
-starboard propeller takes a third of that one's thrust.
+The boat is that of tests/pushed_three_metre.py, whose integrator shares no code with the tool. Two
+days on a pond: on the first its owner tries it out and an ArduPilot logs it; on the second a logger
+writes a table while weed round the starboard propeller takes a third of that one's thrust.
 """
 
 from pathlib import Path
@@ -22,7 +23,8 @@ WEED = 0.65  # of the starboard propeller's thrust is left
 
 
 def levels(rng: np.random.Generator, duration: float) -> Array:
-    """(N, 2) commands [N], a new pair every few seconds, as the nearest microsecond of a servo's pulse has them."""
+    """(N, 2) commands [N], a new pair every few seconds, as the nearest microsecond of a servo's
+    pulse has them."""
     held = rng.uniform(-0.5, 1.0, (int(duration / HOLD) + 1, 2))
     us = np.vectorize(pulse)(WHOLE * held)
     return np.repeat((us - 1500.0) / 400.0 * FULL, round(HOLD * RATE), axis=0)[

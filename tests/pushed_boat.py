@@ -1,4 +1,5 @@
-"""The trial boat under a further force, from an integrator that shares no code with the tool, laid on its filter."""
+"""The trial boat under a further force, from an integrator that shares no code with the tool, laid
+on its filter."""
 
 from collections.abc import Callable
 from typing import Any

@@ -1,4 +1,5 @@
-"""A 3 m boat with two thrusters, from an integrator that shares no code with the tool: current, weak reverse, lag."""
+"""A 3 m boat with two thrusters, from an integrator that shares no code with the tool: current,
+weak reverse, lag."""
 
 from pathlib import Path
 

@@ -1,8 +1,10 @@
-"""The trial boat as it might really be, integrated by scipy from equations that share no code with the tool.
+"""The trial boat as it might really be, integrated by scipy from equations that share no code with
+the tool.
 
-Nor do they share its formulas: where an entry of the library has a dead band, this boat has friction that fades in;
-where an entry has a constant, here it varies with load, speed or place. `Real` says how strong a cause is in the words
-of the simple law, which this boat's own law meets in the middle of what the recordings show.
+Nor do they share its formulas: where an entry of the library has a dead band, this boat has
+friction that fades in; where an entry has a constant, here it varies with load, speed or place.
+`Real` says how strong a cause is in the words of the simple law, which this boat's own law meets in
+the middle of what the recordings show.
 """
 
 from dataclasses import dataclass
@@ -110,7 +112,10 @@ class Real:
 
 
 def slopes(t: float, y: Array, command: Array, real: Real) -> Array:
-    """Kirchhoff's equations of the trial boat: both momenta from kinetic energies. y: pose, velocity, shafts."""
+    """Kirchhoff's equations of the trial boat: both momenta from kinetic energies.
+
+    y: pose, velocity, shafts.
+    """
     psi, nu = y[2], y[3:6]
     c, s = cos(psi), sin(psi)
     solid = sum((body(*part) for part in stowed(real)), np.diag([0.0, 0.0, INERTIA]))
@@ -135,7 +140,8 @@ def slopes(t: float, y: Array, command: Array, real: Real) -> Array:
 
 
 def stowed(real: Real) -> tuple[tuple[float, float], ...]:
-    """Masses and where they lie: most of the hull's own has slid, the cargo is as long as a crate."""
+    """Masses and where they lie: most of the hull's own has slid, the cargo is as long as a
+    crate."""
     mass, x = real.cargo
     return (
         (0.2 * MASS, 0.0),
@@ -156,20 +162,23 @@ def at(x: float, X: float, Y: float) -> Array:
 
 
 def wanted(command: Array, real: Real) -> Array:
-    """Thrusts that motors aim at: friction fades in, and what one has more or less than stated grows with its load."""
+    """Thrusts that motors aim at: friction fades in, and what one has more or less than stated
+    grows with its load."""
     free = command - real.dead * np.tanh(command / real.dead) if real.dead else command
     return np.asarray(free * (1.0 + (np.array(real.power) - 1.0) * (0.6 + 0.6 * abs(command))))
 
 
 def turned(shaft: Array, thrust: Array, real: Real) -> tuple[Array, Array]:
-    """Thrusts and slopes of the shafts: their rate lags, thrust is its square and takes 1 to 1.58 times as long."""
+    """Thrusts and slopes of the shafts: their rate lags, thrust is its square and takes 1 to 1.58
+    times as long."""
     if not real.lag:
         return thrust, np.zeros(2)
     return shaft * abs(shaft), (np.sign(thrust) * np.sqrt(abs(thrust)) - shaft) / (real.lag / 1.25)
 
 
 def pushed(thrust: Array, steer: Array, real: Real) -> Array:
-    """Both thrusters, and their side forces, of which ahead is left a third: more than in proportion to their load."""
+    """Both thrusters, and their side forces, of which ahead is left a third: more than in
+    proportion to their load."""
     X, Y = thrust * np.cos(steer), thrust * np.sin(steer)
     side = real.walk * sum(
         float(T) * (0.7 + 0.45 * abs(T)) * (1.0 if T < 0.0 else 0.33) for T in thrust
@@ -202,7 +211,8 @@ def damped(nu: Array, real: Real) -> Array:
 
 
 def held(y: Array, c: float, s: float, real: Real) -> Array:
-    """What is fixed to the ground: a line from the stern to its anchor, and walls that brake and draw the boat."""
+    """What is fixed to the ground: a line from the stern to its anchor, and walls that brake and
+    draw the boat."""
     force = np.zeros(3)
     stiffness, length, north, east = real.line
     if stiffness:
@@ -223,7 +233,8 @@ def held(y: Array, c: float, s: float, real: Real) -> Array:
 
 
 def waves(t: float) -> Array:
-    """Irregular seas about 2.4 rad/s, rms 1 on each of three axes: sixty components with random phases."""
+    """Irregular seas about 2.4 rad/s, rms 1 on each of three axes: sixty components with random
+    phases."""
     return np.sqrt(2.0 / len(SEA)) * np.cos(np.outer(SEA, np.full(3, t)) + PHASES).sum(axis=0)
 
 
@@ -233,7 +244,8 @@ PHASES = np.random.default_rng(12).uniform(0.0, 2 * pi, (60, 3))
 
 
 def seen(t: float, y: Array, real: Real) -> Array:
-    """What camera and compass make of a boat in the water, which drifts with a stream that swells and ebbs."""
+    """What camera and compass make of a boat in the water, which drifts with a stream that swells
+    and ebbs."""
     x, north, psi = y[:3]
     ahead, starboard = real.antenna
     starboard -= (
@@ -255,7 +267,8 @@ def seen(t: float, y: Array, real: Real) -> Array:
 
 
 def played(steer: Array, play: float) -> Array:
-    """Angles behind commands (N, 2) with the given total play, in which friction carries a part along."""
+    """Angles behind commands (N, 2) with the given total play, in which friction carries a part
+    along."""
     out = np.zeros_like(steer)
     at: Array = np.zeros(2)
     for i, command in enumerate(steer):
@@ -267,7 +280,8 @@ def played(steer: Array, play: float) -> Array:
 def recorded(
     real: Real, seed: int, hold: int = 5, start: tuple[float, float, float] = (0.0, 0.0, 0.0)
 ) -> Recording:
-    """40 s at 6 Hz from a pose at rest, of random steps held for some rows, seen by a camera with noise."""
+    """40 s at 6 Hz from a pose at rest, of random steps held for some rows, seen by a camera with
+    noise."""
     rng = np.random.default_rng(seed)
     dt, n = 1 / 6, 240
     steps = n // hold

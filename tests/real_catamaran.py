@@ -1,4 +1,5 @@
-"""The catamaran of Huang and Ji integrated from its printed equations, sharing no code with the tool."""
+"""The catamaran of Huang and Ji integrated from its printed equations, sharing no code with the
+tool."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -70,9 +71,11 @@ class Real:
     def run(
         self, control: Control, duration: float, held: float = 0.0, start: list[float] | None = None
     ) -> Array:
-        """Rows of t, X, Y, psi, u, v, r, thrust, azimuth every 10 ms; `held` [s] between two looks of the control.
+        """Rows of t, X, Y, psi, u, v, r, thrust, azimuth every 10 ms; `held` [s] between two looks
+        of the control.
 
-        With `held` 0 the control is evaluated at every stage of the Runge-Kutta step, as the paper's is.
+        With `held` 0 the control is evaluated at every stage of the Runge-Kutta step, as the
+        paper's is.
         """
         h, s, rows = 0.01, list(start or [0.0] * 6), []
         every = max(round(held / h), 1)

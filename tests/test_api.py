@@ -1,4 +1,5 @@
-"""boatsim for Python: examples run as written, types are told, and all that a user imports stays light and in place."""
+"""Boatsim for Python: examples run as written, types are told, and all that a user imports stays
+light and in place."""
 
 import doctest
 import inspect

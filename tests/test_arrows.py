@@ -1,4 +1,5 @@
-"""Imports between our own modules point down the layers, never round in a ring, and heavy libraries stay in place."""
+"""Imports between our own modules point down the layers, never round in a ring, and heavy libraries
+stay in place."""
 
 import re
 from graphlib import TopologicalSorter

@@ -1,4 +1,5 @@
-"""What boatsim assumes of undocumented parts of numba and MuJoCo; a new version must pass before its bound is raised.
+"""What boatsim assumes of undocumented parts of numba and MuJoCo; a new version must pass before
+its bound is raised.
 
 Each test covers one assumption in the list of `boatsim.physics.compiler_internals`.
 """

@@ -1,4 +1,5 @@
-"""Nothing is lost and nothing hangs: signals at any moment, a full disk, a process that is killed, logs cut short."""
+"""Nothing is lost and nothing hangs: signals at any moment, a full disk, a process that is killed,
+logs cut short."""
 
 import json
 import os
@@ -74,7 +75,8 @@ def begin(*arguments: object, before: Callable[[], None] = heeding) -> "subproce
 
 
 def end(running: "subprocess.Popen[str]", within: float = 60.0) -> tuple[int, str]:
-    """Exit code and stderr but for stages; whatever it started must have ended too, else its pipes were open."""
+    """Exit code and stderr but for stages; whatever it started must have ended too, else its pipes
+    were open."""
     try:
         said = running.communicate(timeout=within)[1]
     except subprocess.TimeoutExpired:
@@ -211,7 +213,8 @@ def test_a_controller_that_hangs_ends_at_the_second_ctrl_c(endless: Path, tmp_pa
 
 @pytest.fixture
 def listening(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
-    """This process hears signals, whatever started it ignores; what it heard is forgotten afterwards."""
+    """This process hears signals, whatever started it ignores; what it heard is forgotten
+    afterwards."""
     monkeypatch.setattr(interruption, "_received", False)
     before = {s: signal.signal(s, signal.default_int_handler) for s in SIGNALS}
     yield
@@ -402,7 +405,8 @@ MEASURES = names("measure")
 def test_a_measure_of_a_short_log_has_numbers_or_says_that_it_is_too_short(
     name: str, rows: int
 ) -> None:
-    """Of boats that move and of such that lie still; no warning, no infinite number, no other error."""
+    """Of boats that move and of such that lie still; no warning, no infinite number, no other
+    error."""
     made = load_class("measure", name)()
     for slope in (0.0, 0.3, -0.3):
         t = 0.02 * np.arange(rows)

@@ -69,7 +69,8 @@ def boatsim(*arguments: object) -> Any:
 
 
 def with_slime(folder: Path, use: str = "slime", where: str = "test_boat") -> tuple[Path, Path]:
-    """A scenario whose vessel has an effect of its own beside it; the file that says whether it ran."""
+    """A scenario whose vessel has an effect of its own beside it; the file that says whether it
+    ran."""
     place = boats.written(folder, "test_boat", boats.ROLL + USE.format(use))
     (folder / where).mkdir(exist_ok=True)
     (folder / where / "slime.py").write_text(EFFECT)

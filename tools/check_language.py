@@ -28,9 +28,10 @@ from pathlib import Path
 
 DEFAULT_PATHS = ("boatsim", "docs", "README.md", "CONTRIBUTING.md")
 WORDS = re.compile(
-    r"\b(?:told|tells|said|says|saying|besides?|anew|laid|somebody|nobody|anybody|whoever|whichever|thereof|"
-    r"to and fro|by the dozen|of its own|of one's own|as it is|as they are|at once|goe?s? on with|goes by|"
-    r"(?:what|that) is there|is there|such a one|by itself|for itself|the other way|on their way|asks? for it)\b",
+    r"\b(?:told|tells|said|says|saying|besides?|anew|laid|somebody|nobody|anybody|whoever|"
+    r"whichever|thereof|to and fro|by the dozen|of its own|of one's own|as it is|as they are|"
+    r"at once|goe?s? on with|goes by|(?:what|that) is there|is there|such a one|by itself|"
+    r"for itself|the other way|on their way|asks? for it)\b",
     re.IGNORECASE,
 )
 OPENINGS = re.compile(r"(?:Of|Those|Such|Beside|What|Whose|Wherever|The same)\b")
@@ -148,7 +149,7 @@ def count_file(file: Path) -> Counts:
 
 
 def files_below(path: Path) -> list[Path]:
-    """Return the Python and Markdown files of a folder, without generated ones; or the file itself."""
+    """Return the Python and Markdown files of a folder, or the file itself."""
     if path.is_file():
         return [path]
     found = []
@@ -209,7 +210,8 @@ def main() -> int:
             f"{name:36s} {counts.prose_words:5d} {counts.words_per_thousand():7.2f}"
             f" {counts.per_thousand_lines(counts.comprehensions):15.1f}"
             f" {counts.per_thousand_lines(counts.conditionals):13.1f}"
-            f" {counts.number('long line'):5d} {counts.number('opening'):9d} {counts.number('name'):6d}"
+            f" {counts.number('long line'):5d} {counts.number('opening'):9d}"
+            f" {counts.number('name'):6d}"
         )
     for kind, lines in total.hits.items():
         repeated = Counter(lines)

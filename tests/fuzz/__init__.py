@@ -1,1 +1,2 @@
-"""Mutated files for every reader: each ends in a value or in one clear line, never in another exception."""
+"""Mutated files for every reader: each ends in a value or in one clear line, never in another
+exception."""

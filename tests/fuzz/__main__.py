@@ -1,8 +1,9 @@
-"""`python -m tests.fuzz --count N`: N mutated files in all, and what became of them, reader by reader.
+"""`python -m tests.fuzz --count N`: N mutated files in all, and what became of them, reader by
+reader.
 
-Each reader is driven in a process of its own. A file that ends in anything but a value or one clear line is printed as
-a literal, with its traceback, and the exit code is 1. docs/fuzzing.md has what 100,000 gave, and how to go on for a
-night.
+Each reader is driven in a process of its own. A file that ends in anything but a value or one clear
+line is printed as a literal, with its traceback, and the exit code is 1. docs/fuzzing.md has what
+100,000 gave, and how to go on for a night.
 """
 
 import argparse

@@ -120,7 +120,8 @@ def _round(reader: Reader, count: int, number: int, found: Found) -> None:
 
 @contextmanager
 def _limited(seconds: float) -> Iterator[None]:
-    """A block that is ended after so long, and once more every second where something catches that."""
+    """A block that is ended after so long, and once more every second where something catches
+    that."""
     before = signal.signal(signal.SIGALRM, _give_up)
     signal.setitimer(signal.ITIMER_REAL, seconds, 1.0)
     try:

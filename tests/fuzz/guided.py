@@ -1,8 +1,10 @@
-"""The same readers driven by coverage: `python -m tests.fuzz.guided READER FOLDER [-max_total_time=28800]`.
+"""The same readers driven by coverage: `python -m tests.fuzz.guided READER FOLDER
+[-max_total_time=28800]`.
 
-Atheris (`pip install boatsim[fuzz]`) keeps in FOLDER every file that reaches new lines of the reader, and begins from
-those of the last time. What ends in anything but a value or one clear line stops it: the file is written as
-`crash-...` or `timeout-...`, and read again by naming it instead of FOLDER. Options are those of libFuzzer.
+Atheris (`pip install boatsim[fuzz]`) keeps in FOLDER every file that reaches new lines of the
+reader, and begins from those of the last time. What ends in anything but a value or one clear line
+stops it: the file is written as `crash-...` or `timeout-...`, and read again by naming it instead
+of FOLDER. Options are those of libFuzzer.
 """
 
 import sys

@@ -1,4 +1,5 @@
-"""Mutations of a file as hypothesis draws them: bytes changed, cut, doubled, and tokens that readers have to bear."""
+"""Mutations of a file as hypothesis draws them: bytes changed, cut, doubled, and tokens that
+readers have to bear."""
 
 from dataclasses import dataclass
 

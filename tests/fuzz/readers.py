@@ -31,7 +31,10 @@ class Reader:
     share: float = 1.0  # of the files that others get: one that starts a process for each is slow
 
     def outcome(self, content: bytes) -> bool:
-        """Whether a file can be used; False where one clear line says why not. Raises whatever else comes."""
+        """Whether a file can be used; False where one clear line says why not.
+
+        Raises whatever else comes.
+        """
         path = seeds.folder() / self.file
         path.write_bytes(content)
         try:

@@ -19,9 +19,8 @@ class Cause:
     """One property that a real boat has and its vessel file lacks."""
 
     name: str  # name of the effect in the library, or outside_library:NAME
-    parameters: Mapping[str, float] = field(
-        default_factory=dict
-    )  # parameters shared with the library's law
+    # parameters shared with the library's law
+    parameters: Mapping[str, float] = field(default_factory=dict)
     boat: Callable[[Boat], Boat] | None = None
     # of the step [s]; the closure holds the state
     drive: Callable[[Boat, float], GoalMap] | None = None

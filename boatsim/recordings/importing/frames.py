@@ -20,7 +20,7 @@ def local(latitude: Array, longitude: Array, origin: tuple[float, float]) -> tup
 
     north = (lat - lat0) M, east = (lon - lon0) N cos(lat0), with the radii of curvature of WGS 84
     at the origin. The error grows with the square of the distance: less than 2 mm at 100 m and 0.2
-    m at 1 km at latitudes up to 60 degrees (checked by tests/test_frames.py).
+    m at 1 km at latitudes up to 60 degrees (checked by tests/recordings/importing/test_frames.py).
 
     Args:
         latitude: Geodetic latitude (N,) [rad].

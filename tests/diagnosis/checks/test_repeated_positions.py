@@ -1,0 +1,51 @@
+"""Fixes that are repeated until the next one: found by their rhythm, left out, and the diagnosis
+stays what it was."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from answers import diagnosed
+from real_boat import Real, recorded
+
+from boatsim.diagnosis.checks.repeated_positions import drop_repeated_positions, repeated_rows
+from boatsim.recordings.table import Recording
+
+
+def held(run: Recording, rows: int) -> Recording:
+    """A fix in every so many rows, repeated in between."""
+    last = np.arange(len(run)) // rows * rows
+    return replace(
+        run, signals={n: v[last] if n in ("x_m", "y_m") else v for n, v in run.signals.items()}
+    )
+
+
+def test_repetitions_are_found_and_nothing_else() -> None:
+    run = recorded(Real(), 1)
+    assert not repeated_rows(np.column_stack([run["x_m"], run["y_m"]])).any()
+    found = drop_repeated_positions(held(run, 4))
+    assert np.flatnonzero(np.isfinite(found["x_m"])).tolist() == list(range(0, len(run), 4))
+    assert np.isfinite(found["psi_rad"]).all() and "x_m, y_m repeat each fix" in found.remarks[-1]
+
+
+def test_a_boat_that_lies_still_between_moves_repeats_nothing() -> None:
+    """Rows alike without a rhythm: a coarse instrument, or a boat at rest."""
+    rng = np.random.default_rng(0)
+    steps = np.cumsum(rng.random(400) < 0.2).astype(float)
+    assert not repeated_rows(np.column_stack([steps, steps])).any()
+    assert not repeated_rows(np.zeros((100, 2))).any()
+
+
+@pytest.mark.slow
+def test_a_diagnosis_of_repeated_fixes_is_that_of_the_fixes(tmp_path: Path) -> None:
+    runs = [held(recorded(Real(power=(1.15, 0.85)), s), 4) for s in (1, 2, 3)]
+    said = diagnosed(runs, tmp_path, "trial_boat")
+    (effect,) = said["effects"]
+    assert said["verdict"] == "named" and effect["name"] == "thrust_imbalance", said["sentence"]
+    fraction = effect["parameters"]["fraction"]
+    assert abs(fraction["value"] - 0.15) < 3.0 * fraction["sd"]
+    assert (
+        said["fit"]["position_rms_m"]["patched"]
+        < 0.5 * said["fit"]["position_rms_m"]["recalibrated"]
+    )

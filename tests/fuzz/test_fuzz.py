@@ -1,0 +1,22 @@
+"""Mutated files for every reader, a few of each; `python -m tests.fuzz --count N` drives more of
+them."""
+
+import pytest
+
+from tests.fuzz.drive import drive
+from tests.fuzz.readers import READERS
+
+COUNT = 40
+
+
+@pytest.mark.parametrize("name", READERS)
+def test_a_mutated_file_ends_in_a_value_or_one_clear_line(name: str) -> None:
+    count = round(COUNT * READERS[name].share)
+    found = drive(READERS[name], count)
+    assert not found.broken, f"{found.broken[0].content!r}: {found.broken[0].error!r}"
+    assert found.refused and found.files >= count // 2  # hypothesis leaves out what it has had
+
+
+@pytest.mark.parametrize("name", READERS)
+def test_a_whole_file_is_read(name: str) -> None:
+    assert all(READERS[name].outcome(content) for content in READERS[name].seeds())

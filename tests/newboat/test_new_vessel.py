@@ -1,0 +1,277 @@
+"""A boat from its particulars: rules by published numbers, files that open, and coefficients found
+again from a log."""
+
+import re
+import shlex
+import tomllib
+from collections import Counter
+from pathlib import Path
+
+import mujoco
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+from boatsim.cli import app
+from boatsim.errors import BadInput
+from boatsim.newboat.from_log import fitted, text
+from boatsim.newboat.particulars import Particulars, particulars
+from boatsim.newboat.write import files
+from boatsim.physics import vessel
+from boatsim.physics.base import motion
+from boatsim.physics.content import names
+from boatsim.physics.effects.added_mass import AddedMass
+from boatsim.physics.effects.forward_speed_damping import ForwardSpeedDamping
+from boatsim.physics.estimate import added_mass, inertia, sway_yaw_damping
+from boatsim.physics.estimate.displacement import hull
+from boatsim.simulate import scenario, world
+from boatsim.simulate.run import run
+from tests import pushed_three_metre
+
+ROOT = Path(__file__).parents[2]
+BOATS = {
+    "twin": "--length 3 --beam 1.6 --mass 90 --thruster -1.2,-0.6 --thruster -1.2,0.6",
+    "outboard": "--length 5 --beam 2 --mass 600 --draught 0.3 --steered -2.4,0,900,300 --speed 6",
+    "ship": "--length 30 --beam 5 --mass 150000 --draught 2 --thruster -14,0,20000 --rudder -15",
+    "catamaran": "--length 2 --beam 1.08 --mass 55 --hulls 2 --thruster -0.8,-0.4,120,66 --thruster -0.8,0.4,120,66",
+    "bow": "--length 6 --beam 2 --mass 900 --steered -2.8,0.4,1e3 --steered -2.8,-0.4,1e3 --thruster 2,0,200",
+}
+
+
+def made(folder: Path, options: str) -> Path:
+    """The folder of a boat by the command line."""
+    result = CliRunner().invoke(app, ["new", str(folder), *shlex.split(options)])
+    assert result.exit_code == 0, result.output
+    return folder
+
+
+def boat(**changed: object) -> Particulars:
+    said: dict[str, object] = {
+        "name": "b",
+        "length": 3.0,
+        "beam": 1.6,
+        "mass": 90.0,
+        "thrusters": ["-1,0"],
+        "steered": [],
+    }
+    return particulars(**(said | changed))  # type: ignore[arg-type]
+
+
+# ---- rules
+
+
+def test_clarkes_regression_is_near_what_was_measured_on_the_mariner() -> None:
+    """L 160.93 m, B 23.17 m, T 8.23 m, C_b 0.59; Clarke's own figures scatter by a third about his
+    lines."""
+    ship = hull(160.93, 23.17, 0.59 * 1000 * 160.93 * 23.17 * 8.23, 1, 8.23)
+    unit = 0.5 * 1000 * 160.93**3
+    # measured on a planar motion mechanism: M. S. Chislett, J. Stroem-Tejsen 1965, Y'_vdot =
+    # -748e-5, N'_r = -166e-5
+    assert added_mass.sway(ship).value / unit == pytest.approx(748e-5, rel=0.4)
+    damping = sway_yaw_damping.clarke(ship)
+    assert damping.yaw / (0.5 * 1000 * 160.93**4) == pytest.approx(166e-5, rel=0.4)
+    assert damping.sway / (0.5 * 1000 * 160.93**2) == pytest.approx(1160e-5, rel=0.4)
+
+
+def test_the_lift_of_a_slender_hull_with_its_munk_moment_is_clarkes_regression() -> None:
+    ship = hull(160.93, 23.17, 0.59 * 1000 * 160.93 * 23.17 * 8.23, 1, 8.23)
+    water = AddedMass(surge=added_mass.surge(ship).value, sway=added_mass.sway(ship).value, yaw=0.0)
+    told = sway_yaw_damping.lift(ship)
+    lift = ForwardSpeedDamping(sway=told.sway.value, at=told.at.value, yaw=told.yaw.value)
+    of_ship, u, v, r = sway_yaw_damping.clarke(ship), 5.0, 0.1, 1e-3
+    drifting = np.add(water.wrench(motion(u=u, v=v)), lift.wrench(motion(u=u, v=v)))
+    assert drifting[[1, 5]] == pytest.approx([-of_ship.sway * u * v, -of_ship.yaw_by_sway * u * v])
+    assert lift.wrench(motion(u=u, r=r)).N == pytest.approx(-of_ship.yaw * u * r)
+
+
+def test_the_rules_for_a_catamaran_give_what_the_otter_is_said_to_have() -> None:
+    otter = vessel.load("otter")
+    made_by_rule = hull(2.0, 1.08, 55.0, 2, None)
+    assert made_by_rule.draught == pytest.approx(otter.draught, rel=0.1)
+    mass = otter.effect("added_mass")
+    assert mass is not None
+    assert inertia.yaw(made_by_rule).value == pytest.approx(otter.body.yaw_inertia)
+    one = added_mass.surge(hull(2.0, 1.08, 55.0, 1, None)).value * (1025.0 / 1000.0) ** (
+        1.0 - 5.0 / 3.0
+    )
+    assert one == pytest.approx(mass.surge, rel=1e-6)  # type: ignore[attr-defined]
+
+
+@pytest.mark.parametrize("scale", [0.1, 10.0])
+def test_added_mass_goes_with_the_size_by_froudes_law(scale: float) -> None:
+    small, large = (
+        hull(3.0, 1.6, 90.0, 1, None),
+        hull(3.0 * scale, 1.6 * scale, 90.0 * scale**3, 1, None),
+    )
+    for rule, power in (
+        (added_mass.surge, 3),
+        (added_mass.sway, 3),
+        (added_mass.yaw, 5),
+        (inertia.yaw, 5),
+    ):
+        assert rule(large).value == pytest.approx(rule(small).value * scale**power)
+
+
+# ---- the command
+
+
+@pytest.mark.parametrize("name", BOATS)
+def test_a_boat_of_any_kind_is_whole_and_runs_its_first_scenario(name: str, tmp_path: Path) -> None:
+    folder = made(tmp_path / name, BOATS[name])
+    found = vessel.load(str(folder))
+    assert world.build(found).nv == 3
+    mujoco.MjModel.from_xml_path(str(folder / "hull.xml"))  # as any viewer opens it
+    log = run(scenario.load(str(folder / "turn.toml"))).recording
+    third = len(log.t) // 3
+    assert log["u_mps"][third // 2] > 0.1  # ahead
+    assert (
+        log["r_radps"][third - 5] > 0.01
+    )  # then a turn to starboard, by rudder, outboard or thrust
+    assert log["r_radps"][third + third // 2 - 5] < -0.01  # and one to port
+
+
+@pytest.mark.parametrize("name", BOATS)
+def test_every_number_of_a_boat_says_where_it_comes_from(name: str, tmp_path: Path) -> None:
+    text = (made(tmp_path / name, BOATS[name]) / "vessel.toml").read_text(encoding="utf-8")
+    bare = [line for line in text.splitlines() if re.search(r"= -?\d", line) and "#" not in line]
+    assert not bare
+
+
+def test_a_stated_top_speed_is_reached_at_full_thrust(tmp_path: Path) -> None:
+    folder = made(tmp_path / "fast", BOATS["outboard"])
+    (folder / "full.toml").write_text(
+        'vessel = "vessel.toml"\nduration = 120\ncontroller = { use = "open_loop" }\n[[goal]]\nthrust_motor_N = 900.0\n'
+    )
+    assert run(scenario.load(str(folder / "full.toml"))).recording["u_mps"][-1] == pytest.approx(
+        6.0, rel=0.01
+    )
+
+
+@pytest.mark.parametrize(
+    "changed, said",
+    [
+        ({"thrusters": []}, "a boat needs at least one thruster"),
+        ({"thrusters": ["-1"]}, "allowed is X,Y"),
+        ({"thrusters": ["a,b"]}, "--thruster a,b"),
+        ({"thrusters": ["-9,0"]}, "within the length"),
+        ({"mass": 90000.0}, "is the mass in kg"),
+        ({"mass": -1.0}, "--mass -1; allowed"),
+        ({"beam": 4.0}, "less than the length"),
+        ({"draught": 0.01}, "lies at least"),
+        ({"rudder": "0"}, "--rudder 0"),
+        ({"name": "a b"}, "allowed are letters"),
+    ],
+)
+def test_what_can_not_be_a_boat_is_refused_in_one_line(
+    changed: dict[str, object], said: str
+) -> None:
+    with pytest.raises(BadInput, match=re.escape(said)):
+        boat(**changed)
+
+
+def test_a_folder_that_is_there_stays_as_it_is_without_force(tmp_path: Path) -> None:
+    (tmp_path / "b").mkdir()
+    args = ["new", str(tmp_path / "b"), *shlex.split(BOATS["twin"])]
+    result = CliRunner().invoke(app, args)
+    assert result.exit_code == 2
+    assert not list((tmp_path / "b").iterdir())
+    assert CliRunner().invoke(app, [*args, "--force"]).exit_code == 0
+    assert sorted(p.name for p in (tmp_path / "b").iterdir()) == sorted(files(boat()))
+
+
+def test_nothing_is_left_of_a_boat_whose_log_can_not_be_read(tmp_path: Path) -> None:
+    (tmp_path / "run.csv").write_text("t_s,x_m\n0,a\n")
+    args = [
+        "new",
+        str(tmp_path / "b"),
+        *shlex.split(BOATS["twin"]),
+        "--from-log",
+        str(tmp_path / "run.csv"),
+    ]
+    assert CliRunner().invoke(app, args).exit_code == 2
+    assert [p.name for p in tmp_path.iterdir()] == ["run.csv"]
+
+
+# ---- from a log
+
+
+@pytest.mark.slow
+def test_a_log_of_an_independent_boat_gives_its_lag_weak_reverse_and_current(
+    tmp_path: Path,
+) -> None:
+    folder = made(tmp_path / "b", BOATS["twin"] + " --thrust 60")
+    pushed_three_metre.write(tmp_path / "run.csv", 1)
+    found = fitted(folder / "vessel.toml", [tmp_path / "run.csv"])
+    told = {(f.effect, f.name): x for f, x in zip(found.best.free, found.best.theta, strict=True)}
+    assert told["thrust_lag", "time_constant"] == pytest.approx(pushed_three_metre.LAG, abs=0.03)
+    assert told["weak_reverse", "astern_factor"] == pytest.approx(
+        pushed_three_metre.ASTERN, abs=0.03
+    )
+    current = [told["current", "north"], told["current", "east"]]
+    assert np.allclose(current, pushed_three_metre.CURRENT, atol=0.01)
+    for family, before in found.before.items():
+        assert found.after[family] < 0.2 * before
+    (folder / "vessel.toml").write_text(text(found, [tmp_path / "run.csv"]), encoding="utf-8")
+    again = vessel.load(str(folder))
+    assert again.effect("current") is None  # the water's, not the boat's
+    assert {"thrust_lag", "weak_reverse"} <= {e.name for e in again.effects}
+    assert max(again.diagnosis.coefficient_uncertainty.values()) < 1.0
+
+
+# ---- show, list
+
+
+def test_all_that_has_a_name_can_be_shown() -> None:
+    for name in (
+        "weak_reverse",
+        "thruster",
+        "pid_autopilot",
+        "turning_circle",
+        "blueboat",
+        "joystick_boat/sway_1",
+    ):
+        result = CliRunner().invoke(app, ["show", name])
+        assert result.exit_code == 0, result.output
+        assert "example:" in result.output
+
+
+def test_an_effect_says_what_is_fitted_and_what_rules_it_out() -> None:
+    lines = CliRunner().invoke(app, ["show", "tether"]).output.splitlines()
+    assert "  ruled out by: moored = false" in lines
+    assert ["tension", "0", "N", "0", "to", "1e+06", "yes", "constant", "tension"] in [
+        line.split() for line in lines
+    ]
+
+
+def test_an_example_of_an_effect_can_be_pasted() -> None:
+    lines = CliRunner().invoke(app, ["show", "weak_reverse"]).output.splitlines()
+    pasted = "\n".join(line.strip() for line in lines[lines.index("example:") + 1 :])
+    [table] = tomllib.loads(pasted)["effect"]
+    assert vessel.load("blueboat", extra=[table]).effect("weak_reverse") is not None
+
+
+@pytest.mark.parametrize(
+    "command", [["show", "blueboot"], ["list", "scenarios", "kynok"], ["run", "jet_ski/heding"]]
+)
+def test_a_misspelt_name_is_answered_by_the_nearest_ones_in_one_short_line(
+    command: list[str],
+) -> None:
+    result = CliRunner().invoke(app, command)
+    assert result.exit_code == 2
+    assert len(result.output) < 300
+    assert "did you mean" in result.output or "such as" in result.output
+
+
+def test_a_list_is_narrowed_to_names_with_a_word_or_like_a_pattern() -> None:
+    by_word = CliRunner().invoke(app, ["list", "scenarios", "kynoc"]).output.splitlines()
+    by_pattern = CliRunner().invoke(app, ["list", "scenarios", "kynoc/*"]).output.splitlines()
+    assert by_word == by_pattern
+    assert all("kynoc" in line for line in by_word[1:])
+
+
+def test_the_bare_name_of_a_scenario_is_enough_where_one_only_has_it() -> None:
+    assert scenario.load("sway_1").name == "joystick_boat/sway_1"
+    bare = Counter(name.rpartition("/")[2] for name in names("scenario"))
+    shared = next(name for name, times in bare.items() if times > 1)
+    with pytest.raises(BadInput, match=f"several scenarios are called {shared}; give one of "):
+        scenario.load(shared)

@@ -1,0 +1,325 @@
+"""Waves, roll damping, rudder and what holds the speed: each law against a closed form or an
+integral."""
+
+from dataclasses import replace
+from math import cos, degrees, exp, hypot, pi, radians, sin, sqrt
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+from scipy.special import exp1
+
+from boatsim.errors import BadInput
+from boatsim.metrics.sea_keeping import SeaKeeping
+from boatsim.physics import vessel
+from boatsim.physics.base import AXES, Array, Wrench, motion
+from boatsim.physics.effects.bilge_keels import BilgeKeels
+from boatsim.physics.effects.filtered_sea import FilteredSea
+from boatsim.physics.effects.irregular_sea import IrregularSea, sections
+from boatsim.physics.effects.linear_hull import LinearHull
+from boatsim.physics.effects.push import Push
+from boatsim.physics.effects.roll_damping import RollDamping
+from boatsim.physics.effects.rudder import Rudder, RudderStall
+from boatsim.physics.effects.speed_hold import SpeedHold
+from boatsim.physics.effects.wave_forcing import WaveForcing
+from boatsim.physics.effects.yaw_rate_waves import YawRateWaves
+from boatsim.physics.particulars import spheroid
+from boatsim.recordings.table import Recording
+
+G, RHO = 9.81, 1025.0
+SWAY, ROLL, YAW = (AXES.index(axis) for axis in ("sway", "roll", "yaw"))
+SEEDS = 4000  # the error of an rms over them is 1.1 %
+
+
+def sea(**more: float) -> IrregularSea:
+    """A sea on Eastward Ho, condition 1."""
+    return IrregularSea(significant_height=1.0, **more).completed(
+        vessel.load("eastward_ho", ["condition_1"])
+    )
+
+
+def ensemble(effect: Any, t: float = 0.0) -> Array:
+    """(SEEDS, 6) wrenches at one time, over `AXES`."""
+    law, m = type(effect).law, motion(t=t)
+    return np.array([law(m, effect.seeded(seed).values()) for seed in range(SEEDS)])
+
+
+# ---- waves
+
+
+@pytest.mark.parametrize("taper", [0.0, 1.0, 0.3])
+@pytest.mark.parametrize("s", [-2.5, 1e-4, 0.019, 0.021, 0.8, 9.0])
+def test_section_integrals(s: float, taper: float) -> None:
+    even = quad(lambda x: (1 - taper * x * x) * cos(s * x), -1, 1)[0]
+    odd = quad(lambda x: (1 - taper * x * x) * x * sin(s * x), -1, 1)[0]
+    assert sections(s, taper) == pytest.approx((even, odd), rel=1e-8, abs=1e-12)
+
+
+@pytest.mark.parametrize(("height", "period", "wanted"), [(0.88, 7.5, 2.09), (1.88, 8.8, 3.48)])
+def test_slope_is_that_of_the_spectrum_up_to_the_cut(
+    height: float, period: float, wanted: float
+) -> None:
+    """The slope's spectrum A / (w g^2) exp(-B / w^4) integrates to A / (4 g^2) E1(B / cut^4)."""
+    b = 1.25 * (2 * pi / period) ** 4
+    integral = sqrt(b * height**2 / 4 / (4 * G**2) * exp1(b / 3.0**4))
+    across = sea(modal_period=period, toward=pi / 2, flat=1.0, sway=0.0)
+    moment = ensemble(replace(across, significant_height=height))[:, ROLL].std()
+    assert degrees(integral) == pytest.approx(wanted, abs=6e-3)
+    assert moment / across.stiffness == pytest.approx(integral, rel=0.03)
+
+
+@pytest.mark.parametrize(
+    ("name", "condition", "encounter", "height", "period", "wanted"),
+    [
+        ("kynoc", 4, 90, 0.0, 7.732, (0.0, 11.5, 1.40)),
+        ("kynoc", 3, 45, 0.88, 7.5, (0.73, 4.69, 0.98)),
+        ("kynoc", 1, 60, 0.88, 7.5, (0.79, 6.18, 1.61)),
+        ("kynoc", 2, 30, 1.88, 8.8, (0.84, 5.49, 1.55)),
+        ("eastward_ho", 4, 90, 0.0, 6.832, (0.0, 10.6, 1.69)),
+        ("eastward_ho", 3, 45, 0.88, 7.5, (0.33, 3.03, 1.25)),
+        ("eastward_ho", 1, 60, 0.88, 7.5, (0.37, 4.11, 1.40)),
+        ("eastward_ho", 2, 30, 1.88, 8.8, (0.37, 3.52, 1.35)),
+    ],
+)
+def test_accelerations_that_the_thesis_seas_give(
+    name: str,
+    condition: int,
+    encounter: int,
+    height: float,
+    period: float,
+    wanted: tuple[float, float, float],
+) -> None:
+    """Rms of yaw, sway and direct roll [deg/s^2]; in the beam sea the height is a hundredth of the
+    resonant length."""
+    boat = vessel.load(name, [f"condition_{condition}"])
+    beam = encounter == 90
+    own = IrregularSea(
+        significant_height=height or 0.01 * G * period**2 / (2 * pi),
+        modal_period=period,
+        toward=radians(encounter),
+        flat=float(beam),
+        course_kept=1.0,
+    ).completed(boat)
+    w, water, body = ensemble(own), boat.effect("added_mass"), boat.body
+    direct = w[:, ROLL] - own.arm * w[:, SWAY]
+    mass = (body.yaw_inertia + water.yaw, body.mass + water.sway, body.roll_inertia + water.roll)  # type: ignore[union-attr]
+    found = [
+        degrees(a.std() / b) for a, b in zip((w[:, YAW], w[:, SWAY], direct), mass, strict=True)
+    ]
+    assert found == pytest.approx(wanted, rel=0.045, abs=0.006)
+
+
+@pytest.mark.parametrize("angle", [20.0, 45.0, 135.0])
+def test_a_ship_on_a_straight_course_meets_the_waves_of_the_formula(angle: float) -> None:
+    """By place and heading, or by w - w^2 V cos(chi) / g: the same for a ship that keeps course and speed."""
+    world = sea(toward=radians(angle))
+    kept = replace(world, course_kept=1.0, speed=5.0)
+    for t in (0.0, 3.7, 61.3):
+        seen = world.wrench(motion(t=t, x=5.0 * t, u=5.0))
+        assert seen == pytest.approx(kept.wrench(motion(t=t)), rel=1e-9)
+    turned = replace(
+        world, toward=radians(angle) + 0.3
+    )  # only the angle between waves and ship counts
+    course = motion(t=9.0, psi=0.3, x=45.0 * cos(0.3), y=45.0 * sin(0.3))
+    assert turned.wrench(course) == pytest.approx(world.wrench(motion(t=9.0, x=45.0)), rel=1e-9)
+
+
+def published(own: IrregularSea, w: float, angle: float, slope: float) -> tuple[float, float]:
+    """Largest sway force and yaw moment of one wave: the thesis' integrals over the sections of an
+    ellipsoid."""
+    k, T, L = w * w / G, own.draught, own.length
+    push = RHO * G * exp(-k * own.centre_depth) * sin(angle) * slope
+
+    def along(x: float) -> float:
+        return 0.5 * pi * T**2 * (1 - 4 * x * x / L**2)
+
+    even = quad(lambda x: along(x) * cos(k * cos(angle) * x), -L / 2, L / 2)[0]
+    odd = quad(lambda x: along(x) * x * sin(k * cos(angle) * x), -L / 2, L / 2)[0]
+    return abs(push * even), abs(push * odd)
+
+
+@pytest.mark.parametrize("angle", [0.3, 1.2, 2.6])
+def test_one_wave_has_the_frequency_of_encounter_and_the_force_of_the_published_integrals(
+    angle: float,
+) -> None:
+    one = replace(sea(toward=angle, components=1.0, course_kept=1.0), arm=0.0, speed=6.0)
+    Y, K, N = np.array([one.wrench(motion(t=t)) for t in np.arange(0.0, 400.0, 0.04)])[
+        :, [SWAY, ROLL, YAW]
+    ].T
+    up = np.flatnonzero((K[:-1] < 0) & (K[1:] >= 0))
+    times = 0.04 * (up - K[up] / (K[up + 1] - K[up]))
+    met = 2 * pi * (len(up) - 1) / (times[-1] - times[0])
+    w = np.linspace(0.3, 3.0, 200001)  # up to three waves are met as often
+    alike = w[np.flatnonzero(np.diff(np.sign(np.abs(w - w**2 * 6.0 * cos(angle) / G) - met)))]
+    slope = K.max() / (one.stiffness * sin(angle))
+    forces = [published(one, x, angle, slope) for x in alike]
+    assert any((Y.max(), N.max()) == pytest.approx(f, rel=3e-3) for f in forces)
+
+
+def test_a_calm_sea_is_nothing_and_a_seed_is_another_course_of_the_same_sea() -> None:
+    m, waves = motion(t=3.0), sea(toward=1.0)
+    assert replace(waves, significant_height=0.0).wrench(m) == Wrench()
+    assert waves.seeded(0) == waves
+    assert waves.seeded(1).wrench(m) != pytest.approx(waves.wrench(m))
+    assert waves.seeded(1).wrench(m) == replace(waves, realisation=2.0).wrench(m)
+
+
+def test_sea_needs_no_particular_vessel() -> None:
+    boat = vessel.load("joystick_boat")
+    small = IrregularSea(significant_height=0.02, modal_period=1.0, toward=1.0, cut=12.0).completed(
+        boat
+    )
+    assert small.wrench(motion(t=1.0)).K == 0.0 and small.wrench(motion(t=1.0)).Y != 0.0
+
+
+NOISES = [
+    FilteredSea(sway=2.0, roll=3.0, yaw=5.0, frequency=1.25, damping=0.1),
+    WaveForcing(surge=1.0, sway=2.0, roll=3.0, yaw=5.0, frequency=1.25, damping=0.1),
+    YawRateWaves(rms=2.0, drag=1.0, frequency=1.25, damping=0.1),
+]
+
+
+@pytest.mark.parametrize("noise", NOISES, ids=lambda noise: noise.name)
+def test_noise_has_the_filters_autocorrelation_and_independent_axes(noise: Any) -> None:
+    """E[f(0) f(tau)] of white noise through s / (s^2 + 2 z w0 s + w0^2), the process the diagnosis
+    follows."""
+    start = ensemble(noise)
+    level = np.array([getattr(noise, axis, 0.0) for axis in AXES])
+    if isinstance(noise, YawRateWaves):
+        level[YAW] = noise.drag * noise.rms  # of the moment, for a hull without inertia
+    acts = level > 0.0
+    assert start.std(axis=0) == pytest.approx(level, rel=0.04)
+    assert np.corrcoef(start[:, acts].T) == pytest.approx(np.eye(acts.sum()), abs=0.06)
+    damped = 1.25 * sqrt(1 - 0.01)
+    for tau in (0.7, 2.5, 6.0):
+        later = ensemble(noise, tau)
+        wanted = exp(-0.125 * tau) * (cos(damped * tau) - 0.125 / damped * sin(damped * tau))
+        assert (start * later).mean(axis=0)[acts] / level[acts] ** 2 == pytest.approx(
+            wanted, abs=0.06
+        )
+    assert type(noise)().wrench(motion(t=2.0)) == Wrench()
+
+
+@pytest.mark.parametrize("noise", NOISES[1:], ids=lambda noise: noise.name)
+def test_other_seeds_are_other_courses_of_the_noise_and_still_water_stays_still(noise: Any) -> None:
+    t = np.arange(0.0, 4000.0, 0.5)
+
+    def course(seed: int) -> Array:
+        """Yaw moment in time."""
+        law, values = type(noise).law, noise.seeded(seed).values()
+        return np.array([law(motion(t=float(x)), values).N for x in t])
+
+    first, second = course(1), course(2)
+    assert (first == course(1)).all()
+    assert abs(np.corrcoef(first, second)[0, 1]) < 0.1  # the error over 4000 s is 0.04
+    assert noise.seeded(10**12).realisation <= 1e9  # any seed will do
+    assert replace(noise, realisation=0.0).seeded(3).wrench(motion(t=3.0)) == Wrench()
+
+
+# ---- roll damping
+
+
+def test_bilge_keels_take_the_energy_of_the_published_equivalent_damping() -> None:
+    """Over a cycle of amplitude a: pi B w a^2, B = 8 / (3 pi) rho r^3 w a b l f^2 (22.5 b / (pi r a f) + 2.4)."""
+    keels = BilgeKeels(breadth=0.05, length=0.6, arm=0.3, flow=1.2, frequency=4.2)
+    for a in (0.05, 0.3):
+
+        def power(t: float, a: float = a) -> float:
+            p = a * 4.2 * cos(4.2 * t)
+            return -keels.wrench(motion(p=p)).K * p
+
+        drag = 22.5 * 0.05 / (pi * 0.3 * a * 1.2) + 2.4
+        damping = 8 / (3 * pi) * RHO * 0.3**3 * 4.2 * a * 0.05 * 0.6 * 1.2**2 * drag
+        assert quad(power, 0, 2 * pi / 4.2, limit=200)[0] == pytest.approx(
+            pi * damping * 4.2 * a**2, rel=1e-6
+        )
+
+
+def test_bilge_keels_take_size_and_frequency_of_their_vessel() -> None:
+    fitted = BilgeKeels(breadth=0.02).completed(vessel.load("martin_tank_model"))
+    assert (fitted.length, fitted.arm) == pytest.approx((0.3 * 1.805, 0.8 * hypot(0.27, 0.22)))
+    assert fitted.frequency == pytest.approx(2 * pi / 1.49, rel=1e-3)
+
+
+def test_roll_damping_is_a_share_of_the_critical_one() -> None:
+    boat = vessel.load("martin_tank_model")
+    critical = 2 * sqrt(118.56 * (5.556 + 1.1112))
+    share = RollDamping(at_rest=0.03).completed(boat)
+    assert share.wrench(motion(p=0.4)).K == pytest.approx(-0.03 * critical * 0.4)
+
+
+def test_the_tank_model_has_the_printed_period_and_the_computed_damping() -> None:
+    boat = vessel.load("martin_tank_model")
+    arm, water, drag = (boat.effect(n) for n in ("righting_arm", "added_mass", "linear_damping"))
+    inertia = boat.body.roll_inertia + water.roll  # type: ignore[union-attr]
+    assert 2 * pi * sqrt(inertia / arm.stiffness) == pytest.approx(1.49, abs=1e-3)  # type: ignore[union-attr]
+    assert drag.roll / (2 * sqrt(inertia * arm.stiffness)) == pytest.approx(0.0119, abs=1e-5)  # type: ignore[union-attr]
+    assert boat.body.roll_inertia == pytest.approx(102 * (3.50094 / 15) ** 2, rel=1e-3)
+
+
+# ---- steering and speed
+
+
+def test_a_blade_pushes_at_its_place_and_a_little_more_than_alone() -> None:
+    boat = vessel.load("eastward_ho", ["condition_3"])
+    blade = Rudder(area=2.0, aspect=1.5, inflow=4.0, at=-10.0, below=2.0).completed(boat)
+    alone = 0.5 * RHO * 6.13 * 1.5 / 3.75 * 2.0 * 16.0
+    force, arm = blade.wrench(motion(), angle=0.1), boat.effect("linear_hull").arm  # type: ignore[union-attr]
+    assert -force.Y == pytest.approx(0.1 * alone * (1 + 0.627 * 0.514 - 0.153))
+    assert force.N == pytest.approx(-10.0 * force.Y) and force.K == pytest.approx(
+        (arm - 2.0) * force.Y
+    )
+    given = Rudder(sway=3.0, yaw=-4.0, roll=5.0).completed(boat)
+    assert given.wrench(motion(), angle=0.5) == Wrench(Y=1.5, K=2.5, N=-2.0)
+
+
+@pytest.mark.parametrize(
+    ("effect", "missing"),
+    [(Rudder(area=1.0), "linear_hull"), (LinearHull(), "speed_hold"), (RollDamping(), "righting")],
+)
+def test_what_a_vessel_lacks_for_an_effect_is_said(effect: Any, missing: str) -> None:
+    with pytest.raises(BadInput, match=f"kvlcc2: {effect.name} needs a vessel with {missing}"):
+        effect.completed(vessel.load("kvlcc2"))
+
+
+def test_a_hull_too_short_for_a_spheroid_is_refused() -> None:
+    with pytest.raises(BadInput, match="length = 2 m; allowed is more than twice the draught, 3 m"):
+        spheroid(2.0, 1.5)
+
+
+@pytest.mark.parametrize("delta", [-0.6, -0.2, 0.3, 0.6])
+def test_a_stalled_rudder_gives_what_it_gave_at_the_angle_of_stall(delta: float) -> None:
+    boat = vessel.load("eastward_ho")
+    own, stalling = (
+        b.effect("rudder") for b in (boat, boat.composed_with(RudderStall(angle=0.35)))
+    )
+    assert isinstance(own, Rudder) and isinstance(stalling, Rudder)
+    stalled = min(max(delta, -0.35), 0.35)
+    assert stalling.wrench(motion(), angle=delta) == pytest.approx(
+        own.wrench(motion(), angle=stalled)
+    )
+
+
+def test_speed_hold_leaves_no_surge_but_towards_the_speed() -> None:
+    hold = SpeedHold(speed=6.0, gain=100.0, mass=500.0)
+    assert hold.wrench(motion(u=6.0, v=0.7, r=0.2)).X == pytest.approx(-500.0 * 0.7 * 0.2)
+    assert hold.wrench(motion(u=5.5)).X == pytest.approx(50.0)
+
+
+def test_a_push_is_the_same_on_every_heading() -> None:
+    push = Push(surge=1.0, sway=2.0, roll=3.0, yaw=4.0, heel_arm=0.5)
+    assert push.wrench(motion(psi=2.0, u=3.0)) == Wrench(X=1.0, Y=2.0, K=4.0, N=4.0)
+
+
+def test_sea_keeping_is_the_rms_of_three_angles_in_degrees() -> None:
+    t = np.linspace(0.0, 2 * pi, 1001)[:-1]
+    log = Recording(
+        "log",
+        t,
+        {"psi_rad": 0.1 * np.sin(t), "phi_rad": np.full(1000, -0.2), "rudder_rad": 0.0 * t},
+    )
+    found = SeaKeeping().values(log)
+    assert found == pytest.approx(
+        {"yaw_rms": degrees(0.1 / sqrt(2)), "roll_rms": degrees(0.2), "rudder_rms": 0.0}
+    )

@@ -1,0 +1,67 @@
+"""Trials of the second practice set: the same seed gives the same files, the tool reads them, the
+oracle is sound."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from boatsim.diagnosis.loading import open_recording
+from validation.practice import hulls
+from validation.practice.make import Trial, evidence, make, sailed, trials
+from validation.practice.plans import PLANS
+
+CHEAP = Trial(
+    "T001_martin_tank_model",
+    "martin_tank_model",
+    "single",
+    False,
+    False,
+    (hulls.quadratic_damping,),
+)
+
+
+def test_the_same_seed_gives_the_same_files(tmp_path: Path) -> None:
+    for folder in ("one", "two"):
+        make(CHEAP, 3, tmp_path / folder)
+    files = sorted(p.name for p in (tmp_path / "one" / CHEAP.name).iterdir())
+    assert files == ["answer.json", "recording.toml", "run_1.csv", "run_2.csv", "run_3.csv"]
+    for name in files:
+        one, two = (
+            (tmp_path / folder / CHEAP.name / name).read_bytes() for folder in ("one", "two")
+        )
+        assert one == two
+
+
+def test_a_set_has_all_kinds_for_every_vessel_and_conceals_half_of_the_single_effects() -> None:
+    made = list(trials(1, 12))
+    for vessel, plan in PLANS.items():
+        kinds = [t.kind for t in made if t.vessel == vessel]
+        assert [kinds.count(k) for k in ("none", "single", "pair", "unknown")] == [2, 6, 2, 2]
+        hidden = [t for t in made if t.vessel == vessel and t.kind == "single" and t.concealed]
+        assert len(hidden) == (3 if plan.kept else 0)
+
+
+@pytest.mark.parametrize("vessel", PLANS)
+def test_the_tool_reads_a_trial_of_every_vessel_by_its_recording_toml(
+    tmp_path: Path, vessel: str
+) -> None:
+    made = make(Trial("T002_" + vessel, vessel, "none", False, True, ()), 5, tmp_path)
+    recording, boat = open_recording(tmp_path / f"T002_{vessel}" / "run_3.csv", None, ())
+    assert boat.name == vessel and len(recording) >= 240 and not recording.remarks
+    assert json.loads((tmp_path / f"T002_{vessel}" / "answer.json").read_text()) == made
+    if rms := made.get(
+        "reference_position_rms_m"
+    ):  # nothing is missing but the boat's own coefficients
+        assert rms["recalibrated"] == pytest.approx(rms["true_structure"], rel=0.1)
+
+
+def test_a_stronger_effect_gives_more_evidence_and_none_gives_none() -> None:
+    gains = [
+        float(evidence(sailed(CHEAP, (3, 1), np.array([s])), False)[0]) for s in (1e-6, 0.05, 0.1)
+    ]
+    assert (
+        gains[0] == pytest.approx(0.0, abs=1e-3)
+        and 1.0 < gains[1] < gains[2] < 4.0 * gains[1] + 1.0
+    )
