@@ -53,7 +53,7 @@ DRAWN = {
     "fan_wind.speed": "uniform(0.0, 0.5)",  # [m/s]
     "fan_wind.toward": f"uniform({-pi:.5f}, {pi:.5f})",  # [rad]
 }
-HEAD = ["manoeuvre", "norm", "pid p95", "L1 p95", "L1 - pid, mean", "L1 lower", "pairs"]
+HEAD = ["manoeuvre", "metric", "pid p95", "L1 p95", "L1 - pid, mean", "L1 lower", "pairs"]
 
 
 def main(arguments: list[str] | None = None) -> int:
