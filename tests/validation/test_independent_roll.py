@@ -95,7 +95,7 @@ def test_dry_friction_is_not_taken_for_waves(tmp_path: Path) -> None:
     (law,) = answer["described"]
     assert law["axis"] == "roll" and law["carries_over"] and len(law["terms"]) == 1
     (term,) = law["terms"]
-    assert term["of"] == "the sense of roll rate" and term["unit"] == "N m"
+    assert term["of"] == "the sign of roll rate" and term["unit"] == "N m"
     assert term["value"] == pytest.approx(-4.0, rel=0.1)
     rms = answer["fit"]["roll_rms_rad"]
     assert rms["patched"] < 0.5 * rms["recalibrated"]

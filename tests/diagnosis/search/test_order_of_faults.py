@@ -115,7 +115,8 @@ def test_both_orders_are_tried_where_a_lag_lies_between_them_and_nowhere_else(
 
 def test_what_has_its_place_can_not_be_put_elsewhere() -> None:
     with pytest.raises(
-        BadInput, match=r"^thrust_imbalance: other_side = True; allowed is false: it has its place$"
+        BadInput,
+        match=r"^thrust_imbalance: other_side = True; allowed is false: its side is fixed$",
     ):
         ThrustImbalance(other_side=True)
 
