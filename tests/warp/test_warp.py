@@ -214,7 +214,7 @@ def test_what_comes_in_two_calls_is_what_comes_in_one(batch: Batch) -> None:
         (lambda f: f.set("surge_drag.liner", 1.0), "did you mean 'surge_drag.linear'"),
         (lambda f: f.set("surge_drag.linear", -1.0), "surge_drag.linear = -1; allowed 0 to"),
         (lambda f: Batch(f.vessels[0], 2, device="moon"), "device = 'moon'; allowed here: cpu"),
-        (lambda f: Batch(f.vessels[0], 2, double=True), "mujoco_warp knows single precision alone"),
+        (lambda f: Batch(f.vessels[0], 2, double=True), "mujoco_warp has single precision only"),
         (
             lambda f: Batch(
                 vessel.load("kynoc", settings={"filtered_sea": {"realisation": 2**24 + 1}}), 2
