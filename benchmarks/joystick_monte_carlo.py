@@ -20,7 +20,7 @@ import numpy as np
 import boatsim
 from boatsim.cli.metric_table import print_rows
 from boatsim.cli.progress import report_campaign
-from boatsim.diagnosis.report.svg_plots import ticks
+from boatsim.diagnosis.report.svg_plots import round_ticks
 from boatsim.physics.signals import Array
 from boatsim.sweeps.keys import Value
 
@@ -199,7 +199,7 @@ def _panel(
     top = 1.08 * max(float(ends[-1]) for ends in spread.values())
     size = bool((np.array([v for v in columns[name] if v is not None]) < 0.0).any())
     yield f'<text class="title" x="{x}" y="{y - 8}">{f"|{name}|" if size else name} [{unit}]</text>'
-    for tick in ticks(0.0, top, 4):
+    for tick in round_ticks(0.0, top, 4):
         down = y + HIGH * (1.0 - tick / top)
         yield f'<path class="grid" d="M{x} {down:.1f}h{WIDE}"/>'
         yield f'<text class="end" x="{x - 5}" y="{down + 4:.1f}">{tick:g}</text>'

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 from boatsim.diagnosis import pipeline
 from boatsim.diagnosis.config import Given, from_settings
 from boatsim.diagnosis.loading import open_recording
-from boatsim.diagnosis.replay import joined, replayed
+from boatsim.diagnosis.replay import join_free_runs, replay_recording
 from boatsim.diagnosis.report import output_files
 from boatsim.diagnosis.report.schema import Answer
 from boatsim.errors import BadInput
@@ -154,7 +154,7 @@ class Diagnosis:
         Args:
             folder: Folder of the files; it is created if needed.
         """
-        output_files.write(self.result, Path(folder))
+        output_files.write_diagnosis(self.result, Path(folder))
 
 
 @dataclass(frozen=True)
@@ -418,7 +418,7 @@ def replay(
     ['psi_rad', 'segment', 'x_m', 'y_m']
     """
     opened, replayed_vessel = open_recording(Path(recording), _text(vessel), _names(load))
-    return joined(replayed(opened, replayed_vessel, horizon))
+    return join_free_runs(replay_recording(opened, replayed_vessel, horizon))
 
 
 def sweep(

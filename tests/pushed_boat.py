@@ -10,7 +10,7 @@ from scipy.integrate import odeint
 from boatsim.diagnosis.candidates import library_for
 from boatsim.diagnosis.filter import map_recording, prior_levels
 from boatsim.diagnosis.problem import Fit, Problem
-from boatsim.diagnosis.search.ranking import baseline
+from boatsim.diagnosis.search.ranking import fit_baseline
 from boatsim.physics import vessel
 from boatsim.physics.base import Array
 from boatsim.physics.program import Program
@@ -82,4 +82,4 @@ def laid(*recordings: Recording) -> tuple[Problem, Fit]:
         prior_levels(BOAT, recordings),
         {"damping": 0.05, "thrust": 0.05},
     )
-    return problem, baseline(problem)[1]
+    return problem, fit_baseline(problem)[1]

@@ -163,7 +163,7 @@ def recorded(
 def diagnosed(recordings: Sequence[Recording]) -> tuple[Problem, Ranking]:
     """Return the ranking of all candidates."""
     boat = program().vessel
-    uncertainty = priors.uncertainty(boat)
+    uncertainty = priors.coefficient_uncertainty(boat)
     problem = Problem(
         [map_recording(r, program()) for r in recordings],
         prior_levels(boat, recordings),

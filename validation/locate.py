@@ -40,7 +40,7 @@ from boatsim.diagnosis.loading import open_recording
 from boatsim.diagnosis.locate.missing_force import missing_force
 from boatsim.diagnosis.locate.regions import Region, regions
 from boatsim.diagnosis.problem import Fit, Problem
-from boatsim.diagnosis.search.ranking import baseline
+from boatsim.diagnosis.search.ranking import fit_baseline
 from boatsim.physics.base import Array
 from boatsim.physics.program import Program
 from validation.trials import SHARED
@@ -69,10 +69,10 @@ class Located:
 def problem_of(trial: Path) -> Problem:
     """Map the recordings of a trial on the vessel's program, as a diagnosis does."""
     opened = [open_recording(trial / f"run_{k}.csv", None, ()) for k in RUNS]
-    recordings, boat = [r.thinned(priors.rate(b)) for r, b in opened], opened[0][1]
+    recordings, boat = [r.thinned(priors.used_sample_rate(b)) for r, b in opened], opened[0][1]
     program = Program(boat, library_for(boat).compiled)
     tracks = [map_recording(r, program, shared_noise(boat, recordings)) for r in recordings]
-    uncertainty = priors.uncertainty(boat)
+    uncertainty = priors.coefficient_uncertainty(boat)
     return Problem(
         tracks,
         prior_levels(boat, recordings),
@@ -82,7 +82,7 @@ def problem_of(trial: Path) -> Problem:
 
 def recalibrated(problem: Problem) -> Fit:
     """Return the nominal vessel with fitted noise, force levels and coefficients."""
-    return baseline(problem)[1]
+    return fit_baseline(problem)[1]
 
 
 def located(trial: Path) -> Located:

@@ -74,7 +74,7 @@ def diagnose_one(trial: Path, out: Path, without: Sequence[str] = ()) -> dict[st
         without=without,
     )
     out.mkdir(parents=True, exist_ok=True)
-    patched_vessel.write(
+    patched_vessel.write_patched_vessel(
         found.problem, found.vessel, found.ranking.best, out / "patched.toml", found.ranking.laws
     )
     with contextlib.redirect_stdout(io.StringIO()):

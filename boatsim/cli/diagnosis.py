@@ -12,14 +12,14 @@ from boatsim.cli.exits import print_lines, print_note
 from boatsim.cli.progress import report_stages
 from boatsim.diagnosis.checks.entry import entry_text
 from boatsim.diagnosis.config import from_settings
-from boatsim.diagnosis.free_runs import FreeRun, errors, free_runs
+from boatsim.diagnosis.free_runs import FreeRun, free_runs, rms_errors
 from boatsim.diagnosis.loading import open_recording
 from boatsim.diagnosis.log_check import correction_hint
 from boatsim.diagnosis.pipeline import diagnose as analyse
-from boatsim.diagnosis.replay import as_written, columns, replayed
+from boatsim.diagnosis.replay import fit_noise_only, free_run_columns, replay_recording
 from boatsim.diagnosis.report.answer import NEXT_SCENARIO
-from boatsim.diagnosis.report.output_files import write
-from boatsim.diagnosis.report.sentences import printed
+from boatsim.diagnosis.report.output_files import write_diagnosis
+from boatsim.diagnosis.report.sentences import console_lines
 from boatsim.errors import BadInput
 from boatsim.files import replacing
 from boatsim.physics.signals import STATE, Array
@@ -71,7 +71,7 @@ def diagnose(runs: list[Path], options: DiagnosisOptions, out: Path) -> int:
         report("writing the report", WRITING)
         write_error = None
         try:
-            write(found, out)
+            write_diagnosis(found, out)
         except OSError as error:
             write_error = error
     for entry in found.findings.answer.get("log", []):
@@ -79,7 +79,7 @@ def diagnose(runs: list[Path], options: DiagnosisOptions, out: Path) -> int:
             for line in entry_text(entry):
                 print_note(f"{entry['run']}: {line.strip()}")
     _print_remarks(found.remarks)
-    print_lines(printed(found.findings))
+    print_lines(console_lines(found.findings))
     if write_error:
         raise write_error
     files = ["report.html", "report.md", "diagnosis.json", "patched.toml"]
@@ -114,10 +114,10 @@ def replay(run: Path, vessel: str | None, load: list[str], horizon: float, out: 
     with report_stages() as report:
         report("reading the recording")
         recording, boat = open_recording(run, vessel, load)
-        stretches = replayed(recording, boat, horizon, report)
+        stretches = replay_recording(recording, boat, horizon, report)
     _print_remarks(recording.remarks)
     _write_replay(stretches, out / "replay.csv")
-    for family, found in errors(stretches).items():
+    for family, found in rms_errors(stretches).items():
         count = f"{len(stretches)} free runs of {horizon:g} s"
         print_lines([f"{family}: {found['simulated']:.5g} ({count})"])
     print_lines([f"written to {out}: replay.csv"])
@@ -126,7 +126,7 @@ def replay(run: Path, vessel: str | None, load: list[str], horizon: float, out: 
 
 def _write_replay(stretches: Sequence[FreeRun], path: Path) -> None:
     """Write all rows of each free run, also where the ends of two share a time."""
-    table = columns(stretches)
+    table = free_run_columns(stretches)
     formats = ["%.10g", *["%.9g"] * (len(table) - 1)]  # times as in the recording
     rows = np.column_stack(list(table.values()))
     with replacing(path) as temporary, temporary.open("w", encoding="utf-8", newline="") as file:
@@ -162,7 +162,7 @@ def compare(run: Path, vessel: str | None, load: list[str], scenario: str | None
             report(f"running {scenario}", RUNNING)
             simulated = _simulate_scenario(recording, scenario)
         else:
-            problem, fitted = as_written(recording, boat, report)
+            problem, fitted = fit_noise_only(recording, boat, report)
             report("the free run", FREE_RUN)
             duration = float(recording.t[-1] - recording.t[0])
             stretches = free_runs(problem, {"simulated": fitted}, problem.recordings, duration)

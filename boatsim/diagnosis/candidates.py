@@ -87,20 +87,20 @@ def library_for(
         BadInput: An effect that is requested does not exist, or has no parameter to fit.
     """
     known: dict[str, object] = {**vessel.diagnosis.facts, **(facts or {})}
-    reasons = _reasons_of(vessel)
+    reasons = _exclusions_by_vessel(vessel)
     entries = dict[str, Effect]()
     excluded, inapplicable = dict[str, str](), dict[str, str]()
     for source in _sources(vessel, own):
         kind = source.kind
         name = str(source.table.get("name", kind.idea()))
-        if not fittable(kind):
+        if not has_fittable_parameter(kind):
             if source.requested:
                 raise BadInput(
                     f"{source.table['use']}: this effect has no parameter that a diagnosis may "
                     "fit (fit=True)"
                 )
             continue
-        missing = lacking(kind, vessel, known, source.table)
+        missing = missing_requirements(kind, vessel, known, source.table)
         if missing:
             inapplicable[name] = missing
             continue
@@ -112,8 +112,10 @@ def library_for(
             continue
         excluded.pop(name, None)
         reason = reasons.get(name) or excluding_fact(kind.ruled_out_by, known)
-        reason = reason or _unrecorded(kind, columns)
-        for effect in _either_side(placed(kind, vessel, known, source.table), vessel):
+        reason = reason or _unrecorded_columns(kind, columns)
+        for effect in _both_sides_of_lag(
+            instantiate_candidate(kind, vessel, known, source.table), vessel
+        ):
             entries[effect.name] = effect
             if reason:
                 excluded[effect.name] = reason
@@ -122,7 +124,7 @@ def library_for(
     return Library(tuple(entries.values()), placeholders(vessel), excluded, inapplicable)
 
 
-def _reasons_of(vessel: Vessel) -> dict[str, str]:
+def _exclusions_by_vessel(vessel: Vessel) -> dict[str, str]:
     """The vessel's own reasons for excluding candidates. Raises BadInput for an unknown name."""
     reasons = {}
     for name, why in vessel.diagnosis.leave_out.items():
@@ -150,8 +152,8 @@ def placeholders(vessel: Vessel) -> tuple[Effect, ...]:
     return tuple(found)
 
 
-def _either_side(effect: Effect, vessel: Vessel) -> tuple[Effect, ...]:
-    """A candidate, and the same on the other side of an actuator's lag where both are possible.
+def _both_sides_of_lag(effect: Effect, vessel: Vessel) -> tuple[Effect, ...]:
+    """A candidate, before and after an actuator's lag where both are possible.
 
     A dead band of the command and one of the shaft differ only where a lag lies between them.
     """
@@ -176,12 +178,12 @@ def _sources(vessel: Vessel, own: Sequence[str]) -> Iterator[_Source]:
         yield _Source({"use": name}, load_class("effect", name, named=True), True)
 
 
-def fittable(kind: type[Effect]) -> bool:
+def has_fittable_parameter(kind: type[Effect]) -> bool:
     """Return whether an effect has a parameter that a diagnosis may fit."""
     return not kind.described and any(p.fit for p in kind.params().values())
 
 
-def _unrecorded(kind: type[Effect], columns: Sequence[str] | None) -> str:
+def _unrecorded_columns(kind: type[Effect], columns: Sequence[str] | None) -> str:
     """The columns in which an error of an instrument would show, if none was recorded."""
     if columns is None or not issubclass(kind, Measurement) or not kind.of_columns:
         return ""
@@ -190,7 +192,7 @@ def _unrecorded(kind: type[Effect], columns: Sequence[str] | None) -> str:
     return f"no column {' or '.join(kind.of_columns)} was recorded"
 
 
-def lacking(
+def missing_requirements(
     kind: type[Effect], vessel: Vessel, facts: Mapping[str, object], table: Mapping[str, object]
 ) -> str:
     """Return what a vessel lacks for an effect to act on it, in words, or "".
@@ -219,7 +221,7 @@ def lacking(
         own = vessel.names_of(kind.idea())[0]
         return f"the vessel has its own {own}, whose parameters other candidates adjust"
     try:
-        found = placed(kind, vessel, facts, table)
+        found = instantiate_candidate(kind, vessel, facts, table)
     except BadInput as error:
         return str(error).removeprefix(f"{vessel.name}: ")
     if isinstance(found, Channel) and not vessel.targets(found):
@@ -229,13 +231,13 @@ def lacking(
     return ""
 
 
-def placed(
+def instantiate_candidate(
     kind: type[Effect],
     vessel: Vessel,
     facts: Mapping[str, object],
     table: Mapping[str, object] | None = None,
 ) -> Effect:
-    """Return a candidate on a vessel, with zero effect; a second of its kind gets another name.
+    """Return a candidate effect for a vessel with zero effect, and a unique name.
 
     Args:
         kind: Class of the effect.
@@ -250,12 +252,12 @@ def placed(
     given.pop("use", None)
     if not given.get("name") and vessel.names_of(kind.idea()) and not issubclass(kind, Release):
         given["name"] = FURTHER + kind.idea()
-    effect = absent(kind, facts, given).completed(vessel)
+    effect = effect_at_zero(kind, facts, given).completed(vessel)
     check_bindings(replace(vessel, effects=(*vessel.effects, effect)), vessel.name)
     return effect
 
 
-def absent(
+def effect_at_zero(
     kind: type[Effect],
     facts: Mapping[str, object] | None = None,
     given: Mapping[str, object] | None = None,
@@ -278,8 +280,8 @@ def absent(
     return kind.from_settings(settings | dict(given or {}))
 
 
-def exclude(library: Library, without: Sequence[str]) -> tuple[str, ...]:
-    """Return the names of the candidates that are tested, without some.
+def names_without(library: Library, without: Sequence[str]) -> tuple[str, ...]:
+    """Return the names of the tested candidates except the given ones.
 
     The others stay compiled, so that nothing has to be compiled again.
 
@@ -294,15 +296,15 @@ def exclude(library: Library, without: Sequence[str]) -> tuple[str, ...]:
     for name in without:
         if name not in tested and name not in names("effect"):
             raise BadInput(unknown_name("--without", name, tested))
-    return tuple(n for n in tested if n not in without and called(n) not in without)
+    return tuple(n for n in tested if n not in without and base_name(n) not in without)
 
 
-def called(name: str) -> str:
-    """Return the name of a candidate in an answer, without the prefixes of repeated effects."""
+def base_name(name: str) -> str:
+    """Return the name of a candidate without the prefixes that distinguish repeated effects."""
     return name.removeprefix(REORDERED).removeprefix(FURTHER)
 
 
-def without_ruled_out(vessel: Vessel, facts: Mapping[str, object]) -> Vessel:
+def without_excluded_effects(vessel: Vessel, facts: Mapping[str, object]) -> Vessel:
     """Return a vessel without those of its effects that facts exclude.
 
     A measured steering angle is taken behind the steering machine: the limit of the machine acts on
@@ -317,7 +319,7 @@ def without_ruled_out(vessel: Vessel, facts: Mapping[str, object]) -> Vessel:
     return replace(vessel, effects=kept)
 
 
-def with_stated_errors(vessel: Vessel, facts: Mapping[str, object]) -> Vessel:
+def with_specified_position_drift(vessel: Vessel, facts: Mapping[str, object]) -> Vessel:
     """Return a vessel with the drift of its position fixes that facts specify.
 
     Args:
@@ -334,8 +336,8 @@ def with_stated_errors(vessel: Vessel, facts: Mapping[str, object]) -> Vessel:
     return replace(vessel, effects=(*vessel.effects, error.completed(vessel)))
 
 
-def composed(vessel: Vessel) -> tuple[Program, tuple[str, ...]]:
-    """Return a vessel's program as its diagnosis compiles it, and the candidates that act.
+def diagnosis_program(vessel: Vessel) -> tuple[Program, tuple[str, ...]]:
+    """Return a vessel's program with all candidates compiled in, and the names of active ones.
 
     A patched vessel then needs no further compilation.
 

@@ -15,7 +15,7 @@ from boatsim.physics.base import Channel, Effect, Release
 from boatsim.physics.vessel import Vessel
 
 
-def excursion(
+def largest_command(
     recordings: Sequence[MappedRecording], effect: Effect, config: LoadConfig = DEFAULT.load
 ) -> float:
     """Return the largest recorded command of the channels on which a candidate acts.
@@ -30,14 +30,14 @@ def excursion(
     """
     vessel = recordings[0].program.vessel
     order = list(vessel.commands)
-    columns = [order.index(name) for name in channels_of(vessel, effect) if name in order]
+    columns = [order.index(name) for name in command_channels(vessel, effect) if name in order]
     if not columns:
         return 0.0
     sizes = np.concatenate([abs(mapped.commands[:, columns]) for mapped in recordings])
     return float(np.percentile(sizes, config.command_percentile))
 
 
-def channels_of(vessel: Vessel, effect: Effect) -> tuple[str, ...]:
+def command_channels(vessel: Vessel, effect: Effect) -> tuple[str, ...]:
     """Return the channels on which a candidate acts.
 
     These are the actuators of a channel effect, or the inputs of the vessel's effects whose

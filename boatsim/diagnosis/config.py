@@ -1276,21 +1276,21 @@ def from_settings(settings: Mapping[str, Given]) -> DiagnosisConfig:
     Raises:
         BadInput: A name does not exist, or a value has the wrong type or is out of range.
     """
-    declared = {f"{group}.{one.name}": (group, one) for group, one in _declared()}
+    declared = {f"{group}.{one.name}": (group, one) for group, one in _all_settings()}
     config = DEFAULT
     for name, given in settings.items():
         if name not in declared:
             raise BadInput(unknown_name("setting", name, declared))
         group, one = declared[name]
-        changed = replace(getattr(config, group), **{one.name: _checked(name, one, given)})
+        changed = replace(getattr(config, group), **{one.name: _check_value(name, one, given)})
         config = replace(config, **{group: changed})
     return config
 
 
-def as_plain(config: DiagnosisConfig) -> dict[str, Plain]:
+def settings_by_name(config: DiagnosisConfig) -> dict[str, Plain]:
     """Return every setting of a configuration by its dotted name; tuples become lists."""
     plain: dict[str, Plain] = {}
-    for group, one in _declared():
+    for group, one in _all_settings():
         value = getattr(getattr(config, group), one.name)
         if isinstance(value, tuple):
             value = list(value)
@@ -1298,17 +1298,17 @@ def as_plain(config: DiagnosisConfig) -> dict[str, Plain]:
     return plain
 
 
-def _declared() -> Iterator[tuple[str, "Field[Any]"]]:
+def _all_settings() -> Iterator[tuple[str, "Field[Any]"]]:
     """Yield the name of the group and the field of every setting."""
     for group in fields(DiagnosisConfig):
         for one in fields(getattr(DEFAULT, group.name)):
             yield group.name, one
 
 
-def _checked(name: str, one: "Field[Any]", given: Given) -> Number | tuple[Number, ...]:
+def _check_value(name: str, one: "Field[Any]", given: Given) -> Number | tuple[Number, ...]:
     """Return a given value in the type of its setting. Raises BadInput."""
     if not isinstance(one.default, tuple):
-        return _number(name, one, given)
+        return _check_number(name, one, given)
     values: Sequence[str | Number]
     if isinstance(given, str):
         values = given.strip("[]()").split(",")
@@ -1318,10 +1318,10 @@ def _checked(name: str, one: "Field[Any]", given: Given) -> Number | tuple[Numbe
         values = [given]
     if len(values) != len(one.default):
         raise BadInput(f"setting {name} = {given}: {len(one.default)} numbers are needed")
-    return tuple(_number(name, one, value) for value in values)
+    return tuple(_check_number(name, one, value) for value in values)
 
 
-def _number(name: str, one: "Field[Any]", given: object) -> Number:
+def _check_number(name: str, one: "Field[Any]", given: object) -> Number:
     """Return a number of a setting in its type and range. Raises BadInput."""
     first = one.default[0] if isinstance(one.default, tuple) else one.default
     whole = isinstance(first, int)

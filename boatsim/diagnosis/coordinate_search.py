@@ -38,26 +38,26 @@ def maximize(
         for j in due:
             visited[j] = best
             before = x[j]
-            best, x = _along(score, x, best, j, steps[j], config.search_reach)
+            best, x = _search_along(score, x, best, j, steps[j], config.search_reach)
             finest, longest = config.search_finest * step, config.search_reach * step
             steps[j] = np.clip(abs(x[j] - before), finest, longest)
     return best, x
 
 
-def _along(
+def _search_along(
     score: Callable[[Array], float], x: Array, best: float, j: int, step: float, reach: float
 ) -> tuple[float, Array]:
     """The best of x, a step to either side along a coordinate, and the parabola's maximum."""
 
-    def moved(by: float) -> tuple[float, Array]:
+    def score_at(by: float) -> tuple[float, Array]:
         there = x.copy()
         there[j] += by
         return score(there), there
 
-    above, below = moved(step), moved(-step)
+    above, below = score_at(step), score_at(-step)
     bend = above[0] - 2.0 * best + below[0]
     top = step if above[0] > below[0] else -step
     if bend < FLAT:
         top = 0.5 * step * (below[0] - above[0]) / bend
-    options = [(best, x), moved(float(np.clip(top, -reach * step, reach * step))), above, below]
+    options = [(best, x), score_at(float(np.clip(top, -reach * step, reach * step))), above, below]
     return max(options, key=lambda option: option[0])

@@ -16,7 +16,7 @@ import numpy as np
 from boatsim.diagnosis.config import DEFAULT, DiagnosisConfig
 from boatsim.diagnosis.filter import MappedRecording
 from boatsim.diagnosis.fit import fit
-from boatsim.diagnosis.free_runs import errors, free_runs
+from boatsim.diagnosis.free_runs import free_runs, rms_errors
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.physics.base import Array
 
@@ -24,7 +24,7 @@ EXACT = 1e-12  # [m, rad] lower bound of an error, so that its logarithm is fini
 
 
 def with_correlation_time(problem: Problem, found: Fit) -> Problem:
-    """Return the problem with the correlation time that suits a hypothesis.
+    """Return the problem with the correlation time that predicts best for a hypothesis.
 
     Args:
         problem: Recordings and priors.
@@ -36,13 +36,13 @@ def with_correlation_time(problem: Problem, found: Fit) -> Problem:
     seconds = correlation_time(problem, found)
     if seconds == problem.ambient.time_constant:
         return problem
-    return replaced(problem, problem.recordings, seconds, problem.horizon)
+    return problem_with_correlation_time(problem, problem.recordings, seconds, problem.horizon)
 
 
-def replaced(
+def problem_with_correlation_time(
     problem: Problem, recordings: Sequence[MappedRecording], seconds: float, horizon: float
 ) -> Problem:
-    """Return a problem with the priors of another one.
+    """Return a problem on other recordings, with another correlation time and horizon.
 
     Args:
         problem: Problem with the priors.
@@ -65,12 +65,12 @@ def correlation_time(problem: Problem, found: Fit) -> float:
     usual = problem.ambient.time_constant
     if not found.effects:
         return usual
-    at_usual = halves_errors(problem, found, usual)
+    at_usual = cross_validation_errors(problem, found, usual)
     for factor in (0.5, 2.0):
         seconds, before = usual, at_usual
         for _ in range(problem.config.fit.correlation_time_steps):
-            after = halves_errors(problem, found, factor * seconds)
-            if not clearly_less(after, before, problem.config):
+            after = cross_validation_errors(problem, found, factor * seconds)
+            if not errors_clearly_fell(after, before, problem.config):
                 break
             seconds, before = factor * seconds, after
         if seconds != usual:
@@ -78,7 +78,7 @@ def correlation_time(problem: Problem, found: Fit) -> float:
     return usual
 
 
-def halves(
+def split_in_halves(
     recordings: Sequence[MappedRecording],
 ) -> tuple[list[MappedRecording], list[MappedRecording]]:
     """Return every second recording and the others, or the halves in time of a single one.
@@ -90,10 +90,10 @@ def halves(
         return list(recordings[0::2]), list(recordings[1::2])
     whole = recordings[0]
     count = len(whole.times)
-    return [rows_of(whole, 0, count // 2)], [rows_of(whole, count // 2, count)]
+    return [slice_rows(whole, 0, count // 2)], [slice_rows(whole, count // 2, count)]
 
 
-def rows_of(mapped: MappedRecording, begin: int, end: int) -> MappedRecording:
+def slice_rows(mapped: MappedRecording, begin: int, end: int) -> MappedRecording:
     """Return some rows of a recording.
 
     Args:
@@ -113,7 +113,7 @@ def rows_of(mapped: MappedRecording, begin: int, end: int) -> MappedRecording:
     )
 
 
-def clearly_less(after: Array, before: Array, config: DiagnosisConfig = DEFAULT) -> bool:
+def errors_clearly_fell(after: Array, before: Array, config: DiagnosisConfig = DEFAULT) -> bool:
     """Whether errors of free runs have clearly fallen, in the mean of their logarithms.
 
     Args:
@@ -132,7 +132,7 @@ def clearly_less(after: Array, before: Array, config: DiagnosisConfig = DEFAULT)
     return bool(np.mean(ratio) < min(-log(config.validate.worse), -scatter))
 
 
-def halves_errors(problem: Problem, start: Fit, seconds: float) -> Array:
+def cross_validation_errors(problem: Problem, start: Fit, seconds: float) -> Array:
     """Return the error of each free run (S,) in a half, predicted by a fit to the other.
 
     Args:
@@ -146,15 +146,15 @@ def halves_errors(problem: Problem, start: Fit, seconds: float) -> Array:
     """
     levels = start.levels.with_time_constant(seconds)
     begin = replace(start, levels=levels, evidence=-np.inf)
-    first, second = halves(problem.recordings)
+    first, second = split_in_halves(problem.recordings)
     durations = [float(np.ptp(mapped.times)) for mapped in (*first, *second)]
     horizon = min(problem.horizon, *durations)
     runs = []
     for fitted, held_out in ((first, second), (second, first)):
-        half = replaced(problem, fitted, seconds, horizon)
+        half = problem_with_correlation_time(problem, fitted, seconds, horizon)
         runs += free_runs(half, {"": fit(half, begin)}, held_out, horizon)
     found = []
     for run in runs:
-        by_family = np.maximum([error[""] for error in errors([run]).values()], EXACT)
+        by_family = np.maximum([error[""] for error in rms_errors([run]).values()], EXACT)
         found.append(np.exp(np.mean(np.log(by_family))))
     return np.array(found)

@@ -24,7 +24,7 @@ def inflate_covariance(problem: Problem, found: Fit) -> Fit:
         found: A converged fit.
     """
     config = problem.config.fit
-    blocks = list(stretches(problem, config.stretch * found.levels.time_constant))
+    blocks = list(blocks_of_rows(problem, config.stretch * found.levels.time_constant))
     if len(blocks) < config.fewest_stretches or not found.free:
         return found
     on = problem.program.switches(found.effects)
@@ -40,7 +40,7 @@ def inflate_covariance(problem: Problem, found: Fit) -> Fit:
     return replace(found, covariance=found.covariance * np.outer(wider, wider))
 
 
-def stretches(problem: Problem, seconds: float) -> Iterator[NDArray[np.intp]]:
+def blocks_of_rows(problem: Problem, seconds: float) -> Iterator[NDArray[np.intp]]:
     """Yield the rows of the whitened errors of all recordings, stretch by stretch.
 
     Args:

@@ -20,8 +20,8 @@ class Curve:
 
 
 @dataclass(frozen=True)
-class Written:
-    """A term of a description."""
+class FittedTerm:
+    """A term of a symbolic description, with its fit and its curve."""
 
     term: Described  # with its coefficient
     sd: float  # of the coefficient
@@ -35,7 +35,7 @@ class Written:
 class Description:
     """The terms, and the fit with those that hold for further recordings."""
 
-    terms: tuple[Written, ...]
+    terms: tuple[FittedTerm, ...]
     fit: Fit
     left_over: float  # [nats] that a force beyond the assumed level gains in addition to all terms
 

@@ -7,8 +7,8 @@ import numpy as np
 
 from boatsim.diagnosis.filter import MappedRecording
 from boatsim.diagnosis.fit import gauss_newton
-from boatsim.diagnosis.free_runs import FreeRun, errors, free_runs
-from boatsim.diagnosis.loading import in_order
+from boatsim.diagnosis.free_runs import FreeRun, free_runs, rms_errors
+from boatsim.diagnosis.loading import recording_order
 from boatsim.diagnosis.locate.mean_force import mean_residual_force
 from boatsim.diagnosis.locate.missing_force import MissingForce, missing_force, residual_force
 from boatsim.diagnosis.problem import Fit, Problem
@@ -45,7 +45,7 @@ class Evaluation:
     mean_force: Mapping[str, MeanEntry]  # mean force that stays in the patched vessel, by axis
 
 
-def models(ranking: Ranking) -> dict[str, Fit]:
+def compared_fits(ranking: Ranking) -> dict[str, Fit]:
     """Return the fits that are compared, by the names of `MODELS`.
 
     Args:
@@ -70,13 +70,13 @@ def evaluate(problem: Problem, ranking: Ranking, held_out: Sequence[MappedRecord
     everything = _in_order([*problem.recordings, *held_out])
     missing = missing_force(problem, ranking.recalibrated, everything)
     remaining = residual_force(problem, ranking.best, everything)
-    fits = models(ranking)
+    fits = compared_fits(ranking)
     runs = free_runs(problem, fits, held_out, horizon)
-    parts = _by_part(problem, fits, everything, horizon) if ranking.adds else ()
+    parts = _errors_by_part(problem, fits, everything, horizon) if ranking.adds_effects else ()
     return Evaluation(
         horizon,
         tuple(runs),
-        errors(runs),
+        rms_errors(runs),
         parts,
         _uninformative(parts, problem.config.validate.alone_share),
         tuple(missing),
@@ -88,11 +88,11 @@ def evaluate(problem: Problem, ranking: Ranking, held_out: Sequence[MappedRecord
 def _in_order(recordings: Sequence[MappedRecording]) -> list[MappedRecording]:
     """Recordings as they were given, the thirds of a single one in order of time."""
     names = [mapped.name for mapped in recordings]
-    order = in_order(names, [float(mapped.times[0]) for mapped in recordings])
+    order = recording_order(names, [float(mapped.times[0]) for mapped in recordings])
     return [recordings[i] for i in order]
 
 
-def _by_part(
+def _errors_by_part(
     problem: Problem,
     fits: Mapping[str, Fit],
     recordings: Sequence[MappedRecording],
@@ -105,7 +105,7 @@ def _by_part(
         alone = gauss_newton(own, fits["recalibrated"], config.part_steps, config.step_gain)
         runs = free_runs(problem, {**fits, ALONE: alone}, [mapped], horizon)
         fitted = any(mapped is one for one in problem.recordings)
-        for family, rms in errors(runs).items():
+        for family, rms in rms_errors(runs).items():
             found.append(PartErrors(mapped.name, fitted, family, rms))
     return tuple(found)
 

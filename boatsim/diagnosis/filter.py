@@ -217,7 +217,9 @@ class MappedRecording:
         """Return the log likelihood of `filter` with the same arguments."""
         return self.filter(values, on, levels, about).log_likelihood
 
-    def whitened(self, values: Array, on: Array, levels: NoiseLevels, about: FilterPass) -> Array:
+    def whitened_errors(
+        self, values: Array, on: Array, levels: NoiseLevels, about: FilterPass
+    ) -> Array:
         """Return the whitened prediction errors (N C,) with the gains of another pass.
 
         Args:
@@ -288,7 +290,7 @@ class MappedRecording:
             First row and channels (M, 2 NQ), as the recording would show them, of each free run.
         """
         means = self.smooth(values, on, levels).means
-        starts, ends = segments(self.times, horizon)
+        starts, ends = free_run_segments(self.times, horizon)
         if not starts:
             return []
         nq = self.program.module.NQ
@@ -297,7 +299,7 @@ class MappedRecording:
         self.program.module.free_runs(
             self.inputs,
             self.config.free_run_step,
-            Model(body_of(values), values, on),
+            Model(rigid_body_values(values), values, on),
             np.array(starts),
             np.array(ends),
             states,
@@ -381,7 +383,7 @@ class MappedRecording:
         found = self.program.module.kalman(
             self.inputs,
             Measurements(self.measured, self.codes, noise),
-            Model(body_of(values), values, on),
+            Model(rigid_body_values(values), values, on),
             LatentForce(force**2, levels.time_constant),
             FilterStart(self.initial.mean, covariance, rates),
             PassOptions(self.step, full, fresh, keep is not None),
@@ -425,7 +427,7 @@ def _estimated_initial(mapped: MappedRecording) -> InitialState:
         rate = nq + code
         if code < nq:
             mean[code] = y[0]
-            speed = _speeds(t, y)
+            speed = _rates_of_change(t, y)
             covariance[rate, rate] = 1.0
             if len(speed):
                 covariance[rate, rate] = float(np.mean(speed**2)) + LEAST_RATE_VARIANCE
@@ -444,7 +446,7 @@ def _estimated_initial(mapped: MappedRecording) -> InitialState:
     return InitialState(mean, covariance, rates)
 
 
-def _speeds(t: Array, y: Array) -> Array:
+def _rates_of_change(t: Array, y: Array) -> Array:
     """Rates of change of a signal over four rows, but at least one second."""
     gap = np.searchsorted(t, t + max(1.0, 4 * float(np.median(np.diff(t)))))
     gap = gap.clip(max=len(t) - 1)
@@ -452,12 +454,12 @@ def _speeds(t: Array, y: Array) -> Array:
     return np.asarray((y[gap] - y)[far] / (t[gap] - t)[far])
 
 
-def body_of(values: Array) -> Array:
+def rigid_body_values(values: Array) -> Array:
     """Return mass, mass centre and inertias, the last of a run's parameter values."""
     return values[-len(BODY) :]
 
 
-def segments(times: Array, horizon: float) -> tuple[list[int], list[int]]:
+def free_run_segments(times: Array, horizon: float) -> tuple[list[int], list[int]]:
     """Return the rows at which free runs start and end.
 
     Args:
@@ -518,7 +520,7 @@ def map_recording(
             f"{FEWEST_IN_PART} are needed"
         )
     measured = np.column_stack(list(map(recording.signals.__getitem__, columns)))
-    own = checked_noise(recording)
+    own = specified_noise(recording)
     shared = shared_noise or NOISE | own
     scale = {family: own.get(family, sd) / sd for family, sd in shared.items()}
     commands = np.zeros((len(recording), 1))
@@ -596,7 +598,7 @@ def hull_motion(
     nq = code.NQ
     constants, memory = np.zeros(code.K), np.zeros(program.memory_size)
     actuators = np.zeros(program.held_size)
-    code.constants(body_of(values), values, on, constants)
+    code.constants(rigid_body_values(values), values, on, constants)
     code.settle(command, memory, values, on, actuators)
     slopes = np.zeros((nq, 2 * nq))
     rest = np.zeros(2 * nq)
@@ -624,7 +626,7 @@ def inertia_of(program: Program, values: Array, on: Array) -> Array:
     """
     code = program.module
     constants = np.zeros(code.K)
-    code.constants(body_of(values), values, on, constants)
+    code.constants(rigid_body_values(values), values, on, constants)
     order = [AXES.index(axis) for axis in axes_of(program.vessel)]
     diagonal = constants[-MASS_ENTRIES:][order]
     if code.CLOSED:  # the constants hold the inverse
@@ -683,11 +685,11 @@ def shared_noise(
     """
     noise = dict(NOISE)
     for family in NOISE:
-        sensed = priors.sensed_noise(vessel, recordings, family, config.load)
+        sensed = priors.estimate_sensor_noise(vessel, recordings, family, config.load)
         if sensed:
             noise[family] = sensed
     noise |= {str(family): sd for family, sd in vessel.diagnosis.noise.items()}
-    return noise | checked_noise(recordings[0])
+    return noise | specified_noise(recordings[0])
 
 
 def relative_noise(
@@ -712,14 +714,14 @@ def relative_noise(
     for family in NOISE:
         if family in recording.notes.noise or family in vessel.diagnosis.noise:
             continue
-        own = priors.sensed_noise(vessel, [recording], family, config.load)
-        common = priors.sensed_noise(vessel, recordings, family, config.load)
+        own = priors.estimate_sensor_noise(vessel, [recording], family, config.load)
+        common = priors.estimate_sensor_noise(vessel, recordings, family, config.load)
         if own and common and not 1.0 / limit < own / common < limit:
             ratios[family] = own / common
     return ratios
 
 
-def checked_noise(recording: Recording) -> dict[str, float]:
+def specified_noise(recording: Recording) -> dict[str, float]:
     """Return the sensor noise that a recording's notes specify, by family.
 
     Raises:

@@ -7,7 +7,7 @@ from math import erf, log, sqrt
 import numpy as np
 
 from boatsim.diagnosis.filter import NoiseLevels
-from boatsim.diagnosis.noise_levels import fit_force, force_prior
+from boatsim.diagnosis.noise_levels import fit_force, log_force_prior
 from boatsim.diagnosis.problem import (
     FilterPasses,
     Fit,
@@ -88,10 +88,10 @@ def remove_effect(problem: Problem, found: Fit, name: str) -> Fit:
         if np.isfinite(problem.log_likelihood(free, theta, on, found.levels)):
             break
         theta = 0.5 * (theta + nothing)
-    return unfitted(effects, free, theta, found.levels)
+    return unfitted_hypothesis(effects, free, theta, found.levels)
 
 
-def unfitted(
+def unfitted_hypothesis(
     effects: tuple[str, ...], free: tuple[FreeParameter, ...], theta: Array, levels: NoiseLevels
 ) -> Fit:
     """Return a hypothesis at a starting point, with the prior covariance and no evidence yet.
@@ -112,7 +112,7 @@ class ParameterSpace:
     def __init__(self, free: Sequence[FreeParameter]) -> None:
         self.mean, self.sd, self.low, self.high = priors_of(free)
 
-    def clipped(self, theta: Array) -> Array:
+    def clip(self, theta: Array) -> Array:
         """Return parameters (F,) within the bounds."""
         return np.asarray(np.clip(theta, self.low, self.high))
 
@@ -142,7 +142,7 @@ class ParameterSpace:
             if not (free & stuck).any():
                 break
             free &= ~stuck
-        return self.clipped(theta + self.sd * step)
+        return self.clip(theta + self.sd * step)
 
     def predicted_gain(self, J: Array, g: Array, before: Array, after: Array) -> float:
         """Return the gain of the score that the quadratic model predicts for a step.
@@ -223,7 +223,7 @@ class _Hypothesis:
     levels: NoiseLevels
     space: ParameterSpace
 
-    def at(self, theta: Array) -> _Point:
+    def evaluate_at(self, theta: Array) -> _Point:
         """Run the filter at a point."""
         passes = self.problem.filter(self.free, theta, self.on, self.levels)
         return _Point(theta, passes, passes.log_likelihood + log_prior(self.free, theta))
@@ -248,7 +248,7 @@ def gauss_newton(problem: Problem, start: Fit, iterations: int, enough: float) -
     on = problem.program.switches(start.effects)
     space = ParameterSpace(start.free)
     hypothesis = _Hypothesis(problem, start.free, on, start.levels, space)
-    here = hypothesis.at(space.clipped(start.theta))
+    here = hypothesis.evaluate_at(space.clip(start.theta))
     damping, known = FIRST_DAMPING, False
     J, rest = np.zeros((1, len(start.free))), np.zeros(len(start.free))
     for _ in range(iterations):
@@ -257,7 +257,7 @@ def gauss_newton(problem: Problem, start: Fit, iterations: int, enough: float) -
         g = rest - J.T @ here.passes.whitened - (here.theta - space.mean) / space.sd
         further, gain = None, 0.0
         for _ in range(config.most_dampings):
-            trial = hypothesis.at(space.damped_step(here.theta, J, g, damping))
+            trial = hypothesis.evaluate_at(space.damped_step(here.theta, J, g, damping))
             if np.isfinite(trial.score) and trial.score > here.score - LOST:
                 further, gain = trial, trial.score - here.score
                 break
@@ -286,7 +286,7 @@ def gauss_newton(problem: Problem, start: Fit, iterations: int, enough: float) -
     information[np.diag_indices(len(start.free))] += _curvature(hypothesis, here)
     covariance = space.covariance(information)
     evidence = here.score - 0.5 * float(np.linalg.slogdet(information)[1])
-    evidence += force_prior(problem, start.levels)
+    evidence += log_force_prior(problem, start.levels)
     evidence += log_truncation(start.free, here.theta, covariance)
     return replace(start, theta=here.theta, covariance=covariance, evidence=evidence)
 
@@ -336,7 +336,7 @@ def _full_derivatives(hypothesis: _Hypothesis, here: _Point) -> tuple[Array, Arr
         h = size if here.theta[j] + size * space.sd[j] <= space.high[j] else -size
         moved = here.theta.copy()
         moved[j] += h * space.sd[j]
-        there = hypothesis.at(moved)
+        there = hypothesis.evaluate_at(moved)
         rise = (there.score - here.score) / h
         if np.isfinite(rise):
             J[:, j] = (there.passes.whitened - white) / h
@@ -379,7 +379,7 @@ def jacobian(
         moved = theta.copy()
         h = size * f.sd if theta[j] + size * f.sd <= f.high else -size * f.sd
         moved[j] += h
-        errors = problem.whitened(free, moved, on, levels, about)
+        errors = problem.whitened_errors(free, moved, on, levels, about)
         column = (errors - white) * (f.sd / h)
         if np.isfinite(column).all():  # otherwise the simulated boat diverges there
             J[:, j - first] = column

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from boatsim.diagnosis.filter import MappedRecording, segments
+from boatsim.diagnosis.filter import MappedRecording, free_run_segments
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.physics.base import Array
 
@@ -61,7 +61,9 @@ def free_runs(
             values = problem.values(mapped, fit.free, fit.theta)
             on = problem.program.switches(fit.effects)
             runs[name] = mapped.free_runs(values, on, fit.levels, horizon)
-        for i, (begin, end) in enumerate(zip(*segments(mapped.times, horizon), strict=True)):
+        for i, (begin, end) in enumerate(
+            zip(*free_run_segments(mapped.times, horizon), strict=True)
+        ):
             simulated = {name: own[i][1] for name, own in runs.items()}
             found.append(_free_run(mapped, begin, end, simulated))
     return found
@@ -82,7 +84,7 @@ def _free_run(
     return FreeRun(mapped.name, float(t[0]), t, channels)
 
 
-def errors(runs: Sequence[FreeRun]) -> dict[str, dict[str, float]]:
+def rms_errors(runs: Sequence[FreeRun]) -> dict[str, dict[str, float]]:
     """Return the rms error of free runs by family of signals and model.
 
     Args:

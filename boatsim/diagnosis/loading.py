@@ -92,7 +92,7 @@ def load(request: Request, report: Report = silent, config: DiagnosisConfig = DE
         cleaned.append(replace(clean, name=name))
         remarks += clean.remarks
     first = len(request.runs)
-    fitted, held_out, note = split(cleaned[:first], cleaned[first:])
+    fitted, held_out, note = split_recordings(cleaned[:first], cleaned[first:])
     return Loaded(
         fitted,
         held_out,
@@ -174,7 +174,7 @@ def open_recording(
     return data_cleaning.prepare_recording(recording, found, config.checks), found
 
 
-def split(
+def split_recordings(
     recordings: Sequence[Recording], hold_out: Sequence[Recording]
 ) -> tuple[list[Recording], list[Recording], str]:
     """Divide recordings into fitted and held-out ones.
@@ -203,26 +203,26 @@ def split(
     parts = (whole.between(begin, a), whole.between(a + half, b), whole.between(b + half, end))
     thirds = []
     for part, which in zip(parts, THIRDS, strict=True):
-        thirds.append(replace(part, name=_third(whole.name, which)))
+        thirds.append(replace(part, name=_third_of_recording(whole.name, which)))
     first, middle, last = thirds
     note = f"the middle third of the only recording, {a:.1f} to {b:.1f} s"
     return [first, last], [middle], note
 
 
-def in_order(names: Sequence[str], starts: Sequence[float]) -> list[int]:
+def recording_order(names: Sequence[str], starts: Sequence[float]) -> list[int]:
     """Return the order of recordings: as given, but the thirds of a single one in order of time.
 
     Args:
         names: Names of the recordings.
         starts: Time of the first row of each [s].
     """
-    whole = names[0].removesuffix(_third("", THIRDS[0]))
-    if set(names) == {_third(whole, which) for which in THIRDS}:
+    whole = names[0].removesuffix(_third_of_recording("", THIRDS[0]))
+    if set(names) == {_third_of_recording(whole, which) for which in THIRDS}:
         return sorted(range(len(names)), key=lambda i: starts[i])
     return list(range(len(names)))
 
 
-def _third(name: str, which: str) -> str:
+def _third_of_recording(name: str, which: str) -> str:
     return f"{name} ({which} third)"
 
 

@@ -10,7 +10,7 @@ from boatsim.diagnosis.checks.finding import LOG_NOT_BOAT, Finding
 from boatsim.diagnosis.checks.hypothesis_test import compare_reinterpretations
 from boatsim.diagnosis.config import DEFAULT, DiagnosisConfig
 from boatsim.diagnosis.loading import Loaded, check_same_vessel, vessel_for
-from boatsim.diagnosis.question import pose
+from boatsim.diagnosis.question import pose_question
 from boatsim.diagnosis.report.schema import LogEntry
 from boatsim.errors import BadInput
 from boatsim.physics.vessel import Vessel
@@ -62,7 +62,7 @@ def check_files(
             usable.append(checked.recording)
     if usable:
         try:
-            question = pose(Loaded(usable, (), vessels, ""), config)
+            question = pose_question(Loaded(usable, (), vessels, ""), config)
             compared = compare_reinterpretations(usable, question.map_recording, question.problem)
             findings += [replace(f, run=str(usable[0].path)) for f in compared]
         except BadInput as error:

@@ -24,7 +24,7 @@ THIRD_DIFFERENCE = 20.0  # sum of the squared binomial coefficients of a third d
 FEWEST_ROWS = 8  # of a signal from which its noise is estimated
 
 
-def force_prior(problem: Problem, levels: NoiseLevels) -> float:
+def log_force_prior(problem: Problem, levels: NoiseLevels) -> float:
     """Return the log prior of the latent force: near the assumed level, and rather more than less.
 
     Args:
@@ -37,12 +37,12 @@ def force_prior(problem: Problem, levels: NoiseLevels) -> float:
     return float(np.sum(-0.5 * deviation**2))
 
 
-def _forces(problem: Problem, logs: Array) -> Array:
+def _force_levels(problem: Problem, logs: Array) -> Array:
     """Levels of the latent force from their logarithms, with the lower bound."""
     return np.maximum(np.exp(logs), problem.config.fit.least_force * problem.ambient.force)
 
 
-def _sensors(
+def _sensor_noise(
     problem: Problem, families: Sequence[str], logs: Array, specified: Array
 ) -> dict[str, float]:
     """Noise of each family from its logarithm, with the lower bound."""
@@ -89,26 +89,26 @@ def fit_force(problem: Problem, found: Fit, enough: float | None = None) -> Fit:
     specified = _log_noise(problem.ambient, families)
     k, n = len(searched), len(searched) + len(families)
 
-    def placed(x: Array) -> tuple[NoiseLevels, Array]:
+    def fit_at_levels(x: Array) -> tuple[NoiseLevels, Array]:
         theta = found.theta.copy()
         theta[searched] = np.clip(x[:k] * sd, low, high)
-        sensors = dict(found.levels.sensors) | _sensors(problem, families, x[k:n], specified)
-        force = _forces(problem, x[n:])
+        sensors = dict(found.levels.sensors) | _sensor_noise(problem, families, x[k:n], specified)
+        force = _force_levels(problem, x[n:])
         return replace(found.levels, force=force, sensors=sensors), theta
 
     about = problem.filter(found.free, found.theta, on, found.levels)
 
     def score(x: Array) -> float:
-        levels, theta = placed(x)
+        levels, theta = fit_at_levels(x)
         deviation = float(np.sum(((theta[searched] - mean) / sd) ** 2))
         prior = -0.5 * (deviation + _noise_prior(problem, x[k:n], specified))
         likelihood = problem.log_likelihood(found.free, theta, on, levels, about)
-        return likelihood + force_prior(problem, levels) + prior
+        return likelihood + log_force_prior(problem, levels) + prior
 
     noise = _log_noise(found.levels, families)
     begin = np.concatenate([found.theta[searched] / sd, noise, np.log(found.levels.force)])
     _, x = maximize(score, begin, FORCE_STEP, enough, problem.config.fit)
-    levels, theta = placed(x)
+    levels, theta = fit_at_levels(x)
     return replace(found, levels=levels, theta=theta)
 
 
@@ -130,16 +130,16 @@ def fit_noise(problem: Problem, found: Fit) -> Fit:
     rough = np.log(np.array(sensed))
 
     def levels(x: Array) -> NoiseLevels:
-        sensors = dict(prior_levels.sensors) | _sensors(problem, families, x[n:], specified)
-        return replace(prior_levels, force=_forces(problem, x[:n]), sensors=sensors)
+        sensors = dict(prior_levels.sensors) | _sensor_noise(problem, families, x[n:], specified)
+        return replace(prior_levels, force=_force_levels(problem, x[:n]), sensors=sensors)
 
     def prior(x: Array) -> float:
         return -0.5 * _noise_prior(problem, x[n:], specified)
 
-    def maximized(x: Array, about: FilterPasses, step: float, enough: float) -> Array:
+    def maximize_noise(x: Array, about: FilterPasses, step: float, enough: float) -> Array:
         def score(x: Array) -> float:
             likelihood = problem.log_likelihood(found.free, found.theta, on, levels(x), about)
-            return likelihood + force_prior(problem, levels(x)) + prior(x)
+            return likelihood + log_force_prior(problem, levels(x)) + prior(x)
 
         return maximize(score, x, step, enough, config)[1]
 
@@ -147,14 +147,16 @@ def fit_noise(problem: Problem, found: Fit) -> Fit:
     x = np.concatenate([np.log(prior_levels.force) + FORCE_START, np.clip(rough, low, high)])
     about = problem.filter(found.free, found.theta, on, levels(x))
     for _ in range(config.force_raises):  # where the simulated boat diverges from the recording
-        begin = about.log_likelihood + force_prior(problem, levels(x)) + prior(x)
+        begin = about.log_likelihood + log_force_prior(problem, levels(x)) + prior(x)
         if np.isfinite(begin):
             break
         x[:n] += 1.0
         about = problem.filter(found.free, found.theta, on, levels(x))
-    x = maximized(x, about, NOISE_STEP, config.rough_gain)
+    x = maximize_noise(x, about, NOISE_STEP, config.rough_gain)
     about = problem.filter(found.free, found.theta, on, levels(x))
-    return replace(found, levels=levels(maximized(x, about, FINE_NOISE_STEP, config.fine_gain)))
+    return replace(
+        found, levels=levels(maximize_noise(x, about, FINE_NOISE_STEP, config.fine_gain))
+    )
 
 
 def fit_time_constant(problem: Problem, found: Fit) -> NoiseLevels:
@@ -176,7 +178,7 @@ def fit_time_constant(problem: Problem, found: Fit) -> NoiseLevels:
     def score(x: Array) -> float:
         prior = -0.5 * ((x[1] - usual) / config.correlation_time_sd) ** 2
         likelihood = problem.log_likelihood(found.free, found.theta, on, levels(x), about)
-        return likelihood + force_prior(problem, levels(x)) + float(prior)
+        return likelihood + log_force_prior(problem, levels(x)) + float(prior)
 
     begin = np.array([0.0, np.log(found.levels.time_constant)])
     return levels(maximize(score, begin, TIME_STEP, config.fine_gain, config)[1])

@@ -25,11 +25,11 @@ from boatsim.diagnosis.experiment_design import next_experiment
 from boatsim.diagnosis.filter import MappedRecording, map_recording
 from boatsim.diagnosis.loading import Loaded, Request
 from boatsim.diagnosis.problem import Problem
-from boatsim.diagnosis.question import Question, compile_program, pose
-from boatsim.diagnosis.report.answer import compose
+from boatsim.diagnosis.question import Question, compile_program, pose_question
+from boatsim.diagnosis.report.answer import compose_answer
 from boatsim.diagnosis.report.findings import Findings
 from boatsim.diagnosis.report.results import findings_of
-from boatsim.diagnosis.search.ranking import Baseline, Ranking, baseline, rank
+from boatsim.diagnosis.search.ranking import Baseline, Ranking, fit_baseline, rank
 from boatsim.diagnosis.symbolic.residual_description import describe as describe_residual
 from boatsim.diagnosis.symbolic.slots import write_term
 from boatsim.errors import BadInput
@@ -129,7 +129,7 @@ def diagnose_loaded(
     Raises:
         BadInput: The recordings cannot be used.
     """
-    question = pose(loaded, config)
+    question = pose_question(loaded, config)
     report("compiling, or loading what was compiled before")
     compile_program(question.problem)
     begin = time.perf_counter()
@@ -144,7 +144,9 @@ def diagnose_loaded(
         report("free runs", EVALUATING)
         evaluation = validate(question, selection, ranking)
     problem, seconds = selection.problem, time.perf_counter() - begin
-    answer = compose(loaded, question, findings, problem, ranking, evaluation, next_plan, seconds)
+    answer = compose_answer(
+        loaded, question, findings, problem, ranking, evaluation, next_plan, seconds
+    )
     shown = findings_of(answer, loaded, question, problem, ranking, evaluation, next_plan)
     return Diagnosis(shown, loaded.vessel, problem, ranking, loaded.remarks, next_plan)
 
@@ -172,7 +174,7 @@ def fit(question: Question) -> Baseline:
     Args:
         question: Mapped recordings and priors.
     """
-    return baseline(question.problem)
+    return fit_baseline(question.problem)
 
 
 def select(

@@ -54,7 +54,7 @@ def time_constant(vessel: Vessel, config: LoadConfig = DEFAULT.load) -> float:
     return config.correlation_time * froude_time(vessel)
 
 
-def horizon(vessel: Vessel, config: LoadConfig = DEFAULT.load) -> float:
+def default_horizon(vessel: Vessel, config: LoadConfig = DEFAULT.load) -> float:
     """Return the usual length of a free run [s], to three digits.
 
     Args:
@@ -64,7 +64,9 @@ def horizon(vessel: Vessel, config: LoadConfig = DEFAULT.load) -> float:
     return vessel.diagnosis.horizon or float(f"{config.horizon * froude_time(vessel):.3g}")
 
 
-def rate(vessel: Vessel, duration: float = 0.0, config: LoadConfig = DEFAULT.load) -> float:
+def used_sample_rate(
+    vessel: Vessel, duration: float = 0.0, config: LoadConfig = DEFAULT.load
+) -> float:
     """Return the rows per second that are used of recordings [Hz].
 
     An hour is informative by its many manoeuvres, a minute by its many rows; the cost of a
@@ -80,7 +82,7 @@ def rate(vessel: Vessel, duration: float = 0.0, config: LoadConfig = DEFAULT.loa
     return vessel.diagnosis.rate or usual * min(1.0, share)
 
 
-def uncertainty(vessel: Vessel, config: LoadConfig = DEFAULT.load) -> dict[str, float]:
+def coefficient_uncertainty(vessel: Vessel, config: LoadConfig = DEFAULT.load) -> dict[str, float]:
     """Return the relative prior sd of the vessel's coefficients, by kind.
 
     Args:
@@ -99,7 +101,7 @@ def uncertainty(vessel: Vessel, config: LoadConfig = DEFAULT.load) -> dict[str, 
     return by_rule | dict(specified)
 
 
-def sensed_noise(
+def estimate_sensor_noise(
     vessel: Vessel,
     recordings: Sequence[Recording],
     family: str,

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from boatsim.diagnosis import priors
-from boatsim.diagnosis.command_range import excursion
+from boatsim.diagnosis.command_range import largest_command
 from boatsim.diagnosis.config import DEFAULT, DiagnosisConfig
 from boatsim.diagnosis.filter import BODY, FilterPass, MappedRecording, NoiseLevels
 from boatsim.errors import BadInput
@@ -227,11 +227,11 @@ class Problem:
 
     def __post_init__(self) -> None:
         program = self.recordings[0].program
-        usual = priors.horizon(program.vessel, self.config.load)
+        usual = priors.default_horizon(program.vessel, self.config.load)
         object.__setattr__(self, "program", program)
         object.__setattr__(self, "horizon", self.specified_horizon or usual)
         object.__setattr__(self, "nominal_coefficients", self._nominal_coefficients())
-        object.__setattr__(self, "links", self._links())
+        object.__setattr__(self, "links", self._inherited_places())
 
     def on(self, recordings: Sequence[MappedRecording]) -> "Problem":
         """Return the same problem with other recordings.
@@ -309,13 +309,13 @@ class Problem:
         at, weights = list[int](), list[float]()
         for change in effect.changes(self.program.vessel):
             if change.parameter == name:
-                at.append(self.place(change.owner, change.key))
+                at.append(self.index_of_parameter(change.owner, change.key))
                 weights.append(change.weight)
         if not at:
             return None
         return _Target(tuple(at), tuple(weights))
 
-    def place(self, owner: str, key: str) -> int:
+    def index_of_parameter(self, owner: str, key: str) -> int:
         """Return the place of a number in the parameter values of a run.
 
         Args:
@@ -360,7 +360,7 @@ class Problem:
         """Return the log likelihood of `filter` with the same arguments."""
         return self.filter(free, theta, on, levels, about).log_likelihood
 
-    def whitened(
+    def whitened_errors(
         self,
         free: Sequence[FreeParameter],
         theta: Array,
@@ -379,7 +379,7 @@ class Problem:
         """
         found = []
         for mapped, one in zip(self.recordings, about.passes, strict=True):
-            found.append(mapped.whitened(self.values(mapped, free, theta), on, levels, one))
+            found.append(mapped.whitened_errors(self.values(mapped, free, theta), on, levels, one))
         return np.concatenate(found)
 
     def scale(self, effect: Effect, name: str) -> float:
@@ -398,7 +398,7 @@ class Problem:
             noise = {"m": "position_sd_m", "rad": "heading_sd_rad"}
             return self.ambient.sensors[noise[unit]] if unit in noise else 1.0
         if name in type(effect).thresholds and unit != "rad":
-            largest = excursion(self.recordings, effect, self.config.load)
+            largest = largest_command(self.recordings, effect, self.config.load)
             if largest:
                 return largest
         return froude_scale(unit, self.program.vessel)
@@ -421,7 +421,7 @@ class Problem:
         """Whether the fastest motion of the hull decays within a sample of any recording."""
         return any(mapped.stiff for mapped in self.recordings)
 
-    def nominal(self) -> Fit:
+    def nominal_hypothesis(self) -> Fit:
         """Return the hypothesis that the vessel is as written, with nothing fitted."""
         free = self.nominal_coefficients
         count = len(free)
@@ -459,7 +459,7 @@ class Problem:
             )
         return tuple(found)
 
-    def _links(self) -> tuple[tuple[int, int], ...]:
+    def _inherited_places(self) -> tuple[tuple[int, int], ...]:
         """Places of unset parameters, and of the vessel's numbers that they inherit."""
         links = []
         owners = {e.name for e in self.program.effects} | {"body"}
@@ -469,5 +469,5 @@ class Problem:
                 owner, _, key = source.removesuffix("?").removeprefix("vessel.").partition(".")
                 if owner in owners:
                     to = self.program.index(effect.name, name)
-                    links.append((to, self.place(owner, key)))
+                    links.append((to, self.index_of_parameter(owner, key)))
         return tuple(links)

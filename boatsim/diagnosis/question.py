@@ -9,10 +9,10 @@ import numpy as np
 from boatsim.diagnosis import priors
 from boatsim.diagnosis.candidates import (
     Library,
-    exclude,
     library_for,
-    with_stated_errors,
-    without_ruled_out,
+    names_without,
+    with_specified_position_drift,
+    without_excluded_effects,
 )
 from boatsim.diagnosis.checks.initial_actuator_state import with_initial_actuators
 from boatsim.diagnosis.config import DEFAULT, DiagnosisConfig
@@ -66,7 +66,7 @@ class Question:
     candidates: tuple[str, ...]  # names of the effects that are tested
 
 
-def pose(loaded: Loaded, config: DiagnosisConfig = DEFAULT) -> Question:
+def pose_question(loaded: Loaded, config: DiagnosisConfig = DEFAULT) -> Question:
     """Return the estimation problem of loaded recordings.
 
     Args:
@@ -81,7 +81,7 @@ def pose(loaded: Loaded, config: DiagnosisConfig = DEFAULT) -> Question:
     columns = sorted({column for recording in loaded.fitted for column in recording.signals})
     libraries, programs = dict[Path | None, Library](), dict[Path | None, Program]()
     for path, own in loaded.vessels.items():
-        known = with_stated_errors(without_ruled_out(own, facts), facts)
+        known = with_specified_position_drift(without_excluded_effects(own, facts), facts)
         libraries[path] = library_for(known, loaded.library, facts, columns)
         programs[path] = Program(known, libraries[path].compiled)
     levels = prior_levels(vessel, loaded.fitted, config)
@@ -95,13 +95,13 @@ def pose(loaded: Loaded, config: DiagnosisConfig = DEFAULT) -> Question:
     uncertainty = _uncertainty(loaded, vessel, config)
     problem = Problem(fitted, levels, uncertainty, loaded.horizon, config)
     library = libraries[first.path]
-    candidates = exclude(library, loaded.without)
+    candidates = names_without(library, loaded.without)
     return Question(problem, tuple(held_out), mapper, library, candidates)
 
 
 def _uncertainty(loaded: Loaded, vessel: Vessel, config: DiagnosisConfig) -> dict[str, float]:
     """Relative prior sd of coefficients by kind. Raises BadInput."""
-    uncertainty = priors.uncertainty(vessel, config.load)
+    uncertainty = priors.coefficient_uncertainty(vessel, config.load)
     where = f"{vessel.file.parent.name}/{vessel.file.name}: diagnosis"
     check_uncertainty(vessel, uncertainty, where)
     for recording in (*loaded.fitted, *loaded.held_out):
@@ -117,7 +117,7 @@ def compile_program(problem: Problem) -> None:
     Args:
         problem: Recordings and priors.
     """
-    nominal, on = problem.nominal(), problem.program.switches()
+    nominal, on = problem.nominal_hypothesis(), problem.program.switches()
     mapped = problem.recordings[0]
     values = problem.values(mapped, nominal.free, nominal.theta)
     mapped.free_runs(values, on, problem.ambient, float(np.ptp(mapped.times)))

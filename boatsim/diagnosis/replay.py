@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from boatsim.diagnosis.candidates import composed
+from boatsim.diagnosis.candidates import diagnosis_program
 from boatsim.diagnosis.checks.initial_actuator_state import with_initial_actuators
 from boatsim.diagnosis.filter import map_recording, prior_levels
 from boatsim.diagnosis.free_runs import FreeRun, free_runs
@@ -18,7 +18,7 @@ from boatsim.progress import Report, silent
 from boatsim.recordings.table import Recording
 
 
-def replayed(
+def replay_recording(
     recording: Recording, vessel: Vessel, horizon: float, report: Report = silent
 ) -> list[FreeRun]:
     """Return free runs with the models "simulated" and "recorded".
@@ -32,7 +32,7 @@ def replayed(
     Raises:
         BadInput: The recording is shorter than the horizon, or misses a column.
     """
-    problem, fitted = as_written(recording, vessel, report)
+    problem, fitted = fit_noise_only(recording, vessel, report)
     report("free runs", 0.8)
     runs = free_runs(problem, {"simulated": fitted}, problem.recordings, horizon)
     if not runs:
@@ -41,7 +41,7 @@ def replayed(
     return runs
 
 
-def columns(runs: Sequence[FreeRun]) -> dict[str, Array]:
+def free_run_columns(runs: Sequence[FreeRun]) -> dict[str, Array]:
     """Return free runs one after the other: t_s, the number of each run in `segment`, and the pose.
 
     The time at which one ends and the next begins occurs twice: at the end of one run, and at the
@@ -64,22 +64,22 @@ def columns(runs: Sequence[FreeRun]) -> dict[str, Array]:
     return found
 
 
-def joined(runs: Sequence[FreeRun]) -> Recording:
+def join_free_runs(runs: Sequence[FreeRun]) -> Recording:
     """Return free runs as one recording in which each time occurs once: that of the earlier run.
 
     Args:
         runs: Free runs of one recording.
     """
-    signals = columns(runs)
+    signals = free_run_columns(runs)
     first = np.append(True, np.diff(signals["t_s"]) > 0.0)
     signals = {name: values[first] for name, values in signals.items()}
     return Recording("replay", signals.pop("t_s"), signals)
 
 
-def as_written(
+def fit_noise_only(
     recording: Recording, vessel: Vessel, report: Report = silent
 ) -> tuple[Problem, Fit]:
-    """Return a vessel file on a recording with the noise fitted, which smoothed starts need.
+    """Fit only the noise levels of a vessel file to a recording.
 
     Args:
         recording: Measured signals and commands.
@@ -90,9 +90,9 @@ def as_written(
         The problem and its fit.
     """
     report("compiling, or loading what was compiled before", 0.1)
-    program, acting = composed(vessel)
+    program, acting = diagnosis_program(vessel)
     levels = prior_levels(vessel, [recording])
     mapped = with_initial_actuators(map_recording(recording, program), levels)
     problem = Problem([mapped], levels, {})
     report("fitting the noise", 0.3)
-    return problem, fit_noise(problem, replace(problem.nominal(), effects=acting))
+    return problem, fit_noise(problem, replace(problem.nominal_hypothesis(), effects=acting))

@@ -17,16 +17,16 @@ import tomlkit
 from threadpoolctl import threadpool_limits
 
 from boatsim.diagnosis import priors
-from boatsim.diagnosis.candidates import composed
+from boatsim.diagnosis.candidates import diagnosis_program
 from boatsim.diagnosis.checks.data_cleaning import clean_recording, total_duration
 from boatsim.diagnosis.checks.initial_actuator_state import with_initial_actuators
 from boatsim.diagnosis.filter import map_recording, prior_levels
 from boatsim.diagnosis.fit import converge
-from boatsim.diagnosis.free_runs import errors, free_runs
+from boatsim.diagnosis.free_runs import free_runs, rms_errors
 from boatsim.diagnosis.loading import open_recording
 from boatsim.diagnosis.problem import Fit, FreeParameter, Problem
 from boatsim.diagnosis.report import patched_vessel
-from boatsim.diagnosis.search.ranking import baseline
+from boatsim.diagnosis.search.ranking import fit_baseline
 from boatsim.errors import BadInput
 from boatsim.physics.vessel import Vessel
 from boatsim.progress import Report, part, silent
@@ -108,7 +108,7 @@ def fitted(
     try:
         with threadpool_limits(1, "blas"):
             report("fitting the coefficients", 0.1)
-            nominal, best = baseline(problem)
+            nominal, best = fit_baseline(problem)
             best = _with_more(problem, best, part(report, 0.3, 0.9))
             report("validating on held-out data", 0.9)
             before, after = _errors(judge, nominal, _without(best, OF_DAY) if held_out else best)
@@ -151,10 +151,10 @@ def _problems(
     boat: Vessel, first: Sequence[Recording], last: Sequence[Recording]
 ) -> tuple[Problem, Problem]:
     """The estimation problems of the fitted and the held-out parts."""
-    program, _ = composed(boat)
+    program, _ = diagnosis_program(boat)
     levels = prior_levels(boat, first)
     mapped = [with_initial_actuators(map_recording(r, program), levels) for r in first]
-    problem = Problem(mapped, levels, priors.uncertainty(boat))
+    problem = Problem(mapped, levels, priors.coefficient_uncertainty(boat))
     return problem, problem.on([map_recording(r, program) for r in last])
 
 
@@ -211,7 +211,7 @@ def _errors(judge: Problem, nominal: Fit, best: Fit) -> tuple[dict[str, float], 
 
     Raises BadInput if the data are too short.
     """
-    found = errors(
+    found = rms_errors(
         free_runs(judge, {"before": nominal, "after": best}, judge.recordings, judge.horizon)
     )
     if not found:
@@ -227,7 +227,9 @@ def _errors(judge: Problem, nominal: Fit, best: Fit) -> tuple[dict[str, float], 
 def _written(problem: Problem, boat: Vessel, own: Fit, logs: str) -> str:
     """The text of the vessel file with the fitted numbers and their uncertainty."""
     document = tomlkit.parse(
-        LONG_NUMBER.sub(_shortened, patched_vessel.patched(problem, boat, own, boat.file))
+        LONG_NUMBER.sub(
+            _shortened, patched_vessel.patched_vessel_text(problem, boat, own, boat.file)
+        )
     )
     for key in ("based_on", "found"):  # the file is no patch of another vessel
         del document[key]

@@ -176,7 +176,7 @@ def diagnose_task(task: DiagnosisTask) -> Entry:
             options.horizon,
             config=from_settings(dict(options.settings)),
         )
-        output_files.write(found, Path(task.folder))
+        output_files.write_diagnosis(found, Path(task.folder))
     except BoatsimError as error:
         return failure_of(str(error))
     except Exception as error:

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from boatsim.diagnosis.report.blocks import Figures, Heading, Items, Section, Table
-from boatsim.diagnosis.report.html_page import rendered
+from boatsim.diagnosis.report.html_page import render_template
 from boatsim.files import replacing
 from boatsim.sweeps.keys import Value
 from boatsim.sweeps.plots import groups, legend_of, plot_metric
@@ -31,7 +31,7 @@ def write(results: Results, folder: Path) -> None:
     sections = [*_table_sections(results), _failures(results), *_plot_sections(results)]
     sections = [section for section in sections if section.blocks]
     facts = _facts(results)
-    page = rendered(TEMPLATE, title=_title(results), facts=facts, sections=sections)
+    page = render_template(TEMPLATE, title=_title(results), facts=facts, sections=sections)
     with replacing(folder / NAME) as temporary:
         temporary.write_text(page, encoding="utf-8")
 

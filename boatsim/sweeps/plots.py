@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from boatsim.diagnosis.report.svg_plots import SQUARE, Box, Line, Panel, figure, legend, limits
+from boatsim.diagnosis.report.svg_plots import SQUARE, Box, Line, Panel, axis_limits, figure, legend
 from boatsim.physics.signals import Array
 from boatsim.sweeps.axes import Axis
 from boatsim.sweeps.results import Results
@@ -91,7 +91,7 @@ def plot_metric(results: Results, name: str, rows: Array) -> list[str]:
     title = name
     if unit:
         title = f"{name} [{unit}]"
-    y = limits([values[finite]], zero=False)
+    y = axis_limits([values[finite]], zero=False)
     metric = _Metric(values, groups(results, finite), y, title)
     plots = []
     for axis in results.plan.axes:
@@ -194,6 +194,6 @@ def _plot_sampled(name: str, x: Array, correlation: float, metric: _Metric) -> s
     dots = []
     for group in metric.groups:
         dots.append(Line(group.style, x[group.rows], metric.values[group.rows], group.name))
-    x_limits = limits([x], zero=False)
+    x_limits = axis_limits([x], zero=False)
     panel = Panel(metric.title, (), x_limits, metric.limits, name, shape=SQUARE, dots=tuple(dots))
     return figure([panel], f"{metric.title} over {name}, rank correlation {correlation:.2f}")

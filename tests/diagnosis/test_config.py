@@ -4,7 +4,7 @@ from dataclasses import fields
 
 import pytest
 
-from boatsim.diagnosis.config import DEFAULT, DiagnosisConfig, as_plain, from_settings
+from boatsim.diagnosis.config import DEFAULT, DiagnosisConfig, from_settings, settings_by_name
 from boatsim.errors import BadInput
 
 
@@ -22,7 +22,7 @@ def test_the_plain_values_restore_a_configuration():
     changed = from_settings({"select.odds": "3", "fit.coefficient_range": "0.1, 10"})
     assert changed.select.odds == 3.0
     assert changed.fit.coefficient_range == (0.1, 10.0)
-    assert from_settings(as_plain(changed)) == changed
+    assert from_settings(settings_by_name(changed)) == changed
     assert from_settings({}) == DEFAULT
 
 

@@ -54,7 +54,7 @@ def test_it_is_halved_or_doubled_as_long_as_that_predicts_clearly_better(
 ) -> None:
     monkeypatch.setattr(
         correlation_time,
-        "halves_errors",
+        "cross_validation_errors",
         lambda problem, found, seconds: np.full(9, errors[seconds]),
     )
     problem: Any = SimpleNamespace(ambient=SimpleNamespace(time_constant=1.0), config=DEFAULT)
@@ -65,8 +65,8 @@ def test_it_is_halved_or_doubled_as_long_as_that_predicts_clearly_better(
 
 def test_what_swings_from_run_to_run_is_not_clearly_less() -> None:
     before = np.full(8, 0.01)
-    assert correlation_time.clearly_less(0.9 * before, before)
-    assert not correlation_time.clearly_less(
+    assert correlation_time.errors_clearly_fell(0.9 * before, before)
+    assert not correlation_time.errors_clearly_fell(
         0.9 * before * np.exp(0.3 * (-1.0) ** np.arange(8)), before
     )
 
@@ -78,10 +78,10 @@ def test_a_single_recording_is_halved_in_time_and_each_row_is_in_one_half() -> N
         Recording("decay", t, {"phi_rad": 0.2 * np.cos(2.5 * t) * np.exp(-0.05 * t)}),
         Program(boat, ()),
     )
-    ((first,), (second,)) = correlation_time.halves([whole])
+    ((first,), (second,)) = correlation_time.split_in_halves([whole])
     assert np.concatenate([first.times, second.times]) == pytest.approx(t)
     assert len(first.times) == len(second.times) and second.initial.mean[0] == whole.measured[50, 0]
-    pair = correlation_time.halves([whole, first, second])
+    pair = correlation_time.split_in_halves([whole, first, second])
     assert [len(half) for half in pair] == [2, 1]
 
 
@@ -102,6 +102,6 @@ def test_what_a_recordings_notes_state_is_a_fact(tmp_path: Path) -> None:
 def test_free_runs_over_which_nothing_was_recorded_say_nothing() -> None:
     before, less = np.array([1.0, 1.1, 0.9, 1.0]), np.array([0.5, 0.55, 0.45, 0.5])
     outage = np.array([1.0, 1.0, np.nan, 1.0])
-    assert correlation_time.clearly_less(less * outage, before * outage)
-    assert not correlation_time.clearly_less(before * outage, before * outage)
-    assert not correlation_time.clearly_less(less * np.nan, before)
+    assert correlation_time.errors_clearly_fell(less * outage, before * outage)
+    assert not correlation_time.errors_clearly_fell(before * outage, before * outage)
+    assert not correlation_time.errors_clearly_fell(less * np.nan, before)

@@ -131,7 +131,7 @@ def test_the_order_of_independent_calls_changes_no_number() -> None:
         other = laid.filter(laid.values, on, rough, about)
         if first:
             laid.filter(laid.values, more, levels)
-        errors = laid.whitened(1.001 * laid.values, on, levels, about)
+        errors = laid.whitened_errors(1.001 * laid.values, on, levels, about)
         smoothed = laid.smooth(laid.values, on, levels)
         (_, states), *_ = laid.free_runs(laid.values, on, levels, 5.0)
         numbers = np.array([about.log_likelihood, other.log_likelihood, about.log_density])

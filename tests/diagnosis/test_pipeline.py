@@ -14,9 +14,9 @@ from scipy.stats import multivariate_normal
 from boatsim.cli import diagnosis as commands
 from boatsim.diagnosis import loading, pipeline
 from boatsim.diagnosis.candidates import library_for
-from boatsim.diagnosis.filter import NoiseLevels, map_recording, prior_levels, segments
+from boatsim.diagnosis.filter import NoiseLevels, free_run_segments, map_recording, prior_levels
 from boatsim.diagnosis.problem import froude_scale
-from boatsim.diagnosis.report.answer import key_of
+from boatsim.diagnosis.report.answer import parameter_key
 from boatsim.errors import BadInput
 from boatsim.physics import vessel
 from boatsim.physics.content import address, load_class
@@ -189,7 +189,7 @@ def test_a_ramp_ends_where_the_signal_that_pwm_is_turned_into_is_reached(joystic
 
 
 def test_free_runs_start_every_horizon_and_leave_a_shorter_rest_out():
-    starts, ends = segments(np.arange(0, 20.01, 0.5), 6.0)
+    starts, ends = free_run_segments(np.arange(0, 20.01, 0.5), 6.0)
     assert [(0.5 * a, 0.5 * b) for a, b in zip(starts, ends, strict=True)] == [
         (0, 6),
         (6, 12),
@@ -336,7 +336,7 @@ def test_practice_trials_are_named_exactly(name):
 
 def test_a_single_run_keeps_its_middle_third_unseen():
     rec = recorded("single", 5)
-    fitted, held_out, note = loading.split([rec], [])
+    fitted, held_out, note = loading.split_recordings([rec], [])
     assert [len(r) for r in (*fitted, *held_out)] == pytest.approx([80, 80, 80], abs=2)
     assert held_out[0].t[0] > fitted[0].t[-1] - 0.2 and fitted[1].t[0] > held_out[0].t[-1]
     assert "middle third" in note
@@ -363,7 +363,7 @@ def test_bad_requests_get_one_line(folder):
     ],
 )
 def test_parameter_keys_carry_their_unit(name, unit, key):
-    assert key_of(name, unit) == key
+    assert parameter_key(name, unit) == key
 
 
 # ---- the thesis' own boat

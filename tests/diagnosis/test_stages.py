@@ -11,8 +11,8 @@ from boatsim.diagnosis import loading, pipeline
 from boatsim.diagnosis.config import DEFAULT
 from boatsim.diagnosis.evaluation import MODELS
 from boatsim.diagnosis.loading import Loaded, Request
-from boatsim.diagnosis.question import Question, pose
-from boatsim.diagnosis.report.answer import compose
+from boatsim.diagnosis.question import Question, pose_question
+from boatsim.diagnosis.report.answer import compose_answer
 from boatsim.diagnosis.search.ranking import Baseline
 from boatsim.errors import BadInput
 from boatsim.physics.base import Array
@@ -36,7 +36,7 @@ def loaded(tmp_path_factory: pytest.TempPathFactory) -> Loaded:
 
 @pytest.fixture(scope="module")
 def question(loaded: Loaded) -> Question:
-    return replace(pose(loaded, FAST), candidates=(ONLY,))
+    return replace(pose_question(loaded, FAST), candidates=(ONLY,))
 
 
 @pytest.fixture(scope="module")
@@ -77,7 +77,7 @@ def test_later_stages_take_the_results_of_earlier_ones(
     assert set(MODELS) <= set(evaluation.free_runs[0].channels)
     plan = pipeline.plan(selection, ranking)
     problem = selection.problem
-    answer = compose(loaded, question, (), problem, ranking, evaluation, plan, 1.0)
+    answer = compose_answer(loaded, question, (), problem, ranking, evaluation, plan, 1.0)
     assert answer["tried"] == [ONLY]
     assert answer["fit"]["held_out"] == [mapped.name for mapped in question.held_out]
     assert answer["config"]["load.row_rate"] == 4.0

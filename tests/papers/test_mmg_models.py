@@ -93,7 +93,11 @@ def test_a_recalibration_moves_every_derivative_of_the_hull_and_the_flow_at_the_
         "straightening_port",
         "straightening_starboard",
     }
-    assert priors.uncertainty(MODEL) == priors.uncertainty(SHIP) == {"damping": 0.5, "thrust": 0.5}
+    assert (
+        priors.coefficient_uncertainty(MODEL)
+        == priors.coefficient_uncertainty(SHIP)
+        == {"damping": 0.5, "thrust": 0.5}
+    )
 
 
 # ---- the benchmark's helpers

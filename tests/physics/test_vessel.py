@@ -9,7 +9,12 @@ import boats
 import pytest
 
 from boatsim.diagnosis import pipeline, priors
-from boatsim.diagnosis.candidates import called, fittable, library_for, without_ruled_out
+from boatsim.diagnosis.candidates import (
+    base_name,
+    has_fittable_parameter,
+    library_for,
+    without_excluded_effects,
+)
 from boatsim.diagnosis.config import DEFAULT
 from boatsim.diagnosis.problem import check_uncertainty
 from boatsim.errors import BadInput
@@ -42,8 +47,12 @@ def test_every_entry_that_is_tried_can_be_put_on_the_vessel_and_fitted(name: str
         own = [p for p in type(entry).params().values() if p.fit and p.axis in ("", *boat.dof)]
         assert own and set(type(entry).needs) <= set(boat.dof)
         vessel.check_bindings(boat.composed_with(entry), name)
-    there = {called(e.name) for e in library.entries}
-    of_shelf = {n for n in content.names("effect") if fittable(content.load_class("effect", n))}
+    there = {base_name(e.name) for e in library.entries}
+    of_shelf = {
+        n
+        for n in content.names("effect")
+        if has_fittable_parameter(content.load_class("effect", n))
+    }
     assert there | set(library.inapplicable) | set(
         library.excluded
     ) == of_shelf and not there & set(library.inapplicable)
@@ -90,10 +99,10 @@ def test_facts_and_the_vessels_reasons_leave_entries_out(tmp_path: Path) -> None
 def test_what_facts_rule_out_does_not_act_either_where_it_is_the_vessels_own() -> None:
     """A measured angle is behind the steering machine: its limit would hold it back once more."""
     ship = vessel.load("kvlcc2_mmg")
-    measured = without_ruled_out(ship, {"steering_measured": True})
+    measured = without_excluded_effects(ship, {"steering_measured": True})
     assert [e.name for e in ship.effects if e not in measured.effects] == ["steering_rate_limit"]
     assert (
-        without_ruled_out(ship, {"steering_measured": False, "indoors": True}).effects
+        without_excluded_effects(ship, {"steering_measured": False, "indoors": True}).effects
         == ship.effects
     )
 
@@ -114,23 +123,25 @@ def test_what_takes_the_place_of_a_rule_needs_a_reason(tmp_path: Path) -> None:
     boat = of(
         boats.PLANAR + '[diagnosis]\nrate = 3.0\nreasons = { rate = "a slow hull" }\n', tmp_path
     )
-    assert priors.rate(boat) == priors.rate(boat, 36_000.0) == 3.0
+    assert priors.used_sample_rate(boat) == priors.used_sample_rate(boat, 36_000.0) == 3.0
 
 
 def test_rows_of_a_long_recording_are_thinned_by_its_length_but_never_to_less_than_a_quarter() -> (
     None
 ):
     boat = vessel.load("trial_boat")
-    usual = priors.rate(boat)
-    assert priors.rate(boat, 300.0) == usual
-    assert 1200.0 * priors.rate(boat, 1200.0) == pytest.approx(DEFAULT.load.enough_rows)
-    assert priors.rate(boat, 36_000.0) == pytest.approx(DEFAULT.load.least_row_share * usual)
+    usual = priors.used_sample_rate(boat)
+    assert priors.used_sample_rate(boat, 300.0) == usual
+    assert 1200.0 * priors.used_sample_rate(boat, 1200.0) == pytest.approx(DEFAULT.load.enough_rows)
+    assert priors.used_sample_rate(boat, 36_000.0) == pytest.approx(
+        DEFAULT.load.least_row_share * usual
+    )
 
 
 @pytest.mark.parametrize("name", content.names("vessel"))
 def test_every_uncertainty_that_a_vessel_states_is_one_of_its_coefficients(name: str) -> None:
     boat = vessel.load(name)
-    check_uncertainty(boat, priors.uncertainty(boat), name)
+    check_uncertainty(boat, priors.coefficient_uncertainty(boat), name)
 
 
 def test_an_uncertainty_that_nothing_takes_up_is_one_line(tmp_path: Path) -> None:

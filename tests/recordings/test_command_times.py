@@ -9,7 +9,7 @@ from answers import diagnosed
 from real_boat import FURTHER, Real, recorded
 
 from boatsim.diagnosis.config import DEFAULT
-from boatsim.diagnosis.filter import body_of, map_recording, relative_noise
+from boatsim.diagnosis.filter import map_recording, relative_noise, rigid_body_values
 from boatsim.physics import vessel
 from boatsim.physics.base import Array
 from boatsim.physics.kernel.records import Inputs, Model
@@ -45,7 +45,7 @@ def test_thinned_rows_keep_every_command_at_its_own_time() -> None:
     laid.program.module.free_runs(
         Inputs(laid.times, laid.command_times, laid.command_values),
         DEFAULT.filter.free_run_step,
-        Model(body_of(laid.values), laid.values, laid.program.switches()),
+        Model(rigid_body_values(laid.values), laid.values, laid.program.switches()),
         np.array([0]),
         np.array([n - 1]),
         states[there[:1]],

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from boatsim.diagnosis import pipeline
-from boatsim.diagnosis.priors import assumed_disturbance, sensed_noise
+from boatsim.diagnosis.priors import assumed_disturbance, estimate_sensor_noise
 from boatsim.diagnosis.search.evidence import combined_gain, required_gain
-from boatsim.diagnosis.search.generalization import grew, misfit
+from boatsim.diagnosis.search.generalization import error_ratio, errors_grew
 from boatsim.physics import vessel
 from boatsim.recordings.table import Recording
 
@@ -78,15 +78,15 @@ def test_the_price_of_an_effect_grows_with_the_number_tried_and_look_alikes_pay_
 
 def test_an_error_has_grown_where_it_is_beyond_its_scatter_and_five_percent() -> None:
     before = {"position_rms_m": [1.0, 1.0, 1.0, 1.0]}
-    assert grew(before, {"position_rms_m": [1.3, 1.25, 1.35, 1.3]}, 2.0)
-    assert not grew(
+    assert errors_grew(before, {"position_rms_m": [1.3, 1.25, 1.35, 1.3]}, 2.0)
+    assert not errors_grew(
         before, {"position_rms_m": [1.02, 1.02, 1.02, 1.02]}, 2.0
     )  # by one percent of the rms
-    assert not grew(before, {"position_rms_m": [3.0, 0.5, 0.9, 1.0]}, 2.0)  # scatter
-    assert not grew(
+    assert not errors_grew(before, {"position_rms_m": [3.0, 0.5, 0.9, 1.0]}, 2.0)  # scatter
+    assert not errors_grew(
         {"position_rms_m": [1.0]}, {"position_rms_m": [9.0]}, 2.0
     )  # of one alone the scatter is not known
-    assert misfit({"a": [4.0], "b": [1.0]}, {"a": [1.0], "b": [1.0]}) == pytest.approx(2.0)
+    assert error_ratio({"a": [4.0], "b": [1.0]}, {"a": [1.0], "b": [1.0]}) == pytest.approx(2.0)
 
 
 def test_tolerated_forces_go_with_the_weight_and_their_moments_with_the_hull() -> None:
@@ -107,11 +107,13 @@ def test_noise_that_nobody_states_is_found_in_a_moving_signal_with_outliers(nois
     t, rng = np.arange(0.0, 60.0, 0.15), np.random.default_rng(3)
     x = 2.0 * np.sin(0.5 * t) + 0.1 * t + noise * rng.standard_normal(len(t))
     x[::50] += 1.0
-    found = sensed_noise(
+    found = estimate_sensor_noise(
         vessel.load("trial_boat"), [Recording("r", t, {"x_m": x, "y_m": x})], "position_sd_m"
     )
     assert found == pytest.approx(noise, rel=0.25)
     assert (
-        sensed_noise(vessel.load("trial_boat"), [Recording("r", t, {"x_m": x})], "heading_sd_rad")
+        estimate_sensor_noise(
+            vessel.load("trial_boat"), [Recording("r", t, {"x_m": x})], "heading_sd_rad"
+        )
         == 0.0
     )

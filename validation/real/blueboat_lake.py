@@ -17,12 +17,12 @@ import numpy as np
 
 from boatsim.diagnosis import loading, pipeline, priors
 from boatsim.diagnosis.correlation_time import with_correlation_time
-from boatsim.diagnosis.filter import MappedRecording, map_recording, segments, shared_noise
+from boatsim.diagnosis.filter import MappedRecording, free_run_segments, map_recording, shared_noise
 from boatsim.diagnosis.fit import converge, fit
-from boatsim.diagnosis.free_runs import FreeRun, errors, free_runs
+from boatsim.diagnosis.free_runs import FreeRun, free_runs, rms_errors
 from boatsim.diagnosis.pipeline import Diagnosis
 from boatsim.diagnosis.problem import Fit, Problem
-from boatsim.diagnosis.search.ranking import selection
+from boatsim.diagnosis.search.ranking import select_effects
 from boatsim.physics.base import Array, Measurement, Shown
 from boatsim.recordings.table import Recording
 from validation.real.common import (
@@ -94,7 +94,7 @@ def dead_reckoning(run: Recording, heading: Array) -> Iterator[float]:
     speed = run["estimate_u_mps"][:, None] * np.column_stack([np.cos(heading), np.sin(heading)])
     steps = 0.5 * (speed[1:] + speed[:-1]) * np.diff(run.t)[:, None]
     path = np.hypot(*np.diff(place, axis=0).T)
-    for a, b in zip(*segments(run.t, WINDOW), strict=True):
+    for a, b in zip(*free_run_segments(run.t, WINDOW), strict=True):
         travelled = float(path[a:b].sum())
         if travelled >= SHORTEST:
             missed = place[b] - place[a] - steps[a:b].sum(axis=0)
@@ -119,7 +119,7 @@ def leave_one_out(diagnosis: Diagnosis, runs: dict[str, Path]) -> list[Fold]:
     """
     opened = [loading.open_recording(path, VESSEL, ())[0] for path in runs.values()]
     vessel, program = diagnosis.vessel, diagnosis.problem.program
-    noise, rate = shared_noise(vessel, opened), priors.rate(vessel)
+    noise, rate = shared_noise(vessel, opened), priors.used_sample_rate(vessel)
     mapped = [map_recording(run.thinned(rate), program, noise) for run in opened]
     whole = dict(zip(names_of(mapped), opened, strict=True))
     # the correlation time of this fit would use the held-out runs
@@ -130,10 +130,10 @@ def leave_one_out(diagnosis: Diagnosis, runs: dict[str, Path]) -> list[Fold]:
         group = mapped[i::GROUPS]
         rest = hold_out(usual, mapped, group)
         names = rest.program.entries
-        selected = selection(rest, names)
+        selected = select_effects(rest, names)
         again = with_correlation_time(rest, selected[1])
         if again is not rest:
-            rest, selected = again, selection(again, names)
+            rest, selected = again, select_effects(again, names)
         for run in group:
             others = hold_out(rest, mapped, [run])
             folds.append(judge(others, selected, run, whole[run.name]))
@@ -190,7 +190,7 @@ def print_leave_one_out(folds: Sequence[Fold]) -> None:
 
 
 def _free(runs: Sequence[FreeRun]) -> list[str]:
-    rms = errors(runs).get("position_rms_m")
+    rms = rms_errors(runs).get("position_rms_m")
     if not rms:
         return ["", "", ""]
     before, after = rms["recalibrated"], rms["patched"]

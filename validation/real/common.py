@@ -6,7 +6,7 @@ from typing import Any, TypeVar
 
 from boatsim.diagnosis.evaluation import MODELS as MODELS
 from boatsim.diagnosis.pipeline import Diagnosis
-from boatsim.diagnosis.report.output_files import write
+from boatsim.diagnosis.report.output_files import write_diagnosis
 from boatsim.diagnosis.report.schema import EffectEntry
 
 RECORDINGS = Path(__file__).parents[3] / "shared" / "recordings"
@@ -40,7 +40,7 @@ def runs_except(runs: Mapping[str, T], names: Iterable[str]) -> list[T]:
 
 def write_report(diagnosis: Diagnosis, name: str) -> None:
     """Write the files of a diagnosis to out/real/<name>/ and print its summary."""
-    write(diagnosis, OUT / name)
+    write_diagnosis(diagnosis, OUT / name)
     print(diagnosis.findings.answer["sentence"])
     print(f"report: {OUT / name / 'report.html'}")
 

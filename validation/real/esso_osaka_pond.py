@@ -25,9 +25,9 @@ import numpy as np
 from boatsim.diagnosis import loading, pipeline, priors
 from boatsim.diagnosis.checks.position_outliers import drop_position_outliers
 from boatsim.diagnosis.coordinate_search import maximize
-from boatsim.diagnosis.filter import MappedRecording, segments, shared_noise
+from boatsim.diagnosis.filter import MappedRecording, free_run_segments, shared_noise
 from boatsim.diagnosis.fit import converge, fit
-from boatsim.diagnosis.free_runs import FreeRun, errors, free_runs
+from boatsim.diagnosis.free_runs import FreeRun, free_runs, rms_errors
 from boatsim.diagnosis.loading import Loaded
 from boatsim.diagnosis.pipeline import Diagnosis
 from boatsim.diagnosis.problem import Fit, FreeParameter, Problem
@@ -373,7 +373,7 @@ def print_judged(runs: Sequence[FreeRun], title: str) -> None:
     rows = []
     for kind in (*JUDGED, ""):
         some = runs_of_kind(runs, kind)
-        off = errors(some)
+        off = rms_errors(some)
         for family, (what, factor) in UNITS.items():
             goals = ["", ""]
             if not kind and family.startswith("position"):
@@ -388,7 +388,7 @@ def print_judged(runs: Sequence[FreeRun], title: str) -> None:
 
 def write_errors(runs: Sequence[FreeRun]) -> None:
     """Write the errors by kind of run, for the comparison in `esso_osaka_wind`."""
-    found = {kind: errors(runs_of_kind(runs, kind)) for kind in (*JUDGED, "")}
+    found = {kind: rms_errors(runs_of_kind(runs, kind)) for kind in (*JUDGED, "")}
     ERRORS_FILE.parent.mkdir(parents=True, exist_ok=True)
     ERRORS_FILE.write_text(json.dumps(found, indent=1), encoding="utf-8")
 
@@ -398,7 +398,7 @@ def in_wind_of_rest(
 ) -> list[FreeRun]:
     """Return free runs over each minute of a run, in the wind estimated from the rest of it."""
     out = []
-    for a, b in zip(*segments(whole.times, HORIZON), strict=True):
+    for a, b in zip(*free_run_segments(whole.times, HORIZON), strict=True):
         rest = mapper(around(stretches, float(whole.times[a]), float(whole.times[b])))
         for run in weather.free_runs(whole, weather.find_wind(rest)):
             if run.start_s == whole.times[a]:
@@ -442,7 +442,7 @@ def open_runs(
         Runs by name, and the vessel.
     """
     vessel = loading.vessel_for(next(iter(runs.values())), vessel_name, ())
-    rate = priors.rate(vessel)
+    rate = priors.used_sample_rate(vessel)
     found = {}
     for name, path in runs.items():
         recording = completed(name, loading.open_recording(path, vessel_name, ())[0])

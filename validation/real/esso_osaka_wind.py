@@ -14,7 +14,7 @@ from itertools import chain
 import numpy as np
 
 from boatsim.diagnosis.fit import converge
-from boatsim.diagnosis.free_runs import FreeRun, errors, free_runs
+from boatsim.diagnosis.free_runs import FreeRun, free_runs, rms_errors
 from boatsim.recordings.table import Recording
 from validation.real.common import (
     MODELS,
@@ -79,7 +79,7 @@ def print_comparison(
     rows = []
     for kind in (*JUDGED, ""):
         some = runs_of_kind(known, kind)
-        off, before = errors(some), concealed.get(kind)
+        off, before = rms_errors(some), concealed.get(kind)
         for family, (what, factor) in UNITS.items():
             now = scaled(off[family], factor)
             then = [np.nan] * len(MODELS)

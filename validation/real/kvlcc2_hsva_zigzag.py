@@ -12,7 +12,7 @@ from operator import attrgetter
 from boatsim.diagnosis import loading, pipeline, priors
 from boatsim.diagnosis.filter import MappedRecording
 from boatsim.diagnosis.fit import converge, gauss_newton
-from boatsim.diagnosis.free_runs import errors, free_runs
+from boatsim.diagnosis.free_runs import free_runs, rms_errors
 from boatsim.diagnosis.pipeline import Diagnosis
 from validation.real.common import (
     DEG,
@@ -36,7 +36,7 @@ UNITS = {"heading_rms_rad": ("heading [deg]", DEG), "position_rms_m": ("position
 
 def print_held_out(diagnosis: Diagnosis, goals: Mapping[str, float] = GOALS) -> None:
     """Print the errors on the two held-out runs with the goals."""
-    held_out = errors(diagnosis.findings.free_runs)
+    held_out = rms_errors(diagnosis.findings.free_runs)
     rows = []
     for family, goal in goals.items():
         what, factor = UNITS[family]
@@ -74,7 +74,7 @@ def print_leave_one_out(diagnosis: Diagnosis, recordings: list[MappedRecording])
             REFITTED, (diagnosis.ranking.recalibrated, diagnosis.ranking.best), strict=True
         ):
             fits[model] = converge(problem, gauss_newton(problem, start, 4, 0.1))
-        held_out = errors(free_runs(problem, fits, [out], HORIZON))
+        held_out = rms_errors(free_runs(problem, fits, [out], HORIZON))
         row = [out.name]
         for family, (_, factor) in UNITS.items():
             before, after = scaled(held_out[family], factor, REFITTED)
@@ -102,7 +102,7 @@ def main() -> None:
     write_report(diagnosis, NAME)
     print_held_out(diagnosis)
     print_couplings(diagnosis)
-    rate = priors.rate(diagnosis.vessel)
+    rate = priors.used_sample_rate(diagnosis.vessel)
     recordings = []
     for path in runs.values():
         recording = loading.open_recording(path, None, ())[0]

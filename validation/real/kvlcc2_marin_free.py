@@ -13,7 +13,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from boatsim.diagnosis import loading, pipeline, priors
-from boatsim.diagnosis.evaluation import models
+from boatsim.diagnosis.evaluation import compared_fits
 from boatsim.diagnosis.filter import MappedRecording
 from boatsim.diagnosis.pipeline import Diagnosis
 from boatsim.diagnosis.problem import Fit
@@ -51,7 +51,7 @@ def print_circle(
     diagnosis: Diagnosis, circle: MappedRecording, goals: Mapping[str, float], header: str = "goal"
 ) -> None:
     """Print the errors on the held-out turning circle with the goals for speed and yaw rate."""
-    fits = models(diagnosis.ranking).values()
+    fits = compared_fits(diagnosis.ranking).values()
     by_model = [turn_errors(diagnosis, fit, circle) for fit in fits]
     rows = []
     for (what, goal), off in zip(goals.items(), np.transpose(by_model), strict=True):
@@ -67,7 +67,7 @@ def main() -> None:
     diagnosis = pipeline.diagnose(selected(runs, FITTED), [runs[HELD_OUT]], horizon=HORIZON)
     write_report(diagnosis, NAME)
     recording, vessel = loading.open_recording(runs[HELD_OUT], None, ())
-    circle = diagnosis.map_recording(recording.thinned(priors.rate(vessel)))
+    circle = diagnosis.map_recording(recording.thinned(priors.used_sample_rate(vessel)))
     print_circle(diagnosis, circle, GOALS, f"goal (and <= {SHARE})")
     speed = circle.measured[circle.times <= DURATION, circle.signals.index("u_mps")]
     rms = float(np.sqrt(np.mean((speed - speed[0]) ** 2)))

@@ -16,12 +16,12 @@ import numpy as np
 
 from boatsim.diagnosis import loading, pipeline, priors
 from boatsim.diagnosis.checks.position_outliers import drop_position_outliers
-from boatsim.diagnosis.evaluation import models
+from boatsim.diagnosis.evaluation import compared_fits
 from boatsim.diagnosis.filter import MappedRecording
 from boatsim.diagnosis.fit import ParameterSpace, converge, gauss_newton
-from boatsim.diagnosis.free_runs import errors, free_runs
+from boatsim.diagnosis.free_runs import free_runs, rms_errors
 from boatsim.diagnosis.loading import Loaded
-from boatsim.diagnosis.noise_levels import fit_force, force_prior
+from boatsim.diagnosis.noise_levels import fit_force, log_force_prior
 from boatsim.diagnosis.pipeline import Diagnosis
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.errors import BadInput, unknown_name
@@ -103,7 +103,7 @@ def overshoots_by_model(diagnosis: Diagnosis, run: Recording) -> list[list[float
     mapped, problem = diagnosis.map_recording(run), diagnosis.problem
     heading = int(mapped.codes[mapped.signals.index("psi_rad")])
     duration = float(mapped.times[rows - 1] - mapped.times[0])
-    for fit in models(diagnosis.ranking).values():
+    for fit in compared_fits(diagnosis.ranking).values():
         values = problem.values(mapped, fit.free, fit.theta)
         on = problem.program.switches(fit.effects)
         first, states = mapped.free_runs(values, on, fit.levels, duration)[0]
@@ -164,7 +164,9 @@ def open_runs(runs: dict[str, Path], vessel_name: str) -> dict[str, Recording]:
     opened = {}
     for name, path in runs.items():
         run, vessel = loading.open_recording(path, vessel_name, ())
-        thin = drop_position_outliers(run.thinned(min(RATE, priors.rate(vessel))), vessel)
+        thin = drop_position_outliers(
+            run.thinned(min(RATE, priors.used_sample_rate(vessel))), vessel
+        )
         notes = replace(thin.notes, facts={**FACTS, **thin.notes.facts})
         opened[name] = replace(thin, name=name, notes=notes)
     return opened
@@ -192,7 +194,7 @@ def log_likelihood(problem: Problem, found: Fit) -> float:
     refitted = fit_force(problem, found)
     on = problem.program.switches(refitted.effects)
     likelihood = problem.log_likelihood(refitted.free, refitted.theta, on, refitted.levels)
-    return likelihood + force_prior(problem, refitted.levels)
+    return likelihood + log_force_prior(problem, refitted.levels)
 
 
 def print_error_sources(
@@ -250,7 +252,7 @@ def judge_hsva() -> None:
     held_out = list(map(diagnosis.map_recording, selected(runs, hsva.HELD_OUT)))
 
     def errors_of(fit: Fit) -> Errors:
-        off = errors(free_runs(diagnosis.problem, {"": fit}, held_out, hsva.HORIZON))
+        off = rms_errors(free_runs(diagnosis.problem, {"": fit}, held_out, hsva.HORIZON))
         return {what: off[family][""] * factor for family, (what, factor) in hsva.UNITS.items()}
 
     print_overshoots(diagnosis, runs)

@@ -16,10 +16,10 @@ from pathlib import Path
 import numpy as np
 
 from boatsim.diagnosis import loading, pipeline, priors
-from boatsim.diagnosis.evaluation import models
+from boatsim.diagnosis.evaluation import compared_fits
 from boatsim.diagnosis.filter import MappedRecording
 from boatsim.diagnosis.fit import converge
-from boatsim.diagnosis.free_runs import errors, free_runs
+from boatsim.diagnosis.free_runs import free_runs, rms_errors
 from boatsim.diagnosis.loading import Loaded
 from boatsim.diagnosis.pipeline import Diagnosis
 from boatsim.diagnosis.problem import Fit, Problem
@@ -55,7 +55,7 @@ Table = tuple[str, list[str], Rows]
 def open_release(name: str) -> tuple[Recording, Vessel]:
     """Return a release at the rate of a diagnosis, and its vessel."""
     recording, vessel = loading.open_recording(DATA / f"{name}.csv", None, ())
-    return replace(recording.thinned(priors.rate(vessel)), name=name), vessel
+    return replace(recording.thinned(priors.used_sample_rate(vessel)), name=name), vessel
 
 
 def cut(whole: Recording, edges: Sequence[float]) -> list[Recording]:
@@ -95,7 +95,7 @@ def diagnose_thirds(whole: Recording, vessel: Vessel, held_out: int = 1) -> Diag
 
 def held_out_errors(diagnosis: Diagnosis) -> dict[str, float]:
     """Return the rms roll error [rad] of free runs over held-out data, by model."""
-    return errors(diagnosis.findings.free_runs)["roll_rms_rad"]
+    return rms_errors(diagnosis.findings.free_runs)["roll_rms_rad"]
 
 
 def ratio(diagnosis: Diagnosis) -> float:
@@ -281,9 +281,9 @@ def with_sd(value: float, sd: float) -> str:
 def transfer_rows(at_rest: Diagnosis, whole: Recording) -> Rows:
     """Return rows with the errors of the boats fitted at zero speed on the release at speed."""
     (mapped,) = map_all(at_rest, [whole])
-    fits = models(at_rest.ranking)
+    fits = compared_fits(at_rest.ranking)
     stretches = free_runs(at_rest.problem, fits, [mapped], float(np.ptp(mapped.times)))
-    rms = errors(stretches)["roll_rms_rad"]
+    rms = rms_errors(stretches)["roll_rms_rad"]
     rows = []
     for model, x in rms.items():
         rows.append([model, f"{x * DEG:.3f}", f"{x / rms['recalibrated']:.2f}"])
@@ -302,14 +302,14 @@ def last_third(diagnosis: Diagnosis, whole: Recording) -> tuple[Rows, Ranking]:
     problem = diagnosis.problem
     alone = Problem([tail], problem.ambient, problem.uncertainty)
     ranking = rank(alone, problem.program.entries)
-    fits = dict(models(diagnosis.ranking))
+    fits = dict(compared_fits(diagnosis.ranking))
     fits["linear, fitted here"] = ranking.recalibrated
     gains = {}
     for name, gain in ranking.first.items():
         label = f"{name}, fitted here"
         fits[label] = with_effects(alone, ranking.recalibrated, [name])
         gains[label] = f"{gain:+.1f}"
-    rms = errors(free_runs(alone, fits, [tail], float(np.ptp(tail.times))))["roll_rms_rad"]
+    rms = rms_errors(free_runs(alone, fits, [tail], float(np.ptp(tail.times))))["roll_rms_rad"]
     rows = []
     for label, x in rms.items():
         rows.append([label, f"{x * DEG:.4f}", gains.get(label, "")])

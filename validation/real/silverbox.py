@@ -33,7 +33,7 @@ from boatsim.diagnosis.loading import Loaded
 from boatsim.diagnosis.locate.residual_structure import find_structure
 from boatsim.diagnosis.pipeline import Diagnosis
 from boatsim.diagnosis.problem import Fit, Problem
-from boatsim.diagnosis.search.ranking import baseline
+from boatsim.diagnosis.search.ranking import fit_baseline
 from boatsim.physics import vessel as vessels
 from boatsim.physics.base import Array
 from boatsim.physics.vessel import Vessel
@@ -283,7 +283,7 @@ def input_rows(whole: Path, diagnosis: Diagnosis) -> list[list[str]]:
         parts = starmap(partial(rows_of, recording), FITTED)
         fitted = [map_recording(part, problem.program) for part in parts]
         refitted = Problem(fitted, problem.ambient, problem.uncertainty)
-        _, base = baseline(refitted)
+        _, base = fit_baseline(refitted)
         models = {"linear": base, "found": with_effects(refitted, base, COMPARED)}
         off = simulation_errors(diagnosis, rows_of(recording, *HELD_OUT), models)
         evidence = f"{models['found'].evidence:.0f}"

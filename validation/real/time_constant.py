@@ -15,10 +15,10 @@ import numpy as np
 from boatsim.diagnosis import loading, priors
 from boatsim.diagnosis.candidates import library_for
 from boatsim.diagnosis.config import DEFAULT
-from boatsim.diagnosis.correlation_time import correlation_time, halves_errors
+from boatsim.diagnosis.correlation_time import correlation_time, cross_validation_errors
 from boatsim.diagnosis.filter import map_recording, prior_levels, shared_noise
 from boatsim.diagnosis.problem import Problem
-from boatsim.diagnosis.search.ranking import selection
+from boatsim.diagnosis.search.ranking import select_effects
 from boatsim.physics.program import Program
 from validation.real import blueboat_lake, kvlcc2_hsva_zigzag, kvlcc2_marin_free
 from validation.real.common import print_table, runs_except, runs_of
@@ -36,9 +36,9 @@ def problem_of(paths: list[Path], vessel_name: str | None) -> Problem:
     opened = [loading.open_recording(path, vessel_name, ()) for path in paths]
     first, vessel = opened[0]
     program = Program(vessel, library_for(vessel).compiled)
-    noise, rate = shared_noise(vessel, [first]), priors.rate(vessel)
+    noise, rate = shared_noise(vessel, [first]), priors.used_sample_rate(vessel)
     recordings = [map_recording(run.thinned(rate), program, noise) for run, _ in opened]
-    uncertainty = priors.uncertainty(vessel) | first.notes.coefficient_uncertainty
+    uncertainty = priors.coefficient_uncertainty(vessel) | first.notes.coefficient_uncertainty
     return Problem(recordings, prior_levels(vessel, [first]), uncertainty)
 
 
@@ -47,13 +47,13 @@ def main() -> None:
     steps = DEFAULT.fit.correlation_time_steps
     for name in sys.argv[1:] or HELD_OUT:
         problem = problem_of(runs_except(runs_of(name), HELD_OUT[name]), VESSELS.get(name))
-        _, best = selection(problem, problem.program.entries)
+        _, best = select_effects(problem, problem.program.entries)
         usual = problem.ambient.time_constant
         selected = correlation_time(problem, best)
         rows = []
         for step in range(-steps, steps + 1):
             seconds = usual * 2.0**step
-            error = float(np.exp(np.mean(np.log(halves_errors(problem, best, seconds)))))
+            error = float(np.exp(np.mean(np.log(cross_validation_errors(problem, best, seconds)))))
             rows.append([f"{seconds:.2g}", f"{error:.4g}", "*" if seconds == selected else ""])
         title = f"{name}: with the default {usual:.2g} s {problem.program.vessel.name} lacks "
         header = ["time constant [s]", "error of the other half", "selected"]

@@ -8,7 +8,7 @@ The script prints what was found, upper limits of what was not, and what cannot 
 import numpy as np
 
 from boatsim.diagnosis import pipeline
-from boatsim.diagnosis.free_runs import errors
+from boatsim.diagnosis.free_runs import rms_errors
 from boatsim.diagnosis.pipeline import Diagnosis
 from validation.real.common import (
     DEG,
@@ -33,7 +33,7 @@ QUANTITIES = {"position_rms_m": ("position [m]", 1.0), "heading_rms_rad": ("head
 
 def print_held_out(diagnosis: Diagnosis) -> None:
     """Print the errors of free runs over the middle third."""
-    off = errors(diagnosis.findings.free_runs)
+    off = rms_errors(diagnosis.findings.free_runs)
     rows, ratios = [], []
     for family, (what, factor) in QUANTITIES.items():
         nominal, before, after = scaled(off[family], factor)

@@ -12,7 +12,7 @@ from math import sqrt
 import numpy as np
 from scipy.signal import savgol_coeffs
 
-from boatsim.diagnosis.filter import MappedRecording, NoiseLevels, body_of
+from boatsim.diagnosis.filter import MappedRecording, NoiseLevels, rigid_body_values
 from boatsim.diagnosis.locate.nominal_forces import actuator_states
 from boatsim.physics.base import Array
 
@@ -199,7 +199,7 @@ def predicted(
     """Return joint accelerations (N, NQ) at states (N, 2 NQ) and actuators (N, HELD)."""
     code = track.program.module
     k, nothing, nq = np.zeros(code.K), np.zeros(code.NQ), code.NQ
-    code.constants(body_of(values), values, on, k)
+    code.constants(rigid_body_values(values), values, on, k)
     after, acts = states.copy(), np.hstack([held, held, held])
     for t, y, act in zip(track.times.tolist(), after, acts, strict=True):
         code.step_in_place(t, y, SHORT, act, values, on, k, nothing)

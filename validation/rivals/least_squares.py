@@ -10,9 +10,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from boatsim.diagnosis.candidates import called
+from boatsim.diagnosis.candidates import base_name
 from boatsim.diagnosis.problem import Fit
-from boatsim.diagnosis.search.screening import add_effect, hand_over, starts
+from boatsim.diagnosis.search.screening import add_effect, hand_over_coefficient, starting_points
 from boatsim.physics.base import Array
 from validation.rivals.evidence import Judge, sizes
 from validation.rivals.linear import Linear, descended, solved
@@ -90,12 +90,12 @@ class LeastSquares:
 
     def next(self, best: State) -> State | None:
         """Return the set with the best further effect, or None if BIC would rise."""
-        there = {called(n) for n in best.effects}
+        there = {base_name(n) for n in best.effects}
         base = self.linear(best)
         screened = [
             self.screen_entry(best, base, n)
             for n in self.question.entries
-            if called(n) not in there
+            if base_name(n) not in there
         ]
         rows = float(sum(np.isfinite(e).sum() for e in best.errors))
         screened = sorted(
@@ -256,8 +256,8 @@ class LeastSquares:
         """
         effects, found = (*best.effects, entry), list[State]()
         begun_at = fit_of(self.question, best.effects, best.theta, np.zeros((0, 0)))
-        for start in starts(self.problem, self.question.entries[entry]):
-            fit = hand_over(
+        for start in starting_points(self.problem, self.question.entries[entry]):
+            fit = hand_over_coefficient(
                 add_effect(self.problem, begun_at, entry, start), self.question.entries[entry]
             )
             theta = np.clip(fit.theta, [f.low for f in fit.free], [f.high for f in fit.free])

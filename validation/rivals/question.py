@@ -12,14 +12,14 @@ import numpy as np
 from boatsim.cli import diagnosis as commands
 from boatsim.control.base import wrap
 from boatsim.diagnosis import priors
-from boatsim.diagnosis.candidates import called, library_for
+from boatsim.diagnosis.candidates import base_name, library_for
 from boatsim.diagnosis.checks.position_outliers import drop_position_outliers
 from boatsim.diagnosis.checks.repeated_positions import drop_repeated_positions
 from boatsim.diagnosis.filter import map_recording, prior_levels, shared_noise
 from boatsim.diagnosis.loading import open_recording
 from boatsim.diagnosis.problem import Fit, FreeParameter, Problem
 from boatsim.diagnosis.report import patched_vessel
-from boatsim.diagnosis.report.answer import key_of
+from boatsim.diagnosis.report.answer import parameter_key
 from boatsim.physics.base import Array, Effect
 from boatsim.physics.program import Program
 from boatsim.physics.vessel import Vessel
@@ -53,20 +53,24 @@ def read_question(trial: Path) -> Question:
     vessel = opened[0][1]
     runs = []
     for r, b in opened:
-        runs.append(drop_position_outliers(drop_repeated_positions(r.thinned(priors.rate(b))), b))
+        runs.append(
+            drop_position_outliers(
+                drop_repeated_positions(r.thinned(priors.used_sample_rate(b))), b
+            )
+        )
     columns = sorted({c for r in runs for c in r.signals})
     library = library_for(vessel, (), runs[0].notes.facts, columns)
     program = Program(vessel, library.compiled)
     stated = shared_noise(vessel, runs)
     tracks = [map_recording(r, program, stated) for r in runs]
-    uncertainty = priors.uncertainty(vessel) | runs[0].notes.coefficient_uncertainty
+    uncertainty = priors.coefficient_uncertainty(vessel) | runs[0].notes.coefficient_uncertainty
     problem = Problem(tracks, prior_levels(vessel, runs), uncertainty)
     entries = {}
     for e in library.entries:
         if e.name in library.tested and not type(e).random:
             entries[e.name] = e
     families = {f for t in tracks for f in t.families}
-    noise = {f: priors.sensed_noise(vessel, runs, f) or stated[f] for f in families}
+    noise = {f: priors.estimate_sensor_noise(vessel, runs, f) or stated[f] for f in families}
     return Question(vessel, problem, entries, noise)
 
 
@@ -88,13 +92,15 @@ def answer(
 ) -> None:
     """Write diagnosis.json, patched.toml and replay.csv of one trial."""
     out.mkdir(parents=True, exist_ok=True)
-    patched_vessel.write(question.problem, question.vessel, found, out / "patched.toml")
+    patched_vessel.write_patched_vessel(
+        question.problem, question.vessel, found, out / "patched.toml"
+    )
     with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()):
         commands.replay(trial / "run_3.csv", str(out / "patched.toml"), [], horizon_of(trial), out)
     said: dict[str, Any] = {
         "effects": [
             {
-                "name": called(n),
+                "name": base_name(n),
                 "parameters": parameters(question, found, n),
                 "gain_nats": round(gains[n], 2),
             }
@@ -114,5 +120,9 @@ def parameters(question: Question, found: Fit, entry: str) -> dict[str, dict[str
             value, sd = found.value(entry, f.name)
             unit = kind.params()[f.name].unit
             value = wrap(value) if unit == "rad" else value
-            stated[key_of(f.name, unit)] = {"value": value, "sd": max(sd, LEAST_SD), "unit": unit}
+            stated[parameter_key(f.name, unit)] = {
+                "value": value,
+                "sd": max(sd, LEAST_SD),
+                "unit": unit,
+            }
     return stated

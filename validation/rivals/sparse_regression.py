@@ -13,9 +13,9 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.stats import chi2
 
-from boatsim.diagnosis.candidates import called
+from boatsim.diagnosis.candidates import base_name
 from boatsim.diagnosis.problem import Fit
-from boatsim.diagnosis.search.screening import add_effect, hand_over, starts
+from boatsim.diagnosis.search.screening import add_effect, hand_over_coefficient, starting_points
 from boatsim.physics.base import Array, Force, Measurement
 from validation.rivals.accelerations import (
     Smoother,
@@ -198,8 +198,8 @@ class SparseRegression:
         """Fit an effect alone and return its columns; None if it diverges or changes nothing."""
         base = fit_of(self.question, (), nominal.theta, np.zeros((0, 0)))
         begun = [
-            hand_over(add_effect(self.problem, base, entry, s), self.entries[entry])
-            for s in starts(self.problem, self.entries[entry])
+            hand_over_coefficient(add_effect(self.problem, base, entry, s), self.entries[entry])
+            for s in starting_points(self.problem, self.entries[entry])
         ]
         free = free_of(self.question, (entry,))
         low, high = [f.low for f in free], [f.high for f in free]
@@ -247,7 +247,7 @@ class SparseRegression:
             return float(b[at] @ np.linalg.solve(G[np.ix_(at, at)], b[at]))
 
         while kept:
-            if len(kept) <= MOST and len({called(n) for n in kept}) == len(kept):
+            if len(kept) <= MOST and len({base_name(n) for n in kept}) == len(kept):
                 found.append(tuple(kept))
             worth = {n: explained([m for m in kept if m != n]) for n in kept}
             dispensable = max(worth, key=lambda n: worth[n])

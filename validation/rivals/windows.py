@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from boatsim.diagnosis.filter import MappedRecording, body_of, segments
+from boatsim.diagnosis.filter import MappedRecording, free_run_segments, rigid_body_values
 from boatsim.physics.base import Array
 from boatsim.physics.kernel.records import Inputs, Model
 
@@ -29,7 +29,7 @@ class Windows:
     @classmethod
     def of(cls, track: MappedRecording, horizon: float) -> "Windows":
         """Cut a recording into windows of `horizon` seconds."""
-        begins, ends = segments(track.times, horizon)
+        begins, ends = free_run_segments(track.times, horizon)
         return cls(track, np.array(begins), np.array(ends))
 
     def guess(self) -> Array:
@@ -53,7 +53,7 @@ class Windows:
         program.module.free_runs(
             Inputs(track.times, track.command_times, track.command_values),
             track.step,
-            Model(body_of(values), values, on),
+            Model(rigid_body_values(values), values, on),
             self.begins,
             self.ends,
             np.ascontiguousarray(starts),

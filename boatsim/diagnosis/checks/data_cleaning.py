@@ -65,7 +65,7 @@ def clean_recording(
     Returns:
         The cleaned recording; ignored values are nan, and its remarks list each correction.
     """
-    reduced = recording.thinned(priors.rate(vessel, duration, config.load))
+    reduced = recording.thinned(priors.used_sample_rate(vessel, duration, config.load))
     return drop_position_outliers(drop_repeated_positions(reduced), vessel, config)
 
 

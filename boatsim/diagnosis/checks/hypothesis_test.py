@@ -32,9 +32,9 @@ from boatsim.diagnosis.config import ChecksConfig, DiagnosisConfig
 from boatsim.diagnosis.filter import MappedRecording, axes_of
 from boatsim.diagnosis.locate import nominal_forces
 from boatsim.diagnosis.noise_levels import fit_noise
-from boatsim.diagnosis.priors import rate
+from boatsim.diagnosis.priors import used_sample_rate
 from boatsim.diagnosis.problem import Fit, Problem
-from boatsim.diagnosis.search.ranking import baseline
+from boatsim.diagnosis.search.ranking import fit_baseline
 from boatsim.errors import BadInput
 from boatsim.physics.base import Array
 from boatsim.physics.vessel import Vessel
@@ -69,14 +69,14 @@ class Comparison:
         """The score of changed recordings; minus infinity where they can not be fitted."""
         try:
             problem = self.mapped(recordings, changes)
-            _, recalibrated = baseline(problem)
+            _, recalibrated = fit_baseline(problem)
         except (BadInput, np.linalg.LinAlgError, FloatingPointError):
             return Score(-np.inf, np.inf)
         return Score(recalibrated.evidence, unexplained_force_share(problem, recalibrated))
 
     def is_explained(self, problem: Problem) -> bool:
         """Whether the vessel as specified explains the recordings of a problem."""
-        nominal = fit_noise(problem, problem.nominal())
+        nominal = fit_noise(problem, problem.nominal_hypothesis())
         return unexplained_force_share(problem, nominal) < self.config.unexplained_max_share
 
 
@@ -154,7 +154,7 @@ def _shortened(
     Recordings with separate rows for each instrument are reduced to the usual rate first.
     """
     runs = list(recordings)[: config.checks.compare_max_recordings]
-    usual = rate(vessel, config=config.load)
+    usual = used_sample_rate(vessel, config=config.load)
     rows = config.checks.compare_max_rows // len(runs)
     short = []
     for run in runs:
@@ -267,8 +267,8 @@ def _likeliest(recordings: list[Recording], comparison: Comparison) -> list[Rein
     """
     config = comparison.config
     problem = comparison.mapped(recordings)
-    nominal = problem.nominal()
-    levels = fit_noise(problem, problem.nominal()).levels
+    nominal = problem.nominal_hypothesis()
+    levels = fit_noise(problem, problem.nominal_hypothesis()).levels
     on = problem.program.switches()
 
     def log_likelihood(each: Reinterpretation) -> float:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from boatsim.diagnosis.config import DEFAULT, ChecksConfig, DiagnosisConfig
-from boatsim.diagnosis.priors import froude_time, sensed_noise
+from boatsim.diagnosis.priors import estimate_sensor_noise, froude_time
 from boatsim.physics.base import Array
 from boatsim.physics.vessel import Vessel
 from boatsim.recordings.table import Recording
@@ -82,7 +82,7 @@ def outlier_rows_at_start(
         known = np.flatnonzero(np.isfinite(column))[: config.checks.start_max_outliers + fitted]
         if len(known) <= fitted:
             continue
-        noise = sensed_noise(vessel, [recording], family, config.load)
+        noise = estimate_sensor_noise(vessel, [recording], family, config.load)
         for first in range(len(known) - fitted):
             rows = known[first : first + fitted + 1]
             t = recording.t[rows] - recording.t[rows[0]]

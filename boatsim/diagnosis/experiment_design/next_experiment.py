@@ -15,7 +15,7 @@ from operator import attrgetter
 
 import numpy as np
 
-from boatsim.diagnosis.candidates import called
+from boatsim.diagnosis.candidates import base_name
 from boatsim.diagnosis.config import DiagnosisConfig
 from boatsim.diagnosis.experiment_design.manoeuvres import available_manoeuvres
 from boatsim.diagnosis.experiment_design.simulated_manoeuvre import (
@@ -226,7 +226,7 @@ def _quoted(text: str) -> str:
 
 def other_effects(named: IdentifiedEffect) -> list[str]:
     """Return the rivals that are another effect, not the same one on another actuator."""
-    return [rival for rival in named.rivals if called(rival) != called(named.name)]
+    return [rival for rival in named.rivals if base_name(rival) != base_name(named.name)]
 
 
 def expected_log_bayes_factors(
@@ -296,7 +296,7 @@ def _refit(
         for j in range(len(xi)):
             moved = xi.copy()
             moved[j] += POSTERIOR_STEP
-            changed = recording.whitened(values(moved), on, best.levels, about)
+            changed = recording.whitened_errors(values(moved), on, best.levels, about)
             U[:, j] = (changed - about.whitened) / POSTERIOR_STEP
         return U
 

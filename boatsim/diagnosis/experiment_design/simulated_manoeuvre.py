@@ -10,8 +10,8 @@ from boatsim.diagnosis.filter import (
     InitialState,
     MappedRecording,
     axes_of,
-    body_of,
     command_changes,
+    rigid_body_values,
 )
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.physics.base import Array
@@ -117,7 +117,7 @@ def _free_run(problem: Problem, fit: Fit, times: Array, commands: Array, start: 
     problem.program.module.free_runs(
         Inputs(times, times, commands),
         problem.config.filter.filter_step,
-        Model(body_of(values), values, problem.program.switches(fit.effects)),
+        Model(rigid_body_values(values), values, problem.program.switches(fit.effects)),
         np.array([0]),
         np.array([len(times) - 1]),
         start[None],

@@ -6,8 +6,8 @@ from typing import TypedDict
 import numpy as np
 
 from boatsim.diagnosis.free_runs import FreeRun
-from boatsim.diagnosis.report.figures import in_unit
-from boatsim.diagnosis.report.svg_plots import every
+from boatsim.diagnosis.report.figures import unit_for_signal
+from boatsim.diagnosis.report.svg_plots import evenly_spaced_rows
 from boatsim.physics.base import Array
 
 FRAMES = 1200
@@ -28,7 +28,7 @@ class Boat(TypedDict):
     turned: list[float | None]  # [rad] clockwise
 
 
-class Film(TypedDict):
+class Animation(TypedDict):
     """Data of the animation."""
 
     t: list[float]  # [s]; two equal times where a new free run starts
@@ -40,14 +40,14 @@ class Film(TypedDict):
     boats: list[Boat]
 
 
-def film(
+def animation_frames(
     runs: Sequence[FreeRun],
     models: Sequence[str],
     signal: str | None,
     height: float,
     outline: Outline,
     start: float,
-) -> Film:
+) -> Animation:
     """Return the frames of consecutive free runs.
 
     Args:
@@ -60,19 +60,19 @@ def film(
     """
     rows, times = [], []
     for run in runs:
-        rows.append(every(len(run.t), max(2, FRAMES // len(runs))))
+        rows.append(evenly_spaced_rows(len(run.t), max(2, FRAMES // len(runs))))
         times.append(run.t[rows[-1]])
     t = np.concatenate(times)
     decimals = max(0, 4 - int(np.floor(np.log10(height))))
     unit, factor = ("m", 1.0)
     if signal:
-        unit, factor = in_unit(signal, runs)
+        unit, factor = unit_for_signal(signal, runs)
 
     def joined(model: str, name: str) -> Array:
         parts = []
         for run, k in zip(runs, rows, strict=True):
             values = run.channels[model].get(name, np.zeros(len(run.t)))
-            parts.append(bridged(run.t, values)[k])
+            parts.append(fill_short_gaps(run.t, values)[k])
         return np.concatenate(parts)
 
     boats = []
@@ -81,7 +81,7 @@ def film(
     return {
         "t": np.round(t, 3).tolist(),
         "start": int(np.argmin(np.abs(t - start))),
-        "rate": _speed(float(t[-1] - t[0])),
+        "rate": _playback_speed(float(t[-1] - t[0])),
         "plan": signal is None,
         "unit": unit,
         "outline": outline,
@@ -112,7 +112,7 @@ def _boat(
     }
 
 
-def _speed(seconds: float) -> int:
+def _playback_speed(seconds: float) -> int:
     """Return the slowest speed at which the animation is short enough."""
     for speed in SPEEDS:
         if seconds <= speed * LONGEST_ANIMATION:
@@ -120,7 +120,7 @@ def _speed(seconds: float) -> int:
     return SPEEDS[-1]
 
 
-def bridged(t: Array, values: Array) -> Array:
+def fill_short_gaps(t: Array, values: Array) -> Array:
     """Return values with short gaps between measurements filled linearly.
 
     Args:

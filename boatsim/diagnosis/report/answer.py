@@ -5,10 +5,10 @@ from collections.abc import Iterable, Mapping, Sequence
 import numpy as np
 
 from boatsim.control.base import wrap
-from boatsim.diagnosis.candidates import called
+from boatsim.diagnosis.candidates import base_name
 from boatsim.diagnosis.checks.entry import column_sources, log_entry
 from boatsim.diagnosis.checks.finding import LOG_NOT_BOAT, Finding
-from boatsim.diagnosis.config import AnswerConfig, as_plain
+from boatsim.diagnosis.config import AnswerConfig, settings_by_name
 from boatsim.diagnosis.evaluation import Evaluation
 from boatsim.diagnosis.experiment_design import next_experiment
 from boatsim.diagnosis.loading import Loaded
@@ -19,7 +19,7 @@ from boatsim.diagnosis.problem import Fit, FreeParameter, Problem
 from boatsim.diagnosis.question import Question
 from boatsim.diagnosis.report.assumptions import excluded_candidates, rules_entry
 from boatsim.diagnosis.report.described_terms import described_entries
-from boatsim.diagnosis.report.formatting import capital, listed
+from boatsim.diagnosis.report.formatting import capitalize, join_words
 from boatsim.diagnosis.report.schema import (
     Acting,
     Answer,
@@ -32,7 +32,7 @@ from boatsim.diagnosis.report.schema import (
     UnknownEntry,
     WhereEntry,
 )
-from boatsim.diagnosis.report.sentences import sentence
+from boatsim.diagnosis.report.sentences import verdict_sentences
 from boatsim.diagnosis.search.pruning import IdentifiedEffect
 from boatsim.diagnosis.search.ranking import Ranking
 from boatsim.physics.base import Channel, Effect
@@ -42,7 +42,7 @@ from boatsim.version import version
 NEXT_SCENARIO = "next.toml"  # scenario of the next experiment, in the folder of the answer
 
 
-def compose(
+def compose_answer(
     loaded: Loaded,
     question: Question,
     findings: Sequence[Finding],
@@ -71,7 +71,7 @@ def compose(
     formulas = described_entries(ranking.description, vessel)
     limits = {}
     for name, fitted in ranking.last.items():
-        limits[called(name)] = _limits(problem, fitted, name)
+        limits[base_name(name)] = _limits(problem, fitted, name)
     answer: Answer = {
         "verdict": _verdict(ranking, effects, bool(formulas)),
         "sentence": "",
@@ -87,14 +87,14 @@ def compose(
         "next_experiment": next_experiment.plan_entry(plan, NEXT_SCENARIO),
         "patch": "patched.toml",
         "mean_left": dict(evaluation.mean_force),
-        "tried": sorted(set(map(called, question.candidates))),
+        "tried": sorted(set(map(base_name, question.candidates))),
         "left_out": excluded_candidates(question),
         "facts": dict(problem.recordings[0].facts),
         "rules": rules_entry(problem, len(question.candidates)),
         "log": _log(loaded, findings),
-        "config": as_plain(problem.config),
+        "config": settings_by_name(problem.config),
     }
-    verdict = sentence(answer, meanings(problem.program.candidates, vessel))
+    verdict = verdict_sentences(answer, effect_meanings(problem.program.candidates, vessel))
     answer["sentence"] = _with_log_first(verdict, findings, problem)
     return answer
 
@@ -169,10 +169,12 @@ def _with_log_first(verdict: str, findings: Sequence[Finding], problem: Problem)
     if not certain:
         return verdict
     rest = f"{verdict[:1].lower()}{verdict[1:]}"
-    return f"{capital(LOG_NOT_BOAT)}: {listed(certain)}. If the log is used unchanged: {rest}"
+    return (
+        f"{capitalize(LOG_NOT_BOAT)}: {join_words(certain)}. If the log is used unchanged: {rest}"
+    )
 
 
-def meanings(candidates: Iterable[Effect], vessel: Vessel) -> dict[str, str]:
+def effect_meanings(candidates: Iterable[Effect], vessel: Vessel) -> dict[str, str]:
     """Return the meaning of each candidate by name, and of its parameters by "effect.parameter".
 
     Args:
@@ -181,18 +183,18 @@ def meanings(candidates: Iterable[Effect], vessel: Vessel) -> dict[str, str]:
     """
     found, parameters = dict[str, str](), dict[str, str]()
     for effect in candidates:
-        name, kind = called(effect.name), type(effect)
+        name, kind = base_name(effect.name), type(effect)
         found[name] = kind.words
         for key, param in kind.params().items():
             if param.fit:
-                parameters[f"{name}.{key_of(key, param.unit)}"] = param.words
+                parameters[f"{name}.{parameter_key(key, param.unit)}"] = param.words
     for effect in candidates:
         for key, (_, words) in effect.ratios(vessel).items():
-            parameters[f"{called(effect.name)}.{key}"] = words
+            parameters[f"{base_name(effect.name)}.{key}"] = words
     return found | parameters
 
 
-def key_of(name: str, unit: str) -> str:
+def parameter_key(name: str, unit: str) -> str:
     """Return the key of a parameter: force in N is force_N, north in m/s is north_mps.
 
     Args:
@@ -228,16 +230,16 @@ def _effect(problem: Problem, best: Fit, named: IdentifiedEffect) -> EffectEntry
         acting["on"] = list(effect.on)
     parameters = {}
     for name in _fitted_parameters(best, effect):
-        key = key_of(name, kind.params()[name].unit)
+        key = parameter_key(name, kind.params()[name].unit)
         parameters[key] = _parameter(best, effect, name, config)
     return {
-        "name": called(named.name),
+        "name": base_name(named.name),
         **acting,
         "kind": kind.kind,
         "probability": round(named.probability, 4),
         "gain_nats": round(named.gain, 2),
         "words": _words(best, effect),
-        "tied_with": list(map(called, named.tied_with)),
+        "tied_with": list(map(base_name, named.tied_with)),
         "parameters": parameters | _ratios(problem, best, effect),
     }
 
@@ -335,11 +337,11 @@ def _candidates(ranking: Ranking) -> list[CandidateEntry]:
     found: dict[str, CandidateEntry] = {}
     for name, gain, weight in zip(names, gains[1:], weights[1:], strict=True):
         entry: CandidateEntry = {
-            "name": called(name),
+            "name": base_name(name),
             "gain_nats": round(float(gain), 2),
             "probability": round(float(weight), 4),
         }
-        found.setdefault(called(name), entry)
+        found.setdefault(base_name(name), entry)
     return list(found.values())
 
 
@@ -355,5 +357,5 @@ def _limits(problem: Problem, fitted: Fit, name: str) -> dict[str, float]:
         value, sd = fitted.value(name, f.name)
         if sd < config.limit_share * f.sd:
             limit = abs(value - params[f.name].absent) + config.limit_quantile * sd
-            limits[key_of(f.name, params[f.name].unit)] = float(f"{limit:.3g}")
+            limits[parameter_key(f.name, params[f.name].unit)] = float(f"{limit:.3g}")
     return limits

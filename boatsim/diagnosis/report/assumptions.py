@@ -1,6 +1,6 @@
 """Entries of the answer on the candidates that were tested and on what was assumed."""
 
-from boatsim.diagnosis.candidates import called
+from boatsim.diagnosis.candidates import base_name
 from boatsim.diagnosis.filter import axes_of
 from boatsim.diagnosis.locate.missing_force import FORCE_UNITS
 from boatsim.diagnosis.locate.nominal_forces import full_thrust
@@ -24,7 +24,7 @@ def excluded_candidates(question: Question) -> list[LeftOutEntry]:
             reasons[name] = BY_USER
     entries: dict[str, LeftOutEntry] = {}
     for name, reason in sorted(reasons.items()):
-        entries[called(name)] = {"name": called(name), "reason": reason}
+        entries[base_name(name)] = {"name": base_name(name), "reason": reason}
     return list(entries.values())
 
 

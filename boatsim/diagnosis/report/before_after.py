@@ -51,7 +51,9 @@ def error_table(evaluation: Evaluation) -> Table | None:
     return f"Free runs of {evaluation.horizon:g} s, part by part", header, rows
 
 
-def remarks(problem: Problem, ranking: Ranking, evaluation: Evaluation) -> tuple[str, ...]:
+def limitation_sentences(
+    problem: Problem, ranking: Ranking, evaluation: Evaluation
+) -> tuple[str, ...]:
     """Return sentences on what the recordings cannot show.
 
     Args:
@@ -69,7 +71,7 @@ def remarks(problem: Problem, ranking: Ranking, evaluation: Evaluation) -> tuple
 def _no_gain(ranking: Ranking, evaluation: Evaluation) -> list[str]:
     """Return a sentence for each error on held-out data that the patch does not reduce."""
     found: list[str] = []
-    if not ranking.adds:
+    if not ranking.adds_effects:
         return found
     for family, rms in evaluation.errors.items():
         if rms["patched"] > rms["recalibrated"]:

@@ -54,7 +54,7 @@ class Table:
     aside: bool = False
 
 
-def without_empty(table: Table) -> Table:
+def without_empty_columns(table: Table) -> Table:
     """Return a table without the prose columns that are empty in every row.
 
     Args:
@@ -68,12 +68,12 @@ def without_empty(table: Table) -> Table:
                 continue
             prose.append(len(kept))
         kept.append(i)
-    header, *rows = [_pick(row, kept) for row in (table.header, *table.rows)]
+    header, *rows = [_select_columns(row, kept) for row in (table.header, *table.rows)]
     aside = table.aside and len(table.header) - 1 in kept
     return replace(table, header=header, rows=rows, prose=tuple(prose), aside=aside)
 
 
-def _pick(row: list[str], columns: list[int]) -> list[str]:
+def _select_columns(row: list[str], columns: list[int]) -> list[str]:
     return [row[i] for i in columns]
 
 
@@ -98,13 +98,13 @@ class Section:
     blocks: list[Block] = field(default_factory=list)
 
 
-def safe(words: str) -> str:
+def escape_markup(words: str) -> str:
     """Return words in which names from files are not read as mark-up."""
     words = words.replace("&", "&amp;").replace("<", "&lt;").replace("\n", " ")
     return re.sub(r"([|*`]|(?<=\])\()", r"\\\1", words)
 
 
-def as_text(block: Block) -> list[str]:
+def markdown_lines(block: Block) -> list[str]:
     """Return the lines of a block in Markdown; figures have none.
 
     Args:
@@ -112,11 +112,11 @@ def as_text(block: Block) -> list[str]:
     """
     match block:
         case Text():
-            return ["", safe(block.words)]
+            return ["", escape_markup(block.words)]
         case Heading():
-            lines = ["", f"### {safe(block.words)}"]
+            lines = ["", f"### {escape_markup(block.words)}"]
             if block.facts:
-                lines += ["", safe(block.facts)]
+                lines += ["", escape_markup(block.facts)]
             return lines
         case Items():
             return ["", *map(_item, block.lines)]
@@ -126,7 +126,7 @@ def as_text(block: Block) -> list[str]:
                 rule[i] = "---"
             lines = [_table_line(block.header), f"| {' | '.join(rule)} |"]
             lines += map(_table_line, block.rows)
-            return ["", safe(block.caption), "", *lines]
+            return ["", escape_markup(block.caption), "", *lines]
         case Figures():
             return []
 
@@ -134,9 +134,9 @@ def as_text(block: Block) -> list[str]:
 def _item(line: tuple[str, str]) -> str:
     term, meaning = line
     if not term:
-        return f"- {safe(meaning)}"
-    return f"- **{safe(term)}**: {safe(meaning)}"
+        return f"- {escape_markup(meaning)}"
+    return f"- **{escape_markup(term)}**: {escape_markup(meaning)}"
 
 
 def _table_line(row: list[str]) -> str:
-    return f"| {' | '.join(map(safe, row))} |"
+    return f"| {' | '.join(map(escape_markup, row))} |"

@@ -4,15 +4,15 @@ from collections import Counter, defaultdict
 from collections.abc import Sequence
 from itertools import groupby
 
-from boatsim.diagnosis.description import Description, Written
+from boatsim.diagnosis.description import Description, FittedTerm
 from boatsim.diagnosis.report.formatting import (
-    listed,
-    number,
-    parameter,
-    plain,
-    quantity,
-    spread,
-    unit_words,
+    format_number,
+    format_quantity,
+    format_unit,
+    format_with_sd,
+    join_words,
+    name_and_unit,
+    words_of_name,
 )
 from boatsim.diagnosis.report.schema import DescribedEntry, TermEntry
 from boatsim.physics.described_laws import EVER, Described
@@ -70,24 +70,24 @@ def described_entries(description: Description | None, vessel: Vessel) -> list[D
     return entries
 
 
-def _group(w: Written) -> tuple[str, bool, str]:
+def _group(w: FittedTerm) -> tuple[str, bool, str]:
     """Return what the terms of one formula have in common."""
-    return axis_of(w.term), w.carries, w.term.run
+    return term_axis(w.term), w.carries, w.term.run
 
 
-def axis_of(term: Described) -> str:
+def term_axis(term: Described) -> str:
     """Return the axis of a term; "thrust" if it changes the thrust of the drives."""
     if isinstance(term, DescribedForce):
         return term.axis
     return "thrust"
 
 
-def what_of(axis: str) -> str:
+def effect_of_axis(axis: str) -> str:
     """Return what a formula of an axis describes, such as "a side force"."""
     return FORCES.get(axis, "a change of thrust")
 
 
-def over_words(over: str) -> str:
+def abscissa_label(over: str) -> str:
     """Return the label of the axis over which a curve is drawn, with its unit.
 
     Args:
@@ -103,13 +103,13 @@ def over_words(over: str) -> str:
     if how:
         return _recent_words(how, signal)
     if unit := UNITS.get(over, ""):
-        return f"{FACTORS.get(over, plain(over))} [{unit}]"
-    return parameter(over)[0]
+        return f"{FACTORS.get(over, words_of_name(over))} [{unit}]"
+    return name_and_unit(over)[0]
 
 
 def _recent_words(how: str, signal: str) -> str:
     """Return the label of the recent average of a signal, or of the deviation from it."""
-    name, _, unit = over_words(signal.removeprefix("abs_")).partition(" [")
+    name, _, unit = abscissa_label(signal.removeprefix("abs_")).partition(" [")
     if signal.startswith("abs_"):
         name = f"the size of {name}"
     words = f"the recent average of {name}"
@@ -120,9 +120,9 @@ def _recent_words(how: str, signal: str) -> str:
     return words
 
 
-def share_or_force(term: Described) -> str:
+def term_unit(term: Described) -> str:
     """Return the unit of a term: "N", "N m", or "" for a share of the thrust."""
-    axis = axis_of(term)
+    axis = term_axis(term)
     if axis == "thrust":
         return ""
     if axis in TURNING:
@@ -130,11 +130,11 @@ def share_or_force(term: Described) -> str:
     return "N"
 
 
-def _entry(written: Sequence[Written], vessel: Vessel) -> DescribedEntry:
+def _entry(written: Sequence[FittedTerm], vessel: Vessel) -> DescribedEntry:
     """Return the entry of the terms of one formula."""
-    axis, first = axis_of(written[0].term), written[0]
-    sum_of_terms = listed((_statement(w, vessel) for w in written), "plus")
-    statement = f"{what_of(axis)} that no candidate effect explains: {sum_of_terms}"
+    axis, first = term_axis(written[0].term), written[0]
+    sum_of_terms = join_words((_statement(w, vessel) for w in written), "plus")
+    statement = f"{effect_of_axis(axis)} that no candidate effect explains: {sum_of_terms}"
     if not first.carries:
         recording = first.term.run or "the fitted recordings"
         statement += f" (an event of {recording}, not confirmed by held-out recordings)"
@@ -146,12 +146,12 @@ def _entry(written: Sequence[Written], vessel: Vessel) -> DescribedEntry:
     }
 
 
-def _term(w: Written, vessel: Vessel) -> TermEntry:
+def _term(w: FittedTerm, vessel: Vessel) -> TermEntry:
     entry: TermEntry = {
         "of": _varies_with(w.term, vessel),
         "value": w.term.coefficient,
         "sd": w.sd,
-        "unit": unit_of(w.term, vessel),
+        "unit": coefficient_unit(w.term, vessel),
         "gain_nats": round(w.gain, 2),
     }
     if w.term.run:
@@ -159,24 +159,24 @@ def _term(w: Written, vessel: Vessel) -> TermEntry:
     return entry
 
 
-def _statement(w: Written, vessel: Vessel) -> str:
+def _statement(w: FittedTerm, vessel: Vessel) -> str:
     """Return a term with its coefficient: 4.1 ± 0.2 N s²/m² times surge speed times yaw rate."""
-    term, unit = w.term, unit_of(w.term, vessel)
+    term, unit = w.term, coefficient_unit(w.term, vessel)
     if isinstance(term, DescribedThrust):
         text = _change_of_thrust(term, unit, w.sd)
     else:
-        text = quantity(term.coefficient, unit, w.sd)
+        text = format_quantity(term.coefficient, unit, w.sd)
     if term.of:
-        text += f" times {factors(term, vessel)}"
-    if when := _when(term):
+        text += f" times {factors_in_words(term, vessel)}"
+    if when := _activity_condition(term):
         text += f" ({when})"
     return text
 
 
 def _change_of_thrust(term: DescribedThrust, unit: str, sd: float) -> str:
     """Return the size of a change of thrust: 15.0 ± 2.0 % less to port when pushing astern."""
-    text = f"{spread(100.0 * abs(term.coefficient), 100.0 * sd)} %"
-    if per := unit_words(unit).removeprefix("1"):
+    text = f"{format_with_sd(100.0 * abs(term.coefficient), 100.0 * sd)} %"
+    if per := format_unit(unit).removeprefix("1"):
         text += f" {per}"
     more = "more" if term.coefficient > 0.0 else "less"
     return f"{text} {more}{SIDES[term.side]}{SENSES[term.sense]}"
@@ -189,38 +189,38 @@ def _varies_with(term: Described, vessel: Vessel) -> str:
         sense = "" if term.sense == "both" else f" {term.sense}"
         thrust = f"thrust{SIDES[term.side]}{sense}"
         if term.of:
-            thrust += f" times {factors(term, vessel)}"
+            thrust += f" times {factors_in_words(term, vessel)}"
         parts.append(thrust)
     elif term.of:
-        parts.append(factors(term, vessel))
+        parts.append(factors_in_words(term, vessel))
     elif term.acts == "always":
         parts.append("nothing (constant)")
     else:
         parts.append("time")
-    if when := _when(term):
+    if when := _activity_condition(term):
         parts.append(when)
     return ", ".join(parts)
 
 
-def _when(term: Described) -> str:
+def _activity_condition(term: Described) -> str:
     """Return when a term acts; "" if it always does."""
-    begin, span = number(term.begin), term.end - term.begin
+    begin, span = format_number(term.begin), term.end - term.begin
     recording = f" of {term.run}" if term.run else ""
     if term.acts == "within" and term.end >= EVER:
         return f"from {begin} s on{recording}"
     if term.acts == "within":
-        return f"from {begin} to {number(term.end)} s{recording}"
+        return f"from {begin} to {format_number(term.end)} s{recording}"
     if term.acts == "rising":
-        return f"rising from zero at {begin} s to its full value at {number(term.end)} s"
+        return f"rising from zero at {begin} s to its full value at {format_number(term.end)} s"
     if term.acts == "fading":
-        return f"fading from {begin} s on, to {FADED} % after {number(span)} s"
+        return f"fading from {begin} s on, to {FADED} % after {format_number(span)} s"
     if term.acts == "swinging":
-        period = f"oscillating with a period of {number(span)} s"
+        period = f"oscillating with a period of {format_number(span)} s"
         return f"{period} in {term.run}" if term.run else period
     return ""
 
 
-def factors(term: Described, vessel: Vessel) -> str:
+def factors_in_words(term: Described, vessel: Vessel) -> str:
     """Return the product of the factors of a term in words; "" if it is constant.
 
     Args:
@@ -242,11 +242,12 @@ def _factor(name: str, term: Described) -> str:
         return FACTORS[name]
     if name in RIPPLES:
         along = name.removeprefix("ripple_")
-        wavelength, crest = number(term.wavelength), number(term.crest)
+        wavelength, crest = format_number(term.wavelength), format_number(term.crest)
         return f"a pattern that repeats every {wavelength} m {along}, with a crest at {crest} m"
     if name in BEYOND:
         speed = name.removeprefix("beyond_")
-        return f"the excess of {plain(speed)} over {quantity(term.beyond, UNITS[speed])}"
+        limit = format_quantity(term.beyond, UNITS[speed])
+        return f"the excess of {words_of_name(speed)} over {limit}"
     if name.startswith("abs_"):
         return f"the size of {_factor(name.removeprefix('abs_'), term)}"
     if name.startswith("sign_"):
@@ -255,16 +256,16 @@ def _factor(name: str, term: Described) -> str:
     if term.looks_back:
         how, signal = history_of(name, ())
     if how:
-        average = f"average over the last {number(term.memory)} s"
+        average = f"average over the last {format_number(term.memory)} s"
         if how == "recent":
             return f"the {average} of {_factor(signal, term)}"
         return f"the deviation of {_factor(signal, term)} from its {average}"
     if name in UNITS:
-        return plain(name)
-    return parameter(name)[0]
+        return words_of_name(name)
+    return name_and_unit(name)[0]
 
 
-def unit_of(term: Described, vessel: Vessel) -> str:
+def coefficient_unit(term: Described, vessel: Vessel) -> str:
     """Return the unit of the coefficient of a term.
 
     Args:

@@ -5,14 +5,19 @@ from itertools import groupby
 
 import numpy as np
 
-from boatsim.diagnosis.description import Written
+from boatsim.diagnosis.description import FittedTerm
 from boatsim.diagnosis.evaluation import MODELS
 from boatsim.diagnosis.free_runs import FreeRun
-from boatsim.diagnosis.report.described_terms import axis_of, over_words, share_or_force, what_of
-from boatsim.diagnosis.report.findings import Missing
-from boatsim.diagnosis.report.formatting import capital, handy, number
+from boatsim.diagnosis.report.described_terms import (
+    abscissa_label,
+    effect_of_axis,
+    term_axis,
+    term_unit,
+)
+from boatsim.diagnosis.report.findings import MissingForceCurve
+from boatsim.diagnosis.report.formatting import capitalize, convenient_unit, format_number
 from boatsim.diagnosis.report.schema import IntervalEntry
-from boatsim.diagnosis.report.svg_plots import SQUARE, Line, Panel, figure, limits
+from boatsim.diagnosis.report.svg_plots import SQUARE, Line, Panel, axis_limits, figure
 from boatsim.physics.base import Array
 
 MOST_CROSSINGS = 14  # zero crossings of an oscillation that are drawn
@@ -24,7 +29,7 @@ Intervals = Sequence[IntervalEntry]
 
 
 def missing_figures(
-    runs: Sequence[Missing], intervals: Intervals, shared: Sequence[Missing]
+    runs: Sequence[MissingForceCurve], intervals: Intervals, shared: Sequence[MissingForceCurve]
 ) -> list[str]:
     """Return one figure per recording with its missing force by axis over time.
 
@@ -39,8 +44,8 @@ def missing_figures(
         for m in shared:
             parts += [m.force[axis] + BAND * m.sd[axis], m.force[axis] - BAND * m.sd[axis]]
         values = np.concatenate(parts)
-        unit, factor = handy(shared[0].unit[axis], float(np.nanmax(np.abs(values))))
-        scales[axis] = limits([factor * values]), unit, factor
+        unit, factor = convenient_unit(shared[0].unit[axis], float(np.nanmax(np.abs(values))))
+        scales[axis] = axis_limits([factor * values]), unit, factor
     drawn = []
     for m in runs:
         panels = []
@@ -51,7 +56,12 @@ def missing_figures(
 
 
 def _missing_panel(
-    m: Missing, axis: str, intervals: Intervals, y: tuple[float, float], unit: str, factor: float
+    m: MissingForceCurve,
+    axis: str,
+    intervals: Intervals,
+    y: tuple[float, float],
+    unit: str,
+    factor: float,
 ) -> Panel:
     flags = []
     for i in intervals:
@@ -61,7 +71,7 @@ def _missing_panel(
     lines = [Line("missing", m.t, force, "missing")]
     if axis in m.left:
         lines.append(Line("left", m.t, factor * m.left[axis], "missing in the patched vessel"))
-    rms = number(float(np.sqrt(np.nanmean(force**2))))
+    rms = format_number(float(np.sqrt(np.nanmean(force**2))))
     kind = "force" if axis in ("surge", "sway", "heave") else "moment"
     return Panel(
         f"{axis} {kind} [{unit}]",
@@ -96,9 +106,11 @@ def free_run_figures(runs: Sequence[FreeRun]) -> list[str]:
         title = f"{name}: largest error of the recalibrated vessel, {_span(worst)}"
         found.append(figure([plan_view([worst])], title))
     if "phi_rad" in signals:
-        worst = closer(max(runs, key=lambda r: _largest_error(r, "phi_rad")), "phi_rad")
+        worst = part_with_largest_error(
+            max(runs, key=lambda r: _largest_error(r, "phi_rad")), "phi_rad"
+        )
         title = f"{name}: roll, largest error of the recalibrated vessel, {_span(worst)}"
-        found.append(figure([course_of([worst], "phi_rad")], title, wide=True))
+        found.append(figure([signal_panel([worst], "phi_rad")], title, wide=True))
     for signal in SIGNALS:
         if signal in signals:
             panels.append(_error_panel(runs, signal))
@@ -108,14 +120,14 @@ def free_run_figures(runs: Sequence[FreeRun]) -> list[str]:
 
 def _largest_error(run: FreeRun, signal: str) -> float:
     """Return the largest error of the recalibrated vessel in a free run [SI]."""
-    return float(np.nanmax(np.abs(error_of(run, "recalibrated", signal)), initial=0.0))
+    return float(np.nanmax(np.abs(model_error(run, "recalibrated", signal)), initial=0.0))
 
 
 def _span(run: FreeRun) -> str:
     return f"{run.t[0]:.4g} to {run.t[-1]:.4g}\u00a0s"
 
 
-def closer(run: FreeRun, signal: str) -> FreeRun:
+def part_with_largest_error(run: FreeRun, signal: str) -> FreeRun:
     """Return the few oscillations around the largest error of the recalibrated vessel.
 
     Args:
@@ -127,7 +139,7 @@ def closer(run: FreeRun, signal: str) -> FreeRun:
     edges = np.concatenate([[0], crossings, [len(recorded) - 1]])
     if len(edges) <= MOST_CROSSINGS + 1:
         return run
-    worst = int(np.nanargmax(np.abs(error_of(run, "recalibrated", signal))))
+    worst = int(np.nanargmax(np.abs(model_error(run, "recalibrated", signal))))
     middle = np.searchsorted(edges, worst) - MOST_CROSSINGS // 2
     first = int(np.clip(middle, 0, len(edges) - MOST_CROSSINGS - 1))
     rows = slice(int(edges[first]), int(edges[first + MOST_CROSSINGS]) + 1)
@@ -138,7 +150,7 @@ def closer(run: FreeRun, signal: str) -> FreeRun:
     return FreeRun(run.run, float(t[0]), t, channels)
 
 
-def law_figure(written: Written) -> str:
+def term_figure(written: FittedTerm) -> str:
     """Return the figure of a term over what it varies with, and of the recorded means.
 
     Args:
@@ -146,28 +158,28 @@ def law_figure(written: Written) -> str:
     """
     c = written.curve
     assert c is not None
-    unit, axis = share_or_force(written.term), axis_of(written.term)
+    unit, axis = term_unit(written.term), term_axis(written.term)
     name, factor = ("%", 100.0)
     if unit:
-        name, factor = handy(unit, float(np.max(np.abs(c.law))))
+        name, factor = convenient_unit(unit, float(np.max(np.abs(c.law))))
     law, sd, found = factor * c.law, factor * c.sd, factor * c.found
     band = (c.x, law - BAND * sd, law + BAND * sd)
-    along = over_words(c.over)
+    along = abscissa_label(c.over)
     first, last = float(c.x[0]), float(c.x[-1])
     panel = Panel(
         f"{axis} [{name}]",
         (Line("recorded", c.x, found, "recorded"), Line("patched", c.x, law, "formula")),
         (first, last),
-        limits([*band[1:], found]),
+        axis_limits([*band[1:], found]),
         along,
         band,
-        about=f"The formula over {along}, from {number(first)} to {number(last)}, and the recorded "
-        "means.",
+        about=f"The formula over {along}, from {format_number(first)} to {format_number(last)}, "
+        "and the recorded means.",
     )
-    return figure([panel], f"{capital(what_of(axis))}, over {along}", wide=True)
+    return figure([panel], f"{capitalize(effect_of_axis(axis))}, over {along}", wide=True)
 
 
-def by_recording(free_runs: Sequence[FreeRun]) -> list[list[FreeRun]]:
+def group_by_recording(free_runs: Sequence[FreeRun]) -> list[list[FreeRun]]:
     """Return consecutive free runs grouped by their recording."""
     return [list(group) for _, group in groupby(free_runs, key=lambda r: r.run)]
 
@@ -177,7 +189,7 @@ def models_in(run: FreeRun) -> list[str]:
     return [m for m in MODELS if m in run.channels]
 
 
-def error_of(run: FreeRun, model: str, signal: str) -> Array:
+def model_error(run: FreeRun, model: str, signal: str) -> Array:
     """Return the error of a model in a free run.
 
     Args:
@@ -209,8 +221,8 @@ def plan_view(runs: Sequence[FreeRun], models: Sequence[str] = ()) -> Panel:
             if model != "nominal":
                 across.append(path["y_m"])
                 up.append(path["x_m"])
-    left, right = limits(across, False)
-    bottom, top = limits(up, False)
+    left, right = axis_limits(across, False)
+    bottom, top = axis_limits(up, False)
     height = max(top - bottom, (right - left) / SQUARE)
     return Panel(
         "x, forward or north [m]",
@@ -232,7 +244,7 @@ def _error_panel(runs: Sequence[FreeRun], signal: str) -> Panel:
     """Return the errors of the free runs over time; a far larger one of the nominal is cut off."""
     errors, largest = {}, {}
     for model in models_in(runs[0]):
-        errors[model] = [error_of(r, model, signal) for r in runs]
+        errors[model] = [model_error(r, model, signal) for r in runs]
         largest[model] = float(np.nanmax(np.abs(np.concatenate(errors[model])), initial=0.0))
     others = max(largest.get("recalibrated", 0.0), largest.get("patched", 0.0))
     cut_off = bool(others) and largest.get("nominal", 0.0) > OFF_SCALE * others
@@ -240,22 +252,22 @@ def _error_panel(runs: Sequence[FreeRun], signal: str) -> Panel:
     words, si = ("position", "m")
     if signal != "position":
         words, si = SIGNALS[signal], _si(signal)
-    unit, factor = handy(si, max(largest[m] for m in kept))
+    unit, factor = convenient_unit(si, max(largest[m] for m in kept))
     title, lines, drawn, sizes = f"error in {words} [{unit}]", [], [], []
     for model, found in errors.items():
-        sizes.append(f"{model} {number(factor * largest[model])} {unit}")
+        sizes.append(f"{model} {format_number(factor * largest[model])} {unit}")
         for r, e in zip(runs, found, strict=True):
             lines.append(Line(model, r.t, factor * e))
             if model in kept:
                 drawn.append(factor * e)
     if cut_off:
-        title += f"; nominal up to {number(factor * largest['nominal'])}, outside the figure"
+        title += f"; nominal up to {format_number(factor * largest['nominal'])}, outside the figure"
     about = f"Largest error in {words}: {', '.join(sizes)}"
     x = float(runs[0].t[0]), float(runs[-1].t[-1])
-    return Panel(title, tuple(lines), x, limits(drawn), "time [s]", about=about)
+    return Panel(title, tuple(lines), x, axis_limits(drawn), "time [s]", about=about)
 
 
-def course_of(runs: Sequence[FreeRun], signal: str, models: Sequence[str] = ()) -> Panel:
+def signal_panel(runs: Sequence[FreeRun], signal: str, models: Sequence[str] = ()) -> Panel:
     """Return a signal over time.
 
     Args:
@@ -263,7 +275,7 @@ def course_of(runs: Sequence[FreeRun], signal: str, models: Sequence[str] = ()) 
         signal: The signal.
         models: Models to draw; all of them if none is given.
     """
-    unit, factor = in_unit(signal, runs)
+    unit, factor = unit_for_signal(signal, runs)
     lines, drawn = [], []
     for model in ("recorded", *(models or models_in(runs[0]))):
         for r in runs:
@@ -274,13 +286,13 @@ def course_of(runs: Sequence[FreeRun], signal: str, models: Sequence[str] = ()) 
         f"{SIGNALS[signal]} [{unit}]",
         tuple(lines),
         (float(runs[0].t[0]), float(runs[-1].t[-1])),
-        limits(drawn),
+        axis_limits(drawn),
         "time [s]",
         about=f"{SIGNALS[signal]} over time: the recording and the free runs of each model",
     )
 
 
-def in_unit(signal: str, runs: Sequence[FreeRun]) -> tuple[str, float]:
+def unit_for_signal(signal: str, runs: Sequence[FreeRun]) -> tuple[str, float]:
     """Return a convenient unit for the recorded values of a signal, and the factor to it from SI.
 
     Args:
@@ -291,7 +303,7 @@ def in_unit(signal: str, runs: Sequence[FreeRun]) -> tuple[str, float]:
     for r in runs:
         recorded = np.abs(r.channels["recorded"][signal])
         largest = max(largest, float(np.nanmax(recorded, initial=0.0)))
-    return handy(_si(signal), largest)
+    return convenient_unit(_si(signal), largest)
 
 
 def _si(signal: str) -> str:

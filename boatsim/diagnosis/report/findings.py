@@ -3,15 +3,15 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from boatsim.diagnosis.config import DEFAULT, as_plain
-from boatsim.diagnosis.description import Written
+from boatsim.diagnosis.config import DEFAULT, settings_by_name
+from boatsim.diagnosis.description import FittedTerm
 from boatsim.diagnosis.free_runs import FreeRun
 from boatsim.diagnosis.report.schema import Answer
 from boatsim.physics.base import Array
 
 
 @dataclass(frozen=True)
-class Missing:
+class MissingForceCurve:
     """The missing force of a recording over time: what the vessel model does not explain.
 
     Attributes:
@@ -58,18 +58,18 @@ class Findings:
     runs: tuple[str, ...]
     held_out: tuple[str, ...]
     held_out_note: str
-    missing: tuple[Missing, ...] = ()
+    missing: tuple[MissingForceCurve, ...] = ()
     free_runs: tuple[FreeRun, ...] = ()
     remarks: tuple[str, ...] = ()
     coefficients: dict[str, tuple[float, float]] = field(default_factory=dict)
     extra_tables: tuple[tuple[str, list[str], list[list[str]]], ...] = ()
     words: dict[str, str] = field(default_factory=dict)
-    described: tuple[Written, ...] = ()
+    described: tuple[FittedTerm, ...] = ()
     steps: tuple[tuple[float, Mapping[str, float]], ...] = ()
     size: tuple[float, float] = (1.0, 0.3)
 
     @property
-    def patched(self) -> bool:
+    def has_added_effects(self) -> bool:
         """Whether the patched vessel has any effect that the recalibrated one does not have."""
         if self.answer["effects"]:
             return True
@@ -77,6 +77,6 @@ class Findings:
 
     def setting(self, name: str) -> float:
         """Return the value of a setting that the diagnosis used, such as "select.alike"."""
-        value = self.answer.get("config", {}).get(name, as_plain(DEFAULT)[name])
+        value = self.answer.get("config", {}).get(name, settings_by_name(DEFAULT)[name])
         assert not isinstance(value, list)
         return float(value)

@@ -23,12 +23,12 @@ UNIT = re.compile(f"({FACTOR})+(p({FACTOR})+)?|per({FACTOR})+")
 SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
-def plain(name: str) -> str:
+def words_of_name(name: str) -> str:
     """Return a name of a file or key as words: `weak_reverse` -> weak reverse."""
     return name.replace("_", " ")
 
 
-def listed(words: Iterable[str], last: str = "and") -> str:
+def join_words(words: Iterable[str], last: str = "and") -> str:
     """Return words as a list in prose: A, B and C."""
     *head, tail = list(words) or [""]
     if not head:
@@ -36,7 +36,7 @@ def listed(words: Iterable[str], last: str = "and") -> str:
     return f"{', '.join(head)} {last} {tail}"
 
 
-def capital(words: str) -> str:
+def capitalize(words: str) -> str:
     """Return words with a capital first letter and the rest unchanged."""
     return words[:1].upper() + words[1:]
 
@@ -48,7 +48,7 @@ def _decimals(size: float, digits: int) -> int:
     return max(0, digits - 1 - math.floor(math.log10(size)))
 
 
-def number(value: float, digits: int = 3) -> str:
+def format_number(value: float, digits: int = 3) -> str:
     """Return a number with significant digits.
 
     Args:
@@ -76,7 +76,7 @@ def _power_of_ten(power: int) -> str:
     return f"10{str(power).translate(SUPERSCRIPTS)}"
 
 
-def nats(log_bayes_factor: float) -> str:
+def format_nats(log_bayes_factor: float) -> str:
     """Return evidence in nats, to tenths below 100."""
     decimals = 1
     if abs(log_bayes_factor) >= 100.0:
@@ -84,7 +84,7 @@ def nats(log_bayes_factor: float) -> str:
     return f"{log_bayes_factor:.{decimals}f}".replace("-", "−").replace("−0.0", "0.0")
 
 
-def chance(log_bayes_factor: float) -> str:
+def format_odds(log_bayes_factor: float) -> str:
     """Return the odds that evidence of this size is due to chance.
 
     Args:
@@ -102,15 +102,17 @@ def chance(log_bayes_factor: float) -> str:
     return f"odds of chance below 1 in {_power_of_ten(power)}"
 
 
-def evidence(log_bayes_factor: float) -> str:
+def format_evidence(log_bayes_factor: float) -> str:
     """Return evidence in nats with its odds: log Bayes factor 4.0 nats (odds of chance 1 in 55)."""
-    return f"log Bayes factor {nats(log_bayes_factor)} nats ({chance(log_bayes_factor)})"
+    return (
+        f"log Bayes factor {format_nats(log_bayes_factor)} nats ({format_odds(log_bayes_factor)})"
+    )
 
 
-def spread(value: float, sd: float) -> str:
+def format_with_sd(value: float, sd: float) -> str:
     """Return value ± standard deviation, to the digits that the deviation allows: 0.694 ± 0.012."""
     if not (math.isfinite(value) and math.isfinite(sd) and sd > 0.0):
-        return number(value)
+        return format_number(value)
     largest = max(abs(value), sd)
     power = 0
     if not 1e-3 <= largest < 1e5:
@@ -124,14 +126,14 @@ def spread(value: float, sd: float) -> str:
     return text
 
 
-def unit_words(unit: str) -> str:
+def format_unit(unit: str) -> str:
     """Return a unit as printed: N s^2/m^2 -> N s²/m²."""
     for digit in "234":
         unit = unit.replace(f"^{digit}", digit.translate(SUPERSCRIPTS))
     return unit
 
 
-def quantity(value: float, unit: str, sd: float = 0.0, digits: int = 3) -> str:
+def format_quantity(value: float, unit: str, sd: float = 0.0, digits: int = 3) -> str:
     """Return a quantity in a convenient unit.
 
     Args:
@@ -143,11 +145,11 @@ def quantity(value: float, unit: str, sd: float = 0.0, digits: int = 3) -> str:
     Returns:
         Text such as 4.34 ± 0.78 cm.
     """
-    name, factor = handy(unit, _largest((value, sd)))
+    name, factor = convenient_unit(unit, _largest((value, sd)))
     if sd > 0.0:
-        text = spread(value * factor, sd * factor)
+        text = format_with_sd(value * factor, sd * factor)
     else:
-        text = number(value * factor, digits)
+        text = format_number(value * factor, digits)
     if not name.startswith("°"):
         return f"{text} {name}".rstrip()
     if "×" not in text:
@@ -160,7 +162,7 @@ def _largest(values: Sequence[float]) -> float:
     return max(map(abs, filter(math.isfinite, values)), default=0.0)
 
 
-def name_and_value(key: str, value: float, unit: str = "", sd: float = 0.0) -> tuple[str, str]:
+def format_parameter(key: str, value: float, unit: str = "", sd: float = 0.0) -> tuple[str, str]:
     """Return the name and the value ± deviation of a parameter, fractions in per cent.
 
     Args:
@@ -172,30 +174,30 @@ def name_and_value(key: str, value: float, unit: str = "", sd: float = 0.0) -> t
     Returns:
         Name in words, and the value in a convenient unit; a bearing lies within 0 to 360°.
     """
-    name, unit = parameter(key, unit)
+    name, unit = name_and_unit(key, unit)
     if name.endswith("fraction") and not unit:
-        return _fraction(name), f"{spread(100.0 * value, 100.0 * sd)} %"
+        return _fraction(name), f"{format_with_sd(100.0 * value, 100.0 * sd)} %"
     if name == "toward" and unit == "rad":
         value %= 2.0 * math.pi
     if name == "frequency" and unit == "rad/s" and value > 0.0:  # of a wave, not of a rotation
-        period = number(2.0 * math.pi / value)
-        return name, f"{spread(value, sd)} rad/s, a period of {period} s"
-    return name, quantity(value, unit, sd)
+        period = format_number(2.0 * math.pi / value)
+        return name, f"{format_with_sd(value, sd)} rad/s, a period of {period} s"
+    return name, format_quantity(value, unit, sd)
 
 
-def limit(key: str, value: float) -> tuple[str, str]:
+def format_upper_limit(key: str, value: float) -> tuple[str, str]:
     """Return the name and the upper limit of a parameter: 3.9 mm/s; factors and fractions in %."""
-    name, unit = parameter(key)
+    name, unit = name_and_unit(key)
     if not unit and name.endswith(("factor", "fraction")):
-        return _fraction(name), f"{number(100.0 * value, 2)} %"
-    return name, quantity(value, unit, digits=2)
+        return _fraction(name), f"{format_number(100.0 * value, 2)} %"
+    return name, format_quantity(value, unit, digits=2)
 
 
 def _fraction(name: str) -> str:
     return name.removesuffix("fraction").strip() or name
 
 
-def readable(words: str) -> str:
+def format_sentence(words: str) -> str:
     """Return a sentence of the answer with degree signs and without the p-value at its end."""
     words = re.sub(
         r"([\d.]+) rad(?![/\w])", lambda found: f"{float(found[1]) * DEGREE:.2g}°", words
@@ -203,26 +205,26 @@ def readable(words: str) -> str:
     return re.sub(r"(\d) deg\b", r"\1°", re.sub(r"; p [<=] \S+$", "", words))
 
 
-def parameter(key: str, unit: str = "") -> tuple[str, str]:
+def name_and_unit(key: str, unit: str = "") -> tuple[str, str]:
     """Return the name in words and the unit of a parameter key: `toward_rad` -> (toward, rad)."""
     compact = unit.replace("1/", "per").replace("/", "p").replace("^", "").replace(" ", "")
     if compact and key.endswith(f"_{compact}"):
-        return plain(key.removesuffix(f"_{compact}")), unit
+        return words_of_name(key.removesuffix(f"_{compact}")), unit
     if unit:
-        return plain(key), unit
+        return words_of_name(key), unit
     name, _, ending = key.rpartition("_")
     unit = unit_of(key)
     if not unit and name and UNIT.fullmatch(ending):
-        unit = _spelt(ending)
+        unit = _unit_from_key(ending)
     if not unit:
-        return plain(key), ""
-    return plain(name), unit
+        return words_of_name(key), ""
+    return words_of_name(name), unit
 
 
-def _spelt(compact: str) -> str:
+def _unit_from_key(compact: str) -> str:
     """Return a unit from its spelling in a key: Ns2pm2 -> N s^2/m^2."""
     if compact.startswith("per"):
-        return f"1/{_spelt(compact.removeprefix('per'))}"
+        return f"1/{_unit_from_key(compact.removeprefix('per'))}"
     above, _, below = compact.partition("p")
     return "/".join(filter(None, map(_product, (above, below))))
 
@@ -234,7 +236,7 @@ def _product(compact: str) -> str:
     return " ".join(symbols)
 
 
-def percent(share: float) -> str:
+def format_probability(share: float) -> str:
     """Return a probability in per cent; never 0 or 100 %."""
     if share > 0.999:
         return "> 99.9 %"
@@ -245,7 +247,7 @@ def percent(share: float) -> str:
     return f"{100 * share:.1f} %"
 
 
-def handy(unit: str, largest: float) -> tuple[str, float]:
+def convenient_unit(unit: str, largest: float) -> tuple[str, float]:
     """Return the printed unit and the factor from SI for numbers up to this size: N -> (kN, 1e-3).
 
     Args:
@@ -261,15 +263,15 @@ def handy(unit: str, largest: float) -> tuple[str, float]:
         for least, size, name in STEPS.get(unit, ()):
             if largest >= least:
                 return name, 1.0 / size
-    return unit_words(unit), 1.0
+    return format_unit(unit), 1.0
 
 
-def alike(values: Sequence[float], unit: str) -> list[str]:
+def format_in_one_unit(values: Sequence[float], unit: str) -> list[str]:
     """Return several values of one SI unit, all in the same convenient unit."""
-    name, factor = handy(unit, _largest(values))
+    name, factor = convenient_unit(unit, _largest(values))
     if not name.startswith("°"):
         name = f" {name}"
     texts = []
     for value in values:
-        texts.append(f"{number(value * factor)}{name}")
+        texts.append(f"{format_number(value * factor)}{name}")
     return texts

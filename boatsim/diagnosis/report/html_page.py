@@ -7,7 +7,7 @@ from pathlib import Path
 TEMPLATES = Path(__file__).parent / "templates"
 
 
-def rendered(template: Path, **values: object) -> str:
+def render_template(template: Path, **values: object) -> str:
     """Return the page of a template; a browser fetches nothing to show it.
 
     Args:

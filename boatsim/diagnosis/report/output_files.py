@@ -13,8 +13,8 @@ from boatsim.diagnosis.free_runs import FreeRun
 from boatsim.diagnosis.pipeline import Diagnosis
 from boatsim.diagnosis.report import page, patched_vessel
 from boatsim.diagnosis.report.answer import NEXT_SCENARIO
-from boatsim.diagnosis.report.figures import by_recording
-from boatsim.diagnosis.report.findings import Findings, Missing
+from boatsim.diagnosis.report.figures import group_by_recording
+from boatsim.diagnosis.report.findings import Findings, MissingForceCurve
 from boatsim.errors import BadPhysics
 from boatsim.files import replacing
 from boatsim.physics.signals import COMPONENTS, Array
@@ -24,7 +24,7 @@ FORCE_NAMES = {axis: f"force_{component}" for axis, component in COMPONENTS.item
 BAND = 2.0  # [sd] half width of the band of a missing force
 
 
-def write(found: Diagnosis, out: Path) -> None:
+def write_diagnosis(found: Diagnosis, out: Path) -> None:
     """Write all files of a diagnosis, or none.
 
     Args:
@@ -42,9 +42,9 @@ def write(found: Diagnosis, out: Path) -> None:
             f"{found.vessel.name}: a fitted vessel diverges; are the units of the recording right?"
         ) from None
     with atomic_folder(out) as new:
-        page.write(found.findings, new)
-        best, laws = found.ranking.best, found.ranking.laws
-        patched = patched_vessel.patched(
+        page.write_report(found.findings, new)
+        best, laws = found.ranking.best, found.ranking.described_terms
+        patched = patched_vessel.patched_vessel_text(
             found.problem, found.vessel, best, out / "patched.toml", laws
         )
         (new / "patched.toml").write_text(patched, encoding="utf-8")
@@ -52,13 +52,13 @@ def write(found: Diagnosis, out: Path) -> None:
             (new / NEXT_SCENARIO).write_text(
                 scenario_text(found.plan, found.vessel), encoding="utf-8"
             )
-        overlay(found, new / "diagnosis.rrd")
+        write_overlay(found, new / "diagnosis.rrd")
         (new / "diagnosis.json").write_text(answer, encoding="utf-8")
     if found.plan is None:
         (out / NEXT_SCENARIO).unlink(missing_ok=True)  # of an earlier diagnosis
 
 
-def overlay(found: Diagnosis, path: Path) -> None:
+def write_overlay(found: Diagnosis, path: Path) -> None:
     """Write diagnosis.rrd: recording and free runs of the first held-out recording in one scene.
 
     Args:
@@ -70,7 +70,7 @@ def overlay(found: Diagnosis, path: Path) -> None:
     boats: dict[str, list[Recording]] = {}
     missing, intervals = None, []
     if found.findings.free_runs:
-        runs = by_recording(found.findings.free_runs)[0]
+        runs = group_by_recording(found.findings.free_runs)[0]
         boats["recording"] = [_joined(runs)]
         for model in MODELS:
             boats[model] = [_simulated(r, model) for r in runs]
@@ -91,7 +91,7 @@ def _missing_force(findings: Findings, run: str) -> Recording | None:
     return None
 
 
-def _with_band(m: Missing) -> dict[str, Array]:
+def _with_band(m: MissingForceCurve) -> dict[str, Array]:
     signals: dict[str, Array] = {}
     for axis, force in m.force.items():
         name, sd = FORCE_NAMES[axis], m.sd[axis]

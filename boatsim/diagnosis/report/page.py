@@ -4,19 +4,19 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from boatsim.diagnosis.checks.finding import LOG_NOT_BOAT
-from boatsim.diagnosis.report.blocks import Section, as_text, safe
-from boatsim.diagnosis.report.described_terms import what_of
+from boatsim.diagnosis.report.blocks import Section, escape_markup, markdown_lines
+from boatsim.diagnosis.report.described_terms import effect_of_axis
 from boatsim.diagnosis.report.findings import Findings
-from boatsim.diagnosis.report.formatting import capital, listed, plain
-from boatsim.diagnosis.report.html_page import TEMPLATES, rendered
-from boatsim.diagnosis.report.replay_section import replay
+from boatsim.diagnosis.report.formatting import capitalize, join_words, words_of_name
+from boatsim.diagnosis.report.html_page import TEMPLATES, render_template
+from boatsim.diagnosis.report.replay_section import animated_replay
 from boatsim.diagnosis.report.sections import sections_of
 from boatsim.diagnosis.report.sentences import (
     any_tested,
-    mean_force,
+    improvement_on_held_out,
+    mean_force_paragraph,
     only_measurement_errors,
-    proof,
-    sentence,
+    verdict_sentences,
 )
 from boatsim.files import replacing
 
@@ -33,7 +33,7 @@ MEASUREMENT_ERROR = "Measurement error"  # all identified effects are errors of 
 LONGEST_HEADLINE = 200  # characters; a longer sentence is not used as the headline
 
 
-def write(findings: Findings, folder: Path) -> None:
+def write_report(findings: Findings, folder: Path) -> None:
     """Write report.html (one page that fetches nothing) and report.md (the same text).
 
     Args:
@@ -44,20 +44,23 @@ def write(findings: Findings, folder: Path) -> None:
         OSError: The files cannot be written; existing reports remain unchanged.
     """
     sections = [s for s in sections_of(findings) if s.blocks]
-    texts = {"report.html": page(findings, sections), "report.md": markdown(findings, sections)}
+    texts = {
+        "report.html": report_html(findings, sections),
+        "report.md": report_markdown(findings, sections),
+    }
     for name, text in texts.items():
         with replacing(folder / name) as temporary:
             temporary.write_text(text, encoding="utf-8")
 
 
-def page(findings: Findings, sections: Sequence[Section]) -> str:
+def report_html(findings: Findings, sections: Sequence[Section]) -> str:
     """Return the HTML page.
 
     Args:
         findings: Findings of a diagnosis.
         sections: Its sections that have content.
     """
-    return rendered(
+    return render_template(
         TEMPLATES / "report.html.j2",
         f=findings,
         verdict=_verdict(findings),
@@ -65,14 +68,14 @@ def page(findings: Findings, sections: Sequence[Section]) -> str:
         headline=_headline(findings),
         sentence=_sentence(findings),
         sections=sections,
-        proof=proof(findings),
+        proof=improvement_on_held_out(findings),
         facts=_facts(findings),
-        mean_force=mean_force(findings.answer, findings.patched),
-        replay=replay(findings),
+        mean_force=mean_force_paragraph(findings.answer, findings.has_added_effects),
+        replay=animated_replay(findings),
     )
 
 
-def markdown(findings: Findings, sections: Sequence[Section]) -> str:
+def report_markdown(findings: Findings, sections: Sequence[Section]) -> str:
     """Return the report as Markdown.
 
     Args:
@@ -80,18 +83,18 @@ def markdown(findings: Findings, sections: Sequence[Section]) -> str:
         sections: Its sections that have content.
     """
     headline, whole = _headline(findings), _sentence(findings)
-    lines = [f"# {safe(headline)}", ""]
+    lines = [f"# {escape_markup(headline)}", ""]
     if whole != headline:
-        lines += [safe(whole), ""]
-    lines += [f"**{_verdict(findings)}.** {safe(proof(findings))}", ""]
-    for paragraph in mean_force(findings.answer, findings.patched):
-        lines += [safe(paragraph), ""]
+        lines += [escape_markup(whole), ""]
+    lines += [f"**{_verdict(findings)}.** {escape_markup(improvement_on_held_out(findings))}", ""]
+    for paragraph in mean_force_paragraph(findings.answer, findings.has_added_effects):
+        lines += [escape_markup(paragraph), ""]
     for name, value in _facts(findings):
-        lines.append(f"- {name}: {safe(value)}")
+        lines.append(f"- {name}: {escape_markup(value)}")
     for section in sections:
         lines += ["", f"## {section.title}"]
         for block in section.blocks:
-            lines += as_text(block)
+            lines += markdown_lines(block)
     return "\n".join(lines) + "\n"
 
 
@@ -102,28 +105,28 @@ def _headline(f: Findings) -> str:
         return f"{whole.partition('. ')[0]}."
     if len(whole) <= LONGEST_HEADLINE:
         return whole
-    if names := [plain(e["name"]) for e in f.answer["effects"]]:
+    if names := [words_of_name(e["name"]) for e in f.answer["effects"]]:
         rest = ""
         if f.answer["unknown"]["flag"]:
             rest = ", and a force that they do not explain"
-        return f"{capital(listed(names))}{rest}."
+        return f"{capitalize(join_words(names))}{rest}."
     forces: list[str] = []
     for law in f.answer["described"]:
-        force = what_of(law["axis"])
+        force = effect_of_axis(law["axis"])
         if force not in forces:
             forces.append(force)
     if not forces:
         return whole
-    return f"{capital(listed(forces))} that no candidate effect explains."
+    return f"{capitalize(join_words(forces))} that no candidate effect explains."
 
 
 def _sentence(f: Findings) -> str:
-    return f.answer["sentence"] or sentence(f.answer, f.words)
+    return f.answer["sentence"] or verdict_sentences(f.answer, f.words)
 
 
 def _log_problem(f: Findings) -> bool:
     """Return whether the answer begins with a certain problem of the whole recording."""
-    return f.answer["sentence"].startswith(capital(LOG_NOT_BOAT))
+    return f.answer["sentence"].startswith(capitalize(LOG_NOT_BOAT))
 
 
 def _verdict(f: Findings) -> str:
@@ -142,7 +145,7 @@ def _facts(f: Findings) -> list[tuple[str, str]]:
     """Return vessel, fitted and held-out recordings, and version."""
     return [
         ("Vessel", f.vessel),
-        ("Fitted to", listed(f.runs)),
-        ("Held out", f.held_out_note or listed(f.held_out) or "nothing"),
+        ("Fitted to", join_words(f.runs)),
+        ("Held out", f.held_out_note or join_words(f.held_out) or "nothing"),
         ("Version", f"boatsim {f.answer['version']}"),
     ]

@@ -19,7 +19,7 @@ DIGITS = 10  # significant, so that the file reproduces the fitted motion
 SAME = 1e-9  # relative difference below which two numbers are the same
 
 
-def patched(
+def patched_vessel_text(
     problem: Problem,
     vessel: Vessel,
     found: Fit,
@@ -58,7 +58,7 @@ def patched(
             continue
         for name in vessel.names_of(free.effect):
             change = Change(free.name, name, free.name, "scales", 1.0)
-            _change(document, vessel, change, float(x), f"recalibrated x {x:.4f}")
+            _change_number(document, vessel, change, float(x), f"recalibrated x {x:.4f}")
     for effect in candidates:  # channels act in the order of the diagnosis
         if effect.name not in settings:
             continue
@@ -68,12 +68,12 @@ def patched(
             document["effect"].append(_effect_table(effect, vessel, settings[effect.name]))
     _keep_fitted_defaults(document, problem, vessel, found)
     document.pop("spread", None)  # of an earlier diagnosis
-    if (spread := spread_table.spread(problem, found, events)) is not None:
+    if (spread := spread_table.uncertainty_table(problem, found, events)) is not None:
         document["spread"] = spread
     return str(tomlkit.dumps(document))
 
 
-def write(
+def write_patched_vessel(
     problem: Problem,
     vessel: Vessel,
     found: Fit,
@@ -90,7 +90,9 @@ def write(
         described: Terms of formulas that generalize, by the name of their slot.
     """
     with replacing(path) as temporary:
-        temporary.write_text(patched(problem, vessel, found, path, described), encoding="utf-8")
+        temporary.write_text(
+            patched_vessel_text(problem, vessel, found, path, described), encoding="utf-8"
+        )
 
 
 def _document(vessel: Vessel, path: Path) -> tomlkit.TOMLDocument:
@@ -116,7 +118,7 @@ def _based_on(vessel: Vessel, base: str | None, path: Path) -> str:
     return name
 
 
-def _address(kind: type[Effect], vessel: Vessel) -> str:
+def _effect_reference(kind: type[Effect], vessel: Vessel) -> str:
     """Return a shipped effect by its name, another one by its path from the vessel's folder."""
     name = address(kind)
     if name.endswith(".py"):
@@ -131,10 +133,12 @@ def _apply_release(
     for change in release.changes(vessel):
         if change.parameter in values:
             x = values[change.parameter]
-            _change(document, vessel, change, x, f"{release.name}, {change.parameter} = {x:.4g}")
+            _change_number(
+                document, vessel, change, x, f"{release.name}, {change.parameter} = {x:.4g}"
+            )
 
 
-def _change(
+def _change_number(
     document: tomlkit.TOMLDocument, vessel: Vessel, change: Change, x: float, reason: str
 ) -> None:
     """Change a number wherever the file specifies it: in its own table and in those of loads."""
@@ -148,9 +152,9 @@ def _change(
         table = tables.get(change.owner, {})
         if change.key in table:
             loads.add(name)
-            _set(table, change.key, change.of(float(table[change.key]), x), reason)
+            _set_number(table, change.key, change.of(float(table[change.key]), x), reason)
     if change.key in own or loads.isdisjoint(vessel.load):
-        _set(own, change.key, change.of(float(own.get(change.key, nominal)), x), reason)
+        _set_number(own, change.key, change.of(float(own.get(change.key, nominal)), x), reason)
 
 
 def _keep_fitted_defaults(
@@ -166,14 +170,14 @@ def _keep_fitted_defaults(
         effect = effect_from_table(given, vessel.name, vessel.path).completed(boat)
         changed = {}
         for name in sorted(effect.filled):
-            fitted = float(values[problem.place(effect.name, name)])
+            fitted = float(values[problem.index_of_parameter(effect.name, name)])
             if abs(fitted - getattr(effect, name)) > SAME * abs(fitted):
                 changed[name] = _rounded(fitted)
-                _set(table, name, changed[name], "as fitted")
+                _set_number(table, name, changed[name], "as fitted")
         boat = boat.composed_with(effect.having(changed))
 
 
-def _set(table: Table | InlineTable, name: str, value: float, reason: str) -> None:
+def _set_number(table: Table | InlineTable, name: str, value: float, reason: str) -> None:
     """Set a number of a table and add the reason to its comment; inline tables have none."""
     if name in table:
         before = table[name].trivia.comment.removeprefix("# ")
@@ -187,7 +191,7 @@ def _set(table: Table | InlineTable, name: str, value: float, reason: str) -> No
 def _effect_table(effect: Effect, vessel: Vessel, settings: Mapping[str, float]) -> Table:
     """Return the table of an added effect."""
     table = tomlkit.table()
-    table["use"] = _address(type(effect), vessel)
+    table["use"] = _effect_reference(type(effect), vessel)
     table["use"].comment("found by the diagnosis")
     if effect.name != type(effect).idea():
         table["name"] = effect.name

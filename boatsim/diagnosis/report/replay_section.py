@@ -7,11 +7,17 @@ from math import cos, pi, sin
 import numpy as np
 
 from boatsim.diagnosis.free_runs import FreeRun
-from boatsim.diagnosis.report.animation import Film, Outline, film
-from boatsim.diagnosis.report.figures import SIGNALS, by_recording, course_of, error_of, plan_view
+from boatsim.diagnosis.report.animation import Animation, Outline, animation_frames
+from boatsim.diagnosis.report.figures import (
+    SIGNALS,
+    group_by_recording,
+    model_error,
+    plan_view,
+    signal_panel,
+)
 from boatsim.diagnosis.report.findings import Findings
-from boatsim.diagnosis.report.formatting import listed, number
-from boatsim.diagnosis.report.svg_plots import Panel, legend, stacked
+from boatsim.diagnosis.report.formatting import format_number, join_words
+from boatsim.diagnosis.report.svg_plots import Panel, legend, stack_panels
 
 MOST_PATHS = 16  # consecutive free runs in a view from above
 MOST_COURSES = 4  # consecutive free runs of a signal over time, which may oscillate
@@ -35,10 +41,10 @@ class Replay:
     about: str
     legend: str
     picture: str
-    film: Film
+    film: Animation
 
 
-def replay(f: Findings) -> Replay | None:
+def animated_replay(f: Findings) -> Replay | None:
     """Return the animated figure of the first held-out recording.
 
     Args:
@@ -49,13 +55,13 @@ def replay(f: Findings) -> Replay | None:
     """
     if not f.free_runs:
         return None
-    runs = by_recording(f.free_runs)[0]
+    runs = group_by_recording(f.free_runs)[0]
     recorded = runs[0].channels["recorded"].keys()
     simulated = runs[0].channels
     models = []
     if "recalibrated" in simulated:
         models.append("recalibrated")
-    if f.patched and "patched" in simulated:
+    if f.has_added_effects and "patched" in simulated:
         models.append("patched")
     if not models:
         return None
@@ -64,7 +70,7 @@ def replay(f: Findings) -> Replay | None:
     signals = [s for s in ("phi_rad", "psi_rad", "theta_rad", "z_m") if s in recorded]
     if not signals:
         return None
-    return _courses(f, runs, models, signals)
+    return _signals_over_time(f, runs, models, signals)
 
 
 def _paths(f: Findings, runs: Sequence[FreeRun], models: Sequence[str]) -> Replay:
@@ -76,43 +82,43 @@ def _paths(f: Findings, runs: Sequence[FreeRun], models: Sequence[str]) -> Repla
     if "psi_rad" in runs[0].channels["recorded"]:
         outline, scale = _boat(height, f.size)
     else:
-        scale, outline = 1.0, _sized(MARK, MARK_SIZE * height, MARK_SIZE * height)
+        scale, outline = 1.0, _scaled_outline(MARK, MARK_SIZE * height, MARK_SIZE * height)
     return Replay(
         _title("Paths", runs, models),
-        _about(runs, drawn, scale),
+        _caption(runs, drawn, scale),
         _legend(models),
-        stacked([panel]),
-        film(drawn, models, None, height, outline, worst),
+        stack_panels([panel]),
+        animation_frames(drawn, models, None, height, outline, worst),
     )
 
 
-def _courses(
+def _signals_over_time(
     f: Findings, runs: Sequence[FreeRun], models: Sequence[str], signals: Sequence[str]
 ) -> Replay:
     """Return signals over time; the first one is animated."""
     drawn, worst = _around_largest_error(runs, signals[0], MOST_COURSES)
     panels: list[Panel] = []
     for signal in signals:
-        panels.append(course_of(drawn, signal, models))
+        panels.append(signal_panel(drawn, signal, models))
     height = panels[0].y[1] - panels[0].y[0]
-    outline = _sized(MARK, MARK_SIZE * height, MARK_SIZE * height)
+    outline = _scaled_outline(MARK, MARK_SIZE * height, MARK_SIZE * height)
     if signals[0] == "psi_rad":
         outline, _ = _boat(height, f.size)
     if signals[0] == "phi_rad":
-        outline = _sized(SECTION, SECTION_SIZE * height, SECTION_SIZE * height)
+        outline = _scaled_outline(SECTION, SECTION_SIZE * height, SECTION_SIZE * height)
     return Replay(
-        _title(listed(SIGNALS[s] for s in signals).capitalize(), runs, models),
-        _about(runs, drawn, 1.0),
+        _title(join_words(SIGNALS[s] for s in signals).capitalize(), runs, models),
+        _caption(runs, drawn, 1.0),
         _legend(models),
-        stacked(panels),
-        film(drawn, models, signals[0], height, outline, worst),
+        stack_panels(panels),
+        animation_frames(drawn, models, signals[0], height, outline, worst),
     )
 
 
 def _title(what: str, runs: Sequence[FreeRun], models: Sequence[str]) -> str:
     return (
-        f"{what} on held-out data, {runs[0].run}: recorded, and free runs of the {listed(models)} "
-        "vessel"
+        f"{what} on held-out data, {runs[0].run}: recorded, and free runs of the "
+        f"{join_words(models)} vessel"
     )
 
 
@@ -137,7 +143,7 @@ def _around_largest_error(
     """Return at most so many consecutive free runs around the largest error, and its time [s]."""
     errors, largest = [], []
     for run in runs:
-        errors.append(np.nan_to_num(np.abs(error_of(run, "recalibrated", signal))))
+        errors.append(np.nan_to_num(np.abs(model_error(run, "recalibrated", signal))))
         largest.append(errors[-1].max(initial=0.0))
     worst = int(np.argmax(largest))
     first = min(max(worst - most // 2, 0), max(len(runs) - most, 0))
@@ -145,11 +151,11 @@ def _around_largest_error(
     return list(runs[first : first + most]), time
 
 
-def _about(runs: Sequence[FreeRun], drawn: Sequence[FreeRun], scale: float) -> str:
+def _caption(runs: Sequence[FreeRun], drawn: Sequence[FreeRun], scale: float) -> str:
     """Return how to read the figure."""
     start = "The boats start"
     if len(runs) > 1:
-        seconds = number(float(runs[0].t[-1] - runs[0].t[0]), 2)
+        seconds = format_number(float(runs[0].t[-1] - runs[0].t[0]), 2)
         start = f"Every {seconds} s the simulated boats start"
     sentences = [f"{start} at the recorded state and then receive the recorded commands only."]
     if len(drawn) < len(runs):
@@ -157,9 +163,11 @@ def _about(runs: Sequence[FreeRun], drawn: Sequence[FreeRun], scale: float) -> s
             f"The figure shows {len(drawn)} of {len(runs)} such runs, around the largest error."
         )
     if scale > 1.05:
-        sentences.append(f"Boats are drawn {number(scale, 2)} times their size.")
+        sentences.append(f"Boats are drawn {format_number(scale, 2)} times their size.")
     elif scale < 0.95:
-        sentences.append(f"Boats are drawn smaller than they are, 1 : {number(1.0 / scale, 2)}.")
+        sentences.append(
+            f"Boats are drawn smaller than they are, 1 : {format_number(1.0 / scale, 2)}."
+        )
     return " ".join(sentences)
 
 
@@ -167,9 +175,9 @@ def _boat(height: float, size: tuple[float, float]) -> tuple[Outline, float]:
     """Return the outline of a boat of this length and beam [m], and its scale."""
     length, beam = size
     scale = float(np.clip(length, SMALLEST * height, LARGEST * height)) / length
-    return _sized(BOAT, scale * beam, scale * length), scale
+    return _scaled_outline(BOAT, scale * beam, scale * length), scale
 
 
-def _sized(shape: Sequence[tuple[float, float]], across: float, down: float) -> Outline:
+def _scaled_outline(shape: Sequence[tuple[float, float]], across: float, down: float) -> Outline:
     """Return an outline in units of the figure, to four digits."""
     return [(float(f"{across * a:.4g}"), float(f"{down * b:.4g}")) for a, b in shape]

@@ -10,8 +10,8 @@ from boatsim.diagnosis.locate.missing_force import FORCE_UNITS
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.diagnosis.question import Question
 from boatsim.diagnosis.report import before_after
-from boatsim.diagnosis.report.answer import meanings
-from boatsim.diagnosis.report.findings import Findings, Missing
+from boatsim.diagnosis.report.answer import effect_meanings
+from boatsim.diagnosis.report.findings import Findings, MissingForceCurve
 from boatsim.diagnosis.report.schema import Answer
 from boatsim.diagnosis.search.ranking import Ranking
 from boatsim.physics.base import Array
@@ -48,17 +48,17 @@ def findings_of(
         loaded.note,
         _missing(vessel, evaluation),
         evaluation.free_runs,
-        before_after.remarks(problem, ranking, evaluation),
+        before_after.limitation_sentences(problem, ranking, evaluation),
         _coefficients(ranking.recalibrated),
         (table,) if table else (),
-        meanings(problem.program.candidates, problem.program.vessel),
+        effect_meanings(problem.program.candidates, problem.program.vessel),
         ranking.description.terms if ranking.description else (),
         next_experiment.command_steps(plan),
         (vessel.length, vessel.beam),
     )
 
 
-def _missing(vessel: Vessel, evaluation: Evaluation) -> tuple[Missing, ...]:
+def _missing(vessel: Vessel, evaluation: Evaluation) -> tuple[MissingForceCurve, ...]:
     """Return the missing force of each recording, by axis."""
     axes = axes_of(vessel)
     units = {axis: FORCE_UNITS[axis] for axis in axes}
@@ -69,7 +69,7 @@ def _missing(vessel: Vessel, evaluation: Evaluation) -> tuple[Missing, ...]:
     found = []
     for force, remaining in zip(evaluation.missing, evaluation.remaining, strict=True):
         mean, sd, rest = by_axis(force.mean), by_axis(force.sd), by_axis(remaining.mean)
-        found.append(Missing(force.run, force.t, mean, sd, dict(units), rest))
+        found.append(MissingForceCurve(force.run, force.t, mean, sd, dict(units), rest))
     return tuple(found)
 
 

@@ -18,25 +18,25 @@ from boatsim.diagnosis.report.blocks import (
     Section,
     Table,
     Text,
-    without_empty,
+    without_empty_columns,
 )
-from boatsim.diagnosis.report.findings import Findings, Missing
+from boatsim.diagnosis.report.findings import Findings, MissingForceCurve
 from boatsim.diagnosis.report.formatting import (
-    alike,
-    capital,
-    chance,
-    evidence,
-    limit,
-    listed,
-    name_and_value,
-    nats,
-    number,
-    parameter,
-    percent,
-    plain,
-    quantity,
-    readable,
-    spread,
+    capitalize,
+    format_evidence,
+    format_in_one_unit,
+    format_nats,
+    format_number,
+    format_odds,
+    format_parameter,
+    format_probability,
+    format_quantity,
+    format_sentence,
+    format_upper_limit,
+    format_with_sd,
+    join_words,
+    name_and_unit,
+    words_of_name,
 )
 from boatsim.diagnosis.report.glossary import glossary
 from boatsim.diagnosis.report.schema import (
@@ -50,9 +50,9 @@ from boatsim.diagnosis.report.sentences import (
     FAMILIES,
     NONE_TESTED,
     any_tested,
-    assumptions,
+    assumption_sentences,
+    effect_description,
     only_measurement_errors,
-    words_of,
 )
 
 MOST_INTERVALS = 24  # rows of the table of flagged intervals; diagnosis.json has all of them
@@ -72,13 +72,13 @@ def sections_of(f: Findings) -> list[Section]:
         The sections; those without content have no blocks.
     """
     return [
-        Section("log", "Problems of the recordings", list(_log(f))),
-        Section("what", "What was found", list(_found(f))),
+        Section("log", "Problems of the recordings", list(_log_problems(f))),
+        Section("what", "What was found", list(_identified_effects(f))),
         Section("taken", "Candidates and assumptions", list(_assumptions(f))),
-        Section("where", "Where and when a force is missing", list(_where(f))),
+        Section("where", "Where and when a force is missing", list(_missing_force(f))),
         Section("ranking", "Ranking of the candidate effects", list(_ranking(f))),
         Section("proof", "Validation on held-out recordings", list(_validation(f))),
-        Section("next", "What to record next", list(_next(f))),
+        Section("next", "What to record next", list(_next_experiment(f))),
         Section("cannot", "What these recordings cannot show", list(_limitations(f))),
         Section("limits", "Upper limits of effects that were not found", list(_limits(f))),
         Section("coefficients", "Recalibrated coefficients", list(_coefficients(f))),
@@ -87,17 +87,17 @@ def sections_of(f: Findings) -> list[Section]:
     ]
 
 
-def _log(f: Findings) -> Iterator[Block]:
+def _log_problems(f: Findings) -> Iterator[Block]:
     """Yield the problems of the recordings, and the lines that correct them."""
     for e in f.answer.get("log", ()):
         cause = e.get("words", "corrected or allowed for by the diagnosis")
-        facts = f"{e['run']} · {cause} · probability {percent(e['sure'])}"
-        yield Heading(capital(plain(e["name"])), facts)
-        yield Text(f"{capital(e['evidence'])}.")
+        facts = f"{e['run']} · {cause} · probability {format_probability(e['sure'])}"
+        yield Heading(capitalize(words_of_name(e["name"])), facts)
+        yield Text(f"{capitalize(e['evidence'])}.")
         if corrections := _corrections(e):
             yield Items(corrections)
         if "remedy" in e:
-            yield Text(f"{capital(e['remedy'])}.")
+            yield Text(f"{capitalize(e['remedy'])}.")
 
 
 def _corrections(e: LogEntry) -> tuple[tuple[str, str], ...]:
@@ -109,13 +109,13 @@ def _corrections(e: LogEntry) -> tuple[tuple[str, str], ...]:
     return tuple(lines)
 
 
-def _found(f: Findings) -> Iterator[Block]:
+def _identified_effects(f: Findings) -> Iterator[Block]:
     """Yield the identified effects, the formulas, and what remains unexplained."""
     for i, e in enumerate(f.answer["effects"]):
         yield from _effect(f, e, explain_deviation=i == _first_with_parameters(f))
     unknown = f.answer["unknown"]
     if not any_tested(f.answer):
-        yield Text(f"{capital(NONE_TESTED)}.")
+        yield Text(f"{capitalize(NONE_TESTED)}.")
     elif unknown["flag"]:
         yield from _unexplained(f)
     elif not f.answer["effects"]:
@@ -135,28 +135,28 @@ def _first_with_parameters(f: Findings) -> int:
 
 def _effect(f: Findings, e: EffectEntry, explain_deviation: bool) -> Iterator[Block]:
     kind = "measurement error" if e["kind"] == "measurement" else "physics"
-    likely = f"probability {percent(e['probability'])} among its rivals"
-    facts = f"{e['name']} · {kind} · {evidence(e['gain_nats'])} · {likely}"
-    yield Heading(capital(words_of(e["words"])), facts)
+    likely = f"probability {format_probability(e['probability'])} among its rivals"
+    facts = f"{e['name']} · {kind} · {format_evidence(e['gain_nats'])} · {likely}"
+    yield Heading(capitalize(effect_description(e["words"])), facts)
     if e["parameters"]:
         header = ["parameter", "value ± deviation", "meaning"]
-        yield without_empty(Table("Fitted values", header, _values(f, e), prose=(2,)))
+        yield without_empty_columns(Table("Fitted values", header, _values(f, e), prose=(2,)))
     if explain_deviation:
         yield Text(_about_deviations(f, e))
     if e["tied_with"]:
         rivals = []
         for name in e["tied_with"]:
-            rivals.append(plain(name))
+            rivals.append(words_of_name(name))
             if name in f.words:
                 rivals[-1] += f" ({_meaning(f.words[name])})"
-        yield Text(f"These recordings cannot distinguish it from {listed(rivals, 'or')}.")
+        yield Text(f"These recordings cannot distinguish it from {join_words(rivals, 'or')}.")
 
 
 def _values(f: Findings, effect: EffectEntry) -> list[list[str]]:
     """Return name, value and meaning of each fitted parameter."""
     rows = []
     for key, p in effect["parameters"].items():
-        name, text = name_and_value(key, p["value"], p["unit"], p["sd"])
+        name, text = format_parameter(key, p["value"], p["unit"], p["sd"])
         meaning = f.words.get(f"{effect['name']}.{key}", "")
         if meaning == name:
             meaning = ""
@@ -166,9 +166,9 @@ def _values(f: Findings, effect: EffectEntry) -> list[list[str]]:
 
 def _meaning(words: str) -> str:
     """Return the description of an effect for use in brackets."""
-    if words == words_of(words):
+    if words == effect_description(words):
         return words
-    return f"{words_of(words)}, not physics"
+    return f"{effect_description(words)}, not physics"
 
 
 def _about_deviations(f: Findings, effect: EffectEntry) -> str:
@@ -190,14 +190,14 @@ def _unexplained(f: Findings) -> Iterator[Block]:
     unknown, factor = f.answer["unknown"], f.setting("locate.disturbance_factor")
     yield from _formulas(f)
     if not f.answer["described"]:
-        facts = evidence(unknown["gain_nats"])
+        facts = format_evidence(unknown["gain_nats"])
         yield Heading("A force that no candidate effect explains", facts)
     if unknown["gain_nats"] > unknown["told_from_nats"]:
         yield Text(
             "Even with all identified effects, the recordings require an additional random force "
             f"of more than {factor:g} times the assumed disturbance level. The evidence for it is "
-            f"a {evidence(unknown['gain_nats'])}. Such a force is reported from "
-            f"{nats(unknown['told_from_nats'])} nats on. This threshold increases with the "
+            f"a {format_evidence(unknown['gain_nats'])}. Such a force is reported from "
+            f"{format_nats(unknown['told_from_nats'])} nats on. This threshold increases with the "
             "evidence that the identified effects explain, because their laws are never exact. The "
             "section on the missing force shows where and when the force acts."
         )
@@ -209,11 +209,11 @@ def _structure(s: StructureEntry) -> str:
     """Return what the unexplained force varies with."""
     often = "a million"
     if s["p_value"] >= 1e-6:
-        often = number(1.0 / s["p_value"], 1)
+        often = format_number(1.0 / s["p_value"], 1)
     return (
         f"The unexplained force in {s['axis']} varies with {s['goes_with']}. A force in proportion "
-        f"to it gains {nats(s['gain_nats'])} nats. One of the {s['tried']} quantities tested would "
-        f"gain as much by chance once in {often} recordings."
+        f"to it gains {format_nats(s['gain_nats'])} nats. One of the {s['tried']} quantities "
+        f"tested would gain as much by chance once in {often} recordings."
     )
 
 
@@ -224,8 +224,8 @@ def _formulas(f: Findings) -> Iterator[Block]:
         for term in law["terms"]:
             gain += term["gain_nats"]
             value = _coefficient(law["axis"], term)
-            rows.append([term["of"], value, nats(term["gain_nats"])])
-        yield Heading(capital(law["statement"]), f"formula · {evidence(gain)}")
+            rows.append([term["of"], value, format_nats(term["gain_nats"])])
+        yield Heading(capitalize(law["statement"]), f"formula · {format_evidence(gain)}")
         header = ["varies with", "value ± deviation", "log Bayes factor [nats]"]
         yield Table("Terms", header, rows)
         if law["carries_over"]:
@@ -245,7 +245,7 @@ def _formulas(f: Findings) -> Iterator[Block]:
         "speeds, commands, heading, position and time that explains it. It states what the force "
         "varies with; it does not state the cause."
     )
-    drawn = [figures.law_figure(w) for w in f.described if w.curve is not None]
+    drawn = [figures.term_figure(w) for w in f.described if w.curve is not None]
     if drawn:
         looks = {
             "patched": "formula",
@@ -259,14 +259,14 @@ def _formulas(f: Findings) -> Iterator[Block]:
 def _coefficient(axis: str, term: TermEntry) -> str:
     """Return value and deviation of a term of a formula; a share of the thrust in %."""
     if axis == "thrust" and not term["unit"]:
-        return f"{spread(100.0 * term['value'], 100.0 * term['sd'])} %"
-    return quantity(term["value"], term["unit"], term["sd"])
+        return f"{format_with_sd(100.0 * term['value'], 100.0 * term['sd'])} %"
+    return format_quantity(term["value"], term["unit"], term["sd"])
 
 
 def _assumptions(f: Findings) -> Iterator[Block]:
     lines = []
-    for line in assumptions(f.answer):
-        lines.append(f"{capital(line)}.")
+    for line in assumption_sentences(f.answer):
+        lines.append(f"{capitalize(line)}.")
     yield from _bullets(lines)
 
 
@@ -275,14 +275,14 @@ def _bullets(lines: Sequence[str]) -> Iterator[Block]:
         yield Items(tuple(zip(repeat(""), lines)))
 
 
-def _where(f: Findings) -> Iterator[Block]:
+def _missing_force(f: Findings) -> Iterator[Block]:
     """Yield the conditions, the sizes, the curves and the intervals of the missing force."""
     where, verdict = f.answer["where"], f.answer["verdict"]
     if where["region"]:
         rows = []
         for region in where["region"]:
-            statement = capital(readable(region["statement"]))
-            rows.append([statement, number(region["p_value"], 1)])
+            statement = capitalize(format_sentence(region["statement"]))
+            rows.append([statement, format_number(region["p_value"], 1)])
         header = ["condition", "probability of chance (p-value)"]
         yield Table("When the force is missing", header, rows)
     if where["axes"]:
@@ -299,8 +299,8 @@ def _where(f: Findings) -> Iterator[Block]:
             "An interval is flagged wherever the missing force exceeds the assumed disturbance "
             "level. Together the intervals are not enough for a finding: no candidate effect "
             "explains them clearly better than the vessel model alone, and a cause outside the "
-            f"candidates gains {nats(unknown['gain_nats'])} of the "
-            f"{nats(unknown['told_from_nats'])} nats required."
+            f"candidates gains {format_nats(unknown['gain_nats'])} of the "
+            f"{format_nats(unknown['told_from_nats'])} nats required."
         )
     yield _interval_table(where["intervals"])
 
@@ -312,7 +312,7 @@ def _strengths(f: Findings) -> Table:
         header.append("share of the time flagged")
     rows = []
     for axis, strength in f.answer["where"]["axes"].items():
-        row = [axis, *alike([strength["rms"], strength["sd"]], strength["unit"])]
+        row = [axis, *format_in_one_unit([strength["rms"], strength["sd"]], strength["unit"])]
         if share:
             row.append(f"{100 * share.get(axis, 0.0):.0f} %")
         rows.append(row)
@@ -354,10 +354,10 @@ def _missing_figures(f: Findings) -> Iterator[Block]:
         if interval["run"] in flagged:
             flagged[interval["run"]] += interval["to_s"] - interval["from_s"]
     order = sorted(range(len(f.missing)), key=lambda i: -flagged[f.missing[i].run])
-    drawn: list[Missing] = []
+    drawn: list[MissingForceCurve] = []
     for i in sorted(order[:MOST_MISSING_FIGURES]):
         drawn.append(f.missing[i])
-        if not f.patched:  # the patched vessel is the recalibrated one
+        if not f.has_added_effects:  # the patched vessel is the recalibrated one
             drawn[-1] = replace(f.missing[i], left={})
     looks = {
         "missing": "missing force",
@@ -380,16 +380,18 @@ def _validation(f: Findings) -> Iterator[Block]:
     fit = f.answer["fit"]
     models: tuple[str, ...] = MODELS[:2]
     header = list(models)
-    if f.patched:
+    if f.has_added_effects:
         models, header = MODELS, [*MODELS, "error reduced by factor"]
     rows = []
     for key, (words, unit) in FAMILIES.items():
         if rms := fit.get(key):
-            rows.append(_compared(words, rms, unit)[: len(header) + 1])
+            rows.append(_error_row(words, rms, unit)[: len(header) + 1])
     if rows:
-        caption = f"rms error of free runs of {fit['horizon_s']:g} s over {listed(fit['held_out'])}"
+        caption = (
+            f"rms error of free runs of {fit['horizon_s']:g} s over {join_words(fit['held_out'])}"
+        )
         yield Table(caption, ["error in", *header], rows)
-    by_run = figures.by_recording(f.free_runs)
+    by_run = figures.group_by_recording(f.free_runs)
     if len(by_run) > 1:
         rows = []
         for runs in by_run:
@@ -398,9 +400,9 @@ def _validation(f: Findings) -> Iterator[Block]:
         yield Table("The same for each recording", ["recording", *header], rows)
     drawn = []
     for runs in by_run[:MOST_HELD_OUT_FIGURES]:
-        drawn += figures.free_run_figures(_only(runs, models))
+        drawn += figures.free_run_figures(_select_models(runs, models))
     if by_run:
-        names = _only(by_run[0], models)[0].channels
+        names = _select_models(by_run[0], models)[0].channels
         yield Figures(svg_plots.legend(dict(zip(names, names, strict=True))), drawn)
     if len(by_run) > MOST_HELD_OUT_FIGURES:
         yield Text(
@@ -411,7 +413,7 @@ def _validation(f: Findings) -> Iterator[Block]:
         yield Table(title, names_of_columns, cells, _text_columns(cells), folded=True)
 
 
-def _only(runs: Sequence[FreeRun], models: Sequence[str]) -> list[FreeRun]:
+def _select_models(runs: Sequence[FreeRun], models: Sequence[str]) -> list[FreeRun]:
     """Return free runs with the channels of the recording and of these models."""
     kept = []
     for run in runs:
@@ -430,10 +432,10 @@ def _text_columns(rows: Sequence[Sequence[str]]) -> tuple[int, ...]:
     return tuple(sorted(columns))
 
 
-def _compared(words: str, rms: dict[str, float], unit: str) -> list[str]:
+def _error_row(words: str, rms: dict[str, float], unit: str) -> list[str]:
     """Return a row of the rms errors of the three models and the improvement by the last."""
-    errors = alike([rms["nominal"], rms["recalibrated"], rms["patched"]], unit)
-    factor = number(rms["recalibrated"] / max(rms["patched"], 1e-300))
+    errors = format_in_one_unit([rms["nominal"], rms["recalibrated"], rms["patched"]], unit)
+    factor = format_number(rms["recalibrated"] / max(rms["patched"], 1e-300))
     return [words, *errors, factor]
 
 
@@ -447,10 +449,10 @@ def _errors_of_run(runs: Sequence[FreeRun]) -> list[list[str]]:
             continue
         rms = {}
         for model in MODELS:
-            errors = np.concatenate([figures.error_of(r, model, signal) for r in runs])
+            errors = np.concatenate([figures.model_error(r, model, signal) for r in runs])
             # the rms of a position is that of its coordinates, of which there are two
             rms[model] = math.sqrt(float(np.nanmean(errors**2)) / len(needed))
-        rows.append(_compared(f"{runs[0].run}, {words}", rms, unit))
+        rows.append(_error_row(f"{runs[0].run}, {words}", rms, unit))
     return rows
 
 
@@ -468,9 +470,9 @@ def _ranking(f: Findings) -> Iterator[Block]:
             visible = max(visible, i)
         rows.append(
             [
-                plain(name),
-                nats(c["gain_nats"]),
-                percent(c["probability"]),
+                words_of_name(name),
+                format_nats(c["gain_nats"]),
+                format_probability(c["probability"]),
                 status.get(name, ""),
                 f.words.get(name, ""),
             ]
@@ -490,13 +492,15 @@ def _ranking(f: Findings) -> Iterator[Block]:
         "verdict",
         "meaning",
     ]
-    yield without_empty(Table(caption, header, rows[:visible], (3, 4), bars[:visible], aside=True))
+    yield without_empty_columns(
+        Table(caption, header, rows[:visible], (3, 4), bars[:visible], aside=True)
+    )
     if rest := rows[visible:]:
         title = f"The other {len(rest)} candidates"
         if len(rest) == 1:
             title = "The other candidate"
         table = Table(title, header, rest, (3, 4), bars[visible:], folded=True, aside=True)
-        yield without_empty(table)
+        yield without_empty_columns(table)
 
 
 def _status(f: Findings) -> dict[str, str]:
@@ -504,7 +508,7 @@ def _status(f: Findings) -> dict[str, str]:
     status = {}
     for e in f.answer["effects"]:
         for rival in e["tied_with"]:
-            status[rival] = f"look-alike of {plain(e['name'])}"
+            status[rival] = f"look-alike of {words_of_name(e['name'])}"
     for e in f.answer["effects"]:
         status[e["name"]] = "identified"
     return status
@@ -516,10 +520,10 @@ def _limits(f: Findings) -> Iterator[Block]:
     for name, values in _not_found(f).items():
         limits = []
         for key, value in values.items():
-            words, text = limit(key, value)
+            words, text = format_upper_limit(key, value)
             limits.append(f"{_measurement_meaning(f, name, key) or words} {text}")
         if limits:
-            rows.append([plain(name), ", ".join(limits), f.words.get(name, "")])
+            rows.append([words_of_name(name), ", ".join(limits), f.words.get(name, "")])
     if not rows:
         return
     caption = (
@@ -527,13 +531,13 @@ def _limits(f: Findings) -> Iterator[Block]:
         "is its distance from the value in the vessel file."
     )
     header, folded = ["candidate", "at most", "meaning"], f.answer["verdict"] != "nothing_missing"
-    yield without_empty(Table(caption, header, rows, (1, 2), folded=folded, aside=True))
+    yield without_empty_columns(Table(caption, header, rows, (1, 2), folded=folded, aside=True))
 
 
 def _measurement_meaning(f: Findings, name: str, key: str) -> str:
     """Return the meaning of a parameter of a measurement error, which is clearer than its name."""
     words = f.words.get(name, "")
-    if words == words_of(words):
+    if words == effect_description(words):
         return ""
     return f.words.get(f"{name}.{key}", "")
 
@@ -551,13 +555,13 @@ def _coefficients(f: Findings) -> Iterator[Block]:
     rows = []
     for name, (factor, sd) in f.coefficients.items():
         change = f"{100 * (factor - 1):+.1f} %".replace("-", "−")
-        rows.append([plain(name.replace(".", ", ")), spread(factor, sd), change])
+        rows.append([words_of_name(name.replace(".", ", ")), format_with_sd(factor, sd), change])
     if rows:
         caption = "Coefficients of the recalibrated vessel: factor on the value in the vessel file"
         yield Table(caption, ["coefficient", "factor ± deviation", "change"], rows)
 
 
-def _next(f: Findings) -> Iterator[Block]:
+def _next_experiment(f: Findings) -> Iterator[Block]:
     """Yield the manoeuvre that would add most evidence, and how to perform it."""
     wanted = f.answer["next_experiment"]
     if not wanted:
@@ -571,18 +575,19 @@ def _next(f: Findings) -> Iterator[Block]:
     scenario = wanted["scenario"]
     rivals = []
     for name in wanted["separates"]:
-        rivals.append("no effect at all" if name == "nothing" else plain(name))
+        rivals.append("no effect at all" if name == "nothing" else words_of_name(name))
     commands = "the initial state that it specifies"
     if f.steps:
         commands = "the commands below"
     gain = wanted["expected_gain_nats"]
     yield Items(
         (
-            ("Manoeuvre", f"{capital(readable(wanted['manoeuvre']))}."),
-            ("Distinguishes", f"{capital(listed(rivals, 'or'))}."),
+            ("Manoeuvre", f"{capitalize(format_sentence(wanted['manoeuvre']))}."),
+            ("Distinguishes", f"{capitalize(join_words(rivals, 'or'))}."),
             (
                 "Expected evidence",
-                f"{nats(gain)} nats for the true cause against its closest rival ({chance(gain)}).",
+                f"{format_nats(gain)} nats for the true cause against its closest rival "
+                f"({format_odds(gain)}).",
             ),
             (
                 "How to perform it",
@@ -603,7 +608,7 @@ def _commands(f: Findings) -> Table:
     for _, levels in f.steps:
         for name in levels:
             if name not in units:
-                words, units[name] = parameter(name)
+                words, units[name] = name_and_unit(name)
                 header.append(words)
     rows = []
     for t, levels in f.steps:
@@ -611,7 +616,7 @@ def _commands(f: Findings) -> Table:
         for name, unit in units.items():
             text = ""
             if name in levels:
-                _, text = name_and_value(name, levels[name], unit)
+                _, text = format_parameter(name, levels[name], unit)
             row.append(text)
         if not levels:
             row[1] = "end"
@@ -625,7 +630,7 @@ def _limitations(f: Findings) -> Iterator[Block]:
     close = f.setting("select.alike")
     for e in f.answer["effects"]:
         if e["tied_with"]:
-            causes = listed(map(plain, (e["name"], *e["tied_with"])), "or")
+            causes = join_words(map(words_of_name, (e["name"], *e["tied_with"])), "or")
             lines.append(
                 f"Whether the cause is {causes}: they explain these recordings about equally well "
                 f"(within {close:g} nats, a factor of {math.exp(close):.0f})."
@@ -635,12 +640,13 @@ def _limitations(f: Findings) -> Iterator[Block]:
     unlimited = []
     for name, limits in _not_found(f).items():
         if not limits:
-            unlimited.append(plain(name))
+            unlimited.append(words_of_name(name))
     if unlimited:
         lines.append(
-            f"How strong {listed(unlimited, 'or')} could be at most: no limit could be computed."
+            f"How strong {join_words(unlimited, 'or')} could be at most: "
+            "no limit could be computed."
         )
-    lines += map(readable, f.remarks)
+    lines += map(format_sentence, f.remarks)
     yield from _bullets(lines)
 
 

@@ -4,18 +4,18 @@ import itertools
 from collections.abc import Mapping, Sequence
 
 from boatsim.diagnosis.evaluation import MODELS
-from boatsim.diagnosis.report.described_terms import what_of
+from boatsim.diagnosis.report.described_terms import effect_of_axis
 from boatsim.diagnosis.report.findings import Findings
 from boatsim.diagnosis.report.formatting import (
-    alike,
-    capital,
-    evidence,
-    listed,
-    name_and_value,
-    number,
-    percent,
-    plain,
-    quantity,
+    capitalize,
+    format_evidence,
+    format_in_one_unit,
+    format_number,
+    format_parameter,
+    format_probability,
+    format_quantity,
+    join_words,
+    words_of_name,
 )
 from boatsim.diagnosis.report.schema import (
     AmbientEntry,
@@ -51,7 +51,7 @@ NOTHING_MISSING = (
 )
 
 
-def words_of(effect_words: str) -> str:
+def effect_description(effect_words: str) -> str:
     """Return the description of an effect without the remark that it is not physics."""
     return effect_words.removesuffix(" (not physics)")
 
@@ -69,7 +69,7 @@ def only_measurement_errors(answer: Answer) -> bool:
     return answer["verdict"] == "named"
 
 
-def sentence(answer: Answer, words: Mapping[str, str] | None = None) -> str:
+def verdict_sentences(answer: Answer, words: Mapping[str, str] | None = None) -> str:
     """Return the verdict of a diagnosis in a few sentences.
 
     Args:
@@ -86,13 +86,13 @@ def sentence(answer: Answer, words: Mapping[str, str] | None = None) -> str:
     statements += _formulas(answer, bool(answer["effects"]))
     if not statements:
         return NOTHING_MISSING
-    statements += _ties(answer["effects"])
-    return " ".join(f"{capital(statement)}." for statement in statements)
+    statements += _look_alikes(answer["effects"])
+    return " ".join(f"{capitalize(statement)}." for statement in statements)
 
 
 def _none_tested(answer: Answer) -> str:
     if answer["verdict"] == "unknown":
-        return f"Something is missing{_sizes(answer)}, but {NONE_TESTED}."
+        return f"Something is missing{_unexplained_rms(answer)}, but {NONE_TESTED}."
     return f"No force beyond the assumed disturbance is missing, but {NONE_TESTED}."
 
 
@@ -100,7 +100,9 @@ def _effects(answer: Answer, words: Mapping[str, str]) -> list[str]:
     """Return statements on an unknown cause, on missing physics and on errors of measurement."""
     statements = []
     if answer["unknown"]["flag"] and not answer["described"]:
-        statements.append(f"a force is missing that no candidate effect explains{_sizes(answer)}")
+        statements.append(
+            f"a force is missing that no candidate effect explains{_unexplained_rms(answer)}"
+        )
         if found := answer["unknown"].get("structure"):
             statements.append(f"in {found['axis']} it varies with {found['goes_with']}")
     physics: list[str] = []
@@ -112,12 +114,12 @@ def _effects(answer: Answer, words: Mapping[str, str]) -> list[str]:
             physics.append(_clause(effect, words))
     addition = "in addition, " if statements else ""
     if physics:
-        effects = counted(len(physics), "effect")
+        effects = count_in_words(len(physics), "effect")
         statements.append(f"{addition}the model leaves out {effects}: {_clauses(physics)}")
     if measured:
         errors = "a measurement error"
         if len(measured) > 1:
-            errors = counted(len(measured), "measurement error")
+            errors = count_in_words(len(measured), "measurement error")
         if statements:
             statements.append(f"in addition, the recordings contain {errors}: {_clauses(measured)}")
         else:
@@ -128,7 +130,7 @@ def _effects(answer: Answer, words: Mapping[str, str]) -> list[str]:
     return statements
 
 
-def counted(count: int, noun: str) -> str:
+def count_in_words(count: int, noun: str) -> str:
     """Return a number of things, in words up to six: two effects."""
     number_words = str(count)
     if count < len(COUNTS):
@@ -158,34 +160,34 @@ def _formulas(answer: Answer, effects_precede: bool) -> list[str]:
     return statements
 
 
-def _ties(effects: Sequence[EffectEntry]) -> list[str]:
+def _look_alikes(effects: Sequence[EffectEntry]) -> list[str]:
     ties = []
     for effect in effects:
         if effect["tied_with"]:
-            rivals = listed(map(plain, effect["tied_with"]), "or")
-            ties.append(f"{plain(effect['name'])} from {rivals}")
+            rivals = join_words(map(words_of_name, effect["tied_with"]), "or")
+            ties.append(f"{words_of_name(effect['name'])} from {rivals}")
     if not ties:
         return []
-    return [f"these recordings cannot distinguish {listed(ties)}"]
+    return [f"these recordings cannot distinguish {join_words(ties)}"]
 
 
-def _sizes(answer: Answer) -> str:
+def _unexplained_rms(answer: Answer) -> str:
     """Return the rms force that remains unexplained, by axis, in brackets."""
     axes = answer["unknown"].get("rest") or answer["where"]["axes"]
     sizes = []
     for axis, strength in axes.items():
-        size = quantity(strength["rms"], strength["unit"], digits=2)
+        size = format_quantity(strength["rms"], strength["unit"], digits=2)
         sizes.append(f"{size} rms in {axis}")
     if not sizes:
         return ""
-    return f" ({listed(sizes)})"
+    return f" ({join_words(sizes)})"
 
 
 def _clause(effect: EffectEntry, words: Mapping[str, str]) -> str:
-    numbers = parameters(effect, words)
+    numbers = fitted_values(effect, words)
     if not numbers:
-        return words_of(effect["words"])
-    return f"{words_of(effect['words'])} ({numbers})"
+        return effect_description(effect["words"])
+    return f"{effect_description(effect['words'])} ({numbers})"
 
 
 def _clauses(clauses: Sequence[str]) -> str:
@@ -196,7 +198,7 @@ def _clauses(clauses: Sequence[str]) -> str:
     return f"{', '.join(head)}, and {tail}"
 
 
-def parameters(effect: EffectEntry, words: Mapping[str, str]) -> str:
+def fitted_values(effect: EffectEntry, words: Mapping[str, str]) -> str:
     """Return the first fitted numbers of an effect, without those that may be zero.
 
     Args:
@@ -210,7 +212,7 @@ def parameters(effect: EffectEntry, words: Mapping[str, str]) -> str:
     for key, p in effect["parameters"].items():
         if abs(p["value"]) <= p["sd"] and "factor" not in key:
             continue
-        name, text = name_and_value(key, p["value"], p["unit"], p["sd"])
+        name, text = format_parameter(key, p["value"], p["unit"], p["sd"])
         if effect["kind"] == "measurement":  # "error heading north" is clearer than "cos"
             name = words.get(f"{effect['name']}.{key}", name)
         if p.get("at_bound"):
@@ -219,40 +221,40 @@ def parameters(effect: EffectEntry, words: Mapping[str, str]) -> str:
     return ", ".join(numbers[:MOST_NUMBERS])
 
 
-def proof(f: Findings) -> str:
+def improvement_on_held_out(f: Findings) -> str:
     """Return how much the errors on held-out recordings decrease with the patched vessel."""
     fit = f.answer["fit"]
     errors, compared, gains = [], [], []
     for key, (words, unit) in FAMILIES.items():
         if rms := fit.get(key):
-            before, after = alike([rms["recalibrated"], rms["patched"]], unit)
+            before, after = format_in_one_unit([rms["recalibrated"], rms["patched"]], unit)
             gain = rms["recalibrated"] / max(rms["patched"], 1e-300)
             errors.append(f"{before} in {words}")
-            compared.append(f"{after} in {words} instead of {before} ({_times(gain)})")
+            compared.append(f"{after} in {words} instead of {before} ({_improvement_factor(gain)})")
             gains.append(gain)
     if not errors:
         return "The result could not be validated: no recording was held out."
     runs = f"In free runs of {fit['horizon_s']:g} s over the held-out recordings"
-    if not f.patched:
-        return f"{runs}, the recalibrated vessel has an rms error of {listed(errors)}."
+    if not f.has_added_effects:
+        return f"{runs}, the recalibrated vessel has an rms error of {join_words(errors)}."
     caution = ""
     if max(gains) <= f.setting("answer.least_improvement"):
         caution = "Treat this result as a hint: it hardly reduces the errors on held-out data. "
     return (
-        f"{caution}{runs}, the patched vessel has an rms error of {listed(compared)}. The "
+        f"{caution}{runs}, the patched vessel has an rms error of {join_words(compared)}. The "
         "comparison is with the recalibrated vessel, whose own coefficients were refitted."
     )
 
 
-def _times(gain: float) -> str:
+def _improvement_factor(gain: float) -> str:
     if 0.95 < gain < 1.05:
         return "unchanged"
     if gain > 1.0:
-        return f"{number(gain, 2)} times smaller"
-    return f"{number(1.0 / gain, 2)} times larger"
+        return f"{format_number(gain, 2)} times smaller"
+    return f"{format_number(1.0 / gain, 2)} times larger"
 
 
-def mean_force(answer: Answer, patched: bool) -> list[str]:
+def mean_force_paragraph(answer: Answer, patched: bool) -> list[str]:
     """Return a paragraph on the mean force that remains in the patched vessel, if there is one.
 
     Args:
@@ -266,7 +268,7 @@ def mean_force(answer: Answer, patched: bool) -> list[str]:
     if not found:
         return []
     vessel = "patched" if patched else "recalibrated"
-    forces = listed(itertools.starmap(_mean, found.items()))
+    forces = join_words(itertools.starmap(_mean_with_sd, found.items()))
     return [
         f"A mean force remains in the {vessel} vessel: {forces}, averaged over all recordings. No "
         "effect of the model produces it. A controller without integral action keeps a steady "
@@ -274,10 +276,10 @@ def mean_force(answer: Answer, patched: bool) -> list[str]:
     ]
 
 
-def _mean(axis: str, mean: MeanEntry) -> str:
+def _mean_with_sd(axis: str, mean: MeanEntry) -> str:
     positive, negative = WAYS[axis]
     way = positive if mean["mean"] > 0.0 else negative
-    size = quantity(abs(mean["mean"]), mean["unit"], mean["sd"])
+    size = format_quantity(abs(mean["mean"]), mean["unit"], mean["sd"])
     return f"{size} {way} in {axis}{_of_thrust(mean)}"
 
 
@@ -285,10 +287,10 @@ def _of_thrust(entry: MeanEntry | AmbientEntry) -> str:
     share = entry.get("share_of_full_thrust")
     if share is None:
         return ""
-    return f" ({number(100.0 * share, 2)} % of full thrust)"
+    return f" ({format_number(100.0 * share, 2)} % of full thrust)"
 
 
-def assumptions(answer: Answer) -> list[str]:
+def assumption_sentences(answer: Answer) -> list[str]:
     """Return the candidates tested and excluded, and the assumptions of a diagnosis.
 
     Args:
@@ -304,7 +306,7 @@ def assumptions(answer: Answer) -> list[str]:
         tested += f", {len(excluded)} excluded: {_exclusions(excluded)}"
     levels = []
     for axis, level in answer["rules"]["ambient"].items():
-        size = quantity(level["rms"], level["unit"], digits=2)
+        size = format_quantity(level["rms"], level["unit"], digits=2)
         levels.append(f"{axis} {size}{_of_thrust(level)}")
     lines = [tested, f"assumed disturbance level (rms): {', '.join(levels)}"]
     for rule, reason in answer["rules"]["overridden"].items():
@@ -316,11 +318,11 @@ def _exclusions(excluded: Sequence[LeftOutEntry]) -> str:
     """Return the excluded effects, grouped by their reason: A and B (no wind); C (no rudder)."""
     by_reason: dict[str, list[str]] = {}
     for entry in excluded:
-        by_reason.setdefault(entry["reason"], []).append(plain(entry["name"]))
-    return "; ".join(f"{listed(names)} ({reason})" for reason, names in by_reason.items())
+        by_reason.setdefault(entry["reason"], []).append(words_of_name(entry["name"]))
+    return "; ".join(f"{join_words(names)} ({reason})" for reason, names in by_reason.items())
 
 
-def printed(f: Findings) -> list[str]:
+def console_lines(f: Findings) -> list[str]:
     """Return the lines that `boatsim diagnose` prints.
 
     Args:
@@ -333,22 +335,22 @@ def printed(f: Findings) -> list[str]:
     answer = f.answer
     lines = [answer["sentence"]]
     for effect in answer["effects"]:
-        likely = f"probability {percent(effect['probability'])} among its rivals"
-        lines.append(f"  {effect['name']}: {evidence(effect['gain_nats'])}, {likely}")
+        likely = f"probability {format_probability(effect['probability'])} among its rivals"
+        lines.append(f"  {effect['name']}: {format_evidence(effect['gain_nats'])}, {likely}")
         for key, p in effect["parameters"].items():
             lines.append(f"    {key} = {p['value']:.4g} ± {p['sd']:.2g}")
     for law in answer["described"]:
         for term in law["terms"]:
-            varies = f"{what_of(law['axis'])} that varies with {term['of']}"
-            lines.append(f"  formula: {varies}: {evidence(term['gain_nats'])}")
+            varies = f"{effect_of_axis(law['axis'])} that varies with {term['of']}"
+            lines.append(f"  formula: {varies}: {format_evidence(term['gain_nats'])}")
             lines.append(f"    {term['value']:.4g} ± {term['sd']:.2g} {term['unit']}".rstrip())
-    for line in assumptions(answer):
+    for line in assumption_sentences(answer):
         lines.append(f"  {line}")
-    lines += [*_validation(f), *mean_force(answer, f.patched)]
+    lines += [*_validation(f), *mean_force_paragraph(answer, f.has_added_effects)]
     if wanted := answer["next_experiment"]:
-        rivals, expected = listed(wanted["separates"], "or"), wanted["expected_gain_nats"]
+        rivals, expected = join_words(wanted["separates"], "or"), wanted["expected_gain_nats"]
         lines.append(f"next experiment: {wanted['manoeuvre']}")
-        lines.append(f"  it distinguishes {rivals}; expected {evidence(expected)}")
+        lines.append(f"  it distinguishes {rivals}; expected {format_evidence(expected)}")
     return lines
 
 

@@ -13,7 +13,7 @@ from boatsim.diagnosis.report.answer import reported_sd
 DIGITS = 6  # significant
 
 
-def spread(problem: Problem, found: Fit, removed: Collection[str] = ()) -> Table | None:
+def uncertainty_table(problem: Problem, found: Fit, removed: Collection[str] = ()) -> Table | None:
     """Return the table of the uncertainty of the fitted numbers.
 
     Args:

@@ -13,7 +13,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from boatsim.diagnosis.report.formatting import number
+from boatsim.diagnosis.report.formatting import format_number
 from boatsim.physics.base import Array
 
 GRID = 2000  # units of the drawing along each edge; one is finer than a pixel
@@ -112,18 +112,21 @@ def figure(panels: Sequence[Panel], title: str, wide: bool = False) -> str:
     """
     look = "chart wide" if wide else "chart"
     caption = f"<figcaption>{escape(title)}</figcaption>"
-    return f'<figure class="{look}">{caption}{stacked(panels)}</figure>'
+    return f'<figure class="{look}">{caption}{stack_panels(panels)}</figure>'
 
 
-def stacked(panels: Sequence[Panel]) -> str:
+def stack_panels(panels: Sequence[Panel]) -> str:
     """Return panels below each other without a title."""
     return "".join(_panel(p, p is panels[-1]) for p in panels)
 
 
 def _panel(p: Panel, numbered: bool) -> str:
     """Return label, drawing and numbers of a panel."""
-    places = list(map(float, range(len(p.names)))) or ticks(*p.x, 6)
-    across, heights = _shares(p.x, places), _shares(p.y, ticks(*p.y, 5))
+    places = list(map(float, range(len(p.names)))) or round_ticks(*p.x, 6)
+    across, heights = (
+        _relative_positions(p.x, places),
+        _relative_positions(p.y, round_ticks(*p.y, 5)),
+    )
     marks = []
     for v, share in heights.items():
         marks.append(f'<span class="y" style="bottom:{100 * share:.1f}%">{_tick(v)}</span>')
@@ -131,7 +134,9 @@ def _panel(p: Panel, numbered: bool) -> str:
     if numbered:
         look, below = "plot numbered", f'<p class="along">{escape(p.x_label)}</p>'
         for v, share in across.items():
-            marks.append(f'<span class="x" style="left:{100 * share:.1f}%">{_name(p, v)}</span>')
+            marks.append(
+                f'<span class="x" style="left:{100 * share:.1f}%">{_tick_label(p, v)}</span>'
+            )
     drawing = _drawing(p, across.values(), heights.values())
     return (
         f'<p class="across">{escape(p.title)}</p><div class="{look}" style="--shape:{p.shape:g}" '
@@ -142,7 +147,7 @@ def _panel(p: Panel, numbered: bool) -> str:
     )
 
 
-def _shares(limits: tuple[float, float], values: Sequence[float]) -> dict[float, float]:
+def _relative_positions(limits: tuple[float, float], values: Sequence[float]) -> dict[float, float]:
     """Return the position of each value between the limits, as a share of their distance."""
     low, high = limits
     return {v: (v - low) / (high - low) for v in values}
@@ -152,7 +157,7 @@ def _drawing(p: Panel, across: Iterable[float], heights: Iterable[float]) -> str
     """Return the paths of a panel, with a grid at these shares of width and height."""
     paths = []
     for begin, end in p.flags:
-        paths.append(f'<path class="flag" d="{_shaded(p, begin, end)}"/>')
+        paths.append(f'<path class="flag" d="{_shaded_interval(p, begin, end)}"/>')
     grid = ""
     for share in heights:
         grid += f"M0 {GRID * (1 - share):.0f}H{GRID}"
@@ -167,12 +172,12 @@ def _drawing(p: Panel, across: Iterable[float], heights: Iterable[float]) -> str
     for dots in p.dots:
         paths.append(_dots(p, dots))
     for box in p.boxes:
-        paths.append(_boxed(p, box))
+        paths.append(_box_plot(p, box))
     curves: dict[str, list[Line]] = {}
     for line in p.lines:
         curves.setdefault(line.look, []).append(line)
     for lines in curves.values():
-        pieces = _pieces(lines)
+        pieces = _join_pieces(lines)
         most = POINTS
         if len(pieces) > 1:
             most = max(FEWEST_POINTS, 2 * POINTS // len(pieces))
@@ -181,7 +186,7 @@ def _drawing(p: Panel, across: Iterable[float], heights: Iterable[float]) -> str
     return "".join(paths)
 
 
-def _pieces(lines: Sequence[Line]) -> Sequence[Line]:
+def _join_pieces(lines: Sequence[Line]) -> Sequence[Line]:
     """Return the pieces of a curve, joined where they are too many to be distinguished."""
     if len(lines) <= MOST_PIECES:
         return lines
@@ -192,7 +197,7 @@ def _pieces(lines: Sequence[Line]) -> Sequence[Line]:
     return [replace(lines[0], x=x, y=y, t=t)]
 
 
-def _place(p: Panel, x: Array, y: Array) -> list[list[int]]:
+def _drawing_coordinates(p: Panel, x: Array, y: Array) -> list[list[int]]:
     """Return drawing coordinates; points far outside are moved to just outside."""
     across = GRID * (np.asarray(x) - p.x[0]) / (p.x[1] - p.x[0])
     down = GRID * (p.y[1] - np.asarray(y)) / (p.y[1] - p.y[0])
@@ -208,10 +213,10 @@ def _polyline(points: Sequence[Sequence[int]]) -> str:
 def _curve(p: Panel, line: Line, most: int) -> str:
     seen = np.isfinite(line.x) & np.isfinite(line.y)
     x, y = line.x[seen], line.y[seen]
-    rows = thinned(y, most) if p.shape == TIMES else every(len(y), most)
+    rows = rows_of_extremes(y, most) if p.shape == TIMES else evenly_spaced_rows(len(y), most)
     d, data = "", ""
     if len(x):
-        d = _polyline(_place(p, x[rows], y[rows]))
+        d = _polyline(_drawing_coordinates(p, x[rows], y[rows]))
     if line.name:
         data = f' data-name="{escape(line.name)}"'
     if line.t is not None:
@@ -222,40 +227,43 @@ def _curve(p: Panel, line: Line, most: int) -> str:
 def _dots(p: Panel, dots: Line) -> str:
     seen = np.isfinite(dots.x) & np.isfinite(dots.y)
     x, y = dots.x[seen], dots.y[seen]
-    rows = every(len(y), DOTS)
-    d = "".join(f"M{a} {b}h0" for a, b in _place(p, x[rows], y[rows]))
+    rows = evenly_spaced_rows(len(y), DOTS)
+    d = "".join(f"M{a} {b}h0" for a, b in _drawing_coordinates(p, x[rows], y[rows]))
     return f'<path class="dots {dots.look}" d="{d}"/>'
 
 
-def _boxed(p: Panel, box: Box) -> str:
+def _box_plot(p: Panel, box: Box) -> str:
     """Return a box for the middle half of the values, a line at the median, and whiskers."""
     sides = np.array([box.x - box.width / 2, box.x, box.x + box.width / 2])
-    places = _place(p, sides[[0, 1, 2, 0, 0]], np.array(box.below))
+    places = _drawing_coordinates(p, sides[[0, 1, 2, 0, 0]], np.array(box.below))
     (left, low), (middle, lower), (right, half), (_, upper), (_, high) = places
     whiskers = f"M{middle} {low}V{lower}M{middle} {upper}V{high}"
     d = f"{whiskers}M{left} {lower}H{right}V{upper}H{left}ZM{left} {half}H{right}"
     return f'<path class="box {box.look}" d="{d}"/>'
 
 
-def _name(p: Panel, value: float) -> str:
+def _tick_label(p: Panel, value: float) -> str:
     if p.names:
         return escape(p.names[int(value)])
     return _tick(value)
 
 
 def _area(p: Panel, x: Array, low: Array, high: Array) -> str:
-    rows = every(len(x), POINTS)
-    around = _place(p, x[rows], high[rows]) + _place(p, x[rows], low[rows])[::-1]
+    rows = evenly_spaced_rows(len(x), POINTS)
+    around = (
+        _drawing_coordinates(p, x[rows], high[rows])
+        + _drawing_coordinates(p, x[rows], low[rows])[::-1]
+    )
     return f"{_polyline(around)}Z"
 
 
-def _shaded(p: Panel, begin: float, end: float) -> str:
+def _shaded_interval(p: Panel, begin: float, end: float) -> str:
     """Return a box over an interval of the abscissa."""
     a, b = GRID * (np.clip([begin, end], *p.x) - p.x[0]) / (p.x[1] - p.x[0])
     return f"M{a:.0f} 0H{b:.0f}V{GRID}H{a:.0f}Z"
 
 
-def thinned(y: Array, most: int = POINTS) -> NDArray[np.int64]:
+def rows_of_extremes(y: Array, most: int = POINTS) -> NDArray[np.int64]:
     """Return rows that keep the shape of a long curve: the extremes of equal intervals.
 
     Args:
@@ -272,12 +280,12 @@ def thinned(y: Array, most: int = POINTS) -> NDArray[np.int64]:
     return np.unique(np.array(rows))
 
 
-def every(rows: int, most: int) -> NDArray[np.int64]:
+def evenly_spaced_rows(rows: int, most: int) -> NDArray[np.int64]:
     """Return about `most` of the rows at equal distances, with the last one."""
     return np.unique(np.append(np.arange(0, rows, 1 + rows // most), max(rows - 1, 0)))[:rows]
 
 
-def ticks(low: float, high: float, most: int) -> list[float]:
+def round_ticks(low: float, high: float, most: int) -> list[float]:
     """Return about `most` round numbers within limits."""
     rough = (high - low) / most
     power = 10.0 ** np.floor(np.log10(rough))
@@ -293,10 +301,10 @@ def ticks(low: float, high: float, most: int) -> list[float]:
 def _tick(value: float) -> str:
     if abs(value) < 1e6:
         return f"{value:.10g}".replace("-", "−")
-    return number(value)
+    return format_number(value)
 
 
-def limits(values: Sequence[Array], zero: bool = True) -> tuple[float, float]:
+def axis_limits(values: Sequence[Array], zero: bool = True) -> tuple[float, float]:
     """Return limits with a margin around the finite values.
 
     Args:

@@ -6,17 +6,22 @@ from dataclasses import replace
 import numpy as np
 
 from boatsim import progress
-from boatsim.diagnosis.candidates import called
+from boatsim.diagnosis.candidates import base_name
 from boatsim.diagnosis.fit import converge, fit, gauss_newton, remove_effect
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.diagnosis.search.evidence import (
-    front,
-    left_over,
-    more_likely,
+    fits_with_evidence_above,
+    leading_candidates,
     required_gain,
+    unexplained_evidence,
     unknown_threshold,
 )
-from boatsim.diagnosis.search.screening import all_starts, recheck, screen, starts
+from boatsim.diagnosis.search.screening import (
+    confirm_screening,
+    screen,
+    starting_fits,
+    starting_points,
+)
 from boatsim.physics.base import Unsteady
 
 SCREENING = (0.2, 0.5)  # of a selection, by experience, is the first screening
@@ -67,10 +72,10 @@ class CandidateSets:
                 self.unsteady.add(name)
         self.required_gain = required_gain(len(candidates), self.config.select)
 
-    def explained(self, best: Fit) -> float:
+    def explained_evidence(self, best: Fit) -> float:
         """Return the evidence of the deterministic effects of a set [nats].
 
-        A stochastic force or error has no shape that could differ from nature's.
+        Stochastic forces and errors are not counted.
 
         Args:
             best: A fit.
@@ -78,11 +83,11 @@ class CandidateSets:
         laws = best
         for name in best.effects:
             if name in self.random:
-                laws = self.without(laws, name)
+                laws = self.fit_without(laws, name)
         return float(laws.evidence - self.base.evidence)
 
-    def converged(self, start: Fit) -> Fit:
-        """Return the fit of a set, computed unless there is one from a start that was no worse.
+    def converged_fit(self, start: Fit) -> Fit:
+        """Return the converged fit of a set, from the cache unless this start is better.
 
         Args:
             start: Start of the fit.
@@ -96,13 +101,13 @@ class CandidateSets:
         found = converge(self.problem, start)
         if known is not None:
             if found.evidence > known.evidence + settled:
-                self.forget(key)
+                self.forget_screenings(key)
             found = max(found, known, key=lambda f: f.evidence)
         self.fits[key] = found
         return found
 
-    def refit_in_calm(self, found: Fit) -> Fit:
-        """Return a fit, or a better one that started with the assumed disturbance levels.
+    def refit_from_assumed_disturbance(self, found: Fit) -> Fit:
+        """Return the better of a fit and its refit from the assumed disturbance levels.
 
         If the latent force may be as large as it was without an effect, the effect is not required
         to explain all that it can.
@@ -111,7 +116,7 @@ class CandidateSets:
             found: A fit of a set.
         """
         config, problem = self.config, self.problem
-        if left_over(problem, found) < config.select.unknown_gain:
+        if unexplained_evidence(problem, found) < config.select.unknown_gain:
             return found
         force = np.minimum(found.levels.force, problem.ambient.force)
         calm = replace(found.levels, force=force)
@@ -122,12 +127,12 @@ class CandidateSets:
         if not other.evidence > found.evidence + config.fit.refit_gain:
             return found
         key = frozenset(found.effects)
-        self.forget(key)
+        self.forget_screenings(key)
         self.fits[key] = other
         return other
 
-    def forget(self, key: Set) -> None:
-        """Forget the screenings on top of a set, which were compared with a fit that was too poor.
+    def forget_screenings(self, key: Set) -> None:
+        """Discard cached screenings on top of a set whose fit has since improved.
 
         Args:
             key: Names of the effects of the set.
@@ -136,32 +141,32 @@ class CandidateSets:
         self.rechecked = {pair for pair in self.rechecked if pair[0] != key}
         self.fitted_in_full = {pair for pair in self.fitted_in_full if pair[0] != key}
 
-    def without(self, best: Fit, name: str) -> Fit:
+    def fit_without(self, best: Fit, name: str) -> Fit:
         """Return the fit of a set without one of its effects.
 
         Args:
             best: A fit.
             name: Name of one of its effects.
         """
-        return self.converged(remove_effect(self.problem, best, name))
+        return self.converged_fit(remove_effect(self.problem, best, name))
 
-    def tested(self, best: Fit, among: Sequence[str] = ()) -> dict[str, Fit]:
-        """Return `screened` without candidates that were refuted."""
-        return self._without_banned(self.screened(best, among))
+    def screen_unrefuted(self, best: Fit, among: Sequence[str] = ()) -> dict[str, Fit]:
+        """Return `screen_candidates` without candidates that were refuted."""
+        return self._unrefuted_fits(self.screen_candidates(best, among))
 
-    def without_each(self, best: Fit) -> dict[str, Fit]:
+    def fits_without_each(self, best: Fit) -> dict[str, Fit]:
         """Return the fits of a set without one of its effects, by the name of that effect.
 
         Args:
             best: A fit.
         """
-        return {name: self.without(best, name) for name in best.effects}
+        return {name: self.fit_without(best, name) for name in best.effects}
 
-    def _without_banned(self, fits: Mapping[str, Fit]) -> dict[str, Fit]:
+    def _unrefuted_fits(self, fits: Mapping[str, Fit]) -> dict[str, Fit]:
         """Fits of those candidates that were not refuted."""
         return {name: found for name, found in fits.items() if name not in self.banned}
 
-    def screened(self, best: Fit, among: Sequence[str] = ()) -> dict[str, Fit]:
+    def screen_candidates(self, best: Fit, among: Sequence[str] = ()) -> dict[str, Fit]:
         """Return the screenings of other candidates on top of a set, the best ones fitted in full.
 
         Args:
@@ -173,12 +178,12 @@ class CandidateSets:
         """
         key = frozenset(best.effects)
         known = self.screenings.setdefault(key, {})
-        ideas = set(map(called, best.effects))
-        rest = [n for n in among or self.candidates if called(n) not in ideas and n not in known]
+        ideas = set(map(base_name, best.effects))
+        rest = [n for n in among or self.candidates if base_name(n) not in ideas and n not in known]
         if rest:
             report = self._report_screening if len(self.screenings) == 1 else None
             known |= screen(self.problem, best, rest, report)
-        allowed = self._without_banned(known)
+        allowed = self._unrefuted_fits(known)
         least = best.evidence + self.required_gain
         if not among and all(f.evidence < least for f in allowed.values()):
             allowed |= self._recheck_failed(best, allowed)
@@ -186,15 +191,15 @@ class CandidateSets:
         fits = 0
         # a screening may promise too much: the front is determined again after each full fit
         while fits < self.config.select.most_full_fits:
-            promising = more_likely(allowed, best.evidence)
-            ahead = front(promising, best, self.config.select)
+            promising = fits_with_evidence_above(allowed, best.evidence)
+            ahead = leading_candidates(promising, best, self.config.select)
             ahead = [n for n in ahead if (key, n) not in self.fitted_in_full]
             if not ahead:
                 break
             name = ahead[0]
             found = known[name]
             if (key, name) not in self.rechecked and name not in self.random:
-                found = recheck(self.problem, best, found)
+                found = confirm_screening(self.problem, best, found)
             self.rechecked.add((key, name))
             if found is known[name]:
                 self.fitted_in_full.add((key, name))
@@ -219,8 +224,10 @@ class CandidateSets:
         for name, found in allowed.items():
             if found.evidence < worst and (key, name) not in self.rechecked:
                 failed.append(name)
-        threshold = unknown_threshold(config.select, self.explained(best)) if failed else np.inf
-        if not failed or left_over(self.problem, best) < threshold:
+        threshold = (
+            unknown_threshold(config.select, self.explained_evidence(best)) if failed else np.inf
+        )
+        if not failed or unexplained_evidence(self.problem, best) < threshold:
             return {}
         steps, enough = config.select.recheck_steps, config.fit.refit_gain
         refitted = {}
@@ -242,17 +249,17 @@ class CandidateSets:
         problem = self.problem
         found = fit(problem, screening)
         effect = problem.candidates[name]
-        single = len(starts(problem, effect)) == 1 or type(effect).random
-        if single or left_over(problem, found) < self.config.select.unknown_gain:
+        single = len(starting_points(problem, effect)) == 1 or type(effect).random
+        if single or unexplained_evidence(problem, found) < self.config.select.unknown_gain:
             return found
         enough = self.config.fit.refit_gain
         others = []
-        for start in all_starts(problem, best, effect):
+        for start in starting_fits(problem, best, effect):
             others.append(gauss_newton(problem, start, START_STEPS, enough))
         other = max(others, key=lambda f: f.evidence)
         return max(found, fit(problem, other), key=lambda f: f.evidence)
 
-    def promising(self, best: Fit) -> list[str]:
+    def promising_candidates(self, best: Fit) -> list[str]:
         """Return the candidates that may gain on top of a set.
 
         They are those that gained on top of a set which it contains. None are returned where no
@@ -265,5 +272,5 @@ class CandidateSets:
         gained = set[str]()
         for other, found in self.screenings.items():
             if other <= key:
-                gained.update(more_likely(found, self.fits[other].evidence))
+                gained.update(fits_with_evidence_above(found, self.fits[other].evidence))
         return [n for n in self.candidates if n in gained]

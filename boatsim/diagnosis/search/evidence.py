@@ -71,7 +71,7 @@ def gains_over(fits: Mapping[str, Fit], base: Fit) -> dict[str, float]:
     return {name: found.evidence - base.evidence for name, found in fits.items()}
 
 
-def more_likely(fits: Mapping[str, Fit], least: float) -> dict[str, Fit]:
+def fits_with_evidence_above(fits: Mapping[str, Fit], least: float) -> dict[str, Fit]:
     """Return the fits with more evidence than a limit.
 
     Args:
@@ -81,8 +81,10 @@ def more_likely(fits: Mapping[str, Fit], least: float) -> dict[str, Fit]:
     return {name: found for name, found in fits.items() if found.evidence > least}
 
 
-def front(fits: Mapping[str, Fit], base: Fit, config: SelectConfig = DEFAULT.select) -> list[str]:
-    """Return the candidates that may still be the best, the best first.
+def leading_candidates(
+    fits: Mapping[str, Fit], base: Fit, config: SelectConfig = DEFAULT.select
+) -> list[str]:
+    """Return the candidates that a full fit may still show to be the best, the best first.
 
     A screening omits what a refit of the noise levels changes.
 
@@ -100,7 +102,7 @@ def front(fits: Mapping[str, Fit], base: Fit, config: SelectConfig = DEFAULT.sel
     return [n for n in order if gains[n] > best - distance]
 
 
-def left_over(problem: Problem, best: Fit) -> float:
+def unexplained_evidence(problem: Problem, best: Fit) -> float:
     """Return the evidence that the latent force gains beyond the assumed level [nats].
 
     Args:

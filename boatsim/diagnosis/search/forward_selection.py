@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from boatsim.diagnosis.candidates import called
+from boatsim.diagnosis.candidates import base_name
 from boatsim.diagnosis.problem import Fit
 from boatsim.diagnosis.search.candidate_sets import CandidateSets
 from boatsim.diagnosis.search.evidence import combined_gain, gain_by_curvature, gains_over
@@ -17,8 +17,8 @@ END = 0.8
 REMAINS = 0.7
 
 
-def selected(sets: CandidateSets, best: Fit) -> Fit:
-    """Return the best set on top of another one.
+def select_forward(sets: CandidateSets, best: Fit) -> Fit:
+    """Add candidates to a set one by one and return the resulting fit.
 
     Earlier effects that a newer one makes unnecessary are removed.
 
@@ -28,19 +28,19 @@ def selected(sets: CandidateSets, best: Fit) -> Fit:
     """
     config = sets.config.select
     for _ in range(2 * config.most_effects):  # additions and removals
-        tested = sets.tested(best)
+        tested = sets.screen_unrefuted(best)
         _report(sets, best)
         if not tested or len(best.effects) == config.most_effects:
             break
         laws = {n: f for n, f in tested.items() if n not in sets.random}
-        share = config.deterministic_share * _gain(tested, best)
-        if _gain(laws, best) > max(sets.required_gain, share):
+        share = config.deterministic_share * _combined_gain(tested, best)
+        if _combined_gain(laws, best) > max(sets.required_gain, share):
             tested = laws  # a stochastic force can replace a law, a law hardly replaces it
-        slight = config.slight_share * sets.explained(best)
-        if _gain(tested, best) < max(sets.required_gain, slight):
+        slight = config.slight_share * sets.explained_evidence(best)
+        if _combined_gain(tested, best) < max(sets.required_gain, slight):
             break
         name = max(tested, key=lambda n: tested[n].evidence)
-        converged = sets.refit_in_calm(sets.converged(tested[name]))
+        converged = sets.refit_from_assumed_disturbance(sets.converged_fit(tested[name]))
         further = _without_unnecessary(sets, converged)
         if set(further.effects) == set(best.effects):
             break  # the newest one was removed again
@@ -50,23 +50,23 @@ def selected(sets: CandidateSets, best: Fit) -> Fit:
 
 def _report(sets: CandidateSets, best: Fit) -> None:
     """Report the best set so far."""
-    names = ", ".join(map(called, best.effects))
+    names = ", ".join(map(base_name, best.effects))
     done = END - (END - BEGIN) * REMAINS ** len(best.effects)
     gain = best.evidence - sets.base.evidence
     sets.report("selecting", done, f"best so far: {names} ({gain:.0f} nats)" if names else "")
 
 
-def restart(sets: CandidateSets, other: Fit) -> Fit:
-    """Return the effects of a fit with other noise levels, fitted again.
+def refit_from_base_levels(sets: CandidateSets, other: Fit) -> Fit:
+    """Refit the effects of a fit, starting from the noise levels of the base fit.
 
     Args:
         sets: Fits of candidate sets.
         other: A fit to the same recordings.
     """
-    return sets.converged(replace(other, levels=sets.base.levels, evidence=-np.inf))
+    return sets.converged_fit(replace(other, levels=sets.base.levels, evidence=-np.inf))
 
 
-def _gain(fits: Mapping[str, Fit], best: Fit) -> float:
+def _combined_gain(fits: Mapping[str, Fit], best: Fit) -> float:
     """Evidence that any of several candidates gains on top of a set."""
     if not fits:
         return -np.inf
@@ -79,7 +79,7 @@ def _without_unnecessary(sets: CandidateSets, best: Fit) -> Fit:
     for name in best.effects[:-1]:
         if gain_by_curvature(best, name) > keep:
             continue
-        without = sets.without(best, name)
+        without = sets.fit_without(best, name)
         if without.evidence > best.evidence - sets.required_gain:
             best = without
     return best

@@ -10,7 +10,7 @@ from boatsim.diagnosis.free_runs import FAMILIES, FreeRun, mean_square
 Squares = Mapping[str, Sequence[float]]  # mean square error of each free run by family of signals
 
 
-def squares(runs: Sequence[FreeRun], model: str) -> dict[str, list[float]]:
+def mean_square_errors(runs: Sequence[FreeRun], model: str) -> dict[str, list[float]]:
     """Return the mean square error of each free run, by family of signals.
 
     Args:
@@ -28,7 +28,7 @@ def squares(runs: Sequence[FreeRun], model: str) -> dict[str, list[float]]:
     return found
 
 
-def grew(
+def errors_grew(
     before: Squares, after: Squares, sure: float, config: ValidateConfig = DEFAULT.validate
 ) -> bool:
     """Whether the error of any family of signals has grown.
@@ -51,7 +51,7 @@ def grew(
     return False
 
 
-def misfit(found: Squares, reference: Squares) -> float:
+def error_ratio(found: Squares, reference: Squares) -> float:
     """Return the geometric mean over the families of the ratio of mean square errors.
 
     Args:

@@ -5,19 +5,19 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from boatsim.diagnosis.candidates import REORDERED, called
+from boatsim.diagnosis.candidates import REORDERED, base_name
 from boatsim.diagnosis.config import DEFAULT, SelectConfig
 from boatsim.diagnosis.fit import log_prior
 from boatsim.diagnosis.problem import Fit
 from boatsim.diagnosis.search.candidate_sets import CandidateSets
 from boatsim.diagnosis.search.evidence import (
     combined_gain,
-    front,
     gains_over,
-    left_over,
+    leading_candidates,
+    unexplained_evidence,
     unknown_threshold,
 )
-from boatsim.diagnosis.search.forward_selection import selected
+from boatsim.diagnosis.search.forward_selection import select_forward
 
 MOST_TIED = 3  # look-alikes that are reported of an effect
 
@@ -50,11 +50,11 @@ def prune(sets: CandidateSets, best: Fit) -> tuple[Fit, tuple[IdentifiedEffect, 
     examined = set()
     while True:
         examined.add(frozenset(best.effects))
-        named = tuple(_identified(sets, best, name) for name in best.effects)
+        named = tuple(_compare_with_rivals(sets, best, name) for name in best.effects)
         better = _better_rivals(sets, best, named)
         further = best
         if better:
-            further = selected(sets, max(better, key=lambda f: f.evidence))
+            further = select_forward(sets, max(better, key=lambda f: f.evidence))
         if frozenset(further.effects) not in examined:
             best = further
             continue
@@ -63,14 +63,14 @@ def prune(sets: CandidateSets, best: Fit) -> tuple[Fit, tuple[IdentifiedEffect, 
             if _too_weak(sets, best, one) or _corrects_shape(sets, best, one):
                 weak.append(one)
         for one in named:
-            if one not in weak and not _predicts(sets, best, one):
+            if one not in weak and not _improves_prediction(sets, best, one):
                 calming.append(one)
         if not weak and not calming:
             return best, named
         removed = min(weak + calming, key=lambda n: n.gain)
         if removed in calming:
             sets.banned.add(removed.name)
-        best = sets.without(best, removed.name)
+        best = sets.fit_without(best, removed.name)
 
 
 def _better_rivals(
@@ -81,12 +81,12 @@ def _better_rivals(
     for one in named:
         for rival, found in one.rivals.items():
             fair = one.name in sets.random or rival not in sets.random
-            if fair and found.evidence > best.evidence + _lead(sets, one.name, rival):
+            if fair and found.evidence > best.evidence + _required_lead(sets, one.name, rival):
                 better.append(found)
     return better
 
 
-def _lead(sets: CandidateSets, name: str, rival: str) -> float:
+def _required_lead(sets: CandidateSets, name: str, rival: str) -> float:
     """Evidence by which a rival must be ahead.
 
     Whether an effect acts before or after an actuator's lag deviates from the usual order only if
@@ -101,10 +101,10 @@ def _lead(sets: CandidateSets, name: str, rival: str) -> float:
 def _too_weak(sets: CandidateSets, best: Fit, named: IdentifiedEffect) -> bool:
     """Whether an effect gains too little."""
     config = sets.config.select
-    slight = config.slight_share * (sets.explained(best) - named.gain)
+    slight = config.slight_share * (sets.explained_evidence(best) - named.gain)
     if named.gain < max(config.least_gain, slight) or named.shared < sets.required_gain:
         return True
-    return not acts(sets, best, named.name)
+    return not differs_from_zero(sets, best, named.name)
 
 
 def _corrects_shape(sets: CandidateSets, best: Fit, named: IdentifiedEffect) -> bool:
@@ -114,11 +114,11 @@ def _corrects_shape(sets: CandidateSets, best: Fit, named: IdentifiedEffect) -> 
     seem to be required where nature's law is neither.
     """
     config = sets.config.select
-    if named.gain > unknown_threshold(config, sets.explained(best)):
+    if named.gain > unknown_threshold(config, sets.explained_evidence(best)):
         return False
-    alone = sets.without(best, named.name)
+    alone = sets.fit_without(best, named.name)
     for other in alone.effects:
-        neither, instead = sets.without(alone, other), sets.without(best, other)
+        neither, instead = sets.fit_without(alone, other), sets.fit_without(best, other)
         both = best.evidence - neither.evidence
         least = min(alone.evidence, instead.evidence) - neither.evidence
         if least > config.alike_share * both and named.gain < unknown_threshold(config, both):
@@ -126,7 +126,7 @@ def _corrects_shape(sets: CandidateSets, best: Fit, named: IdentifiedEffect) -> 
     return False
 
 
-def _predicts(sets: CandidateSets, best: Fit, named: IdentifiedEffect) -> bool:
+def _improves_prediction(sets: CandidateSets, best: Fit, named: IdentifiedEffect) -> bool:
     """Whether an effect makes the recording more likely with the noise levels held.
 
     Otherwise it only gains because less motion is expected: more damping keeps the hull still where
@@ -135,9 +135,13 @@ def _predicts(sets: CandidateSets, best: Fit, named: IdentifiedEffect) -> bool:
     """
     problem, config, found = sets.problem, sets.config.select, []
     rough = sets.unsteady & set(best.effects)
-    if named.name in sets.random or rough or left_over(problem, best) > config.unknown_gain:
+    if (
+        named.name in sets.random
+        or rough
+        or unexplained_evidence(problem, best) > config.unknown_gain
+    ):
         return True
-    for one in (best, sets.without(best, named.name)):
+    for one in (best, sets.fit_without(best, named.name)):
         on = problem.program.switches(one.effects)
         passes = problem.filter(one.free, one.theta, on, best.levels)
         residual = passes.log_likelihood - passes.log_density
@@ -145,7 +149,7 @@ def _predicts(sets: CandidateSets, best: Fit, named: IdentifiedEffect) -> bool:
     return not found[0] - found[1] < config.least_gain
 
 
-def acts(sets: CandidateSets, best: Fit, name: str) -> bool:
+def differs_from_zero(sets: CandidateSets, best: Fit, name: str) -> bool:
     """Whether an effect is clearly away from zero effect.
 
     A stochastic force must be further away: its size is positive, so that a search finds some in
@@ -179,19 +183,21 @@ def acts(sets: CandidateSets, best: Fit, name: str) -> bool:
     return False
 
 
-def _identified(sets: CandidateSets, best: Fit, name: str) -> IdentifiedEffect:
+def _compare_with_rivals(sets: CandidateSets, best: Fit, name: str) -> IdentifiedEffect:
     """Evidence of one effect on top of the others, and of its rivals in its place."""
     config = sets.config.select
-    without = sets.without(best, name)
+    without = sets.fit_without(best, name)
     gain = best.evidence - without.evidence
-    tested = sets.tested(without, [n for n in sets.promising(without) if n != name])
+    tested = sets.screen_unrefuted(
+        without, [n for n in sets.promising_candidates(without) if n != name]
+    )
     others = {n: f for n, f in tested.items() if n not in best.effects}
     key, rivals = frozenset(without.effects), {}
-    for rival in front(others, without, config)[: config.most_rivals]:
+    for rival in leading_candidates(others, without, config)[: config.most_rivals]:
         found = others[rival]
         poor = found.evidence < without.evidence + config.front_share * gain
         if not poor or (key, rival) not in sets.fitted_in_full:
-            found = sets.converged(found)
+            found = sets.converged_fit(found)
         rivals[rival] = found
     return compare_rivals(name, best, without, rivals, config)
 
@@ -216,10 +222,10 @@ def compare_rivals(
     gains = gains_over(rivals, without)
     weights = np.exp(np.array([0.0, gain, *gains.values()]) - max(gain, 0.0, *gains.values()))
     # the same effect on the other side of an actuator's lag counts as this one
-    same = np.array([False, True, *(called(n) == called(name) for n in gains)])
+    same = np.array([False, True, *(base_name(n) == base_name(name) for n in gains)])
     order = sorted(gains, key=lambda n: -gains[n])
     close = gain - config.alike
-    tied = [n for n in order if gains[n] > close and called(n) != called(name)]
+    tied = [n for n in order if gains[n] > close and base_name(n) != base_name(name)]
     probability = float(weights[same].sum() / weights.sum())
     return IdentifiedEffect(
         name,

@@ -13,16 +13,16 @@ from boatsim.diagnosis.noise_levels import fit_noise
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.diagnosis.search.candidate_sets import CandidateSets
 from boatsim.diagnosis.search.energy_balance import braking_force, oscillating_force
-from boatsim.diagnosis.search.evidence import gains_over, left_over, unknown_threshold
-from boatsim.diagnosis.search.forward_selection import restart, selected
+from boatsim.diagnosis.search.evidence import gains_over, unexplained_evidence, unknown_threshold
+from boatsim.diagnosis.search.forward_selection import refit_from_base_levels, select_forward
 from boatsim.diagnosis.search.pruning import IdentifiedEffect, prune
 from boatsim.diagnosis.search.validation import (
-    carries_over_less,
     deterministic_replacement,
-    distinguish,
+    generalizes_worse,
     misleading_effect,
     refuted_effect,
-    remove_dwarfed,
+    remove_dwarfed_effects,
+    remove_refuted_rivals,
 )
 from boatsim.physics.described_laws import Described
 from boatsim.progress import Report, silent
@@ -50,17 +50,17 @@ class Ranking:
     left_over: float  # [nats] that a force beyond the assumed level gains after the best set
     structure: Structure  # what that force correlates with most
     explained: float  # [nats] that the deterministic effects of the best set gain
-    told_from: float  # [nats] of `left_over` from which an unknown cause is reported
+    told_from: float  # [nats] of `unexplained_evidence` from which an unknown cause is reported
     structured: bool  # whether that force, however weak, clearly correlates with something
     description: Description | None = None  # symbolic description of it
 
     @property
-    def adds(self) -> bool:
+    def adds_effects(self) -> bool:
         """Whether the best fit adds anything to the vessel."""
-        return bool(self.named) or bool(self.laws)
+        return bool(self.named) or bool(self.described_terms)
 
     @property
-    def laws(self) -> Mapping[str, Described]:
+    def described_terms(self) -> Mapping[str, Described]:
         """Described terms that the best fit adds, by name."""
         return self.description.effects() if self.description else {}
 
@@ -98,32 +98,32 @@ def rank(
         The identified effects with the evidence of all candidates.
     """
     report("fitting the vessel as written")
-    nominal, recalibrated = base or baseline(problem)
+    nominal, recalibrated = base or fit_baseline(problem)
     sets = CandidateSets(problem, candidates, recalibrated, report)
-    start = restart(sets, begin) if begin else recalibrated
-    best, named = prune(sets, selected(sets, start))
+    start = refit_from_base_levels(sets, begin) if begin else recalibrated
+    best, named = prune(sets, select_forward(sets, start))
     while True:
-        fewer = remove_dwarfed(sets, best, held_out)
+        fewer = remove_dwarfed_effects(sets, best, held_out)
         if fewer is best:
             break
         best, named = prune(sets, fewer)
     report("judging what is left over", JUDGING)
-    best, named = _judged(sets, best, named, held_out)
-    remaining, correlated = left_over(problem, best), find_structure(problem, best)
+    best, named = _remove_refuted_effects(sets, best, named, held_out)
+    remaining, correlated = unexplained_evidence(problem, best), find_structure(problem, best)
     while True:
         waves = oscillating_force(sets, best)
         if not waves or not _replaces_law(sets, best, waves, correlated):
             break
         sets.banned.add(waves)
-        pruned = prune(sets, selected(sets, sets.without(best, waves)))
-        best, named = _judged(sets, *pruned, held_out)
-        remaining, correlated = left_over(problem, best), find_structure(problem, best)
-    named = distinguish(sets, best, named, held_out)
-    alone = gains_over(sets.screened(sets.base), sets.base)
-    last = sets.screened(best)
+        pruned = prune(sets, select_forward(sets, sets.fit_without(best, waves)))
+        best, named = _remove_refuted_effects(sets, *pruned, held_out)
+        remaining, correlated = unexplained_evidence(problem, best), find_structure(problem, best)
+    named = remove_refuted_rivals(sets, best, named, held_out)
+    alone = gains_over(sets.screen_candidates(sets.base), sets.base)
+    last = sets.screen_candidates(best)
     for name in sets.banned & last.keys():  # an effect that was refuted is no hint
         last[name] = replace(last[name], evidence=min(last[name].evidence, best.evidence))
-    explained = sets.explained(best)
+    explained = sets.explained_evidence(best)
     inflated = inflate_covariance(problem, best)
     return Ranking(
         nominal,
@@ -136,11 +136,13 @@ def rank(
         correlated,
         explained,
         told_from=unknown_threshold(problem.config.select, explained),
-        structured=_clear(sets, correlated, float(inflated.evidence - sets.base.evidence)),
+        structured=_clearly_correlates(
+            sets, correlated, float(inflated.evidence - sets.base.evidence)
+        ),
     )
 
 
-def _judged(
+def _remove_refuted_effects(
     sets: CandidateSets,
     best: Fit,
     named: tuple[IdentifiedEffect, ...],
@@ -152,57 +154,59 @@ def _judged(
         if not worse:
             break
         sets.banned.add(worse)
-        best, named = prune(sets, selected(sets, sets.without(best, worse)))
+        best, named = prune(sets, select_forward(sets, sets.fit_without(best, worse)))
     while named:
         worse = refuted_effect(sets, best, named, held_out)
         if not worse:
             break
         sets.banned.add(worse)
-        without = prune(sets, selected(sets, sets.without(best, worse)))
-        if not carries_over_less(sets, best, without[0], held_out):
-            return _judged(sets, *without, held_out)
+        without = prune(sets, select_forward(sets, sets.fit_without(best, worse)))
+        if not generalizes_worse(sets, best, without[0], held_out):
+            return _remove_refuted_effects(sets, *without, held_out)
         sets.banned.remove(worse)  # what replaced it holds less well for held-out recordings
         sets.supported.add(worse)
     while True:
         law = deterministic_replacement(sets, best, named, held_out)
         if law is None:
             return best, named
-        best, named = prune(sets, selected(sets, law))
+        best, named = prune(sets, select_forward(sets, law))
 
 
 def _replaces_law(sets: CandidateSets, best: Fit, waves: str, correlated: Structure) -> bool:
     """Whether a stochastic force leaves a good part of its gain correlated with the motion."""
-    gain = float(best.evidence - sets.without(best, waves).evidence)
-    clear = _clear(sets, correlated, float(best.evidence - sets.base.evidence))
+    gain = float(best.evidence - sets.fit_without(best, waves).evidence)
+    clear = _clearly_correlates(sets, correlated, float(best.evidence - sets.base.evidence))
     enough = correlated.gain > sets.config.select.remaining_share * gain
     return correlated.is_effect and clear and enough
 
 
-def _clear(sets: CandidateSets, correlated: Structure, explained: float) -> bool:
+def _clearly_correlates(sets: CandidateSets, correlated: Structure, explained: float) -> bool:
     """Whether the force that remains, however weak, clearly correlates with something."""
     config = sets.config.select
     threshold = unknown_threshold(config, explained, config.structure_error)
     return correlated.significant and correlated.gain > threshold
 
 
-def selection(problem: Problem, candidates: tuple[str, ...]) -> tuple[Fit, Fit]:
+def select_effects(problem: Problem, candidates: tuple[str, ...]) -> tuple[Fit, Fit]:
     """Return the recalibrated vessel and the best set on top of it, for cross-validation.
 
     Args:
         problem: Recordings and priors.
         candidates: Names of the candidates that are tested.
     """
-    _, recalibrated = baseline(problem)
-    return recalibrated, selected(CandidateSets(problem, candidates, recalibrated), recalibrated)
+    _, recalibrated = fit_baseline(problem)
+    return recalibrated, select_forward(
+        CandidateSets(problem, candidates, recalibrated), recalibrated
+    )
 
 
-def baseline(problem: Problem) -> Baseline:
+def fit_baseline(problem: Problem) -> Baseline:
     """Return the vessel as written with its noise levels fitted, and recalibrated.
 
     Args:
         problem: Recordings and priors.
     """
     config = problem.config.fit
-    nominal = fit_noise(problem, problem.nominal())
+    nominal = fit_noise(problem, problem.nominal_hypothesis())
     start = gauss_newton(problem, nominal, config.first_steps, config.step_gain)
     return Baseline(nominal, converge(problem, start))

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from boatsim.diagnosis.command_range import excursion
+from boatsim.diagnosis.command_range import largest_command
 from boatsim.diagnosis.filter import axes_of
 from boatsim.diagnosis.fit import (
     DAMPING_GROWTH,
@@ -17,9 +17,9 @@ from boatsim.diagnosis.fit import (
     jacobian,
     log_prior,
     log_truncation,
-    unfitted,
+    unfitted_hypothesis,
 )
-from boatsim.diagnosis.noise_levels import force_prior
+from boatsim.diagnosis.noise_levels import log_force_prior
 from boatsim.diagnosis.problem import FilterPasses, Fit, Problem, theta_of
 from boatsim.physics.base import Array, Effect, Unsteady
 
@@ -106,8 +106,8 @@ def screen(
     return found
 
 
-def recheck(problem: Problem, base: Fit, screened: Fit) -> Fit:
-    """Return a screening that the full filter confirms, else the best point nearer `base`.
+def confirm_screening(problem: Problem, base: Fit, screened: Fit) -> Fit:
+    """Return a screening if the full filter confirms it, else a fit from the best smaller step.
 
     A screening may fail where the held gains no longer suit the hull, for example where much mass
     is missing. What seems little at a point that the filter confirms may still gain most.
@@ -142,7 +142,7 @@ def _half_log_determinant(J: Array) -> float:
     return 0.5 * float(np.linalg.slogdet(np.eye(J.shape[1]) + J.T @ J)[1])
 
 
-def starts(problem: Problem, effect: Effect) -> list[dict[str, float]]:
+def starting_points(problem: Problem, effect: Effect) -> list[dict[str, float]]:
     """Return the starting points of a candidate's parameters.
 
     They are those of the effect, scaled by Froude's law, and shares of the largest command
@@ -160,7 +160,7 @@ def starts(problem: Problem, effect: Effect) -> list[dict[str, float]]:
     specified = []
     for start in kind.starts:
         specified.append({n: x * problem.scale(effect, n) for n, x in start.items()})
-    largest = excursion(problem.recordings, effect, problem.config.load)
+    largest = largest_command(problem.recordings, effect, problem.config.load)
     if largest:
         for name, shares in kind.thresholds.items():
             for share in shares:
@@ -182,11 +182,11 @@ def add_effect(problem: Problem, base: Fit, name: str, start: Mapping[str, float
     values = base.values()
     for parameter, x in start.items():
         values.setdefault((name, parameter), x)
-    return unfitted(effects, free, theta_of(free, values), base.levels)
+    return unfitted_hypothesis(effects, free, theta_of(free, values), base.levels)
 
 
-def hand_over(start: Fit, effect: Effect) -> Fit:
-    """Return a start in which the factor of a release takes over a recalibrated coefficient.
+def hand_over_coefficient(start: Fit, effect: Effect) -> Fit:
+    """Return a start in which an effect's factor takes over the change of a coefficient.
 
     The recordings determine only the product of both: straight steps along the curve on which it is
     constant would lead nowhere.
@@ -206,7 +206,7 @@ def hand_over(start: Fit, effect: Effect) -> Fit:
     return replace(start, theta=theta)
 
 
-def all_starts(problem: Problem, base: Fit, effect: Effect) -> list[Fit]:
+def starting_fits(problem: Problem, base: Fit, effect: Effect) -> list[Fit]:
     """Return a fit with a candidate added, at each of the candidate's starting points.
 
     Args:
@@ -214,30 +214,32 @@ def all_starts(problem: Problem, base: Fit, effect: Effect) -> list[Fit]:
         base: A fit.
         effect: The candidate.
     """
-    points = starts(problem, effect)
-    return [hand_over(add_effect(problem, base, effect.name, x), effect) for x in points]
+    points = starting_points(problem, effect)
+    return [
+        hand_over_coefficient(add_effect(problem, base, effect.name, x), effect) for x in points
+    ]
 
 
 def _screen_deterministic(problem: Problem, base: Fit, effect: Effect, about: Linearisation) -> Fit:
     """A first step from the most promising starting points, the best of them followed further."""
     config = problem.config.select
-    begun = all_starts(problem, base, effect)
+    begun = starting_fits(problem, base, effect)
     if len(begun) > config.screening_starts:
         on = problem.program.switches(begun[0].effects)
 
         def loss(start: Fit) -> float:
-            theta = ParameterSpace(start.free).clipped(start.theta)
-            white = problem.whitened(start.free, theta, on, start.levels, about.passes)
+            theta = ParameterSpace(start.free).clip(start.theta)
+            white = problem.whitened_errors(start.free, theta, on, start.levels, about.passes)
             return -about.predicted_gain(white)
 
         begun.sort(key=loss)
         begun = begun[: config.screening_starts]
     if len(begun) == 1:
-        best = _steps(problem, begun[0], about, config.screening_steps)
+        best = _gauss_newton_steps(problem, begun[0], about, config.screening_steps)
     else:
-        first = [_steps(problem, start, about, 1) for start in begun]
+        first = [_gauss_newton_steps(problem, start, about, 1) for start in begun]
         best = max(first, key=lambda found: found[1])
-        best = _steps(problem, best[0], about, config.screening_steps - 1)
+        best = _gauss_newton_steps(problem, best[0], about, config.screening_steps - 1)
     found, score = best
     truncation = log_truncation(found.free, found.theta, found.covariance)
     truncation -= log_truncation(base.free, base.theta, base.covariance)
@@ -245,7 +247,9 @@ def _screen_deterministic(problem: Problem, base: Fit, effect: Effect, about: Li
     return replace(found, evidence=base.evidence + gain)
 
 
-def _steps(problem: Problem, start: Fit, about: Linearisation, rounds: int) -> tuple[Fit, float]:
+def _gauss_newton_steps(
+    problem: Problem, start: Fit, about: Linearisation, rounds: int
+) -> tuple[Fit, float]:
     """Gauss-Newton steps with the columns of what was free before held.
 
     Returns the fit, and its score with the determinant.
@@ -253,12 +257,12 @@ def _steps(problem: Problem, start: Fit, about: Linearisation, rounds: int) -> t
     config, free, levels = problem.config.select, start.free, start.levels
     on = problem.program.switches(start.effects)
     space = ParameterSpace(free)
-    theta = middle = space.clipped(start.theta)
+    theta = middle = space.clip(start.theta)
     known = about.columns
     slope = np.append(about.slope, np.zeros(len(free) - len(about.slope)))
 
     def evaluate(x: Array) -> tuple[Array, float]:
-        white = problem.whitened(free, x, on, levels, about.passes)
+        white = problem.whitened_errors(free, x, on, levels, about.passes)
         with np.errstate(over="ignore"):  # the simulated boat may diverge
             score = log_prior(free, x) - 0.5 * float(white @ white)
             return white, score + float(slope @ ((x - middle) / space.sd))
@@ -306,24 +310,26 @@ def _screen_stochastic(problem: Problem, base: Fit, effect: Effect, about: Linea
     turn. The filter is linearised once; the determinant of what was free before hardly changes.
     """
     before = about.passes.log_likelihood
-    before += log_prior(base.free, base.theta) + force_prior(problem, base.levels)
+    before += log_prior(base.free, base.theta) + log_force_prior(problem, base.levels)
 
-    def scored(at: Fit) -> Fit:
+    def with_likelihood(at: Fit) -> Fit:
         on = problem.program.switches(at.effects)
         score = problem.log_likelihood(at.free, at.theta, on, at.levels, about.passes)
         score += log_prior(at.free, at.theta)
-        evidence = base.evidence + score + force_prior(problem, at.levels) - before
+        evidence = base.evidence + score + log_force_prior(problem, at.levels) - before
         return replace(at, evidence=evidence)
 
-    best = _best(list(map(scored, stochastic_starts(problem, base, effect))))
+    best = _most_likely(list(map(with_likelihood, stochastic_starting_fits(problem, base, effect))))
     if isinstance(effect, Unsteady):
         for i, axis in enumerate(axes_of(problem.program.vessel)):
-            best = _best([best, scored(_without_axis(best, base, effect.name, i, axis))])
-        best = _best([best, scored(_calm(problem, best, base))])
+            best = _most_likely(
+                [best, with_likelihood(_without_axis(best, base, effect.name, i, axis))]
+            )
+        best = _most_likely([best, with_likelihood(_at_assumed_disturbance(problem, best, base))])
     return best
 
 
-def _best(fits: Sequence[Fit]) -> Fit:
+def _most_likely(fits: Sequence[Fit]) -> Fit:
     return max(fits, key=lambda found: found.evidence)
 
 
@@ -338,14 +344,14 @@ def _without_axis(at: Fit, base: Fit, name: str, i: int, axis: str) -> Fit:
     return replace(at, theta=theta, levels=replace(at.levels, force=force))
 
 
-def _calm(problem: Problem, at: Fit, base: Fit) -> Fit:
+def _at_assumed_disturbance(problem: Problem, at: Fit, base: Fit) -> Fit:
     """A start in which the latent force along the axes of a stochastic force is the assumed one."""
     takes = at.levels.force < base.levels.force
     calm = np.minimum(at.levels.force, problem.ambient.force)
     return replace(at, levels=replace(at.levels, force=np.where(takes, calm, at.levels.force)))
 
 
-def stochastic_starts(problem: Problem, base: Fit, effect: Effect) -> list[Fit]:
+def stochastic_starting_fits(problem: Problem, base: Fit, effect: Effect) -> list[Fit]:
     """Return the starts of a stochastic force, or of the drift of an instrument.
 
     A stochastic force starts with a share of the latent force. The drift of an instrument starts
@@ -366,7 +372,7 @@ def stochastic_starts(problem: Problem, base: Fit, effect: Effect) -> list[Fit]:
         calm = np.minimum(base.levels.force, problem.ambient.force)
         levels, rms = replace(base.levels, force=calm, sensors=problem.ambient.sensors), {}
     found = []
-    for start in starts(problem, effect):
+    for start in starting_points(problem, effect):
         added = add_effect(problem, base, effect.name, start | rms)
         found.append(replace(added, levels=levels))
     return found

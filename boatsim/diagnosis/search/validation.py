@@ -7,11 +7,11 @@ import numpy as np
 
 from boatsim.diagnosis.filter import MappedRecording
 from boatsim.diagnosis.free_runs import FreeRun, free_runs
-from boatsim.diagnosis.noise_levels import fit_force, force_prior
+from boatsim.diagnosis.noise_levels import fit_force, log_force_prior
 from boatsim.diagnosis.problem import Fit
 from boatsim.diagnosis.search import generalization
 from boatsim.diagnosis.search.candidate_sets import CandidateSets
-from boatsim.diagnosis.search.evidence import left_over, unknown_threshold
+from boatsim.diagnosis.search.evidence import unexplained_evidence, unknown_threshold
 from boatsim.diagnosis.search.generalization import Squares
 from boatsim.diagnosis.search.pruning import IdentifiedEffect, compare_rivals
 
@@ -30,17 +30,21 @@ def misleading_effect(sets: CandidateSets, best: Fit, held_out: Recordings) -> s
         Name of the effect without which they are best, or "".
     """
     config = sets.config.validate
-    without = sets.without_each(best)
+    without = sets.fits_without_each(best)
     runs = _free_runs(sets, {"none": sets.base, "all": best}, held_out)
-    none = generalization.squares(runs, "none")
+    none = generalization.mean_square_errors(runs, "none")
     stochastic = sets.random & set(best.effects)
     sure = config.certainty_alike if stochastic else config.certainty
-    if not none or not _grew(sets, none, generalization.squares(runs, "all"), sure):
+    if not none or not _errors_grew(
+        sets, none, generalization.mean_square_errors(runs, "all"), sure
+    ):
         return ""
     runs = _free_runs(sets, without, held_out)
     misfits = {}
     for name in best.effects:
-        misfits[name] = generalization.misfit(generalization.squares(runs, name), none)
+        misfits[name] = generalization.error_ratio(
+            generalization.mean_square_errors(runs, name), none
+        )
     return min(best.effects, key=lambda name: misfits[name])
 
 
@@ -62,15 +66,17 @@ def refuted_effect(
     """
     if not held_out:
         return ""
-    whole = predicted(sets, best, held_out)
-    without = sets.without_each(best)
-    gains = {name: whole - predicted(sets, f, held_out) for name, f in without.items()}
-    threshold = unknown_threshold(sets.config.select, sets.explained(best))
+    whole = predictive_log_likelihood(sets, best, held_out)
+    without = sets.fits_without_each(best)
+    gains = {
+        name: whole - predictive_log_likelihood(sets, f, held_out) for name, f in without.items()
+    }
+    threshold = unknown_threshold(sets.config.select, sets.explained_evidence(best))
     doubtful = {name for name, gain in gains.items() if gain < -threshold}
     unlikely = doubtful - sets.supported
     little = set()
     for one in named:
-        others = max(sets.explained(best) - one.gain, 0.0)
+        others = max(sets.explained_evidence(best) - one.gain, 0.0)
         least = sets.required_gain + sets.config.select.slight_share * others
         if one.shared + gains[one.name] < least:
             little.add(one.name)
@@ -79,18 +85,18 @@ def refuted_effect(
         return ""
     fits = {"": best} | {name: f for name, f in without.items() if name in doubtful}
     runs = _free_runs(sets, fits, held_out)
-    with_all = generalization.squares(runs, "")
+    with_all = generalization.mean_square_errors(runs, "")
     if not with_all:
         return min(unlikely, key=lambda name: gains[name], default="")
     unnecessary = []
     for name in sorted(doubtful):
-        misfit = generalization.misfit(generalization.squares(runs, name), with_all)
+        misfit = generalization.error_ratio(generalization.mean_square_errors(runs, name), with_all)
         if misfit < sets.config.validate.worse**2:
             unnecessary.append(name)
     return min(unnecessary, key=lambda name: gains[name], default="")
 
 
-def carries_over_less(sets: CandidateSets, before: Fit, after: Fit, held_out: Recordings) -> bool:
+def generalizes_worse(sets: CandidateSets, before: Fit, after: Fit, held_out: Recordings) -> bool:
     """Whether free runs over held-out recordings are worse by one fit than by another.
 
     Args:
@@ -100,14 +106,14 @@ def carries_over_less(sets: CandidateSets, before: Fit, after: Fit, held_out: Re
         held_out: Held-out recordings.
     """
     runs = _free_runs(sets, {"before": before, "after": after}, held_out)
-    old = generalization.squares(runs, "before")
+    old = generalization.mean_square_errors(runs, "before")
     if not old:
         return False
-    new = generalization.squares(runs, "after")
-    return not generalization.misfit(new, old) < sets.config.validate.worse**2
+    new = generalization.mean_square_errors(runs, "after")
+    return not generalization.error_ratio(new, old) < sets.config.validate.worse**2
 
 
-def predicted(sets: CandidateSets, found: Fit, held_out: Recordings) -> float:
+def predictive_log_likelihood(sets: CandidateSets, found: Fit, held_out: Recordings) -> float:
     """Return the log likelihood of held-out recordings by a fit to others [nats].
 
     The level of the latent force is fitted to them.
@@ -121,10 +127,10 @@ def predicted(sets: CandidateSets, found: Fit, held_out: Recordings) -> float:
     refitted = fit_force(problem, found)
     on = problem.program.switches(refitted.effects)
     likelihood = problem.log_likelihood(refitted.free, refitted.theta, on, refitted.levels)
-    return likelihood + force_prior(problem, refitted.levels)
+    return likelihood + log_force_prior(problem, refitted.levels)
 
 
-def with_held_out(
+def evaluate_rivals_on_all(
     sets: CandidateSets, best: Fit, rivals: Mapping[str, Fit], held_out: Recordings
 ) -> dict[str, Fit]:
     """Return rivals of an effect with their evidence on all recordings, held-out ones included.
@@ -135,12 +141,12 @@ def with_held_out(
         rivals: Fits with other candidates in its place.
         held_out: Held-out recordings.
     """
-    own = predicted(sets, best, held_out)
+    own = predictive_log_likelihood(sets, best, held_out)
     if not np.isfinite(own):  # the simulated boat diverges
         return dict(rivals)
     found = {}
     for name, rival in rivals.items():
-        evidence = rival.evidence + predicted(sets, rival, held_out) - own
+        evidence = rival.evidence + predictive_log_likelihood(sets, rival, held_out) - own
         found[name] = replace(rival, evidence=evidence)
     return found
 
@@ -166,7 +172,7 @@ def deterministic_replacement(
     for one in named:
         least = best.evidence - sets.config.select.alike
         if one.name in sets.random:
-            least = sets.without(best, one.name).evidence + sets.required_gain
+            least = sets.fit_without(best, one.name).evidence + sets.required_gain
         laws = {}
         for name, rival in one.rivals.items():
             if name not in sets.random and rival.evidence > least:
@@ -175,11 +181,13 @@ def deterministic_replacement(
             continue
         fewest = sets.config.validate.fewest_runs
         runs = _free_runs(sets, {"": best, **laws}, held_out, fewest)
-        with_effect = generalization.squares(runs, "")
-        everything = with_held_out(sets, best, laws, held_out)
+        with_effect = generalization.mean_square_errors(runs, "")
+        everything = evaluate_rivals_on_all(sets, best, laws, held_out)
         better = []
         for name, law in laws.items():
-            better_runs = _grew_alike(sets, generalization.squares(runs, name), with_effect)
+            better_runs = _errors_grew_between_rivals(
+                sets, generalization.mean_square_errors(runs, name), with_effect
+            )
             if everything[name].evidence > clearly or better_runs:
                 better.append(law)
         if better:
@@ -188,7 +196,7 @@ def deterministic_replacement(
     return None
 
 
-def distinguish(
+def remove_refuted_rivals(
     sets: CandidateSets, best: Fit, named: Sequence[IdentifiedEffect], held_out: Recordings
 ) -> tuple[IdentifiedEffect, ...]:
     """Return identified effects with only those rivals that held-out recordings do not refute.
@@ -204,7 +212,7 @@ def distinguish(
     fewest, found = sets.config.validate.fewest_runs, []
     least = best.evidence - sets.config.select.alike
     for one in named:
-        rivals = with_held_out(sets, best, one.rivals, held_out)
+        rivals = evaluate_rivals_on_all(sets, best, one.rivals, held_out)
         alike = {}
         for name, rival in rivals.items():
             if max(rival.evidence, one.rivals[name].evidence) > least:
@@ -212,16 +220,18 @@ def distinguish(
         runs: Sequence[FreeRun] = ()
         if alike:
             runs = _free_runs(sets, {"": best, **alike}, held_out, fewest)
-        with_effect = generalization.squares(runs, "")
+        with_effect = generalization.mean_square_errors(runs, "")
         for name in alike:
-            if _grew_alike(sets, with_effect, generalization.squares(runs, name)):
+            if _errors_grew_between_rivals(
+                sets, with_effect, generalization.mean_square_errors(runs, name)
+            ):
                 del rivals[name]
-        without = sets.without(best, one.name)
+        without = sets.fit_without(best, one.name)
         found.append(compare_rivals(one.name, best, without, rivals, sets.config.select))
     return tuple(found)
 
 
-def remove_dwarfed(sets: CandidateSets, best: Fit, held_out: Recordings) -> Fit:
+def remove_dwarfed_effects(sets: CandidateSets, best: Fit, held_out: Recordings) -> Fit:
     """Remove effects that may only explain a small part of a force that remains unexplained.
 
     Much remains, they reduce the latent force by almost nothing, and free runs over held-out
@@ -238,10 +248,10 @@ def remove_dwarfed(sets: CandidateSets, best: Fit, held_out: Recordings) -> Fit:
     config = sets.config.validate
     whole: dict[str, list[float]] = {}
     while True:
-        remaining = left_over(sets.problem, best)
-        if remaining < unknown_threshold(sets.config.select, sets.explained(best)):
+        remaining = unexplained_evidence(sets.problem, best)
+        if remaining < unknown_threshold(sets.config.select, sets.explained_evidence(best)):
             return best
-        without = sets.without_each(best)
+        without = sets.fits_without_each(best)
         little = []
         for name, fewer in without.items():
             if np.min(best.levels.force / fewer.levels.force) > config.unexplained_share:
@@ -251,12 +261,12 @@ def remove_dwarfed(sets: CandidateSets, best: Fit, held_out: Recordings) -> Fit:
             if not whole:
                 fits[""] = best
             runs = _free_runs(sets, fits, held_out, config.fewest_runs)
-            whole = whole or generalization.squares(runs, "")
+            whole = whole or generalization.mean_square_errors(runs, "")
             kept = little
             little = []
             for name in kept:
-                squares = generalization.squares(runs, name)
-                if not _grew(sets, whole, squares, config.certainty):
+                squares = generalization.mean_square_errors(runs, name)
+                if not _errors_grew(sets, whole, squares, config.certainty):
                     little.append(name)
         if not little:
             return best
@@ -265,14 +275,14 @@ def remove_dwarfed(sets: CandidateSets, best: Fit, held_out: Recordings) -> Fit:
         best = without[removed]
 
 
-def _grew(sets: CandidateSets, before: Squares, after: Squares, sure: float) -> bool:
+def _errors_grew(sets: CandidateSets, before: Squares, after: Squares, sure: float) -> bool:
     """Whether the errors of free runs have grown by some standard errors."""
-    return generalization.grew(before, after, sure, sets.config.validate)
+    return generalization.errors_grew(before, after, sure, sets.config.validate)
 
 
-def _grew_alike(sets: CandidateSets, before: Squares, after: Squares) -> bool:
+def _errors_grew_between_rivals(sets: CandidateSets, before: Squares, after: Squares) -> bool:
     """Whether the errors have grown, with the certainty that decides between look-alikes."""
-    return _grew(sets, before, after, sets.config.validate.certainty_alike)
+    return _errors_grew(sets, before, after, sets.config.validate.certainty_alike)
 
 
 def _free_runs(

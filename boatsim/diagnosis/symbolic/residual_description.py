@@ -4,12 +4,12 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from boatsim.diagnosis.description import Description, Written
+from boatsim.diagnosis.description import Description, FittedTerm
 from boatsim.diagnosis.filter import MappedRecording
 from boatsim.diagnosis.free_runs import free_runs
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.diagnosis.search import generalization
-from boatsim.diagnosis.search.evidence import left_over
+from boatsim.diagnosis.search.evidence import unexplained_evidence
 from boatsim.diagnosis.symbolic.curves import curve
 from boatsim.diagnosis.symbolic.grammar import longest_duration
 from boatsim.diagnosis.symbolic.term_forces import fitted_recordings
@@ -50,8 +50,8 @@ def describe(
         value, sd = fit.value(slot, "coefficient")
         drawn = curve(recordings, term, *found.fit.value(slot, "coefficient"))
         described = term.having({"name": slot, "coefficient": value})
-        written.append(Written(described, sd, gains[slot], carries, drawn))
-    return Description(tuple(written), general.fit, left_over(problem, found.fit))
+        written.append(FittedTerm(described, sd, gains[slot], carries, drawn))
+    return Description(tuple(written), general.fit, unexplained_evidence(problem, found.fit))
 
 
 def _general(
@@ -81,12 +81,12 @@ def _general(
     if held_out:
         horizon = min(problem.horizon, longest_duration(held_out))
         runs = free_runs(problem, fits, held_out, horizon)
-    before = generalization.squares(runs, "recalibrated")
+    before = generalization.mean_square_errors(runs, "recalibrated")
     if not before:  # without held-out data no term is confirmed
         return events_only
     misfits = []
     for k in range(len(chain)):
-        misfit = generalization.misfit(generalization.squares(runs, str(k)), before)
+        misfit = generalization.error_ratio(generalization.mean_square_errors(runs, str(k)), before)
         if not np.isfinite(misfit):  # the simulation diverges
             misfit = np.inf
         misfits.append(misfit)

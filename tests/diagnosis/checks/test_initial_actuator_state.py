@@ -6,11 +6,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from boatsim.diagnosis.candidates import composed
+from boatsim.diagnosis.candidates import diagnosis_program
 from boatsim.diagnosis.checks.initial_actuator_state import with_initial_actuators
 from boatsim.diagnosis.filter import map_recording, prior_levels
-from boatsim.diagnosis.free_runs import errors, free_runs
-from boatsim.diagnosis.replay import as_written
+from boatsim.diagnosis.free_runs import free_runs, rms_errors
+from boatsim.diagnosis.replay import fit_noise_only
 from boatsim.recordings.table import Recording
 from boatsim.simulate import scenario
 from boatsim.simulate.run import run
@@ -26,15 +26,15 @@ def log() -> Recording:
 
 
 def test_a_log_from_rest_is_replayed_as_it_was(log: Recording) -> None:
-    problem, fitted = as_written(log, scenario.load("otter/turn").vessel)
-    off = errors(free_runs(problem, {"simulated": fitted}, problem.recordings, 6.0))
+    problem, fitted = fit_noise_only(log, scenario.load("otter/turn").vessel)
+    off = rms_errors(free_runs(problem, {"simulated": fitted}, problem.recordings, 6.0))
     assert off["position_rms_m"]["simulated"] < 1e-4
     assert off["heading_rms_rad"]["simulated"] < 1e-4
 
 
 def test_a_log_from_under_way_begins_with_actuators_that_have_settled(log: Recording) -> None:
     boat = scenario.load("otter/turn").vessel
-    program, _ = composed(boat)
+    program, _ = diagnosis_program(boat)
     levels = prior_levels(boat, [log])
     late = log.between(3.0, 20.0)
     for recording, rows in ((log, 2), (late, 1)):  # of commands, which stay as they are
@@ -46,7 +46,7 @@ def test_a_log_from_under_way_begins_with_actuators_that_have_settled(log: Recor
 
 def test_where_nothing_tells_the_actuators_have_settled(log: Recording) -> None:
     boat = scenario.load("otter/turn").vessel
-    program, _ = composed(boat)
+    program, _ = diagnosis_program(boat)
     still = replace(log, signals=log.signals | {n: np.zeros(len(log)) for n in boat.commands})
     laid = map_recording(still, program)
     assert with_initial_actuators(laid, prior_levels(boat, [still])) is laid

@@ -12,7 +12,7 @@ from boats import PLANAR, ROLL, written
 from scipy.linalg import expm
 
 from boatsim.cli import diagnosis as commands
-from boatsim.diagnosis.candidates import absent, library_for
+from boatsim.diagnosis.candidates import effect_at_zero, library_for
 from boatsim.diagnosis.experiment_design import manoeuvres, next_experiment
 from boatsim.diagnosis.experiment_design.manoeuvres import Manoeuvre, available_manoeuvres
 from boatsim.diagnosis.experiment_design.simulated_manoeuvre import simulate_manoeuvre
@@ -97,7 +97,7 @@ def tie(case: str) -> tuple[Problem, Fit, Fit]:
         prior_levels(boat, [first]),
         {"damping": 0.05, "thrust": 0.05},
     )
-    nominal = gauss_newton(problem, problem.nominal(), 4, 0.1)
+    nominal = gauss_newton(problem, problem.nominal_hypothesis(), 4, 0.1)
     winner, other = (converge(problem, f) for f in screen(problem, nominal, [name, rival]).values())
     return problem, winner, other
 
@@ -281,13 +281,13 @@ def test_diagnose_leaves_the_scenario_beside_its_answer_and_takes_an_old_one_awa
     csv = tmp_path / "first.csv"
     write_csv(recorded("weak_reverse", {"astern_factor": 0.7}, LIVELY), csv)
     found = commands.analyse([csv], [], "trial_boat")
-    commands.write(found, tmp_path / "out")
+    commands.write_diagnosis(found, tmp_path / "out")
     wanted = found.findings.answer["next_experiment"]
     assert wanted["scenario"] == "next.toml" and wanted["expected_gain_nats"] > 0.0
     assert set(wanted["separates"]) <= {"nothing", *(e.name for e in program().candidates)}
     assert scenario.load(str(tmp_path / "out" / "next.toml")).vessel.name == "trial_boat"
     assert "What to record next" in (tmp_path / "out" / "report.html").read_text()
-    commands.write(replace(found, plan=None), tmp_path / "out")
+    commands.write_diagnosis(replace(found, plan=None), tmp_path / "out")
     assert not (tmp_path / "out" / "next.toml").exists()
 
 
@@ -326,7 +326,7 @@ def test_pwm_takes_the_place_of_the_thrust_it_feeds():
 def test_hull_without_commands_is_released_at_another_angle(tmp_path):
     boat = vessel.load(str(written(tmp_path, "test_roller", ROLL)))
     suspects = tuple(
-        absent(k).completed(boat) for k in kinds("righting_arm_stiffening", "cubic_damping")
+        effect_at_zero(k).completed(boat) for k in kinds("righting_arm_stiffening", "cubic_damping")
     )
     t = 0.2 * np.arange(150)
     first = Recording(
@@ -334,7 +334,7 @@ def test_hull_without_commands_is_released_at_another_angle(tmp_path):
     )  # sqrt(stiffness 2 / inertia 0.5) = 2 rad/s
     levels = NoiseLevels(np.array([1e-3]), 1.0, {"roll_sd_rad": 1e-3})
     problem = Problem([map_recording(first, Program(boat, suspects))], levels, {})
-    nominal = problem.nominal()
+    nominal = problem.nominal_hypothesis()
     winner, rival = (
         fit(problem, f) for f in screen(problem, nominal, [e.name for e in suspects]).values()
     )
@@ -374,7 +374,7 @@ def test_zig_zag_of_a_ship_changes_over_where_its_heading_is_expected_to_be(tmp_
     zigzag = next(
         m for m in available_manoeuvres(boat, steady, 0.0, False) if m.name == "20/20 zig-zag"
     )
-    found = simulate_manoeuvre(problem, problem.nominal(), zigzag)
+    found = simulate_manoeuvre(problem, problem.nominal_hypothesis(), zigzag)
     assert found is not None
     seen, plan = found.recording, found.manoeuvre
     assert found.start[3] > 0.3 and len(plan.times) > 2

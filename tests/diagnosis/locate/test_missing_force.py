@@ -29,8 +29,8 @@ from boatsim.diagnosis.locate.smoothing import (
 )
 from boatsim.diagnosis.noise_levels import fit_time_constant
 from boatsim.diagnosis.problem import Problem
-from boatsim.diagnosis.search.evidence import left_over
-from boatsim.diagnosis.search.ranking import baseline
+from boatsim.diagnosis.search.evidence import unexplained_evidence
+from boatsim.diagnosis.search.ranking import fit_baseline
 from boatsim.physics import vessel
 from boatsim.physics.base import Array
 from boatsim.physics.program import Program
@@ -368,7 +368,7 @@ def test_roll_that_stiffens_or_drags_is_told_from_a_linear_one(name: str, more: 
         prior_levels(ship, [rec]),
         {"damping": 0.05, "restoring": 0.02},
     )
-    found = baseline(problem)[1]
+    found = fit_baseline(problem)[1]
     assert [r.variable for r in regions(problem, found)][: 1 if name else None] == (
         [name] if name else []
     )
@@ -404,7 +404,9 @@ def test_a_force_below_the_tolerated_one_is_seen_by_what_it_goes_with(
     problem, found = laid(*runs)
     seen = find_structure(problem, found)
     assert seen.axis == axis and goes_with in seen.goes_with and seen.p_value < 1e-3
-    assert left_over(problem, found) < DEFAULT.select.unknown_gain  # whose rms alone would pass
+    assert (
+        unexplained_evidence(problem, found) < DEFAULT.select.unknown_gain
+    )  # whose rms alone would pass
 
 
 def test_stretches_are_told_by_the_clock_of_the_recording() -> None:

@@ -11,27 +11,27 @@ from html.parser import HTMLParser
 import numpy as np
 import pytest
 
-from boatsim.diagnosis.description import Curve, Written
+from boatsim.diagnosis.description import Curve, FittedTerm
 from boatsim.diagnosis.report import page as report
-from boatsim.diagnosis.report.figures import closer
-from boatsim.diagnosis.report.findings import Findings, FreeRun, Missing
+from boatsim.diagnosis.report.figures import part_with_largest_error
+from boatsim.diagnosis.report.findings import Findings, FreeRun, MissingForceCurve
 from boatsim.diagnosis.report.formatting import (
-    alike,
-    limit,
-    name_and_value,
-    nats,
-    number,
-    parameter,
-    percent,
-    quantity,
-    readable,
-    spread,
+    format_in_one_unit,
+    format_nats,
+    format_number,
+    format_parameter,
+    format_probability,
+    format_quantity,
+    format_sentence,
+    format_upper_limit,
+    format_with_sd,
+    name_and_unit,
 )
 from boatsim.diagnosis.report.page import LONGEST_HEADLINE
 from boatsim.diagnosis.report.schema import Answer, IntervalEntry
 from boatsim.diagnosis.report.sections import sections_of
-from boatsim.diagnosis.report.sentences import NONE_TESTED, sentence
-from boatsim.diagnosis.report.svg_plots import thinned, ticks
+from boatsim.diagnosis.report.sentences import NONE_TESTED, verdict_sentences
+from boatsim.diagnosis.report.svg_plots import round_ticks, rows_of_extremes
 from boatsim.physics.effects.described_force import DescribedForce
 from boatsim.physics.effects.described_thrust import DescribedThrust
 
@@ -43,7 +43,7 @@ def planar() -> Findings:
     """A twin-motor boat whose propellers are weak astern, with a look-alike."""
     missing, intervals = planar_missing()
     answer = planar_answer(intervals)
-    answer["sentence"] = sentence(answer)
+    answer["sentence"] = verdict_sentences(answer)
     words = {
         "weak_reverse": "the propellers push less astern than commanded",
         "prop_walk": "a propeller pushes sideways as well, mostly astern",
@@ -66,7 +66,7 @@ def planar() -> Findings:
     )
 
 
-def planar_missing() -> tuple[list[Missing], list[IntervalEntry]]:
+def planar_missing() -> tuple[list[MissingForceCurve], list[IntervalEntry]]:
     """Missing force of two runs, most of it while the thrust is astern, and where surge and yaw are
     flagged."""
     rng = np.random.default_rng(1)
@@ -82,7 +82,9 @@ def planar_missing() -> tuple[list[Missing], list[IntervalEntry]]:
         wave["yaw"] = 0.1 * wave["surge"] + 0.002 * np.sin(t)
         sd = {a: np.full(len(t), s) for a, s in (("surge", 0.05), ("sway", 0.06), ("yaw", 0.006))}
         left = {a: 0.03 * s[0] / 0.05 * np.sin(0.6 * t + 1) for a, s in sd.items()}
-        missing.append(Missing(run, t, wave, sd, {"surge": "N", "sway": "N", "yaw": "N m"}, left))
+        missing.append(
+            MissingForceCurve(run, t, wave, sd, {"surge": "N", "sway": "N", "yaw": "N m"}, left)
+        )
         edges = np.flatnonzero(np.diff(np.r_[0, astern, 0]))
         for axis in ("surge", "yaw"):
             intervals += [
@@ -171,7 +173,7 @@ def rolling() -> Findings:
         t = np.arange(a, b, 0.1)
         force = 5.2 * (decay(t, 2.0, 0.0) / 0.26) ** 3
         missing.append(
-            Missing(
+            MissingForceCurve(
                 name,
                 t,
                 {"roll": force},
@@ -215,7 +217,7 @@ def rolling() -> Findings:
                 "position_rms_m": {}, "heading_rms_rad": {},
                 "roll_rms_rad": {"nominal": 0.0521, "recalibrated": 0.0183, "patched": 0.00203}},
     }  # fmt: skip
-    answer["sentence"] = sentence(answer)
+    answer["sentence"] = verdict_sentences(answer)
     remark = "In the last third the roll is small: there the linear vessel is already right, and no model beats it clearly."
     return Findings(
         answer,
@@ -244,7 +246,7 @@ def nothing() -> Findings:
         "fit": f.answer["fit"] | rms,
     }
     answer["where"] = f.answer["where"] | {"intervals": [], "region": []}
-    answer["sentence"] = sentence(answer)
+    answer["sentence"] = verdict_sentences(answer)
     return replace(f, answer=answer, remarks=())
 
 
@@ -256,7 +258,7 @@ def unknown() -> Findings:
         "unknown": {"flag": True, "gain_nats": 37.4, "told_from_nats": 6.0},
         "fit": {},
     }
-    answer["sentence"] = sentence(answer)
+    answer["sentence"] = verdict_sentences(answer)
     return replace(f, answer=answer, free_runs=(), held_out=(), held_out_note="")
 
 
@@ -301,18 +303,18 @@ def described() -> Findings:
         },
     ]
     answer = f.answer | {"verdict": "described", "described": laws, "fit": fit}
-    answer["sentence"] = sentence(answer)
+    answer["sentence"] = verdict_sentences(answer)
     x = np.linspace(0.0, 0.6, 12)
     curve = Curve("yaw_rate", x, 1.2 * x**2, 0.05 * x**2, 1.2 * x**2 + 0.01)
     terms = (
-        Written(
+        FittedTerm(
             DescribedForce(name="described_1", axis="sway", of=("yaw_rate", "yaw_rate")),
             0.05,
             39.3,
             True,
             curve,
         ),
-        Written(
+        FittedTerm(
             DescribedThrust(name="described_thrust_1", acts="within", begin=3.0, end=9.0),
             0.02,
             12.1,
@@ -364,7 +366,7 @@ CASES = {
 @pytest.fixture(scope="module", params=CASES)
 def written(request, tmp_path_factory):
     folder, findings = tmp_path_factory.mktemp(request.param), CASES[request.param]()
-    report.write(findings, folder)
+    report.write_report(findings, folder)
     return (
         findings,
         (folder / "report.html").read_text("utf-8"),
@@ -378,24 +380,31 @@ def expected_numbers(answer) -> list[str]:
         str
     ] = []  # all but the seconds, which would make the same diagnosis differ from run to run
     for e in answer["effects"]:
-        found += [nats(e["gain_nats"]), percent(e["probability"])]
+        found += [format_nats(e["gain_nats"]), format_probability(e["probability"])]
         found += [
-            name_and_value(k, p["value"], p["unit"], p["sd"])[1] for k, p in e["parameters"].items()
+            format_parameter(k, p["value"], p["unit"], p["sd"])[1]
+            for k, p in e["parameters"].items()
         ]
     for c in answer["candidates"]:
-        found += [nats(c["gain_nats"]), percent(c["probability"])]
-    found += [limit(k, v)[1] for e in answer["upper_limits"].values() for k, v in e.items()]
+        found += [format_nats(c["gain_nats"]), format_probability(c["probability"])]
+    found += [
+        format_upper_limit(k, v)[1] for e in answer["upper_limits"].values() for k, v in e.items()
+    ]
     for a in answer["where"]["axes"].values():
-        found += alike([a["rms"], a["sd"]], a["unit"])
+        found += format_in_one_unit([a["rms"], a["sd"]], a["unit"])
     found += [f"{i[k]:.1f}" for i in answer["where"]["intervals"] for k in ("from_s", "to_s")]
-    found += [number(r["p_value"], 1) for r in answer["where"]["region"]]
+    found += [format_number(r["p_value"], 1) for r in answer["where"]["region"]]
     for key, unit in (("position_rms_m", "m"), ("heading_rms_rad", "rad"), ("roll_rms_rad", "rad")):
         rms = answer["fit"].get(key, {})
-        found += alike([rms[m] for m in MODELS], unit) if rms else []
+        found += format_in_one_unit([rms[m] for m in MODELS], unit) if rms else []
     found += (
-        [nats(answer["next_experiment"]["expected_gain_nats"])] if answer["next_experiment"] else []
+        [format_nats(answer["next_experiment"]["expected_gain_nats"])]
+        if answer["next_experiment"]
+        else []
     )
-    return found + ([nats(answer["unknown"]["gain_nats"])] if answer["unknown"]["flag"] else [])
+    return found + (
+        [format_nats(answer["unknown"]["gain_nats"])] if answer["unknown"]["flag"] else []
+    )
 
 
 def test_every_number_of_the_answer_and_every_remark_is_in_both_texts(written):
@@ -407,7 +416,7 @@ def test_every_number_of_the_answer_and_every_remark_is_in_both_texts(written):
         *findings.runs,
         *findings.held_out,
     ]
-    told += [spread(*v) for v in findings.coefficients.values()]
+    told += [format_with_sd(*v) for v in findings.coefficients.values()]
     told += [cell for _, _, rows in findings.extra_tables for row in rows for cell in row]
     assert [t for t in told if t not in words] == []
     assert [t for t in told if t.replace("<", "&lt;") not in text] == []
@@ -469,7 +478,7 @@ def test_names_and_words_from_files_do_not_become_markup(tmp_path):
     missing = tuple(replace(m, run=nasty) for m in f.missing)
     runs = tuple(replace(r, run=nasty) for r in f.free_runs)
     tables = ((nasty, [nasty], [[nasty]]),)
-    report.write(
+    report.write_report(
         replace(
             f,
             answer=answer,
@@ -493,7 +502,7 @@ def test_names_and_words_from_files_do_not_become_markup(tmp_path):
 
 def test_nothing_missing_says_so_and_gives_the_upper_limits(tmp_path):
     f = nothing()
-    report.write(f, tmp_path)
+    report.write_report(f, tmp_path)
     text = (tmp_path / "report.md").read_text("utf-8")
     assert text.startswith("# No missing effect was found") and "**Nothing missing.**" in text
     assert (
@@ -607,7 +616,7 @@ def test_every_verdict_has_its_sentences(verdict, effects, text):
         "described": [],
         "unknown": {"flag": verdict == "unknown"},
     }
-    assert sentence(answer, MEANT) == text
+    assert verdict_sentences(answer, MEANT) == text
 
 
 LAW = {"statement": "a side force of 2 N", "carries_over": True}
@@ -651,7 +660,7 @@ def test_effects_come_before_formulas_and_events_are_counted(effects, described,
         "unknown": {"flag": True},
         "described": described,
     }
-    assert sentence(answer, MEANT) == text
+    assert verdict_sentences(answer, MEANT) == text
 
 
 @pytest.mark.parametrize(
@@ -678,7 +687,7 @@ def test_a_diagnosis_with_nothing_to_try_says_so(verdict: str, begins: str) -> N
         "unknown": unknown,
         "described": [],
     }
-    said = sentence(nothing)
+    said = verdict_sentences(nothing)
     assert said == f"{begins}{NONE_TESTED}."
 
 
@@ -693,10 +702,10 @@ def test_a_sentence_leaves_out_what_may_be_zero_and_all_but_the_first_few_number
     }
     effect = DAMPED | {
         "parameters": {
-            k: {"value": v, "sd": 0.01, "unit": parameter(k)[1]} for k, v in values.items()
+            k: {"value": v, "sd": 0.01, "unit": name_and_unit(k)[1]} for k, v in values.items()
         }
     }
-    said = sentence(
+    said = verdict_sentences(
         {
             "verdict": "named",
             "effects": [effect],
@@ -715,7 +724,7 @@ def test_a_sentence_leaves_out_what_may_be_zero_and_all_but_the_first_few_number
     effect["parameters"] = {
         "astern_factor": effect["parameters"]["astern_factor"]
     }  # a factor is something at zero too
-    assert "astern factor 0.005 ± 0.010" in sentence(
+    assert "astern factor 0.005 ± 0.010" in verdict_sentences(
         {
             "verdict": "named",
             "effects": [effect],
@@ -729,7 +738,7 @@ def test_a_sentence_leaves_out_what_may_be_zero_and_all_but_the_first_few_number
 def test_an_error_of_measurement_is_told_from_physics(tmp_path):
     f = planar()
     answer = f.answer | {"verdict": "named", "effects": [LATE], "sentence": ""}
-    report.write(replace(f, answer=answer, words=f.words | MEANT), tmp_path)
+    report.write_report(replace(f, answer=answer, words=f.words | MEANT), tmp_path)
     text = (tmp_path / "report.md").read_text("utf-8")
     assert text.startswith(
         "# No missing physics was found, but the recordings contain a measurement error: the clock "
@@ -742,7 +751,7 @@ def test_an_error_of_measurement_is_told_from_physics(tmp_path):
 def test_what_is_tied_has_no_upper_limit_and_what_has_none_is_said(tmp_path):
     f = planar()
     limits = f.answer["upper_limits"] | {"prop_walk": {"side_force_per_thrust": 0.77}, "tether": {}}
-    report.write(replace(f, answer=f.answer | {"upper_limits": limits}), tmp_path)
+    report.write_report(replace(f, answer=f.answer | {"upper_limits": limits}), tmp_path)
     text = (tmp_path / "report.md").read_text("utf-8")
     assert (
         "0.77" not in text
@@ -756,7 +765,7 @@ def test_the_next_experiment_says_what_to_command_and_how_to_run_it(tmp_path):
         (6.0, {"thrust_port_N": -0.9}),
         (9.0, {}),
     )
-    report.write(replace(planar(), steps=steps), tmp_path)
+    report.write_report(replace(planar(), steps=steps), tmp_path)
     text = (tmp_path / "report.md").read_text("utf-8")
     assert (
         "**Distinguishes**: Weak reverse or prop walk." in text and "boatsim run next.toml" in text
@@ -778,7 +787,7 @@ def test_how_a_deviation_is_made_is_said_once(written):
 
 def test_a_roll_decay_is_drawn_where_the_model_errs_most_and_not_as_a_comb():
     run = rolling().free_runs[0]
-    look = closer(run, "phi_rad")
+    look = part_with_largest_error(run, "phi_rad")
     error = np.abs(run.channels["recalibrated"]["phi_rad"] - run.channels["recorded"]["phi_rad"])
     assert look.t[0] <= run.t[error.argmax()] <= look.t[-1] and np.ptp(look.t) < 0.7 * np.ptp(run.t)
     assert np.count_nonzero(np.diff(np.sign(look.channels["recorded"]["phi_rad"]))) <= 15
@@ -801,11 +810,11 @@ def test_an_rms_by_run_is_that_of_the_coordinates_as_in_the_answer():
     ]
     rms = float(np.sqrt(np.mean(np.concatenate(off) ** 2)))
     row = next(r for r in tables[1].rows if r[0] == "run_4, position")
-    assert row[3] == f"{number(100 * rms)} cm"
+    assert row[3] == f"{format_number(100 * rms)} cm"
 
 
 def test_a_failed_write_leaves_the_old_report_whole(tmp_path, monkeypatch):
-    report.write(planar(), tmp_path)
+    report.write_report(planar(), tmp_path)
     before = {p.name: p.read_bytes() for p in tmp_path.iterdir()}
     assert set(before) == {"report.html", "report.md"}
 
@@ -814,13 +823,13 @@ def test_a_failed_write_leaves_the_old_report_whole(tmp_path, monkeypatch):
 
     monkeypatch.setattr(os, "replace", full)
     with pytest.raises(OSError, match="disk full"):
-        report.write(rolling(), tmp_path)
+        report.write_report(rolling(), tmp_path)
     assert {p.name: p.read_bytes() for p in tmp_path.iterdir()} == before
 
 
 def test_the_same_findings_give_the_same_bytes(tmp_path):
     for name in "ab":
-        report.write(planar(), tmp_path / name)
+        report.write_report(planar(), tmp_path / name)
     assert (tmp_path / "a" / "report.html").read_bytes() == (
         tmp_path / "b" / "report.html"
     ).read_bytes()
@@ -834,7 +843,7 @@ def test_gaps_in_a_recording_and_runs_without_anything_to_draw_are_no_obstacle(t
     }
     run = replace(f.free_runs[0], channels=f.free_runs[0].channels | {"recorded": gap})
     none = {axis: 0 * force for axis, force in f.missing[0].force.items()}
-    report.write(
+    report.write_report(
         replace(f, missing=(replace(f.missing[0], force=none, sd=none),), free_runs=(run,)),
         tmp_path,
     )
@@ -854,65 +863,81 @@ def test_gaps_in_a_recording_and_runs_without_anything_to_draw_are_no_obstacle(t
     ],
 )
 def test_a_value_has_the_digits_its_deviation_allows(value, sd, text):
-    assert spread(value, sd) == text
+    assert format_with_sd(value, sd) == text
 
 
 def test_nothing_is_written_as_minus_nothing():
-    assert (number(-0.0), number(-0.71), number(4.0e7)) == ("0", "−0.710", "4.00 × 10⁷")
+    assert (format_number(-0.0), format_number(-0.71), format_number(4.0e7)) == (
+        "0",
+        "−0.710",
+        "4.00 × 10⁷",
+    )
 
 
 def test_readers_get_degrees_and_handy_units():
-    assert quantity(np.pi / 2, "rad", 0.01) == "90.00° ± 0.57°"
+    assert format_quantity(np.pi / 2, "rad", 0.01) == "90.00° ± 0.57°"
     assert (
-        quantity(0.0434, "m", 0.0078) == "4.34 ± 0.78 cm"
-        and quantity(0.00392, "m/s", digits=2) == "3.9 mm/s"
+        format_quantity(0.0434, "m", 0.0078) == "4.34 ± 0.78 cm"
+        and format_quantity(0.00392, "m/s", digits=2) == "3.9 mm/s"
     )
-    assert name_and_value("toward_rad", -0.1076, "rad", 0.052) == ("toward", "353.8° ± 3.0°")
-    assert name_and_value("x_fraction", -0.0884, "", 0.0098) == ("x", "−8.84 ± 0.98 %")
+    assert format_parameter("toward_rad", -0.1076, "rad", 0.052) == ("toward", "353.8° ± 3.0°")
+    assert format_parameter("x_fraction", -0.0884, "", 0.0098) == ("x", "−8.84 ± 0.98 %")
     assert (
-        name_and_value("frequency_radps", 2.0, "rad/s", 0.1)[1]
+        format_parameter("frequency_radps", 2.0, "rad/s", 0.1)[1]
         == "2.00 ± 0.10 rad/s, a period of 3.14 s"
     )
     assert (
-        limit("astern_factor", 0.0301) == ("astern factor", "3.0 %")
-        and limit("delay_s", 0.0533)[1] == "53 ms"
+        format_upper_limit("astern_factor", 0.0301) == ("astern factor", "3.0 %")
+        and format_upper_limit("delay_s", 0.0533)[1] == "53 ms"
     )
-    assert alike([0.142, 0.0139], "m") == ["14.2 cm", "1.39 cm"]
-    assert alike([2.4e6, 1e5], "N m") == ["2.40 MN m", "0.100 MN m"]
+    assert format_in_one_unit([0.142, 0.0139], "m") == ["14.2 cm", "1.39 cm"]
+    assert format_in_one_unit([2.4e6, 1e5], "N m") == ["2.40 MN m", "0.100 MN m"]
     assert (
-        readable("it stays behind as with 0.1 rad of play; p = 0.008")
+        format_sentence("it stays behind as with 0.1 rad of play; p = 0.008")
         == "it stays behind as with 5.7° of play"
     )
     assert (
-        readable("0.075 N toward 353 deg; p < 1e-6") == "0.075 N toward 353°"
-        and readable("2 rad/s") == "2 rad/s"
+        format_sentence("0.075 N toward 353 deg; p < 1e-6") == "0.075 N toward 353°"
+        and format_sentence("2 rad/s") == "2 rad/s"
     )
-    assert (percent(0.99999), percent(0.973), percent(1e-9), percent(0.004)) == (
+    assert (
+        format_probability(0.99999),
+        format_probability(0.973),
+        format_probability(1e-9),
+        format_probability(0.004),
+    ) == (
         "> 99.9 %",
         "97 %",
         "< 0.1 %",
         "0.4 %",
     )
-    assert parameter("toward_rad", "rad") == ("toward", "rad") and parameter("astern_factor") == (
+    assert name_and_unit("toward_rad", "rad") == ("toward", "rad") and name_and_unit(
+        "astern_factor"
+    ) == (
         "astern factor",
         "",
     )
-    assert parameter("roll_Nms3") == ("roll", "N m s^3") and parameter("x_Ns2pm2") == (
+    assert name_and_unit("roll_Nms3") == ("roll", "N m s^3") and name_and_unit("x_Ns2pm2") == (
         "x",
         "N s^2/m^2",
     )
     assert (
-        parameter("cubic_perrad2") == parameter("cubic_perrad2", "1/rad^2") == ("cubic", "1/rad^2")
+        name_and_unit("cubic_perrad2")
+        == name_and_unit("cubic_perrad2", "1/rad^2")
+        == ("cubic", "1/rad^2")
     )
-    assert parameter("rate_radps") == ("rate", "rad/s") and parameter("mass_kg") == ("mass", "kg")
-    assert parameter("surge_quadratic_Ns2pm2", "N s^2/m^2") == ("surge quadratic", "N s^2/m^2")
+    assert name_and_unit("rate_radps") == ("rate", "rad/s") and name_and_unit("mass_kg") == (
+        "mass",
+        "kg",
+    )
+    assert name_and_unit("surge_quadratic_Ns2pm2", "N s^2/m^2") == ("surge quadratic", "N s^2/m^2")
 
 
 @pytest.mark.parametrize(
     ("low", "high"), [(0.0, 80.0), (-0.3, 0.31), (1e5, 3e6), (-1e-5, 2e-5), (69.5, 130.7)]
 )
 def test_ticks_are_round_numbers_within_the_limits(low, high):
-    found = np.array(ticks(low, high, 6))
+    found = np.array(round_ticks(low, high, 6))
     assert 3 <= len(found) <= 7 and found.min() >= low - 1e-12 and found.max() <= high * (1 + 1e-12)
     step = found[1] - found[0]
     assert np.allclose(np.diff(found), step) and round(
@@ -923,7 +948,7 @@ def test_ticks_are_round_numbers_within_the_limits(low, high):
 def test_a_long_curve_keeps_its_peaks():
     y = np.sin(np.arange(60_000) * 0.5)
     y[31_111] = 7.0
-    rows = thinned(y)
+    rows = rows_of_extremes(y)
     assert (
         len(rows) < 600
         and y[rows].max() == 7.0
@@ -933,7 +958,7 @@ def test_a_long_curve_keeps_its_peaks():
 
 
 def test_a_described_law_is_drawn_over_what_it_goes_with_and_said_to_carry_over_or_not(tmp_path):
-    report.write(described(), tmp_path)
+    report.write_report(described(), tmp_path)
     page, text = ((tmp_path / f"report.{end}").read_text("utf-8") for end in ("html", "md"))
     assert "A side force, over yaw rate [rad/s]" in page and "band of 2 standard deviations" in page
     assert "it is part of the patched vessel" in text and "no part of the patched vessel" in text

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 from alike import few
 
-from boatsim.diagnosis.candidates import composed
+from boatsim.diagnosis.candidates import diagnosis_program
 from boatsim.diagnosis.config import DEFAULT
-from boatsim.diagnosis.filter import MappedRecording, NoiseLevels, axes_of, body_of
+from boatsim.diagnosis.filter import MappedRecording, NoiseLevels, axes_of, rigid_body_values
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.diagnosis.report import patched_vessel
 from boatsim.errors import BadInput
@@ -29,7 +29,7 @@ OFF = 0.1  # relative, of every coefficient that a diagnosis recalibrates
 
 def problem_of(boat: Vessel) -> Problem:
     """A made-up run of a vessel, to fit nothing with: commands in steps, no measurements."""
-    releases = tuple(e for e in composed(boat)[0].candidates if isinstance(e, Release))
+    releases = tuple(e for e in diagnosis_program(boat)[0].candidates if isinstance(e, Release))
     program = Program(boat, releases)  # a law that does not act would only be compiled for nothing
     rng = np.random.default_rng(7)
     low, high = (np.array([getattr(c, a) for c in boat.commands.values()]) for a in ("low", "high"))
@@ -64,7 +64,7 @@ def free_run(problem: Problem, values: Array, acting: tuple[str, ...]) -> Array:
     problem.program.module.free_runs(
         Inputs(track.times, track.command_times, track.command_values),
         DEFAULT.filter.free_run_step,
-        Model(body_of(values), values, problem.program.switches(acting)),
+        Model(rigid_body_values(values), values, problem.program.switches(acting)),
         np.array([0]),
         np.array([ROWS - 1]),
         start,
@@ -75,7 +75,7 @@ def free_run(problem: Problem, values: Array, acting: tuple[str, ...]) -> Array:
 
 def recalibrated(problem: Problem, by: float) -> Fit:
     """Every coefficient that may be off, off by about so much, and differently."""
-    nominal = problem.nominal()
+    nominal = problem.nominal_hypothesis()
     return replace(
         nominal,
         theta=1.0
@@ -89,7 +89,7 @@ def test_replay_of_the_patched_file_is_the_free_run_in_memory(name: str, tmp_pat
     problem = problem_of(boat)
     found = recalibrated(problem, OFF)
     fitted = free_run(problem, problem.values(problem.recordings[0], found.free, found.theta), ())
-    patched_vessel.write(problem, boat, found, tmp_path / "patched.toml")
+    patched_vessel.write_patched_vessel(problem, boat, found, tmp_path / "patched.toml")
     again = problem_of(vessel.load(str(tmp_path / "patched.toml")))
     replayed = free_run(again, again.recordings[0].values, ())
     assert np.isfinite(fitted).all()
@@ -104,7 +104,7 @@ def test_a_patched_file_states_what_a_rule_would_fill_in_otherwise(tmp_path: Pat
     boat = vessel.load("eastward_ho", ["condition_1"])
     problem = problem_of(boat)
     found = recalibrated(problem, OFF)
-    patched_vessel.write(problem, boat, found, tmp_path / "patched.toml")
+    patched_vessel.write_patched_vessel(problem, boat, found, tmp_path / "patched.toml")
     again = vessel.load(str(tmp_path / "patched.toml"), ["condition_1"])
     fitted = problem.values(problem.recordings[0], found.free, found.theta)
     np.testing.assert_allclose(
@@ -117,11 +117,14 @@ def test_a_patched_boat_has_the_program_of_its_diagnosis_and_is_not_compiled_ane
 ) -> None:
     boat = vessel.load("trial_boat")
     problem = problem_of(boat)
-    patched_vessel.write(problem, boat, recalibrated(problem, OFF), tmp_path / "patched.toml")
+    patched_vessel.write_patched_vessel(
+        problem, boat, recalibrated(problem, OFF), tmp_path / "patched.toml"
+    )
     again = vessel.load(str(tmp_path / "patched.toml"))
     assert again.name != boat.name
     assert (
-        composed(again)[0].composition.source_text() == composed(boat)[0].composition.source_text()
+        diagnosis_program(again)[0].composition.source_text()
+        == diagnosis_program(boat)[0].composition.source_text()
     )
 
 
@@ -142,7 +145,9 @@ def test_a_folder_with_vessel_and_patched_file_can_move(tmp_path: Path) -> None:
     (here / "out").mkdir()
     boat = vessel.load(str(here / "boat" / "vessel.toml"))
     problem = problem_of(boat)
-    patched_vessel.write(problem, boat, recalibrated(problem, OFF), here / "out" / "patched.toml")
+    patched_vessel.write_patched_vessel(
+        problem, boat, recalibrated(problem, OFF), here / "out" / "patched.toml"
+    )
     here.rename(there)
     moved = vessel.load(str(there / "out" / "patched.toml"))
     assert moved.path == (there / "boat").resolve()
@@ -153,7 +158,9 @@ def test_a_patched_patch_still_finds_the_hull(tmp_path: Path) -> None:
     boat = vessel.load("trial_boat")
     for _ in range(2):
         problem = problem_of(boat)
-        patched_vessel.write(problem, boat, recalibrated(problem, OFF), tmp_path / "patched.toml")
+        patched_vessel.write_patched_vessel(
+            problem, boat, recalibrated(problem, OFF), tmp_path / "patched.toml"
+        )
         boat = vessel.load(str(tmp_path / "patched.toml"))
         assert boat.path == content.find("vessel", "trial_boat").parent
 
@@ -199,7 +206,7 @@ def test_a_release_is_written_as_the_coefficients_it_found_to_be_off(
     fitted = free_run(
         problem, problem.values(problem.recordings[0], free, found.theta), found.effects
     )
-    patched_vessel.write(problem, boat, found, tmp_path / "patched.toml")
+    patched_vessel.write_patched_vessel(problem, boat, found, tmp_path / "patched.toml")
     patched = vessel.load(str(tmp_path / "patched.toml"))
     assert [e.name for e in patched.effects] == [e.name for e in boat.effects]  # no further law
     again = problem_of(patched)
@@ -220,7 +227,7 @@ def test_a_patched_file_says_how_far_off_its_numbers_may_be_and_the_next_one_say
     sd = 0.01 * np.arange(1.0, len(free) + 1.0)
     covariance = np.outer(sd, sd) * np.where(np.eye(len(free)), 1.0, 0.3)
     found = Fit(("thrust_gain_error",), free, theta, covariance, problem.ambient, 0.0)
-    patched_vessel.write(problem, boat, found, tmp_path / "patched.toml")
+    patched_vessel.write_patched_vessel(problem, boat, found, tmp_path / "patched.toml")
     told = vessel.load(str(tmp_path / "patched.toml")).spread
     assert told is not None and boat.spread is None
     by_name = {one.fitted: one for one in told.of}
@@ -231,8 +238,8 @@ def test_a_patched_file_says_how_far_off_its_numbers_may_be_and_the_next_one_say
     assert gain.scales == ["port.gain", "starboard.gain"]
     assert told.root @ told.root.T == pytest.approx(np.where(np.eye(len(free)), 1.0, 0.3), abs=1e-5)
     again = vessel.load(str(tmp_path / "patched.toml"))
-    patched_vessel.write(
-        problem_of(again), again, problem_of(again).nominal(), tmp_path / "again.toml"
+    patched_vessel.write_patched_vessel(
+        problem_of(again), again, problem_of(again).nominal_hypothesis(), tmp_path / "again.toml"
     )
     assert (
         vessel.load(str(tmp_path / "again.toml")).spread is None

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from boatsim.diagnosis.candidates import composed
+from boatsim.diagnosis.candidates import diagnosis_program
 from boatsim.diagnosis.config import DEFAULT
 from boatsim.physics import content, vessel
 from boatsim.physics.base import Array, Release
@@ -86,7 +86,7 @@ def test_engine_and_filter_agree_over_six_seconds(
     laws = {
         e["use"] for e in extra if not issubclass(content.load_class("effect", e["use"]), Release)
     }
-    program, acting = composed(replace(boat, found=tuple(laws)))
+    program, acting = diagnosis_program(replace(boat, found=tuple(laws)))
     assert set(acting) == laws  # a release is its coefficient's new value, in both
     times, out = ROW * np.arange(ROWS), np.full((1, ROWS, 6), np.nan)
     program.module.free_runs(

@@ -8,26 +8,26 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from boatsim.diagnosis.loading import in_order
+from boatsim.diagnosis.loading import recording_order
 from boatsim.diagnosis.report import page as report
 from boatsim.diagnosis.report.animation import FRAMES, LONGEST_ANIMATION
-from boatsim.diagnosis.report.findings import Findings, FreeRun, Missing
-from boatsim.diagnosis.report.replay_section import LARGEST, MOST_PATHS, SMALLEST, replay
-from boatsim.diagnosis.report.sentences import mean_force
+from boatsim.diagnosis.report.findings import Findings, FreeRun, MissingForceCurve
+from boatsim.diagnosis.report.replay_section import LARGEST, MOST_PATHS, SMALLEST, animated_replay
+from boatsim.diagnosis.report.sentences import mean_force_paragraph
 from tests.diagnosis.report.test_page import MODELS, described, nothing, planar, rolling, unknown
 
 LIMIT = 2_000_000  # bytes of a page
 
 
 def film_of(f: Findings):
-    found = replay(f)
+    found = animated_replay(f)
     assert found is not None
     return found, {boat["look"]: boat for boat in found.film["boats"]}
 
 
 def test_the_picture_is_of_held_out_data_and_comes_before_everything_else(tmp_path):
     f = planar()
-    report.write(f, tmp_path)
+    report.write_report(f, tmp_path)
     html = (tmp_path / "report.html").read_text("utf-8")
     first = html[: html.index("<nav")]
     assert f.held_out[0] in re.findall(r"<figcaption>(.*?)</figcaption>", first)[0]
@@ -133,8 +133,8 @@ def test_a_boat_that_only_yaws_shows_its_heading_over_time():
 def test_without_a_patch_no_patched_boat_is_shown_and_without_free_runs_no_picture(tmp_path):
     found, boats = film_of(nothing())
     assert list(boats) == ["recorded", "recalibrated"] and "before" not in found.legend
-    assert replay(unknown()) is None
-    report.write(unknown(), tmp_path)
+    assert animated_replay(unknown()) is None
+    report.write_report(unknown(), tmp_path)
     assert '<figure class="chart replay' not in (tmp_path / "report.html").read_text("utf-8")
 
 
@@ -150,7 +150,7 @@ def test_gaps_of_the_recording_are_gaps_of_the_film_and_rare_fixes_are_not(tmp_p
     assert np.flatnonzero(shown).tolist() == [*range(1, 14), *range(32, 36)]
     assert boats["recorded"]["x"][4] == pytest.approx((gap["y_m"][1] + gap["y_m"][7]) / 2, abs=1e-3)
     assert None not in boats["patched"]["x"]
-    report.write(replace(f, free_runs=(run,)), tmp_path)
+    report.write_report(replace(f, free_runs=(run,)), tmp_path)
     film = re.search(
         r'"application/json">(.*?)</script>',
         (tmp_path / "report.html").read_text("utf-8"),
@@ -168,7 +168,7 @@ def hour(runs: int = 3, horizon: float = 6.0, rate: float = 10.0) -> Findings:
     band = {a: np.full(n, 1.0) for a in ("surge", "sway", "yaw")}
     unit = {"surge": "N", "sway": "N", "yaw": "N m"}
     missing = tuple(
-        Missing(
+        MissingForceCurve(
             f"log_{i}", t, dict.fromkeys(band, noise), band, unit, dict.fromkeys(band, 0.1 * noise)
         )
         for i in range(runs + 3)
@@ -202,7 +202,7 @@ def hour(runs: int = 3, horizon: float = 6.0, rate: float = 10.0) -> Findings:
 
 def test_the_page_of_logs_of_an_hour_stays_small_and_its_film_can_be_watched(tmp_path):
     f = hour()
-    report.write(f, tmp_path)
+    report.write_report(f, tmp_path)
     assert (tmp_path / "report.html").stat().st_size < LIMIT
     found, _ = film_of(f)
     seconds = found.film["t"][-1] - found.film["t"][0]
@@ -213,7 +213,7 @@ def test_the_page_of_logs_of_an_hour_stays_small_and_its_film_can_be_watched(tmp
 
 
 def test_every_line_can_be_read_back_with_its_quantity_and_unit(tmp_path):
-    report.write(planar(), tmp_path)
+    report.write_report(planar(), tmp_path)
     html = (tmp_path / "report.html").read_text("utf-8")
     plots = re.findall(r'<div class="plot[^>]*>', html)
     assert plots
@@ -228,8 +228,8 @@ def test_every_line_can_be_read_back_with_its_quantity_and_unit(tmp_path):
 
 def test_parts_of_one_run_come_in_the_order_of_time():
     thirds = [f"run ({n} third)" for n in ("first", "last", "middle")]
-    assert in_order(thirds, [0.0, 2.0, 1.0]) == [0, 2, 1]
-    assert in_order(["run_2", "run_1", "run_3"], [5.0, 0.0, 3.0]) == [0, 1, 2]
+    assert recording_order(thirds, [0.0, 2.0, 1.0]) == [0, 2, 1]
+    assert recording_order(["run_2", "run_1", "run_3"], [5.0, 0.0, 3.0]) == [0, 1, 2]
 
 
 MEAN = {"sway": {"mean": -0.21, "sd": 0.02, "unit": "N", "share_of_full_thrust": 0.105}}
@@ -237,7 +237,7 @@ MEAN = {"sway": {"mean": -0.21, "sd": 0.02, "unit": "N", "share_of_full_thrust":
 
 def test_a_mean_force_that_stays_is_said_first_with_its_axis_its_side_and_its_share(tmp_path):
     f = planar()
-    report.write(replace(f, answer=f.answer | {"mean_left": MEAN}), tmp_path)
+    report.write_report(replace(f, answer=f.answer | {"mean_left": MEAN}), tmp_path)
     said = "0.210 ± 0.020 N to port in sway (10 % of full thrust)"
     html = (tmp_path / "report.html").read_text("utf-8").replace("\u00a0", " ")
     assert said in html[: html.index("<nav")] and said in (tmp_path / "report.md").read_text(
@@ -249,13 +249,13 @@ def test_a_mean_force_that_stays_is_said_first_with_its_axis_its_side_and_its_sh
 @pytest.mark.parametrize("made", [planar, rolling, nothing, unknown, described])
 def test_where_none_stays_nothing_is_said_of_it(made, tmp_path):
     f = made()
-    report.write(replace(f, answer=f.answer | {"mean_left": {}}), tmp_path)
+    report.write_report(replace(f, answer=f.answer | {"mean_left": {}}), tmp_path)
     assert "mean force" not in (tmp_path / "report.html").read_text("utf-8").lower()
-    assert mean_force(f.answer, True) == []
+    assert mean_force_paragraph(f.answer, True) == []
 
 
 def test_the_share_of_belief_says_what_it_is(tmp_path):
-    report.write(planar(), tmp_path)
+    report.write_report(planar(), tmp_path)
     text = (tmp_path / "report.md").read_text("utf-8")
     assert "probability alone" not in text and "probability, if only one effect is missing" in text
     assert (

@@ -9,7 +9,7 @@ from alike import slow
 from numpy.typing import NDArray
 
 from boatsim.diagnosis import pipeline
-from boatsim.diagnosis.candidates import called, library_for
+from boatsim.diagnosis.candidates import base_name, library_for
 from boatsim.errors import BadInput
 from boatsim.physics import vessel
 from boatsim.physics.effects.thrust_deadband import ThrustDeadband
@@ -107,7 +107,7 @@ def test_both_orders_are_tried_where_a_lag_lies_between_them_and_nowhere_else(
     tmp_path: Path,
 ) -> None:
     twice = [n for n in library_for(lagging(tmp_path)).tested if n.startswith("reordered_")]
-    assert sorted(map(called, twice)) == ["thrust_deadband", "weak_reverse"]
+    assert sorted(map(base_name, twice)) == ["thrust_deadband", "weak_reverse"]
     assert not [
         n for n in library_for(vessel.load("trial_boat")).tested if n.startswith("reordered_")
     ]

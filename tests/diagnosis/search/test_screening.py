@@ -12,8 +12,8 @@ from boatsim.diagnosis.fit import fit
 from boatsim.diagnosis.problem import FilterPasses, Fit, Problem
 from boatsim.diagnosis.search.candidate_sets import CandidateSets
 from boatsim.diagnosis.search.evidence import gain_by_curvature
-from boatsim.diagnosis.search.pruning import acts
-from boatsim.diagnosis.search.screening import Linearisation, recheck, screen
+from boatsim.diagnosis.search.pruning import differs_from_zero
+from boatsim.diagnosis.search.screening import Linearisation, confirm_screening, screen
 from boatsim.physics.base import Array
 
 
@@ -61,13 +61,13 @@ def test_a_look_that_the_filter_bears_out_stays_and_from_one_that_it_does_not_it
     problem, base = weak
     look = screen(problem, base, ["weak_reverse"])["weak_reverse"]
     assert look.evidence > base.evidence + 10.0
-    assert recheck(problem, base, look) is look
+    assert confirm_screening(problem, base, look) is look
     own = np.array([f.effect == "weak_reverse" for f in look.free])
     mean = np.array([f.mean for f in look.free])
     wild = replace(
         look, theta=np.where(own, mean - 2.5 * (look.theta - mean), look.theta)
     )  # strong, the wrong way
-    honest = recheck(problem, base, wild)
+    honest = confirm_screening(problem, base, wild)
     assert honest is not wild and honest.theta[own] == pytest.approx(
         look.theta[own], abs=0.2
     )  # from the wrong side
@@ -108,4 +108,7 @@ def test_an_effect_acts_where_recordings_tell_a_number_of_it_whatever_they_leave
     found = replace(
         base, effects=("planing_lag",), free=free, theta=theta, covariance=np.diag(sd**2)
     )
-    assert acts(CandidateSets(problem, ("planing_lag",), base), found, "planing_lag") is expected
+    assert (
+        differs_from_zero(CandidateSets(problem, ("planing_lag",), base), found, "planing_lag")
+        is expected
+    )

@@ -17,10 +17,10 @@ from boatsim.diagnosis.search.pruning import compare_rivals
 from boatsim.diagnosis.search.screening import screen
 from boatsim.diagnosis.search.validation import (
     deterministic_replacement,
-    distinguish,
-    predicted,
+    predictive_log_likelihood,
     refuted_effect,
-    remove_dwarfed,
+    remove_dwarfed_effects,
+    remove_refuted_rivals,
 )
 from boatsim.physics.base import Array
 
@@ -63,9 +63,9 @@ def test_a_look_alike_by_which_unseen_runs_are_foreseen_worse_is_none(
     sets, rival = sets_of(problem, base, found), as_likely(problem, base, found, name)
     one = compare_rivals("weak_reverse", found, base, {name: rival})
     assert one.tied_with == (name,) and one.probability < 0.5
-    (sure,) = distinguish(sets, found, [one], held_out)
+    (sure,) = remove_refuted_rivals(sets, found, [one], held_out)
     assert not sure.tied_with and sure.probability > 0.99 and not sure.rivals
-    (kept,) = distinguish(sets, found, [one], [])
+    (kept,) = remove_refuted_rivals(sets, found, [one], [])
     assert kept.tied_with == (name,)  # nothing unseen, nothing distinguish
 
 
@@ -85,7 +85,7 @@ def test_a_look_alike_that_foresees_as_much_stays_one(weak: Laid) -> None:
     problem, base, found, held_out = weak
     sets, twin = sets_of(problem, base, found), replace(found, evidence=found.evidence - 1.0)
     one = compare_rivals("weak_reverse", found, base, {"steady_force": twin})
-    (kept,) = distinguish(sets, found, [one], held_out)
+    (kept,) = remove_refuted_rivals(sets, found, [one], held_out)
     assert kept.tied_with == ("steady_force",)
     assert deterministic_replacement(sets, found, [one], held_out) is None and not sets.banned
 
@@ -94,22 +94,22 @@ def test_beside_what_nothing_explains_only_what_unseen_runs_ask_for_is_stood_for
     weak: Laid, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     problem, base, found, held_out = weak
-    monkeypatch.setattr(asked, "left_over", lambda problem, best: 1000.0)
+    monkeypatch.setattr(asked, "unexplained_evidence", lambda problem, best: 1000.0)
     levels = replace(
         found.levels, force=50.0 * problem.ambient.force
     )  # as if nothing took any of it away
     much, none = replace(found, levels=levels), replace(base, levels=levels)
     sets = sets_of(problem, none, much)
-    assert remove_dwarfed(sets, much, held_out) is much and not sets.banned
-    assert remove_dwarfed(sets, much, []) is none and sets.banned == {"weak_reverse"}
+    assert remove_dwarfed_effects(sets, much, held_out) is much and not sets.banned
+    assert remove_dwarfed_effects(sets, much, []) is none and sets.banned == {"weak_reverse"}
 
 
 def test_free_runs_of_a_boat_that_runs_away_have_grown() -> None:
     sound, away = {"position_rms_m": [1.0, 1.0, 1.0]}, {"position_rms_m": [1.0, np.inf, 1.0]}
     assert (
-        generalization.grew(sound, away, 2.0)
-        and not generalization.grew(away, sound, 2.0)
-        and not generalization.grew(away, away, 2.0)
+        generalization.errors_grew(sound, away, 2.0)
+        and not generalization.errors_grew(away, sound, 2.0)
+        and not generalization.errors_grew(away, away, 2.0)
     )
 
 
@@ -159,21 +159,29 @@ def test_what_unseen_runs_say_of_a_law_hangs_little_on_how_rough_the_water_was_b
         sets_of(problem, base),
         replace(found, levels=replace(found.levels, force=5.0 * found.levels.force)),
     )
-    by_law = predicted(sets, found, held_out) - predicted(sets, said(problem, found, 1.0), held_out)
-    assert abs(predicted(sets, rough, held_out) - predicted(sets, found, held_out)) < 0.2 * by_law
+    by_law = predictive_log_likelihood(sets, found, held_out) - predictive_log_likelihood(
+        sets, said(problem, found, 1.0), held_out
+    )
+    assert (
+        abs(
+            predictive_log_likelihood(sets, rough, held_out)
+            - predictive_log_likelihood(sets, found, held_out)
+        )
+        < 0.2 * by_law
+    )
 
 
 def test_a_rival_that_is_behind_on_the_fitted_runs_only_is_a_look_alike(weak: Laid) -> None:
     problem, base, found, held_out = weak
     wrong = said(problem, found, 0.9)
-    gap = predicted(sets_of(problem, base), found, held_out) - predicted(
-        sets_of(problem, base), wrong, held_out
-    )
+    gap = predictive_log_likelihood(
+        sets_of(problem, base), found, held_out
+    ) - predictive_log_likelihood(sets_of(problem, base), wrong, held_out)
     assert gap > 6.0
     rival = replace(
         found, evidence=wrong.evidence - gap
     )  # as far behind there as it is ahead on the unseen run
     one = compare_rivals("weak_reverse", wrong, base, {"steady_force": rival})
     assert not one.tied_with
-    (all_told,) = distinguish(sets_of(problem, base, wrong), wrong, [one], held_out)
+    (all_told,) = remove_refuted_rivals(sets_of(problem, base, wrong), wrong, [one], held_out)
     assert all_told.tied_with == ("steady_force",)

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from pushed_boat import BOAT, Late, Missing, sail
 
-from boatsim.diagnosis.candidates import composed, library_for
+from boatsim.diagnosis.candidates import diagnosis_program, library_for
 from boatsim.diagnosis.filter import map_recording
 from boatsim.diagnosis.loading import Loaded
 from boatsim.diagnosis.pipeline import Diagnosis, diagnose_loaded
@@ -169,19 +169,23 @@ def halved(found: Diagnosis, signal: str) -> bool:
 
 def replays(found: Diagnosis, held_out: Recording, folder: Path) -> None:
     """Whether the patched vessel does on a held-out recording what the fitted one does."""
-    patched_vessel.write(
-        found.problem, found.vessel, found.ranking.best, folder / "patched.toml", found.ranking.laws
+    patched_vessel.write_patched_vessel(
+        found.problem,
+        found.vessel,
+        found.ranking.best,
+        folder / "patched.toml",
+        found.ranking.described_terms,
     )
-    program, on = composed(vessel.load(str(folder / "patched.toml")))
+    program, on = diagnosis_program(vessel.load(str(folder / "patched.toml")))
     fit, levels = found.ranking.best, found.ranking.best.levels
     laid = map_recording(held_out, found.problem.program)
-    for slot, term in found.ranking.laws.items():
+    for slot, term in found.ranking.described_terms.items():
         for key, x in term.completed(BOAT).by_name().items():
             laid.values[found.problem.program.index(slot, key)] = x
     here = found.problem.values(laid, fit.free, fit.theta)
     again = map_recording(held_out, program)
     ours = laid.free_runs(
-        here, found.problem.program.switches(tuple(found.ranking.laws)), levels, 6.0
+        here, found.problem.program.switches(tuple(found.ranking.described_terms)), levels, 6.0
     )
     theirs = again.free_runs(again.values, program.switches(on), levels, 6.0)
     for (a, path), (b, other) in zip(ours, theirs, strict=True):
@@ -203,7 +207,7 @@ def test_a_moment_that_swings_is_described_with_its_period_and_carries_over(tmp_
     )
     assert law["statement"] in answer["sentence"][:1].lower() + answer["sentence"][1:]
     assert halved(found, "heading_rms_rad")
-    best = next(w for w in found.findings.described if w.term.name in found.ranking.laws)
+    best = next(w for w in found.findings.described if w.term.name in found.ranking.described_terms)
     assert abs(best.term.coefficient) == pytest.approx(0.14, abs=3 * best.sd)
     assert best.term.end - best.term.begin == pytest.approx(6.5, rel=0.01)
     replays(found, sail("run_3", 42, swinging)[0], tmp_path)
@@ -233,9 +237,13 @@ def test_what_acts_in_one_run_alone_is_an_event_and_no_part_of_the_patched_vesse
         and term["run"] == "run_1"
     )
     assert "an event of run_1" in law["statement"]
-    assert not found.ranking.laws
-    text = patched_vessel.patched(
-        found.problem, found.vessel, found.ranking.best, Path("patched.toml"), found.ranking.laws
+    assert not found.ranking.described_terms
+    text = patched_vessel.patched_vessel_text(
+        found.problem,
+        found.vessel,
+        found.ranking.best,
+        Path("patched.toml"),
+        found.ranking.described_terms,
     )
     assert "described" not in text
 

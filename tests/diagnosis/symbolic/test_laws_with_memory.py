@@ -11,10 +11,14 @@ import pytest
 from pushed_boat import BOAT, Late, laid, sail
 from scipy.integrate import solve_ivp
 
-from boatsim.diagnosis.candidates import composed
+from boatsim.diagnosis.candidates import diagnosis_program
 from boatsim.diagnosis.config import DEFAULT
 from boatsim.diagnosis.locate.nominal_forces import actuator_states
-from boatsim.diagnosis.report.described_terms import factors, over_words, unit_of
+from boatsim.diagnosis.report.described_terms import (
+    abscissa_label,
+    coefficient_unit,
+    factors_in_words,
+)
 from boatsim.diagnosis.symbolic.grammar import neighbours
 from boatsim.diagnosis.symbolic.slots import write_term
 from boatsim.diagnosis.symbolic.term_forces import fitted_recordings
@@ -115,7 +119,9 @@ def test_engine_twin_and_filter_agree_on_laws_that_look_back() -> None:
         seen.append((engine.state.x, engine.state.y, engine.state.psi))
         engine.command(dict(zip(boat.commands, sent.tolist(), strict=True)))
         engine.advance(round(row / DEFAULT.filter.free_run_step))
-    program, on = composed(replace(boat, found=tuple(law.get("name", law["use"]) for law in LAWS)))
+    program, on = diagnosis_program(
+        replace(boat, found=tuple(law.get("name", law["use"]) for law in LAWS))
+    )
     times, out = row * np.arange(61), np.full((1, 61, 6), np.nan)
     program.module.free_runs(
         Inputs(times, times, commands),
@@ -184,7 +190,7 @@ def test_a_law_stands_behind_the_drives_by_which_signals_have_their_places(tmp_p
 def test_a_term_that_looks_back_is_said_in_words_with_its_unit() -> None:
     def said(axis: str, *of: str) -> tuple[str, str]:
         term = DescribedForce(axis=axis, of=of, memory=5.0)
-        return factors(term, BOAT), unit_of(term, BOAT)
+        return factors_in_words(term, BOAT), coefficient_unit(term, BOAT)
 
     assert said("sway", "recent_thrust_port_N") == (
         "the average over the last 5.00 s of thrust port",
@@ -202,7 +208,10 @@ def test_a_term_that_looks_back_is_said_in_words_with_its_unit() -> None:
         "the average over the last 5.00 s of the size of thrust port",
         "",
     )
-    assert over_words("recent_abs_thrust_port_N") == "the recent average of the size of thrust port"
+    assert (
+        abscissa_label("recent_abs_thrust_port_N")
+        == "the recent average of the size of thrust port"
+    )
 
 
 def test_the_quick_weighing_recalls_what_the_filter_does() -> None:

@@ -12,7 +12,7 @@ import boats
 import numpy as np
 import pytest
 
-from boatsim.diagnosis.candidates import absent
+from boatsim.diagnosis.candidates import effect_at_zero
 from boatsim.errors import BadInput
 from boatsim.physics import content, vessel
 from boatsim.physics.base import (
@@ -367,7 +367,7 @@ def test_coriolis_force_of_an_inertia_does_no_work(name: str, seed: int) -> None
 @pytest.mark.parametrize("seed", range(3))
 def test_a_suspect_whose_fitted_parameters_are_absent_is_not_there(name: str, seed: int) -> None:
     kind = SHELF[name]
-    effect = on_a_vessel(absent(kind, {"walls_m": [-4.0, 4.0, -3.0, 3.0]}))
+    effect = on_a_vessel(effect_at_zero(kind, {"walls_m": [-4.0, 4.0, -3.0, 3.0]}))
     if isinstance(effect, Release):
         boat = next(b for b in map(vessel.load, content.names("vessel")) if effect.changes(b))
         assert boat.composed_with(effect) == boat

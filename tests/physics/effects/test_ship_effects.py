@@ -14,7 +14,7 @@ from alike import slow
 from scipy.integrate import solve_ivp
 
 from boatsim.diagnosis import loading, pipeline
-from boatsim.diagnosis.command_range import channels_of
+from boatsim.diagnosis.command_range import command_channels
 from boatsim.errors import BadInput
 from boatsim.physics import particulars, vessel
 from boatsim.physics.base import Array, Course, Effect, Wrench, mean_of, motion
@@ -42,7 +42,7 @@ TURN, HELM = {"u": 0.8, "v": 0.15, "r": -0.06}, 0.4  # of the 7 m model, to port
 
 def test_a_stall_is_sought_among_rudder_angles_and_not_among_shaft_rates() -> None:
     """An MMG rudder is told angle and shaft; the threshold is an angle."""
-    assert channels_of(vessel.load("kvlcc2_mmg"), RudderStall()) == ("delta_rad",)
+    assert command_channels(vessel.load("kvlcc2_mmg"), RudderStall()) == ("delta_rad",)
 
 
 def signals(kind: type[Effect], **given: float) -> Any:

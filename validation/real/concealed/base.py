@@ -7,7 +7,7 @@ from pathlib import Path
 import tomlkit
 
 from boatsim.diagnosis import pipeline
-from boatsim.diagnosis.candidates import called
+from boatsim.diagnosis.candidates import base_name
 from boatsim.diagnosis.pipeline import Diagnosis
 from boatsim.diagnosis.report import patched_vessel
 from boatsim.physics.base import Release
@@ -88,7 +88,7 @@ class Patched:
     def without(self, name: str) -> Path:
         """Write the patched vessel without one of its identified effects; return the file."""
         document = tomlkit.parse(self.file.read_text(encoding="utf-8"))
-        gone = [found for found in document["found"] if called(found) == name]
+        gone = [found for found in document["found"] if base_name(found) == name]
         for found in gone:
             blocks = document["effect"]
             names = [block.get("name", block["use"]) for block in blocks]
@@ -105,7 +105,7 @@ class Patched:
 
     def _is_removable(self, name: str) -> bool:
         """Whether an effect is in the vessel file, or its changes come from one round only."""
-        return len(self._rounds_with(name)) == 1 or name in map(called, self.vessel.found)
+        return len(self._rounds_with(name)) == 1 or name in map(base_name, self.vessel.found)
 
     def _restore(self, document: tomlkit.TOMLDocument, name: str) -> None:
         """Restore the numbers that a release changed."""
@@ -134,5 +134,7 @@ class Patched:
         """Write the patched vessel of a diagnosis; return the file."""
         path = self.folder / name
         ranking = diagnosis.ranking
-        patched_vessel.write(diagnosis.problem, diagnosis.vessel, ranking.best, path, ranking.laws)
+        patched_vessel.write_patched_vessel(
+            diagnosis.problem, diagnosis.vessel, ranking.best, path, ranking.laws
+        )
         return path

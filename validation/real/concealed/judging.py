@@ -6,11 +6,11 @@ from functools import partial
 
 import numpy as np
 
-from boatsim.diagnosis.candidates import FURTHER, called
+from boatsim.diagnosis.candidates import FURTHER, base_name
 from boatsim.diagnosis.fit import converge, gauss_newton
 from boatsim.diagnosis.pipeline import Diagnosis
 from boatsim.diagnosis.problem import Fit, Problem
-from boatsim.diagnosis.report.answer import key_of
+from boatsim.diagnosis.report.answer import parameter_key
 from boatsim.diagnosis.report.schema import EffectEntry
 from boatsim.diagnosis.search.screening import add_effect
 from boatsim.physics.base import Effect
@@ -266,7 +266,7 @@ def _parameters(fit: Fit, effect: Effect) -> dict[str, tuple[float, float, float
     found = {}
     for f in fit.free:
         if f.effect == effect.name and not f.relative:
-            key = key_of(f.name, params[f.name].unit)
+            key = parameter_key(f.name, params[f.name].unit)
             found[key] = (*fit.value(effect.name, f.name), params[f.name].absent)
     return found
 
@@ -299,7 +299,7 @@ def with_effect(problem: Problem, base: Fit, effect: Effect, values: Mapping[str
     for f in problem.parameters((effect.name,)):
         if f.effect == effect.name and not f.relative:
             usual = f.mean + START * f.sd
-            start[f.name] = values.get(key_of(f.name, params[f.name].unit), usual)
+            start[f.name] = values.get(parameter_key(f.name, params[f.name].unit), usual)
     added = add_effect(problem, base, effect.name, start)
     return converge(problem, gauss_newton(problem, added, 4, 0.1))
 
@@ -308,7 +308,7 @@ def _fitted(diagnosis: Diagnosis, effect: Effect) -> dict[str, float]:
     """Return the values of an effect in an answer."""
     values: dict[str, float] = {}
     for entry in effects_of(diagnosis):
-        if entry["name"] == called(effect.name):
+        if entry["name"] == base_name(effect.name):
             values |= values_of(entry)
     return values
 
