@@ -97,11 +97,11 @@ def study(test: str, boats: int) -> list[str]:
     return lines
 
 
-def unrest(test: str, controller: dict[str, Any], settled: float = 6.0) -> str:
-    """Return the standard deviations of both PWM values (of 255) after the time `settled` [s]."""
+def unrest(test: str, controller: dict[str, Any]) -> str:
+    """Return the standard deviations of both PWM values (of 255) after 6 s."""
     log = run(scenario.load(f"joystick_boat/{test}", {"controller": controller}), 0).recording
     port, starboard = (
-        float(np.std(log[f"pwm_{side}"][log.t > settled])) for side in ("port", "starboard")
+        float(np.std(log[f"pwm_{side}"][log.t > 6.0])) for side in ("port", "starboard")
     )
     return f"{port:8.1f}{starboard:8.1f}"
 

@@ -289,11 +289,9 @@ def agreements(done: Sequence[Entry]) -> str:
 # -----------------------------------------------------------------------------
 
 
-def mean_over(
-    name: str, seeds: int, overrides: Mapping[str, Any] | None = None
-) -> tuple[Array, Array]:
+def mean_over(name: str, seeds: int) -> tuple[Array, Array]:
     """Return roll and yaw rms [deg] of a scenario, by seed."""
-    test = scenario.load(name, overrides)
+    test = scenario.load(name)
     values = [measured(test, seed) for seed in range(seeds)]
     return np.array([v["roll_rms"] for v in values]), np.array([v["yaw_rms"] for v in values])
 

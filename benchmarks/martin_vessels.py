@@ -100,12 +100,12 @@ def zigzag(boat: Vessel, waves: Array) -> tuple[Array, Array]:
     return np.array(states), np.array(rudder)
 
 
-def random_waves(periods: int = 240) -> Array:
+def random_waves() -> Array:
     """Sample accelerations (N, 3) in yaw, sway, roll for 120 s, new every period.
 
     Units: rad/s^2, m/s^2, rad/s^2.
     """
-    return np.radians([1.0, 5.0, 2.0]) * np.random.default_rng(1).standard_normal((periods, 3))
+    return np.radians([1.0, 5.0, 2.0]) * np.random.default_rng(1).standard_normal((240, 3))
 
 
 def on_mujoco(boat: Vessel, rudder: Array, waves: Array, step: float = 0.02) -> Array:

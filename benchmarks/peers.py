@@ -74,7 +74,7 @@ def otter() -> Pair:
     return Pair(
         "Python vehicle simulator, Otter, 60 s",
         theirs,
-        of_us("otter", made, SHAFTS, [0.0] * 12, steps),
+        of_us(made, SHAFTS, [0.0] * 12, steps),
     )
 
 
@@ -133,7 +133,7 @@ def tanker() -> Pair:
         simulate_mmg_3dof(hull, polynomials, times, rudder, propeller, u0=1.179, ρ=rho)
 
     made, start = vessel.load("kvlcc2_mmg"), [0.0, 0.0, 0.0, 1.179, 0.0, 0.0]
-    ours = of_us("kvlcc2_mmg", made, RUDDER, start, round(seconds / 0.1), 0.1)
+    ours = of_us(made, RUDDER, start, round(seconds / 0.1), 0.1)
     return Pair("ShipMMG, KVLCC2 turning circle, 200 s", theirs, ours)
 
 
@@ -153,7 +153,7 @@ def fluid() -> Pair:
         data.ctrl[0] = 0.3
         mujoco.mj_step(model, data, nstep=steps)
 
-    ours = of_us("joystick_boat", vessel.load("joystick_boat"), PWM, [0.0] * 6, steps)
+    ours = of_us(vessel.load("joystick_boat"), PWM, [0.0] * 6, steps)
     return Pair("MuJoCo's ellipsoid in fluid, RK4, 400 s", theirs, ours)
 
 
@@ -187,7 +187,6 @@ def gym_boat() -> Pair:
 
 
 def of_us(
-    name: str,
     made: vessel.Vessel,
     commands: dict[str, float],
     start: list[float],

@@ -6,6 +6,7 @@ bandwidth; and the effect of the control period on both.
 """
 
 import numpy as np
+from scipy.optimize import brentq
 
 from boatsim.physics.content import load_class
 from boatsim.simulate import scenario
@@ -39,15 +40,9 @@ def condition(bandwidth: float) -> float:
     return found
 
 
-def threshold(low: float = 5.0, high: float = 60.0) -> float:
-    """Return the bandwidth [1/s] at which the condition equals 1, by bisection."""
-    for _ in range(40):
-        middle = 0.5 * (low + high)
-        if condition(middle) > 1.0:
-            low = middle
-        else:
-            high = middle
-    return 0.5 * (low + high)
+def threshold() -> float:
+    """Return the bandwidth [1/s] at which the condition equals 1."""
+    return float(brentq(lambda bandwidth: condition(bandwidth) - 1.0, 5.0, 60.0))
 
 
 def value(name: str, norm: str, **changes: object) -> float:

@@ -97,21 +97,19 @@ def esso_osaka(_: Path) -> Case:
 
     Thrust is proportional to the square of the shaft speed.
     """
-    particulars = json.loads(
-        (RECORDINGS / "esso_osaka" / "vessel.json").read_text(encoding="utf-8")
-    )
-    ahead, propeller, rudder = particulars["x_G_m"], particulars["propeller"], particulars["rudder"]
-    per = THRUST_COEFFICIENT * particulars["density_water_kgm3"] * propeller["D_m"] ** 4  # [N s^2]
-    at = propeller["x_over_Lpp"] * particulars["Lpp_m"] - ahead
+    data = json.loads((RECORDINGS / "esso_osaka" / "vessel.json").read_text(encoding="utf-8"))
+    ahead, propeller, rudder = data["x_G_m"], data["propeller"], data["rudder"]
+    per = THRUST_COEFFICIENT * data["density_water_kgm3"] * propeller["D_m"] ** 4  # [N s^2]
+    at = propeller["x_over_Lpp"] * data["Lpp_m"] - ahead
     boat = particulars(
         "esso_osaka_new",
-        particulars["Lpp_m"],
-        particulars["beam_m"],
-        particulars["mass_kg"],
+        data["Lpp_m"],
+        data["beam_m"],
+        data["mass_kg"],
         [f"{at},0,{per * MOST**2}"],
         [],
         rudder=f"{rudder['x_from_midship_m'] - ahead},{rudder['area_m2']}",
-        draught=particulars["draught_m"],
+        draught=data["draught_m"],
     )
     logs = {}
     for path in [p for p in runs("esso_osaka") if p.stem.startswith(("zigzag", "turn"))]:

@@ -110,6 +110,13 @@ def _parse_speed(text: str | float) -> float:
     return speed
 
 
+Scenarios = Annotated[
+    list[str],
+    typer.Argument(metavar="SCENARIO", help="Names, folders, patterns or files of scenarios."),
+]
+OutFolder = Annotated[
+    Path, typer.Option(metavar="DIR", parser=_parse_folder, help="Output folder.")
+]
 Load = Annotated[
     list[str] | None,
     typer.Option("--load", metavar="L,L...", help="Load conditions, such as heavy,wide."),
@@ -221,10 +228,7 @@ def options(
 @app.command()
 @exits_with_code
 def run(
-    scenarios: Annotated[
-        list[str],
-        typer.Argument(metavar="SCENARIO", help="Names, folders, patterns or files of scenarios."),
-    ],
+    scenarios: Scenarios,
     out: Annotated[
         Path | None,
         typer.Option(
@@ -348,10 +352,7 @@ def drive(
 @app.command()
 @exits_with_code
 def sweep(
-    scenarios: Annotated[
-        list[str],
-        typer.Argument(metavar="SCENARIO", help="Names, folders, patterns or files of scenarios."),
-    ],
+    scenarios: Scenarios,
     vary: Annotated[
         list[str] | None,
         typer.Option(
@@ -553,10 +554,7 @@ def margins(
 @exits_with_code
 def compare(
     run: OneRun,
-    out: Annotated[
-        Path,
-        typer.Option(metavar="DIR", parser=_parse_folder, help="Output folder."),
-    ] = Path("out/compare"),
+    out: OutFolder = Path("out/compare"),
     vessel: VesselName = None,
     load: Load = None,
     scenario: Annotated[
@@ -583,9 +581,7 @@ def compare(
 @exits_with_code
 def replay(
     run: OneRun,
-    out: Annotated[
-        Path, typer.Option(metavar="DIR", parser=_parse_folder, help="Output folder.")
-    ] = Path("out/replay"),
+    out: OutFolder = Path("out/replay"),
     vessel: VesselName = None,
     load: Load = None,
     horizon: Annotated[
@@ -605,10 +601,7 @@ def replay(
 @exits_with_code
 def diagnose(
     runs: Runs,
-    out: Annotated[
-        Path,
-        typer.Option(metavar="DIR", parser=_parse_folder, help="Output folder."),
-    ] = Path("out/diagnosis"),
+    out: OutFolder = Path("out/diagnosis"),
     hold_out: Annotated[
         list[Path] | None,
         typer.Option(metavar="RUN", help="Recording used only to validate the result. Repeatable."),

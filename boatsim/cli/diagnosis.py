@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from boatsim.atomic_folder import atomic_folder
-from boatsim.cli.exits import print_lines, print_note
+from boatsim.cli.exits import print_lines, print_note, print_notes
 from boatsim.cli.progress import report_stages
 from boatsim.diagnosis.checks.entry import entry_text
 from boatsim.diagnosis.config import from_settings
@@ -78,7 +78,7 @@ def diagnose(runs: list[Path], options: DiagnosisOptions, out: Path) -> int:
         if entry["kind"] == "fault":
             for line in entry_text(entry):
                 print_note(f"{entry['run']}: {line.strip()}")
-    _print_remarks(found.remarks)
+    print_notes(found.remarks)
     print_lines(console_lines(found.findings))
     if write_error:
         raise write_error
@@ -88,11 +88,6 @@ def diagnose(runs: list[Path], options: DiagnosisOptions, out: Path) -> int:
     files.append("diagnosis.rrd")
     print_lines([f"written to {out}: {', '.join(files)}"])
     return 0
-
-
-def _print_remarks(remarks: Sequence[str]) -> None:
-    for remark in remarks:
-        print_note(remark)
 
 
 def replay(run: Path, vessel: str | None, load: list[str], horizon: float, out: Path) -> int:
@@ -115,7 +110,7 @@ def replay(run: Path, vessel: str | None, load: list[str], horizon: float, out: 
         report("reading the recording")
         recording, boat = open_recording(run, vessel, load)
         stretches = replay_recording(recording, boat, horizon, report)
-    _print_remarks(recording.remarks)
+    print_notes(recording.remarks)
     _write_replay(stretches, out / "replay.csv")
     for family, found in rms_errors(stretches).items():
         count = f"{len(stretches)} free runs of {horizon:g} s"
@@ -167,7 +162,7 @@ def compare(run: Path, vessel: str | None, load: list[str], scenario: str | None
             duration = float(recording.t[-1] - recording.t[0])
             stretches = free_runs(problem, {"simulated": fitted}, problem.recordings, duration)
             simulated = stretches[0].channels["simulated"]
-    _print_remarks(recording.remarks)
+    print_notes(recording.remarks)
     signals: dict[str, Array] = {}
     lines = [f"{'signal':10s} {'rms error':>12s} {'largest':>12s}   range of the signal"]
     for name, value in simulated.items():

@@ -55,6 +55,16 @@ def print_note(message: str) -> None:
     print(printable(f"note: {message}", LONGEST), file=sys.stderr)
 
 
+def print_notes(messages: Iterable[str]) -> None:
+    """Print notes, one line each.
+
+    Args:
+        messages: The notes.
+    """
+    for message in messages:
+        print_note(message)
+
+
 def print_lines(lines: Iterable[str]) -> None:
     """Print lines of a result to stdout.
 

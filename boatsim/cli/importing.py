@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from pathlib import Path
 
-from boatsim.cli.exits import print_lines, print_note
+from boatsim.cli.exits import print_lines, print_note, print_notes
 from boatsim.cli.progress import report_stages
 from boatsim.errors import BadInput, printable
 from boatsim.files import replacing
@@ -70,7 +70,7 @@ def _propose_map(
         text = proposal(log, vessel, drives, boat.dof, boat.columns)
     else:
         text = proposal(log, vessel, [], (), None)
-    _print_notes(log.remarks)
+    print_notes(log.remarks)
     print_lines(listing(log))
     if propose is None:
         introduction = "Proposed map (--propose map.toml writes it; --map map.toml converts):"
@@ -104,7 +104,7 @@ def _convert(path: Path, out: Path, map: Path, vessel: str | None, load: Sequenc
         recording = convert(log, mapping, str(map), limits)
         report("writing the recording", WRITING)
         write_csv(recording, out)
-    _print_notes(recording.remarks)
+    print_notes(recording.remarks)
     span = f"{len(recording)} rows over {recording.t[-1]:.6g} s"
     print_lines([printable(f"written to {out}: {span}; {', '.join(recording.signals)}")])
     if boat is not None:
@@ -127,8 +127,3 @@ def _write_vessel(out: Path, boat: Vessel, fix: str | None) -> None:
     with replacing(file) as temporary:
         temporary.write_text(text, encoding="utf-8")
     print_lines([printable(f"written to {file}: {boat.name}")])
-
-
-def _print_notes(notes: Sequence[str]) -> None:
-    for note in notes:
-        print_note(note)

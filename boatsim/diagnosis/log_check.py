@@ -8,7 +8,7 @@ from boatsim.diagnosis.checks import data_cleaning, run_checks
 from boatsim.diagnosis.checks.entry import column_sources, log_entry, on_one_line
 from boatsim.diagnosis.checks.finding import LOG_NOT_BOAT, Finding
 from boatsim.diagnosis.checks.hypothesis_test import compare_reinterpretations
-from boatsim.diagnosis.config import DEFAULT, DiagnosisConfig
+from boatsim.diagnosis.config import DEFAULT
 from boatsim.diagnosis.loading import Loaded, check_same_vessel, vessel_for
 from boatsim.diagnosis.question import pose_question
 from boatsim.diagnosis.report.schema import LogEntry
@@ -30,7 +30,6 @@ def check_files(
     runs: Sequence[Path],
     vessel: str | None = None,
     load_conditions: Sequence[str] = (),
-    config: DiagnosisConfig = DEFAULT,
 ) -> tuple[dict[Path, list[LogEntry]], list[BadInput]]:
     """Return what is wrong with each of some files.
 
@@ -40,7 +39,6 @@ def check_files(
         runs: Files of recordings.
         vessel: Name of the vessel; None: that of the recordings' notes.
         load_conditions: Names of load conditions.
-        config: Settings of the diagnosis.
 
     Returns:
         Entries by file, and the errors of files that cannot be read.
@@ -50,11 +48,11 @@ def check_files(
     """
     vessels: dict[Path | None, Vessel] = {}
     for path in runs:
-        vessels[path] = vessel_for(path, vessel, load_conditions, config)
+        vessels[path] = vessel_for(path, vessel, load_conditions)
     check_same_vessel(list(vessels.values()))
     findings, refused, usable = list[Finding](), list[BadInput](), list[Recording]()
     for path in runs:
-        checked = _check_file(path, vessels[path], config)
+        checked = _check_file(path, vessels[path])
         findings += checked.findings
         if checked.refused:
             refused.append(checked.refused)
@@ -62,7 +60,7 @@ def check_files(
             usable.append(checked.recording)
     if usable:
         try:
-            question = pose_question(Loaded(usable, (), vessels, ""), config)
+            question = pose_question(Loaded(usable, (), vessels, ""))
             compared = compare_reinterpretations(usable, question.map_recording, question.problem)
             findings += [replace(f, run=str(usable[0].path)) for f in compared]
         except BadInput as error:
@@ -76,21 +74,21 @@ def check_files(
     return entries, refused
 
 
-def _check_file(path: Path, vessel: Vessel, config: DiagnosisConfig) -> _Checked:
+def _check_file(path: Path, vessel: Vessel) -> _Checked:
     """Check one file."""
     table: list[Finding] = []
     try:
-        table = list(run_checks.check_table(path, vessel, config.checks))
+        table = list(run_checks.check_table(path, vessel, DEFAULT.checks))
         recording = read(path, vessel.limits(), vessel.columns)
-        opened = data_cleaning.prepare_recording(recording, vessel, config.checks)
+        opened = data_cleaning.prepare_recording(recording, vessel, DEFAULT.checks)
     except BadInput as error:
         return _Checked(tuple(table), refused=None if table else error)
     duration = data_cleaning.total_duration([opened])
-    cleaned = data_cleaning.clean_recording(opened, vessel, duration, config)
+    cleaned = data_cleaning.clean_recording(opened, vessel, duration)
     findings = (
         *table,
-        *run_checks.check_recording(opened, cleaned, vessel, config.checks),
-        *run_checks.check_identifiability(opened, vessel, config.checks),
+        *run_checks.check_recording(opened, cleaned, vessel, DEFAULT.checks),
+        *run_checks.check_identifiability(opened, vessel, DEFAULT.checks),
     )
     return _Checked(findings, None if table else replace(cleaned, name=str(path)))
 
@@ -100,7 +98,6 @@ def correction_hint(
     hold_out: Sequence[Path],
     vessel: str | None,
     load_conditions: Sequence[str],
-    config: DiagnosisConfig = DEFAULT,
 ) -> str:
     """Return the correction of the first file that is refused, for an error message.
 
@@ -109,15 +106,14 @@ def correction_hint(
         hold_out: Files of held-out recordings.
         vessel: Name of the vessel; None: that of the recordings' notes.
         load_conditions: Names of load conditions.
-        config: Settings of the diagnosis.
 
     Returns:
         Lines for its recording.toml; "" if no correction is known.
     """
     for path in (*runs, *hold_out):
         try:
-            own = vessel_for(path, vessel, load_conditions, config)
-            findings = run_checks.check_table(path, own, config.checks)
+            own = vessel_for(path, vessel, load_conditions)
+            findings = run_checks.check_table(path, own, DEFAULT.checks)
         except BadInput:
             return ""
         for finding in findings:

@@ -10,8 +10,9 @@ import tomlkit
 from boatsim.drive.stick_mapping import Dials, dials_of
 from boatsim.errors import BadInput
 from boatsim.files import MAX_TOML_BYTES, Value
-from boatsim.physics.content import find, load_class, names
+from boatsim.physics.content import find, names
 from boatsim.simulate.cases import Place, content, matching
+from boatsim.simulate.controllers import controller_table
 from boatsim.simulate.scenario import OFF, Scenario, from_table
 
 FILE = "scenario.toml"
@@ -170,8 +171,4 @@ def _controller_table(own: Value, controller: str | None) -> Mapping[str, Value]
         if isinstance(own, Mapping):
             return own
         return {"use": PASSED_ON}
-    load_class("controller", controller, named=True)
-    use = controller if controller in names("controller") else str(find("controller", controller))
-    if isinstance(own, Mapping) and own.get("use") == use:
-        return own
-    return {"use": use}
+    return controller_table(controller, own)

@@ -119,14 +119,13 @@ def fitted(
     return Fitted(boat, problem, best, judge, before, after)
 
 
-def in_words(found: Fitted, on: str = "the last third of each log") -> list[str]:
+def in_words(found: Fitted) -> list[str]:
     """Return lines that report the fitted effects and the errors on held-out data.
 
     Args:
         found: The fit.
-        on: The held-out data in words.
     """
-    return [*_fit_lines(found.best), *_error_lines(found, on)]
+    return [*_fit_lines(found.best), *_error_lines(found)]
 
 
 def text(found: Fitted, logs: Sequence[Path]) -> str:
@@ -291,9 +290,10 @@ def _fit_lines(best: Fit) -> list[str]:
     return [f"fitted {sum(f.relative for f in best.free)} coefficients", *lines]
 
 
-def _error_lines(found: Fitted, on: str) -> list[str]:
+def _error_lines(found: Fitted) -> list[str]:
     """Lines that report the errors on held-out data before and after the fit."""
-    lines = [f"free runs of {found.judge.horizon:g} s on {on}, which were held out:"]
+    horizon = f"{found.judge.horizon:g} s"
+    lines = [f"free runs of {horizon} on the last third of each log, which were held out:"]
     for key in found.before:
         scale = 57.29578
         unit = "deg"

@@ -303,13 +303,9 @@ def collision(hull: DeepV) -> Mesh:
     return mesh
 
 
-def meshes(hull: DeepV | None = None) -> dict[str, str]:
-    """Return the text of each OBJ file of the boat, by file name.
-
-    Args:
-        hull: Lines of the hull; the default ones if None.
-    """
-    hull = hull or DeepV()
+def meshes() -> dict[str, str]:
+    """Return the text of each OBJ file of the boat, by file name."""
+    hull = DeepV()
     parts = {
         "shell": shell(hull),
         "deck": deck(hull),

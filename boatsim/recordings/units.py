@@ -92,7 +92,7 @@ def heading_in_degrees(t: Array, psi: Array, signals: Mapping[str, Array]) -> in
     if abs(steps[largest - 1]) > 3.0 * math.pi:  # radians wrap by 2 pi, degrees by 360
         return largest
     if "r_radps" in signals:
-        turned = _turned(t, signals["r_radps"])
+        turned = integral(t, signals["r_radps"])
         # The heading is not unwrapped, for fast turning in degrees looks like wraps
         if _near(_ratio(turned, psi), DEGREES):
             return largest
@@ -113,7 +113,7 @@ def rate_in_degrees(t: Array, rate: Array, angle: Array | None) -> int | None:
     """Return a row that shows that a rate (N,) is in degrees per second, else None."""
     largest = int(np.argmax(np.abs(rate)))
     if angle is not None:
-        ratio = _ratio(np.unwrap(angle), _turned(t, rate))
+        ratio = _ratio(np.unwrap(angle), integral(t, rate))
         if _near(ratio, DEGREES):
             return largest
         if _near(ratio, 1.0):
@@ -128,13 +128,18 @@ def roll_in_degrees(t: Array, phi: Array, rate: Array | None) -> int | None:
     largest = int(np.argmax(np.abs(phi)))
     if abs(phi[largest]) > MAX_ROLL:
         return largest
-    if rate is not None and _near(_ratio(_turned(t, rate), phi), DEGREES):
+    if rate is not None and _near(_ratio(integral(t, rate), phi), DEGREES):
         return largest
     return None
 
 
-def _turned(t: Array, rate: Array) -> Array:
-    """Angle (N,) turned since the first row, by the trapezoidal rule."""
+def integral(t: Array, rate: Array) -> Array:
+    """Return the integral (N,) of a rate from the first row on, by the trapezoidal rule.
+
+    Args:
+        t: Times (N,) [s].
+        rate: Rates (N,).
+    """
     return np.concatenate(([0.0], np.cumsum(0.5 * (rate[1:] + rate[:-1]) * np.diff(t))))
 
 

@@ -1,6 +1,7 @@
 """Scenarios with another controller than their own, checked before they run."""
 
 from collections.abc import Mapping
+from typing import Any
 
 from boatsim.control.base import Sense
 from boatsim.errors import BadInput
@@ -31,19 +32,36 @@ def steered(
     """
     if controller is None:
         return load(given, changes, vessel)
-    load_class("controller", controller, named=True)
-    use = controller if controller in names("controller") else str(find("controller", controller))
     said, place = content(given)
     table: dict[str, object] = {**said, **(changes or {})}
     own = table.get("controller")
-    if isinstance(own, Mapping) and own.get("use") == use:
+    wanted = controller_table(controller, own)
+    if wanted is own:
         return from_table(table, place, vessel)
     try:
-        found = from_table({**table, "controller": {"use": use}}, place, vessel)
+        found = from_table({**table, "controller": wanted}, place, vessel)
         _rehearse(found)
     except BadInput as error:
         raise BadInput(f"controller {controller} does not fit {place.name}: {error}") from None
     return found
+
+
+def controller_table(controller: str, own: object) -> Mapping[str, Any]:
+    """Return the [controller] table of a controller with its defaults, or the scenario's own one.
+
+    Args:
+        controller: Name of a controller, or path of its .py, which may run because the user names
+            it.
+        own: The scenario's [controller] table, which is returned if it is of this controller.
+
+    Raises:
+        BadInput: There is no such controller.
+    """
+    load_class("controller", controller, named=True)
+    use = controller if controller in names("controller") else str(find("controller", controller))
+    if isinstance(own, Mapping) and own.get("use") == use:
+        return own
+    return {"use": use}
 
 
 def _rehearse(scenario: Scenario) -> None:

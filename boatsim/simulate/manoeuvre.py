@@ -216,9 +216,7 @@ def _steered(table: ManoeuvringTable, helm: float) -> dict[str, float]:
 def _to_starboard(vessel: Vessel) -> ManoeuvringTable:
     """The table with the sign of the helm for which a short run turns to starboard."""
     table = vessel.manoeuvring
-    commands = {**table.ahead}
-    for name, per_rad in table.steer.items():
-        commands[name] = table.ahead.get(name, 0.0) + 0.2 * per_rad
+    commands = {**table.ahead, **_steered(table, 0.2)}
     heading = _state(vessel, _usual_speed(vessel), commands, 3.0)[2]
     if heading > 0.0:
         return table

@@ -14,9 +14,10 @@ from typing import Literal, NamedTuple, TypeAlias
 from boatsim.errors import BadInput, unknown_name
 from boatsim.files import tables
 from boatsim.physics import vessel as vessels
-from boatsim.physics.content import all_names, find, load_class, names
+from boatsim.physics.content import all_names, load_class, names
 from boatsim.physics.kinds.effect import Effect
 from boatsim.simulate.cases import Place
+from boatsim.simulate.controllers import controller_table
 from boatsim.simulate.scenario import Scenario, ScenarioFile, from_table
 
 Value: TypeAlias = "bool | int | float | str"
@@ -129,7 +130,7 @@ def set_values(
         if path == ("load",):
             table = {**table, "load": _loads(table, place, str(value))}
         elif path == ("controller", "use"):
-            table = {**table, "controller": _controller(table, str(value))}
+            table = {**table, "controller": controller_table(str(value), table.get("controller"))}
         elif value == NONE and len(path) == 1:
             table = dict(table)
             table.pop(str(path[0]), None)
@@ -285,18 +286,6 @@ def _loads(table: ScenarioTable, place: Place, value: str) -> list[str]:
         before = list(map(str, specified))
     more = list(filter(None, map(str.strip, value.split("+"))))
     return vessels.merged_loads(str(table.get("vessel")), before, more, place.path.parent)
-
-
-def _controller(table: ScenarioTable, name: str) -> Mapping[str, object]:
-    """A controller with its defaults; the scenario's own controller keeps its settings."""
-    load_class("controller", name, named=True)
-    use = name
-    if name not in names("controller"):
-        use = str(find("controller", name))
-    own = table.get("controller")
-    if isinstance(own, dict) and own.get("use") == use:
-        return own
-    return {"use": use}
 
 
 def _with_value(table: object, path: KeyPath, value: object) -> dict[str, object]:

@@ -115,16 +115,13 @@ def scene_from(model: "Model", vessel: "Vessel", tank: "Tank") -> Scene:
     )
 
 
-def plain_scene(
-    length: float, beam: float, tank: tuple[float, float, float, float], name: str = "boat"
-) -> Scene:
+def plain_scene(length: float, beam: float, tank: tuple[float, float, float, float]) -> Scene:
     """Return a scene without a model: a box with a pointed bow.
 
     Args:
         length: Length of the vessel [m].
         beam: Its beam [m].
         tank: Length, width and centre of the water [m].
-        name: Name of the vessel.
     """
     half, side, low, high = 0.5 * length, 0.5 * beam, -0.05 * length, 0.08 * length
     outline = [(-half, side), (-half, -side), (0.5 * half, -side), (half, 0.0), (0.5 * half, side)]
@@ -134,7 +131,7 @@ def plain_scene(
     solid = Solid(
         "hull", "hull", vertices, np.array(caps + sides, dtype=np.uint32), (0.93, 0.62, 0.13, 1.0)
     )
-    return Scene(name, length, tank, (solid,), (), REACH * length)
+    return Scene("boat", length, tank, (solid,), (), REACH * length)
 
 
 def _with_hull(solids: tuple[Solid, ...], vessel: "Vessel") -> tuple[Solid, ...]:

@@ -84,8 +84,8 @@ def top_speed(plant: Plant) -> float:
     return low
 
 
-def owner_particulars(rng: Rng, plant: Plant, thrusts: bool, draught: bool, top: bool) -> list[str]:
-    """Return the sizes that the owner specifies; with `top` including the top speed."""
+def owner_particulars(rng: Rng, plant: Plant, draught: bool) -> list[str]:
+    """Return the sizes that the owner specifies."""
     h = plant.hull
     found = [
         "--length",
@@ -95,13 +95,10 @@ def owner_particulars(rng: Rng, plant: Plant, thrusts: bool, draught: bool, top:
     ]
     found += ["--mass", f"{about(rng, h.mass, 0.1):.3g}", "--hulls", str(h.hulls)]
     found += ["--draught", f"{about(rng, h.draught, 0.08):.2g}"] if draught else []
-    found += ["--speed", f"{about(rng, top_speed(plant), 0.06):.2g}"] if top or not thrusts else []
-    return found
+    return [*found, "--speed", f"{about(rng, top_speed(plant), 0.06):.2g}"]
 
 
-def mounts(
-    rng: Rng, plant: Plant, option: str, thrusts: bool, astern: bool
-) -> tuple[list[str], list[float]]:
+def mounts(rng: Rng, plant: Plant, option: str) -> tuple[list[str], list[float]]:
     """Return positions and thrusts of the drives, and the full thrusts [N] that are specified."""
     found, full = [], []
     factor = about(rng, 1.0, 0.12)
@@ -109,8 +106,7 @@ def mounts(
         place = f"{about(rng, p.x, 0.04):.2f},{p.y:.2f}"
         most = float(f"{p.full * factor:.2g}")
         full.append(most)
-        said = f",{most:g}" + (f",{p.astern * most:.2g}" if astern else "") if thrusts else ""
-        found += [f"{option}={place}{said}"]
+        found.append(f"{option}={place},{most:g},{p.astern * most:.2g}")
     return found, full
 
 
@@ -131,14 +127,11 @@ def built(
     lag: float,
     helm_rate: float,
     top_rpm: float,
-    thrusts: bool = True,
     draught: bool = True,
-    top: bool = True,
-    astern: bool = True,
 ) -> Boat:
     """Return the boat with the options its owner would give to `boatsim new`."""
-    places, full = mounts(rng, plant, option, thrusts, astern)
-    options = [*owner_particulars(rng, plant, thrusts, draught, top), *places]
+    places, full = mounts(rng, plant, option)
+    options = [*owner_particulars(rng, plant, draught), *places]
     if plant.rudder:
         options.append(f"--rudder={plant.rudder.x:.2f},{about(rng, plant.rudder.area, 0.1):.2g}")
     names = named(plant)
@@ -159,7 +152,7 @@ def built(
         tuple(f"thrust_{n}_N" for n in names),
         steers,
         1.0 if plant.rudder else -1.0,
-        tuple(full) if thrusts else (),
+        tuple(full),
     )
 
 
@@ -228,9 +221,7 @@ def rib(rng: Rng) -> Boat:
         ),
     )
     plant = Plant(hull(rng, L, 0.42 * L, about(rng, 0.3, 0.1), mass), motor)
-    return built(
-        rng, "rib", plant, "--steered", 0.55, 0.5, 0.4, 0.7, 5000.0, thrusts=True, draught=False
-    )
+    return built(rng, "rib", plant, "--steered", 0.55, 0.5, 0.4, 0.7, 5000.0, draught=False)
 
 
 KINDS: tuple[Callable[[Rng], Boat], ...] = (workboat, survey_catamaran, launch, ship_model, rib)

@@ -130,20 +130,15 @@ class Fit:
 class Tables:
     """Published norms, and the simulated tests that should reproduce them."""
 
-    def __init__(
-        self, data: Data | None = None, tests: Sequence[str] = TESTS, seeds: Sequence[int] = SEEDS
-    ) -> None:
+    def __init__(self, tests: Sequence[str] = TESTS) -> None:
         """Load the tests.
 
         Args:
-            data: Norms that replace the published ones.
             tests: Names of the tests.
-            seeds: Seeds of the runs, over which the norms are averaged.
         """
         self.benches = {t: Bench(f"{t}_as_published", ADDED, NOMINAL, t in YAW) for t in tests}
-        self.data = data or dict(zip(tests, map(published, self.benches.values()), strict=True))
+        self.data = dict(zip(tests, map(published, self.benches.values()), strict=True))
         self.facts = True
-        self.seeds = tuple(seeds)
         self.cache: dict[Any, dict[str, float]] = {}
 
     def only(self, tests: Sequence[str], facts: bool = True) -> "Tables":
@@ -162,7 +157,7 @@ class Tables:
                 values.append(float(x))
         key = (test, tuple(acting), tuple(values))
         if key not in self.cache:
-            self.cache[key] = self.benches[test].norms(acting, values, self.seeds)
+            self.cache[key] = self.benches[test].norms(acting, values, SEEDS)
         return self.cache[key]
 
     def residuals(self, knobs: Sequence[Knob], theta: Sequence[float]) -> Array:
@@ -275,7 +270,7 @@ def gauss_newton(tables: Tables, names: Sequence[str], theta: Array, most: int =
     return Fit(tuple(names), knobs, theta, space.covariance(information), A, evidence)
 
 
-def with_candidate(tables: Tables, base: Fit, name: str, most: int = 3) -> Fit:
+def with_candidate(tables: Tables, base: Fit, name: str) -> Fit:
     """Return `base` refitted with one more candidate.
 
     The start is the best of a few strengths, with the thrusts of `base` and of the prior.
@@ -295,7 +290,7 @@ def with_candidate(tables: Tables, base: Fit, name: str, most: int = 3) -> Fit:
         strengths = space.clipped(space.mean + shift * space.sd)
         starts += [np.concatenate([thrust, base.theta[2:], strengths]) for thrust in thrusts]
     best = max(starts, key=lambda theta: score(tables, knobs, theta)[0])
-    return gauss_newton(tables, names, best, most)
+    return gauss_newton(tables, names, best, 3)
 
 
 def without(tables: Tables, base: Fit, name: str) -> Fit:

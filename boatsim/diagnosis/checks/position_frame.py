@@ -11,8 +11,8 @@ from operator import itemgetter
 import numpy as np
 
 from boatsim.diagnosis.config import DEFAULT, ChecksConfig
-from boatsim.physics.base import Array
 from boatsim.recordings.table import Recording
+from boatsim.recordings.units import integral
 
 NEEDED = ("x_m", "y_m", "psi_rad", "u_mps", "v_mps")
 
@@ -65,10 +65,10 @@ def rotated_share(recording: Recording) -> tuple[float, float]:
     s = np.sin(psi)
     one = np.ones_like(t)
     none = np.zeros_like(t)
-    north = _integral(t, u * c - v * s)
-    east = _integral(t, u * s + v * c)
-    ahead = _integral(t, u)
-    abeam = _integral(t, v)
+    north = integral(t, u * c - v * s)
+    east = integral(t, u * s + v * c)
+    ahead = integral(t, u)
+    abeam = integral(t, v)
     rotated = (c * ahead - s * abeam - north, s * ahead + c * abeam - east)
     regressors = [
         rotated,
@@ -88,8 +88,3 @@ def rotated_share(recording: Recording) -> tuple[float, float]:
     residual = e - A @ estimate
     variance = inverse[0, 0] * (residual @ residual) / (len(e) - A.shape[1])
     return float(estimate[0]), float(np.sqrt(variance))
-
-
-def _integral(t: Array, rate: Array) -> Array:
-    """(N,) integral from the first row by the trapezoidal rule."""
-    return np.concatenate(([0.0], np.cumsum(0.5 * (rate[1:] + rate[:-1]) * np.diff(t))))

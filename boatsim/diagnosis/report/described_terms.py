@@ -167,7 +167,7 @@ def _statement(w: FittedTerm, vessel: Vessel) -> str:
     else:
         text = format_quantity(term.coefficient, unit, w.sd)
     if term.of:
-        text += f" times {factors_in_words(term, vessel)}"
+        text += f" times {factors_in_words(term)}"
     if when := _activity_condition(term):
         text += f" ({when})"
     return text
@@ -189,10 +189,10 @@ def _varies_with(term: Described, vessel: Vessel) -> str:
         sense = "" if term.sense == "both" else f" {term.sense}"
         thrust = f"thrust{SIDES[term.side]}{sense}"
         if term.of:
-            thrust += f" times {factors_in_words(term, vessel)}"
+            thrust += f" times {factors_in_words(term)}"
         parts.append(thrust)
     elif term.of:
-        parts.append(factors_in_words(term, vessel))
+        parts.append(factors_in_words(term))
     elif term.acts == "always":
         parts.append("nothing (constant)")
     else:
@@ -220,13 +220,8 @@ def _activity_condition(term: Described) -> str:
     return ""
 
 
-def factors_in_words(term: Described, vessel: Vessel) -> str:
-    """Return the product of the factors of a term in words; "" if it is constant.
-
-    Args:
-        term: The term.
-        vessel: The vessel.
-    """
+def factors_in_words(term: Described) -> str:
+    """Return the product of the factors of a term in words; "" if it is constant."""
     parts = []
     for name, power in Counter(term.of).items():
         if name.startswith("abs_") and name.removeprefix("abs_") in term.of:

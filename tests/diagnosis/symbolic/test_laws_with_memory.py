@@ -190,7 +190,7 @@ def test_a_law_stands_behind_the_drives_by_which_signals_have_their_places(tmp_p
 def test_a_term_that_looks_back_is_said_in_words_with_its_unit() -> None:
     def said(axis: str, *of: str) -> tuple[str, str]:
         term = DescribedForce(axis=axis, of=of, memory=5.0)
-        return factors_in_words(term, BOAT), coefficient_unit(term, BOAT)
+        return factors_in_words(term), coefficient_unit(term, BOAT)
 
     assert said("sway", "recent_thrust_port_N") == (
         "the average over the last 5.00 s of thrust port",
