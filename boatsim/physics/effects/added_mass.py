@@ -91,6 +91,7 @@ class AddedMass(Inertia, Force):
 
     alone: ClassVar = True
     words: ClassVar[str] = "the water that moves with the hull adds inertia"
+    refines: ClassVar[str] = "added_mass"
     shown_by: ClassVar[str] = "sharp starts and stops in sway and yaw"
     source: ClassVar[str] = (
         "T. I. Fossen, Handbook of Marine Craft Hydrodynamics, 2nd ed. 2021, section 6.3"
@@ -229,6 +230,7 @@ class AddedMassError(Release):
     words: ClassVar[str] = (
         "the added mass differs from its specified value: the hull floats deeper or shallower"
     )
+    refines: ClassVar[str] = "added_mass"
     shown_by: ClassVar[str] = AddedMass.shown_by
     source: ClassVar[str] = AddedMass.source
 
@@ -251,6 +253,7 @@ class AddedMassCoriolis(Release):
     words: ClassVar[str] = (
         "the water that moves with the hull turns it broadside to its course (Munk moment)"
     )
+    refines: ClassVar[str] = "added_mass"
     shown_by: ClassVar[str] = "turning while moving ahead and sideways"
     source: ClassVar[str] = AddedMass.source
 

@@ -145,6 +145,7 @@ class CommandDelay(Channel):
     """Dead time between every command and its actuator: y(t) = x(t - delay)."""
 
     words: ClassVar[str] = "commands take effect after a dead time"
+    refines: ClassVar[str] = "lag"
     shown_by: ClassVar[str] = "fast steps of thrust and steering"
     acts_on: ClassVar[str] = ""  # every actuator
     slots: ClassVar[int] = 1 + 2 * HISTORY

@@ -102,6 +102,7 @@ class CrossFlowDrag(Force):
 
     needs: ClassVar = ("sway", "yaw")
     words: ClassVar[str] = "the drag of the hull sections grows with the square of the cross flow"
+    refines: ClassVar[str] = "damping"
     shown_by: ClassVar[str] = "sway and yaw at two speeds"
     source: ClassVar[str] = (
         "O. M. Faltinsen, Sea Loads on Ships and Offshore Structures, 1990, section 6"

@@ -98,6 +98,7 @@ class LinearDamping(Force):
     """
 
     words: ClassVar[str] = "the water resists in proportion to the speed"
+    refines: ClassVar[str] = "damping"
     shown_by: ClassVar[str] = "coasting down from a low speed"
     source: ClassVar[str] = (
         "T. I. Fossen, Handbook of Marine Craft Hydrodynamics, 2nd ed. 2021, section 6.4"
@@ -199,6 +200,7 @@ class DampingError(Release):
     words: ClassVar[str] = (
         "the damping coefficients differ from their values by more than their specified uncertainty"
     )
+    refines: ClassVar[str] = "damping"
     shown_by: ClassVar[str] = "coasting down in each axis"
 
     surge_factor: float = factor(
@@ -230,6 +232,7 @@ class LateralCentreShift(Release):
 
     needs: ClassVar = ("sway", "yaw")
     words: ClassVar[str] = "the lateral resistance acts ahead of or behind the mass centre"
+    refines: ClassVar[str] = "mass_centre"
     shown_by: ClassVar[str] = "pushing sideways, and coasting after a turn"
     source: ClassVar[str] = (
         "T. I. Fossen, Handbook of Marine Craft Hydrodynamics, 2nd ed. 2021, section 6.4 (Y_r, N_v)"
@@ -282,6 +285,7 @@ class DampingExponent(Release):
     """
 
     words: ClassVar[str] = "damping follows a power of the speed other than the first"
+    refines: ClassVar[str] = "damping"
     shown_by: ClassVar[str] = "the same motion at a large and at a small amplitude"
     source: ClassVar[str] = "Y. Huang and Z. Ji, Autonomous boat dynamics, eqs 4-6: d sign(x) |x|^a"
     strength: ClassVar = ("surge_exponent", "sway_exponent", "yaw_exponent")

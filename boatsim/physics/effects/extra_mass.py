@@ -75,6 +75,7 @@ class ExtraMass(Inertia, Force):
 
     needs: ClassVar = ("surge",)
     words: ClassVar[str] = "the boat carries a mass that the model does not contain"
+    refines: ClassVar[str] = "inertia"
     shown_by: ClassVar[str] = "sharp starts and stops in every axis"
     source: ClassVar[str] = (
         "T. I. Fossen, Handbook of Marine Craft Hydrodynamics, 2nd ed. 2021, section 3.3"
@@ -120,6 +121,7 @@ class Payload(Release):
     words: ClassVar[str] = (
         "the boat is heavier than specified, or all its forces are smaller by the same factor"
     )
+    refines: ClassVar[str] = "inertia"
     shown_by: ClassVar[str] = "sharp starts and stops in every axis"
     source: ClassVar[str] = ExtraMass.source
     strength: ClassVar = ("mass",)

@@ -42,6 +42,7 @@ class ForwardSpeedDamping(Force):
 
     needs: ClassVar = ("surge",)
     words: ClassVar[str] = "damping of sway, roll and yaw grows with the forward speed"
+    refines: ClassVar[str] = "damping"
     shown_by: ClassVar[str] = "the same turns at two forward speeds"
     source: ClassVar[str] = (
         "M. Blanke, Ship Propulsion Losses, PhD, DTU 1981: terms Y_|u|v, K_|u|p, N_|u|r; those "

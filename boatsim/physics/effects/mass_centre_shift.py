@@ -50,6 +50,7 @@ class MassCentreShift(Inertia, Force):
 
     needs: ClassVar = ("sway", "yaw")
     words: ClassVar[str] = "the mass centre lies ahead of or behind its modelled place"
+    refines: ClassVar[str] = "mass_centre"
     shown_by: ClassVar[str] = "sharp starts and stops sideways, and fast turns"
     source: ClassVar[str] = (
         "T. I. Fossen, Handbook of Marine Craft Hydrodynamics, 2nd ed. 2021, section 3.3"

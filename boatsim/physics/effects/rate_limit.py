@@ -74,6 +74,7 @@ class RateLimit(Channel):
     """
 
     words: ClassVar[str] = "a signal follows its command at a limited rate"
+    refines: ClassVar[str] = "lag"
     shown_by: ClassVar[str] = "large steps of the command"
     acts_on: ClassVar[str] = ""
     slots: ClassVar[int] = 1

@@ -76,6 +76,7 @@ class MetacentricHeightError(Release):
     words: ClassVar[str] = (
         "the metacentric height differs from its value by more than its specified uncertainty"
     )
+    refines: ClassVar[str] = "restoring"
     shown_by: ClassVar[str] = "the period of a roll decay"
     source: ClassVar[str] = (
         "T. I. Fossen, Handbook of Marine Craft Hydrodynamics, 2nd ed. 2021, chapter 4"
@@ -97,6 +98,7 @@ class RightingArmStiffening(Release):
         "the righting moment is not in proportion to the heel, so the roll period changes with "
         "amplitude"
     )
+    refines: ClassVar[str] = "restoring"
     shown_by: ClassVar[str] = "a roll decay from a large heel"
 
     cubic: float = shift(

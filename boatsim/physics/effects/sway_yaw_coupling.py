@@ -40,6 +40,7 @@ class SwayYawCoupling(Force):
     words: ClassVar[str] = (
         "a moving hull has a side force when it turns and a yaw moment when it drifts"
     )
+    refines: ClassVar[str] = "added_mass"
     shown_by: ClassVar[str] = "the same turns at two speeds ahead, and astern"
     source: ClassVar[str] = (
         "T. I. Fossen, Handbook of Marine Craft Hydrodynamics, 2nd ed. 2021, chapter 6"

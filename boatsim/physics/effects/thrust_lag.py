@@ -64,6 +64,7 @@ class ThrustLag(Channel):
     """First-order lag of the thrust behind its command: time_constant y' = x - y."""
 
     words: ClassVar[str] = "thrust follows its command with a first-order lag"
+    refines: ClassVar[str] = "lag"
     shown_by: ClassVar[str] = "fast steps of the thrust"
     acts_on: ClassVar[str] = "thrust|shaft"
     slots: ClassVar[int] = 1

@@ -33,6 +33,7 @@ class ThrustLossWithSpeed(Force):
     """
 
     words: ClassVar[str] = "the thrust of the propellers decreases with the speed of the boat"
+    refines: ClassVar[str] = "thrust"
     shown_by: ClassVar[str] = "the same thrust command from rest and at full speed"
     source: ClassVar[str] = (
         "T. I. Fossen, Handbook of Marine Craft Hydrodynamics, 2nd ed. 2021, section 9.3: K_T(J)"

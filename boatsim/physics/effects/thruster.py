@@ -73,6 +73,7 @@ class ThrustGainError(Release):
     """Thrust of all drives that differs by one factor from its specified value."""
 
     words: ClassVar[str] = "all thrust is stronger or weaker than specified by one factor"
+    refines: ClassVar[str] = "thrust"
     shown_by: ClassVar[str] = "runs at several thrust levels"
 
     factor: float = factor(

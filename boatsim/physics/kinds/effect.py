@@ -12,6 +12,9 @@ from boatsim.errors import BadInput
 from boatsim.physics.content import snake_case
 from boatsim.physics.param import UNSET, Checked
 
+# groups of numbers of a vessel that may be estimates
+REFINED_GROUPS = ("damping", "thrust", "lag", "mass_centre", "inertia", "added_mass", "restoring")
+
 
 @cache
 def _named(fields: tuple[str, ...]) -> Callable[..., tuple[float, ...]]:
@@ -42,6 +45,9 @@ class Effect(Checked):
     shown_by: ClassVar[str] = ""  # manoeuvre in which the effect is most visible
     kind: ClassVar[str] = "physics"  # or "measurement"
     source: ClassVar[str] = ""  # paper, equation or table of the law
+    # group of numbers of a vessel that it refines, one of REFINED_GROUPS: where a vessel file calls
+    # that group estimated, the effect is a better value of a number and no missing physics
+    refines: ClassVar[str] = ""
     # parameters of its strength, zero if absent; empty: all fitted parameters
     strength: ClassVar[tuple[str, ...]] = ()
     # fact in the notes of a recording -> parameters that it gives
