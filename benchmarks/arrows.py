@@ -71,7 +71,7 @@ OURS = {  # "physics.effects.fan_wind" -> its file; "physics.effects" is the pac
 
 
 @cache
-def imported(path: Path) -> frozenset[str]:
+def imported_modules(path: Path) -> frozenset[str]:
     """Return the full names of all imports of a file.
 
     Imports inside functions and calls of `import_module("name")` are included.
@@ -113,12 +113,14 @@ def _by_name(node: ast.AST) -> str | None:
     return ""
 
 
-def own(path: Path) -> set[str]:
+def modules_of_boatsim(path: Path) -> set[str]:
     """Return boatsim's modules among the names.
 
     boatsim.physics.effects.fan_wind.law becomes `physics.effects.fan_wind`.
     """
-    names = [name.split(".")[1:] for name in imported(path) if name.split(".")[0] == "boatsim"]
+    names = [
+        name.split(".")[1:] for name in imported_modules(path) if name.split(".")[0] == "boatsim"
+    ]
     parts = [[".".join(name[:n]) for n in range(len(name), 0, -1)] for name in names]
     return {
         next((part for part in longest_first if part in OURS), "__init__")
@@ -126,7 +128,7 @@ def own(path: Path) -> set[str]:
     }
 
 
-def level(name: str) -> int:
+def layer_of(name: str) -> int:
     """Return the layer of a module, counted from the left.
 
     Raises:
@@ -141,15 +143,17 @@ def level(name: str) -> int:
     return found
 
 
-def on_shelf(name: str) -> str:
+def module_or_plugin_folder(name: str) -> str:
     """Return a module's name, or that of its plug-in folder."""
     return next((shelf for shelf in PACKAGES.values() if name.startswith(f"{shelf}.")), name)
 
 
-def counts() -> Counter[tuple[str, str]]:
+def count_imports() -> Counter[tuple[str, str]]:
     """Return the number of imports by (importing, imported) folder."""
     modules = {
-        (on_shelf(name), on_shelf(other)) for name, path in OURS.items() for other in own(path)
+        (module_or_plugin_folder(name), module_or_plugin_folder(other))
+        for name, path in OURS.items()
+        for other in modules_of_boatsim(path)
     }
     pairs = ((a.partition(".")[0], b.partition(".")[0]) for a, b in modules)
     return Counter((a, b) for a, b in pairs if a != b)
@@ -184,7 +188,7 @@ STYLE = (
 )
 
 
-def picture(found: Mapping[tuple[str, str], int]) -> str:
+def draw_imports(found: Mapping[tuple[str, str], int]) -> str:
     """Draw the folders from left to right and one lane below for each imported folder.
 
     A line connects each importing folder to the lane.
@@ -240,7 +244,7 @@ def _lane(
     taps = []
     for i, a in enumerate(folders):
         if (a, lane) in found:
-            taps.append((_left_edge(i) + _tap(a, depth, lanes, found), found[a, lane]))
+            taps.append((_left_edge(i) + _line_offset(a, depth, lanes, found), found[a, lane]))
     far = max(at for at, _ in taps)
     yield f'<path stroke="{colour}" d="M{far} {y}H{x}V{bottom + 7}"/>'
     yield (
@@ -253,7 +257,9 @@ def _lane(
         yield f'<text class="count" x="{at}" y="{y + 4}">{number}</text>'
 
 
-def _tap(importer: str, depth: int, lanes: list[str], found: Mapping[tuple[str, str], int]) -> int:
+def _line_offset(
+    importer: str, depth: int, lanes: list[str], found: Mapping[tuple[str, str], int]
+) -> int:
     """Return the offset in a box at which its line to a lane begins.
 
     Lines to deeper lanes begin further right, so that they do not cross.
@@ -282,7 +288,7 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument(
         "--check", action="store_true", help="only check whether docs/arrows.svg is up to date"
     )
-    text = picture(counts())
+    text = draw_imports(count_imports())
     if not parser.parse_args(arguments).check:
         OUT.write_text(text, encoding="utf-8")
     same = OUT.is_file() and OUT.read_text(encoding="utf-8") == text

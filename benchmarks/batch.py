@@ -28,7 +28,7 @@ SECONDS = 60.0  # of the closed loop
 CASE = "joystick_boat/sway_1_wind"
 
 
-def rate(steps: int, advance: Callable[[], object]) -> float:
+def steps_per_second(steps: int, advance: Callable[[], object]) -> float:
     """Return the median of steps per second."""
     found = []
     for _ in range(ROUNDS):
@@ -53,12 +53,12 @@ def open_loop(boats: int) -> list[Figure]:
     batch.reset(commands=row)
     batch.advance(steps=PERIOD)  # compiles
     steps = boats * PERIODS * PERIOD
-    held = rate(steps, lambda: batch.advance(row, PERIODS * PERIOD))
+    held = steps_per_second(steps, lambda: batch.advance(row, PERIODS * PERIOD))
     return [
         Figure(f"open loop, {boats:,} boats, commands held", held / 1e6, "M boat-steps/s", 8.0),
         Figure(
             "open loop, all commands jump every 80 ms",
-            rate(steps, changing) / 1e6,
+            steps_per_second(steps, changing) / 1e6,
             "M boat-steps/s",
             0.0,
         ),

@@ -30,7 +30,7 @@ REQUIREMENTS = {
 }
 
 
-def boat(test: str, rng: np.random.Generator) -> dict[str, Any]:
+def random_boat(test: str, rng: np.random.Generator) -> dict[str, Any]:
     """Return the settings of a scenario with a random boat in open water."""
     heavy, wide = test[-1] in "34", test in ("sway_2", "sway_4")
     thrust, power, drag, astern, shift, inertia, wind = rng.uniform(
@@ -56,7 +56,7 @@ def boat(test: str, rng: np.random.Generator) -> dict[str, Any]:
     }
 
 
-def known(test: str, settings: dict[str, Any], seed: int) -> dict[str, Any]:
+def identified_controller(test: str, settings: dict[str, Any], seed: int) -> dict[str, Any]:
     """Return a controller with the motors of this boat identified in a separate run."""
     blind = {"use": "l1_joystick_blind", "check_pwm": 118.0, **BELIEFS}
     checked = scenario.load(
@@ -73,13 +73,16 @@ def known(test: str, settings: dict[str, Any], seed: int) -> dict[str, Any]:
     return {**blind, "known_astern": astern, "known_angle": angle, "known_scale": scale}
 
 
-def study(test: str, boats: int) -> list[str]:
+def study_table(test: str, boats: int) -> list[str]:
     """Return lines of the first table: median, 95 % and largest value of each required metric."""
     rng = np.random.default_rng(sum(map(ord, test)))
     found: dict[str, list[dict[str, float]]] = {"l1_joystick": [], "l1_joystick_blind": []}
     for seed in range(boats):
-        settings = boat(test, rng)
-        for controller in ({"use": "l1_joystick", **BELIEFS}, known(test, settings, seed)):
+        settings = random_boat(test, rng)
+        for controller in (
+            {"use": "l1_joystick", **BELIEFS},
+            identified_controller(test, settings, seed),
+        ):
             made = scenario.load(
                 f"joystick_boat/{test}_gyro", {**settings, "controller": controller}
             )
@@ -97,7 +100,7 @@ def study(test: str, boats: int) -> list[str]:
     return lines
 
 
-def unrest(test: str, controller: dict[str, Any]) -> str:
+def pwm_standard_deviations(test: str, controller: dict[str, Any]) -> str:
     """Return the standard deviations of both PWM values (of 255) after 6 s."""
     log = run(scenario.load(f"joystick_boat/{test}", {"controller": controller}), 0).recording
     port, starboard = (
@@ -117,7 +120,7 @@ def main() -> None:
         "  sway: surge offset [m] (0.15), heading [deg] (10); yaw: light moved [m], mass centre away [m] (both 1.2)"
     )
     for test in given.test or TESTS:
-        print("\n".join(study(test, given.boats)), flush=True)
+        print("\n".join(study_table(test, given.boats)), flush=True)
     print("\nas shipped, seeds 0 to 5: mean (largest)")
     for test in given.test or TESTS:
         rows = [
@@ -132,8 +135,13 @@ def main() -> None:
     print("\nrestlessness of the motors ahead and astern [PWM of 255]")
     for bandwidth in (0.5, 2.0):
         law = {"use": "l1_joystick", "surge_bandwidth": bandwidth}
-        print(f"l1_joystick, surge low-pass {bandwidth:g} rad/s" + unrest("sway_1", law))
-    print("l1_joystick_sway" + unrest("sway_1_closed", {"use": "l1_joystick_sway"}))
+        print(
+            f"l1_joystick, surge low-pass {bandwidth:g} rad/s"
+            + pwm_standard_deviations("sway_1", law)
+        )
+    print(
+        "l1_joystick_sway" + pwm_standard_deviations("sway_1_closed", {"use": "l1_joystick_sway"})
+    )
 
 
 if __name__ == "__main__":

@@ -35,7 +35,7 @@ COLUMNS = {
 }
 
 
-def simulated(seconds: float, rate: float, seed: int) -> Recording:
+def simulate_joystick_run(seconds: float, rate: float, seed: int) -> Recording:
     """Return a run of random joystick steps, recorded by a camera at `rate` [Hz]."""
     rng = np.random.default_rng(seed)
     boat = vessel.load(BOAT)
@@ -50,7 +50,7 @@ def simulated(seconds: float, rate: float, seed: int) -> Recording:
     return Recording(f"{seed}", t, signals | dict(zip(boat.commands, commands.T, strict=True)))
 
 
-def one(run: str, out: str) -> None:
+def diagnose_and_print_cost(run: str, out: str) -> None:
     """Diagnose in this process and print the cost as JSON."""
     from boatsim.cli import app
 
@@ -63,7 +63,7 @@ def one(run: str, out: str) -> None:
         print(json.dumps(cost))
 
 
-def cost(run: Recording, folder: Path, cache: Path | None = None) -> dict[str, float]:
+def measure_cost(run: Recording, folder: Path, cache: Path | None = None) -> dict[str, float]:
     """Return CPU [s], wall time [s], peak memory [MB] and size of the files [MB] of one command."""
     write_csv(run, folder / "run.csv")
     environment = os.environ | ({"BOATSIM_CACHE": str(cache)} if cache else {})
@@ -81,7 +81,7 @@ def cost(run: Recording, folder: Path, cache: Path | None = None) -> dict[str, f
     return found | {"wall": answer["seconds"]}
 
 
-def show(name: str, found: dict[str, float]) -> None:
+def print_row(name: str, found: dict[str, float]) -> None:
     """Print a row of the table."""
     print(f"{name:28s}" + "".join(f"{found[key]:14.1f}" for key in COLUMNS), flush=True)
 
@@ -95,12 +95,14 @@ def main() -> None:
     parser.add_argument("--one", nargs=2, metavar=("RUN", "OUT"), help=argparse.SUPPRESS)
     given = parser.parse_args()
     if given.one:
-        return one(*given.one)
+        return diagnose_and_print_cost(*given.one)
     print(" " * 28 + "".join(f"{heading:>14s}" for heading in COLUMNS.values()))
     with TemporaryDirectory() as base:
         folder = Path(base)
-        cost(simulated(*TRIAL, 0), folder)  # fills the cache of compiled programs
-        run = simulated(180.0, 50.0, 1)
+        measure_cost(
+            simulate_joystick_run(*TRIAL, 0), folder
+        )  # fills the cache of compiled programs
+        run = simulate_joystick_run(180.0, 50.0, 1)
         write_csv(run, folder / "long.csv")
         begin = time.process_time()
         read(folder / "long.csv", vessel.load(BOAT).limits())
@@ -111,13 +113,16 @@ def main() -> None:
         )
         for rate in (6.0, 20.0):
             for minutes in (1,) if given.quick else (1, 2, 5, 10):
-                run = simulated(60.0 * minutes, rate, minutes)
-                show(f"{minutes} min at {rate:g} Hz", cost(run, folder))
+                run = simulate_joystick_run(60.0 * minutes, rate, minutes)
+                print_row(f"{minutes} min at {rate:g} Hz", measure_cost(run, folder))
         for minutes in () if given.quick else (20, 60):  # fewer rows per second are used
-            show(f"{minutes} min at 50 Hz", cost(simulated(60.0 * minutes, 50.0, minutes), folder))
+            print_row(
+                f"{minutes} min at 50 Hz",
+                measure_cost(simulate_joystick_run(60.0 * minutes, 50.0, minutes), folder),
+            )
         for state in () if given.quick else ("empty", "filled"):
-            run = simulated(*TRIAL, 0)
-            show(f"{TRIAL[0]:g} s, {state} cache", cost(run, folder, folder / "cache"))
+            run = simulate_joystick_run(*TRIAL, 0)
+            print_row(f"{TRIAL[0]:g} s, {state} cache", measure_cost(run, folder, folder / "cache"))
 
 
 if __name__ == "__main__":

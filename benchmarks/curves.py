@@ -41,7 +41,9 @@ def median_time(work: Callable[[], object]) -> float:
     return median(seconds)
 
 
-def column(what: str, sizes: Sequence[int], seconds: Sequence[float], steps: Sequence[int]) -> str:
+def scaling_column(
+    what: str, sizes: Sequence[int], seconds: Sequence[float], steps: Sequence[int]
+) -> str:
     """Return a column of the table, with the exponents of the whole and of its second half."""
     lines = [f"{what:>12}{'[s]':>12}{'million steps/s':>18}"]
     lines += [
@@ -53,11 +55,11 @@ def column(what: str, sizes: Sequence[int], seconds: Sequence[float], steps: Seq
     return "\n".join([*lines, f"    exponent {whole:.2f}; from {sizes[half]:,} on {later:.2f}", ""])
 
 
-def lengths() -> str:
+def scaling_with_length() -> str:
     """Return the column for the simulated length."""
     compiled_engine = Batch(vessel.load("joystick_boat"), step=STEP)
     steps = [round(60 * m / STEP) for m in MINUTES]
-    return column(
+    return scaling_column(
         "minutes",
         MINUTES,
         [median_time(lambda n=n: compiled_engine.coast([0.0] * 6, COMMANDS, n)) for n in steps],
@@ -65,16 +67,16 @@ def lengths() -> str:
     )
 
 
-def boats() -> str:
+def scaling_with_boats() -> str:
     """Return the column for the number of boats, on all cores."""
     made, seconds = vessel.load("joystick_boat"), []
     for n in BOATS:
         batch = Batch(made, n, STEP)
         seconds.append(median_time(lambda batch=batch: batch.advance(COMMANDS, STEPS["boats"])))
-    return column("boats", BOATS, seconds, [n * STEPS["boats"] for n in BOATS])
+    return scaling_column("boats", BOATS, seconds, [n * STEPS["boats"] for n in BOATS])
 
 
-def entries() -> str:
+def scaling_with_effects() -> str:
     """Return the column for the number of effects, without the time to compile each vessel."""
     own, sizes, seconds = len(vessel.load("joystick_boat").effects), [], []
     for extra in ENTRIES:
@@ -91,13 +93,13 @@ def entries() -> str:
                 )
             )
         )
-    return column("entries", sizes, seconds, [STEPS["entries"]] * len(sizes))
+    return scaling_column("entries", sizes, seconds, [STEPS["entries"]] * len(sizes))
 
 
 def main() -> None:
     """Print the table."""
     argparse.ArgumentParser(description=__doc__).parse_args()
-    for part in (lengths, boats, entries):
+    for part in (scaling_with_length, scaling_with_boats, scaling_with_effects):
         print(part(), flush=True)
 
 

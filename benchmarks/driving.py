@@ -36,7 +36,7 @@ PUSH = """new Promise(done => {
 })"""  # returns when the stick was pushed and when the page saw the goal change [s since 1970]
 
 
-def pushes(page: Page, seconds: float) -> Array:
+def push_stick(page: Page, seconds: float) -> Array:
     """Return the times (N, 2) of pushing the stick and of its display, during a run of `seconds`."""
     rng, found = random.Random(0), []
     page.until("frame && frame.t > 1 && !frame.away")
@@ -46,20 +46,20 @@ def pushes(page: Page, seconds: float) -> Array:
     return np.array(found, dtype=float)
 
 
-def after(log: Recording, column: str, begin: float, at: Array) -> Array:
+def delays_to_next_change(log: Recording, column: str, begin: float, at: Array) -> Array:
     """Return the delay [s] from each time in `at` [s since 1970] to the next change of a column."""
     changed = begin + log.t[1:][np.diff(log[column]) != 0.0]
     return np.array([changed[changed > when - 0.001][0] - when for when in at])
 
 
-def line(name: str, seconds: Array) -> str:
+def latency_row(name: str, seconds: Array) -> str:
     """Return a row of the table, in ms."""
     ms = 1e3 * seconds
     return f"{name:20}{np.median(ms):8.0f}{np.percentile(ms, 95):8.0f}{ms.max():8.0f}"
 
 
 @contextmanager
-def driven(folder: Path, seconds: float, *more: str) -> Iterator[Page]:
+def open_drive_page(folder: Path, seconds: float, *more: str) -> Iterator[Page]:
     """Start a run and yield its page; wait for its end when the block is left."""
     command = [sys.executable, "-m", "boatsim", "drive", "joystick_boat", "--no-open", *more]
     command += ["--seconds", f"{seconds:g}", "--out", str(folder)]
@@ -74,9 +74,9 @@ def driven(folder: Path, seconds: float, *more: str) -> Iterator[Page]:
         running.communicate(timeout=60)
 
 
-def picture(folder: Path, path: Path) -> None:
+def save_picture(folder: Path, path: Path) -> None:
     """Save a picture of the page after some seconds of turning."""
-    with driven(folder, 21.0, "--scenario", str(SHOWN)) as page:
+    with open_drive_page(folder, 21.0, "--scenario", str(SHOWN)) as page:
         page.until("frame && frame.t > 1 && !frame.away")
         for until, push in (
             (8, "0.0, -0.6, 0.6, 0"),
@@ -88,18 +88,18 @@ def picture(folder: Path, path: Path) -> None:
         page.picture(path, 1120, 770)
 
 
-def measured(folder: Path, seconds: float) -> None:
+def measure_latencies(folder: Path, seconds: float) -> None:
     """Drive one run and print its latencies."""
-    with driven(folder, seconds, "--controller", "l1_joystick") as page:
-        moved = pushes(page, seconds)
+    with open_drive_page(folder, seconds, "--controller", "l1_joystick") as page:
+        moved = push_stick(page, seconds)
     log = read(folder / "recording.csv")
     facts = log.notes.facts
     begin = float(str(facts["began_unix_s"]))
     print(f"{len(moved)} pushes in {log.t[-1]:.0f} s, [ms]")
     print(f"{'from stick to':20}{'median':>8}{'95 %':>8}{'most':>8}")
-    print(line("log", after(log, GOAL, begin, moved[:, 0])))
-    print(line("commands", after(log, SENT, begin, moved[:, 0])))
-    print(line("picture", moved[:, 1] - moved[:, 0]))
+    print(latency_row("log", delays_to_next_change(log, GOAL, begin, moved[:, 0])))
+    print(latency_row("commands", delays_to_next_change(log, SENT, begin, moved[:, 0])))
+    print(latency_row("picture", moved[:, 1] - moved[:, 0]))
     late, worst = facts["late_periods"], facts["latest_ms"]
     print(
         f"{facts['periods']} control periods, {late} begun late; the latest {worst} ms behind time"
@@ -114,9 +114,9 @@ def main(given: Sequence[str] | None = None) -> None:
     asked = parser.parse_args(given)
     with TemporaryDirectory() as folder:
         if asked.picture:
-            picture(Path(folder) / "out", asked.picture)
+            save_picture(Path(folder) / "out", asked.picture)
         else:
-            measured(Path(folder) / "out", asked.seconds)
+            measure_latencies(Path(folder) / "out", asked.seconds)
 
 
 if __name__ == "__main__":

@@ -59,7 +59,7 @@ on = { thrust = "thrust_N", angle = 0.0 }
 Advance = Callable[[int], Array]  # number of steps -> x, y, psi, u, v, r
 
 
-def boat(folder: Path) -> Vessel:
+def write_vessel(folder: Path) -> Vessel:
     """Write the vessel into a folder and load it."""
     (folder / "hull.xml").write_text(HULL, encoding="utf-8")
     (folder / "vessel.toml").write_text(BOAT, encoding="utf-8")
@@ -79,7 +79,7 @@ def constants_of_motion(state: Array) -> Array:
     )
 
 
-def of_engine(made: Vessel, step: float) -> Advance:
+def mujoco_stepper(made: Vessel, step: float) -> Advance:
     """Return a function that steps the vessel on MuJoCo."""
     engine = Engine(made, step=step, show=False)
     x, y, psi, u, v, r = START
@@ -93,7 +93,7 @@ def of_engine(made: Vessel, step: float) -> Advance:
     return advance
 
 
-def of_twin(made: Vessel, step: float) -> Advance:
+def compiled_stepper(made: Vessel, step: float) -> Advance:
     """Return a function that steps the vessel on the compiled engine."""
     compiled_engine, state = Batch(made, step=step), np.array(START)
 
@@ -105,7 +105,7 @@ def of_twin(made: Vessel, step: float) -> Advance:
     return advance
 
 
-def memory() -> float:
+def peak_memory() -> float:
     """Return the peak memory of this process [MB]."""
     unit = 1e6 / 1024  # ru_maxrss is in KiB
     if sys.platform == "darwin":
@@ -113,14 +113,14 @@ def memory() -> float:
     return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / unit
 
 
-def lost(advance: Advance, hours: float, step: float) -> str:
+def conservation_row(advance: Advance, hours: float, step: float) -> str:
     """Return a row of the table with the largest change of the constants, evaluated every hour."""
     first, worst = constants_of_motion(np.array(START)), np.zeros(3)
     advance(0)
-    before, begin = memory(), time.perf_counter()
+    before, begin = peak_memory(), time.perf_counter()
     for _ in range(round(hours)):
         worst = np.maximum(worst, np.abs(constants_of_motion(advance(round(HOUR / step))) - first))
-    took, grown = time.perf_counter() - begin, memory() - before
+    took, grown = time.perf_counter() - begin, peak_memory() - before
     total = np.hypot(*first[1:])
     energy, momentum = worst[0] / first[0], np.max(worst[1:]) / total
     return f"{hours * HOUR / step:12.3g}{took:10.1f}{energy:16.1e}{momentum:18.1e}{grown:14.1f}"
@@ -136,9 +136,12 @@ def main() -> None:
         f"{'':10}{'steps':>12}{'took [s]':>10}{'energy lost':>16}{'momentum lost':>18}{'grown [MB]':>14}"
     )
     with TemporaryDirectory() as folder:
-        made = boat(Path(folder))
-        for name, start in (("twin", of_twin), ("engine", of_engine)):
-            print(f"{name:10}" + lost(start(made, given.step), given.hours, given.step), flush=True)
+        made = write_vessel(Path(folder))
+        for name, start in (("twin", compiled_stepper), ("engine", mujoco_stepper)):
+            print(
+                f"{name:10}" + conservation_row(start(made, given.step), given.hours, given.step),
+                flush=True,
+            )
 
 
 if __name__ == "__main__":

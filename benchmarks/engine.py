@@ -96,7 +96,7 @@ class Figure:
         )
 
 
-def stepping() -> list[Figure]:
+def measure_stepping() -> list[Figure]:
     """Return the steps per second of MuJoCo with and without forces, and of the compiled engine."""
     boat = vessel.load("joystick_boat", extra=EXTRA)
     tank = Tank(1e4, 1e4, 1.0)
@@ -138,7 +138,7 @@ def stepping() -> list[Figure]:
     ]
 
 
-def scenario_speed() -> Figure:
+def measure_scenario_speed() -> Figure:
     """Return the real-time factor of a minute with controller, sensors and log, once compiled."""
     seconds = []
     run(scenario.load(SCENARIO, OPEN | {"duration": 1.0}))
@@ -152,7 +152,7 @@ def scenario_speed() -> Figure:
     )
 
 
-def process(arguments: list[str], **environment: str) -> tuple[float, float]:
+def run_process(arguments: list[str], **environment: str) -> tuple[float, float]:
     """Return the wall time [s] and peak memory [MB] of a process.
 
     Raises:
@@ -171,16 +171,17 @@ def process(arguments: list[str], **environment: str) -> tuple[float, float]:
     return took, usage.ru_maxrss / unit
 
 
-def processes() -> list[Figure]:
+def measure_command_line() -> list[Figure]:
     """Measure the command line: first start with an empty cache, later starts, one hour."""
     with tempfile.TemporaryDirectory() as folder:
         out, cache = f"{folder}/out", f"{folder}/cache"
-        cold, _ = process([*CLI, "run", SCENARIO, "--out", out], BOATSIM_CACHE=cache)
+        cold, _ = run_process([*CLI, "run", SCENARIO, "--out", out], BOATSIM_CACHE=cache)
         warm = median(
-            process([*CLI, "run", SCENARIO, "--out", out], BOATSIM_CACHE=cache)[0] for _ in range(3)
+            run_process([*CLI, "run", SCENARIO, "--out", out], BOATSIM_CACHE=cache)[0]
+            for _ in range(3)
         )
-        hour, peak = process(
-            [*CLI, "run", str(an_hour(Path(folder))), "--out", out], BOATSIM_CACHE=cache
+        hour, peak = run_process(
+            [*CLI, "run", str(write_hour_scenario(Path(folder))), "--out", out], BOATSIM_CACHE=cache
         )
     return [
         Figure(f"boatsim run {SCENARIO}, first time", cold, "s", 20, at_least=False),
@@ -190,7 +191,7 @@ def processes() -> list[Figure]:
     ]
 
 
-def an_hour(folder: Path) -> Path:
+def write_hour_scenario(folder: Path) -> Path:
     """Write a scenario of one hour in open water and return its path."""
     path = folder / "an_hour.toml"
     path.write_text(
@@ -200,7 +201,7 @@ def an_hour(folder: Path) -> Path:
     return path
 
 
-def every_scenario(console: Console) -> None:
+def print_scenario_speeds(console: Console) -> None:
     """Print the real-time factor of each scenario, the better of two runs, slowest first."""
     found = []
     for name in cases.matching("*"):
@@ -241,13 +242,13 @@ def main() -> None:
     )
     console = Console()
     if parser.parse_args().scenarios:
-        every_scenario(console)
+        print_scenario_speeds(console)
         return
     table = Table("", "measured", "target", "reached")
     for name, part in (
-        ("steps/s of engine and twin", stepping),
-        ("a scenario", lambda: [scenario_speed()]),
-        ("the command line, cold, warm and for an hour", processes),
+        ("steps/s of engine and twin", measure_stepping),
+        ("a scenario", lambda: [measure_scenario_speed()]),
+        ("the command line, cold, warm and for an hour", measure_command_line),
     ):
         with console.status(f"measuring {name}"):
             for figure in part():

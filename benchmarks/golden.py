@@ -41,7 +41,7 @@ Values = dict[
 ]  # norm -> today, at_reported, published, verdict, unit, and moves where it does
 
 
-def tracked() -> list[str]:
+def scenarios_with_metrics() -> list[str]:
     """Return the scenarios that have metrics."""
     return [
         name
@@ -50,12 +50,12 @@ def tracked() -> list[str]:
     ]
 
 
-def measured(name: str) -> dict[str, Metric]:
+def metrics_of_scenario(name: str) -> dict[str, Metric]:
     """Return the metrics of a scenario with seed 0."""
     return requested_metrics(run(scenario.load(name), 0))
 
 
-def nudged(name: str) -> list[dict[str, Metric]]:
+def metrics_with_perturbed_start(name: str) -> list[dict[str, Metric]]:
     """Return the metrics with a perturbed start, once for each direction."""
     start = scenario.load(name)
     chance = np.random.default_rng(0)
@@ -75,7 +75,9 @@ def nudged(name: str) -> list[dict[str, Metric]]:
     ]
 
 
-def values(found: Mapping[str, Metric], perturbed: Sequence[Mapping[str, Metric]] = ()) -> Values:
+def values_to_store(
+    found: Mapping[str, Metric], perturbed: Sequence[Mapping[str, Metric]] = ()
+) -> Values:
     """Return the stored values of each metric.
 
     They include the range under perturbed starts if it exceeds the tolerance.
@@ -103,7 +105,7 @@ def path_of(name: str, home: Path = HOME) -> Path:
     return home / "tests" / "golden" / f"{name.partition('/')[0]}.json"
 
 
-def table(path: Path) -> dict[str, Values]:
+def read_values(path: Path) -> dict[str, Values]:
     """Return the values in a file by scenario; empty if there is no such file."""
     found: dict[str, Values] = (
         json.loads(path.read_text(encoding="utf-8"))["scenarios"] if path.is_file() else {}
@@ -111,12 +113,12 @@ def table(path: Path) -> dict[str, Values]:
     return found
 
 
-def kept(name: str, home: Path = HOME) -> Values:
+def stored_values(name: str, home: Path = HOME) -> Values:
     """Return the stored values of a scenario; empty if it is new."""
-    return table(path_of(name, home)).get(name, {})
+    return read_values(path_of(name, home)).get(name, {})
 
 
-def text_of(scenarios: Mapping[str, Values]) -> str:
+def file_content(scenarios: Mapping[str, Values]) -> str:
     """Return the content of a vessel's file, with a line for each metric."""
     parts = []
     for name, values in sorted(scenarios.items()):
@@ -127,10 +129,12 @@ def text_of(scenarios: Mapping[str, Values]) -> str:
     return '{\n "seed": 0,\n "scenarios": {\n' + ",\n".join(parts) + "\n }\n}\n"
 
 
-def drifts(name: str, old: Values, new: Values) -> list[str]:
+def changes_of_metrics(name: str, old: Values, new: Values) -> list[str]:
     """Return a line for every change: scenario, metric, old, new and the paper's value."""
     return [
-        line for norm in {**old, **new} for line in _drift(name, norm, old.get(norm), new.get(norm))
+        line
+        for norm in {**old, **new}
+        for line in _change_of_metric(name, norm, old.get(norm), new.get(norm))
     ]
 
 
@@ -139,14 +143,14 @@ def update(changed: Mapping[str, tuple[Values, list[str]]], reason: str, home: P
     for path in {path_of(name, home) for name in changed}:
         new = {name: values for name, (values, _) in changed.items() if path_of(name, home) == path}
         path.parent.mkdir(parents=True, exist_ok=True)
-        _write(path, text_of(table(path) | new))
+        _write(path, file_content(read_values(path) | new))
     history = home / "tests" / "golden" / "HISTORY.md"
     text = history.read_text(encoding="utf-8") if history.is_file() else f"{HISTORY_TITLE}\n"
     lines = [line for _, changes in changed.values() for line in changes]
-    _write(history, with_reason(text, reason, lines))
+    _write(history, add_to_history(text, reason, lines))
 
 
-def with_reason(history: str, reason: str, lines: list[str]) -> str:
+def add_to_history(history: str, reason: str, lines: list[str]) -> str:
     """Return the history with a new entry above the older ones; new metrics are only counted."""
     changes = [line for line in lines if not line.endswith(NEW)]
     entry = [f"- {reason}"]
@@ -164,7 +168,7 @@ def with_reason(history: str, reason: str, lines: list[str]) -> str:
     )
 
 
-def _drift(
+def _change_of_metric(
     name: str, norm: str, old: Mapping[str, Any] | None, new: Mapping[str, Any] | None
 ) -> Iterable[str]:
     if old is None or new is None:
@@ -198,10 +202,13 @@ def main(arguments: list[str] | None = None) -> int:
         print('--update needs --reason "why the metrics changed"', file=sys.stderr)
         return 2
     changed: dict[str, tuple[Values, list[str]]] = {}
-    for name in tracked():
-        found = measured(name)
-        if lines := drifts(name, kept(name), values(found)):
-            changed[name] = (values(found, nudged(name) if given.update else ()), lines)
+    for name in scenarios_with_metrics():
+        found = metrics_of_scenario(name)
+        if lines := changes_of_metrics(name, stored_values(name), values_to_store(found)):
+            changed[name] = (
+                values_to_store(found, metrics_with_perturbed_start(name) if given.update else ()),
+                lines,
+            )
             print("\n".join(lines), flush=True)
     if changed and given.update:
         update(changed, reason)

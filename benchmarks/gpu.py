@@ -49,7 +49,7 @@ def random_case(boat: Vessel, *shape: int) -> tuple[Array, Array]:
     return starts, rng.uniform(ranges[:, 0], ranges[:, 1], (*shape, len(ranges)))
 
 
-def rate(batch: Batch) -> float:
+def boat_steps_per_second(batch: Batch) -> float:
     """Return the median of boat-steps per second over some simulated seconds."""
     starts, commands = random_case(batch.vessels[0], ROUNDS + 1, batch.n)
     batch.reset(starts, commands[0])
@@ -63,12 +63,13 @@ def rate(batch: Batch) -> float:
     return median(found)
 
 
-def speed(boat: Vessel, device: str, largest: int) -> Table:
+def speed_table(boat: Vessel, device: str, largest: int) -> Table:
     """Return the table of rates."""
     table = Table("boats", *(f"{way} [boat-steps/s]" for way in WAYS), box=None)
     for n in (n for n in SIZES if n <= largest):
         rates = (
-            rate(Batch(boat, n, STEP, device, mujoco=on_mujoco)) for on_mujoco in WAYS.values()
+            boat_steps_per_second(Batch(boat, n, STEP, device, mujoco=on_mujoco))
+            for on_mujoco in WAYS.values()
         )
         table.add_row(f"{n:,}", *(f"{found:.2e}" for found in rates))
     return table
@@ -90,7 +91,7 @@ def largest_difference(boat: Vessel, device: str, on_mujoco: bool) -> float:
     return float((np.abs(np.array(found) - wanted) / np.abs(wanted).max(axis=(0, 1))).max())
 
 
-def agreement(device: str) -> Table:
+def difference_table(device: str) -> Table:
     """Return the table of differences."""
     table = Table("vessel", *WAYS, box=None)
     for path in sorted(Path("models").glob("*/vessel.toml")):
@@ -123,7 +124,9 @@ def main(arguments: Sequence[str] | None = None) -> None:
         most = given.most or LARGEST.get(given.device, max(SIZES))
         boat = vessel.load(given.vessel)
         Console().print(
-            agreement(given.device) if given.agreement else speed(boat, given.device, most)
+            difference_table(given.device)
+            if given.agreement
+            else speed_table(boat, given.device, most)
         )
     except BadInput as error:
         raise SystemExit(f"error: {error}") from None

@@ -25,7 +25,7 @@ FINE = 0.00125  # [s] step of the reference solution
 DURATION = 2.0  # [s]
 
 
-def attitude(joints: str, rates: tuple[float, ...], step: float) -> Array:
+def final_attitude(joints: str, rates: tuple[float, ...], step: float) -> Array:
     """Return the rotation matrix (9,) of the body at the end of the run."""
     model = mujoco.MjModel.from_xml_string(MODEL.format(step=step, joints=joints))
     data = mujoco.MjData(model)
@@ -35,16 +35,16 @@ def attitude(joints: str, rates: tuple[float, ...], step: float) -> Array:
     return np.array(data.xmat[1])
 
 
-def errors(kind: str) -> list[float]:
+def attitude_errors(kind: str) -> list[float]:
     """Return the largest error of the rotation matrix after the run, for each of `STEPS`."""
-    exact = attitude(*JOINTS[kind], FINE)
-    return [float(np.abs(attitude(*JOINTS[kind], step) - exact).max()) for step in STEPS]
+    exact = final_attitude(*JOINTS[kind], FINE)
+    return [float(np.abs(final_attitude(*JOINTS[kind], step) - exact).max()) for step in STEPS]
 
 
 def main() -> None:
     """Print the errors for each step and the order of convergence."""
     for kind in JOINTS:
-        found = errors(kind)
+        found = attitude_errors(kind)
         listed = ", ".join(f"{e:.1e} at {s:g} s" for s, e in zip(STEPS, found, strict=True))
         print(f"{kind}: {listed}, order {log2(found[-2] / found[-1]):.2f}")
 

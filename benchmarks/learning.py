@@ -20,7 +20,7 @@ BEST_OF = 25
 ALONE, MANY = 1000, 4096  # control steps of an interval with one boat; boats
 
 
-def alone(name: str, period: float, step: float) -> float:
+def steps_per_second_alone(name: str, period: float, step: float) -> float:
     """Return the control steps per second of one boat."""
     boat = gymnasium.make(name, period=period, step=step)
     boat.reset(seed=1)
@@ -35,7 +35,7 @@ def alone(name: str, period: float, step: float) -> float:
     return found
 
 
-def crowd(name: str, period: float, step: float) -> float:
+def steps_per_second_of_batch(name: str, period: float, step: float) -> float:
     """Return the control steps per second of many boats together."""
     boats = gymnasium.make_vec(
         name,
@@ -56,7 +56,7 @@ def crowd(name: str, period: float, step: float) -> float:
     return found
 
 
-def coarse(name: str, step: float) -> float:
+def error_of_coarse_step(name: str, step: float) -> float:
     """Return the largest distance [m] between 200 boats with a coarse and a fine integration step."""
     places = []
     for one in (0.005, step):
@@ -71,7 +71,7 @@ def coarse(name: str, step: float) -> float:
     return float(np.hypot(*(places[0] - places[1])).max())
 
 
-def dm(boat: Environment) -> float:
+def steps_per_second_of_dm_env(boat: Environment) -> float:
     """Return the control steps per second of the dm_env environment, on MuJoCo."""
     boat.reset()
     action, found = 0.3 * boat.action_spec().maximum, 0.0
@@ -92,16 +92,18 @@ def main() -> None:
     )
     for name in registration.ids():
         print(
-            f"| {name} | 0.2 s, 0.1 s | {alone(name, 0.2, 0.1):,.0f} | {crowd(name, 0.2, 0.1):,.0f} |",
+            f"| {name} | 0.2 s, 0.1 s | {steps_per_second_alone(name, 0.2, 0.1):,.0f} | {steps_per_second_of_batch(name, 0.2, 0.1):,.0f} |",
             flush=True,
         )
     name = registration.ids()[0]
     print(
-        f"| {name} | 0.08 s, 0.02 s | {alone(name, 0.08, 0.02):,.0f} | {crowd(name, 0.08, 0.02):,.0f} |"
+        f"| {name} | 0.08 s, 0.02 s | {steps_per_second_alone(name, 0.08, 0.02):,.0f} | {steps_per_second_of_batch(name, 0.08, 0.02):,.0f} |"
     )
     boat = registration.options_of(name)["vessel"]
-    print(f"| dm_env, {boat} on MuJoCo | 0.08 s, 0.02 s | {dm(env.load(f'{boat}/berth')):,.0f} | |")
-    off = 1e3 * max(coarse(name, 0.1) for name in registration.ids())
+    print(
+        f"| dm_env, {boat} on MuJoCo | 0.08 s, 0.02 s | {steps_per_second_of_dm_env(env.load(f'{boat}/berth')):,.0f} | |"
+    )
+    off = 1e3 * max(error_of_coarse_step(name, 0.1) for name in registration.ids())
     print(
         f"\nsteps of 0.1 s put a boat at most {off:.1f} mm elsewhere after 20 s of random actions than steps of 5 ms"
     )

@@ -36,7 +36,7 @@ below = 1.0
 """
 
 
-def begin(folder: Path, hours: float) -> "subprocess.Popen[bytes]":
+def start_run(folder: Path, hours: float) -> "subprocess.Popen[bytes]":
     """Start a run in a process."""
     (folder / "long.toml").write_text(SCENARIO.format(hours * HOUR))
     words = [
@@ -51,7 +51,7 @@ def begin(folder: Path, hours: float) -> "subprocess.Popen[bytes]":
     return subprocess.Popen(words, stdout=subprocess.DEVNULL)
 
 
-def memory(process: int) -> tuple[float, float]:
+def process_memory(process: int) -> tuple[float, float]:
     """Return the memory [MB] of a process: alone, and with pages of files; zero if it has ended."""
     try:
         lines = Path(f"/proc/{process}/status").read_text(encoding="ascii").splitlines()
@@ -65,13 +65,13 @@ def memory(process: int) -> tuple[float, float]:
     return float(said.get("RssAnon", 0.0)) / 1024, float(said.get("VmHWM", 0.0)) / 1024
 
 
-def whole(hours: float) -> str:
+def measure_whole_run(hours: float) -> str:
     """Run to the end and return a row of the table."""
     with TemporaryDirectory() as base:
         folder, since, own, all_of_it = Path(base), time.monotonic(), 0.0, 0.0
-        run = begin(folder, hours)
+        run = start_run(folder, hours)
         while run.poll() is None:
-            now = memory(run.pid)
+            now = process_memory(run.pid)
             own, all_of_it = max(own, now[0]), max(all_of_it, now[1])
             time.sleep(LOOK)
         took = time.monotonic() - since
@@ -80,11 +80,11 @@ def whole(hours: float) -> str:
         return f"{hours:10g}{content['steps']:12}{took:10.0f}{own:12.0f}{all_of_it:16.0f}{written:14.0f}"
 
 
-def killed(hours: float) -> list[str]:
+def check_killed_run(hours: float) -> list[str]:
     """Kill a run and return lines that describe its files."""
     with TemporaryDirectory() as base:
         folder = Path(base)
-        run = begin(folder, hours)
+        run = start_run(folder, hours)
         time.sleep(KILLED_AFTER)
         at = time.time()
         run.kill()
@@ -118,9 +118,9 @@ def main() -> None:
         f"{'hours':>10}{'steps':>12}{'took [s]':>10}{'own [MB]':>12}{'with files [MB]':>16}{'written [MB]':>14}"
     )
     for hours in (1.0, given.hours):
-        print(whole(hours), flush=True)
+        print(measure_whole_run(hours), flush=True)
     print()
-    print("\n".join(killed(given.hours)))
+    print("\n".join(check_killed_run(given.hours)))
 
 
 if __name__ == "__main__":

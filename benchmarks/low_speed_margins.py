@@ -26,7 +26,7 @@ GAINS = (0.1, 0.5, 0.7, 1.0, 1.3, 1.6, 2.0, 5.0)
 TIME_CONSTANTS = (0.5, 0.8, 1.67, 2.5, 4.0)  # [s]
 
 
-def channel(**switches: float) -> SampledChannel:
+def control_loop(**switches: float) -> SampledChannel:
     """Return the loop of a controller with these switches, on the craft that it assumes."""
     controller: Any = load_class("controller", "l1_heading_discrete")(**switches)
     (found,) = controller.loop_channels()
@@ -46,11 +46,11 @@ def main() -> None:
     """Print both tables."""
     table = Table("controller", "crossover rad/s", "phase margin deg", "delay margin s")
     for name, switches in LAWS.items():
-        m = margins(channel(**switches))
+        m = margins(control_loop(**switches))
         table.add_row(name, f"{m.crossover:.3f}", f"{degrees(m.phase):.1f}", f"{m.delay:.2f}")
     Console().print(table)
     table = Table("craft", "L1 delay margin s", "PD delay margin s")
-    pair = (channel(), channel(adaptive=0.0))
+    pair = (control_loop(), control_loop(adaptive=0.0))
     cases: list[dict[str, float]] = [{"gain": g} for g in GAINS] + [
         {"time_constant": t} for t in TIME_CONSTANTS
     ]

@@ -84,7 +84,7 @@ AT_15 = (
 )  # repeated with the faster rudder
 
 
-def autopilot(vessel: str, kind: str, rate: float = 5.0) -> dict[str, Any]:
+def autopilot_table(vessel: str, kind: str, rate: float = 5.0) -> dict[str, Any]:
     """Return the [controller] table of one of the eleven, for a rudder of `rate` [deg/s]."""
     table = KINDS[kind] | {"rudder_rate": radians(rate)}
     table |= TUNING[vessel].get(table["use"], {})
@@ -103,7 +103,7 @@ def autopilot(vessel: str, kind: str, rate: float = 5.0) -> dict[str, Any]:
 # -----------------------------------------------------------------------------
 
 
-def sailed(test: Scenario, seed: int = 0) -> Recording:
+def simulate_log(test: Scenario, seed: int = 0) -> Recording:
     """Return the log of course, roll and rudder of a scenario, a row each control period."""
     boat = replace(test.vessel, effects=tuple(e.seeded(seed) for e in test.vessel.effects))
     program, start = Program(boat), State(**test.file.start.motion())
@@ -135,19 +135,19 @@ def sailed(test: Scenario, seed: int = 0) -> Recording:
     )
 
 
-def measured(test: Scenario, seed: int = 0) -> dict[str, float]:
+def simulate_metrics(test: Scenario, seed: int = 0) -> dict[str, float]:
     """Return the scenario's own metrics of such a run."""
     assert test.measure is not None
-    return test.measure.values(sailed(test, seed))
+    return test.measure.values(simulate_log(test, seed))
 
 
-def apart() -> float:
+def engine_difference() -> float:
     """Return the largest difference of yaw or roll [deg] between the two engines.
 
     The run is 600 s of waves under the relay with roll reduction.
     """
     test = scenario.load("eastward_ho/seas_60_sliding_roll")
-    one, other = sailed(test), run(test).recording
+    one, other = simulate_log(test), run(test).recording
     return float(max(np.degrees(np.abs(one[n] - other[n])).max() for n in ("psi_rad", "phi_rad")))
 
 
@@ -168,11 +168,13 @@ class Entry:
 
     def run(self) -> "Entry":
         """Return the entry with its runs made."""
-        table = autopilot(self.vessel, self.kind, self.rate)
+        table = autopilot_table(self.vessel, self.kind, self.rate)
         test = scenario.load(f"{self.vessel}/{self.test}", {"controller": table})
-        return replace(self, values=tuple(measured(test, seed) for seed in range(self.seeds)))
+        return replace(
+            self, values=tuple(simulate_metrics(test, seed) for seed in range(self.seeds))
+        )
 
-    def each(self, norm: str) -> Array:
+    def metric_by_seed(self, norm: str) -> Array:
         """Return a metric of every seed; nan where a run has none."""
         return np.array([value.get(norm, nan) for value in self.values])
 
@@ -184,7 +186,7 @@ class Entry:
         return found
 
 
-def entries(
+def run_entries(
     vessels: Iterable[str], tests: Sequence[str], kinds: Sequence[str], seeds: int
 ) -> list[Entry]:
     """Return the requested entries, and always the PID as the reference."""
@@ -198,14 +200,14 @@ def entries(
     return found
 
 
-def reduction(entry: Entry, pid: Entry) -> Array:
+def roll_reduction(entry: Entry, pid: Entry) -> Array:
     """Return %PID by seed."""
-    return 100.0 * (1.0 - entry.each("roll_rms") / pid.each("roll_rms"))
+    return 100.0 * (1.0 - entry.metric_by_seed("roll_rms") / pid.metric_by_seed("roll_rms"))
 
 
 def calm_line(e: Entry) -> str:
     """Return settling and rise [s], late swing [deg]."""
-    ours = [float(e.each(n)[0]) for n in ("settling", "rise", "lowest", "highest")]
+    ours = [float(e.metric_by_seed(n)[0]) for n in ("settling", "rise", "lowest", "highest")]
     shown = [f"{p:7.1f} {o:6.1f}" for p, o in zip(e.printed[:2], ours[:2], strict=True)]
     swings = f"{e.printed[2]:8.2f} {e.printed[3]:7.2f} {ours[2]:8.2f} {ours[3]:7.2f}"
     return f"{e.kind:11}  {'  '.join(shown)}  {swings}"
@@ -217,8 +219,10 @@ def sea_line(e: Entry, pid: Entry) -> str:
     printed = list(e.printed) or [nan] * 3
     cells = []
     for p, n in zip(printed, names, strict=True):
-        cells.append(f"{p:6.2f} {e.each(n).mean():6.2f} +-{e.each(n).std():5.2f}")
-    base, ours = pid.printed[2], reduction(e, pid)
+        cells.append(
+            f"{p:6.2f} {e.metric_by_seed(n).mean():6.2f} +-{e.metric_by_seed(n).std():5.2f}"
+        )
+    base, ours = pid.printed[2], roll_reduction(e, pid)
     return (
         f"{e.kind:11}  {'  '.join(cells)}   {100 * (1 - printed[2] / base):5.0f} "
         f"{ours.mean():5.0f} +-{ours.std():3.0f}"
@@ -244,26 +248,30 @@ def table(done: Sequence[Entry]) -> str:
     return "\n".join(lines)
 
 
-def agreements(done: Sequence[Entry]) -> str:
+def check_agreements(done: Sequence[Entry]) -> str:
     """Return the qualitative agreements that the review requires, where their runs were made."""
     by = {(e.vessel, e.test, e.kind): e for e in done if e.rate == 5.0}
 
     def roll_rank(vessel: str, test: str) -> int:
         rolls = {
-            k: e.each("roll_rms").mean() for (v, t, k), e in by.items() if (v, t) == (vessel, test)
+            k: e.metric_by_seed("roll_rms").mean()
+            for (v, t, k), e in by.items()
+            if (v, t) == (vessel, test)
         }
         return sorted(rolls, key=lambda k: rolls[k]).index("VSS RRS") + 1
 
     def ratio(vessel: str, test: str, one: str, other: str, norm: str = "yaw_rms") -> float:
         return float(
-            by[vessel, test, one].each(norm).mean() / by[vessel, test, other].each(norm).mean()
+            by[vessel, test, one].metric_by_seed(norm).mean()
+            / by[vessel, test, other].metric_by_seed(norm).mean()
         )
 
     quartering = list(product(VESSELS, SEAS[1:]))
     best = [("eastward_ho", t) for t in SEAS[1:]] + [("kynoc", "seas_30")]
     keepers = ("VSS", "MV", "Pole")
     runaway = {
-        k: by["eastward_ho", "seas_90", k].each("yaw_rms").mean() for k in ("MV RRS", "Pole RRS")
+        k: by["eastward_ho", "seas_90", k].metric_by_seed("yaw_rms").mean()
+        for k in ("MV RRS", "Pole RRS")
     }
     return "\n".join(
         [
@@ -292,7 +300,7 @@ def agreements(done: Sequence[Entry]) -> str:
 def mean_over(name: str, seeds: int) -> tuple[Array, Array]:
     """Return roll and yaw rms [deg] of a scenario, by seed."""
     test = scenario.load(name)
-    values = [measured(test, seed) for seed in range(seeds)]
+    values = [simulate_metrics(test, seed) for seed in range(seeds)]
     return np.array([v["roll_rms"] for v in values]), np.array([v["yaw_rms"] for v in values])
 
 
@@ -350,7 +358,7 @@ def better_course(seeds: int) -> list[str]:
     return lines
 
 
-def puzzles(seeds: int) -> str:
+def open_questions(seeds: int) -> str:
     """Return both puzzles with their answers."""
     return "\n".join(
         ["Does a faster rudder reduce roll?", *faster_rudder(seeds)]
@@ -371,17 +379,17 @@ def main() -> None:
     parser.add_argument("--puzzles", action="store_true")
     asked = parser.parse_args()
     if asked.puzzles:
-        print(puzzles(asked.seeds))
+        print(open_questions(asked.seeds))
         return
-    print(f"compiled and MuJoCo engine differ by {apart():.1e} deg at most")
+    print(f"compiled and MuJoCo engine differ by {engine_difference():.1e} deg at most")
     tests = [t for t in (*CALM, *SEAS) if asked.tests in t]
     kinds = [k for k in KINDS if asked.autopilots in k]
-    todo = entries([v for v in VESSELS if asked.vessel in v], tests, kinds, asked.seeds)
+    todo = run_entries([v for v in VESSELS if asked.vessel in v], tests, kinds, asked.seeds)
     with ProcessPoolExecutor(asked.processes) as pool:
         done = list(pool.map(Entry.run, todo))
     print(table(done))
     if not (asked.vessel or asked.tests or asked.autopilots):
-        print(agreements(done))
+        print(check_agreements(done))
 
 
 if __name__ == "__main__":

@@ -29,7 +29,7 @@ SEAS = (
 WAVES = ("yaw", "sway", "roll")  # dof in which they act
 
 
-def inertia(boat: Vessel) -> Array:
+def mass_matrix(boat: Vessel) -> Array:
     """Return the mass matrix (3, 3) over (yaw, sway, roll), with added mass."""
     body, water = boat.body, boat.effect("added_mass")
     at = [AXES.index(axis) for axis in WAVES]
@@ -42,7 +42,7 @@ def speed_of(boat: Vessel) -> float:
     return float(boat.effect("speed_hold").speed)  # type: ignore[union-attr]
 
 
-def force(boat: Vessel, **moved: float) -> Array:
+def force_at_approach_speed(boat: Vessel, **moved: float) -> Array:
     """Return yaw moment, sway force and roll moment at the approach speed.
 
     The hull's own Coriolis force is included.
@@ -57,7 +57,7 @@ def force(boat: Vessel, **moved: float) -> Array:
     return np.array([w.N, w.Y - boat.body.mass * speed_of(boat) * m.r, w.K])
 
 
-def linear(boat: Vessel) -> tuple[Array, Array, Array]:
+def linear_model(boat: Vessel) -> tuple[Array, Array, Array]:
     """Return the continuous linear model.
 
     Returns:
@@ -66,15 +66,15 @@ def linear(boat: Vessel) -> tuple[Array, Array, Array]:
     """
     rates = {}
     for n in ("r", "v", "phi", "p", "rudder"):
-        rates[n] = np.linalg.solve(inertia(boat), force(boat, **{n: 1.0}))
-    A, K, mass = np.zeros((5, 5)), np.zeros((5, 3)), inertia(boat).diagonal()
+        rates[n] = np.linalg.solve(mass_matrix(boat), force_at_approach_speed(boat, **{n: 1.0}))
+    A, K, mass = np.zeros((5, 5)), np.zeros((5, 3)), mass_matrix(boat).diagonal()
     A[0, 1] = A[3, 4] = K[1, 0] = K[2, 1] = K[4, 2] = 1.0
     A[np.ix_([1, 2, 4], [1, 2, 3, 4])] = np.column_stack([rates[n] for n in ("r", "v", "phi", "p")])
     K[4, 1] = boat.effect("linear_hull").arm * mass[1] / mass[2]  # type: ignore[union-attr]
     return A, np.array([0, *rates["rudder"][:2], 0, rates["rudder"][2]]), K
 
 
-def held(A: Array, B: Array, period: float = PERIOD) -> tuple[Array, Array]:
+def discretise(A: Array, B: Array, period: float = PERIOD) -> tuple[Array, Array]:
     """Return A and B (5, n) over a period [s] with the inputs held."""
     n = B.shape[1]
     block = np.zeros((5 + n, 5 + n))
@@ -83,13 +83,13 @@ def held(A: Array, B: Array, period: float = PERIOD) -> tuple[Array, Array]:
     return whole[:5, :5], whole[:5, 5:]
 
 
-def zigzag(boat: Vessel, waves: Array) -> tuple[Array, Array]:
+def simulate_zigzag(boat: Vessel, waves: Array) -> tuple[Array, Array]:
     """Return states (N + 1, 5) and rudder angles (N,) of a 10/10 zig-zag by exact steps.
 
     The wave accelerations (N, 3) are held over each step.
     """
-    A, B, K = linear(boat)
-    step, drive = held(A, np.column_stack([B, K]))
+    A, B, K = linear_model(boat)
+    step, drive = discretise(A, np.column_stack([B, K]))
     x, side, states, rudder = np.zeros(5), radians(10.0), [np.zeros(5)], []
     for w in waves:
         if abs(x[0]) > radians(10.0):
@@ -108,9 +108,9 @@ def random_waves() -> Array:
     return np.radians([1.0, 5.0, 2.0]) * np.random.default_rng(1).standard_normal((240, 3))
 
 
-def on_mujoco(boat: Vessel, rudder: Array, waves: Array, step: float = 0.02) -> Array:
+def simulate_on_mujoco(boat: Vessel, rudder: Array, waves: Array, step: float = 0.02) -> Array:
     """Return the states (N + 1, 5) of the same run in MuJoCo."""
-    engine, mass = Engine(boat, step=step), inertia(boat).diagonal()
+    engine, mass = Engine(boat, step=step), mass_matrix(boat).diagonal()
     engine.reset(State(u=speed_of(boat)))
     at, rows = [engine.program.index("push", n) for n in WAVES], [[0.0] * 5]
     for angle, wave in zip(rudder, waves, strict=True):
@@ -123,7 +123,7 @@ def on_mujoco(boat: Vessel, rudder: Array, waves: Array, step: float = 0.02) -> 
     return np.array(rows)
 
 
-def accelerations(boat: Vessel, sea: IrregularSea) -> tuple[list[float], float]:
+def rms_accelerations(boat: Vessel, sea: IrregularSea) -> tuple[list[float], float]:
     """Return rms accelerations over realisations, and rms slope [deg].
 
     The accelerations are yaw, sway and direct roll [deg/s^2].
@@ -131,17 +131,17 @@ def accelerations(boat: Vessel, sea: IrregularSea) -> tuple[list[float], float]:
     law, m = IrregularSea.law, motion()
     w = Wrench(*np.array([law(m, sea.seeded(i).values()) for i in range(REALISATIONS)]).T)
     direct = w.K - sea.arm * w.Y
-    parts = zip((w.N, w.Y, direct), inertia(boat).diagonal(), strict=True)
+    parts = zip((w.N, w.Y, direct), mass_matrix(boat).diagonal(), strict=True)
     slope = direct.std() / (sea.stiffness * abs(np.sin(sea.toward)))
     return [degrees(a.std() / b) for a, b in parts], degrees(slope)
 
 
-def sea_of(boat: Vessel, angle: float, height: float, period: float) -> IrregularSea:
+def sea_for_condition(boat: Vessel, angle: float, height: float, period: float) -> IrregularSea:
     """Return the thesis' sea for a condition.
 
     The beam sea has the roll period, and a height of a hundredth of its length.
     """
-    A = linear(boat)[0]
+    A = linear_model(boat)[0]
     period = period or 2 * pi / sqrt(-A[4, 3])
     height = height or 0.01 * 9.81 * period**2 / (2 * pi)
     beam = float(angle == 90)
@@ -155,7 +155,7 @@ def sea_of(boat: Vessel, angle: float, height: float, period: float) -> Irregula
     return sea.completed(boat)
 
 
-def coefficients() -> Table:
+def coefficient_table() -> Table:
     """Return the table of the linear model of every condition."""
     names = (
         "a_rr",
@@ -173,7 +173,7 @@ def coefficients() -> Table:
     table = Table("vessel", "V [m/s]", *names, "T_phi [s]", "zeta", title="rates of (r, v, p)")
     for name, condition in ((n, c) for n in ("kynoc", "eastward_ho") for c in range(1, 5)):
         boat = vessel.load(name, [f"condition_{condition}"])
-        A, B, _ = linear(boat)
+        A, B, _ = linear_model(boat)
         rows = [*A[1, 1:4], *A[2, 1:3], *A[4, 1:4], B[1], B[2], B[4]]
         w = sqrt(-A[4, 3])
         last = (f"{2 * pi / w:.2f}", f"{-A[4, 4] / (2 * w):.3f}")
@@ -183,7 +183,7 @@ def coefficients() -> Table:
     return table
 
 
-def seas() -> Table:
+def sea_response_table() -> Table:
     """Return the table of the response of the ships to the thesis' seas."""
     table = Table(
         "vessel", "encounter", "yaw", "sway", "direct roll", "slope [deg]", title="rms [deg/s^2]"
@@ -191,7 +191,7 @@ def seas() -> Table:
     for name in ("kynoc", "eastward_ho"):
         for condition, angle, height, period in SEAS:
             boat = vessel.load(name, [f"condition_{condition}"])
-            found, slope = accelerations(boat, sea_of(boat, angle, height, period))
+            found, slope = rms_accelerations(boat, sea_for_condition(boat, angle, height, period))
             table.add_row(
                 f"{name} {condition}", f"{angle} deg", *(f"{a:.2f}" for a in found), f"{slope:.2f}"
             )
@@ -201,11 +201,13 @@ def seas() -> Table:
 def main() -> None:
     """Print all results."""
     console = Console(width=150)
-    console.print(coefficients(), seas())
+    console.print(coefficient_table(), sea_response_table())
     boat = vessel.load("eastward_ho", ["condition_3"])
-    truth, rudder = zigzag(boat, random_waves())
+    truth, rudder = simulate_zigzag(boat, random_waves())
     for step in (0.02, 0.1):
-        off = np.degrees(np.abs(on_mujoco(boat, rudder, random_waves(), step) - truth).max(axis=0))
+        off = np.degrees(
+            np.abs(simulate_on_mujoco(boat, rudder, random_waves(), step) - truth).max(axis=0)
+        )
         console.print(
             f"120 s zig-zag in random waves, RK4 at {step} s: yaw {off[0]:.1e} deg, roll "
             f"{off[3]:.1e} deg"

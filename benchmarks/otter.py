@@ -14,7 +14,7 @@ SIGNALS = {"roll": "phi", "pitch": "theta", "yaw": "psi"}
 
 def figures() -> dict[str, float]:
     """Return velocities [m/s, rad/s] and pose [m, rad] after 20 s of a turn, and 40 s straight ahead."""
-    return after_20_s(21, "stations") | after_20_s(0, "exact") | straight()
+    return state_after_turn(21, "stations") | state_after_turn(0, "exact") | straight_run()
 
 
 def final_state(port: float, starboard: float, seconds: float, stations: int = 0) -> State:
@@ -33,7 +33,7 @@ def final_state(port: float, starboard: float, seconds: float, stations: int = 0
     return engine.state
 
 
-def after_20_s(stations: int, words: str) -> dict[str, float]:
+def state_after_turn(stations: int, words: str) -> dict[str, float]:
     """Return the state at the end of the turn, with the heading between 0 and 2 pi."""
     state = final_state(80.0, 60.0, 20.0, stations)
     found = {
@@ -44,7 +44,7 @@ def after_20_s(stations: int, words: str) -> dict[str, float]:
     return {f"{name}, {words}": value for name, value in found.items()}
 
 
-def straight() -> dict[str, float]:
+def straight_run() -> dict[str, float]:
     """Return speed and distance with both propellers at 60 rad/s."""
     state = final_state(60.0, 60.0, 40.0)
     return {"u, straight": state.u, "x, straight": state.x}

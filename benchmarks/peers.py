@@ -52,7 +52,7 @@ class Pair:
     ours: dict[str, Work]
 
 
-def otter() -> Pair:
+def compare_fossen_otter() -> Pair:
     """Return the pair for Fossen's simulator.
 
     The Otter starts from rest with two constant shaft speeds; Euler steps as in its own loop.
@@ -74,11 +74,11 @@ def otter() -> Pair:
     return Pair(
         "Python vehicle simulator, Otter, 60 s",
         theirs,
-        of_us(made, SHAFTS, [0.0] * 12, steps),
+        boatsim_runs(made, SHAFTS, [0.0] * 12, steps),
     )
 
 
-def tanker() -> Pair:
+def compare_shipmmg_tanker() -> Pair:
     """Return the pair for ShipMMG: turning circle of the KVLCC2 model.
 
     ShipMMG uses scipy's adaptive steps, boatsim steps of 0.1 s.
@@ -133,11 +133,11 @@ def tanker() -> Pair:
         simulate_mmg_3dof(hull, polynomials, times, rudder, propeller, u0=1.179, ρ=rho)
 
     made, start = vessel.load("kvlcc2_mmg"), [0.0, 0.0, 0.0, 1.179, 0.0, 0.0]
-    ours = of_us(made, RUDDER, start, round(seconds / 0.1), 0.1)
+    ours = boatsim_runs(made, RUDDER, start, round(seconds / 0.1), 0.1)
     return Pair("ShipMMG, KVLCC2 turning circle, 200 s", theirs, ours)
 
 
-def fluid() -> Pair:
+def compare_mujoco_fluid() -> Pair:
     """Return the pair for MuJoCo's ellipsoid fluid model, at the size of the joystick boat.
 
     It has no added mass in its inertia and no outboards.
@@ -153,11 +153,11 @@ def fluid() -> Pair:
         data.ctrl[0] = 0.3
         mujoco.mj_step(model, data, nstep=steps)
 
-    ours = of_us(vessel.load("joystick_boat"), PWM, [0.0] * 6, steps)
+    ours = boatsim_runs(vessel.load("joystick_boat"), PWM, [0.0] * 6, steps)
     return Pair("MuJoCo's ellipsoid in fluid, RK4, 400 s", theirs, ours)
 
 
-def gym_boat() -> Pair:
+def compare_gymnasium_boat() -> Pair:
     """Return the pair for a motor boat of Gymnasium.
 
     It takes one Euler step per control step; boatsim runs through dm_env with four Runge-Kutta
@@ -186,7 +186,7 @@ def gym_boat() -> Pair:
     return Pair(f"gym-sailing, motor boat, {steps} control steps", theirs, {"dm_env": ours})
 
 
-def of_us(
+def boatsim_runs(
     made: vessel.Vessel,
     commands: dict[str, float],
     start: list[float],
@@ -205,29 +205,29 @@ def of_us(
 
 
 PEERS: dict[str, Callable[[], Pair]] = {
-    "Python vehicle simulator": otter,
-    "ShipMMG": tanker,
-    "MuJoCo's ellipsoid in fluid": fluid,
-    "gym-sailing": gym_boat,
+    "Python vehicle simulator": compare_fossen_otter,
+    "ShipMMG": compare_shipmmg_tanker,
+    "MuJoCo's ellipsoid in fluid": compare_mujoco_fluid,
+    "gym-sailing": compare_gymnasium_boat,
 }
 
 
-def took(work: Work) -> float:
+def wall_time(work: Work) -> float:
     """Return the wall time [s]."""
     begin = perf_counter()
     work()
     return perf_counter() - begin
 
 
-def rows(pair: Pair, rounds: int) -> Iterator[str]:
+def table_lines(pair: Pair, rounds: int) -> Iterator[str]:
     """Return the lines of the table: the other simulator, then each mode and its speed-up."""
     works = {"theirs": pair.theirs, **pair.ours}
     for work in works.values():
         work()  # import and compile before the time is measured
-    seconds = {name: [took(work)] for name, work in works.items()}
+    seconds = {name: [wall_time(work)] for name, work in works.items()}
     for _ in range(rounds - 1):
         for name, work in works.items():
-            seconds[name].append(took(work))
+            seconds[name].append(wall_time(work))
     yield f"{pair.name:44}{1e3 * median(seconds['theirs']):12.3g}"
     for name in pair.ours:
         ratio = median(a / b for a, b in zip(seconds["theirs"], seconds[name], strict=True))
@@ -246,7 +246,7 @@ def main() -> None:
         except ImportError as missing:
             print(f"{name:44}not installed ({missing})")
             continue
-        print("\n".join(rows(pair, given.rounds)), flush=True)
+        print("\n".join(table_lines(pair, given.rounds)), flush=True)
 
 
 if __name__ == "__main__":

@@ -34,7 +34,7 @@ PIECE = 2_000_000  # rows written together
 PIECES = 64  # number of pieces: 5.1 GB of five columns
 
 
-def long_run() -> Recording:
+def random_long_recording() -> Recording:
     """Return ten hours of slow oscillations with noise."""
     rng, t = np.random.default_rng(0), np.arange(round(HOURS * 3600 * RATE)) / RATE
     slow = [
@@ -44,9 +44,9 @@ def long_run() -> Recording:
     return Recording("long", t, dict(zip(NAMES, slow, strict=True)))
 
 
-def make(folder: Path) -> None:
+def write_files(folder: Path) -> None:
     """Write the files."""
-    run = long_run()
+    run = random_long_recording()
     write_csv(run, folder / "ten_hours.csv")
     parquet.write_table(pa.table({"t_s": run.t, **run.signals}), folder / "ten_hours.parquet")
     head, *rows = (folder / "ten_hours.csv").read_text().splitlines()
@@ -68,7 +68,7 @@ def make(folder: Path) -> None:
             writer.write_table(piece)
 
 
-def one(path: Path, as_log: bool) -> None:
+def read_and_print_cost(path: Path, as_log: bool) -> None:
     """Read a file in this process and print seconds, memory [MB] and the result as JSON."""
     begin = time.process_time()
     try:
@@ -89,10 +89,10 @@ def one(path: Path, as_log: bool) -> None:
 def main() -> None:
     """Print the table."""
     if len(sys.argv) == 3:
-        return one(Path(sys.argv[1]), sys.argv[2] == "log")
+        return read_and_print_cost(Path(sys.argv[1]), sys.argv[2] == "log")
     print(f"{'file':20}{'size [MB]':>10}{'read as':>11}{'seconds':>9}{'memory [MB]':>13}  answer")
     with TemporaryDirectory() as base:
-        make(Path(base))
+        write_files(Path(base))
         for path in sorted(Path(base).iterdir()):
             for how in ("recording", "log"):
                 words = [sys.executable, "-m", "benchmarks.reading", str(path), how]

@@ -32,7 +32,7 @@ def figures() -> dict[str, float]:
     """Return every figure by name: times in s, angles in deg."""
     found = {}
     for name, (model, force, state) in RESPONSES.items():
-        rise, peak, settling = response(model, force, state)
+        rise, peak, settling = step_response_figures(model, force, state)
         found |= {f"{name}: rise": rise, f"{name}: peak": peak, f"{name}: settling": settling}
     for load in ARM:
         for spacing in ("narrow", "wide"):
@@ -57,7 +57,7 @@ def derivatives() -> dict[str, float]:
     }
 
 
-def response(model: Array, force: int, state: int) -> tuple[float, float, float]:
+def step_response_figures(model: Array, force: int, state: int) -> tuple[float, float, float]:
     """Return rise time, peak and settling time of a state after a unit step of a force.
 
     Args:

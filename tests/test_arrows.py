@@ -7,7 +7,17 @@ from pathlib import Path
 
 import pytest
 
-from benchmarks.arrows import HOME, OURS, counts, imported, level, main, on_shelf, own, picture
+from benchmarks.arrows import (
+    HOME,
+    OURS,
+    count_imports,
+    draw_imports,
+    imported_modules,
+    layer_of,
+    main,
+    module_or_plugin_folder,
+    modules_of_boatsim,
+)
 
 FOR_CONTROLLERS = set(  # plain laws, ready to move to a boat
     "errors physics.base control.base control.adaptive control.adaptive_loop control.allocation control.jet "
@@ -41,30 +51,32 @@ CONTROLLERS = sorted((HOME / "controllers").glob("*.py"))
 
 @pytest.mark.parametrize("name", OURS)
 def test_a_module_imports_from_its_own_layer_and_lower_ones_only(name: str) -> None:
-    above = [other for other in own(OURS[name]) if level(other) > level(name)]
+    above = [other for other in modules_of_boatsim(OURS[name]) if layer_of(other) > layer_of(name)]
     assert not above, f"{name} imports {above} from a layer above its own"
 
 
 @pytest.mark.parametrize("name", OURS)
 def test_only_content_and_programs_are_imported_by_a_name_that_is_found_in_a_run(name: str) -> None:
-    assert name in BY_ANY_NAME or "" not in imported(OURS[name])
+    assert name in BY_ANY_NAME or "" not in imported_modules(OURS[name])
 
 
 def test_an_import_by_name_counts_as_one(tmp_path: Path) -> None:
     (tmp_path / "a.py").write_text(
         'from importlib import import_module\nimport_module("boatsim.view.scene")\n'
     )
-    assert own(tmp_path / "a.py") == {"view.scene"}
+    assert modules_of_boatsim(tmp_path / "a.py") == {"view.scene"}
 
 
 def test_no_imports_form_a_ring() -> None:
-    order = TopologicalSorter({name: own(path) - {name} for name, path in OURS.items()})
+    order = TopologicalSorter(
+        {name: modules_of_boatsim(path) - {name} for name, path in OURS.items()}
+    )
     assert set(order.static_order()) >= set(OURS)  # raises CycleError, which names the ring
 
 
 @pytest.mark.parametrize("path", CONTROLLERS, ids=lambda path: path.stem)
 def test_a_controller_knows_nothing_of_the_simulator(path: Path) -> None:
-    assert own(path) <= FOR_CONTROLLERS
+    assert modules_of_boatsim(path) <= FOR_CONTROLLERS
 
 
 @pytest.mark.parametrize("library", HEAVY)
@@ -73,7 +85,7 @@ def test_a_heavy_library_is_imported_in_its_place_only(library: str) -> None:
     users = {
         name
         for name, path in files.items()
-        if library in {full.split(".")[0] for full in imported(path)}
+        if library in {full.split(".")[0] for full in imported_modules(path)}
     }
     assert users <= HEAVY[library]
 
@@ -83,8 +95,8 @@ def test_the_picture_in_the_documents_is_up_to_date(capsys: pytest.CaptureFixtur
 
 
 def test_the_picture_shows_every_import_from_folder_to_folder_once() -> None:
-    found = counts()
-    shown = re.findall(r'class="count".*>(\d+)<', picture(found))
+    found = count_imports()
+    shown = re.findall(r'class="count".*>(\d+)<', draw_imports(found))
     left_out = {
         "__init__",
         "__main__",
@@ -104,8 +116,8 @@ def test_the_picture_shows_every_import_from_folder_to_folder_once() -> None:
 
 def test_a_further_file_on_a_shelf_leaves_the_picture_as_it_is() -> None:
     assert (
-        on_shelf("physics.effects.made_up")
-        == on_shelf("physics.effects.fan_wind")
+        module_or_plugin_folder("physics.effects.made_up")
+        == module_or_plugin_folder("physics.effects.fan_wind")
         == "physics.effects"
     )
-    assert on_shelf("physics.param") == "physics.param"
+    assert module_or_plugin_folder("physics.param") == "physics.param"

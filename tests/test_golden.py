@@ -12,18 +12,18 @@ from benchmarks import golden
 from benchmarks.golden import (
     REACH,
     TOLERANCE,
-    drifts,
-    kept,
+    add_to_history,
+    changes_of_metrics,
     main,
     path_of,
-    tracked,
+    scenarios_with_metrics,
+    stored_values,
     update,
-    values,
-    with_reason,
+    values_to_store,
 )
 from boatsim.simulate.evaluation import Metric
 
-TRACKED = tracked()
+TRACKED = scenarios_with_metrics()
 OLD = {
     "yaw_rate_inf": {
         "today": 0.5,
@@ -48,7 +48,7 @@ def by_speed(name: str) -> Any:
 def test_norms_are_what_they_were_and_lie_within_their_bars(name: str) -> None:
     norms = found(name)[0]
     assert {n: (norm.value, norm.band) for n, norm in norms.items() if norm.ok is False} == {}
-    lines = drifts(name, kept(name), values(norms))
+    lines = changes_of_metrics(name, stored_values(name), values_to_store(norms))
     assert not lines, "\n".join(
         [*lines, 'if this is wanted: python -m benchmarks.golden --update --reason "..."']
     )
@@ -56,27 +56,29 @@ def test_norms_are_what_they_were_and_lie_within_their_bars(name: str) -> None:
 
 def test_nothing_is_kept_of_scenarios_that_are_gone() -> None:
     files = sorted(path_of("joystick_boat/sway_1").parent.glob("*.json"))
-    stored = {name for file in files for name in golden.table(file)}
+    stored = {name for file in files for name in golden.read_values(file)}
     assert stored == set(TRACKED) and len(stored) >= 29
     assert [
-        file for file in files if any(path_of(name) != file for name in golden.table(file))
+        file for file in files if any(path_of(name) != file for name in golden.read_values(file))
     ] == []
 
 
 def test_a_drift_is_a_line_with_scenario_norm_old_new_and_paper() -> None:
-    (line,) = drifts("joystick_boat/sway_1", OLD, with_today(0.7))
+    (line,) = changes_of_metrics("joystick_boat/sway_1", OLD, with_today(0.7))
     assert line == "joystick_boat/sway_1 yaw_rate_inf: 0.5 -> 0.7 deg/s (paper: 2.8)"
 
 
 def test_drift_begins_at_the_tolerance() -> None:
-    assert drifts("x", OLD, with_today(0.5 * (1 + 0.9 * TOLERANCE))) == []
-    assert len(drifts("x", OLD, with_today(0.5 * (1 + 1.1 * TOLERANCE)))) == 1
+    assert changes_of_metrics("x", OLD, with_today(0.5 * (1 + 0.9 * TOLERANCE))) == []
+    assert len(changes_of_metrics("x", OLD, with_today(0.5 * (1 + 1.1 * TOLERANCE)))) == 1
 
 
 def test_norms_that_come_go_or_lose_their_value_are_drifts() -> None:
-    assert drifts("x", {}, OLD) == ["x yaw_rate_inf is new"]
-    assert drifts("x", OLD, {}) == ["x yaw_rate_inf is gone"]
-    assert drifts("x", OLD, with_today(None)) == ["x yaw_rate_inf: 0.5 -> None deg/s (paper: 2.8)"]
+    assert changes_of_metrics("x", {}, OLD) == ["x yaw_rate_inf is new"]
+    assert changes_of_metrics("x", OLD, {}) == ["x yaw_rate_inf is gone"]
+    assert changes_of_metrics("x", OLD, with_today(None)) == [
+        "x yaw_rate_inf: 0.5 -> None deg/s (paper: 2.8)"
+    ]
 
 
 @pytest.mark.parametrize("reason", [[], ["--reason", ""], ["--reason", " \n"]])
@@ -92,12 +94,16 @@ def test_an_update_writes_the_values_and_the_reason(tmp_path: Path) -> None:
     history.parent.mkdir(parents=True)
     history.write_text("# History\n\nWhat it is.\n\n- older reason\n  - old line\n")
     new = with_today(0.7)
-    update({"boat/one": (new, drifts("boat/one", OLD, new))}, "servo lag corrected", tmp_path)
+    update(
+        {"boat/one": (new, changes_of_metrics("boat/one", OLD, new))},
+        "servo lag corrected",
+        tmp_path,
+    )
     other = {"moved": OLD["yaw_rate_inf"]}
     update({"boat/two": (other, ["boat/two moved is new"])}, "another", tmp_path)
     assert json.loads(path_of("boat/one", tmp_path).read_text())["seed"] == 0
-    assert kept("boat/two", tmp_path) == other
-    assert drifts("boat/one", kept("boat/one", tmp_path), new) == []
+    assert stored_values("boat/two", tmp_path) == other
+    assert changes_of_metrics("boat/one", stored_values("boat/one", tmp_path), new) == []
     assert history.read_text() == (
         "# History\n\nWhat it is.\n\n- another\n  - 1 new metrics\n- servo lag corrected\n"
         "  - boat/one yaw_rate_inf: 0.5 -> 0.7 deg/s (paper: 2.8)\n- older reason\n  - old line\n"
@@ -105,14 +111,14 @@ def test_an_update_writes_the_values_and_the_reason(tmp_path: Path) -> None:
 
 
 def test_an_empty_history_gets_its_first_entry() -> None:
-    assert with_reason("# History\n", "first values", ["a b is new", "a c is new"]) == (
+    assert add_to_history("# History\n", "first values", ["a b is new", "a c is new"]) == (
         "# History\n\n- first values\n  - 2 new metrics\n"
     )
 
 
 def test_what_is_kept_of_a_norm_survives_the_file() -> None:
     norm = Metric(1 / 3, "m", 0.07, 0.05, (0.0, 1.0), True, 2 / 3, 0.01)
-    stored = json.loads(json.dumps(values({"moved": norm})))
+    stored = json.loads(json.dumps(values_to_store({"moved": norm})))
     assert stored == {
         "moved": {
             "today": 0.333333333,
@@ -126,15 +132,17 @@ def test_what_is_kept_of_a_norm_survives_the_file() -> None:
 
 def test_of_a_loop_that_runs_away_only_what_goes_beyond_its_own_restlessness_is_a_drift() -> None:
     old = {"yaw_rate_inf": OLD["yaw_rate_inf"] | {"moves": 0.1}}
-    assert drifts("x", old, with_today(0.5 + 0.9 * REACH * 0.1)) == []
-    assert len(drifts("x", old, with_today(0.5 + 1.1 * REACH * 0.1))) == 1
+    assert changes_of_metrics("x", old, with_today(0.5 + 0.9 * REACH * 0.1)) == []
+    assert len(changes_of_metrics("x", old, with_today(0.5 + 1.1 * REACH * 0.1))) == 1
 
 
 def test_how_far_starts_beside_it_end_is_kept_where_it_is_more_than_arithmetic() -> None:
     norm = Metric(2.0, "m", None, None, None, None, None, None)
     assert (
         "moves"
-        not in values({"moved": norm}, [{"moved": replace(norm, value=2.0 + 1e-9)}])["moved"]
+        not in values_to_store({"moved": norm}, [{"moved": replace(norm, value=2.0 + 1e-9)}])[
+            "moved"
+        ]
     )
     near = [{"moved": replace(norm, value=x)} for x in (2.1, 1.7)]
-    assert values({"moved": norm}, near)["moved"]["moves"] == pytest.approx(0.3)
+    assert values_to_store({"moved": norm}, near)["moved"]["moves"] == pytest.approx(0.3)

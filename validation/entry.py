@@ -38,7 +38,7 @@ def horizon_of(trial: Path) -> float:
     return HORIZON * math.sqrt(vessels.load(vessel_of(trial), []).length / LENGTH)
 
 
-def answers_in(results: Path, trials: list[str]) -> dict[str, dict[str, Any]]:
+def read_answers(results: Path, trials: list[str]) -> dict[str, dict[str, Any]]:
     """Return the answers of a tool by trial.
 
     Raises:
@@ -69,31 +69,31 @@ def read_answer(file: Path) -> dict[str, Any]:
         raise BadEntry(f"{file}: not JSON: {error}") from None
     if not isinstance(found, dict):
         raise BadEntry(f"{file}: a table is needed, with effects and unknown")
-    effects = _needed(found, "effects", list, file, "")
-    unknown = _needed(found, "unknown", dict, file, "")
-    _needed(unknown, "flag", bool, file, "unknown.")
+    effects = _required_value(found, "effects", list, file, "")
+    unknown = _required_value(found, "unknown", dict, file, "")
+    _required_value(unknown, "flag", bool, file, "unknown.")
     for i, effect in enumerate(effects):
         where = f"effects[{i}]."
         if not isinstance(effect, dict):
             raise BadEntry(
                 f"{file}: effects[{i}] = {effect!r}; allowed is a table with name and parameters"
             )
-        _needed(effect, "name", str, file, where)
+        _required_value(effect, "name", str, file, where)
         effect.setdefault("tied_with", [])
-        _needed(effect, "tied_with", list, file, where)
+        _required_value(effect, "tied_with", list, file, where)
         effect.setdefault("parameters", {})
-        for key, value in _needed(effect, "parameters", dict, file, where).items():
+        for key, value in _required_value(effect, "parameters", dict, file, where).items():
             _check_number(value, f"{where}parameters.{key}", file)
     for key, empty in OPTIONAL.items():
         found.setdefault(key, empty)
-    laws = _needed(found, "described", list, file, "")
+    laws = _required_value(found, "described", list, file, "")
     found["described"] = [
         d for d in laws if isinstance(d, dict) and {"axis", "terms", "carries_over"} <= set(d)
     ]
     return found
 
 
-def _needed(table: dict[str, Any], key: str, kind: type, file: Path, where: str) -> Any:
+def _required_value(table: dict[str, Any], key: str, kind: type, file: Path, where: str) -> Any:
     """Return the value of a required key; raise BadEntry if it is missing or of another type."""
     words = {list: "a list", dict: "a table", bool: "true or false", str: "a text"}[kind]
     if key not in table:

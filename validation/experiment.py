@@ -103,7 +103,7 @@ def perturbed_boat(truth: str, rng: np.random.Generator) -> Boat:
     )
 
 
-def gentle(rng: np.random.Generator, length: float) -> tuple[Array, Array]:
+def gentle_driving(rng: np.random.Generator, length: float) -> tuple[Array, Array]:
     """Return start (x, y, psi, 0, 0, 0) and commands (N, C) of slow, almost straight driving."""
     rows = round(length * RATE)
     commands = np.zeros((rows, 4))
@@ -120,7 +120,7 @@ def gentle(rng: np.random.Generator, length: float) -> tuple[Array, Array]:
     ), commands
 
 
-def played(plan: Plan) -> tuple[Array, Array]:
+def simulated_commands(plan: Plan) -> tuple[Array, Array]:
     """Return start and commands of a plan."""
     t = np.arange(round(plan.duration * RATE)) / RATE
     now = np.searchsorted(np.array(plan.times) - 1e-6, t, side="right") - 1
@@ -129,7 +129,7 @@ def played(plan: Plan) -> tuple[Array, Array]:
     return np.array([*start, 0.0, 0.0]), rows[now]
 
 
-def recorded(
+def record_boat(
     name: str, boat: Boat, start: Array, commands: Array, rng: np.random.Generator
 ) -> Recording:
     """Return the recording of a boat under the commands, with ambient force and camera noise."""
@@ -160,7 +160,7 @@ def recorded(
     )
 
 
-def diagnosed(recordings: Sequence[Recording]) -> tuple[Problem, Ranking]:
+def diagnose(recordings: Sequence[Recording]) -> tuple[Problem, Ranking]:
     """Return the ranking of all candidates."""
     boat = program().vessel
     uncertainty = priors.coefficient_uncertainty(boat)
@@ -178,29 +178,29 @@ def probability(ranking: Ranking, name: str) -> float:
     return float(np.exp(gains[name] - np.logaddexp.reduce(list(gains.values()))))
 
 
-def lead(ranking: Ranking, name: str) -> float:
+def lead_over_others(ranking: Ranking, name: str) -> float:
     """Return the log Bayes factor [nats] of one effect over the best of the others."""
     return ranking.first[name] - max(
         g for n, g in {NOTHING: 0.0, **ranking.first}.items() if n != name
     )
 
 
-def case(truth: str, seed: int) -> Outcome:
+def run_case(truth: str, seed: int) -> Outcome:
     """Return the outcome of one boat, diagnosed four times."""
     rng = np.random.default_rng([seed, *truth.encode()])
     boat = perturbed_boat(truth, rng)
-    first = recorded("first", boat, *gentle(rng, SHORT), rng)
-    again = recorded("same kind", boat, *gentle(rng, LONG), rng)
-    problem, before = diagnosed([first])
+    first = record_boat("first", boat, *gentle_driving(rng, SHORT), rng)
+    again = record_boat("same kind", boat, *gentle_driving(rng, LONG), rng)
+    problem, before = diagnose([first])
     question = open_question(before, problem.config)
     plan = best_plan(problem, *question)
-    _, same = diagnosed([first, again])
+    _, same = diagnose([first, again])
     after = other = same
     if plan is not None:
         menu = [p for p in all_plans(problem, *question) if p.manoeuvre != plan.manoeuvre]
         any_one = menu[rng.integers(len(menu))]
         after, other = (
-            diagnosed([first, recorded(p.manoeuvre, boat, *played(p), rng)])[1]
+            diagnose([first, record_boat(p.manoeuvre, boat, *simulated_commands(p), rng)])[1]
             for p in (plan, any_one)
         )
     return Outcome(
@@ -208,7 +208,7 @@ def case(truth: str, seed: int) -> Outcome:
         *(probability(r, truth) for r in (before, after, other, same)),
         plan.manoeuvre if plan else "",
         plan.expected_gain if plan else 0.0,
-        lead(after, truth) - lead(before, truth),
+        lead_over_others(after, truth) - lead_over_others(before, truth),
     )
 
 
@@ -253,7 +253,9 @@ def main() -> None:
     program().module  # noqa: B018  # compile before the processes start
     begin = time.time()
     with ProcessPoolExecutor(args.jobs) as pool:
-        found = list(shown(pool.map(case, *zip(*chosen, strict=True)), "diagnosing", len(chosen)))
+        found = list(
+            shown(pool.map(run_case, *zip(*chosen, strict=True)), "diagnosing", len(chosen))
+        )
     print_table(found)
     print(f"{time.time() - begin:.0f} s on {args.jobs} processes")
 

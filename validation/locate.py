@@ -50,7 +50,7 @@ NOTHING = "nothing missing"
 
 
 @dataclass(frozen=True)
-class Located:
+class LocatedForce:
     """Estimated and true force of one trial, (samples, axes), in units of the ambient rms."""
 
     causes: tuple[str, ...]
@@ -80,15 +80,15 @@ def problem_of(trial: Path) -> Problem:
     )
 
 
-def recalibrated(problem: Problem) -> Fit:
+def recalibrate(problem: Problem) -> Fit:
     """Return the nominal vessel with fitted noise, force levels and coefficients."""
     return fit_baseline(problem)[1]
 
 
-def located(trial: Path) -> Located:
+def locate_force(trial: Path) -> LocatedForce:
     """Locate the missing force in one trial."""
     problem = problem_of(trial)
-    known = recalibrated(problem)
+    known = recalibrate(problem)
     begin = time.process_time()
     forces = missing_force(problem, known, problem.recordings)
     found_in = regions(problem, known)
@@ -108,13 +108,13 @@ def located(trial: Path) -> Located:
         np.concatenate(s) / problem.ambient.force for s in zip(*samples, strict=True)
     )
     causes = tuple(e["name"] for e in json.loads((trial / "answer.json").read_text())["effects"])
-    return Located(causes or (NOTHING,), found, sd, true, tuple(found_in), seconds)
+    return LocatedForce(causes or (NOTHING,), found, sd, true, tuple(found_in), seconds)
 
 
-def figures(trials: Sequence[Located], axis: int | slice = slice(None)) -> list[str]:
+def table_row(trials: Sequence[LocatedForce], axis: int | slice = slice(None)) -> list[str]:
     """Return one row of the table."""
 
-    def count(which: Callable[[Located], Any]) -> int:
+    def count(which: Callable[[LocatedForce], Any]) -> int:
         return sum(int(which(t)[:, axis].sum()) for t in trials)
 
     inside = np.mean(
@@ -133,17 +133,17 @@ def figures(trials: Sequence[Located], axis: int | slice = slice(None)) -> list[
     return [f"{len(trials)}", f"{inside:.3f}", *shares, f"{flagged}", f"{there}"]
 
 
-def table(trials: Sequence[Located], axes: Sequence[str]) -> Table:
+def table(trials: Sequence[LocatedForce], axes: Sequence[str]) -> Table:
     """Return the table of all samples, by axis and by effect."""
     out = Table("", *("trials", "inside", "precision", "recall", "flagged", "there"))
     out.columns[0].no_wrap = True
     for column in out.columns[1:]:
         column.justify = "right"
-    out.add_row("all", *figures(trials))
+    out.add_row("all", *table_row(trials))
     for i, axis in enumerate(axes):
-        out.add_row(axis, *figures(trials, i), end_section=i == len(axes) - 1)
+        out.add_row(axis, *table_row(trials, i), end_section=i == len(axes) - 1)
     for cause in sorted({c for t in trials for c in t.causes}):
-        out.add_row(cause, *figures([t for t in trials if cause in t.causes]))
+        out.add_row(cause, *table_row([t for t in trials if cause in t.causes]))
     return out
 
 
@@ -158,8 +158,8 @@ def main() -> None:
     )
     if not folders:
         raise SystemExit(f"{parser.parse_args().trials}: no trials with missing_force_1.csv")
-    located(folders[0])  # compile before the time is measured
-    trials = {t.name: located(t) for t in folders}
+    locate_force(folders[0])  # compile before the time is measured
+    trials = {t.name: locate_force(t) for t in folders}
     console = Console()
     console.print(
         table(list(trials.values()), axes_of(open_recording(folders[0] / "run_1.csv", None, ())[1]))

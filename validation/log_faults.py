@@ -44,7 +44,7 @@ class Fault:
     needs: Callable[[Vessel], bool] = lambda _: True
 
 
-def sailed(boat: Vessel, seed: int, lasts: float = LASTS) -> Columns:
+def simulate_log(boat: Vessel, seed: int, lasts: float = LASTS) -> Columns:
     """Return a good log: positions and heading with noise, and the commands."""
     rng, slow = np.random.default_rng(seed), froude_time(boat)
     rows, held = round(lasts * RATE), round(HOLDS * RATE)
@@ -75,64 +75,64 @@ def write(columns: Columns, path: Path) -> None:
     )
 
 
-def _with(**made: Callable[[Columns], Array]) -> Callable[[Columns, Vessel], Columns]:
+def _column_fault(**made: Callable[[Columns], Array]) -> Callable[[Columns, Vessel], Columns]:
     return lambda columns, _: columns | {n: f(columns) for n, f in made.items()}
 
 
-def _twins(boat: Vessel) -> bool:
+def _has_two_similar_drives(boat: Vessel) -> bool:
     return any("_port_" in f"_{n}_" for n in boat.commands)
 
 
-def _exchanged(columns: Columns, boat: Vessel) -> Columns:
+def _exchange_commands(columns: Columns, boat: Vessel) -> Columns:
     swap = {}
     for n in boat.commands:
         swap[n] = n.replace("port", "#").replace("starboard", "port").replace("#", "starboard")
     return columns | {n: columns[other] for n, other in swap.items()}
 
 
-def _percent(columns: Columns, boat: Vessel) -> Columns:
+def _commands_in_percent(columns: Columns, boat: Vessel) -> Columns:
     drives = [n for n in boat.commands if unit_of(n) != "rad"]
     return columns | {n: 100.0 * columns[n] / boat.commands[n].high for n in drives}
 
 
-def _at(columns: Columns, *shares: float) -> list[int]:
+def _rows_at_shares(columns: Columns, *shares: float) -> list[int]:
     return [round(share * len(columns["t_s"])) for share in shares]
 
 
-def _held(columns: Columns, _: Vessel) -> Columns:
+def _hold_positions(columns: Columns, _: Vessel) -> Columns:
     row = np.arange(len(columns["t_s"])) // round(RATE) * round(RATE)
     return columns | {n: columns[n][row] for n in ("x_m", "y_m", "psi_rad")}
 
 
-def _bursts(columns: Columns, boat: Vessel) -> Columns:
+def _positions_in_bursts(columns: Columns, boat: Vessel) -> Columns:
     off = np.zeros(len(columns["t_s"]))
-    for begin in _at(columns, 0.2, 0.6):
+    for begin in _rows_at_shares(columns, 0.2, 0.6):
         off[begin : begin + 4] = 0.8 * boat.length
     return columns | {n: columns[n] + off for n in ("x_m", "y_m")}
 
 
-def _geographic(columns: Columns, _: Vessel) -> Columns:
+def _positions_in_degrees(columns: Columns, _: Vessel) -> Columns:
     north = LATITUDE + columns["x_m"] / EARTH
     east = LONGITUDE + columns["y_m"] / EARTH / np.cos(np.radians(LATITUDE))
     return columns | {"x_m": np.round(north, 9), "y_m": np.round(east, 9)}
 
 
-def _bridged(columns: Columns, _: Vessel) -> Columns:
+def _interpolate_gaps(columns: Columns, _: Vessel) -> Columns:
     made = dict(columns)
     for name, places in (("x_m", 4), ("y_m", 4), ("psi_rad", 5)):
         values = columns[name].copy()
-        for begin in _at(columns, 0.12, 0.3, 0.6, 0.85):
+        for begin in _rows_at_shares(columns, 0.12, 0.3, 0.6, 0.85):
             values[begin : begin + 10] = np.linspace(values[begin], values[begin + 9], 10)
         made[name] = np.round(values, places)
     return made
 
 
-def _leapt(columns: Columns, boat: Vessel) -> Columns:
+def _add_position_jumps(columns: Columns, boat: Vessel) -> Columns:
     behind = np.arange(len(columns["t_s"])) > 0.6 * len(columns["t_s"])
     return columns | {"x_m": columns["x_m"] + 1.5 * boat.length * behind}
 
 
-def _stalled(columns: Columns, _: Vessel) -> Columns:
+def _repeat_times(columns: Columns, _: Vessel) -> Columns:
     t = columns["t_s"].copy()
     t[50::40] = t[49::40][: len(t[50::40])]
     return columns | {"t_s": t}
@@ -140,12 +140,12 @@ def _stalled(columns: Columns, _: Vessel) -> Columns:
 
 FAULTS: dict[str, Fault] = {
     "y to port, heading too": Fault(
-        _with(y_m=lambda c: -c["y_m"], psi_rad=lambda c: -c["psi_rad"]),
+        _column_fault(y_m=lambda c: -c["y_m"], psi_rad=lambda c: -c["psi_rad"]),
         ("mirrored", "thrusters_exchanged", "rudder_sense"),
     ),
-    "y to port alone": Fault(_with(y_m=lambda c: -c["y_m"]), ("y_to_port",)),
+    "y to port alone": Fault(_column_fault(y_m=lambda c: -c["y_m"]), ("y_to_port",)),
     "ENU axes": Fault(
-        _with(
+        _column_fault(
             x_m=lambda c: c["y_m"],
             y_m=lambda c: c["x_m"],
             psi_rad=lambda c: np.pi / 2 - c["psi_rad"],
@@ -153,39 +153,41 @@ FAULTS: dict[str, Fault] = {
         ("mirrored", "thrusters_exchanged", "rudder_sense"),
     ),
     "x and y exchanged": Fault(
-        _with(x_m=lambda c: c["y_m"], y_m=lambda c: c["x_m"]), ("axes_exchanged",)
+        _column_fault(x_m=lambda c: c["y_m"], y_m=lambda c: c["x_m"]), ("axes_exchanged",)
     ),
     "heading from east": Fault(
-        _with(psi_rad=lambda c: np.pi / 2 - c["psi_rad"]), ("heading_from_east",)
+        _column_fault(psi_rad=lambda c: np.pi / 2 - c["psi_rad"]), ("heading_from_east",)
     ),
-    "thrusters exchanged": Fault(_exchanged, ("thrusters_exchanged", "mirrored"), _twins),
+    "thrusters exchanged": Fault(
+        _exchange_commands, ("thrusters_exchanged", "mirrored"), _has_two_similar_drives
+    ),
     "heading in degrees": Fault(
-        _with(psi_rad=lambda c: np.degrees(c["psi_rad"]) % 360.0), ("heading_in_degrees",)
+        _column_fault(psi_rad=lambda c: np.degrees(c["psi_rad"]) % 360.0), ("heading_in_degrees",)
     ),
     "heading turned 90 deg": Fault(
-        _with(psi_rad=lambda c: c["psi_rad"] + np.pi / 2), ("heading_turned",)
+        _column_fault(psi_rad=lambda c: c["psi_rad"] + np.pi / 2), ("heading_turned",)
     ),
     "heading turned 40 deg": Fault(
-        _with(psi_rad=lambda c: c["psi_rad"] + np.radians(40.0)), ("heading_turned",)
+        _column_fault(psi_rad=lambda c: c["psi_rad"] + np.radians(40.0)), ("heading_turned",)
     ),
-    "position held": Fault(_held, ("position_held",)),
-    "outliers in bursts": Fault(_bursts, ("outliers",)),
-    "latitude as metres": Fault(_geographic, ("latitude_as_metres",)),
+    "position held": Fault(_hold_positions, ("position_held",)),
+    "outliers in bursts": Fault(_positions_in_bursts, ("outliers",)),
+    "latitude as metres": Fault(_positions_in_degrees, ("latitude_as_metres",)),
     "commands in per cent": Fault(
-        _percent,
+        _commands_in_percent,
         ("command_unit",),
         lambda b: any(
             unit_of(n) != "rad" and not 67.0 < c.high < 150.0 for n, c in b.commands.items()
         ),
     ),
-    "time in ms": Fault(_with(t_s=lambda c: 1000.0 * c["t_s"]), ("time_unit",)),
-    "gaps bridged": Fault(_bridged, ("bridged",)),
-    "position leaps": Fault(_leapt, ("position_leaps",)),
-    "clock stalls": Fault(_stalled, ("clock_stalls",)),
+    "time in ms": Fault(_column_fault(t_s=lambda c: 1000.0 * c["t_s"]), ("time_unit",)),
+    "gaps bridged": Fault(_interpolate_gaps, ("bridged",)),
+    "position leaps": Fault(_add_position_jumps, ("position_leaps",)),
+    "clock stalls": Fault(_repeat_times, ("clock_stalls",)),
 }
 
 
-def judged(
+def judge_findings(
     boat: Vessel, columns: Columns, fault: Fault | None, ask: bool
 ) -> tuple[bool, bool, list[str]]:
     """Return whether the fault is named, whether the boat is blamed instead, and all findings."""
@@ -209,7 +211,7 @@ def table(names: Sequence[str], seeds: int, ask: bool = True) -> Iterator[str]:
     boats = [vessels.load(n) for n in names]
     yield f"{'fault':24s}" + "".join(f"{n:>24s}" for n in names)
     yield f"{'':24s}" + f"{'named / physics / of':>24s}" * len(names)
-    logs = {b.name: [sailed(b, seed) for seed in range(1, seeds + 1)] for b in boats}
+    logs = {b.name: [simulate_log(b, seed) for seed in range(1, seeds + 1)] for b in boats}
     total = np.zeros(3, dtype=int)
     for title, fault in FAULTS.items():
         cells = []
@@ -218,7 +220,7 @@ def table(names: Sequence[str], seeds: int, ask: bool = True) -> Iterator[str]:
             instead = set[str]()
             if fault.needs(boat):
                 for log in logs[boat.name]:
-                    named, physics, found = judged(boat, log, fault, ask)
+                    named, physics, found = judge_findings(boat, log, fault, ask)
                     counts += (named, physics, 1)
                     if not named:
                         instead.update(found)
@@ -231,7 +233,9 @@ def table(names: Sequence[str], seeds: int, ask: bool = True) -> Iterator[str]:
         yield f"{title:24s}" + "".join(f"{c:>24s}" for c in cells)
     good = []
     for boat in boats:
-        accused = [found for log in logs[boat.name] if (found := judged(boat, log, None, False)[2])]
+        accused = [
+            found for log in logs[boat.name] if (found := judge_findings(boat, log, None, False)[2])
+        ]
         names_found = sorted(set(chain.from_iterable(accused)))
         good.append(f"{len(accused)} of {seeds} {','.join(names_found)}".strip())
     yield f"{'good logs accused':24s}" + "".join(f"{c:>24s}" for c in good)

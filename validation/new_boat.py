@@ -47,12 +47,12 @@ class Case:
     its_logs: Callable[[Mapping[str, Array]], Mapping[str, Array]] = dict
 
 
-def three_metre(folder: Path) -> Case:
+def three_metre_case(folder: Path) -> Case:
     """Return the case of the 3 m boat of the independent integrator."""
     logs = {}
     for seed in (1, 2, 3):
         pushed_three_metre.write(folder / f"run_{seed}.csv", seed)
-        logs[f"run_{seed}"] = dict(columns(folder / f"run_{seed}.csv"))
+        logs[f"run_{seed}"] = dict(read_columns(folder / f"run_{seed}.csv"))
     boat = particulars("three_metre", 3.0, 1.6, 90.0, ["-1.2,-0.6,60", "-1.2,0.6,60"], [])
 
     def hand_made(where: Path) -> Path:
@@ -63,7 +63,7 @@ def three_metre(folder: Path) -> Case:
     return Case(boat, logs, ("run_3",), hand_made)
 
 
-def blueboat(_: Path) -> Case:
+def blueboat_case(_: Path) -> Case:
     """Return the case of the catamaran on the lake.
 
     Sizes are from the maker's page, thrusters from its source.
@@ -78,8 +78,8 @@ def blueboat(_: Path) -> Case:
         hulls=2,
     )
     logs = {}
-    for path in runs("blueboat_lake"):
-        read = columns(path)
+    for path in recordings_of_set("blueboat_lake"):
+        read = read_columns(path)
         names = {"x_m": "north_m", "y_m": "east_m", "psi_rad": "heading_rad"}
         names |= {
             "thrust_port_N": "force_right_N",
@@ -92,7 +92,7 @@ def blueboat(_: Path) -> Case:
     return Case(boat, logs, held_out, lambda _: find("vessel", "blueboat"))
 
 
-def esso_osaka(_: Path) -> Case:
+def esso_osaka_case(_: Path) -> Case:
     """Return the case of the 3 m tanker model: zig-zags and turns.
 
     Thrust is proportional to the square of the shaft speed.
@@ -112,12 +112,16 @@ def esso_osaka(_: Path) -> Case:
         draught=data["draught_m"],
     )
     logs = {}
-    for path in [p for p in runs("esso_osaka") if p.stem.startswith(("zigzag", "turn"))]:
-        read = columns(path)
+    for path in [
+        p for p in recordings_of_set("esso_osaka") if p.stem.startswith(("zigzag", "turn"))
+    ]:
+        read = read_columns(path)
         kept = {n: read[n] for n in ("t_s", "x_m", "y_m", "psi_rad", "rudder_rad")}
         kept["thrust_motor_N"] = per * read["shaft_rps"] * np.abs(read["shaft_rps"])
-        bridged, leaps = esso_osaka_pond.defects(np.genfromtxt(path, delimiter=",", names=True))
-        begin, end = longest(read["t_s"], read["t_s"][leaps])
+        bridged, leaps = esso_osaka_pond.defective_rows(
+            np.genfromtxt(path, delimiter=",", names=True)
+        )
+        begin, end = longest_stretch(read["t_s"], read["t_s"][leaps])
         inside = (read["t_s"] >= begin) & (read["t_s"] <= min(end, begin + LONGEST))
         logs[path.stem] = {n: x[inside & ~bridged] for n, x in kept.items()}
 
@@ -129,7 +133,7 @@ def esso_osaka(_: Path) -> Case:
     return Case(boat, logs, sorted(logs)[2::4], esso_osaka_vessel.write_vessel, theirs)
 
 
-def longest(t: Array, leaps: Array) -> tuple[float, float]:
+def longest_stretch(t: Array, leaps: Array) -> tuple[float, float]:
     """Return begin and end [s] of the longest stretch between jumps of a run.
 
     The cuts are those of esso_osaka_pond.
@@ -140,38 +144,38 @@ def longest(t: Array, leaps: Array) -> tuple[float, float]:
 
 
 CASES: Mapping[str, Callable[[Path], Case]] = {
-    "three_metre": three_metre,
-    "blueboat": blueboat,
-    "esso_osaka": esso_osaka,
+    "three_metre": three_metre_case,
+    "blueboat": blueboat_case,
+    "esso_osaka": esso_osaka_case,
 }
 SETS = {"blueboat": "blueboat_lake", "esso_osaka": "esso_osaka"}
 
 
-def runs(name: str) -> list[Path]:
+def recordings_of_set(name: str) -> list[Path]:
     """Return the recordings of a set."""
     return sorted((RECORDINGS / name / "runs").glob("*.csv"))
 
 
-def columns(path: Path) -> dict[str, Array]:
+def read_columns(path: Path) -> dict[str, Array]:
     """Return every column of a CSV file."""
     read = np.genfromtxt(path, delimiter=",", names=True)
     return {name: read[name] for name in read.dtype.names or ()}
 
 
-def judged(case: Case, folder: Path) -> Iterator[tuple[str, Fitted]]:
+def judge_case(case: Case, folder: Path) -> Iterator[tuple[str, Fitted]]:
     """Return the errors of the new boat, then of the hand-made one."""
     own = folder / case.boat.name
     own.mkdir()
     for name, text in files(case.boat).items():
         (own / name).write_text(text, encoding="utf-8")
-    yield "new", _fitted(own / VESSEL, case, folder / "new_logs", dict)
+    yield "new", _fit_vessel(own / VESSEL, case, folder / "new_logs", dict)
     yield (
         "hand-made",
-        _fitted(case.hand_made(folder / "hand_made"), case, folder / "its_logs", case.its_logs),
+        _fit_vessel(case.hand_made(folder / "hand_made"), case, folder / "its_logs", case.its_logs),
     )
 
 
-def _fitted(
+def _fit_vessel(
     file: Path,
     case: Case,
     folder: Path,
@@ -191,12 +195,12 @@ def _write(file: Path, log: Mapping[str, Array]) -> None:
     )
 
 
-def rows(name: str) -> Iterator[list[str]]:
+def table_lines(name: str) -> Iterator[list[str]]:
     """Return the lines of the table for one boat."""
     with tempfile.TemporaryDirectory() as made:
         folder = Path(made)
         case = CASES[name](folder)
-        found = dict(judged(case, folder))
+        found = dict(judge_case(case, folder))
     for family, (words, scale) in UNITS.items():
         new, hand = found["new"], found["hand-made"]
         cells = []
@@ -228,10 +232,10 @@ def main(names: Sequence[str]) -> None:
     """Print the table."""
     lines = []
     for name in names or CASES:
-        if name in SETS and not runs(SETS[name]):
+        if name in SETS and not recordings_of_set(SETS[name]):
             print(f"{name}: skipped, no recordings in ../shared/recordings/{SETS[name]}/runs")
             continue
-        lines += list(rows(name))
+        lines += list(table_lines(name))
     header = [
         "boat",
         "",

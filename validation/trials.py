@@ -42,7 +42,7 @@ from typing import Any
 
 from rich.progress import Progress
 
-from validation.entry import BadEntry, answers_in, horizon_of, replay_errors, vessel_of
+from validation.entry import BadEntry, horizon_of, read_answers, replay_errors, vessel_of
 
 SHARED = Path(__file__).parents[2] / "shared" / "recordings" / "trials" / "practice"
 BINS = (0.0, 0.02, 0.1, 0.3, 0.7, 0.95, 1.0)
@@ -83,7 +83,9 @@ def diagnose_one(trial: Path, out: Path, without: Sequence[str] = ()) -> dict[st
     return dict(found.findings.answer)
 
 
-def all_of(jobs: int, todo: dict[str, tuple[Path, Path, tuple[str, ...]]], what: str) -> Answers:
+def diagnose_all(
+    jobs: int, todo: dict[str, tuple[Path, Path, tuple[str, ...]]], what: str
+) -> Answers:
     """Return the answers of many diagnoses by name."""
     with ProcessPoolExecutor(jobs) as pool, Progress() as progress:
         task = progress.add_task(what, total=len(todo))
@@ -98,7 +100,7 @@ def all_of(jobs: int, todo: dict[str, tuple[Path, Path, tuple[str, ...]]], what:
 # ---- one trial
 
 
-def truth_of(answer: dict[str, Any]) -> set[str]:
+def true_names(answer: dict[str, Any]) -> set[str]:
     """Return the names of a correct answer."""
     if answer["kind"] == "unknown":
         return {"unknown"}
@@ -107,7 +109,7 @@ def truth_of(answer: dict[str, Any]) -> set[str]:
 
 def reported_names(answer: dict[str, Any], found: dict[str, Any]) -> set[str]:
     """Return the reported names, equivalents replaced by the names in the answer."""
-    truth = truth_of(answer)
+    truth = true_names(answer)
     same = {}
     for name, others in answer.get("equivalent", {}).items():
         same.update(dict.fromkeys(others, name))
@@ -125,9 +127,9 @@ def reported_names(answer: dict[str, Any], found: dict[str, Any]) -> set[str]:
     return names
 
 
-def meant_by(answer: dict[str, Any], found: dict[str, Any]) -> set[str]:
+def resolve_ties(answer: dict[str, Any], found: dict[str, Any]) -> set[str]:
     """Return the reported names, each ambiguous one replaced by a true one it is tied with."""
-    truth = truth_of(answer)
+    truth = true_names(answer)
     tied = {}
     for e in found["effects"]:
         if found["verdict"] == "ambiguous":
@@ -157,7 +159,7 @@ def deviations(answer: dict[str, Any], found: dict[str, Any]) -> list[float]:
     return out
 
 
-def skill(trial: Path, out: Path, answer: dict[str, Any]) -> float | None:
+def held_out_skill(trial: Path, out: Path, answer: dict[str, Any]) -> float | None:
     """Return the held-out skill on run_3; None if the true structure saves no error.
 
     The skill is the error saved by the patched boat per error saved by the true structure. It is -1
@@ -178,7 +180,7 @@ def skill(trial: Path, out: Path, answer: dict[str, Any]) -> float | None:
     return max(-1.0, min(1.0, saved))
 
 
-def of_its_kind(answer: dict[str, Any], found: dict[str, Any]) -> bool:
+def describes_unknown_cause(answer: dict[str, Any], found: dict[str, Any]) -> bool:
     """Return whether a described law has a term of the kind of the unknown cause."""
     (cause,) = answer["effects"]
     kind = KINDS[cause["name"].partition(":")[2]]
@@ -189,7 +191,7 @@ def of_its_kind(answer: dict[str, Any], found: dict[str, Any]) -> bool:
     )
 
 
-def of_recalibrated(found: dict[str, Any]) -> float | None:
+def error_ratio_to_recalibrated(found: dict[str, Any]) -> float | None:
     """Return the error of the patched boat on run_3 per error of the recalibrated one.
 
     The value is the geometric mean over all signals, or None if no errors are reported.
@@ -204,7 +206,7 @@ def of_recalibrated(found: dict[str, Any]) -> float | None:
 # ---- all trials
 
 
-def share(rows: Sequence[bool]) -> str:
+def share_text(rows: Sequence[bool]) -> str:
     """Return the share of true rows as text, such as 5/6."""
     if rows:
         return f"{sum(rows)}/{len(rows)}"
@@ -216,7 +218,7 @@ def quantile(values: Sequence[float], q: float) -> float:
     return sorted(values)[int(q * (len(values) - 1))]
 
 
-def figures(answers: Answers, found: Answers) -> dict[str, str]:
+def name_counts(answers: Answers, found: Answers) -> dict[str, str]:
     """Return the counts of right and wrong names by kind of trial."""
     false_alarms: list[bool] = []
     single: list[bool] = []
@@ -230,9 +232,9 @@ def figures(answers: Answers, found: Answers) -> dict[str, str]:
     called_unknown: list[bool] = []
     for n, answer in found.items():
         truth = answers[n]
-        names = truth_of(truth)
+        names = true_names(truth)
         reported = reported_names(truth, answer)
-        meant = meant_by(truth, answer)
+        meant = resolve_ties(truth, answer)
         kind = truth["kind"]
         visible = truth.get("visible") and not truth.get("borderline")
         if kind == "none":
@@ -251,19 +253,19 @@ def figures(answers: Answers, found: Answers) -> dict[str, str]:
         if visible and kind == "unknown":
             unknown[truth["concealed"]].append("unknown" in reported)
             described.append(bool(answer["described"]))
-            described_by_kind.append(of_its_kind(truth, answer))
+            described_by_kind.append(describes_unknown_cause(truth, answer))
     return {
-        "false alarms among nothing-missing trials": share(false_alarms),
-        "visible single effects, exactly named": share(single),
-        "  of these concealed by the tracker": share(concealed_single),
-        "  exactly named, or reported as tied": share(single_or_tied),
-        "visible pairs, both named and nothing else": share(pair),
-        "wrong names (none, singles, pairs)": share(wrong),
-        "visible unknown cause flagged, pilot": share(unknown[False]),
-        "visible unknown cause flagged, concealed": share(unknown[True]),
-        "visible unknown cause described": share(described),
-        "  with a term of its kind": share(described_by_kind),
-        "known cause called unknown": share(called_unknown),
+        "false alarms among nothing-missing trials": share_text(false_alarms),
+        "visible single effects, exactly named": share_text(single),
+        "  of these concealed by the tracker": share_text(concealed_single),
+        "  exactly named, or reported as tied": share_text(single_or_tied),
+        "visible pairs, both named and nothing else": share_text(pair),
+        "wrong names (none, singles, pairs)": share_text(wrong),
+        "visible unknown cause flagged, pilot": share_text(unknown[False]),
+        "visible unknown cause flagged, concealed": share_text(unknown[True]),
+        "visible unknown cause described": share_text(described),
+        "  with a term of its kind": share_text(described_by_kind),
+        "known cause called unknown": share_text(called_unknown),
     }
 
 
@@ -272,12 +274,12 @@ def fit_figures(trials: Path, out: Path, answers: Answers, found: Answers) -> di
     skills = []
     for n in found:
         if answers[n]["kind"] in ("single", "pair"):
-            value = skill(trials / n, out / n, answers[n])
+            value = held_out_skill(trials / n, out / n, answers[n])
             if value is not None:
                 skills.append(value)
     z = []
     for n, answer in found.items():
-        if reported_names(answers[n], answer) == truth_of(answers[n]):
+        if reported_names(answers[n], answer) == true_names(answers[n]):
             z.extend(deviations(answers[n], answer))
     table = {}
     seconds = [f["seconds"] for f in found.values() if "seconds" in f]
@@ -293,13 +295,13 @@ def fit_figures(trials: Path, out: Path, answers: Answers, found: Answers) -> di
     ratios = []
     for answer in found.values():
         if any(law["carries_over"] for law in answer["described"]):
-            ratio = of_recalibrated(answer)
+            ratio = error_ratio_to_recalibrated(answer)
             if ratio is not None:
                 ratios.append(ratio)
     if ratios:
         words = f"{statistics.median(ratios):.2f} / {max(ratios):.2f} ({len(ratios)} trials)"
         table["described: error ratio, median / worst"] = words
-        table[f"  above {SLACK:g} of the recalibrated"] = share([r > SLACK for r in ratios])
+        table[f"  above {SLACK:g} of the recalibrated"] = share_text([r > SLACK for r in ratios])
     if z:
         table["true parameters within 2 sd"] = f"{sum(x <= 2 for x in z) / len(z):.3f} of {len(z)}"
         table["median error of a parameter in sd"] = f"{statistics.median(z):.2f}"
@@ -317,7 +319,7 @@ def reliability(answers: Answers, found: Answers) -> list[tuple[str, int, float,
     for n, f in found.items():
         if answers[n]["kind"] not in ("none", "single") or answers[n].get("tolerated"):
             continue
-        truth = truth_of(answers[n])
+        truth = true_names(answers[n])
         same = set(truth)
         for name in truth:
             same.update(answers[n].get("equivalent", {}).get(name, []))
@@ -343,30 +345,32 @@ def reliability(answers: Answers, found: Answers) -> list[tuple[str, int, float,
     return table
 
 
-def unknowns(trials: Path, out: Path, jobs: int, answers: Answers, found: Answers) -> None:
+def diagnose_without_true_effect(
+    trials: Path, out: Path, jobs: int, answers: Answers, found: Answers
+) -> None:
     """Diagnose every visible single effect again without it and its look-alikes."""
     left_out = {}
     for n, answer in answers.items():
         if n in found and answer["kind"] == "single" and answer.get("visible"):
-            (name,) = truth_of(answer)
+            (name,) = true_names(answer)
             alike = [t for e in found[n]["effects"] if e["name"] == name for t in e["tied_with"]]
             left_out[n] = tuple(
                 dict.fromkeys((name, *answer.get("equivalent", {}).get(name, []), *alike))
             )
     todo = {n: (trials / n, out / "unknowns" / n, names) for n, names in left_out.items()}
-    again = all_of(jobs, todo, "without the truth")
+    again = diagnose_all(jobs, todo, "without the truth")
     flagged = {n: f["unknown"]["flag"] for n, f in again.items()}
     print("\nunknowns: the true effect and its look-alikes removed from the library")
     for what, concealed in (("pilot", False), ("concealed", True)):
         print(
             f"  flagged, {what:10s} "
-            f"{share([flagged[n] for n in again if answers[n]['concealed'] is concealed])}"
+            f"{share_text([flagged[n] for n in again if answers[n]['concealed'] is concealed])}"
         )
     print(
         "  flagged, or nothing named  "
-        f"{share([flagged[n] or not f['effects'] for n, f in again.items()])}"
+        f"{share_text([flagged[n] or not f['effects'] for n, f in again.items()])}"
     )
-    skills = {n: skill(trials / n, out / "unknowns" / n, answers[n]) for n in again}
+    skills = {n: held_out_skill(trials / n, out / "unknowns" / n, answers[n]) for n in again}
     skilled = [s for s in skills.values() if s is not None]
     if skilled:
         print(
@@ -392,7 +396,7 @@ def print_figures(trials: Path, out: Path, answers: Answers, found: Answers) -> 
         part = {n: f for n, f in found.items() if vessel in ("", vessels[n])}
         print(f"\n{vessel}, {len(part)} trials" if vessel else "")
         for what, value in {
-            **figures(answers, part),
+            **name_counts(answers, part),
             **fit_figures(trials, out, answers, part),
         }.items():
             print(f"{what:44s} {value}")
@@ -402,7 +406,7 @@ def print_figures(trials: Path, out: Path, answers: Answers, found: Answers) -> 
 def print_wrong(answers: Answers, found: Answers) -> None:
     """Print the trials whose answer is not exact."""
     for n, f in found.items():
-        reported, truth = reported_names(answers[n], f), truth_of(answers[n])
+        reported, truth = reported_names(answers[n], f), true_names(answers[n])
         if reported != truth:
             seen = "" if answers[n].get("visible", True) else " (invisible)"
             print(
@@ -417,7 +421,7 @@ def score(trials: Path, results: Path, answers: Answers) -> None:
     Raises:
         BadEntry: if an answer is missing or invalid.
     """
-    found = answers_in(results, list(answers))
+    found = read_answers(results, list(answers))
     print(f"{len(found)} trials; answers in {results}")
     print_figures(trials, results, answers, found)
     print_wrong(answers, found)
@@ -457,7 +461,7 @@ def main() -> None:
             raise SystemExit(str(error)) from None
         return
     begin = time.time()
-    found = all_of(
+    found = diagnose_all(
         args.jobs, {n: (args.trials / n, args.out / n, ()) for n in answers}, "diagnosing"
     )
     print(
@@ -470,7 +474,7 @@ def main() -> None:
     for span, count, mean, true in reliability(answers, found):
         print(f"  {span}   {count:5d} effects, mean {mean:.3f}, true {true:.3f}")
     if args.unknowns:
-        unknowns(args.trials, args.out, args.jobs, answers, found)
+        diagnose_without_true_effect(args.trials, args.out, args.jobs, answers, found)
 
 
 if __name__ == "__main__":

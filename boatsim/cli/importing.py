@@ -10,10 +10,10 @@ from boatsim.files import replacing
 from boatsim.physics import vessel as vessels
 from boatsim.physics.content import vessel_address
 from boatsim.physics.vessel import Vessel
-from boatsim.recordings.importing.convert import convert, notes_of, position_fix
+from boatsim.recordings.importing.convert import convert, position_fix, recording_notes_text
 from boatsim.recordings.importing.log import Log, open_log
 from boatsim.recordings.importing.mapping import read_map
-from boatsim.recordings.importing.mapping_proposal import Drive, listing, proposal
+from boatsim.recordings.importing.mapping_proposal import VesselChannel, propose_map, signal_table
 from boatsim.recordings.table import read, write_csv
 
 CONVERTING, WRITING = 0.6, 0.8  # shares of the work done when these stages start, by experience
@@ -66,12 +66,12 @@ def _propose_map(
         boat = vessels.load(vessel, load)
         drives = []
         for channel, (low, high) in boat.limits().items():
-            drives.append(Drive(channel, low, high, _turn_direction(boat, channel)))
-        text = proposal(log, vessel, drives, boat.dof, boat.columns)
+            drives.append(VesselChannel(channel, low, high, _turn_direction(boat, channel)))
+        text = propose_map(log, vessel, drives, boat.dof, boat.columns)
     else:
-        text = proposal(log, vessel, [], (), None)
+        text = propose_map(log, vessel, [], (), None)
     print_notes(log.remarks)
-    print_lines(listing(log))
+    print_lines(signal_table(log))
     if propose is None:
         introduction = "Proposed map (--propose map.toml writes it; --map map.toml converts):"
         print_lines(["", introduction, "", text.rstrip()])
@@ -119,7 +119,7 @@ def _convert(path: Path, out: Path, map: Path, vessel: str | None, load: Sequenc
 def _write_vessel(out: Path, boat: Vessel, fix: str | None) -> None:
     """Write the vessel of a recording to recording.toml in its folder; keep an existing file."""
     file = out.parent / "recording.toml"
-    text = notes_of(out, vessel_address(boat.file), fix)
+    text = recording_notes_text(out, vessel_address(boat.file), fix)
     if file.exists():
         lines = " / ".join(text.splitlines())
         print_note(f"{file} exists and is kept; for this recording it should contain: {lines}")

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from queue import Empty, SimpleQueue
 
-from boatsim.recordings.table import Recording, joined
+from boatsim.recordings.table import Recording, join_recordings
 from boatsim.simulate.run_options import Listener
 
 
@@ -58,4 +58,4 @@ def _hand_over(rows: SimpleQueue[Recording], listen: Listener) -> None:
             pieces.append(rows.get_nowait())
     except Empty:
         if pieces:
-            listen(joined(pieces))
+            listen(join_recordings(pieces))

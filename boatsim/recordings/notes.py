@@ -135,14 +135,14 @@ def notes_for(recording: Path) -> NotesFile:
     """
     if not recording.is_file():  # false for a ring of links too
         return NotesFile()
-    for folder in _own_folders(recording.resolve().parent):
+    for folder in _folders_to_search(recording.resolve().parent):
         file = folder / "recording.toml"
         if file.is_file():
             return _parse(file, recording.stem)
     return NotesFile()
 
 
-def _own_folders(folder: Path) -> Iterator[Path]:
+def _folders_to_search(folder: Path) -> Iterator[Path]:
     """The folder of a recording and those above it, up to home or root of a repository.
 
     The search ends below a folder that all users may write to, such as /tmp, for its files may be
@@ -187,7 +187,7 @@ def _is_number(value: object) -> bool:
     return abs(value) <= MAX_NUMBER
 
 
-def _collect(mistakes: list[str], read: Callable[[], T], default: T) -> T:
+def _read_or_collect_mistake(mistakes: list[str], read: Callable[[], T], default: T) -> T:
     """A part of the notes.
 
     Its mistake is added to a list, so that one message has all mistakes of a file.
@@ -311,22 +311,24 @@ class _Reader:
                 unknown.append(_with_hint(key, KEYS))
         mistakes: list[str] = []
         notes = Notes(
-            vessel=_collect(mistakes, lambda: self.text("vessel"), None),
-            load=_collect(mistakes, lambda: self.texts("load"), ()),
-            settings=_collect(mistakes, self.settings, {}),
-            use=_collect(mistakes, self.use, None),
-            scale=_collect(mistakes, self.scale, None),
-            noise=_collect(mistakes, lambda: self.inner("noise").numbers(low=0.0), {}),
-            ambient=_collect(mistakes, self.ambient, Ambient()),
-            coefficient_uncertainty=_collect(
+            vessel=_read_or_collect_mistake(mistakes, lambda: self.text("vessel"), None),
+            load=_read_or_collect_mistake(mistakes, lambda: self.texts("load"), ()),
+            settings=_read_or_collect_mistake(mistakes, self.settings, {}),
+            use=_read_or_collect_mistake(mistakes, self.use, None),
+            scale=_read_or_collect_mistake(mistakes, self.scale, None),
+            noise=_read_or_collect_mistake(
+                mistakes, lambda: self.inner("noise").numbers(low=0.0), {}
+            ),
+            ambient=_read_or_collect_mistake(mistakes, self.ambient, Ambient()),
+            coefficient_uncertainty=_read_or_collect_mistake(
                 mistakes, lambda: self.inner("coefficient_uncertainty").numbers(low=0.0), {}
             ),
-            facts=_collect(mistakes, lambda: self.all_facts(facts), {}),
+            facts=_read_or_collect_mistake(mistakes, lambda: self.all_facts(facts), {}),
         )
         noise = {name: sd for name, sd in notes.noise.items() if name in NOISE}
-        columns: dict[str, str] = _collect(mistakes, self.columns, dict[str, str]())
+        columns: dict[str, str] = _read_or_collect_mistake(mistakes, self.columns, dict[str, str]())
         if mistakes:
-            raise BadInput(joined_mistakes(mistakes, self.file))
+            raise BadInput(join_mistakes(mistakes, self.file))
         for table, allowed in (("noise", NOISE), ("ambient", AMBIENT)):
             for key in self.table(table):
                 if key not in allowed:
@@ -363,7 +365,7 @@ def _with_hint(key: str, allowed: tuple[str, ...]) -> str:
     return key
 
 
-def joined_mistakes(mistakes: Sequence[str], file: Path) -> str:
+def join_mistakes(mistakes: Sequence[str], file: Path) -> str:
     """Return one message of several that begin with the name of one file."""
     first, *others = mistakes
     return "; ".join([first, *(one.removeprefix(f"{file}: ") for one in others)])

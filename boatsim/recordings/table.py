@@ -19,7 +19,7 @@ from boatsim.physics.content import module_of, names
 from boatsim.physics.signals import POSE, RATES, Array
 from boatsim.recordings import limits, units
 from boatsim.recordings.expression import Expression, parse
-from boatsim.recordings.notes import Notes, joined_mistakes, notes_for, unit_of
+from boatsim.recordings.notes import Notes, join_mistakes, notes_for, unit_of
 from boatsim.recordings.raw_table import Raw, file_error, select_rows
 
 __all__ = ["POSE", "RATES", "Notes", "Recording", "read", "write_csv"]
@@ -43,12 +43,12 @@ SPARSE_SHARE = 0.1
 ROUNDING = 1e-3
 
 
-class NoSignal(BadInput):
+class SignalMissing(BadInput):
     """A requested signal is not in the recording."""
 
 
 @dataclass(frozen=True)
-class Orders:
+class TimedCommands:
     """Commands at their own times; each is in force until the next.
 
     Attributes:
@@ -59,11 +59,11 @@ class Orders:
     t: Array
     signals: Mapping[str, Array]
 
-    def between(self, from_s: float, to_s: float) -> "Orders":
+    def between(self, from_s: float, to_s: float) -> "TimedCommands":
         """Return the commands that are in force between two times [s]."""
         begin = max(int(np.searchsorted(self.t, from_s + 1e-9, side="right")) - 1, 0)
         end = int(np.searchsorted(self.t, to_s + 1e-9, side="right"))
-        return Orders(self.t[begin:end], select_rows(self.signals, slice(begin, end)))
+        return TimedCommands(self.t[begin:end], select_rows(self.signals, slice(begin, end)))
 
 
 @dataclass(frozen=True)
@@ -89,15 +89,15 @@ class Recording:
     notes: Notes = field(default_factory=Notes)
     path: Path | None = None
     remarks: tuple[str, ...] = ()
-    orders: Orders | None = None
+    orders: TimedCommands | None = None
 
     def __len__(self) -> int:
         return len(self.t)
 
     def __getitem__(self, name: str) -> Array:
-        """Return the values (N,) of a signal. Raises NoSignal."""
+        """Return the values (N,) of a signal. Raises SignalMissing."""
         if name not in self.signals:
-            raise NoSignal(unknown_name(f"{self.name}: signal", name, self.signals))
+            raise SignalMissing(unknown_name(f"{self.name}: signal", name, self.signals))
         return self.signals[name]
 
     def unit(self, name: str) -> str:
@@ -141,7 +141,10 @@ class Recording:
         for name, values in commands.items():
             signals[name] = np.add.reduceat(values, ends[:-1]) / np.diff(ends)
         return replace(
-            self, t=self.t[::n], signals=signals, orders=self.orders or Orders(self.t, commands)
+            self,
+            t=self.t[::n],
+            signals=signals,
+            orders=self.orders or TimedCommands(self.t, commands),
         )
 
     def _thinned_each(
@@ -169,7 +172,10 @@ class Recording:
                 lasts = np.append(np.diff(self.t), np.median(np.diff(self.t)))
                 signals[name] = np.add.reduceat(values * lasts, rows) / np.add.reduceat(lasts, rows)
         return replace(
-            self, t=self.t[rows], signals=signals, orders=self.orders or Orders(self.t, commands)
+            self,
+            t=self.t[rows],
+            signals=signals,
+            orders=self.orders or TimedCommands(self.t, commands),
         )
 
     def used(self) -> "Recording":
@@ -208,7 +214,7 @@ def read(
     """
     path, channels = Path(path), channels or {}
     found = notes_for(path)
-    raw, _, absent = _renamed(_raw(path), columns or {}, found.columns)
+    raw, _, absent = _rename_columns(_read_raw(path), columns or {}, found.columns)
     needed = []
     for name in raw.columns:
         if name in ("t_s", *MOTION, *channels) or is_command(name):
@@ -222,7 +228,7 @@ def read(
         except BadInput as error:
             mistakes.append(str(error))
     if mistakes:
-        raise BadInput(joined_mistakes(mistakes, path))
+        raise BadInput(join_mistakes(mistakes, path))
     signals, ignored = _signals(raw, needed)
     remarks = [*found.remarks, *absent]
     if ignored:
@@ -253,7 +259,7 @@ def read_unchecked(
         BadInput: If the file is no table, or one without time.
     """
     found = notes_for(path)
-    raw, made, _ = _renamed(_raw(path), columns or {}, found.columns)
+    raw, made, _ = _rename_columns(_read_raw(path), columns or {}, found.columns)
     if "t_s" not in raw.columns or len(raw.rows) < 2:
         _check_columns(raw, list(raw.columns))
         raise file_error(path, f"has {len(raw.rows)} rows; at least {FEWEST_ROWS} are needed")
@@ -273,7 +279,7 @@ def write_csv(recording: Recording, path: Path | str) -> None:
             file.write(csv_rows(recording, start, start + 10_000))
 
 
-def joined(pieces: Sequence[Recording]) -> Recording:
+def join_recordings(pieces: Sequence[Recording]) -> Recording:
     """Return one recording of consecutive pieces of a log."""
     first = pieces[0]
     if len(pieces) == 1:
@@ -297,7 +303,7 @@ def csv_rows(recording: Recording, start: int = 0, end: int | None = None) -> st
     return "".join(map(line.__mod__, map(tuple, part.tolist()))).replace("nan", "")
 
 
-def _raw(path: Path) -> Raw:
+def _read_raw(path: Path) -> Raw:
     if path.is_dir():
         raise file_error(path, "is a folder; a recording is a CSV, Parquet or .rrd file")
     if not path.is_file():
@@ -320,7 +326,7 @@ def _raw(path: Path) -> Raw:
         raise file_error(path, f"can not be read ({error.strerror})") from error
 
 
-def _renamed(
+def _rename_columns(
     raw: Raw, of_vessel: Mapping[str, str], of_notes: Mapping[str, str]
 ) -> tuple[Raw, Mapping[str, Expression], tuple[str, ...]]:
     """The table with names of signals, their expressions, and a remark on unknown columns.
@@ -508,12 +514,12 @@ def _signals(raw: Raw, needed: list[str]) -> tuple[dict[str, Array], list[str]]:
             continue
         is_heading = name == "psi_rad" or name.endswith("_psi_rad")
         if is_heading:
-            values = _unwrapped(values)
+            values = _unwrap(values)
         signals[name] = values
     return signals, ignored
 
 
-def _unwrapped(angle: Array) -> Array:
+def _unwrap(angle: Array) -> Array:
     """The angle without jumps of 2 pi; nan stays nan."""
     known = np.isfinite(angle)
     full = angle.copy()

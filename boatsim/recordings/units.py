@@ -54,7 +54,7 @@ def _in_degrees(columns: Mapping[str, Array]) -> dict[str, int]:
     for name in ("psi_rad", "phi_rad", "r_radps", "p_radps"):
         if name not in columns:
             continue
-        rows, t, values, others = _measured(columns, name)
+        rows, t, values, others = _rows_with_values(columns, name)
         if name == "psi_rad":
             index = heading_in_degrees(t, values, others)
         elif name == "phi_rad":
@@ -66,7 +66,7 @@ def _in_degrees(columns: Mapping[str, Array]) -> dict[str, int]:
     return found
 
 
-def _measured(
+def _rows_with_values(
     columns: Mapping[str, Array], name: str
 ) -> tuple[NDArray[np.int64], Array, Array, dict[str, Array]]:
     """Rows with values of a column: numbers, times, values, and columns without gaps there."""
@@ -94,9 +94,9 @@ def heading_in_degrees(t: Array, psi: Array, signals: Mapping[str, Array]) -> in
     if "r_radps" in signals:
         turned = integral(t, signals["r_radps"])
         # The heading is not unwrapped, for fast turning in degrees looks like wraps
-        if _near(_ratio(turned, psi), DEGREES):
+        if _is_near(_ratio(turned, psi), DEGREES):
             return largest
-        if _near(_ratio(turned, np.unwrap(psi)), 1.0):
+        if _is_near(_ratio(turned, np.unwrap(psi)), 1.0):
             return None
     if (
         "x_m" in signals
@@ -104,7 +104,7 @@ def heading_in_degrees(t: Array, psi: Array, signals: Mapping[str, Array]) -> in
         and _follows_course(t, psi, signals["x_m"], signals["y_m"])
     ):
         return largest
-    if _scatter(steps) > MAX_NOISE or _sustained_turning(t, psi) > MAX_TURNING:
+    if _heading_noise(steps) > MAX_NOISE or _sustained_turning(t, psi) > MAX_TURNING:
         return largest
     return None
 
@@ -114,9 +114,9 @@ def rate_in_degrees(t: Array, rate: Array, angle: Array | None) -> int | None:
     largest = int(np.argmax(np.abs(rate)))
     if angle is not None:
         ratio = _ratio(np.unwrap(angle), integral(t, rate))
-        if _near(ratio, DEGREES):
+        if _is_near(ratio, DEGREES):
             return largest
-        if _near(ratio, 1.0):
+        if _is_near(ratio, 1.0):
             return None
     if np.percentile(np.abs(rate), 75) > MAX_TURNING:
         return largest
@@ -128,7 +128,7 @@ def roll_in_degrees(t: Array, phi: Array, rate: Array | None) -> int | None:
     largest = int(np.argmax(np.abs(phi)))
     if abs(phi[largest]) > MAX_ROLL:
         return largest
-    if rate is not None and _near(_ratio(integral(t, rate), phi), DEGREES):
+    if rate is not None and _is_near(_ratio(integral(t, rate), phi), DEGREES):
         return largest
     return None
 
@@ -143,7 +143,7 @@ def integral(t: Array, rate: Array) -> Array:
     return np.concatenate(([0.0], np.cumsum(0.5 * (rate[1:] + rate[:-1]) * np.diff(t))))
 
 
-def _near(ratio: float, value: float) -> bool:
+def _is_near(ratio: float, value: float) -> bool:
     return value / RATIO_TOLERANCE < ratio < value * RATIO_TOLERANCE
 
 
@@ -170,18 +170,18 @@ def _follows_course(t: Array, psi: Array, x: Array, y: Array) -> bool:
     rows = _rows_in(t, 1.0)
     dx, dy = x[rows:] - x[:-rows], y[rows:] - y[:-rows]
     course, bow = np.arctan2(dy, dx), psi[rows // 2 : rows // 2 + len(dx)]
-    degrees = float(np.median(np.abs(_wrapped(course - bow / DEGREES))))
-    radians = float(np.median(np.abs(_wrapped(course - bow))))
+    degrees = float(np.median(np.abs(_wrap(course - bow / DEGREES))))
+    radians = float(np.median(np.abs(_wrap(course - bow))))
     return degrees < 0.3 and radians > 0.6 and float(np.ptp(bow)) > 0.5 * DEGREES
 
 
-def _wrapped(angle: Array) -> Array:
+def _wrap(angle: Array) -> Array:
     return np.remainder(angle + math.pi, 2.0 * math.pi) - math.pi
 
 
-def _scatter(steps: Array) -> float:
+def _heading_noise(steps: Array) -> float:
     """Standard deviation of a heading [rad] from second differences, robust to outliers."""
-    second = np.abs(np.diff(_wrapped(steps)))
+    second = np.abs(np.diff(_wrap(steps)))
     return 1.48 * float(np.median(second)) / math.sqrt(6.0)
 
 

@@ -8,7 +8,7 @@ from warnings import catch_warnings, simplefilter
 import numpy as np
 
 from boatsim.errors import BadInput, unknown_name
-from boatsim.recordings.table import NoSignal, Notes, Recording
+from boatsim.recordings.table import Notes, Recording, SignalMissing
 from boatsim.simulate.camera import Frame
 from boatsim.simulate.camera_log import CameraLog
 from boatsim.simulate.control_loop import TIME_TOLERANCE, ControlLoop
@@ -219,7 +219,7 @@ class Simulation:
             with np.errstate(all="ignore"), catch_warnings():
                 simplefilter("ignore")
                 self._scenario.measure.values(Recording(first.name, t, signals))
-        except NoSignal:
+        except SignalMissing:
             raise
         except Exception:
             return

@@ -10,7 +10,7 @@ import numpy as np
 from boatsim.physics.base import Array
 from boatsim.physics.signals import follower
 from boatsim.recordings.notes import unit_of
-from boatsim.recordings.table import Recording, joined
+from boatsim.recordings.table import Recording, join_recordings
 
 GOAL = "goal_"  # prefix of a goal's column in the log
 ENDINGS = ("rms", "largest", "integral")  # of a metric's name
@@ -32,7 +32,7 @@ class Tally:
     def add(self, log: Recording) -> None:
         """Add the rows that follow."""
         if self._last:
-            log = joined([self._last, log])
+            log = join_recordings([self._last, log])
         goals = [name.removeprefix(GOAL) for name in log.signals if name.startswith(GOAL)]
         durations = np.append(np.diff(log.t), 0.0)
         for key, signal, _ in _tracked(goals):

@@ -12,7 +12,7 @@ from boatsim.recordings import table
 from boatsim.recordings.importing.convert import convert
 from boatsim.recordings.importing.log import Log, open_log
 from boatsim.recordings.importing.mapping import read_map
-from boatsim.recordings.importing.mapping_proposal import listing, proposal
+from boatsim.recordings.importing.mapping_proposal import propose_map, signal_table
 from boatsim.simulate import scenario, world
 from tests.fuzz import seeds
 from tests.fuzz.seeds import LOGS, files
@@ -57,8 +57,8 @@ def _hull(path: Path) -> object:
 def _log(path: Path) -> object:
     """What `boatsim import` does: the list, the proposal, and by that the recording."""
     log = open_log(path)
-    text = proposal(log, "otter", [], ("surge", "sway", "yaw"), None)
-    listing(log)
+    text = propose_map(log, "otter", [], ("surge", "sway", "yaw"), None)
+    signal_table(log)
     file = path.with_name("proposed.toml")
     file.write_text(text, encoding="utf-8")
     return convert(log, read_map(file), "map.toml")

@@ -11,14 +11,14 @@ from scipy.integrate import quad
 from benchmarks.martin_vessels import (
     PERIOD,
     WAVES,
-    force,
-    held,
-    inertia,
-    linear,
-    on_mujoco,
+    discretise,
+    force_at_approach_speed,
+    linear_model,
+    mass_matrix,
     random_waves,
+    simulate_on_mujoco,
+    simulate_zigzag,
     speed_of,
-    zigzag,
 )
 from boatsim.physics import particulars, vessel
 from boatsim.physics.base import Array
@@ -156,30 +156,38 @@ def test_worked_example_coefficient_by_coefficient() -> None:
         219.7674e3, rel=1e-5
     )
     mass, hull, roll = (
-        inertia(boat) / TONNE,
-        -force(boat, v=1.0) / TONNE,
+        mass_matrix(boat) / TONNE,
+        -force_at_approach_speed(boat, v=1.0) / TONNE,
         boat.effect("roll_damping"),
     )
     assert mass.diagonal() == pytest.approx([53471.11, 1066.479, 8413.6], rel=1e-5)
     assert hull[:2] == pytest.approx([3447.02, 309.136], rel=3e-4)
-    assert -force(boat, r=1.0)[:2] / TONNE == pytest.approx([25557.17, 848.9842], rel=3e-4)
-    assert -force(boat, phi=1.0)[[0, 2]] / TONNE == pytest.approx([666.7563, 7115.55], rel=3e-4)
+    assert -force_at_approach_speed(boat, r=1.0)[:2] / TONNE == pytest.approx(
+        [25557.17, 848.9842], rel=3e-4
+    )
+    assert -force_at_approach_speed(boat, phi=1.0)[[0, 2]] / TONNE == pytest.approx(
+        [666.7563, 7115.55], rel=3e-4
+    )
     assert roll.roll / TONNE == pytest.approx(675.5547, rel=3e-4)  # type: ignore[union-attr]
     own = boat.effect("linear_hull")
     below, arm = own.below, own.arm  # type: ignore[union-attr]
     assert arm * 1066.479 == pytest.approx(671.383, rel=3e-4)  # roll moment of a sway acceleration
     assert below * 309.136 == pytest.approx(419.771, rel=3e-4)
-    rudder = force(boat, rudder=1.0) / TONNE
+    rudder = force_at_approach_speed(boat, rudder=1.0) / TONNE
     assert rudder[:2] == pytest.approx([3213.883, -256.926], rel=3e-4)
     assert rudder[2] - arm * rudder[1] == pytest.approx(607.8455, rel=3e-4)
-    assert -force(boat, r=1.0)[2] / TONNE - arm * 848.9842 == pytest.approx(4042.015, rel=3e-4)
+    assert -force_at_approach_speed(boat, r=1.0)[2] / TONNE - arm * 848.9842 == pytest.approx(
+        4042.015, rel=3e-4
+    )
 
 
 def test_worked_example_as_matrices_and_half_a_second_later() -> None:
-    A, B, _ = linear(example())
+    A, B, _ = linear_model(example())
     assert A == pytest.approx(A_C, abs=1e-4)
     assert B == pytest.approx(B_C, abs=3e-6)
-    found_A, found_B = held(A_C, B_C[:, None])  # the printed step follows from the printed rates
+    found_A, found_B = discretise(
+        A_C, B_C[:, None]
+    )  # the printed step follows from the printed rates
     off = np.abs(found_A - A_D)
     off[[0, 2], 4] = 0.0  # printed as zero
     assert off.max() < 1e-5 and np.abs(found_A - A_D).max() < 3e-4
@@ -196,9 +204,9 @@ def test_the_printed_roll_by_sway_waves_does_not_give_the_printed_step(
     K = np.zeros((5, 3))
     K[1, 0] = K[2, 1] = K[4, 2] = 1.0
     K[4, 1] = coupling
-    off = np.abs(held(A_C, K)[1] - K_D)
+    off = np.abs(discretise(A_C, K)[1] - K_D)
     assert (off.max() < 2e-3) == follows
-    own, mass = example(), inertia(example())
+    own, mass = example(), mass_matrix(example())
     assert own.effect("linear_hull").arm * mass[1, 1] / mass[2, 2] == pytest.approx(
         0.0798, abs=1e-4
     )  # type: ignore[union-attr]
@@ -207,7 +215,7 @@ def test_the_printed_roll_by_sway_waves_does_not_give_the_printed_step(
 @pytest.mark.parametrize(("name", "condition"), TABLE)
 def test_every_condition_is_the_table(name: str, condition: int) -> None:
     boat = vessel.load(name, [f"condition_{condition}"])
-    A, B, _ = linear(boat)
+    A, B, _ = linear_model(boat)
     found = [
         -A[1, 1],
         -A[1, 2],
@@ -243,7 +251,7 @@ def test_a_rudder_to_starboard_heels_inwards_first_and_outwards_in_the_turn() ->
     in both."""
     for condition, speed, wanted in ((3, 6.68777, -0.25), (4, 4.63, -0.12)):
         fast = {"rudder": {"inflow": 1.1111 * speed}}
-        A, B, _ = linear(vessel.load("eastward_ho", [f"condition_{condition}"], fast))
+        A, B, _ = linear_model(vessel.load("eastward_ho", [f"condition_{condition}"], fast))
         steady = np.linalg.solve(A[np.ix_([1, 2, 4], [1, 2, 3])], -B[[1, 2, 4]])
         assert B[4] > 0.0 and steady[2] == pytest.approx(wanted, abs=6e-3)
 
@@ -299,12 +307,12 @@ def test_sway_added_mass_heels_one_way_as_printed_or_both_ways_as_energy_demands
     printed = vessel.load("eastward_ho", ["condition_3"])
     below = printed.effect("linear_hull").below  # type: ignore[union-attr]
     symmetric = vessel.load("eastward_ho", ["condition_3"], {"added_mass": {"sway_below": below}})
-    one, both = linear(printed)[0], linear(symmetric)[0]
+    one, both = linear_model(printed)[0], linear_model(symmetric)[0]
     assert one[2, 3] == one[2, 4] == 0.0  # a roll does not push the printed ship sideways
-    mass = inertia(symmetric)
+    mass = mass_matrix(symmetric)
     lever = -mass[1, 2]  # m_y z_H
-    assert inertia(printed)[1, 2] == 0.0 and lever > 0.0
-    assert mass[2, 2] == pytest.approx(inertia(printed)[2, 2])
+    assert mass_matrix(printed)[1, 2] == 0.0 and lever > 0.0
+    assert mass[2, 2] == pytest.approx(mass_matrix(printed)[2, 2])
     stiffness = printed.effect("righting_arm").stiffness  # type: ignore[union-attr]
     free = mass[2, 2] - lever**2 / mass[1, 1]
     assert both[4, 3] == pytest.approx(-stiffness / free)  # sway gives way: the period is shorter
@@ -325,17 +333,17 @@ def on_twin(boat: Vessel, rudder: Array, waves: Array) -> Array:
         [y],
     )
     for i, (angle, wave) in enumerate(zip(rudder, waves, strict=True)):
-        values[at] = wave * inertia(boat).diagonal()
+        values[at] = wave * mass_matrix(boat).diagonal()
         y = compiled.rollout(y, np.array([[angle]]), PERIOD, values, t0=PERIOD * i)[-1]
         rows.append(y)
     return np.array(rows)[:, [symbols.index(n) for n in ("psi", "r", "v", "phi", "p")]]
 
 
-@pytest.mark.parametrize("run", [on_mujoco, on_twin])
+@pytest.mark.parametrize("run", [simulate_on_mujoco, on_twin])
 def test_mujoco_and_twin_follow_the_exact_step_through_a_zigzag_in_random_waves(run: Any) -> None:
     """120 s, accelerations of the waves drawn anew every half second: less than 1e-6 deg."""
     boat, waves = vessel.load("eastward_ho", ["condition_3"]), random_waves()
-    truth, rudder = zigzag(boat, waves)
+    truth, rudder = simulate_zigzag(boat, waves)
     assert np.degrees(np.abs(truth[:, 0]).max()) > 15 and np.degrees(np.abs(truth[:, 3]).max()) > 5
     off = np.degrees(np.abs(run(boat, rudder, waves) - truth).max(axis=0))
     assert off[0] < 1e-6 and off[3] < 1e-6

@@ -13,7 +13,7 @@ from alike import few
 from runs import mean_of
 from scipy.signal import cont2discrete
 
-from benchmarks.low_speed_margins import LAWS, channel, margins
+from benchmarks.low_speed_margins import LAWS, control_loop, margins
 from boatsim.control.adaptive import held
 from boatsim.metrics.crossing import Crossing
 from boatsim.metrics.heading_hold import HeadingHold
@@ -355,7 +355,7 @@ def test_fifty_times_real_time() -> None:
 def test_margins_of_the_sampled_loop(
     law: str, crossover: float, phase: float, delay: float
 ) -> None:
-    m = margins(channel(**LAWS[law]))
+    m = margins(control_loop(**LAWS[law]))
     assert (m.crossover, degrees(m.phase), m.delay) == pytest.approx(
         (crossover, phase, delay), abs=0.06
     )
@@ -379,13 +379,13 @@ def test_margins_of_the_sampled_loop(
 def test_delay_margin_of_another_craft_than_assumed(
     case: dict[str, float], l1: float, pd: float
 ) -> None:
-    assert margins(channel(), **case).delay == pytest.approx(l1, abs=0.015)
-    assert margins(channel(adaptive=0.0), **case).delay == pytest.approx(pd, abs=0.015)
+    assert margins(control_loop(), **case).delay == pytest.approx(l1, abs=0.015)
+    assert margins(control_loop(adaptive=0.0), **case).delay == pytest.approx(pd, abs=0.015)
 
 
 @pytest.mark.parametrize("gain", [0.1, 0.3, 1.0, 3.0, 5.0])
 def test_input_gain_alone_does_not_make_the_loop_unstable(gain: float) -> None:
-    assert margins(channel(), gain).stable and margins(channel(adaptive=0.0), gain).stable
+    assert margins(control_loop(), gain).stable and margins(control_loop(adaptive=0.0), gain).stable
 
 
 def test_closed_sampled_loop_has_its_poles_where_the_margins_say() -> None:
@@ -394,7 +394,9 @@ def test_closed_sampled_loop_has_its_poles_where_the_margins_say() -> None:
     plant, into = np.array([[1.0, f12], [0.0, F22]]), np.array([[g1], [g2]])
     for gain in (1.0, 20.0, 28.0, 30.0, 40.0):
         radius = abs(np.linalg.eigvals(plant - gain * into @ [[0.5, 0.7]])).max()
-        assert margins(channel(adaptive=0.0, wave_filter=0.0), gain).stable == (radius < 1.0), gain
+        assert margins(control_loop(adaptive=0.0, wave_filter=0.0), gain).stable == (
+            radius < 1.0
+        ), gain
 
 
 # ---- measures

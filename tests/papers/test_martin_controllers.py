@@ -529,7 +529,7 @@ def at_sea(vessel: str, test: str, kind: str, seeds: int = 1) -> martin.Entry:
 
 
 def mean(norm: str, vessel: str, test: str, kind: str, seeds: int = 1) -> float:
-    return float(at_sea(vessel, test, kind, seeds).each(norm).mean())
+    return float(at_sea(vessel, test, kind, seeds).metric_by_seed(norm).mean())
 
 
 QUARTERING = [(v, t) for v in martin.VESSELS for t in ("seas_45", "seas_60", "seas_30")]
@@ -573,8 +573,10 @@ def test_weighing_the_rudder_angle_loses_the_course_that_weighing_its_swing_keep
     """Kynoc at 30 degrees under MV: printed rudder 5.7 deg, yaw 1.0 deg rms."""
     found = {}
     for angle in (False, True):
-        table = martin.autopilot("kynoc", "MV") | {"weighs_angle": angle}
-        found[angle] = martin.measured(scenario.load("kynoc/seas_30", {"controller": table}))
+        table = martin.autopilot_table("kynoc", "MV") | {"weighs_angle": angle}
+        found[angle] = martin.simulate_metrics(
+            scenario.load("kynoc/seas_30", {"controller": table})
+        )
     assert found[False]["yaw_rms"] < 1.03 < found[True]["yaw_rms"]
     assert found[True]["rudder_rms"] < 1.5 < 3.0 < found[False]["rudder_rms"]
 
@@ -582,7 +584,8 @@ def test_weighing_the_rudder_angle_loses_the_course_that_weighing_its_swing_keep
 def test_a_faster_rudder_helps_at_resonance_only() -> None:
     def reduced(pid: str, other: str) -> float:
         rolls = [
-            martin.measured(scenario.load(f"kynoc/{name}"))["roll_rms"] for name in (pid, other)
+            martin.simulate_metrics(scenario.load(f"kynoc/{name}"))["roll_rms"]
+            for name in (pid, other)
         ]
         return 100.0 * (1.0 - rolls[1] / rolls[0])
 
@@ -595,7 +598,8 @@ def test_a_faster_rudder_helps_at_resonance_only() -> None:
 def test_course_keeping_and_roll_go_together_in_kynocs_quartering_sea() -> None:
     kept = ("pid", "sliding", "idle", "locked")
     rolls = [
-        martin.measured(scenario.load(f"kynoc/puzzle_course_{name}"))["roll_rms"] for name in kept
+        martin.simulate_metrics(scenario.load(f"kynoc/puzzle_course_{name}"))["roll_rms"]
+        for name in kept
     ]
     assert rolls == sorted(rolls, reverse=True) and rolls[-1] < 0.6 * rolls[0]
 
@@ -603,8 +607,8 @@ def test_course_keeping_and_roll_go_together_in_kynocs_quartering_sea() -> None:
 def test_the_pid_never_meets_the_rate_limit_so_that_both_rates_are_one_system() -> None:
     test = "eastward_ho/seas_60"
     slow, fast = (
-        martin.measured(
-            scenario.load(test, {"controller": martin.autopilot("eastward_ho", "PID", rate)})
+        martin.simulate_metrics(
+            scenario.load(test, {"controller": martin.autopilot_table("eastward_ho", "PID", rate)})
         )
         for rate in (5.0, 15.0)
     )
@@ -613,7 +617,7 @@ def test_the_pid_never_meets_the_rate_limit_so_that_both_rates_are_one_system() 
 
 def test_twin_of_the_table_is_the_engine() -> None:
     test = scenario.load("eastward_ho/seas_60_sliding_roll", {"duration": 60.0})
-    one, other = martin.sailed(test), run(test).recording
+    one, other = martin.simulate_log(test), run(test).recording
     for name in ("psi_rad", "phi_rad", "rudder_rad"):
         assert one[name] == pytest.approx(other[name], abs=1e-9)
 
@@ -622,7 +626,7 @@ def test_shipped_vessel_sails_as_the_discrete_ship_of_the_thesis() -> None:
     test = scenario.load("eastward_ho/full_load", {"duration": 120.0})
     exact = sailed(PidCourse(), "E3", r=0.1, periods=240)
     assert (
-        np.degrees(np.abs(martin.sailed(test)["psi_rad"] - exact.psi)).max() < 0.05
+        np.degrees(np.abs(martin.simulate_log(test)["psi_rad"] - exact.psi)).max() < 0.05
     )  # table of four digits
 
 
@@ -640,7 +644,7 @@ def test_scenarios_and_table_set_the_autopilots_alike(name: str) -> None:
         if test.endswith("_sliding")
         else "PID"
     )
-    wanted = martin.autopilot(vessel, kind, 15.0 if fast else 5.0)
+    wanted = martin.autopilot_table(vessel, kind, 15.0 if fast else 5.0)
     from_table = scenario.load(name, {"controller": wanted}).controller
     assert {k: pytest.approx(v, abs=1e-6) for k, v in public(shipped.controller).items()} == public(
         from_table

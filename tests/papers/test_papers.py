@@ -19,12 +19,12 @@ def written(folder: Path, text: str) -> Path:
 
 
 def test_the_document_is_what_the_command_makes() -> None:
-    assert papers.OUT.read_text(encoding="utf-8") == papers.document()
+    assert papers.OUT.read_text(encoding="utf-8") == papers.page_text()
 
 
 @pytest.mark.parametrize("file", FILES, ids=lambda f: f.stem)
 def test_a_verdict_follows_from_the_figures_their_signs_and_the_tolerance(file: Path) -> None:
-    for row in papers.rows(file):
+    for row in papers.read_figures(file):
         low, high = row.span or (-inf, inf)
         if row.span is None:
             if isinstance(row.published, str) or isinstance(row.ours, str):
@@ -40,7 +40,7 @@ def test_a_verdict_follows_from_the_figures_their_signs_and_the_tolerance(file: 
 
 
 def test_a_hundred_figures_and_more_are_judged() -> None:
-    verdicts = [row.verdict for file in FILES for row in papers.rows(file)]
+    verdicts = [row.verdict for file in FILES for row in papers.read_figures(file)]
     assert sum(verdict in ("reproduced", "not reproduced") for verdict in verdicts) >= 100
 
 
@@ -60,7 +60,7 @@ def test_words_explain_a_verdict_and_do_not_make_it(
     tmp_path: Path, ours: str, more: str, verdict: str
 ) -> None:
     text = f'[[row]]\nwhat = "w"\nours = {ours}\ncommand = "c"\npublished = 1.0\nreason = "it is reproduced"\n{more}\n'
-    assert [r.verdict for r in papers.rows(written(tmp_path, text))] == [verdict]
+    assert [r.verdict for r in papers.read_figures(written(tmp_path, text))] == [verdict]
 
 
 @pytest.mark.parametrize(
@@ -76,7 +76,7 @@ def test_published_words_are_judged_by_what_they_stand_for(
     tmp_path: Path, published: str, span: str, verdict: str
 ) -> None:
     text = f'[[row]]\nwhat = "w"\nours = 1.0\ncommand = "c"\npublished = {published}\nreason = "r"\n{span}\n'
-    assert [r.verdict for r in papers.rows(written(tmp_path, text))] == [verdict]
+    assert [r.verdict for r in papers.read_figures(written(tmp_path, text))] == [verdict]
 
 
 @pytest.mark.parametrize(
@@ -98,5 +98,5 @@ def test_published_words_are_judged_by_what_they_stand_for(
 )
 def test_a_mistake_gets_one_line(tmp_path: Path, row: str, line: str) -> None:
     with pytest.raises(BadInput, match=line) as caught:
-        list(papers.rows(written(tmp_path, f'[[row]]\nwhat = "w"\n{row}\n')))
+        list(papers.read_figures(written(tmp_path, f'[[row]]\nwhat = "w"\n{row}\n')))
     assert "\n" not in str(caught.value)

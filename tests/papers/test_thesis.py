@@ -28,7 +28,7 @@ EXACT = {
 
 @pytest.mark.parametrize("name", EXACT)
 def test_reference_models_respond_as_published(name: str) -> None:
-    assert thesis_models.response(*thesis_models.RESPONSES[name]) == pytest.approx(
+    assert thesis_models.step_response_figures(*thesis_models.RESPONSES[name]) == pytest.approx(
         EXACT[name], rel=0.005
     )
 

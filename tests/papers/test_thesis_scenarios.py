@@ -13,7 +13,7 @@ from boatsim.physics.content import find
 from boatsim.simulate import scenario
 from boatsim.simulate.evaluation import requested_metrics
 from boatsim.simulate.run import run
-from validation.real.thesis_score import J
+from validation.real.thesis_score import rms_distance
 
 SEEDS = 6  # of the means in section 11
 FEW = 3  # where a bar is far away
@@ -127,7 +127,7 @@ def score() -> dict[str, float]:
         tests["ideal"].append(
             (mean([requested_metrics(run(told, seed)) for seed in range(2)]), published)
         )
-    return {name: J(pairs) for name, pairs in tests.items()}
+    return {name: rms_distance(pairs) for name, pairs in tests.items()}
 
 
 def test_weak_reverse_at_least_halves_the_distance_to_the_thesis(score: dict[str, float]) -> None:

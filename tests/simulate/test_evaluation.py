@@ -15,7 +15,7 @@ from boatsim.simulate.camera import Camera
 from boatsim.simulate.evaluation import Metric, requested_metrics, signal_norm, to_json
 from boatsim.simulate.run import Run
 from boatsim.simulate.scenario import Scenario, load
-from validation.real.thesis_score import J
+from validation.real.thesis_score import rms_distance
 
 CAMERA = Camera(marks={"led": (0.183, 0.0), "button": (-0.117, 0.0)})
 CIRCLE = 0.183  # [m] on which the light is to stay (appendix F)
@@ -456,17 +456,19 @@ def test_score_of_the_published_columns_is_the_published_score(
         (named(YAW, (*a, t)), named(YAW, (*b, 44.0)))
         for a, t, b in zip(turns, times, T23, strict=True)
     ]
-    assert (J(of_sway), J(of_yaw), J([*of_sway, *of_yaw])) == pytest.approx(
-        (sway, yaw, both), abs=0.01
-    )
+    assert (
+        rms_distance(of_sway),
+        rms_distance(of_yaw),
+        rms_distance([*of_sway, *of_yaw]),
+    ) == pytest.approx((sway, yaw, both), abs=0.01)
 
 
 def test_one_wild_test_counts_three_at_most() -> None:
     wild = [({"moved": 9.0, "position_inf": 1e-9}, {"moved": 0.1, "position_inf": 0.1})]
-    assert J(wild) == pytest.approx(3.0)
-    assert J([*wild, ({"position_inf": exp(1.0)}, {"position_inf": 1.0})]) == pytest.approx(
-        sqrt(5.0)
-    )
+    assert rms_distance(wild) == pytest.approx(3.0)
+    assert rms_distance(
+        [*wild, ({"position_inf": exp(1.0)}, {"position_inf": 1.0})]
+    ) == pytest.approx(sqrt(5.0))
 
 
 def test_every_norm_has_a_unit() -> None:

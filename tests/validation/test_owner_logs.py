@@ -11,15 +11,21 @@ import pytest
 
 from validation.owner_logs import boats, cases, faults
 from validation.owner_logs.causes import CAUSES
-from validation.owner_logs.commands import boatsim, findings, write_into
+from validation.owner_logs.commands import add_to_notes, parse_findings, run_boatsim
 from validation.owner_logs.formats import earth
-from validation.owner_logs.instruments import fit, names, see
+from validation.owner_logs.instruments import drive_names, record_voyage, sample_instruments
 from validation.owner_logs.judge import Result
-from validation.owner_logs.owner import accept, wanted
+from validation.owner_logs.owner import correct_lines, correct_map
 from validation.owner_logs.pilot import pilot
-from validation.owner_logs.plant import Around, Plant, State, slope, step
-from validation.owner_logs.sail import Linkage, sail
-from validation.owner_logs.table import goals
+from validation.owner_logs.plant import (
+    Plant,
+    State,
+    Surroundings,
+    runge_kutta_step,
+    state_derivative,
+)
+from validation.owner_logs.sail import Linkage, simulate_voyage
+from validation.owner_logs.table import goal_rows
 
 FOLDER = Path(faults.__file__).parent
 JUDGES = {"judge.py", "commands.py", "table.py", "__main__.py"}
@@ -44,7 +50,7 @@ def test_the_simulator_imports_nothing_of_the_program_that_it_examines() -> None
 def test_a_hull_in_ideal_water_keeps_its_energy(kind) -> None:  # type: ignore[no-untyped-def]
     boat = kind(np.random.default_rng(5))
     plant = replace(
-        bare(boat), around=Around(load=0.2 * boat.plant.hull.mass, load_at=0.2 * boat.length)
+        bare(boat), around=Surroundings(load=0.2 * boat.plant.hull.mass, load_at=0.2 * boat.length)
     )
     mx, my, mz, myz = plant.masses()
     s: State = (0.0, 0.0, 0.3, 1.5, 0.4, 0.3)
@@ -55,7 +61,7 @@ def test_a_hull_in_ideal_water_keeps_its_energy(kind) -> None:  # type: ignore[n
 
     begin, still = energy(s), (0.0,) * len(plant.propellers)
     for _ in range(500):
-        s = step(plant, s, still, 0.0, 0.02, STILL)
+        s = runge_kutta_step(plant, s, still, 0.0, 0.02, STILL)
     assert energy(s) == pytest.approx(begin, rel=1e-6)
     assert abs(s[2] - 0.3) > 0.5
 
@@ -73,15 +79,17 @@ def test_a_hull_in_ideal_water_keeps_its_impulse(kind) -> None:  # type: ignore[
 
     begin = impulse(s)
     for _ in range(500):
-        s = step(plant, s, (0.0,) * len(plant.propellers), 0.0, 0.02, STILL)
+        s = runge_kutta_step(plant, s, (0.0,) * len(plant.propellers), 0.0, 0.02, STILL)
     assert impulse(s) == pytest.approx(begin, rel=1e-6)
 
 
 def test_a_current_only_carries() -> None:
     boat = boats.launch(np.random.default_rng(1))
     s: State = (0.0, 0.0, 0.4, 1.2, 0.2, 0.1)
-    carried = slope(replace(boat.plant, around=Around(current=(0.3, -0.2))), s, (0.6,), 0.2, STILL)
-    still = slope(boat.plant, s, (0.6,), 0.2, STILL)
+    carried = state_derivative(
+        replace(boat.plant, around=Surroundings(current=(0.3, -0.2))), s, (0.6,), 0.2, STILL
+    )
+    still = state_derivative(boat.plant, s, (0.6,), 0.2, STILL)
     assert carried[2:] == still[2:]
     assert (carried[0] - still[0], carried[1] - still[1]) == pytest.approx((0.3, -0.2))
 
@@ -92,11 +100,11 @@ def test_helm_to_starboard_turns_to_starboard_and_full_ahead_reaches_the_top_spe
     fixed, both = not boat.helm_most, len(boat.plant.propellers)
     s: State = (0.0,) * 6
     for _ in range(10_000):
-        s = step(boat.plant, s, (1.0,) * both, 0.0, 0.02, STILL)
+        s = runge_kutta_step(boat.plant, s, (1.0,) * both, 0.0, 0.02, STILL)
     assert s[3] == pytest.approx(boats.top_speed(boat.plant), rel=0.05)
     revs = (0.8, 0.4) if fixed else (0.6,) * both
     for _ in range(400):
-        s = step(boat.plant, s, revs, boat.helm_most, 0.02, STILL)
+        s = runge_kutta_step(boat.plant, s, revs, boat.helm_most, 0.02, STILL)
     assert s[5] > 0.02
 
 
@@ -110,22 +118,27 @@ def test_what_was_written_is_what_a_recording_holds(form: str, kind, tmp_path: P
     boat = kind(np.random.default_rng(3))
     rng = np.random.default_rng(7)
     on = replace(
-        fit(boat, rng), fix_sd=0.0, compass_sd=0.0, gyro_sd=0.0, gyro_bias=0.0, antenna=0.0
+        sample_instruments(boat, rng),
+        fix_sd=0.0,
+        compass_sd=0.0,
+        gyro_sd=0.0,
+        gyro_bias=0.0,
+        antenna=0.0,
     )
-    voyage = sail(boat, Linkage(gains=(1.0, 1.0)), pilot(boat, rng, 40.0), 40.0, rng)
-    seen = see(boat, voyage, on, rng)
+    voyage = simulate_voyage(boat, Linkage(gains=(1.0, 1.0)), pilot(boat, rng, 40.0), 40.0, rng)
+    seen = record_voyage(boat, voyage, on, rng)
     log = cases.write(example(boat, form), boat, seen, None, tmp_path, "log")
-    assert boatsim("new", tmp_path / "boat", *boat.options).code == 0
-    proposed = boatsim(
+    assert run_boatsim("new", tmp_path / "boat", *boat.options).code == 0
+    proposed = run_boatsim(
         "import", log.path, "--vessel", tmp_path / "boat", "--propose", tmp_path / "map.toml"
     )
     assert proposed.code == 0, proposed.err
-    text, _ = accept(
+    text, _ = correct_map(
         (tmp_path / "map.toml").read_text(),
-        wanted(boat, tmp_path / "boat" / "vessel.toml", log.orders),
+        correct_lines(boat, tmp_path / "boat" / "vessel.toml", log.orders),
     )
     (tmp_path / "map.toml").write_text(text)
-    made = boatsim(
+    made = run_boatsim(
         "import", log.path, "--map", tmp_path / "map.toml", "--out", tmp_path / "run.csv"
     )
     assert made.code == 0, made.err
@@ -141,7 +154,7 @@ def test_what_was_written_is_what_a_recording_holds(form: str, kind, tmp_path: P
     first = rows[boat.channels[0]]
     astern = voyage.throttles[:, 0] < 0.0
     assert np.sign(first[first != 0.0]).min() == (-1.0 if astern.any() else 1.0)
-    held = earth.held(voyage.t, voyage.throttles[:, 0], rows["t_s"])
+    held = earth.last_values(voyage.t, voyage.throttles[:, 0], rows["t_s"])
     same = np.sign(held) == np.sign(first)
     assert same.mean() > 0.97
 
@@ -175,21 +188,21 @@ def test_a_third_of_the_logs_is_good_and_what_is_wrong_fits_the_boat(seed: int) 
 
 
 def test_every_name_that_counts_for_a_cause_is_an_entry_of_the_library() -> None:
-    said = boatsim("list")
+    said = run_boatsim("list")
     known = {line.split()[0] for line in said.out.splitlines() if line.startswith("  ")}
     assert not {n for c in CAUSES.values() for n in c.named} - known
 
 
 def test_the_owner_puts_in_what_is_absent_and_turns_a_sign(tmp_path: Path) -> None:
     boat = boats.workboat(np.random.default_rng(3))
-    assert boatsim("new", tmp_path / "boat", *boat.options).code == 0
+    assert run_boatsim("new", tmp_path / "boat", *boat.options).code == 0
     scales = {
         n: cases.ardupilot.Scale(f"RCOU.C{i}", 1100, 1500, 1900)
-        for i, n in enumerate(("helm", *names(boat)), 1)
+        for i, n in enumerate(("helm", *drive_names(boat)), 1)
     }
-    lines = wanted(boat, tmp_path / "boat" / "vessel.toml", scales)
+    lines = correct_lines(boat, tmp_path / "boat" / "vessel.toml", scales)
     flipped = f'{boat.helms[0]} = {{ signal = "RCOU.C1", low = 1100, neutral = 1500, high = 1900, least = -0.7, most = 0.7 }}'
-    text, edits = accept(
+    text, edits = correct_map(
         f'# commands: what was sent to the drives\n{flipped}\n# {boat.channels[0]} = "..."\n', lines
     )
     assert edits == [f"absent {c}" for c in boat.channels] + [
@@ -202,7 +215,7 @@ def test_the_owner_puts_in_what_is_absent_and_turns_a_sign(tmp_path: Path) -> No
 def test_advice_goes_into_a_recording_toml_beside_what_is_there(tmp_path: Path) -> None:
     file = tmp_path / "recording.toml"
     file.write_text('[runs.run]\nvessel = "../boat"\n[runs.run.facts]\nposition_fix = "gnss"\n')
-    write_into(file, ["use = [0, 12.5]", "[columns]", 'psi_rad = "-psi_rad + 90 * deg"'])
+    add_to_notes(file, ["use = [0, 12.5]", "[columns]", 'psi_rad = "-psi_rad + 90 * deg"'])
     assert file.read_text() == (
         'use = [0, 12.5]\n[runs.run]\nvessel = "../boat"\n[runs.run.facts]\nposition_fix = "gnss"\n'
         '[columns]\npsi_rad = "-psi_rad + 90 * deg"\n'
@@ -217,7 +230,7 @@ def test_findings_are_read_from_what_check_prints() -> None:
         "  heading in degrees (probability 99 %): psi_rad goes from 1 to 300\n"
         '    write into recording.toml: [columns] / psi_rad = "psi_rad * deg"\n'
     )
-    found = findings(CommandResult(1, text, "", 0.0))
+    found = parse_findings(CommandResult(1, text, "", 0.0))
     assert [(f.name, f.sure, f.lines) for f in found] == [
         ("heading_in_degrees", 0.99, ("[columns]", 'psi_rad = "psi_rad * deg"'))
     ]
@@ -240,7 +253,7 @@ def test_the_goals_count_what_they_ask_for() -> None:
         edits=["absent rudder_rad"],
     )
     both.fault_named, both.physics_named, both.called_physics = True, False, False
-    rows = {row[:58].strip(): row[58:].split() for row in goals([good, both])}
+    rows = {row[:58].strip(): row[58:].split() for row in goal_rows([good, both])}
     assert rows["log read, or its need stated in one line"][:2] == ["2", "(100"]
     assert rows["map of the commands proposed whole and right"][:2] == ["1", "(50"]
     assert rows["the log's fault named"][:2] == ["1", "(100"]

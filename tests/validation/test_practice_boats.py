@@ -39,7 +39,7 @@ def sailed(name: str, dt: float) -> Array:
                 np.where((boat.drive.lag > 0)[:, None], boat.drive.follow(y, goal, s), goal)
                 for s in (0.0, dt / 2, dt)
             )
-            q, nu = motion.step(
+            q, nu = motion.runge_kutta_step(
                 boat,
                 t,
                 run,

@@ -9,7 +9,7 @@ import pytest
 
 from boatsim.diagnosis.loading import open_recording
 from validation.practice import hulls
-from validation.practice.make import Trial, evidence, make, sailed, trials
+from validation.practice.make import Trial, evidence_gains, make_trial, simulate_trial, trials
 from validation.practice.plans import PLANS
 
 CHEAP = Trial(
@@ -24,7 +24,7 @@ CHEAP = Trial(
 
 def test_the_same_seed_gives_the_same_files(tmp_path: Path) -> None:
     for folder in ("one", "two"):
-        make(CHEAP, 3, tmp_path / folder)
+        make_trial(CHEAP, 3, tmp_path / folder)
     files = sorted(p.name for p in (tmp_path / "one" / CHEAP.name).iterdir())
     assert files == ["answer.json", "recording.toml", "run_1.csv", "run_2.csv", "run_3.csv"]
     for name in files:
@@ -47,7 +47,7 @@ def test_a_set_has_all_kinds_for_every_vessel_and_conceals_half_of_the_single_ef
 def test_the_tool_reads_a_trial_of_every_vessel_by_its_recording_toml(
     tmp_path: Path, vessel: str
 ) -> None:
-    made = make(Trial("T002_" + vessel, vessel, "none", False, True, ()), 5, tmp_path)
+    made = make_trial(Trial("T002_" + vessel, vessel, "none", False, True, ()), 5, tmp_path)
     recording, boat = open_recording(tmp_path / f"T002_{vessel}" / "run_3.csv", None, ())
     assert boat.name == vessel and len(recording) >= 240 and not recording.remarks
     assert json.loads((tmp_path / f"T002_{vessel}" / "answer.json").read_text()) == made
@@ -59,7 +59,8 @@ def test_the_tool_reads_a_trial_of_every_vessel_by_its_recording_toml(
 
 def test_a_stronger_effect_gives_more_evidence_and_none_gives_none() -> None:
     gains = [
-        float(evidence(sailed(CHEAP, (3, 1), np.array([s])), False)[0]) for s in (1e-6, 0.05, 0.1)
+        float(evidence_gains(simulate_trial(CHEAP, (3, 1), np.array([s])), False)[0])
+        for s in (1e-6, 0.05, 0.1)
     ]
     assert (
         gains[0] == pytest.approx(0.0, abs=1e-3)

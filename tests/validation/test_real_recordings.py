@@ -7,7 +7,7 @@ from runs import found
 from boatsim.diagnosis.pipeline import Diagnosis
 from validation.real import kvlcc2_roll_decay as roll
 from validation.real import thesis_tables as thesis
-from validation.real.thesis_runs import Bench
+from validation.real.thesis_runs import ThesisTest
 
 TRUTH = {"thrust": 0.6, "astern": 0.7}  # [N], ratio
 
@@ -23,17 +23,17 @@ def test_every_second_window_of_the_roll_decay_is_predicted_far_better_than_by_a
     assert len(windows.findings.held_out) == 4 and not set(windows.findings.held_out) & set(
         windows.findings.runs
     )
-    assert roll.ratio(windows) <= 0.3
+    assert roll.error_ratio(windows) <= 0.3
 
 
 def test_the_middle_third_is_predicted_from_the_first_and_the_last() -> None:
-    assert roll.ratio(roll.diagnose_thirds(*roll.open_release(roll.AT_REST))) <= 0.2
+    assert roll.error_ratio(roll.diagnose_thirds(*roll.open_release(roll.AT_REST))) <= 0.2
 
 
 def test_on_the_last_third_alone_a_constant_moment_alone_beats_the_linear_boat(
     windows: Diagnosis,
 ) -> None:
-    _, ranking = roll.last_third(windows, roll.open_release(roll.AT_REST)[0])
+    _, ranking = roll.last_third_rows(windows, roll.open_release(roll.AT_REST)[0])
     assert {n.name for n in ranking.named} == {"steady_force"}
     alike = {"steady_force", "roll_offset"}  # so small a roll can not tell them apart
     assert max(gain for name, gain in ranking.first.items() if name not in alike) < 4.0
@@ -42,7 +42,9 @@ def test_on_the_last_third_alone_a_constant_moment_alone_beats_the_linear_boat(
 def test_stiffening_explains_the_phase_and_damping_the_envelope(windows: Diagnosis) -> None:
     whole, _ = roll.open_release(roll.AT_REST)
     held_out = roll.map_all(windows, roll.windows_of(whole)[1::2])
-    off = roll.polar_errors(windows.problem, roll.one_at_a_time(windows), held_out)
+    off = roll.envelope_and_phase_errors(
+        windows.problem, roll.fit_one_effect_at_a_time(windows), held_out
+    )
     envelope, phase = ({label: e[i] / off["linear"][i] for label, e in off.items()} for i in (0, 1))
     assert phase["+ righting_arm_stiffening"] < 0.4 < 0.9 < envelope["+ righting_arm_stiffening"]
     assert envelope["+ cubic_damping"] < 0.7 < 0.9 < phase["+ cubic_damping"]
@@ -51,14 +53,15 @@ def test_stiffening_explains_the_phase_and_damping_the_envelope(windows: Diagnos
 @pytest.mark.parametrize("test", ["sway_1", "yaw_2"])
 def test_fast_runs_of_the_thesis_tests_give_the_norms_of_the_engine(test: str) -> None:
     truth = {n: norm.value for n, norm in found(f"joystick_boat/{test}_as_published", 1)[0].items()}
-    fast = Bench(f"{test}_as_published").norms((), (), (1,))
+    fast = ThesisTest(f"{test}_as_published").norms((), (), (1,))
     assert {n: fast[n] for n in truth} == pytest.approx(truth, rel=1e-3)
 
 
 def test_commands_of_a_turn_can_be_played_to_another_boat() -> None:
     knobs, values = (thesis.OWN[1],), (0.2,)
     closed, played = (
-        Bench("yaw_1_as_published", replayed=p).norms(knobs, values, (0,)) for p in (False, True)
+        ThesisTest("yaw_1_as_published", replayed=p).norms(knobs, values, (0,))
+        for p in (False, True)
     )
     fitted = ("moved", "position_inf", "position_rms", "turn_time")
     assert {n: played[n] for n in fitted} == pytest.approx({n: closed[n] for n in fitted}, rel=0.15)
@@ -67,7 +70,7 @@ def test_commands_of_a_turn_can_be_played_to_another_boat() -> None:
 @pytest.mark.slow
 def test_an_effect_that_made_the_norms_is_found_in_them() -> None:
     tables = thesis.Tables(tests=("sway_1", "sway_3"))
-    knobs = thesis.knobs_of(("weak_reverse",))
+    knobs = thesis.strengths_of(("weak_reverse",))
     made = {
         t: tables.norms(t, knobs, (TRUTH["thrust"], 0.5, TRUTH["astern"])) for t in tables.benches
     }

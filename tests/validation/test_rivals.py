@@ -9,14 +9,14 @@ import numpy as np
 import pytest
 
 from validation import trials
-from validation.entry import BadEntry, answers_in, horizon_of, read_answer, replay_errors
+from validation.entry import BadEntry, horizon_of, read_answer, read_answers, replay_errors
 from validation.practice import __main__ as practice
 from validation.practice import hulls
-from validation.practice.make import Trial, make
-from validation.rivals.__main__ import RIVALS, enter
-from validation.rivals.accelerations import derived, kernel
+from validation.practice.make import Trial, make_trial
+from validation.rivals.__main__ import RIVALS, answer_trial
+from validation.rivals.accelerations import acceleration_weights, smoothed_derivative
 from validation.rivals.evidence import Judge
-from validation.rivals.linear import solved
+from validation.rivals.linear import bounded_least_squares_step
 
 EASY = Trial(
     "T001_martin_tank_model",
@@ -32,7 +32,7 @@ NOTHING = {"effects": [], "unknown": {"flag": False}}
 @pytest.fixture(scope="module")
 def easy(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("set")
-    make(EASY, 4, folder)
+    make_trial(EASY, 4, folder)
     return folder
 
 
@@ -44,7 +44,7 @@ def test_a_rival_names_what_is_plain_to_see_and_is_scored(
     monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    enter(rival, easy / EASY.name, tmp_path / EASY.name)
+    answer_trial(rival, easy / EASY.name, tmp_path / EASY.name)
     answer = read_answer(tmp_path / EASY.name / "diagnosis.json")
     assert [e["name"] for e in answer["effects"]] == ["righting_arm_stiffening"]
     assert (tmp_path / EASY.name / "replay.csv").is_file()
@@ -56,7 +56,7 @@ def test_a_rival_names_what_is_plain_to_see_and_is_scored(
 
 def test_an_answer_needs_no_more_than_names_and_the_flag(tmp_path: Path) -> None:
     write(tmp_path, {"effects": [{"name": "wind"}], "unknown": {"flag": False}})
-    found = answers_in(tmp_path, ["T001"])["T001"]
+    found = read_answers(tmp_path, ["T001"])["T001"]
     assert (
         found["effects"][0] == {"name": "wind", "tied_with": [], "parameters": {}}
         and found["described"] == []
@@ -83,7 +83,7 @@ def test_an_answer_needs_no_more_than_names_and_the_flag(tmp_path: Path) -> None
 def test_a_bad_answer_is_refused_in_one_line(tmp_path: Path, answer: object, words: str) -> None:
     write(tmp_path, answer)
     with pytest.raises(BadEntry) as refused:
-        answers_in(tmp_path, ["T001"])
+        read_answers(tmp_path, ["T001"])
     assert (
         words in str(refused.value)
         and "\n" not in str(refused.value)
@@ -165,15 +165,17 @@ def test_bic_asks_more_of_errors_that_are_alike() -> None:
 def test_derivatives_of_a_parabola_are_exact_and_the_kernel_sees_steps_as_they_do() -> None:
     h, n = 0.1, 9
     t = h * np.arange(60)
-    assert derived(3.0 * t**2, n, 2, h)[n:-n] == pytest.approx(6.0)
+    assert smoothed_derivative(3.0 * t**2, n, 2, h)[n:-n] == pytest.approx(6.0)
     acceleration = np.where(np.arange(60) < 30, 0.0, 2.0)
     position = h * h * np.append(0.0, np.cumsum(np.cumsum(acceleration))[:-1])
-    seen = np.convolve(acceleration, kernel(n), "same")
-    assert derived(position, n, 2, h)[n:-n] == pytest.approx(seen[n:-n], abs=1e-9)
+    seen = np.convolve(acceleration, acceleration_weights(n), "same")
+    assert smoothed_derivative(position, n, 2, h)[n:-n] == pytest.approx(seen[n:-n], abs=1e-9)
 
 
 def test_a_step_keeps_within_bounds() -> None:
-    step = solved(np.eye(2), np.array([-3.0, 1.0]), [0.0, 0.0], [2.0, 9.0], np.array([1.0, 5.0]))
+    step = bounded_least_squares_step(
+        np.eye(2), np.array([-3.0, 1.0]), [0.0, 0.0], [2.0, 9.0], np.array([1.0, 5.0])
+    )
     assert step == pytest.approx([1.0, -1.0], rel=1e-3)
 
 

@@ -12,17 +12,17 @@ from pathlib import Path
 
 from validation.owner_logs.cases import Case, cases
 from validation.owner_logs.judge import Judge, Result
-from validation.owner_logs.table import goals, line
+from validation.owner_logs.table import case_line, goal_rows
 
 
-def judged(case: Case, out: Path, log_only: bool) -> Result:
+def judge_case(case: Case, out: Path, log_only: bool) -> Result:
     """Judge one case in its folder."""
     return Judge(case, out / f"case_{case.number:02d}", log_only).judge()
 
 
-def show(results: list[Result]) -> None:
+def print_results(results: list[Result]) -> None:
     """Print a line for each case, then the goals."""
-    print("\n".join([*map(line, results), "", *goals(results)]))
+    print("\n".join([*map(case_line, results), "", *goal_rows(results)]))
 
 
 def main() -> None:
@@ -43,7 +43,7 @@ def main() -> None:
     parser.add_argument("--jobs", type=int, default=1)
     given = parser.parse_args()
     if given.show:
-        show(
+        print_results(
             [
                 Result(**json.loads(f.read_text(encoding="utf-8")))
                 for f in sorted(given.out.glob("case_*/result.json"))
@@ -56,12 +56,12 @@ def main() -> None:
     results = []
     with ProcessPoolExecutor(given.jobs) as pool:
         for result in pool.map(
-            judged, asked, [given.out] * len(asked), [given.log_only] * len(asked)
+            judge_case, asked, [given.out] * len(asked), [given.log_only] * len(asked)
         ):
             results.append(result)
-            print(line(result), flush=True)
+            print(case_line(result), flush=True)
     print()
-    print("\n".join(goals(results)))
+    print("\n".join(goal_rows(results)))
     print(f"seed {given.seed}, {len(results)} cases, {(time.time() - begin) / 60.0:.0f} min")
 
 

@@ -40,18 +40,20 @@ class Boat:
         return sqrt(self.length / 2.0)
 
 
-def about(rng: Rng, value: float, share: float) -> float:
+def sample_near(rng: Rng, value: float, share: float) -> float:
     """Sample a value within a share of another."""
     return float(value * (1.0 + share * rng.uniform(-1.0, 1.0)))
 
 
-def hull(rng: Rng, length: float, beam: float, draught: float, mass: float, hulls: int = 1) -> Hull:
+def sample_hull(
+    rng: Rng, length: float, beam: float, draught: float, mass: float, hulls: int = 1
+) -> Hull:
     """Sample a hull of these sizes with hydrodynamic coefficients around usual values."""
     wide = 0.3 * beam if hulls == 2 else beam
-    wetted = hulls * about(rng, 1.7 * length * draught + 0.75 * length * wide, 0.1)
-    sway = about(rng, 0.45 * RHO * pi * draught**2 * length * hulls, 0.3)
-    yaw = about(rng, 0.07 * sway * length**2, 0.3)
-    inertia = mass * about(rng, 0.25, 0.1) ** 2 * length**2 + (
+    wetted = hulls * sample_near(rng, 1.7 * length * draught + 0.75 * length * wide, 0.1)
+    sway = sample_near(rng, 0.45 * RHO * pi * draught**2 * length * hulls, 0.3)
+    yaw = sample_near(rng, 0.07 * sway * length**2, 0.3)
+    inertia = mass * sample_near(rng, 0.25, 0.1) ** 2 * length**2 + (
         mass * 0.12 * beam**2 if hulls == 2 else 0.0
     )
     return Hull(
@@ -61,15 +63,15 @@ def hull(rng: Rng, length: float, beam: float, draught: float, mass: float, hull
         hulls,
         mass,
         inertia,
-        (about(rng, 0.09, 0.4) * mass, sway, yaw, sway * length * rng.uniform(-0.03, 0.05)),
+        (sample_near(rng, 0.09, 0.4) * mass, sway, yaw, sway * length * rng.uniform(-0.03, 0.05)),
         wetted,
-        about(rng, 0.35, 0.5),
-        about(rng, 0.006, 0.5),
-        about(rng, 0.9, 0.3),
+        sample_near(rng, 0.35, 0.5),
+        sample_near(rng, 0.006, 0.5),
+        sample_near(rng, 0.9, 0.3),
         rng.uniform(-0.3, 0.2),
-        about(rng, 0.8, 0.3),
+        sample_near(rng, 0.8, 0.3),
         rng.uniform(-0.4, -0.2),
-        about(rng, 0.12, 0.5) * (inertia + yaw) / sqrt(length / 2.0),
+        sample_near(rng, 0.12, 0.5) * (inertia + yaw) / sqrt(length / 2.0),
         (0.35 * beam * beam, 0.3 * beam * length, rng.uniform(-0.05, 0.1) * length),
     )
 
@@ -89,35 +91,35 @@ def owner_particulars(rng: Rng, plant: Plant, draught: bool) -> list[str]:
     h = plant.hull
     found = [
         "--length",
-        f"{about(rng, h.length, 0.01):.2f}",
+        f"{sample_near(rng, h.length, 0.01):.2f}",
         "--beam",
-        f"{about(rng, h.beam, 0.02):.2f}",
+        f"{sample_near(rng, h.beam, 0.02):.2f}",
     ]
-    found += ["--mass", f"{about(rng, h.mass, 0.1):.3g}", "--hulls", str(h.hulls)]
-    found += ["--draught", f"{about(rng, h.draught, 0.08):.2g}"] if draught else []
-    return [*found, "--speed", f"{about(rng, top_speed(plant), 0.06):.2g}"]
+    found += ["--mass", f"{sample_near(rng, h.mass, 0.1):.3g}", "--hulls", str(h.hulls)]
+    found += ["--draught", f"{sample_near(rng, h.draught, 0.08):.2g}"] if draught else []
+    return [*found, "--speed", f"{sample_near(rng, top_speed(plant), 0.06):.2g}"]
 
 
-def mounts(rng: Rng, plant: Plant, option: str) -> tuple[list[str], list[float]]:
+def sample_mounts(rng: Rng, plant: Plant, option: str) -> tuple[list[str], list[float]]:
     """Return positions and thrusts of the drives, and the full thrusts [N] that are specified."""
     found, full = [], []
-    factor = about(rng, 1.0, 0.12)
+    factor = sample_near(rng, 1.0, 0.12)
     for p in plant.propellers:
-        place = f"{about(rng, p.x, 0.04):.2f},{p.y:.2f}"
+        place = f"{sample_near(rng, p.x, 0.04):.2f},{p.y:.2f}"
         most = float(f"{p.full * factor:.2g}")
         full.append(most)
         found.append(f"{option}={place},{most:g},{p.astern * most:.2g}")
     return found, full
 
 
-def named(plant: Plant) -> tuple[str, ...]:
+def drive_names_for_new(plant: Plant) -> tuple[str, ...]:
     """Return the drives under their names in `boatsim new`."""
     if len(plant.propellers) == 1:
         return ("motor",)
     return tuple("starboard" if p.y > 0 else "port" for p in plant.propellers)
 
 
-def built(
+def build_boat(
     rng: Rng,
     name: str,
     plant: Plant,
@@ -130,11 +132,13 @@ def built(
     draught: bool = True,
 ) -> Boat:
     """Return the boat with the options its owner would give to `boatsim new`."""
-    places, full = mounts(rng, plant, option)
+    places, full = sample_mounts(rng, plant, option)
     options = [*owner_particulars(rng, plant, draught), *places]
     if plant.rudder:
-        options.append(f"--rudder={plant.rudder.x:.2f},{about(rng, plant.rudder.area, 0.1):.2g}")
-    names = named(plant)
+        options.append(
+            f"--rudder={plant.rudder.x:.2f},{sample_near(rng, plant.rudder.area, 0.1):.2g}"
+        )
+    names = drive_names_for_new(plant)
     steers: tuple[str, ...] = ()
     if plant.rudder:
         steers = ("rudder_rad",)
@@ -159,75 +163,95 @@ def built(
 def workboat(rng: Rng) -> Boat:
     """Sample a boat of 4 to 5 m of aluminium with two steered outboards on one wheel."""
     L = rng.uniform(4.2, 5.2)
-    mass = about(rng, 620.0, 0.15) * (L / 4.6) ** 3
-    full, y = about(rng, 650.0, 0.15), about(rng, 0.38, 0.1)
+    mass = sample_near(rng, 620.0, 0.15) * (L / 4.6) ** 3
+    full, y = sample_near(rng, 650.0, 0.15), sample_near(rng, 0.38, 0.1)
     motors = tuple(
         Propeller(
-            -0.47 * L, side * y, full, about(rng, 0.7, 0.1), about(rng, 7.0, 0.1), 0.05, 0.045, True
+            -0.47 * L,
+            side * y,
+            full,
+            sample_near(rng, 0.7, 0.1),
+            sample_near(rng, 7.0, 0.1),
+            0.05,
+            0.045,
+            True,
         )
         for side in (-1.0, 1.0)
     )
-    plant = Plant(hull(rng, L, 0.4 * L, about(rng, 0.26, 0.1), mass), motors)
-    return built(rng, "workboat", plant, "--steered", 0.52, 0.5, 0.35, 0.6, 5200.0)
+    plant = Plant(sample_hull(rng, L, 0.4 * L, sample_near(rng, 0.26, 0.1), mass), motors)
+    return build_boat(rng, "workboat", plant, "--steered", 0.52, 0.5, 0.35, 0.6, 5200.0)
 
 
 def survey_catamaran(rng: Rng) -> Boat:
     """Sample a boat of about 2 m with two fixed electric thrusters."""
     L = rng.uniform(1.6, 2.4)
-    mass = about(rng, 60.0, 0.15) * (L / 2.0) ** 3
-    full, y, astern = about(rng, 95.0, 0.2), about(rng, 0.36, 0.1), about(rng, 0.75, 0.1)
+    mass = sample_near(rng, 60.0, 0.15) * (L / 2.0) ** 3
+    full, y, astern = (
+        sample_near(rng, 95.0, 0.2),
+        sample_near(rng, 0.36, 0.1),
+        sample_near(rng, 0.75, 0.1),
+    )
     motors = tuple(
         Propeller(-0.4 * L, side * y, full, astern, 4.2, 0.05, 0.012) for side in (-1.0, 1.0)
     )
-    plant = Plant(hull(rng, L, 0.52 * L, about(rng, 0.14, 0.1), mass, 2), motors)
-    return built(rng, "survey_catamaran", plant, "--thruster", 0.0, 0.5, 0.15, 1.0, 1800.0)
+    plant = Plant(sample_hull(rng, L, 0.52 * L, sample_near(rng, 0.14, 0.1), mass, 2), motors)
+    return build_boat(rng, "survey_catamaran", plant, "--thruster", 0.0, 0.5, 0.15, 1.0, 1800.0)
 
 
 def launch(rng: Rng) -> Boat:
     """Sample a boat of 6 to 8 m with one screw and a rudder."""
     L = rng.uniform(6.2, 7.8)
-    mass = about(rng, 3600.0, 0.15) * (L / 7.0) ** 3
+    mass = sample_near(rng, 3600.0, 0.15) * (L / 7.0) ** 3
     screw = Propeller(
-        -0.40 * L, 0.0, about(rng, 3600.0, 0.15), about(rng, 0.6, 0.1), 5.6, 0.2, 0.28
+        -0.40 * L, 0.0, sample_near(rng, 3600.0, 0.15), sample_near(rng, 0.6, 0.1), 5.6, 0.2, 0.28
     )
     plant = Plant(
-        hull(rng, L, 0.34 * L, about(rng, 0.6, 0.1), mass), (screw,), Rudder(-0.46 * L, 0.21, 2.4)
+        sample_hull(rng, L, 0.34 * L, sample_near(rng, 0.6, 0.1), mass),
+        (screw,),
+        Rudder(-0.46 * L, 0.21, 2.4),
     )
-    return built(rng, "launch", plant, "--thruster", 0.6, 1.0, 0.8, 0.25, 1500.0, draught=True)
+    return build_boat(rng, "launch", plant, "--thruster", 0.6, 1.0, 0.8, 0.25, 1500.0, draught=True)
 
 
 def ship_model(rng: Rng) -> Boat:
     """Sample a 3 m model with a screw and a rudder."""
     L = rng.uniform(2.7, 3.4)
-    mass = about(rng, 150.0, 0.15) * (L / 3.0) ** 3
+    mass = sample_near(rng, 150.0, 0.15) * (L / 3.0) ** 3
     screw = Propeller(
-        -0.44 * L, 0.0, about(rng, 32.0, 0.15), about(rng, 0.65, 0.1), 2.4, 0.25, 0.012
+        -0.44 * L, 0.0, sample_near(rng, 32.0, 0.15), sample_near(rng, 0.65, 0.1), 2.4, 0.25, 0.012
     )
     plant = Plant(
-        hull(rng, L, 0.16 * L, about(rng, 0.16, 0.08), mass),
+        sample_hull(rng, L, 0.16 * L, sample_near(rng, 0.16, 0.08), mass),
         (screw,),
         Rudder(-0.48 * L, 0.011, 2.5),
     )
-    return built(rng, "ship_model", plant, "--thruster", 0.6, 0.5, 0.25, 0.35, 900.0)
+    return build_boat(rng, "ship_model", plant, "--thruster", 0.6, 0.5, 0.25, 0.35, 900.0)
 
 
 def rib(rng: Rng) -> Boat:
     """Sample a boat of 5 to 6 m with one steered outboard, driven at displacement speeds."""
     L = rng.uniform(4.8, 6.0)
-    mass = about(rng, 850.0, 0.15) * (L / 5.4) ** 3
+    mass = sample_near(rng, 850.0, 0.15) * (L / 5.4) ** 3
     motor = (
         Propeller(
-            -0.46 * L, 0.0, about(rng, 1500.0, 0.15), about(rng, 0.6, 0.1), 8.5, 0.05, 0.06, True
+            -0.46 * L,
+            0.0,
+            sample_near(rng, 1500.0, 0.15),
+            sample_near(rng, 0.6, 0.1),
+            8.5,
+            0.05,
+            0.06,
+            True,
         ),
     )
-    plant = Plant(hull(rng, L, 0.42 * L, about(rng, 0.3, 0.1), mass), motor)
-    return built(rng, "rib", plant, "--steered", 0.55, 0.5, 0.4, 0.7, 5000.0, draught=False)
+    plant = Plant(sample_hull(rng, L, 0.42 * L, sample_near(rng, 0.3, 0.1), mass), motor)
+    return build_boat(rng, "rib", plant, "--steered", 0.55, 0.5, 0.4, 0.7, 5000.0, draught=False)
 
 
 KINDS: tuple[Callable[[Rng], Boat], ...] = (workboat, survey_catamaran, launch, ship_model, rib)
 
 
-def fleet(seed: int) -> list[Boat]:
+def sample_fleet(seed: int) -> list[Boat]:
     """Return three boats in random order: steered by outboards, fixed thrusters, and a rudder."""
     rng = np.random.default_rng([seed, 1])
     outboards, rudders = (workboat, rib), (launch, ship_model)

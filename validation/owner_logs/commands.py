@@ -30,7 +30,7 @@ class CommandResult:
         return ""
 
 
-def boatsim(*arguments: str | Path) -> CommandResult:
+def run_boatsim(*arguments: str | Path) -> CommandResult:
     """Run a command; a crash gives exit code 99."""
     from boatsim.cli.commands import app
 
@@ -64,7 +64,7 @@ ALLOWED = "a diagnosis allows for it"
 WRITE = "    write into recording.toml: "
 
 
-def findings(result: CommandResult) -> list[Finding]:
+def parse_findings(result: CommandResult) -> list[Finding]:
     """Parse the findings in the printed text."""
     found: list[Finding] = []
     for line in result.out.splitlines():
@@ -79,7 +79,7 @@ def findings(result: CommandResult) -> list[Finding]:
     return found
 
 
-def limits(result: CommandResult) -> list[str]:
+def parse_limits(result: CommandResult) -> list[str]:
     """Return the lines of `boatsim check` about quantities that cannot be identified."""
     return [
         line.strip()
@@ -88,18 +88,19 @@ def limits(result: CommandResult) -> list[str]:
     ]
 
 
-def write_into(file: Path, lines: Sequence[str]) -> None:
+def add_to_notes(file: Path, lines: Sequence[str]) -> None:
     """Follow the advice of `boatsim check`: add the lines to a recording.toml."""
     table = tomllib.loads(file.read_text(encoding="utf-8")) if file.exists() else {}
     file.write_text(
-        "\n".join(_text(_together(table, tomllib.loads("\n".join(lines))))) + "\n", encoding="utf-8"
+        "\n".join(_text(_merge_tables(table, tomllib.loads("\n".join(lines))))) + "\n",
+        encoding="utf-8",
     )
 
 
-def _together(table: dict[str, Any], more: dict[str, Any]) -> dict[str, Any]:
+def _merge_tables(table: dict[str, Any], more: dict[str, Any]) -> dict[str, Any]:
     merged = {}
     for k, v in more.items():
-        merged[k] = _together(table.get(k, {}), v) if isinstance(v, dict) else v
+        merged[k] = _merge_tables(table.get(k, {}), v) if isinstance(v, dict) else v
     return {**table, **merged}
 
 

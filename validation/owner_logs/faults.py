@@ -8,7 +8,7 @@ import numpy as np
 from validation.owner_logs.boats import Boat, Rng
 from validation.owner_logs.formats import earth
 from validation.owner_logs.formats.tables import Columns
-from validation.owner_logs.instruments import Seen, Series
+from validation.owner_logs.instruments import RecordedSignals, Series
 
 PLAIN = ("plain.csv", "plain.parquet")
 ROS = ("mcap", "ros1", "ros2")
@@ -30,7 +30,7 @@ class Fault:
 
     named: tuple[str, ...]  # findings of `boatsim check`
     entries: tuple[str, ...] = ()  # equivalent effects of the library that are "not physics"
-    seen: Callable[[Seen, Boat, Rng], Seen] | None = None
+    seen: Callable[[RecordedSignals, Boat, Rng], RecordedSignals] | None = None
     columns: Callable[[Columns, Boat], Columns] | None = None
     formats: tuple[str, ...] = ()  # the only formats with this fault; empty: any
     without: tuple[str, ...] = ()  # manoeuvres that are omitted
@@ -41,66 +41,68 @@ class Fault:
     fits: Callable[[Boat], bool] = lambda boat: True
 
 
-def _twins(boat: Boat) -> bool:
+def _has_two_drives(boat: Boat) -> bool:
     return len(boat.plant.propellers) == 2 and not boat.helm_most
 
 
-def _exchanged(seen: Seen, boat: Boat, rng: Rng) -> Seen:
+def _exchange_commands(seen: RecordedSignals, boat: Boat, rng: Rng) -> RecordedSignals:
     v = seen.orders.values
     return replace(seen, orders=seen.orders.having(port=v["starboard"], starboard=v["port"]))
 
 
-def _other_helm(seen: Seen, boat: Boat, rng: Rng) -> Seen:
+def _reverse_helm(seen: RecordedSignals, boat: Boat, rng: Rng) -> RecordedSignals:
     return replace(seen, orders=seen.orders.having(helm=-seen.orders.values["helm"]))
 
 
-def _turned(seen: Seen, boat: Boat, rng: Rng) -> Seen:
+def _rotate_heading(seen: RecordedSignals, boat: Boat, rng: Rng) -> RecordedSignals:
     off = np.radians(rng.choice([90.0, -90.0, 180.0, 45.0, -35.0]))
     return replace(seen, compass=seen.compass.having(psi=seen.compass.values["psi"] + off))
 
 
-def _held(seen: Seen, boat: Boat, rng: Rng) -> Seen:
+def _hold_positions(seen: RecordedSignals, boat: Boat, rng: Rng) -> RecordedSignals:
     t = seen.fixes.t
     rows = np.searchsorted(t, np.floor(t + 1e-6) - 1e-6)
     return replace(seen, fixes=Series(t, {n: v[rows] for n, v in seen.fixes.values.items()}))
 
 
-def _moved(seen: Seen, north: np.ndarray, east: np.ndarray) -> Seen:
+def _replace_positions(
+    seen: RecordedSignals, north: np.ndarray, east: np.ndarray
+) -> RecordedSignals:
     v = seen.fixes.values
     return replace(seen, fixes=seen.fixes.having(north=v["north"] + north, east=v["east"] + east))
 
 
-def _bursts(seen: Seen, boat: Boat, rng: Rng) -> Seen:
+def _positions_in_bursts(seen: RecordedSignals, boat: Boat, rng: Rng) -> RecordedSignals:
     t = seen.fixes.t
     off = np.zeros(len(t))
     for begin in rng.uniform(0.1, 0.9, 3) * t[-1]:
         off[(t >= begin) & (t < begin + rng.uniform(0.5, 1.5))] = (
             rng.uniform(1.0, 3.0) * boat.length
         )
-    return _moved(seen, off, -0.7 * off)
+    return _replace_positions(seen, off, -0.7 * off)
 
 
-def _leap(seen: Seen, boat: Boat, rng: Rng) -> Seen:
+def _add_position_jump(seen: RecordedSignals, boat: Boat, rng: Rng) -> RecordedSignals:
     behind = (seen.fixes.t > rng.uniform(0.4, 0.7) * seen.fixes.t[-1]) * 1.0
     size = rng.uniform(1.5, 3.0) * boat.length
-    return _moved(seen, size * behind, 0.5 * size * behind)
+    return _replace_positions(seen, size * behind, 0.5 * size * behind)
 
 
-def _columns(**made: Callable[[Columns], np.ndarray]) -> Callable[[Columns, Boat], Columns]:
+def _column_fault(**made: Callable[[Columns], np.ndarray]) -> Callable[[Columns, Boat], Columns]:
     return lambda columns, boat: columns | {n: f(columns) for n, f in made.items()}
 
 
-def _geographic(columns: Columns, boat: Boat) -> Columns:
+def _positions_in_degrees(columns: Columns, boat: Boat) -> Columns:
     lat, lon = earth.geodetic(columns["x_m"], columns["y_m"])
     return columns | {"x_m": np.round(lat, 8), "y_m": np.round(lon, 8)}
 
 
-def _percent(columns: Columns, boat: Boat) -> Columns:
+def _commands_in_percent(columns: Columns, boat: Boat) -> Columns:
     pairs = zip(boat.channels, boat.stated, strict=True)
     return columns | {c: np.round(100.0 * columns[c] / full, 1) for c, full in pairs}
 
 
-def _bridged(columns: Columns, boat: Boat) -> Columns:
+def _interpolate_gaps(columns: Columns, boat: Boat) -> Columns:
     made, count = dict(columns), len(columns["t_s"])
     for name in ("x_m", "y_m", "psi_rad"):
         values = columns[name].copy()
@@ -111,31 +113,37 @@ def _bridged(columns: Columns, boat: Boat) -> Columns:
     return made
 
 
-def _stalled(columns: Columns, boat: Boat) -> Columns:
+def _repeat_times(columns: Columns, boat: Boat) -> Columns:
     t = columns["t_s"].copy()
     t[50::60] = t[49::60][: len(t[50::60])]
     return columns | {"t_s": t}
 
 
 FAULTS: dict[str, Fault] = {
-    "thrusters exchanged": Fault(MIRROR, seen=_exchanged, fits=_twins),
-    "helm to the other side": Fault(MIRROR, seen=_other_helm, fits=lambda b: b.helm_most > 0.0),
+    "thrusters exchanged": Fault(MIRROR, seen=_exchange_commands, fits=_has_two_drives),
+    "helm to the other side": Fault(MIRROR, seen=_reverse_helm, fits=lambda b: b.helm_most > 0.0),
     "heading turned": Fault(
-        ("heading_turned", "heading_from_east"), ("heading_offset",), seen=_turned
+        ("heading_turned", "heading_from_east"), ("heading_offset",), seen=_rotate_heading
     ),
-    "position held": Fault(("position_held",), ("late_fixes",), seen=_held, mendable=False),
-    "outliers in bursts": Fault(("outliers", "position_leaps"), seen=_bursts, mendable=False),
-    "position leaps": Fault(("position_leaps",), seen=_leap),
+    "position held": Fault(
+        ("position_held",), ("late_fixes",), seen=_hold_positions, mendable=False
+    ),
+    "outliers in bursts": Fault(
+        ("outliers", "position_leaps"), seen=_positions_in_bursts, mendable=False
+    ),
+    "position leaps": Fault(("position_leaps",), seen=_add_position_jump),
     "ROS in axes of NED": Fault(MIRROR, ned=True, formats=ROS),
-    "y to port": Fault(("y_to_port",), columns=_columns(y_m=lambda c: -c["y_m"]), formats=PLAIN),
+    "y to port": Fault(
+        ("y_to_port",), columns=_column_fault(y_m=lambda c: -c["y_m"]), formats=PLAIN
+    ),
     "y and heading to port": Fault(
         MIRROR,
-        columns=_columns(y_m=lambda c: -c["y_m"], psi_rad=lambda c: -c["psi_rad"]),
+        columns=_column_fault(y_m=lambda c: -c["y_m"], psi_rad=lambda c: -c["psi_rad"]),
         formats=PLAIN,
     ),
     "ENU for NED": Fault(
         MIRROR,
-        columns=_columns(
+        columns=_column_fault(
             x_m=lambda c: c["y_m"],
             y_m=lambda c: c["x_m"],
             psi_rad=lambda c: np.pi / 2 - c["psi_rad"],
@@ -144,22 +152,24 @@ FAULTS: dict[str, Fault] = {
     ),
     "heading from east": Fault(
         ("heading_from_east",),
-        columns=_columns(psi_rad=lambda c: np.pi / 2 - c["psi_rad"]),
+        columns=_column_fault(psi_rad=lambda c: np.pi / 2 - c["psi_rad"]),
         formats=PLAIN,
     ),
     "heading in degrees": Fault(
         ("heading_in_degrees",),
-        columns=_columns(psi_rad=lambda c: np.round(np.degrees(c["psi_rad"]) % 360.0, 2)),
+        columns=_column_fault(psi_rad=lambda c: np.round(np.degrees(c["psi_rad"]) % 360.0, 2)),
         formats=PLAIN,
     ),
-    "latitude as metres": Fault(("latitude_as_metres",), columns=_geographic, formats=PLAIN),
-    "orders in per cent": Fault(("command_unit",), columns=_percent, formats=PLAIN),
-    "time in ms": Fault(
-        ("time_unit",), columns=_columns(t_s=lambda c: 1000.0 * c["t_s"]), formats=PLAIN
+    "latitude as metres": Fault(
+        ("latitude_as_metres",), columns=_positions_in_degrees, formats=PLAIN
     ),
-    "gaps bridged": Fault(("bridged",), columns=_bridged, formats=PLAIN, mendable=False),
+    "orders in per cent": Fault(("command_unit",), columns=_commands_in_percent, formats=PLAIN),
+    "time in ms": Fault(
+        ("time_unit",), columns=_column_fault(t_s=lambda c: 1000.0 * c["t_s"]), formats=PLAIN
+    ),
+    "gaps bridged": Fault(("bridged",), columns=_interpolate_gaps, formats=PLAIN, mendable=False),
     "clock stalls": Fault(
-        ("clock_stalls",), columns=_stalled, formats=PLAIN, mendable=False, blind=True
+        ("clock_stalls",), columns=_repeat_times, formats=PLAIN, mendable=False, blind=True
     ),
     "never turned": Fault(
         ("never_turned",),

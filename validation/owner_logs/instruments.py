@@ -25,7 +25,7 @@ class Series:
 
 
 @dataclass(frozen=True)
-class Seen:
+class RecordedSignals:
     """Recorded signals of a voyage; orders are shares of full, helm in rad to starboard."""
 
     fixes: Series  # north, east [m], speed [m/s], course [rad]
@@ -35,7 +35,7 @@ class Seen:
 
 
 @dataclass(frozen=True)
-class Fit:
+class InstrumentQuality:
     """Quality of a boat's instruments."""
 
     fix_rate: float  # [Hz]
@@ -46,10 +46,10 @@ class Fit:
     antenna: float  # [m] ahead of the mass centre
 
 
-def fit(boat: Boat, rng: Rng) -> Fit:
+def sample_instruments(boat: Boat, rng: Rng) -> InstrumentQuality:
     """Sample the instruments; good receivers are as likely as plain ones."""
     sd = float(np.exp(rng.uniform(np.log(0.02), np.log(0.3))))
-    return Fit(
+    return InstrumentQuality(
         float(rng.choice([5.0, 10.0])),
         min(sd, 0.08 * boat.length),
         float(np.radians(rng.uniform(0.7, 1.6))),
@@ -59,19 +59,19 @@ def fit(boat: Boat, rng: Rng) -> Fit:
     )
 
 
-def names(boat: Boat) -> tuple[str, ...]:
+def drive_names(boat: Boat) -> tuple[str, ...]:
     """Return the names of the drives: motor, or port and starboard."""
     return tuple(c.removeprefix("thrust_").removesuffix("_N") for c in boat.channels)
 
 
-def sampled(v: Voyage, rate: float) -> Array:
+def sample_rows(v: Voyage, rate: float) -> Array:
     """Return rows of the voyage at a rate [Hz]."""
     return np.arange(0, len(v.t), round(1.0 / rate / DT))
 
 
-def see(boat: Boat, v: Voyage, on: Fit, rng: Rng) -> Seen:
+def record_voyage(boat: Boat, v: Voyage, on: InstrumentQuality, rng: Rng) -> RecordedSignals:
     """Return the voyage as recorded by the instruments."""
-    rows = sampled(v, on.fix_rate)
+    rows = sample_rows(v, on.fix_rate)
     north, east, psi = v.states[rows, :3].T
     noise = on.fix_sd * rng.standard_normal((2, len(rows)))
     ahead = on.antenna * np.array([np.cos(psi), np.sin(psi)])
@@ -87,15 +87,15 @@ def see(boat: Boat, v: Voyage, on: Fit, rng: Rng) -> Seen:
             "course": np.arctan2(velocity[1], velocity[0]),
         },
     )
-    rows = sampled(v, 10.0)
+    rows = sample_rows(v, 10.0)
     compass = Series(
         v.t[rows], {"psi": v.states[rows, 2] + on.compass_sd * rng.standard_normal(len(rows))}
     )
-    rows = sampled(v, 25.0)
+    rows = sample_rows(v, 25.0)
     r = v.states[rows, 5] + on.gyro_sd * rng.standard_normal(len(rows)) + on.gyro_bias
-    rows_of_orders = sampled(v, 10.0)
-    orders = {n: v.throttles[rows_of_orders, i] for i, n in enumerate(names(boat))}
+    rows_of_orders = sample_rows(v, 10.0)
+    orders = {n: v.throttles[rows_of_orders, i] for i, n in enumerate(drive_names(boat))}
     helm = {"helm": v.helm[rows_of_orders] * boat.helm_most} if boat.helm_most else {}
-    return Seen(
+    return RecordedSignals(
         fixes, compass, Series(v.t[rows], {"r": r}), Series(v.t[rows_of_orders], orders | helm)
     )

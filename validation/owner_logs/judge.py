@@ -11,13 +11,13 @@ from validation.owner_logs.causes import CAUSES
 from validation.owner_logs.commands import (
     CommandResult,
     Finding,
-    boatsim,
-    findings,
-    limits,
-    write_into,
+    add_to_notes,
+    parse_findings,
+    parse_limits,
+    run_boatsim,
 )
-from validation.owner_logs.formats.log import Written
-from validation.owner_logs.owner import accept, wanted
+from validation.owner_logs.formats.log import WrittenLog
+from validation.owner_logs.owner import correct_lines, correct_map
 
 HORIZON = 8.0  # [s] free runs of the second log, boat of 2 m
 POSITION = re.compile(r"position_rms_m: ([\d.e+-]+)")
@@ -75,7 +75,7 @@ class Judge:
 
     def call(self, *arguments: str | Path) -> CommandResult:
         """Run a command and record it in history.txt."""
-        result = boatsim(*arguments)
+        result = run_boatsim(*arguments)
         shown = " ".join(str(a) for a in arguments)
         self.history.append(
             f"$ boatsim {shown}\n{result.out}{result.err}[exit {result.code}, "
@@ -99,28 +99,28 @@ class Judge:
         )
         return self.result
 
-    def recording(self, log: Written, number: int) -> Path | None:
+    def recording(self, log: WrittenLog, number: int) -> Path | None:
         """Return the log as a recording; a table in boatsim's own names already is one."""
         home = self.folder / f"run_{number}"
         home.mkdir()
         if self.case.form.startswith("plain."):
             run = home / log.path.name
             shutil.copy(log.path, run)
-            write_into(
+            add_to_notes(
                 home / "recording.toml", [f"vessel = {json.dumps('../' + self.case.boat.name)}"]
             )
             self.result.read = True
             return run
         return self.imported(log, home, number)
 
-    def imported(self, log: Written, home: Path, number: int) -> Path | None:
+    def imported(self, log: WrittenLog, home: Path, number: int) -> Path | None:
         """Import the log with the proposed map."""
         map, run = home / "map.toml", home / "run.csv"
         asked = self.call("import", log.path, "--vessel", self.vessel, "--propose", map)
         if asked.code:
             return self._refused(asked, number)
-        lines = wanted(self.case.boat, self.vessel / "vessel.toml", log.orders)
-        text, edits = accept(map.read_text(encoding="utf-8"), lines)
+        lines = correct_lines(self.case.boat, self.vessel / "vessel.toml", log.orders)
+        text, edits = correct_map(map.read_text(encoding="utf-8"), lines)
         map.write_text(text, encoding="utf-8")
         made = self.call("import", log.path, "--map", map, "--out", run, "--vessel", self.vessel)
         if made.code or "a diagnosis would refuse it" in made.err:
@@ -138,8 +138,10 @@ class Judge:
         """Record the findings of `boatsim check` and whether its advice corrects the log."""
         r, wrong = self.result, self.case.wrong
         result = self.call("check", run)
-        found = findings(result)
-        r.found = [f.name for f in found] + [f"limit: {text[17:60]}" for text in limits(result)]
+        found = parse_findings(result)
+        r.found = [f.name for f in found] + [
+            f"limit: {text[17:60]}" for text in parse_limits(result)
+        ]
         if result.code == 2 or result.code == 99:
             r.trouble = f"check: {result.last}"
         if wrong is None:
@@ -149,7 +151,7 @@ class Judge:
             re.search(LIMITS[n], text.lower())
             for n in wrong.named
             if n in LIMITS
-            for text in limits(result)
+            for text in parse_limits(result)
         )
         advice = [f for f in found if f.lines]
         if not wrong.mendable:
@@ -157,12 +159,12 @@ class Judge:
         r.mended = any(f.allowed and f.name in wrong.named for f in found)
         if advice:
             self._follow(run, advice[0])
-            left = [f for f in findings(self.call("check", run)) if f.lines]
+            left = [f for f in parse_findings(self.call("check", run)) if f.lines]
             r.mended = r.fault_named and not left
             r.found += [f"then {f.name}" for f in left]
 
     def _follow(self, run: Path, first: Finding) -> None:
-        write_into(run.parent / "recording.toml", first.lines)
+        add_to_notes(run.parent / "recording.toml", first.lines)
 
     def physics(self, run: Path) -> None:
         """Record the effects that diagnose names and the prediction of the second log."""

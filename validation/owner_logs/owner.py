@@ -8,7 +8,7 @@ from pathlib import Path
 
 from validation.owner_logs.boats import Boat
 from validation.owner_logs.formats.log import Scale
-from validation.owner_logs.instruments import names
+from validation.owner_logs.instruments import drive_names
 
 
 @dataclass(frozen=True)
@@ -24,11 +24,11 @@ class Line:
     high: float
 
 
-def wanted(boat: Boat, vessel: Path, scales: dict[str, Scale]) -> list[Line]:
+def correct_lines(boat: Boat, vessel: Path, scales: dict[str, Scale]) -> list[Line]:
     """Return the command lines, with the limits of the vessel's own channels."""
     channels = tomllib.loads(vessel.read_text(encoding="utf-8"))["channels"]
     found = []
-    for name, channel in zip(names(boat), boat.channels, strict=True):
+    for name, channel in zip(drive_names(boat), boat.channels, strict=True):
         found.append(
             _line(channel, scales[name], channels[channel]["low"], channels[channel]["high"])
         )
@@ -53,7 +53,7 @@ def _line(channel: str, s: Scale, least: float, most: float) -> Line:
     )
 
 
-def accept(text: str, lines: list[Line]) -> tuple[str, list[str]]:
+def correct_map(text: str, lines: list[Line]) -> tuple[str, list[str]]:
     """Return the map with the owner's lines, and what had to be added or corrected.
 
     The latter is 'absent', 'signal', 'sign' or 'scale'.
@@ -67,13 +67,13 @@ def accept(text: str, lines: list[Line]) -> tuple[str, list[str]]:
             head, mark, rest = text.partition("# commands: what was sent to the drives\n")
             text = f"{head}{mark}{line.text}\n{rest}" if mark else f"{text}{line.text}\n"
             continue
-        if fault := _fault(there[0], line):
+        if fault := _mistake_in_line(there[0], line):
             edits.append(f"{fault} {line.channel}")
             text = text[: there.start()] + line.text + text[there.end() :]
     return text, edits
 
 
-def _fault(proposed: str, line: Line) -> str:
+def _mistake_in_line(proposed: str, line: Line) -> str:
     if proposed.startswith("#"):
         return "absent"
     value = tomllib.loads(proposed)[line.channel]

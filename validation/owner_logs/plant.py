@@ -65,7 +65,7 @@ class Hull:
 
 
 @dataclass(frozen=True)
-class Around:
+class Surroundings:
     """Surroundings, and load and drag that the particulars lack."""
 
     current: tuple[float, float] = (0.0, 0.0)  # [m/s] north, east
@@ -82,7 +82,7 @@ class Plant:
     hull: Hull
     propellers: tuple[Propeller, ...]
     rudder: Rudder | None = None
-    around: Around = field(default_factory=Around)
+    around: Surroundings = field(default_factory=Surroundings)
 
     def masses(self) -> tuple[float, float, float, float]:
         """Return surge, sway [kg], yaw [kg m^2] and sway-yaw mass [kg m] with water and load."""
@@ -104,7 +104,7 @@ def resistance(hull: Hull, u: float) -> float:
     return 0.5 * RHO * hull.wetted * (friction + hull.wave * (froude / 0.4) ** 3) * u * speed
 
 
-def across(hull: Hull, u: float, v: float, r: float) -> tuple[float, float]:
+def cross_flow_force(hull: Hull, u: float, v: float, r: float) -> tuple[float, float]:
     """Return side force [N] and moment [N m] of cross flow and lift."""
     Y = N = 0.0
     width = hull.length / len(STRIPS)
@@ -129,7 +129,7 @@ def thrust(p: Propeller, share: float, u: float) -> float:
     return p.astern * found
 
 
-def steered(
+def rudder_force(
     rudder: Rudder, p: Propeller, push: float, angle: float, u: float, v: float, r: float
 ) -> float:
     """Return the normal force [N] of the blade, positive to port."""
@@ -147,7 +147,7 @@ def forces(
     The angle `helm` [rad] is positive to starboard.
     """
     _, _, psi, u, v, r = s
-    Y, N = across(plant.hull, u, v, r)
+    Y, N = cross_flow_force(plant.hull, u, v, r)
     X = -plant.around.drag * resistance(plant.hull, u)
     angle = 0.0 if plant.rudder else helm
     c, n = cos(angle), sin(angle)
@@ -158,12 +158,12 @@ def forces(
         X, Y, N = X + along, Y + side, N + p.x * side - p.y * along
     if plant.rudder:
         p = plant.propellers[0]
-        F = steered(plant.rudder, p, thrust(p, revs[0], u), helm, u, v, r)
+        F = rudder_force(plant.rudder, p, thrust(p, revs[0], u), helm, u, v, r)
         X, Y, N = X - F * sin(helm), Y - F * cos(helm), N - plant.rudder.x * F * cos(helm)
-    return blown(plant, psi, u, v, X, Y, N)
+    return add_wind_force(plant, psi, u, v, X, Y, N)
 
 
-def blown(
+def add_wind_force(
     plant: Plant, psi: float, u: float, v: float, X: float, Y: float, N: float
 ) -> tuple[float, float, float]:
     """Return the forces with the wind added."""
@@ -182,7 +182,7 @@ def blown(
     )
 
 
-def slope(
+def state_derivative(
     plant: Plant, s: State, revs: tuple[float, ...], helm: float, push: tuple[float, float, float]
 ) -> State:
     """Return the rate of change of the state."""
@@ -204,7 +204,7 @@ def slope(
     )
 
 
-def step(
+def runge_kutta_step(
     plant: Plant,
     s: State,
     revs: tuple[float, ...],
@@ -218,9 +218,9 @@ def step(
         a, b, c, d, e, f = s
         return a + h * k[0], b + h * k[1], c + h * k[2], d + h * k[3], e + h * k[4], f + h * k[5]
 
-    k1 = slope(plant, s, revs, helm, push)
-    k2 = slope(plant, off(k1, dt / 2), revs, helm, push)
-    k3 = slope(plant, off(k2, dt / 2), revs, helm, push)
-    k4 = slope(plant, off(k3, dt), revs, helm, push)
+    k1 = state_derivative(plant, s, revs, helm, push)
+    k2 = state_derivative(plant, off(k1, dt / 2), revs, helm, push)
+    k3 = state_derivative(plant, off(k2, dt / 2), revs, helm, push)
+    k4 = state_derivative(plant, off(k3, dt), revs, helm, push)
     mean = tuple((a + 2 * b + 2 * c + d) / 6 for a, b, c, d in zip(k1, k2, k3, k4, strict=True))
     return off(mean, dt)  # type: ignore[arg-type]

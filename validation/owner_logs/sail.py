@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from validation.owner_logs.boats import Boat, Rng
-from validation.owner_logs.plant import State, step
+from validation.owner_logs.plant import State, runge_kutta_step
 
 Array = NDArray[np.float64]
 DT = 0.02  # [s]
@@ -75,7 +75,7 @@ class Voyage:
     helm: Array  # (N,) -1 to 1
 
 
-def shares(boat: Boat, throttle: float, helm: float) -> tuple[float, ...]:
+def drive_orders(boat: Boat, throttle: float, helm: float) -> tuple[float, ...]:
     """Return the order of each drive; fixed thrusters steer by their difference."""
     if boat.helm_most:
         return (throttle,) * len(boat.plant.propellers)
@@ -85,7 +85,7 @@ def shares(boat: Boat, throttle: float, helm: float) -> tuple[float, ...]:
     )
 
 
-def sail(boat: Boat, link: Linkage, pilot: Pilot, lasts: float, rng: Rng) -> Voyage:
+def simulate_voyage(boat: Boat, link: Linkage, pilot: Pilot, lasts: float, rng: Rng) -> Voyage:
     """Simulate a voyage from rest with a random heading."""
     count = round(lasts / DT)
     plant, drives = boat.plant, Drives(boat, link)
@@ -102,9 +102,11 @@ def sail(boat: Boat, link: Linkage, pilot: Pilot, lasts: float, rng: Rng) -> Voy
         if k % 5 == 0:
             throttle, helm = pilot.order(k * DT, s[2], s[3], s[5])
             throttle = float(np.clip(throttle, -link.limit, link.limit))
-            given = shares(boat, throttle, helm)
+            given = drive_orders(boat, throttle, helm)
         states[k], throttles[k], helms[k] = s, given, helm if boat.helm_most else 0.0
         revs, angle = drives.follow(given, helm)
         push = push * keep + kicks[k]
-        s = step(plant, s, revs, angle, DT, (float(push[0]), float(push[1]), float(push[2])))
+        s = runge_kutta_step(
+            plant, s, revs, angle, DT, (float(push[0]), float(push[1]), float(push[2]))
+        )
     return Voyage(np.arange(count) * DT, states, throttles, helms)

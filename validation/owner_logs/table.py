@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from validation.owner_logs.judge import HALF, Result
 
 
-def line(r: Result) -> str:
+def case_line(r: Result) -> str:
     """Return the line of one case."""
     fault = f"{r.fault or '-'}: {_mark(r.fault_named)}" + (
         "" if r.mended is None else f", mended {_mark(r.mended)}"
@@ -31,7 +31,7 @@ def _mark(value: bool | None) -> str:
     return "NO"
 
 
-def goals(results: Sequence[Result]) -> Iterator[str]:
+def goal_rows(results: Sequence[Result]) -> Iterator[str]:
     """Yield a row for each goal: the criterion, its rate, the goal."""
     yield f"{'goal':58s} {'reached':>14s} {'of':>4s} {'asked':>7s}"
     for title, asked, counts, hit in _rows():

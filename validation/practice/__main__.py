@@ -8,7 +8,7 @@ import argparse
 import time
 from pathlib import Path
 
-from validation.practice.make import make, trials
+from validation.practice.make import make_trial, trials
 from validation.practice.plans import PLANS
 
 PER_VESSEL = 12  # trials
@@ -20,7 +20,7 @@ def make_set(out: Path, seed: int, per_vessel: int = PER_VESSEL, vessel: str | N
     for trial in trials(seed, per_vessel):
         if vessel not in (None, trial.vessel):
             continue
-        answer = make(trial, seed, out)
+        answer = make_trial(trial, seed, out)
         what = " + ".join(e["name"] for e in answer["effects"]) or "nothing"
         seen = "" if not answer["effects"] else "visible" if answer["visible"] else "invisible"
         how = "kept" if answer["concealed"] else "hand"

@@ -23,7 +23,7 @@ FRESH = 1000.0  # [kg/m^3]
 AT_ONCE = np.inf
 
 
-class File:
+class VesselFile:
     """A vessel's file."""
 
     def __init__(self, name: str) -> None:
@@ -60,7 +60,7 @@ class File:
         )
 
 
-def rigid(body: Mapping[str, Any]) -> Array:
+def rigid_body_mass(body: Mapping[str, Any]) -> Array:
     """Return the mass matrix (6, 6) of a body with `centre` ahead of and below the origin."""
     x, z = body.get("centre", (0.0, 0.0))
     lever = np.array([[0.0, -z, 0.0], [z, 0.0, -x], [0.0, x, 0.0]])
@@ -71,7 +71,7 @@ def rigid(body: Mapping[str, Any]) -> Array:
     return np.block([[m * np.eye(3), -m * lever], [m * lever, own - m * lever @ lever]])
 
 
-def added(table: Mapping[str, float]) -> Array:
+def added_mass_matrix(table: Mapping[str, float]) -> Array:
     """Return the matrix (6, 6) of an added_mass table, with sway acting `sway_at` ahead."""
     found = np.diag([table.get(a, 0.0) for a in AXES])
     sway, at = table.get("sway", 0.0), table.get("sway_at", 0.0)
@@ -80,7 +80,7 @@ def added(table: Mapping[str, float]) -> Array:
     return found
 
 
-def forces(size: int, **parts: Any) -> Array:
+def stack_forces(size: int, **parts: Any) -> Array:
     """Stack X Y Z K M N as (6, B)."""
     found = np.zeros((6, size))
     for name, value in parts.items():
@@ -88,7 +88,7 @@ def forces(size: int, **parts: Any) -> Array:
     return found
 
 
-def strips(v: Array, r: Array, stern: float, bow: float) -> tuple[Array, Array]:
+def cross_flow_integrals(v: Array, r: Array, stern: float, bow: float) -> tuple[Array, Array]:
     """Integrate w|w| and x w|w| with w = v + x r from stern to bow, in closed form."""
     slow = np.abs(r) < 1e-3
     turn = np.where(slow, 1.0, r)
@@ -104,10 +104,10 @@ def strips(v: Array, r: Array, stern: float, bow: float) -> tuple[Array, Array]:
     return third, moment
 
 
-def pushed(size: int, thrust: Array, angle: Array, x: float, y: float) -> Array:
+def thrust_force(size: int, thrust: Array, angle: Array, x: float, y: float) -> Array:
     """Return the force (6, B) of a thrust at a mount."""
     X, Y = thrust * np.cos(angle), thrust * np.sin(angle)
-    return forces(size, X=X, Y=Y, N=x * Y - y * X)
+    return stack_forces(size, X=X, Y=Y, N=x * Y - y * X)
 
 
 # ---- one function for each vessel
@@ -115,17 +115,17 @@ def pushed(size: int, thrust: Array, angle: Array, x: float, y: float) -> Array:
 
 def catamaran() -> Boat:
     """Return Huang and Ji's azimuth boat: linear damping, one steered thruster ahead."""
-    file = File("catamaran")
+    file = VesselFile("catamaran")
     x = file.effect("thruster")["x"]
     c = {k: file.effect("linear_damping")[k] for k in ("surge", "sway", "yaw")} | {"gain": 1.0}
 
     def law(c: Mapping[str, float], m: Motion) -> Array:
         u, v, _, _, _, r = m.through
-        drag = forces(u.size, X=-c["surge"] * u, Y=-c["sway"] * v, N=-c["yaw"] * r)
-        return drag + pushed(u.size, c["gain"] * m.act[0], m.act[1], x, 0.0)
+        drag = stack_forces(u.size, X=-c["surge"] * u, Y=-c["sway"] * v, N=-c["yaw"] * r)
+        return drag + thrust_force(u.size, c["gain"] * m.act[0], m.act[1], x, 0.0)
 
     drive = Drive(lambda u: u, np.zeros(2), np.full(2, AT_ONCE), (0,), (1,), ((x, 0.0),))
-    mass = rigid(file.table["body"]), added(file.effect("added_mass"))
+    mass = rigid_body_mass(file.table["body"]), added_mass_matrix(file.effect("added_mass"))
     return file.boat(mass, law, drive, c, damping=("surge", "sway", "yaw"), thrust=("gain",))
 
 
@@ -134,7 +134,7 @@ def joystick_boat() -> Boat:
 
     It has cross-flow drag and two steered outboards with lags and servos, driven by motor duty.
     """
-    file = File("joystick_boat")
+    file = VesselFile("joystick_boat")
     flow, drag, pwm, servo = (
         file.effect(n) for n in ("cross_flow_drag", "surge_drag", "pwm_thrust", "servo")
     )
@@ -150,16 +150,16 @@ def joystick_boat() -> Boat:
 
     def law(c: Mapping[str, float], m: Motion) -> Array:
         u, v, _, _, _, r = m.through
-        Y, N = strips(v, r, a - length / 2, a + length / 2)
+        Y, N = cross_flow_integrals(v, r, a - length / 2, a + length / 2)
         k = 0.5 * FRESH * c["section"] * draught
-        found = forces(
+        found = stack_forces(
             u.size,
             X=-(c["linear"] + c["quadratic"] * np.abs(u)) * u,
             Y=-k * Y - c["even"] * length * (v + a * r),
             N=-k * N - c["even"] * length * (a * v + (a * a + length * length / 12) * r),
         )
         for i, (x, y) in enumerate(mounts):
-            found += pushed(u.size, c["gain"] * m.act[i], m.act[2 + i], x, y)
+            found += thrust_force(u.size, c["gain"] * m.act[i], m.act[2 + i], x, y)
         return found
 
     def goals(u: Array) -> Array:
@@ -175,7 +175,7 @@ def joystick_boat() -> Boat:
         (2, 3),
         mounts,
     )
-    mass = rigid(file.table["body"]), added(file.effect("added_mass"))
+    mass = rigid_body_mass(file.table["body"]), added_mass_matrix(file.effect("added_mass"))
     return file.boat(
         mass, law, drive, c, damping=("section", "linear", "quadratic"), thrust=("gain",)
     )
@@ -183,7 +183,7 @@ def joystick_boat() -> Boat:
 
 def otter() -> Boat:
     """Return Fossen's Otter: six dof, two propellers, cross-flow drag, hydrostatics."""
-    file = File("otter")
+    file = VesselFile("otter")
     float_, flow = file.effect("hydrostatics"), file.effect("cross_flow_drag")
     at, half, mounts = float_["flotation"], file.table["length"] / 2, (-0.395, 0.395)
     ahead, astern = file.effect("port")["ahead"], file.effect("port")["astern"]
@@ -197,21 +197,23 @@ def otter() -> Boat:
         z, phi, theta, nu = m.q[2], m.q[3], m.q[4], m.through
         found = -np.array([c[a] for a in AXES])[:, None] * nu
         found[5] -= c["turning"] * np.abs(nu[5]) * nu[5]
-        both, turning = strips(nu[1:3].ravel(), np.concatenate([nu[5], -nu[4]]), -half, half)
+        both, turning = cross_flow_integrals(
+            nu[1:3].ravel(), np.concatenate([nu[5], -nu[4]]), -half, half
+        )
         (Y, Z), (N, M) = both.reshape(2, -1), turning.reshape(2, -1)
         k, sunk = c["section"] * depth, z - at * theta
-        found -= k * forces(z.size, Y=Y, Z=Z, M=-M, N=N)
-        righting = forces(z.size, Z=-c["buoyancy"] * sunk, K=-c["righting"] * phi)
+        found -= k * stack_forces(z.size, Y=Y, Z=Z, M=-M, N=N)
+        righting = stack_forces(z.size, Z=-c["buoyancy"] * sunk, K=-c["righting"] * phi)
         righting[4] = at * c["buoyancy"] * sunk - c["trimming"] * theta
         n = m.act
         thrust = c["gain"] * np.where(n > 0.0, ahead, astern) * n * np.abs(n)
         turn = -mounts[0] * thrust[0] - mounts[1] * thrust[1]
-        return found + righting + forces(z.size, X=thrust[0] + thrust[1], N=turn)
+        return found + righting + stack_forces(z.size, X=thrust[0] + thrust[1], N=turn)
 
     lag = file.effect("shaft_lag")["time_constant"]
     drive = Drive(lambda u: u, np.full(2, lag), np.full(2, AT_ONCE), (0, 1))
     return file.boat(
-        (rigid(file.table["body"]), added(file.effect("added_mass"))),
+        (rigid_body_mass(file.table["body"]), added_mass_matrix(file.effect("added_mass"))),
         law,
         drive,
         c,
@@ -223,27 +225,27 @@ def otter() -> Boat:
 
 def martin_tank_model() -> Boat:
     """Return the tank model that rolls."""
-    file = File("martin_tank_model")
+    file = VesselFile("martin_tank_model")
     c = {
         "roll": file.effect("linear_damping")["roll"],
         "righting": file.effect("righting_arm")["stiffness"],
     }
 
     def law(c: Mapping[str, float], m: Motion) -> Array:
-        return forces(m.t.size, K=-c["roll"] * m.through[3] - c["righting"] * m.q[3])
+        return stack_forces(m.t.size, K=-c["roll"] * m.through[3] - c["righting"] * m.q[3])
 
     drive = Drive(lambda u: u, np.zeros(0), np.zeros(0))
-    mass = rigid(file.table["body"]), added(file.effect("added_mass"))
+    mass = rigid_body_mass(file.table["body"]), added_mass_matrix(file.effect("added_mass"))
     return file.boat(mass, law, drive, c, damping=("roll",), restoring=("righting",))
 
 
 def eastward_ho() -> Boat:
     """Return Martin's fishing vessel: linear in sway, yaw and roll, speed held, one rudder."""
-    file = File("eastward_ho")
+    file = VesselFile("eastward_ho")
     t, hull, rudder = file.table, file.effect("linear_hull"), file.effect("rudder")
     L, T, m, hold = t["length"], t["draught"], t["body"]["mass"], file.effect("speed_hold")
     U = hold["speed"]
-    water = spheroid(t)
+    water = spheroid_added_mass(t)
     below = hull["above_keel"] - T / 2
     arm = below * water[1, 1] / (m + water[1, 1])
     c = hull_derivatives(t, hull, U, water[0, 0])
@@ -277,11 +279,11 @@ def eastward_ho() -> Boat:
             + (arm - rudder["below"]) * steer
         )
         N = -c["yaw_by_sway"] * v - c["yaw"] * r + c["heeled"] * phi + rudder["at"] * steer
-        return forces(u.size, X=-m * v * r - hold["gain"] * (u - U), Y=Y + steer, K=K, N=N)
+        return stack_forces(u.size, X=-m * v * r - hold["gain"] * (u - U), Y=Y + steer, K=K, N=N)
 
     drive = Drive(lambda u: u, np.zeros(1), np.full(1, AT_ONCE), (), (0,))
     return file.boat(
-        (rigid(t["body"]), water),
+        (rigid_body_mass(t["body"]), water),
         law,
         drive,
         c,
@@ -293,7 +295,7 @@ def eastward_ho() -> Boat:
     )
 
 
-def spheroid(t: Mapping[str, Any]) -> Array:
+def spheroid_added_mass(t: Mapping[str, Any]) -> Array:
     """Return the added mass (6, 6) of a prolate spheroid of this length and draught.
 
     Source: H. Lamb, Hydrodynamics, 1932; in roll the coefficient is 0.2.

@@ -42,14 +42,14 @@ class Cause:
 Maker = Callable[[Boat, Rng, float], Cause]  # the last argument is a strength from 0 to 1
 
 
-def changed(boat: Boat, causes: Sequence[Cause]) -> Boat:
+def apply_number_changes(boat: Boat, causes: Sequence[Cause]) -> Boat:
     """Return the boat with the numbers that its causes change."""
     for cause in causes:
         boat = cause.boat(boat) if cause.boat else boat
     return boat
 
 
-def extra(boat: Boat, causes: Sequence[Cause]) -> Callable[[Motion], Array]:
+def sum_of_forces(boat: Boat, causes: Sequence[Cause]) -> Callable[[Motion], Array]:
     """Return the sum of the forces of the causes."""
     acting = [c.force for c in causes if c.force]
 
@@ -59,7 +59,7 @@ def extra(boat: Boat, causes: Sequence[Cause]) -> Callable[[Motion], Array]:
     return total
 
 
-def water(causes: Sequence[Cause]) -> Callable[[Array, Array, Whole], Flow | None]:
+def water_velocity(causes: Sequence[Cause]) -> Callable[[Array, Array, Whole], Flow | None]:
     """Return the velocity of the water at the hulls; None for still water."""
     flows = [c.water for c in causes if c.water]
 
@@ -80,7 +80,7 @@ def instrument_pose(causes: Sequence[Cause], q: Array) -> Array:
     return q
 
 
-def known(causes: Sequence[Cause]) -> tuple[Cause, ...]:
+def predictable_parts(causes: Sequence[Cause]) -> tuple[Cause, ...]:
     """Return the predictable parts of the causes."""
     return tuple(c.known or c for c in causes)
 
@@ -93,12 +93,14 @@ def scaled(boat: Boat, **factors: float) -> Boat:
     return replace(boat, c={k: v * factors.get(k, 1.0) for k, v in boat.c.items()})
 
 
-def sign(rng: Rng) -> float:
+def random_sign(rng: Rng) -> float:
     """Sample a sign."""
     return float(rng.choice([-1.0, 1.0]))
 
 
-def wavy(rng: Rng, low: float, high: float, n: int = 10) -> Callable[[Array, Whole], Array]:
+def random_signal(
+    rng: Rng, low: float, high: float, n: int = 10
+) -> Callable[[Array, Whole], Array]:
     """Return a random signal of rms 1 for each run.
 
     It is a sum of n sines with circular frequencies from low to high [rad/s].

@@ -4,17 +4,17 @@ from collections.abc import Callable
 
 import numpy as np
 
-from validation.practice.boats import forces, pushed
-from validation.practice.cause import Cause, GoalMap, Rng, sign
+from validation.practice.boats import stack_forces, thrust_force
+from validation.practice.cause import Cause, GoalMap, Rng, random_sign
 from validation.practice.motion import RUNS, Array, Boat, Motion
 
 
-def strongest(boat: Boat) -> float:
+def usual_thrust(boat: Boat) -> float:
     """Return a usual thrust [N] of one drive."""
     return {"catamaran": 6.0, "joystick_boat": 0.6}.get(boat.name, 1.0)
 
 
-def each(rows: tuple[int, ...], by: Callable[[Array], Array]) -> GoalMap:
+def apply_curve(rows: tuple[int, ...], by: Callable[[Array], Array]) -> GoalMap:
     """Apply a memoryless curve to some actuators."""
     at = list(rows)
 
@@ -26,7 +26,7 @@ def each(rows: tuple[int, ...], by: Callable[[Array], Array]) -> GoalMap:
     return apply
 
 
-def remembering(rows: tuple[int, ...], follow: Callable[[Array, Array], Array]) -> GoalMap:
+def apply_dynamics(rows: tuple[int, ...], follow: Callable[[Array, Array], Array]) -> GoalMap:
     """Let some actuators follow their goals with a state; the first goal initialises it."""
     at, memory = list(rows), dict[str, Array]()
 
@@ -40,13 +40,15 @@ def remembering(rows: tuple[int, ...], follow: Callable[[Array, Array], Array]) 
 
 def weak_reverse(boat: Boat, rng: Rng, s: float) -> Cause:
     """Reduce the thrust astern to k T with a smooth transition."""
-    k, soft = 1.0 - 0.45 * s, 0.04 * strongest(boat)
+    k, soft = 1.0 - 0.45 * s, 0.04 * usual_thrust(boat)
 
     def curve(T: Array) -> Array:
         return np.asarray(T * (1.0 - (1.0 - k) / (1.0 + np.exp(np.clip(T / soft, -50, 50)))))
 
     return Cause(
-        "weak_reverse", {"astern_factor": k}, drive=lambda b, dt: each(b.drive.thrusts, curve)
+        "weak_reverse",
+        {"astern_factor": k},
+        drive=lambda b, dt: apply_curve(b.drive.thrusts, curve),
     )
 
 
@@ -56,8 +58,8 @@ def thrust_lag(boat: Boat, rng: Rng, s: float) -> Cause:
 
     def drive(b: Boat, dt: float) -> GoalMap:
         keep = np.exp(-dt / (T / 2))
-        first = remembering(b.drive.thrusts, lambda y, goal: goal + (y - goal) * keep)
-        second = remembering(b.drive.thrusts, lambda y, goal: goal + (y - goal) * keep)
+        first = apply_dynamics(b.drive.thrusts, lambda y, goal: goal + (y - goal) * keep)
+        second = apply_dynamics(b.drive.thrusts, lambda y, goal: goal + (y - goal) * keep)
         return lambda goal, k: second(first(goal, k), k)
 
     return Cause("thrust_lag", {"time_constant_s": T}, drive=drive)
@@ -83,36 +85,38 @@ def command_delay(boat: Boat, rng: Rng, s: float) -> Cause:
 
 def thrust_deadband(boat: Boat, rng: Rng, s: float) -> Cause:
     """Add friction of the shaft with a smooth transition."""
-    w = 0.2 * s * strongest(boat)
+    w = 0.2 * s * usual_thrust(boat)
     return Cause(
         "thrust_deadband",
         {"width_N": w},
-        drive=lambda b, dt: each(b.drive.thrusts, lambda T: np.asarray(T - w * np.tanh(T / w))),
+        drive=lambda b, dt: apply_curve(
+            b.drive.thrusts, lambda T: np.asarray(T - w * np.tanh(T / w))
+        ),
     )
 
 
 def thrust_imbalance(boat: Boat, rng: Rng, s: float) -> Cause:
     """Strengthen one side, slightly more at high thrust."""
-    f, usual = 0.2 * s * sign(rng), strongest(boat)
+    f, usual = 0.2 * s * random_sign(rng), usual_thrust(boat)
 
     def curve(T: Array) -> Array:
         side = np.array([[1.0], [-1.0]]) * f
         return np.asarray(T * (1.0 + side * (0.9 + 0.2 * np.minimum(np.abs(T) / usual, 1.5))))
 
     return Cause(
-        "thrust_imbalance", {"fraction": f}, drive=lambda b, dt: each(b.drive.thrusts, curve)
+        "thrust_imbalance", {"fraction": f}, drive=lambda b, dt: apply_curve(b.drive.thrusts, curve)
     )
 
 
 def steering_offset(boat: Boat, rng: Rng, s: float) -> Cause:
     """Bend the mounts and reduce the steering angle slightly."""
     sides = ("middle",) if len(boat.drive.angles) == 1 else ("port", "starboard")
-    off = np.array([[0.15 * s * sign(rng)] for _ in sides])
+    off = np.array([[0.15 * s * random_sign(rng)] for _ in sides])
     stated = {f"{n}_rad": float(a[0]) for n, a in zip(sides, off, strict=True)}
     return Cause(
         "steering_offset",
         stated,
-        drive=lambda b, dt: each(
+        drive=lambda b, dt: apply_curve(
             b.drive.angles, lambda x: np.asarray((1 - 0.15 * np.abs(off)) * x + off)
         ),
     )
@@ -127,8 +131,8 @@ def steering_backlash(boat: Boat, rng: Rng, s: float) -> Cause:
             return np.clip(y, goal - width / 2, goal + width / 2)
 
         creep = 1.0 - np.exp(-dt / (0.05 * b.scale))
-        loose = remembering(b.drive.angles, play)
-        slow = remembering(b.drive.angles, lambda y, goal: np.asarray(y + creep * (goal - y)))
+        loose = apply_dynamics(b.drive.angles, play)
+        slow = apply_dynamics(b.drive.angles, lambda y, goal: np.asarray(y + creep * (goal - y)))
         return lambda goal, k: slow(loose(goal, k), k)
 
     return Cause("steering_backlash", {"width_rad": width}, drive=drive)
@@ -140,7 +144,7 @@ def steering_rate_limit(boat: Boat, rng: Rng, s: float) -> Cause:
 
     def drive(b: Boat, dt: float) -> GoalMap:
         near = 0.03  # [rad]
-        return remembering(
+        return apply_dynamics(
             b.drive.angles, lambda y, goal: np.asarray(y + rate * dt * np.tanh((goal - y) / near))
         )
 
@@ -158,7 +162,7 @@ def rudder_stall(boat: Boat, rng: Rng, s: float) -> Cause:
     return Cause(
         "rudder_stall",
         {"angle_rad": stall},
-        drive=lambda b, dt: each(b.drive.angles, curve),
+        drive=lambda b, dt: apply_curve(b.drive.angles, curve),
         not_compared=("angle_rad",),
     )
 
@@ -168,14 +172,14 @@ def prop_walk(boat: Boat, rng: Rng, s: float) -> Cause:
 
     It is an odd smooth curve that is three times as strong astern.
     """
-    k = 0.15 * s * sign(rng)
+    k = 0.15 * s * random_sign(rng)
 
     def force(b: Boat, m: Motion) -> Array:
         found = np.zeros_like(m.nu)
         for i, (x, _) in zip(b.drive.thrusts, b.drive.mounts, strict=True):
             T = m.act[i]
-            Y = k * T * (2.0 / 3.0 - np.tanh(T / (0.1 * strongest(b))) / 3.0)
-            found += forces(T.size, Y=Y, N=x * Y)
+            Y = k * T * (2.0 / 3.0 - np.tanh(T / (0.1 * usual_thrust(b))) / 3.0)
+            found += stack_forces(T.size, Y=Y, N=x * Y)
         return found
 
     return Cause("prop_walk", {"side_force_per_thrust": k}, force=force)
@@ -192,7 +196,7 @@ def thrust_loss_with_speed(boat: Boat, rng: Rng, s: float) -> Cause:
         found, u = np.zeros_like(m.nu), m.through[0]
         for i, a, (x, y) in zip(b.drive.thrusts, b.drive.angles, b.drive.mounts, strict=True):
             lost = loss * u * (0.9 + 0.2 * np.abs(u) / b.scale) * np.abs(m.act[i])
-            found -= pushed(u.size, lost, m.act[a], x, y)
+            found -= thrust_force(u.size, lost, m.act[a], x, y)
         return found
 
     return Cause("thrust_loss_with_speed", {"loss_spm": loss}, force=force)
@@ -200,11 +204,11 @@ def thrust_loss_with_speed(boat: Boat, rng: Rng, s: float) -> Cause:
 
 def thrust_gain_error(boat: Boat, rng: Rng, s: float) -> Cause:
     """Scale the thrust; a nonlinear curve would be another effect."""
-    factor = 1.0 + 0.5 * s * sign(rng)
+    factor = 1.0 + 0.5 * s * random_sign(rng)
     return Cause(
         "thrust_gain_error",
         {"factor": factor},
-        drive=lambda b, dt: each(b.drive.thrusts, lambda T: np.asarray(T * factor)),
+        drive=lambda b, dt: apply_curve(b.drive.thrusts, lambda T: np.asarray(T * factor)),
     )
 
 

@@ -4,8 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from validation.practice.boats import forces
-from validation.practice.cause import Cause, Rng, resistance, scaled, sign, wavy
+from validation.practice.boats import stack_forces
+from validation.practice.cause import Cause, Rng, random_sign, random_signal, resistance, scaled
 from validation.practice.motion import GRAVITY, RUNS, Array, Boat, Motion
 
 UNITS = {0: "surge_Ns{p}pm{p}", 1: "sway_Ns{p}pm{p}", 3: "roll_Nms{p}", 5: "yaw_Nms{p}"}
@@ -18,7 +18,7 @@ def usual_rate(boat: Boat, axis: int) -> float:
     ]
 
 
-def point(mass: float, x: float, y: float = 0.0) -> Array:
+def point_mass_matrix(mass: float, x: float, y: float = 0.0) -> Array:
     """Return the mass matrix (6, 6) of a point mass at the height of the origin."""
     lever = np.array([[0.0, 0.0, y], [0.0, 0.0, -x], [-y, x, 0.0]])
     return np.block([[mass * np.eye(3), -mass * lever], [mass * lever, -mass * lever @ lever]])
@@ -31,12 +31,12 @@ def extra_mass(boat: Boat, rng: Rng, s: float) -> Cause:
 
     def weight(b: Boat, m: Motion) -> Array:
         Z = mass * GRAVITY * np.cos(m.q[3]) * np.cos(m.q[4])
-        return forces(Z.size, Z=Z, M=-x * Z)
+        return stack_forces(Z.size, Z=Z, M=-x * Z)
 
     return Cause(
         "extra_mass",
         {"mass_kg": mass, "x_m": x},
-        boat=lambda b: replace(b, hull=b.hull + point(mass, x) + own),
+        boat=lambda b: replace(b, hull=b.hull + point_mass_matrix(mass, x) + own),
         force=weight if boat.tilts else None,
         same=("payload",) if abs(x) < 0.06 * boat.length else (),
     )
@@ -44,8 +44,8 @@ def extra_mass(boat: Boat, rng: Rng, s: float) -> Cause:
 
 def mass_centre_shift(boat: Boat, rng: Rng, s: float) -> Cause:
     """Move the stowed gear: half of the mass lies twice as far off."""
-    shift = 0.09 * s * boat.length * sign(rng)
-    moved = point(boat.mass / 2, 2 * shift) - point(boat.mass / 2, 0.0)
+    shift = 0.09 * s * boat.length * random_sign(rng)
+    moved = point_mass_matrix(boat.mass / 2, 2 * shift) - point_mass_matrix(boat.mass / 2, 0.0)
     return Cause(
         "mass_centre_shift", {"shift_m": shift}, boat=lambda b: replace(b, hull=b.hull + moved)
     )
@@ -53,20 +53,20 @@ def mass_centre_shift(boat: Boat, rng: Rng, s: float) -> Cause:
 
 def lateral_centre_shift(boat: Boat, rng: Rng, s: float) -> Cause:
     """Move part of the sway damping to the position of a skeg."""
-    shift = 0.08 * s * boat.length * sign(rng)
+    shift = 0.08 * s * boat.length * random_sign(rng)
     at = 0.4 * boat.length * np.sign(shift)
     share = shift / at
 
     def force(b: Boat, m: Motion) -> Array:
         d, v, r = share * b.c["sway"], m.through[1], m.through[5]
-        return forces(
+        return stack_forces(
             v.size, Y=d * v - d * (v + at * r), N=-d * at * (v + at * r) * (1.0 - 0.3 * abs(share))
         )
 
     return Cause("lateral_centre_shift", {"shift_m": shift}, force=force)
 
 
-def steeper(
+def power_damping(
     boat: Boat, s: float, name: str, power: float, like: int, axes: tuple[int, ...]
 ) -> Cause:
     """Add damping with a non-integer power to the boat's own damping.
@@ -93,13 +93,15 @@ def steeper(
 def quadratic_damping(boat: Boat, rng: Rng, s: float) -> Cause:
     """Add damping in the manner of the library's quadratic damping."""
     axes = (3,) if boat.free == (3,) else (1, 5) if boat.cruise else (0, 1, 5)
-    return replace(steeper(boat, s, "quadratic_damping", 1.85, 2, axes), same=("damping_exponent",))
+    return replace(
+        power_damping(boat, s, "quadratic_damping", 1.85, 2, axes), same=("damping_exponent",)
+    )
 
 
 def cubic_damping(boat: Boat, rng: Rng, s: float) -> Cause:
     """Add damping in the manner of the library's cubic damping."""
     axes = (3,) if 3 in boat.free else (0, 5)
-    return steeper(boat, s, "cubic_damping", 2.9, 3, axes)
+    return power_damping(boat, s, "cubic_damping", 2.9, 3, axes)
 
 
 def damping_error(boat: Boat, rng: Rng, s: float) -> Cause:
@@ -111,7 +113,7 @@ def damping_error(boat: Boat, rng: Rng, s: float) -> Cause:
 
 def added_mass_coriolis(boat: Boat, rng: Rng, s: float) -> Cause:
     """Reduce the Munk moment, as by separation, or raise it."""
-    missing = 0.7 * s * sign(rng)
+    missing = 0.7 * s * random_sign(rng)
     return Cause(
         "added_mass_coriolis",
         {"fraction": missing},
@@ -130,7 +132,7 @@ def righting_arm_stiffening(boat: Boat, rng: Rng, s: float) -> Cause:
     def force(b: Boat, m: Motion) -> Array:
         phi, k = m.q[3], b.c["righting"]
         lever = np.sin(n * phi) / n if bends else np.sin(phi) * (1.0 + wall / 2 * np.tan(phi) ** 2)
-        return forces(phi.size, K=-k * (lever - phi))
+        return stack_forces(phi.size, K=-k * (lever - phi))
 
     cubic = float(-n * n / 6 if bends else wall / 2 - 1 / 6)
     return Cause(
@@ -143,7 +145,7 @@ def righting_arm_stiffening(boat: Boat, rng: Rng, s: float) -> Cause:
 
 def metacentric_height_error(boat: Boat, rng: Rng, s: float) -> Cause:
     """Place ballast higher or lower than specified."""
-    factor = 1.0 + 0.3 * s * sign(rng)
+    factor = 1.0 + 0.3 * s * random_sign(rng)
     return Cause(
         "metacentric_height_error", {"factor": factor}, boat=lambda b: scaled(b, righting=factor)
     )
@@ -151,9 +153,11 @@ def metacentric_height_error(boat: Boat, rng: Rng, s: float) -> Cause:
 
 def steady_force(boat: Boat, rng: Rng, s: float) -> Cause:
     """Place ballast off the centre line: a moment that falls with the cosine of heel."""
-    K = 0.05 * s * boat.c["righting"] * sign(rng)
+    K = 0.05 * s * boat.c["righting"] * random_sign(rng)
     return Cause(
-        "steady_force", {"roll_Nm": K}, force=lambda b, m: forces(m.t.size, K=K * np.cos(m.q[3]))
+        "steady_force",
+        {"roll_Nm": K},
+        force=lambda b, m: stack_forces(m.t.size, K=K * np.cos(m.q[3])),
     )
 
 
@@ -162,7 +166,7 @@ def steady_force(boat: Boat, rng: Rng, s: float) -> Cause:
 
 def camera_scale(boat: Boat, rng: Rng, s: float) -> Cause:
     """Scale each axis of the camera differently."""
-    x, y = 0.12 * s * sign(rng), 0.12 * s * sign(rng)
+    x, y = 0.12 * s * random_sign(rng), 0.12 * s * random_sign(rng)
     stretch = np.array([[1 + x], [1 + y], [1.0], [1.0], [1.0], [1.0]])
     return Cause(
         "camera_scale", {"x_fraction": x, "y_fraction": y}, show=lambda q: np.asarray(q * stretch)
@@ -183,14 +187,17 @@ def heading_deviation(boat: Boat, rng: Rng, s: float) -> Cause:
 
 def heading_offset(boat: Boat, rng: Rng, s: float) -> Cause:
     """Mount the compass askew."""
-    off = 0.15 * s * sign(rng)
+    off = 0.15 * s * random_sign(rng)
     stated = {"offset_rad": off}
     return Cause("heading_offset", stated, show=lambda q: np.concatenate([q[:5], q[5:] + off]))
 
 
 def position_frame_error(boat: Boat, rng: Rng, s: float) -> Cause:
     """Move the antenna."""
-    ahead, side = 0.18 * s * boat.length * sign(rng), 0.05 * s * boat.length * sign(rng)
+    ahead, side = (
+        0.18 * s * boat.length * random_sign(rng),
+        0.05 * s * boat.length * random_sign(rng),
+    )
 
     def show(q: Array) -> Array:
         c, n = np.cos(q[5]), np.sin(q[5])
@@ -216,7 +223,9 @@ def bilge_pump(boat: Boat, rng: Rng, s: float) -> Cause:
     def force(b: Boat, m: Motion) -> Array:
         on = 0.5 * (1 + np.tanh((np.cos(2 * np.pi * (m.t - begin[m.run]) / every) - 0.7) / 0.1))
         Y = push * on
-        return forces(Y.size, Y=Y, K=-b.draught * Y if 3 in b.free else 0.0, N=0.2 * b.length * Y)
+        return stack_forces(
+            Y.size, Y=Y, K=-b.draught * Y if 3 in b.free else 0.0, N=0.2 * b.length * Y
+        )
 
     return Cause("outside_library:bilge_pump", force=force)
 
@@ -229,18 +238,18 @@ def eddies(boat: Boat, rng: Rng, s: float) -> Cause:
     def force(hull: Boat, m: Motion) -> Array:
         north, east = push * np.sin(k * m.q[1] + a), push * np.sin(k * m.q[0] + b)
         c, n = np.cos(m.q[5]), np.sin(m.q[5])
-        return forces(c.size, X=c * north + n * east, Y=c * east - n * north)
+        return stack_forces(c.size, X=c * north + n * east, Y=c * east - n * north)
 
     return Cause("outside_library:eddies", force=force)
 
 
 def lifting_hull(boat: Boat, rng: Rng, s: float) -> Cause:
     """Dent the bow: beyond a speed the hull lifts to one side."""
-    push, side, from_ = 60.0 * s * boat.push, sign(rng), 0.3 * boat.scale
+    push, side, from_ = 60.0 * s * boat.push, random_sign(rng), 0.3 * boat.scale
 
     def force(b: Boat, m: Motion) -> Array:
         Y = side * push * np.clip(m.through[0] / from_ - 1.0, 0.0, 1.5) ** 2
-        return forces(Y.size, Y=Y, N=0.3 * b.length * Y)
+        return stack_forces(Y.size, Y=Y, N=0.3 * b.length * Y)
 
     return Cause("outside_library:lifting_hull", force=force)
 
@@ -250,14 +259,17 @@ def stiction(boat: Boat, rng: Rng, s: float) -> Cause:
     K = 0.004 * s * boat.c["righting"]
     return Cause(
         "outside_library:stiction",
-        force=lambda b, m: forces(m.t.size, K=-K * np.tanh(m.nu[3] / 0.02)),
+        force=lambda b, m: stack_forces(m.t.size, K=-K * np.tanh(m.nu[3] / 0.02)),
     )
 
 
 def shifting_cargo(boat: Boat, rng: Rng, s: float) -> Cause:
     """Add a weight that moves from side to side at intervals."""
-    K, slow = 0.04 * s * boat.c["righting"], wavy(rng, 0.3 / boat.scale, 1.2 / boat.scale, 4)
+    K, slow = (
+        0.04 * s * boat.c["righting"],
+        random_signal(rng, 0.3 / boat.scale, 1.2 / boat.scale, 4),
+    )
     return Cause(
         "outside_library:shifting_cargo",
-        force=lambda b, m: forces(m.t.size, K=K * np.tanh(6 * slow(m.t, m.run))),
+        force=lambda b, m: stack_forces(m.t.size, K=K * np.tanh(6 * slow(m.t, m.run))),
     )

@@ -12,9 +12,9 @@ from validation.practice.boats import BOATS
 from validation.practice.cause import Cause, Maker, Rng
 from validation.practice.motion import RUNS, Array, Boat
 from validation.practice.oracle import Oracle
-from validation.practice.pilots import Keeper, hand
+from validation.practice.pilots import TrackKeeper, sample_open_loop_pilot
 from validation.practice.plans import PLANS, Plan
-from validation.practice.sail import Voyage, sail
+from validation.practice.sail import Voyage, simulate_voyage
 
 COLUMNS = ("x_m", "y_m", "z_m", "phi_rad", "theta_rad", "psi_rad")
 FAMILIES = ("position", "position", "heave", "roll", "pitch", "heading")
@@ -93,11 +93,11 @@ class Deck:
         return tuple(found)
 
 
-def make(trial: Trial, seed: int, out: Path) -> dict[str, Any]:
+def make_trial(trial: Trial, seed: int, out: Path) -> dict[str, Any]:
     """Write one trial to its folder and return its answer."""
     seeds = (seed, int(trial.name[1:4]))
     plan, strange = PLANS[trial.vessel], trial.kind == "unknown"
-    strengths, oracle, gains = chosen(trial, seeds)
+    strengths, oracle, gains = choose_strengths(trial, seeds)
     answer = {
         "kind": trial.kind,
         "vessel": trial.vessel,
@@ -105,14 +105,14 @@ def make(trial: Trial, seed: int, out: Path) -> dict[str, Any]:
         "strength": [round(float(s), 3) for s in strengths],
         "outliers": trial.outliers,
         "calibration_error": CALIBRATION,
-        "effects": [described(c) for c in oracle.causes],
+        "effects": [cause_entry(c) for c in oracle.causes],
         **{
             f"noise_{f}_{UNITS[f]}": float(f"{s:.3g}")
             for f, s in zip(FAMILIES, oracle.noise, strict=True)
             if s
         },
         **evidence_entries(strange, gains),
-        **same(trial, oracle.causes),
+        **equivalent_effects(trial, oracle.causes),
     }
     rng = np.random.default_rng([*seeds, 1])
     if 0 in oracle.nominal.free:
@@ -121,12 +121,12 @@ def make(trial: Trial, seed: int, out: Path) -> dict[str, Any]:
         answer["reference_position_rms_m"] = {
             k: round(v, 6) for k, v in rms.items() if k != left_out
         }
-    voyage = spoilt(oracle.voyage, oracle.noise, rng) if trial.outliers else oracle.voyage
-    write(out / trial.name, oracle.nominal, plan, voyage, answer)
+    voyage = add_outliers(oracle.voyage, oracle.noise, rng) if trial.outliers else oracle.voyage
+    write_trial(out / trial.name, oracle.nominal, plan, voyage, answer)
     return answer
 
 
-def chosen(trial: Trial, seeds: tuple[int, int]) -> tuple[Array, Oracle, Array]:
+def choose_strengths(trial: Trial, seeds: tuple[int, int]) -> tuple[Array, Oracle, Array]:
     """Return the trial with strengths that give about the target evidence.
 
     Returns:
@@ -138,30 +138,36 @@ def chosen(trial: Trial, seeds: tuple[int, int]) -> tuple[Array, Oracle, Array]:
         [np.random.default_rng([*seeds, 0, i]).uniform(low, high) for i in range(count)]
     )
     strengths = np.full(count, FIRST)
-    oracle = sailed(trial, seeds, strengths)
+    oracle = simulate_trial(trial, seeds, strengths)
     if not count:
         return strengths, oracle, strengths
-    found = np.maximum(evidence(oracle, strange), 0.1)
+    found = np.maximum(evidence_gains(oracle, strange), 0.1)
     strengths = np.clip(strengths * np.sqrt(wanted / found), *WEAK_TO_STRONG)
-    oracle = sailed(trial, seeds, strengths)
-    return strengths, oracle, evidence(oracle, strange)
+    oracle = simulate_trial(trial, seeds, strengths)
+    return strengths, oracle, evidence_gains(oracle, strange)
 
 
-def sailed(trial: Trial, seeds: tuple[int, int], strengths: Array) -> Oracle:
+def simulate_trial(trial: Trial, seeds: tuple[int, int], strengths: Array) -> Oracle:
     """Simulate the trial with causes of these strengths; all other samples are unchanged."""
     nominal, plan = BOATS[trial.vessel](), PLANS[trial.vessel]
     grid, rng = plan.grid(), np.random.default_rng([*seeds, 2])
-    noise, real = instruments(nominal, plan, rng), own(nominal, rng)
+    noise, real = sample_instrument_noise(nominal, plan, rng), sample_true_boat(nominal, rng)
     causes = []
     for i, (maker, s) in enumerate(zip(trial.makers, strengths, strict=True)):
         causes.append(
-            on_grid(maker(nominal, np.random.default_rng([*seeds, 3, i]), float(s)), grid.dt)
+            round_latency(maker(nominal, np.random.default_rng([*seeds, 3, i]), float(s)), grid.dt)
         )
-    pilot = Keeper(nominal, grid, rng) if trial.concealed else hand(nominal, grid, rng)
-    return Oracle(nominal, real, causes, sail(real, causes, pilot, grid, noise, rng), noise)
+    pilot = (
+        TrackKeeper(nominal, grid, rng)
+        if trial.concealed
+        else sample_open_loop_pilot(nominal, grid, rng)
+    )
+    return Oracle(
+        nominal, real, causes, simulate_voyage(real, causes, pilot, grid, noise, rng), noise
+    )
 
 
-def on_grid(cause: Cause, dt: float) -> Cause:
+def round_latency(cause: Cause, dt: float) -> Cause:
     """Round the latency of a clock to whole fine steps."""
     if not cause.late:
         return cause
@@ -169,20 +175,20 @@ def on_grid(cause: Cause, dt: float) -> Cause:
     return replace(cause, late=late, parameters={name: late for name in cause.parameters})
 
 
-def instruments(boat: Boat, plan: Plan, rng: Rng) -> Array:
+def sample_instrument_noise(boat: Boat, plan: Plan, rng: Rng) -> Array:
     """Return the instrument noise (6,) of this trial (sd)."""
     usual = {f: sd * rng.uniform(0.7, 1.3) for f, sd in plan.noise.items()}
     return np.array([usual[f] if i in boat.free else 0.0 for i, f in enumerate(FAMILIES)])
 
 
-def own(nominal: Boat, rng: Rng) -> Boat:
+def sample_true_boat(nominal: Boat, rng: Rng) -> Boat:
     """Return a boat with coefficients sampled near those of the file."""
     sd = {"damping": CALIBRATION, "thrust": CALIBRATION, "restoring": RIGHTING}
     factors = {n: 1.0 + sd[kind] * rng.standard_normal() for n, kind in nominal.kinds.items()}
     return replace(nominal, c={n: x * factors.get(n, 1.0) for n, x in nominal.c.items()})
 
 
-def described(cause: Cause) -> dict[str, Any]:
+def cause_entry(cause: Cause) -> dict[str, Any]:
     """Return the entry of a cause in answer.json."""
     found: dict[str, Any] = {
         "name": cause.name,
@@ -191,7 +197,7 @@ def described(cause: Cause) -> dict[str, Any]:
     return found | ({"not_compared": list(cause.not_compared)} if cause.not_compared else {})
 
 
-def evidence(oracle: Oracle, strange: bool) -> Array:
+def evidence_gains(oracle: Oracle, strange: bool) -> Array:
     """Return the evidence gain [nats] of each cause over the others, or over the library."""
     return np.array(
         [oracle.beyond_library(c) if strange else oracle.marginal(c) for c in oracle.causes]
@@ -211,7 +217,7 @@ def evidence_entries(strange: bool, gains: Array) -> dict[str, Any]:
     }
 
 
-def same(trial: Trial, causes: tuple[Cause, ...]) -> dict[str, Any]:
+def equivalent_effects(trial: Trial, causes: tuple[Cause, ...]) -> dict[str, Any]:
     """Return the effects that are equivalent to the true ones."""
     found = {c.name: [*c.same, *(() if trial.concealed else c.same_by_hand)] for c in causes}
     found = {name: others for name, others in found.items() if others}
@@ -220,7 +226,7 @@ def same(trial: Trial, causes: tuple[Cause, ...]) -> dict[str, Any]:
     return {}
 
 
-def spoilt(voyage: Voyage, noise: Array, rng: Rng) -> Voyage:
+def add_outliers(voyage: Voyage, noise: Array, rng: Rng) -> Voyage:
     """Add outliers to two per cent of the rows, as by reflections or receiver jumps."""
     hit = rng.random((len(voyage.recorded), RUNS)) < OUTLIERS
     jump = FAR * noise[:, None] * rng.standard_normal((len(voyage.recorded), 6, RUNS))
@@ -228,7 +234,9 @@ def spoilt(voyage: Voyage, noise: Array, rng: Rng) -> Voyage:
     return replace(voyage, recorded=voyage.recorded + jump * hit[:, None, :])
 
 
-def write(folder: Path, boat: Boat, plan: Plan, voyage: Voyage, answer: dict[str, Any]) -> None:
+def write_trial(
+    folder: Path, boat: Boat, plan: Plan, voyage: Voyage, answer: dict[str, Any]
+) -> None:
     """Write recording.toml, three runs and answer.json."""
     folder.mkdir(parents=True, exist_ok=True)
     noise = {f"{f}_sd_{UNITS[f]}": sd for f, sd in plan.noise.items()}

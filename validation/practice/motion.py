@@ -107,23 +107,26 @@ class Boat:
         return found
 
 
-def cross(a: Array, b: Array) -> Array:
+def vector_product(a: Array, b: Array) -> Array:
     """Return the vector product of (3, B)."""
     return np.array(
         [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
     )
 
 
-def kirchhoff(mass: Array, nu: Array) -> Array:
+def coriolis_force_in_hull_axes(mass: Array, nu: Array) -> Array:
     """Return -C(nu) nu (6, B) of a mass matrix, in axes fixed in the hull."""
     momentum = mass @ nu
     v, spin = nu[:3], nu[3:]
     return -np.concatenate(
-        [cross(spin, momentum[:3]), cross(spin, momentum[3:]) + cross(v, momentum[:3])]
+        [
+            vector_product(spin, momentum[:3]),
+            vector_product(spin, momentum[3:]) + vector_product(v, momentum[:3]),
+        ]
     )
 
 
-def level(mass: Array, nu: Array) -> Array:
+def coriolis_force_in_level_axes(mass: Array, nu: Array) -> Array:
     """Return -C(nu) nu (6, B) in level axes, which only yaw turns."""
     momentum, found = mass @ nu, np.zeros_like(nu)
     found[0], found[1] = momentum[1] * nu[5], -momentum[0] * nu[5]
@@ -131,7 +134,7 @@ def level(mass: Array, nu: Array) -> Array:
     return found
 
 
-def earthward(boat: Boat, q: Array) -> Array:
+def rotations_to_earth(boat: Boat, q: Array) -> Array:
     """Return the rotations (3, 3, B) from body to earth axes."""
     psi = q[5]
     cp, sp, zero = np.cos(psi), np.sin(psi), np.zeros_like(psi)
@@ -168,28 +171,28 @@ Extra = Callable[[Motion], Array]  # further forces (6, B)
 Water = Callable[[Array, Array, Whole], Flow | None]  # of t, q, run
 
 
-def seen(
+def motion_relative_to_water(
     boat: Boat, t: Array, run: Whole, q: Array, nu: Array, act: Array, water: Water
 ) -> tuple[Motion, Array, Array]:
     """Return the motion relative to the water, R, and the water's velocity (3, B) in body axes."""
-    R, flow = earthward(boat, q), water(t, q, run)
+    R, flow = rotations_to_earth(boat, q), water(t, q, run)
     carried = np.zeros_like(nu[:3]) if flow is None else R[0] * flow.north + R[1] * flow.east
     through = np.concatenate([nu[:3] - carried, nu[3:]])
     return Motion(t, run, q, nu, through, act), R, carried
 
 
-def load(boat: Boat, m: Motion, carried: Array, extra: Extra) -> Array:
+def generalised_force(boat: Boat, m: Motion, carried: Array, extra: Extra) -> Array:
     """Return M nu' (6, B): laws, Coriolis forces, and the rotation of a uniform current."""
-    coriolis = kirchhoff if boat.tilts else level
+    coriolis = coriolis_force_in_hull_axes if boat.tilts else coriolis_force_in_level_axes
     found = boat.law(boat.c, m) + extra(m)
     if not carried.any():
         return np.asarray(found + coriolis(boat.hull + boat.coriolis * boat.water, m.nu))
     found += coriolis(boat.hull, m.nu) + boat.coriolis * coriolis(boat.water, m.through)
     spin = m.nu[3:] if boat.tilts else m.nu[3:] * np.array([[0.0], [0.0], [1.0]])
-    return np.asarray(found - boat.water[:, :3] @ cross(spin, carried))
+    return np.asarray(found - boat.water[:, :3] @ vector_product(spin, carried))
 
 
-def step(
+def runge_kutta_step(
     boat: Boat,
     t: Array,
     run: Whole,
@@ -209,8 +212,10 @@ def step(
     """
 
     def slopes(ahead: float, q: Array, nu: Array, act: Array) -> tuple[Array, Array]:
-        m, R, carried = seen(boat, t + ahead, run, q, nu, act, water)
-        return pose_rates(boat, q, nu, R), inverse @ (load(boat, m, carried, extra) + push)
+        m, R, carried = motion_relative_to_water(boat, t + ahead, run, q, nu, act, water)
+        return pose_rates(boat, q, nu, R), inverse @ (
+            generalised_force(boat, m, carried, extra) + push
+        )
 
     a, b, c = acts
     q1, n1 = slopes(0.0, q, nu, a)

@@ -12,16 +12,30 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from validation.practice.cause import Cause, changed, extra, instrument_pose, known, water
-from validation.practice.motion import RUNS, Array, Boat, load, seen, step
-from validation.practice.sail import Acts, Voyage
+from validation.practice.cause import (
+    Cause,
+    apply_number_changes,
+    instrument_pose,
+    predictable_parts,
+    sum_of_forces,
+    water_velocity,
+)
+from validation.practice.motion import (
+    RUNS,
+    Array,
+    Boat,
+    generalised_force,
+    motion_relative_to_water,
+    runge_kutta_step,
+)
+from validation.practice.sail import ActuatorHistory, Voyage
 
 FITTED = (0, 1)  # runs to diagnose from
 HELD_OUT = 2
 
 
 @dataclass(frozen=True)
-class Course:
+class FineGridMotion:
     """A motion on the fine grid from the first row on, (K, 6, RUNS) each."""
 
     q: Array
@@ -29,7 +43,7 @@ class Course:
     nudot: Array
 
 
-def flat(x: Array) -> Array:
+def flatten_runs(x: Array) -> Array:
     """Reshape (K, n, RUNS) to (n, K RUNS)."""
     return np.ascontiguousarray(np.moveaxis(x, 1, 0).reshape(x.shape[1], x.shape[0] * x.shape[2]))
 
@@ -54,33 +68,43 @@ class Oracle:
         count = grid.steps + 1
         self.t = np.repeat(np.arange(count) * grid.dt, RUNS)
         self.run = np.tile(np.arange(RUNS), count)
-        self.own = voyage.acts(nominal, ())
+        self.own = voyage.actuators(nominal, ())
         q, nu = (x[self.inside] for x in (voyage.q, voyage.nu))
         still = self.needed(
-            real, self.causes, self.acts(self.causes), Course(q, nu, np.zeros_like(nu))
+            real, self.causes, self.actuators(self.causes), FineGridMotion(q, nu, np.zeros_like(nu))
         )
         nudot = np.einsum(
-            "ij,kjb->kib", changed(real, self.causes).inverse(), voyage.push[self.inside] - still
+            "ij,kjb->kib",
+            apply_number_changes(real, self.causes).inverse(),
+            voyage.push[self.inside] - still,
         )
-        self.true = Course(q, nu, nudot)
+        self.true = FineGridMotion(q, nu, nudot)
         self.seen = self.recorded(self.causes)
         self.spectra = self._spectra()
 
-    def acts(self, causes: Sequence[Cause]) -> Acts:
+    def actuators(self, causes: Sequence[Cause]) -> ActuatorHistory:
         """Return the actuators of the real boat with some of the causes."""
-        return self.voyage.acts(self.real, causes)
+        return self.voyage.actuators(self.real, causes)
 
-    def needed(self, boat: Boat, causes: Sequence[Cause], acts: Acts, course: Course) -> Array:
+    def needed(
+        self, boat: Boat, causes: Sequence[Cause], acts: ActuatorHistory, course: FineGridMotion
+    ) -> Array:
         """Return the force (K, 6, RUNS) that a model lacks on this motion."""
-        model = changed(boat, causes)
-        q, nu, act = flat(course.q), flat(course.nu), flat(acts.begin[self.inside])
-        m, _, carried = seen(model, self.t, self.run, q, nu, act, water(causes))
-        found = (model.hull + model.water) @ flat(course.nudot) - load(
-            model, m, carried, extra(model, causes)
+        model = apply_number_changes(boat, causes)
+        q, nu, act = (
+            flatten_runs(course.q),
+            flatten_runs(course.nu),
+            flatten_runs(acts.begin[self.inside]),
+        )
+        m, _, carried = motion_relative_to_water(
+            model, self.t, self.run, q, nu, act, water_velocity(causes)
+        )
+        found = (model.hull + model.water) @ flatten_runs(course.nudot) - generalised_force(
+            model, m, carried, sum_of_forces(model, causes)
         )
         return np.moveaxis(found.reshape(6, -1, RUNS), 0, 1)
 
-    def recorded(self, causes: Sequence[Cause]) -> Course:
+    def recorded(self, causes: Sequence[Cause]) -> FineGridMotion:
         """Return the true motion with these instrument errors, without noise."""
         measured = [c for c in causes if c.measured]
         if not measured:
@@ -91,10 +115,10 @@ class Oracle:
             late_q = np.concatenate(
                 [late_q, np.repeat(late_q[-1:], len(self.true.q) - len(late_q), axis=0)]
             )
-        q = instrument_pose(measured, flat(late_q)).reshape(6, -1, RUNS)
+        q = instrument_pose(measured, flatten_runs(late_q)).reshape(6, -1, RUNS)
         q = np.moveaxis(q, 0, 1)
         off = level_rates(q, dt) - level_rates(self.true.q, dt)
-        return Course(q, self.true.nu + off, self.true.nudot + np.gradient(off, dt, axis=0))
+        return FineGridMotion(q, self.true.nu + off, self.true.nudot + np.gradient(off, dt, axis=0))
 
     def force_of(self, cause: Cause) -> Array:
         """Return the force (K, 6, RUNS) that a model without this cause lacks.
@@ -102,13 +126,14 @@ class Oracle:
         Ambient forces are excluded.
         """
         if cause.measured:
-            acts = self.acts(self.causes)
+            acts = self.actuators(self.causes)
             return self.needed(self.real, self.causes, acts, self.recorded([cause])) - self.needed(
                 self.real, self.causes, acts, self.true
             )
         rest = [c for c in self.causes if c is not cause]
         return (
-            self.needed(self.real, rest, self.acts(rest), self.true) - self.voyage.push[self.inside]
+            self.needed(self.real, rest, self.actuators(rest), self.true)
+            - self.voyage.push[self.inside]
         )
 
     def _spectra(self) -> Array:
@@ -134,7 +159,9 @@ class Oracle:
         nu[0, 1:7], nu[0, 8:] = nu[0, 0], nu[0, 0]
         nu[0, 7] = nu[0, 0] + 1e-3
         act = np.zeros((len(b.drive.lag), 13))
-        m, _, _ = seen(b, none, none.astype(np.int64), q, nu, act, lambda t, q, run: None)
+        m, _, _ = motion_relative_to_water(
+            b, none, none.astype(np.int64), q, nu, act, lambda t, q, run: None
+        )
         off = -(b.law(b.c, m) - b.law(b.c, m)[:, :1]) / 1e-3
         return np.diag(off[:, 1:7]), np.diag(off[:, 7:])
 
@@ -218,7 +245,10 @@ class Oracle:
                 found.append(f)
 
         if 0 in self.nominal.free:
-            found += [along(zero, np.cos(psi), -np.sin(psi)), along(zero, np.sin(psi), np.cos(psi))]
+            found += [
+                force_in_plane(zero, np.cos(psi), -np.sin(psi)),
+                force_in_plane(zero, np.sin(psi), np.cos(psi)),
+            ]
         for axis in self.nominal.free:
             rate = c.nu[:, axis]
             for value in (np.ones_like(rate), c.nudot[:, axis], rate, np.abs(rate) * rate, rate**3):
@@ -237,7 +267,9 @@ class Oracle:
             for change in (0.01 * size, 0.01 * self.own.begin[:, i], 0.01 * lag):
                 begin = self.own.begin.copy()
                 begin[:, i] += change
-                found.append(self.needed(self.nominal, (), Acts(begin, begin, begin), c) - base)
+                found.append(
+                    self.needed(self.nominal, (), ActuatorHistory(begin, begin, begin), c) - base
+                )
         return found
 
     def recalibrated(self) -> Boat:
@@ -269,14 +301,14 @@ class Oracle:
         errors that a smoother leaves.
         """
         off = self.left_by_smoother()[:, :, None] * rng.standard_normal((2, 6, 64))
-        causes, real = known(self.causes), changed(self.real, self.causes)
+        causes, real = predictable_parts(self.causes), apply_number_changes(self.real, self.causes)
         late = round(sum(c.late for c in self.causes) / self.voyage.grid.dt)
-        acts = self.acts(self.causes)
+        acts = self.actuators(self.causes)
         fitted = self.recalibrated()
         return {
             "nominal": self._runs(self.nominal, (), self.own, horizon, off, self.seen, 0),
             "recalibrated": self._runs(
-                fitted, (), self.voyage.acts(fitted, ()), horizon, off, self.seen, 0
+                fitted, (), self.voyage.actuators(fitted, ()), horizon, off, self.seen, 0
             ),
             "true_structure": self._runs(real, causes, acts, horizon, off, None, late),
         }
@@ -300,10 +332,10 @@ class Oracle:
         self,
         boat: Boat,
         causes: Sequence[Cause],
-        acts: Acts,
+        acts: ActuatorHistory,
         horizon: float,
         off: Array,
-        start: Course | None,
+        start: FineGridMotion | None,
         late: int,
     ) -> float:
         """Return the rms over all free runs, which are simulated as columns.
@@ -318,8 +350,8 @@ class Oracle:
         if start is not None:
             q, nu = start.q[first, :, HELD_OUT].T, start.nu[first, :, HELD_OUT].T
         q, nu = q + off[0, :, : len(first)], nu + off[1, :, : len(first)]
-        force = extra(boat, causes)
-        flow = water(causes)
+        force = sum_of_forces(boat, causes)
+        flow = water_velocity(causes)
         inverse = boat.inverse()
         none = np.zeros_like(q)
         squares = []
@@ -332,7 +364,7 @@ class Oracle:
             now = np.minimum(at + i, len(v.q) - 1)
             three = tuple(part[now, :, HELD_OUT].T for part in acts)
             t = (now - grid.lead) * grid.dt
-            q, nu = step(
+            q, nu = runge_kutta_step(
                 boat,
                 t,
                 run,
@@ -357,7 +389,7 @@ def level_rates(q: Array, dt: float) -> Array:
     return found
 
 
-def along(like: Array, surge: Array, sway: Array) -> Array:
+def force_in_plane(like: Array, surge: Array, sway: Array) -> Array:
     """Return a force with these two components."""
     f = like.copy()
     f[:, 0], f[:, 1] = surge, sway

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from validation.practice.boats import forces
-from validation.practice.cause import Cause, Rng, wavy
+from validation.practice.boats import stack_forces
+from validation.practice.cause import Cause, Rng, random_signal
 from validation.practice.motion import Array, Boat, Flow, Motion, Whole
 
 
@@ -14,7 +14,7 @@ def wind(boat: Boat, rng: Rng, s: float) -> Cause:
     Isherwood, RINA 1973, rounded; end-on about half of beam-on.
     """
     beam, toward, speed = 20.0 * s * boat.push, float(rng.uniform(-np.pi, np.pi)), 4.0 * boat.scale
-    gusts = wavy(rng, 0.4 / boat.scale, 2.5 / boat.scale)
+    gusts = random_signal(rng, 0.4 / boat.scale, 2.5 / boat.scale)
 
     def blowing(gusty: float) -> Cause:
         def force(b: Boat, m: Motion) -> Array:
@@ -25,7 +25,7 @@ def wind(boat: Boat, rng: Rng, s: float) -> Cause:
             pressure, angle = beam * (along**2 + across**2) / speed**2, np.arctan2(across, along)
             Y = pressure * np.sin(angle) * (1.0 - 0.08 * np.cos(2 * angle))
             X = pressure * 0.5 * np.cos(angle) * (1.0 + 0.1 * np.cos(2 * angle))
-            return forces(psi.size, X=X, Y=Y, N=0.02 * b.length * np.cos(angle) * Y)
+            return stack_forces(psi.size, X=X, Y=Y, N=0.02 * b.length * np.cos(angle) * Y)
 
         return Cause("wind", {"force_N": beam, "toward_rad": toward}, force=force)
 
@@ -57,7 +57,9 @@ def wave_forcing(boat: Boat, rng: Rng, s: float) -> Cause:
     courses = []
     for axis in range(6):
         courses.append(
-            wavy(rng, 0.85 * w, 1.15 * w, 12) if axis in boat.free and sizes[axis] else None
+            random_signal(rng, 0.85 * w, 1.15 * w, 12)
+            if axis in boat.free and sizes[axis]
+            else None
         )
 
     def force(b: Boat, m: Motion) -> Array:
@@ -94,7 +96,7 @@ def tether(boat: Boat, rng: Rng, s: float) -> Cause:
         drag = 0.4 * pull / (0.5 * b.scale)
         X = tension * (c * to_north + n * to_east) - drag * m.nu[0]
         Y = tension * (c * to_east - n * to_north) - drag * (m.nu[1] - L / 2 * m.nu[5])
-        return forces(x.size, X=X, Y=Y, N=-L / 2 * Y)
+        return stack_forces(x.size, X=X, Y=Y, N=-L / 2 * Y)
 
     where = {"north_m": north, "east_m": east}
     return Cause("tether", where, force=force, not_compared=tuple(where))

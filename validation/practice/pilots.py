@@ -17,7 +17,7 @@ RELEASES = (
 
 
 @dataclass
-class Hand:
+class OpenLoopPilot:
     """Commands of several levels, held for random times."""
 
     boat: Boat
@@ -33,7 +33,7 @@ class Hand:
         return np.asarray(self.table[row])
 
 
-def hand(boat: Boat, grid: Grid, rng: Rng) -> Hand:
+def sample_open_loop_pilot(boat: Boat, grid: Grid, rng: Rng) -> OpenLoopPilot:
     """Sample an open-loop pilot.
 
     The ship runs zig-zags at several rudder angles; the tank model is released from several heels.
@@ -54,7 +54,7 @@ def hand(boat: Boat, grid: Grid, rng: Rng) -> Hand:
     nu[0] = boat.cruise
     if not boat.channels:
         q[3] = np.array(RELEASES) * rng.uniform(0.9, 1.1, RUNS)
-    return Hand(boat, table, (q, nu))
+    return OpenLoopPilot(boat, table, (q, nu))
 
 
 def sample_level(boat: Boat, rng: Rng) -> Array:
@@ -76,7 +76,7 @@ def sample_level(boat: Boat, rng: Rng) -> Array:
 
 
 @dataclass
-class Keeper:
+class TrackKeeper:
     """Track keeper on a polygon at two speeds.
 
     It has PI control of the speed and PID control of the heading to the next corner. It uses
@@ -150,10 +150,10 @@ class Keeper:
         mass = b.hull + b.water
         X = mass[0, 0] * (2 * w[0] * errors[0] + 0.5 * w[0] ** 2 * self.sums[0])
         N = mass[5, 5] * (w[1] ** 2 * errors[1] - 1.6 * w[1] * r + 0.25 * w[1] ** 3 * self.sums[1])
-        return allocated(b, X, N)
+        return allocate_commands(b, X, N)
 
 
-def allocated(boat: Boat, X: Array, N: Array) -> Array:
+def allocate_commands(boat: Boat, X: Array, N: Array) -> Array:
     """Return commands (C, RUNS) for X [N] ahead and N [N m], within the limits."""
     if boat.name == "eastward_ho":
         return np.clip(N / (-12.997 * boat.c["steer"]), -0.5, 0.5)[None]

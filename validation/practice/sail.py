@@ -7,8 +7,15 @@ from typing import NamedTuple, Protocol
 import numpy as np
 from scipy.signal import lfilter
 
-from validation.practice.cause import Cause, Rng, changed, extra, instrument_pose, water
-from validation.practice.motion import RUNS, Array, Boat, step
+from validation.practice.cause import (
+    Cause,
+    Rng,
+    apply_number_changes,
+    instrument_pose,
+    sum_of_forces,
+    water_velocity,
+)
+from validation.practice.motion import RUNS, Array, Boat, runge_kutta_step
 
 LEAD = 1.0  # [s at 1.2 m] duration of the first commands before the first row
 
@@ -43,7 +50,7 @@ class Pilot(Protocol):
         """Return the commands (C, RUNS) of a row for the recorded pose (6, RUNS)."""
 
 
-class Acts(NamedTuple):
+class ActuatorHistory(NamedTuple):
     """Actuators at begin, middle and end of every step, each (K, A, RUNS)."""
 
     begin: Array
@@ -89,7 +96,7 @@ class Voyage:
         """Return the row of commands of step k, which may lie before the first row."""
         return min(max(k, 0) // self.grid.every, self.grid.rows - 1)
 
-    def acts(self, boat: Boat, causes: Sequence[Cause]) -> Acts:
+    def actuators(self, boat: Boat, causes: Sequence[Cause]) -> ActuatorHistory:
         """Return the actuators of another boat under the same commands."""
         chain = Actuators(boat, causes, self.grid.dt)
         found = []
@@ -97,10 +104,10 @@ class Voyage:
             found.append(
                 chain.step(self.commands[self.row_of(i - self.grid.lead)], i - self.grid.lead)
             )
-        return Acts(*(np.array(part) for part in zip(*found, strict=True)))
+        return ActuatorHistory(*(np.array(part) for part in zip(*found, strict=True)))
 
 
-def ambient(boat: Boat, n: int, dt: float, rng: Rng) -> Array:
+def ambient_forces(boat: Boat, n: int, dt: float, rng: Rng) -> Array:
     """Return Ornstein-Uhlenbeck forces (n, 6, RUNS) in body axes, 1 s Froude-scaled."""
     keep = np.exp(-dt / boat.scale)
     white = rng.standard_normal((n, 6, RUNS))
@@ -108,18 +115,18 @@ def ambient(boat: Boat, n: int, dt: float, rng: Rng) -> Array:
     return np.asarray(lfilter([1.0], [1.0, -keep], white, axis=0) * boat.ambient()[:, None])
 
 
-def sail(
+def simulate_voyage(
     boat: Boat, causes: Sequence[Cause], pilot: Pilot, grid: Grid, noise: Array, rng: Rng
 ) -> Voyage:
     """Simulate the real boat; `noise` (6,) is that of its instruments."""
-    real = changed(boat, causes)
+    real = apply_number_changes(boat, causes)
     count = grid.lead + grid.steps + 1
-    push = ambient(boat, count, grid.dt, rng)
+    push = ambient_forces(boat, count, grid.dt, rng)
     errors = noise[:, None] * rng.standard_normal((grid.rows, 6, RUNS))
     late = round(max((c.late for c in causes), key=abs, default=0.0) / grid.dt)
     chain = Actuators(real, causes, grid.dt)
-    force = extra(real, causes)
-    flow = water(causes)
+    force = sum_of_forces(real, causes)
+    flow = water_velocity(causes)
     inverse = real.inverse()
     q, nu = pilot.begin()
     u = pilot.command(0, instrument_pose(causes, q))
@@ -133,7 +140,7 @@ def sail(
             recorded.append(instrument_pose(causes, Q[max(i - late, 0)]) + errors[k // grid.every])
             u = pilot.command(k // grid.every, recorded[-1]) if k else u
             commands.append(u)
-        q, nu = step(
+        q, nu = runge_kutta_step(
             real,
             np.full(RUNS, k * grid.dt),
             run,

@@ -27,13 +27,13 @@ from boatsim.physics.base import Array, Measurement, Shown
 from boatsim.recordings.table import Recording
 from validation.real.common import (
     by_name,
-    fixed,
+    format_fixed,
     names_of,
     print_table,
     print_verdict,
     runs_except,
+    runs_named,
     runs_of,
-    selected,
     write_report,
 )
 
@@ -194,20 +194,20 @@ def _free(runs: Sequence[FreeRun]) -> list[str]:
     if not rms:
         return ["", "", ""]
     before, after = rms["recalibrated"], rms["patched"]
-    return fixed(3, before, after, after / before)
+    return format_fixed(3, before, after, after / before)
 
 
 def _medians(before: Sequence[float], after: Sequence[float]) -> list[str]:
     if not before:
         return ["", "", ""]
     a, b = float(np.median(before)), float(np.median(after))
-    return [*fixed(4, a, b), f"{b / a:.3f}"]
+    return [*format_fixed(4, a, b), f"{b / a:.3f}"]
 
 
 def main() -> None:
     """Diagnose, then leave one run out."""
     runs = runs_of(NAME)
-    held_out = selected(runs, HELD_OUT)
+    held_out = runs_named(runs, HELD_OUT)
     fitted = runs_except(runs, HELD_OUT)
     diagnosis = pipeline.diagnose(fitted, held_out, VESSEL, horizon=HORIZON)
     write_report(diagnosis, NAME)

@@ -45,7 +45,7 @@ def write_report(diagnosis: Diagnosis, name: str) -> None:
     print(f"report: {OUT / name / 'report.html'}")
 
 
-def selected(runs: Mapping[str, T], names: Iterable[str]) -> list[T]:
+def runs_named(runs: Mapping[str, T], names: Iterable[str]) -> list[T]:
     """Return the values of the named runs."""
     return list(map(runs.__getitem__, names))
 
@@ -60,12 +60,12 @@ def by_name(items: Sequence[T]) -> dict[str, T]:
     return dict(zip(names_of(items), items, strict=True))
 
 
-def fixed(digits: int, *values: float) -> list[str]:
+def format_fixed(digits: int, *values: float) -> list[str]:
     """Format values with a fixed number of decimals."""
     return [f"{value:.{digits}f}" for value in values]
 
 
-def scaled(
+def scale_errors(
     errors: Mapping[str, float], factor: float, models: Sequence[str] = MODELS
 ) -> list[float]:
     """Return the errors of some models times a factor."""

@@ -38,12 +38,12 @@ from validation.real.common import (
     DEG,
     OUT,
     RECORDINGS,
-    fixed,
+    format_fixed,
     print_table,
     print_verdict,
+    runs_named,
     runs_of,
-    scaled,
-    selected,
+    scale_errors,
     write_report,
 )
 from validation.real.esso_osaka_vessel import NAME, SOURCE, write_vessel
@@ -100,7 +100,7 @@ def consistency_of(path: Path) -> Consistency:
     d = np.genfromtxt(path, delimiter=",", names=True)
     psi, dt = d["psi_rad"], float(np.median(np.diff(d["t_s"])))
     n = round(0.5 * SMOOTH / dt)
-    bridged, jumps = defects(d)
+    bridged, jumps = defective_rows(d)
     wide = np.ones(2 * round(AROUND / dt) + 1)
     good = np.convolve(bridged | jumps, wide, "same") < 0.5
     good[: 4 * n] = good[-4 * n :] = False
@@ -133,7 +133,7 @@ def _derivative(n: int, dt: float) -> Array:
     return np.asarray(k / (dt * float(np.sum(k**2))))
 
 
-def defects(d: Array) -> tuple[Array, Array]:
+def defective_rows(d: Array) -> tuple[Array, Array]:
     """Return the rows with a bridged fix, and those before a jump of position or heading.
 
     Args:
@@ -162,7 +162,7 @@ def sound_stretches(recording: Recording, path: Path, shortest: float) -> list[R
         shortest: Shortest stretch that is returned [s].
     """
     d = np.genfromtxt(path, delimiter=",", names=True)
-    bridged, jumps = defects(d)
+    bridged, jumps = defective_rows(d)
     gone = bridged[np.searchsorted(d["t_s"], recording.t - 1e-6)]
     fixes = {n: np.where(gone, np.nan, recording[n]) for n in ("x_m", "y_m", "psi_rad")}
     whole = replace(recording, signals={**recording.signals, **fixes})
@@ -183,7 +183,7 @@ def print_consistency(runs: Mapping[str, Path]) -> None:
         found = [consistency_of(path) for name, path in runs.items() if name.startswith(kind)]
         bridged, jumps, *others = np.transpose(list(map(astuple, found)))
         row = [kind, str(len(found)), f"{100 * np.mean(bridged):.1f} %", f"{sum(jumps):.0f}"]
-        rows.append([*row, *fixed(2, *np.median(others, axis=1))])
+        rows.append([*row, *format_fixed(2, *np.median(others, axis=1))])
     header = ["", "runs", "bridged", "jumps"]
     header += ["delay of u, v [s]", "v's point aft [m]", "v / that of x, y"]
     print_table("defects of the recordings (medians over runs)", header, rows)
@@ -320,7 +320,7 @@ def _prior(free: Sequence[FreeParameter]) -> Array:
     return np.diag([f.sd**2 for f in free])
 
 
-def around(stretches: Sequence[Recording], a: float, b: float) -> list[Recording]:
+def parts_outside(stretches: Sequence[Recording], a: float, b: float) -> list[Recording]:
     """Return the parts of a run's stretches before a [s] and after b [s]."""
     parts = []
     for whole in stretches:
@@ -348,8 +348,8 @@ def print_winds(found: Mapping[str, Wind], seconds: Mapping[str, float]) -> None
         if abs(off) <= NEAR_DIRECTION and abs(ratio - 1.0) <= NEAR_SPEED:
             near.add(name)
             verdict = "yes"
-        directions = fixed(0, _signed_deg(wind.toward), _signed_deg(truth.toward))
-        speeds = fixed(2, wind.speed, truth.speed, ratio)
+        directions = format_fixed(0, _signed_deg(wind.toward), _signed_deg(truth.toward))
+        speeds = format_fixed(2, wind.speed, truth.speed, ratio)
         rows.append([name, *directions, f"{off:+.0f}", *speeds, verdict])
     header = ["run", "blows to [deg]", "measured", "off"]
     header += ["speed [m/s]", "measured", "ratio", "both near"]
@@ -378,8 +378,8 @@ def print_judged(runs: Sequence[FreeRun], title: str) -> None:
             goals = ["", ""]
             if not kind and family.startswith("position"):
                 goals = list(map("<= {:g}".format, GOALS.values()))
-            a, b, c = scaled(off[family], factor)
-            row = [f"{kind or 'all'}, {what}", str(len(some)), *fixed(3, a, b, c)]
+            a, b, c = scale_errors(off[family], factor)
+            row = [f"{kind or 'all'}, {what}", str(len(some)), *format_fixed(3, a, b, c)]
             rows.append([*row, f"{c / a:.2f}", goals[0], f"{c / b:.2f}", goals[1]])
     header = ["rms", "free runs", "captive", "recalibrated", "patched"]
     header += ["/ captive", "goal", "/ recalibrated", "goal"]
@@ -399,7 +399,7 @@ def in_wind_of_rest(
     """Return free runs over each minute of a run, in the wind estimated from the rest of it."""
     out = []
     for a, b in zip(*free_run_segments(whole.times, HORIZON), strict=True):
-        rest = mapper(around(stretches, float(whole.times[a]), float(whole.times[b])))
+        rest = mapper(parts_outside(stretches, float(whole.times[a]), float(whole.times[b])))
         for run in weather.free_runs(whole, weather.find_wind(rest)):
             if run.start_s == whole.times[a]:
                 out.append(run)
@@ -458,7 +458,7 @@ def diagnose(runs: Mapping[str, OpenedRun], vessel: Vessel) -> Diagnosis:
     for name, run in runs.items():
         if name.startswith(FITTED) and name not in HELD_OUT:
             fitted.append(run.longest)
-    held_out = [run.whole for run in selected(runs, HELD_OUT)]
+    held_out = [run.whole for run in runs_named(runs, HELD_OUT)]
     vessels = dict.fromkeys(map(attrgetter("path"), (*fitted, *held_out)), vessel)
     note = f"{', '.join(HELD_OUT)}; of the other runs only the longest stretch without a jump, "
     note += f"{WINDOW:g} s at most"

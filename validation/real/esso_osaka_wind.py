@@ -20,11 +20,11 @@ from validation.real.common import (
     MODELS,
     OUT,
     RECORDINGS,
-    fixed,
+    format_fixed,
     print_table,
     print_verdict,
     runs_of,
-    scaled,
+    scale_errors,
     write_report,
 )
 from validation.real.esso_osaka_pond import (
@@ -81,12 +81,12 @@ def print_comparison(
         some = runs_of_kind(known, kind)
         off, before = rms_errors(some), concealed.get(kind)
         for family, (what, factor) in UNITS.items():
-            now = scaled(off[family], factor)
+            now = scale_errors(off[family], factor)
             then = [np.nan] * len(MODELS)
             if before:
-                then = scaled(before[family], factor)
-            cells = fixed(3, *chain.from_iterable(zip(then, now, strict=True)))
-            ratios = fixed(2, now[2] / now[0], now[2] / then[2])
+                then = scale_errors(before[family], factor)
+            cells = format_fixed(3, *chain.from_iterable(zip(then, now, strict=True)))
+            ratios = format_fixed(2, now[2] / now[0], now[2] / then[2])
             rows.append([f"{kind or 'all'}, {what}", str(len(some)), *cells, *ratios])
     header = ["rms", "free runs"]
     for model in ("captive", "recalibrated", "patched"):

@@ -17,12 +17,12 @@ from boatsim.diagnosis.pipeline import Diagnosis
 from validation.real.common import (
     DEG,
     MODEL_COLUMNS,
-    fixed,
+    format_fixed,
     print_table,
     runs_except,
+    runs_named,
     runs_of,
-    scaled,
-    selected,
+    scale_errors,
     write_report,
 )
 
@@ -40,8 +40,8 @@ def print_held_out(diagnosis: Diagnosis, goals: Mapping[str, float] = GOALS) -> 
     rows = []
     for family, goal in goals.items():
         what, factor = UNITS[family]
-        off = scaled(held_out[family], factor)
-        rows.append([what, *fixed(3, *off, off[2] / off[1]), f"<= {goal}"])
+        off = scale_errors(held_out[family], factor)
+        rows.append([what, *format_fixed(3, *off, off[2] / off[1]), f"<= {goal}"])
     header = ["rms of free runs, 60 s", "as published", *MODEL_COLUMNS, "goal"]
     print_table(f"fitted on eight runs, held out {' and '.join(HELD_OUT)}", header, rows)
 
@@ -56,7 +56,7 @@ def print_couplings(diagnosis: Diagnosis) -> None:
     for name, gain in sorted(alone, key=lambda item: -identified.get(item[0], -1.0)):
         verdict = "missing" if name in identified else "-"
         with_others = identified.get(name, on_top.get(name, 0.0))
-        rows.append([name, *fixed(0, gain, with_others), verdict])
+        rows.append([name, *format_fixed(0, gain, with_others), verdict])
     header = ["candidate", "alone [nats]", "with the others [nats]", "verdict"]
     print_table("couplings in order of gain", header, rows)
     idle = [name for name in sorted(on_top, key=on_top.__getitem__) if on_top[name] <= 0.0]
@@ -77,9 +77,9 @@ def print_leave_one_out(diagnosis: Diagnosis, recordings: list[MappedRecording])
         held_out = rms_errors(free_runs(problem, fits, [out], HORIZON))
         row = [out.name]
         for family, (_, factor) in UNITS.items():
-            before, after = scaled(held_out[family], factor, REFITTED)
+            before, after = scale_errors(held_out[family], factor, REFITTED)
             better[family] += after < before
-            row += [*fixed(3, before, after), f"{after / before:.2f}"]
+            row += [*format_fixed(3, before, after), f"{after / before:.2f}"]
         rows.append(row)
     header = ["held out"]
     for what, _ in UNITS.values():
@@ -97,7 +97,7 @@ def print_leave_one_out(diagnosis: Diagnosis, recordings: list[MappedRecording])
 def main() -> None:
     """Diagnose, then leave one run out."""
     runs = runs_of(NAME)
-    held_out = selected(runs, HELD_OUT)
+    held_out = runs_named(runs, HELD_OUT)
     diagnosis = pipeline.diagnose(runs_except(runs, HELD_OUT), held_out, horizon=HORIZON)
     write_report(diagnosis, NAME)
     print_held_out(diagnosis)

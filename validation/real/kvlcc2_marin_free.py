@@ -20,10 +20,10 @@ from boatsim.diagnosis.problem import Fit
 from boatsim.physics.base import Array
 from validation.real.common import (
     MODEL_COLUMNS,
-    fixed,
+    format_fixed,
     print_table,
+    runs_named,
     runs_of,
-    selected,
     write_report,
 )
 
@@ -55,7 +55,7 @@ def print_circle(
     by_model = [turn_errors(diagnosis, fit, circle) for fit in fits]
     rows = []
     for (what, goal), off in zip(goals.items(), np.transpose(by_model), strict=True):
-        rows.append([what, *fixed(3, *off, off[2] / off[1]), f"<= {goal}"])
+        rows.append([what, *format_fixed(3, *off, off[2] / off[1]), f"<= {goal}"])
     columns = ["rms error", "as published", *MODEL_COLUMNS, header]
     title = f"fitted on {', '.join(FITTED)}, held out {HELD_OUT}, one free run of {DURATION:g} s"
     print_table(title, columns, rows)
@@ -64,7 +64,7 @@ def print_circle(
 def main() -> None:
     """Diagnose the zig-zags and judge on the circle."""
     runs = runs_of(NAME)
-    diagnosis = pipeline.diagnose(selected(runs, FITTED), [runs[HELD_OUT]], horizon=HORIZON)
+    diagnosis = pipeline.diagnose(runs_named(runs, FITTED), [runs[HELD_OUT]], horizon=HORIZON)
     write_report(diagnosis, NAME)
     recording, vessel = loading.open_recording(runs[HELD_OUT], None, ())
     circle = diagnosis.map_recording(recording.thinned(priors.used_sample_rate(vessel)))

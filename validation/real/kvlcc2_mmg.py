@@ -32,12 +32,12 @@ from validation.real import kvlcc2_hsva_zigzag as hsva
 from validation.real import kvlcc2_marin_free as marin
 from validation.real.common import (
     by_name,
-    fixed,
+    format_fixed,
     print_table,
     print_verdict,
     runs_except,
+    runs_named,
     runs_of,
-    selected,
     write_report,
 )
 
@@ -122,7 +122,7 @@ def print_overshoots(diagnosis: Diagnosis, runs: dict[str, Recording]) -> None:
         for i, count in enumerate(COUNT):
             row = [label, count]
             for found in by_model:
-                row += fixed(1, *found[i : i + 1]) or ["-"]
+                row += format_fixed(1, *found[i : i + 1]) or ["-"]
             rows.append(row)
     header = ["zig-zag", "overshoot", "recorded", "as published", "recalibrated", "patched"]
     title = "overshoot after the rudder's reversal [deg], one free run from the first row"
@@ -180,7 +180,7 @@ def diagnose(
     for run in runs.values():
         if run.path:
             vessels[run.path] = loading.vessel_for(run.path, vessel_name, ())
-    kept = selected(runs, held_out)
+    kept = runs_named(runs, held_out)
     note = ", ".join(held_out)
     fitted = runs_except(runs, held_out)
     return pipeline.diagnose_loaded(Loaded(fitted, kept, vessels, note, horizon=horizon))
@@ -222,7 +222,7 @@ def print_error_sources(
     rows = []
     for what, error in errors_of(before).items():
         least, most = np.quantile([sample[what] for sample in expected], [0.1, 0.9])
-        cells = fixed(3, error, with_held_out[what])
+        cells = format_fixed(3, error, with_held_out[what])
         rows.append([what, *cells, f"{least:.3f} to {most:.3f}"])
     header = ["rms error", "recalibrated", "refitted with the held-out runs"]
     header.append("coefficients sampled from the posterior")
@@ -249,7 +249,7 @@ def report_on(
 def judge_hsva() -> None:
     """Diagnose the 7 m model in HSVA's tank; all runs are zig-zags."""
     diagnosis, runs = report_on("hsva", hsva.NAME, NAME, hsva.HELD_OUT, hsva.HORIZON)
-    held_out = list(map(diagnosis.map_recording, selected(runs, hsva.HELD_OUT)))
+    held_out = list(map(diagnosis.map_recording, runs_named(runs, hsva.HELD_OUT)))
 
     def errors_of(fit: Fit) -> Errors:
         off = rms_errors(free_runs(diagnosis.problem, {"": fit}, held_out, hsva.HORIZON))
@@ -271,7 +271,7 @@ def judge_marin() -> None:
         off = marin.turn_errors(diagnosis, fit, circle)
         return dict(zip(marin.GOALS, off.tolist(), strict=True))
 
-    print_overshoots(diagnosis, by_name(selected(runs, marin.FITTED)))
+    print_overshoots(diagnosis, by_name(runs_named(runs, marin.FITTED)))
     marin.print_circle(diagnosis, circle, dict.fromkeys(marin.GOALS, GOAL))
     print_error_sources(diagnosis, [circle], errors_of)
 

@@ -33,10 +33,10 @@ from validation.real.common import (
     DEG,
     MODEL_COLUMNS,
     by_name,
-    fixed,
+    format_fixed,
     names_of,
     print_table,
-    scaled,
+    scale_errors,
     write_report,
 )
 
@@ -58,7 +58,7 @@ def open_release(name: str) -> tuple[Recording, Vessel]:
     return replace(recording.thinned(priors.used_sample_rate(vessel)), name=name), vessel
 
 
-def cut(whole: Recording, edges: Sequence[float]) -> list[Recording]:
+def split_at(whole: Recording, edges: Sequence[float]) -> list[Recording]:
     """Return the parts between edges [s], named by their times; no row is in two of them."""
     half = 0.5 * float(np.median(np.diff(whole.t)))
     pairs = zip(edges[:-1], edges[1:], strict=True)
@@ -67,12 +67,12 @@ def cut(whole: Recording, edges: Sequence[float]) -> list[Recording]:
 
 def windows_of(whole: Recording) -> list[Recording]:
     """Return all complete windows of 20 s."""
-    return cut(whole, np.arange(whole.t[0], whole.t[-1], WINDOW).tolist())
+    return split_at(whole, np.arange(whole.t[0], whole.t[-1], WINDOW).tolist())
 
 
 def thirds_of(whole: Recording) -> list[Recording]:
     """Return the first, middle and last third."""
-    return cut(whole, np.linspace(whole.t[0], whole.t[-1], 4).tolist())
+    return split_at(whole, np.linspace(whole.t[0], whole.t[-1], 4).tolist())
 
 
 def diagnose_windows(whole: Recording, vessel: Vessel) -> Diagnosis:
@@ -98,7 +98,7 @@ def held_out_errors(diagnosis: Diagnosis) -> dict[str, float]:
     return rms_errors(diagnosis.findings.free_runs)["roll_rms_rad"]
 
 
-def ratio(diagnosis: Diagnosis) -> float:
+def error_ratio(diagnosis: Diagnosis) -> float:
     """Return the held-out error of the patched model over that of the recalibrated one."""
     rms = held_out_errors(diagnosis)
     return rms["patched"] / rms["recalibrated"]
@@ -114,7 +114,7 @@ def with_effects(problem: Problem, base: Fit, names: Sequence[str]) -> Fit:
     return base
 
 
-def one_at_a_time(diagnosis: Diagnosis) -> dict[str, Fit]:
+def fit_one_effect_at_a_time(diagnosis: Diagnosis) -> dict[str, Fit]:
     """Return the linear boat, the boat with each identified effect alone, and that with all."""
     problem, base = diagnosis.problem, diagnosis.ranking.recalibrated
     names = names_of(diagnosis.ranking.named)
@@ -139,13 +139,13 @@ def natural_frequency(mapped: MappedRecording) -> float:
     return float(np.sqrt(values[index("righting_arm", "stiffness")] / inertia))
 
 
-def polar(states: Array, omega: float) -> Array:
+def envelope_and_phase(states: Array, omega: float) -> Array:
     """Return envelope [rad] and phase [rad] (2, N) of states (N, 2), roll and its rate."""
     phi, p = states[:, 0], states[:, 1] / omega
     return np.stack([np.hypot(phi, p), np.unwrap(-np.arctan2(p, phi))])
 
 
-def polar_runs(
+def envelope_and_phase_of_runs(
     problem: Problem, fits: Mapping[str, Fit], mapped: MappedRecording
 ) -> dict[str, Array]:
     """Return envelope and phase (2, N) of the smoothed recording and of one free run per model."""
@@ -153,17 +153,17 @@ def polar_runs(
     last = list(fits.values())[-1]
     values = problem.values(mapped, last.free, last.theta)
     smooth = mapped.smooth(values, problem.program.switches(last.effects), last.levels)[0]
-    found = {"recorded": polar(smooth, omega)}
+    found = {"recorded": envelope_and_phase(smooth, omega)}
     for label, model in fits.items():
-        found[label] = polar(simulate(problem, mapped, model), omega)
+        found[label] = envelope_and_phase(simulate(problem, mapped, model), omega)
     return found
 
 
-def polar_errors(
+def envelope_and_phase_errors(
     problem: Problem, fits: Mapping[str, Fit], recordings: Sequence[MappedRecording]
 ) -> dict[str, tuple[float, float]]:
     """Return the rms errors of envelope and phase [rad] of each model over whole recordings."""
-    runs = list(map(partial(polar_runs, problem, fits), recordings))
+    runs = list(map(partial(envelope_and_phase_of_runs, problem, fits), recordings))
     found = {}
     for label in fits:
         off = np.hstack([run[label] - run["recorded"] for run in runs])
@@ -182,12 +182,12 @@ def error_rows(
     diagnosis: Diagnosis, fits: Mapping[str, Fit], held_out: Sequence[MappedRecording], what: str
 ) -> Rows:
     """Return rows with the errors of envelope and phase over held-out data."""
-    off = polar_errors(diagnosis.problem, fits, held_out)
+    off = envelope_and_phase_errors(diagnosis.problem, fits, held_out)
     first = off["linear"]
     rows = []
     for label, (envelope, phase) in off.items():
         row = [what, label, f"{envelope * DEG:.3f}"]
-        rows.append([*row, *fixed(2, phase * DEG, envelope / first[0], phase / first[1])])
+        rows.append([*row, *format_fixed(2, phase * DEG, envelope / first[0], phase / first[1])])
     return rows
 
 
@@ -209,13 +209,13 @@ def window_rows(
     """Return rows with damping and rows with period of every window, recorded and of free runs."""
     dampings, periods = [], []
     for mapped in recordings:
-        runs = polar_runs(diagnosis.problem, fits, mapped)
+        runs = envelope_and_phase_of_runs(diagnosis.problem, fits, mapped)
         omega = natural_frequency(mapped)
         pairs = [decay_and_period(run, mapped.times, omega) for run in runs.values()]
         damping, period = np.transpose(pairs)
         about = [mapped.name, f"{float(np.mean(runs['recorded'][0])) * DEG:.1f}"]
-        dampings.append([*about, *fixed(2, *(100 * damping))])
-        periods.append([*about, *fixed(4, *period)])
+        dampings.append([*about, *format_fixed(2, *(100 * damping))])
+        periods.append([*about, *format_fixed(4, *period)])
     return dampings, periods
 
 
@@ -293,7 +293,7 @@ def transfer_rows(at_rest: Diagnosis, whole: Recording) -> Rows:
 # ---- tables
 
 
-def last_third(diagnosis: Diagnosis, whole: Recording) -> tuple[Rows, Ranking]:
+def last_third_rows(diagnosis: Diagnosis, whole: Recording) -> tuple[Rows, Ranking]:
     """Return rows with the errors of models over the last third, and the ranking fitted to it.
 
     The models are those fitted to other parts and those fitted to the last third.
@@ -323,8 +323,8 @@ def split_table(splits: Mapping[str, Diagnosis]) -> Table:
         goal = "none"
         if name in GOALS:
             goal = f"<= {GOALS[name]}"
-        off = fixed(4, *scaled(held_out_errors(diagnosis), DEG))
-        rows.append([name, *off, f"{ratio(diagnosis):.3f}", goal])
+        off = format_fixed(4, *scale_errors(held_out_errors(diagnosis), DEG))
+        rows.append([name, *off, f"{error_ratio(diagnosis):.3f}", goal])
     header = ["split", "as published", *MODEL_COLUMNS, "goal"]
     return "Rms roll error [deg] of free runs over held-out data", header, rows
 
@@ -334,12 +334,12 @@ def tables(splits: Mapping[str, Diagnosis], releases: Sequence[Recording]) -> li
     whole, moving = releases
     windows, middle, *_, at_speed = splits.values()
     parts = map_all(windows, windows_of(whole))
-    fits, of_thirds = one_at_a_time(windows), one_at_a_time(middle)
+    fits, of_thirds = fit_one_effect_at_a_time(windows), fit_one_effect_at_a_time(middle)
     dampings, periods = window_rows(windows, fits, parts)
     rows = error_rows(windows, fits, parts[1::2], "windows")
     rows += error_rows(middle, of_thirds, map_all(middle, thirds_of(whole)[1:2]), "middle third")
     header = ["window", "mean envelope [deg]", "recorded", *fits]
-    tail, ranking = last_third(middle, whole)
+    tail, ranking = last_third_rows(middle, whole)
     best, enough = max(ranking.first.values()), required_gain(len(ranking.first))
     verdict = "a model is clearly better than the linear one fitted here"
     if best < enough:

@@ -37,14 +37,14 @@ from boatsim.diagnosis.search.ranking import fit_baseline
 from boatsim.physics import vessel as vessels
 from boatsim.physics.base import Array
 from boatsim.physics.vessel import Vessel
-from boatsim.recordings.table import Orders, Recording
+from boatsim.recordings.table import Recording, TimedCommands
 from validation.real.common import (
     OUT,
-    fixed,
+    format_fixed,
     names_of,
     print_table,
+    runs_named,
     runs_of,
-    selected,
     write_report,
 )
 from validation.real.kvlcc2_roll_decay import simulate, with_effects
@@ -184,7 +184,7 @@ def open_set(path: Path, interpolation: str = "band") -> Recording:
         "phi_rad": columns["displacement_V"],
         "force_V": orders.reshape(count, FINER).mean(axis=1),
     }
-    fine = Orders(np.arange(count * FINER) / (SECOND * FINER), {"force_V": orders})
+    fine = TimedCommands(np.arange(count * FINER) / (SECOND * FINER), {"force_V": orders})
     return Recording(path.stem, t, signals, path=path, orders=fine)
 
 
@@ -197,7 +197,7 @@ def _band_limited(force: Array) -> Array:
     return np.asarray(finer[1::2] + force[0])
 
 
-def rows_of(whole: Recording, begin: int, end: int) -> Recording:
+def slice_rows(whole: Recording, begin: int, end: int) -> Recording:
     """Return some rows of a set, named by them."""
     part = whole.between(begin / SECOND, end / SECOND - 0.5 / SECOND)
     return replace(part, name=f"{whole.name} rows {begin} to {end}")
@@ -205,8 +205,8 @@ def rows_of(whole: Recording, begin: int, end: int) -> Recording:
 
 def diagnose(whole: Recording, vessel: Vessel) -> Diagnosis:
     """Diagnose the linear oscillator from stretches of the training data."""
-    fitted = list(starmap(partial(rows_of, whole), FITTED))
-    held_out = rows_of(whole, *HELD_OUT)
+    fitted = list(starmap(partial(slice_rows, whole), FITTED))
+    held_out = slice_rows(whole, *HELD_OUT)
     return pipeline.diagnose_loaded(Loaded(fitted, [held_out], {whole.path: vessel}, held_out.name))
 
 
@@ -264,7 +264,9 @@ def score_rows(off: Mapping[str, Mapping[str, Array]]) -> list[list[str]]:
     rows = []
     for model, arrow in off[ARROW].items():
         inside = rms(arrow, end=INSIDE)
-        rows.append([model, *fixed(3, rms(off[MULTISINE][model]), rms(arrow), inside), "here"])
+        rows.append(
+            [model, *format_fixed(3, rms(off[MULTISINE][model]), rms(arrow), inside), "here"]
+        )
     for p in PUBLISHED:
         numbers = [f"{x:g}".replace("nan", "") for x in (p.multisine, p.arrow, p.inside)]
         rows.append([p.model, *numbers, p.source])
@@ -280,14 +282,14 @@ def input_rows(whole: Path, diagnosis: Diagnosis) -> list[list[str]]:
     rows = []
     for interpolation, words in INTERPOLATIONS.items():
         recording = open_set(whole, interpolation)
-        parts = starmap(partial(rows_of, recording), FITTED)
+        parts = starmap(partial(slice_rows, recording), FITTED)
         fitted = [map_recording(part, problem.program) for part in parts]
         refitted = Problem(fitted, problem.ambient, problem.uncertainty)
         _, base = fit_baseline(refitted)
         models = {"linear": base, "found": with_effects(refitted, base, COMPARED)}
-        off = simulation_errors(diagnosis, rows_of(recording, *HELD_OUT), models)
+        off = simulation_errors(diagnosis, slice_rows(recording, *HELD_OUT), models)
         evidence = f"{models['found'].evidence:.0f}"
-        rows.append([words, *fixed(3, *map(rms, off.values())), evidence])
+        rows.append([words, *format_fixed(3, *map(rms, off.values())), evidence])
     return rows
 
 
@@ -300,7 +302,7 @@ def amplitude_rows(off: Mapping[str, Array], test: Recording) -> list[list[str]]
         amplitude = rms(phi, a, b)
         left = [rms(e, a, b) for e in off.values()]
         share = f"{100 * left[-1] / amplitude:.2f}"
-        rows.append([f"rows {a} to {b}", f"{amplitude:.1f}", *fixed(3, *left), share])
+        rows.append([f"rows {a} to {b}", f"{amplitude:.1f}", *format_fixed(3, *left), share])
     return rows
 
 
@@ -314,7 +316,7 @@ def band_rows(off: Mapping[str, Array]) -> list[list[str]]:
             hertz = np.fft.rfftfreq(len(e) - START, ROW)
             inside = (hertz >= low) & (hertz < high)
             shares.append(100 * float(spectrum[inside].sum() / spectrum.sum()))
-        rows.append([f"{low:g} to {high:g} Hz", *fixed(0, *shares)])
+        rows.append([f"{low:g} to {high:g} Hz", *format_fixed(0, *shares)])
     return rows
 
 
@@ -356,13 +358,13 @@ def main() -> None:
         verdict = "missed"
     print(f"  goal: {GOAL:g} mV over the arrow: {verdict}, {arrow:.3f} mV")
     header = ["over", "nominal", "recalibrated", "patched", "ratio"]
-    cells = ["arrow", *fixed(3, nominal, linear, arrow, arrow / linear)]
+    cells = ["arrow", *format_fixed(3, nominal, linear, arrow, arrow / linear)]
     print_table("Rms error [mV], one free run", header, [cells])
     header = ["input between its rows", "linear", "+ " + ", ".join(COMPARED), "evidence [nats]"]
     title = "Rms error [mV] over a held-out stretch of the training data, by interpolation of input"
     print_table(title, header, input_rows(runs["train"], diagnosis))
     few = ["linear, recalibrated", *list(models)[-2:]]
-    left = dict(zip(few, selected(off[ARROW], few), strict=True))
+    left = dict(zip(few, runs_named(off[ARROW], few), strict=True))
     header = ["of the arrow", "recorded [mV]", *few, "patched [% of recorded]"]
     title = "Residual, rms error [mV], by amplitude"
     print_table(title, header, amplitude_rows(left, test))

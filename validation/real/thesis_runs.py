@@ -30,7 +30,7 @@ WINDY = ("yaw_2", "yaw_4")  # T18
 
 
 @dataclass(frozen=True)
-class Knob:
+class AdjustableStrength:
     """An adjustable strength: where it acts, its absent value, its prior sd and its bounds."""
 
     effect: str  # of the vessel, or "controller", "camera", "body"
@@ -62,7 +62,7 @@ class Knob:
         return {"set": x, "add": own + x, "times": own * x}[self.how]
 
 
-class Bench:
+class ThesisTest:
     """A test of the thesis that runs with any knobs."""
 
     def __init__(
@@ -101,7 +101,7 @@ class Bench:
         for metric, targets in self.scenario.file.norms.items():
             if targets.published is not None:
                 self.published[metric] = targets.published
-        self._links = _links(self.program)
+        self._links = _inherited_places(self.program)
         self._released = {}
         for use in added:
             kind = load_class("effect", use)
@@ -109,11 +109,11 @@ class Bench:
                 self._released[use] = kind().changes(self.scenario.vessel)
         self._own = None
         if replayed:
-            self._own = Bench(name)
+            self._own = ThesisTest(name)
         self._commands: dict[int, Array] = {}  # seed -> commands (N, C), one row a step
 
     def norms(
-        self, knobs: Sequence[Knob], values: Sequence[float], seeds: Sequence[int]
+        self, knobs: Sequence[AdjustableStrength], values: Sequence[float], seeds: Sequence[int]
     ) -> dict[str, float]:
         """Return the metrics, averaged over seeds; empty if a run ends before they are defined."""
         by_metric: dict[str, list[float]] = {}
@@ -125,7 +125,9 @@ class Bench:
                 by_metric.setdefault(name, []).append(x)
         return {name: float(np.mean(samples)) for name, samples in by_metric.items()}
 
-    def _film(self, knobs: Sequence[Knob], values: Sequence[float], seed: int) -> CameraFrames:
+    def _film(
+        self, knobs: Sequence[AdjustableStrength], values: Sequence[float], seed: int
+    ) -> CameraFrames:
         """Return the frames of the camera during one run."""
         p, body = self.program.values(), self.program.body.copy()
         controller, camera = self.scenario.controller, self.scenario.camera
@@ -206,7 +208,7 @@ class Bench:
         code.settle(program.command_array(controller.initial_commands()), memory, p, on, act)
         y, out, pull = np.zeros(6), np.zeros((period + 1, 6)), (0.0, 0.0)
         parts, t = [np.zeros((1, 6))], 0.0
-        while t < file.duration - 1e-9 and not _over(file.until, y):
+        while t < file.duration - 1e-9 and not _run_has_ended(file.until, y):
             x, east, psi, *_ = y.tolist()
             u, v, r = program.body_rates(y[None])[0, 3:].tolist()
             sense: Sense = sensors.sample(t, (x, east, psi), (u, v, r), pull, rng)
@@ -225,13 +227,13 @@ class Bench:
         return np.asarray(file.step * np.arange(len(states)), float), states
 
 
-def _over(until: Any, y: Array) -> bool:
+def _run_has_ended(until: Any, y: Array) -> bool:
     """Whether the run is at its end."""
     arrived = until.starboard is not None and y[1] >= until.starboard
     return bool(arrived or (until.turned is not None and abs(y[2]) >= until.turned))
 
 
-def _links(program: Program) -> list[tuple[int, int]]:
+def _inherited_places(program: Program) -> list[tuple[int, int]]:
     """Return the positions of parameters that follow another effect: (copy, source)."""
     found = []
     owners = names_of(program.effects)

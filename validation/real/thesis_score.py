@@ -10,7 +10,7 @@ CLIP = 3.0  # largest residual that counts
 SCALE = {"heading_at_end": 10.0, "moved": 0.1}
 
 
-def J(tests: Iterable[tuple[Mapping[str, float], Mapping[str, float]]]) -> float:
+def rms_distance(tests: Iterable[tuple[Mapping[str, float], Mapping[str, float]]]) -> float:
     """Return the rms distance between runs and published values.
 
     A residual is the error over 10 deg or 0.1 m for heading and distance moved, and a log ratio

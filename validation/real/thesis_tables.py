@@ -42,9 +42,9 @@ import numpy as np
 from boatsim.diagnosis.config import DEFAULT
 from boatsim.diagnosis.fit import ParameterSpace, log_prior
 from boatsim.physics.base import Array
-from validation.real.common import fixed, print_table, selected
-from validation.real.thesis_runs import TESTS, WINDY, Bench, Knob
-from validation.real.thesis_score import CLIP, J, residual
+from validation.real.common import format_fixed, print_table, runs_named
+from validation.real.thesis_runs import TESTS, WINDY, AdjustableStrength, ThesisTest
+from validation.real.thesis_score import CLIP, residual, rms_distance
 
 MIN_GAIN = 4.0  # [nats] an effect must gain to be identified
 # of a residual: camera marks, rounding of the tables, and the differences of runs of one test
@@ -79,32 +79,42 @@ ADDED: list[dict[str, Any]] = [
 ]
 # prior: 0.2 to 0.8 N (the thesis prints none)
 OWN = (
-    Knob("pwm_thrust", "at_span", "N", 0.5, 0.3, 0.01, 3.0, tests=SWAY),
-    Knob("pwm_thrust", "at_span", "N", 0.5, 0.3, 0.01, 3.0, tests=YAW),
+    AdjustableStrength("pwm_thrust", "at_span", "N", 0.5, 0.3, 0.01, 3.0, tests=SWAY),
+    AdjustableStrength("pwm_thrust", "at_span", "N", 0.5, 0.3, 0.01, 3.0, tests=YAW),
 )
-CANDIDATES: dict[str, tuple[Knob, ...]] = {
-    "weak_reverse": (Knob("weak_reverse", "astern_factor", "", 1.0, 0.3, 0.3, 1.3),),
-    "thrust_imbalance": (Knob("thrust_imbalance", "fraction", "", 0.0, 0.15, -0.6, 0.6),),
-    "thrust_curve": (Knob("pwm_thrust", "exponent", "", 1.0, 0.5, 0.5, 3.0),),
+CANDIDATES: dict[str, tuple[AdjustableStrength, ...]] = {
+    "weak_reverse": (AdjustableStrength("weak_reverse", "astern_factor", "", 1.0, 0.3, 0.3, 1.3),),
+    "thrust_imbalance": (
+        AdjustableStrength("thrust_imbalance", "fraction", "", 0.0, 0.15, -0.6, 0.6),
+    ),
+    "thrust_curve": (AdjustableStrength("pwm_thrust", "exponent", "", 1.0, 0.5, 0.5, 3.0),),
     "cross_flow_drag": (
-        Knob("cross_flow_drag", "section_drag_coefficient", "", 0.0, 1.2, 0.0, 5.0),
+        AdjustableStrength("cross_flow_drag", "section_drag_coefficient", "", 0.0, 1.2, 0.0, 5.0),
     ),
-    "surge_drag": (Knob("surge_drag", "quadratic", "N s^2/m^2", 0.0, 4.0, 0.0, 40.0),),
-    "added_mass_coriolis": (Knob("added_mass", "coriolis", "", 0.0, 0.5, 0.0, 1.0),),
-    "added_mass": (Knob("added_mass", "sway", "kg", 1.0, 0.5, 0.3, 3.0, "times"),),
-    "yaw_inertia": (Knob("body", "yaw_inertia", "", 1.0, 0.5, 0.4, 3.0, "times"),),
-    "lateral_centre_shift": (Knob("cross_flow_drag", "centre", "m", 0.0, 0.1, -0.4, 0.4, "add"),),
-    "shallow_water": (Knob("shallow_water", "factor", "", 1.0, 1.0, 1.0, 5.0),),
-    "wind": (Knob("fan_wind", "speed", "m/s", 0.0, 0.4, 0.0, 2.0, tests=WINDY),),
-    "prop_walk": (Knob("prop_walk", "side_force_per_thrust", "", 0.0, 0.1, -0.6, 0.6),),
+    "surge_drag": (
+        AdjustableStrength("surge_drag", "quadratic", "N s^2/m^2", 0.0, 4.0, 0.0, 40.0),
+    ),
+    "added_mass_coriolis": (AdjustableStrength("added_mass", "coriolis", "", 0.0, 0.5, 0.0, 1.0),),
+    "added_mass": (AdjustableStrength("added_mass", "sway", "kg", 1.0, 0.5, 0.3, 3.0, "times"),),
+    "yaw_inertia": (AdjustableStrength("body", "yaw_inertia", "", 1.0, 0.5, 0.4, 3.0, "times"),),
+    "lateral_centre_shift": (
+        AdjustableStrength("cross_flow_drag", "centre", "m", 0.0, 0.1, -0.4, 0.4, "add"),
+    ),
+    "shallow_water": (AdjustableStrength("shallow_water", "factor", "", 1.0, 1.0, 1.0, 5.0),),
+    "wind": (AdjustableStrength("fan_wind", "speed", "m/s", 0.0, 0.4, 0.0, 2.0, tests=WINDY),),
+    "prop_walk": (
+        AdjustableStrength("prop_walk", "side_force_per_thrust", "", 0.0, 0.1, -0.6, 0.6),
+    ),
     "steering_offset": (
-        Knob("steering_offset", "port", "rad", 0.0, 0.12, -0.6, 0.6),
-        Knob("steering_offset", "starboard", "rad", 0.0, 0.12, -0.6, 0.6),
+        AdjustableStrength("steering_offset", "port", "rad", 0.0, 0.12, -0.6, 0.6),
+        AdjustableStrength("steering_offset", "starboard", "rad", 0.0, 0.12, -0.6, 0.6),
     ),
-    "thrust_lag": (Knob("thrust_lag", "time_constant", "s", 0.0, 0.6, 0.0, 3.0),),
-    "steering_lag": (Knob("servo", "lag", "s", 0.0, 0.3, 0.0, 2.0),),
-    "start_up_kick": (Knob("controller", "h0", "rad", 0.0, 0.2, 0.0, 1.0, tests=SWAY),),
-    "light_offset": (Knob("camera", "led", "m", 0.183, 0.05, 0.0, 0.5, tests=YAW),),
+    "thrust_lag": (AdjustableStrength("thrust_lag", "time_constant", "s", 0.0, 0.6, 0.0, 3.0),),
+    "steering_lag": (AdjustableStrength("servo", "lag", "s", 0.0, 0.3, 0.0, 2.0),),
+    "start_up_kick": (
+        AdjustableStrength("controller", "h0", "rad", 0.0, 0.2, 0.0, 1.0, tests=SWAY),
+    ),
+    "light_offset": (AdjustableStrength("camera", "led", "m", 0.183, 0.05, 0.0, 0.5, tests=YAW),),
 }
 KINDS = {"start_up_kick": "controller", "light_offset": "measurement"}  # all others are physics
 Data = Mapping[str, Mapping[str, float]]  # test -> norm -> published value
@@ -115,13 +125,13 @@ class Fit:
     """A set of candidates with fitted strengths."""
 
     names: tuple[str, ...]
-    knobs: tuple[Knob, ...]
+    knobs: tuple[AdjustableStrength, ...]
     theta: Array  # (F,)
     covariance: Array  # (F, F)
     slopes: Array  # (R, F) of the residuals, in units of the prior sd
     evidence: float  # [nats]
 
-    def value(self, knob: Knob) -> tuple[float, float]:
+    def value(self, knob: AdjustableStrength) -> tuple[float, float]:
         """Return a fitted strength and its standard deviation."""
         i = self.knobs.index(knob)
         return float(self.theta[i]), sqrt(self.covariance[i, i])
@@ -136,19 +146,21 @@ class Tables:
         Args:
             tests: Names of the tests.
         """
-        self.benches = {t: Bench(f"{t}_as_published", ADDED, NOMINAL, t in YAW) for t in tests}
-        self.data = dict(zip(tests, map(published, self.benches.values()), strict=True))
+        self.benches = {t: ThesisTest(f"{t}_as_published", ADDED, NOMINAL, t in YAW) for t in tests}
+        self.data = dict(zip(tests, map(published_norms, self.benches.values()), strict=True))
         self.facts = True
         self.cache: dict[Any, dict[str, float]] = {}
 
     def only(self, tests: Sequence[str], facts: bool = True) -> "Tables":
         """Return some of the tests, with or without the bounds of the text; runs are shared."""
         found = copy(self)
-        found.benches = dict(zip(tests, selected(self.benches, tests), strict=True))
+        found.benches = dict(zip(tests, runs_named(self.benches, tests), strict=True))
         found.facts = facts
         return found
 
-    def norms(self, test: str, knobs: Sequence[Knob], theta: Sequence[float]) -> dict[str, float]:
+    def norms(
+        self, test: str, knobs: Sequence[AdjustableStrength], theta: Sequence[float]
+    ) -> dict[str, float]:
         """Return the norms of a test; each run is simulated once."""
         acting, values = [], []
         for knob, x in zip(knobs, theta, strict=True):
@@ -160,12 +172,14 @@ class Tables:
             self.cache[key] = self.benches[test].norms(acting, values, SEEDS)
         return self.cache[key]
 
-    def residuals(self, knobs: Sequence[Knob], theta: Sequence[float]) -> Array:
+    def residuals(self, knobs: Sequence[AdjustableStrength], theta: Sequence[float]) -> Array:
         """Return the weighted residuals (R,) of all tests."""
         of_test = partial(self.of_test, knobs=knobs, theta=theta)
         return np.concatenate(list(map(of_test, self.benches)))
 
-    def of_test(self, test: str, knobs: Sequence[Knob], theta: Sequence[float]) -> Array:
+    def of_test(
+        self, test: str, knobs: Sequence[AdjustableStrength], theta: Sequence[float]
+    ) -> Array:
         """Return the weighted residuals of one test: its norms, then the bounds of the text."""
         found, wanted = self.norms(test, knobs, theta), self.data[test]
         weight = sqrt(INDEPENDENT / len(wanted))
@@ -174,9 +188,9 @@ class Tables:
             off = 2.0 * CLIP  # for a run that ends before the norm is defined
             if name in found:
                 off = residual(name, found[name], x)
-            residuals.append(soft(off) * weight)
+            residuals.append(soft_clip(off) * weight)
         if test in SWAY and self.facts:
-            residuals += map(soft, beyond(found))
+            residuals += map(soft_clip, residuals_outside_bounds(found))
         return np.array(residuals) / SPREAD
 
     def rows(self) -> dict[str, slice]:
@@ -191,12 +205,12 @@ class Tables:
         return slices
 
 
-def published(bench: Bench) -> dict[str, float]:
+def published_norms(bench: ThesisTest) -> dict[str, float]:
     """Return the published norms of a test that are fitted."""
     return {name: x for name, x in bench.published.items() if name != "position_l1"}
 
 
-def beyond(found: Mapping[str, float]) -> tuple[float, float]:
+def residuals_outside_bounds(found: Mapping[str, float]) -> tuple[float, float]:
     """Return the residuals of surge offset and time of a sway test outside the text's bounds."""
     if not found:
         return 2.0 * CLIP, 2.0 * CLIP
@@ -205,7 +219,7 @@ def beyond(found: Mapping[str, float]) -> tuple[float, float]:
     return (ahead - min(max(ahead, 0.0), ROOM)) / ROOM, log(time / bounded)
 
 
-def soft(x: float) -> float:
+def soft_clip(x: float) -> float:
     """Return a residual that grows logarithmically beyond `CLIP`, so that it keeps a slope."""
     return CLIP * asinh(x / CLIP)
 
@@ -213,7 +227,7 @@ def soft(x: float) -> float:
 # ---- fit
 
 
-def knobs_of(names: Sequence[str]) -> tuple[Knob, ...]:
+def strengths_of(names: Sequence[str]) -> tuple[AdjustableStrength, ...]:
     """Return the nominal's own coefficients and those of candidates."""
     knobs = list(OWN)
     for name in names:
@@ -221,13 +235,15 @@ def knobs_of(names: Sequence[str]) -> tuple[Knob, ...]:
     return tuple(knobs)
 
 
-def score(tables: Tables, knobs: Sequence[Knob], theta: Array) -> tuple[float, Array]:
+def log_posterior(
+    tables: Tables, knobs: Sequence[AdjustableStrength], theta: Array
+) -> tuple[float, Array]:
     """Return the log posterior up to a constant, and the residuals (R,)."""
     e = tables.residuals(knobs, theta.tolist())
     return log_prior(knobs, theta) - 0.5 * float(e @ e), e  # type: ignore[arg-type]
 
 
-def slopes(tables: Tables, knobs: Sequence[Knob], theta: Array, e: Array) -> Array:
+def jacobian(tables: Tables, knobs: Sequence[AdjustableStrength], theta: Array, e: Array) -> Array:
     """Return the derivatives (R, F) of the residuals by theta / sd, one-sided, into the bounds."""
     found = np.zeros((len(e), len(knobs)))
     for j, knob in enumerate(knobs):
@@ -247,22 +263,22 @@ def gauss_newton(tables: Tables, names: Sequence[str], theta: Array, most: int =
         theta: (F,) start.
         most: Largest number of steps.
     """
-    knobs = knobs_of(names)
+    knobs = strengths_of(names)
     space = ParameterSpace(knobs)  # type: ignore[arg-type]
     theta, damping = space.clipped(theta), 1e-3
-    best, e = score(tables, knobs, theta)
-    A = slopes(tables, knobs, theta, e)
+    best, e = log_posterior(tables, knobs, theta)
+    A = jacobian(tables, knobs, theta, e)
     for _ in range(most):
         g, gain = -(A.T @ e) - (theta - space.mean) / space.sd, 0.0
         for _ in range(4):
             trial = space.damped_step(theta, A, g, damping)
-            value, after = score(tables, knobs, trial)
+            value, after = log_posterior(tables, knobs, trial)
             if value > best:
                 theta, e, gain, best, damping = trial, after, value - best, value, damping / 10.0
                 break
             damping = max(damping, 1e-2) * 10.0
         if gain > 0.0:
-            A = slopes(tables, knobs, theta, e)
+            A = jacobian(tables, knobs, theta, e)
         if gain < 0.2:
             break
     information = np.eye(len(knobs)) + A.T @ A
@@ -270,14 +286,14 @@ def gauss_newton(tables: Tables, names: Sequence[str], theta: Array, most: int =
     return Fit(tuple(names), knobs, theta, space.covariance(information), A, evidence)
 
 
-def with_candidate(tables: Tables, base: Fit, name: str) -> Fit:
+def fit_with_candidate(tables: Tables, base: Fit, name: str) -> Fit:
     """Return `base` refitted with one more candidate.
 
     The start is the best of a few strengths, with the thrusts of `base` and of the prior.
     """
     names = (*base.names, name)
     space = ParameterSpace(CANDIDATES[name])  # type: ignore[arg-type]
-    knobs = knobs_of(names)
+    knobs = strengths_of(names)
     port, starboard = OWN[0].mean, OWN[1].mean
     thrusts = (
         base.theta[:2],
@@ -289,15 +305,15 @@ def with_candidate(tables: Tables, base: Fit, name: str) -> Fit:
     for shift in (-1.0, -0.3, 0.3, 1.0):
         strengths = space.clipped(space.mean + shift * space.sd)
         starts += [np.concatenate([thrust, base.theta[2:], strengths]) for thrust in thrusts]
-    best = max(starts, key=lambda theta: score(tables, knobs, theta)[0])
+    best = max(starts, key=lambda theta: log_posterior(tables, knobs, theta)[0])
     return gauss_newton(tables, names, best, 3)
 
 
-def without(tables: Tables, base: Fit, name: str) -> Fit:
+def fit_without(tables: Tables, base: Fit, name: str) -> Fit:
     """Return `base` refitted without one of its candidates."""
     names = tuple(filter(name.__ne__, base.names))
     known = dict(zip(base.knobs, base.theta.tolist(), strict=True))
-    return gauss_newton(tables, names, np.array(list(map(known.__getitem__, knobs_of(names)))))
+    return gauss_newton(tables, names, np.array(list(map(known.__getitem__, strengths_of(names)))))
 
 
 @dataclass(frozen=True)
@@ -322,36 +338,38 @@ def rank(
 ) -> Ranking:
     """Select candidates one by one by evidence, and compare each with the others in its place."""
     theta = np.array([OWN[0].mean, OWN[1].mean])
-    nominal = Fit((), OWN, theta, np.zeros((2, 2)), np.zeros((0, 2)), score(tables, OWN, theta)[0])
+    nominal = Fit(
+        (), OWN, theta, np.zeros((2, 2)), np.zeros((0, 2)), log_posterior(tables, OWN, theta)[0]
+    )
     base = best = gauss_newton(tables, (), theta)
     tested: dict[tuple[str, ...], dict[str, Fit]] = {}
 
     def with_each(fit: Fit) -> dict[str, Fit]:
-        return {n: with_candidate(tables, fit, n) for n in candidates if n not in best.names}
+        return {n: fit_with_candidate(tables, fit, n) for n in candidates if n not in best.names}
 
     while len(best.names) < most:
         tested[best.names] = with_each(best)
         front = max(tested[best.names].values(), key=attrgetter("evidence"))
         if front.evidence < best.evidence + MIN_GAIN:
             break
-        best = pruned(tables, gauss_newton(tables, front.names, front.theta))
+        best = prune(tables, gauss_newton(tables, front.names, front.theta))
         if best.names in tested:
             break
     first = {name: fit.evidence - base.evidence for name, fit in tested[()].items()}
     gains: dict[str, float] = {}
     rivals: dict[str, dict[str, Fit]] = {}
     for name in best.names:
-        fewer = without(tables, best, name)
+        fewer = fit_without(tables, best, name)
         gains[name] = best.evidence - fewer.evidence
         rivals[name] = with_each(fewer)
     last = tested.get(best.names) or with_each(best)
     return Ranking(nominal, base, best, first, gains, rivals, last)
 
 
-def pruned(tables: Tables, best: Fit) -> Fit:
+def prune(tables: Tables, best: Fit) -> Fit:
     """Return the set without members that others have made unnecessary."""
     while best.names:
-        fewer = max(map(partial(without, tables, best), best.names), key=attrgetter("evidence"))
+        fewer = max(map(partial(fit_without, tables, best), best.names), key=attrgetter("evidence"))
         if fewer.evidence < best.evidence - MIN_GAIN:
             break
         best = fewer
@@ -382,7 +400,7 @@ def distance(tables: Tables, fitted: Fit, tests: Sequence[str]) -> float:
         if not found:
             found = {name: x * 1e9 for name, x in wanted.items()}
         pairs.append((found, wanted))
-    return J(pairs)
+    return rms_distance(pairs)
 
 
 def print_ranking(ranking: Ranking) -> None:
@@ -396,18 +414,18 @@ def print_ranking(ranking: Ranking) -> None:
             fitted, verdict = ranking.last[name], "-"
         gain = gains.get(name, ranking.gain(fitted))
         kind = KINDS.get(name, "physics")
-        rows.append([name, kind, *fixed(1, first, gain), strengths(fitted, name), verdict])
+        rows.append([name, kind, *format_fixed(1, first, gain), values_text(fitted, name), verdict])
     header = ["candidate", "kind", "alone [nats]", "with the others [nats]", "value +- sd"]
     title = "candidates: gain over the recalibrated nominal alone, and with the identified effects"
     print_table(title, [*header, "verdict"], rows)
 
 
-def strengths(fitted: Fit, name: str) -> str:
+def values_text(fitted: Fit, name: str) -> str:
     """Return the fitted values of a candidate as text."""
-    return ", ".join(map(partial(strength, fitted), CANDIDATES[name]))
+    return ", ".join(map(partial(value_text, fitted), CANDIDATES[name]))
 
 
-def strength(fitted: Fit, knob: Knob) -> str:
+def value_text(fitted: Fit, knob: AdjustableStrength) -> str:
     """Return a fitted value as text; "(prior)" if the tables do not determine it."""
     value, sd = fitted.value(knob)
     text = f"{knob.name} {value:.3g} +- {sd:.2g} {knob.unit}".rstrip()
@@ -428,8 +446,8 @@ def print_sources(tables: Tables, ranking: Ranking) -> None:
     best = ranking.best
     rows = []
     for name in best.names:
-        gain = partial(gain_in, best, name)
-        rows.append([name, *fixed(1, *map(gain, parts.values()))])
+        gain = partial(gain_in_part, best, name)
+        rows.append([name, *format_fixed(1, *map(gain, parts.values()))])
     title = "gain of each effect by part of the data, all else refitted to that part [nats]"
     print_table(title, ["effect", *parts], rows)
     shares = []
@@ -438,14 +456,16 @@ def print_sources(tables: Tables, ranking: Ranking) -> None:
         for part in tables.rows().values():
             information.append(float((best.slopes[part, j] ** 2).sum()))
         total = max(sum(information), 1e-12)
-        shares.append([knob.label, *fixed(0, *(100 * np.array(information) / total))])
+        shares.append([knob.label, *format_fixed(0, *(100 * np.array(information) / total))])
     title = "information on each strength by test [%]"
     print_table(title, ["strength", *tables.benches], shares)
 
 
-def gain_in(best: Fit, name: str, part: Tables) -> float:
+def gain_in_part(best: Fit, name: str, part: Tables) -> float:
     """Return the evidence of one effect in a part of the data [nats]."""
-    return gauss_newton(part, best.names, best.theta).evidence - without(part, best, name).evidence
+    return (
+        gauss_newton(part, best.names, best.theta).evidence - fit_without(part, best, name).evidence
+    )
 
 
 def print_leave_one_out(tables: Tables, ranking: Ranking) -> None:
@@ -462,12 +482,12 @@ def print_leave_one_out(tables: Tables, ranking: Ranking) -> None:
         sums += np.array([before, after]) ** 2
         better += after < before
         fitted = distance(tables, base, [test]), distance(tables, best, [test])
-        row = [test, *fixed(2, *fitted, before, after, after / before)]
+        row = [test, *format_fixed(2, *fitted, before, after, after / before)]
         rows.append([*row, f"{thrust_ratio(best_without):.3f}"])
     rms = np.sqrt(sums / len(rows))
     tests = list(tables.benches)
     whole = distance(tables, base, tests), distance(tables, best, tests)
-    row = ["all", *fixed(2, *whole, *rms, rms[1] / rms[0])]
+    row = ["all", *format_fixed(2, *whole, *rms, rms[1] / rms[0])]
     rows.append([*row, f"{thrust_ratio(best):.3f}"])
     header = ["test", "fitted: recalibrated", "with effects", "held out: recalibrated"]
     header += ["with effects", "ratio", "thrust ahead / astern"]
@@ -482,11 +502,15 @@ def print_norms(ranking: Ranking) -> None:
     """
     rows, pairs = [], []
     for test in TESTS:
-        bench = Bench(f"{test}_as_published", ADDED, NOMINAL)
-        best = run(bench, ranking.best)
-        columns = [run(bench, ranking.nominal), run(bench, ranking.recalibrated), best]
-        columns.append(run(Bench(test, ADDED, NOMINAL), ranking.best))
-        pairs.append((best, published(bench)))
+        bench = ThesisTest(f"{test}_as_published", ADDED, NOMINAL)
+        best = simulate_norms(bench, ranking.best)
+        columns = [
+            simulate_norms(bench, ranking.nominal),
+            simulate_norms(bench, ranking.recalibrated),
+            best,
+        ]
+        columns.append(simulate_norms(ThesisTest(test, ADDED, NOMINAL), ranking.best))
+        pairs.append((best, published_norms(bench)))
         wanted = {name: f"{x:g}" for name, x in bench.published.items()}
         if test in SWAY:
             wanted |= TEXT_BOUNDS
@@ -499,14 +523,14 @@ def print_norms(ranking: Ranking) -> None:
     header.append("corrected controller")
     title = "norms of the thesis' program, mean of six seeds; last column: our controller"
     print_table(title, header, rows)
-    print(f"J of the boat with effects in these closed-loop runs: {J(pairs):.2f}")
+    print(f"J of the boat with effects in these closed-loop runs: {rms_distance(pairs):.2f}")
     print("- : the test does not end as it should (too short for the norms, or no full turn)")
 
 
 TEXT_BOUNDS = {"surge_offset": "0 to 0.15", "time_to_end": "13 to 18"}
 
 
-def run(bench: Bench, fitted: Fit) -> dict[str, float]:
+def simulate_norms(bench: ThesisTest, fitted: Fit) -> dict[str, float]:
     """Return the norms of a test with a boat's strengths.
 
     Strengths of the thesis' controller are used only in tests with that controller.
@@ -521,7 +545,7 @@ def run(bench: Bench, fitted: Fit) -> dict[str, float]:
     return bench.norms(knobs, values, FINAL_SEEDS)
 
 
-def alike(ranking: Ranking, name: str) -> dict[str, Fit]:
+def fit_look_alikes(ranking: Ranking, name: str) -> dict[str, Fit]:
     """Return fits with another effect in the place of an identified one, the best first.
 
     Only those that the data do not exclude are returned.
@@ -546,10 +570,10 @@ def print_undetermined(ranking: Ranking) -> None:
     """Print what the tables do not determine."""
     print("\nnot determined by the tables")
     for name in ranking.rivals:
-        for rival, fitted in alike(ranking, name).items():
+        for rival, fitted in fit_look_alikes(ranking, name).items():
             print(
                 f"  {name} or, in its place, {rival} ({ranking.gain(fitted):+.1f} nats): "
-                f"{strengths(fitted, rival)}"
+                f"{values_text(fitted, rival)}"
             )
             print(
                 f"    thrust ahead over thrust astern: {thrust_ratio(ranking.best):.3f} with the "
@@ -580,11 +604,14 @@ def main() -> None:
     ranking = rank(tables)
     identified = []
     for name in ranking.best.names:
-        identified.append(" or ".join([name, *alike(ranking, name)]))
+        identified.append(" or ".join([name, *fit_look_alikes(ranking, name)]))
     missing = ", ".join(identified) or "nothing"
     print(f"missing from the thesis' model, by its tables alone: {missing}")
-    print(f"baseline: the thesis' model with its thrusts refitted ({own(ranking.recalibrated)})")
-    print(f"with effects: {own(ranking.best)}")
+    print(
+        f"baseline: the thesis' model with its thrusts refitted "
+        f"({own_coefficients_text(ranking.recalibrated)})"
+    )
+    print(f"with effects: {own_coefficients_text(ranking.best)}")
     print_ranking(ranking)
     print_sources(tables, ranking)
     print_leave_one_out(tables, ranking)
@@ -592,7 +619,7 @@ def main() -> None:
     print_undetermined(ranking)
 
 
-def own(fitted: Fit) -> str:
+def own_coefficients_text(fitted: Fit) -> str:
     """Return the nominal's own coefficients as text."""
     texts = []
     for knob in OWN:

@@ -14,10 +14,10 @@ from validation.real.common import (
     DEG,
     MODEL_COLUMNS,
     effects_of,
-    fixed,
+    format_fixed,
     print_table,
     runs_of,
-    scaled,
+    scale_errors,
     write_report,
 )
 
@@ -36,8 +36,8 @@ def print_held_out(diagnosis: Diagnosis) -> None:
     off = rms_errors(diagnosis.findings.free_runs)
     rows, ratios = [], []
     for family, (what, factor) in QUANTITIES.items():
-        nominal, before, after = scaled(off[family], factor)
-        rows.append([what, *fixed(3, nominal, before, after), f"{after / before:.2f}"])
+        nominal, before, after = scale_errors(off[family], factor)
+        rows.append([what, *format_fixed(3, nominal, before, after), f"{after / before:.2f}"])
         ratios.append(float(rows[-1][-1]))
     header = ["rms of free runs, 10 s", "as written", *MODEL_COLUMNS]
     print_table("fitted on the first and last third, held out the middle third", header, rows)

@@ -11,16 +11,16 @@ from pathlib import Path
 from rich.progress import track
 
 from validation.rivals.least_squares import LeastSquares
-from validation.rivals.question import answer, read_question
+from validation.rivals.question import read_question, write_answer
 from validation.rivals.sparse_regression import SparseRegression
 
 RIVALS = {"least_squares": LeastSquares, "sparse_regression": SparseRegression}
 
 
-def enter(rival: str, trial: Path, out: Path, plain: bool = False) -> None:
+def answer_trial(rival: str, trial: Path, out: Path, plain: bool = False) -> None:
     """Answer one trial."""
     question = read_question(trial)
-    answer(question, *RIVALS[rival](question, plain).answer(), trial, out)
+    write_answer(question, *RIVALS[rival](question, plain).answer(), trial, out)
 
 
 def main() -> None:
@@ -39,7 +39,7 @@ def main() -> None:
     if not trials:
         raise SystemExit(f"{args.trials}: no trials found")
     for trial in track(trials, args.rival):
-        enter(args.rival, trial, args.out / trial.name, args.plain)
+        answer_trial(args.rival, trial, args.out / trial.name, args.plain)
 
 
 if __name__ == "__main__":

@@ -40,14 +40,14 @@ class Smoother:
         Windows of x and y are equal. Windows of states are as wide as the noise [m, rad] allows and
         at most half as wide as those of accelerations.
         """
-        families, recorded = of_freedoms(track), positions(track)
+        families, recorded = noise_families(track), recorded_positions(track)
         wide, narrow = dict[str, int](), dict[str, int]()
         for j, family in enumerate(families):
-            n = calm(
+            n = narrowest_quiet_window(
                 track, ambient.force[j] / track.inertia[j], ambient.time_constant, noise[family]
             )
             wide[family] = max(n, wide.get(family, n))
-            n = widest(recorded[:, j], noise[family])
+            n = widest_unbiased_window(recorded[:, j], noise[family])
             narrow[family] = min(n, narrow.get(family, n))
         limit = {f: max(NARROWEST, wide[f] // 2 // 2 * 2 + 1) for f in wide}
         return cls(
@@ -72,21 +72,24 @@ class Smoother:
         for d in range(3):
             parts.append(
                 np.column_stack(
-                    [derived(y, n, d, h) for y, n in zip(recorded.T, windows[d], strict=True)]
+                    [
+                        smoothed_derivative(y, n, d, h)
+                        for y, n in zip(recorded.T, windows[d], strict=True)
+                    ]
                 )
             )
         return np.ascontiguousarray(np.hstack(parts[:2])), parts[2]
 
-    def blurred(self, accelerations: Array) -> Array:
+    def smooth_accelerations(self, accelerations: Array) -> Array:
         """Return accelerations (N, NQ) smoothed like the second differences of a window."""
         return np.column_stack(
             [
-                np.convolve(a, kernel(n), "same")
+                np.convolve(a, acceleration_weights(n), "same")
                 for a, n in zip(accelerations.T, self.windows, strict=True)
             ]
         )
 
-    def pushed(self, ambient: NoiseLevels, times: float) -> Array:
+    def ambient_variance(self, ambient: NoiseLevels, times: float) -> Array:
         """Return the variance (NQ,) of smoothed accelerations under `times` the ambient force.
 
         Along x and y it is the mean over all headings.
@@ -95,47 +98,54 @@ class Smoother:
         level = [j for j, free in enumerate(self.track.program.module.FREE) if free < 2]
         power[level] = np.mean(power[level]) if level else 0.0
         return power * np.array(
-            [kept(n, step(self.track), ambient.time_constant) for n in self.windows]
+            [
+                passed_power_share(n, sampling_interval(self.track), ambient.time_constant)
+                for n in self.windows
+            ]
         )
 
-    def noisy(self, noise: Mapping[str, float], rng: np.random.Generator) -> Array:
+    def sample_noise(self, noise: Mapping[str, float], rng: np.random.Generator) -> Array:
         """Return sampled instrument noise (N, NQ) [m, rad]."""
-        sd = np.array([noise[f] for f in of_freedoms(self.track)])
+        sd = np.array([noise[f] for f in noise_families(self.track)])
         return sd * rng.standard_normal((len(self.track.times), len(sd)))
 
 
-def step(track: MappedRecording) -> float:
+def sampling_interval(track: MappedRecording) -> float:
     """Return the sampling interval [s]."""
     return float(np.median(np.diff(track.times)))
 
 
-def of_freedoms(track: MappedRecording) -> list[str]:
+def noise_families(track: MappedRecording) -> list[str]:
     """Return the noise family of each recorded position."""
     families = dict(zip(track.codes.tolist(), track.families, strict=True))
     return [families[j] for j in range(track.program.module.NQ)]
 
 
-def kept(n: int, h: float, lasts: float) -> float:
+def passed_power_share(n: int, h: float, lasts: float) -> float:
     """Return the share of the power of a coloured force that a window of n rows passes."""
     apart = h * np.abs(np.subtract.outer(np.arange(n), np.arange(n)))
-    return float(kernel(n) @ np.exp(-apart / lasts) @ kernel(n))
+    return float(acceleration_weights(n) @ np.exp(-apart / lasts) @ acceleration_weights(n))
 
 
-def loud(n: int, h: float) -> float:
+def noise_amplification(n: int, h: float) -> float:
     """Return the variance of a window's accelerations per variance of the noise [1/s^4]."""
-    return float(np.sum(coefficients(n, 2) ** 2)) / h**4
+    return float(np.sum(convolution_weights(n, 2) ** 2)) / h**4
 
 
-def calm(track: MappedRecording, ambient: float, lasts: float, noise: float) -> int:
+def narrowest_quiet_window(
+    track: MappedRecording, ambient: float, lasts: float, noise: float
+) -> int:
     """Return the rows of the narrowest window with less noise than ambient acceleration."""
-    h, most = step(track), int(WIDEST * len(track.times))
+    h, most = sampling_interval(track), int(WIDEST * len(track.times))
     for n in range(NARROWEST, most, 2):
-        if noise**2 * loud(n, h) < LOUDER * ambient**2 * kept(n, h, lasts):
+        if noise**2 * noise_amplification(n, h) < LOUDER * ambient**2 * passed_power_share(
+            n, h, lasts
+        ):
             return n
     return most // 2 * 2 + 1
 
 
-def positions(track: MappedRecording) -> Array:
+def recorded_positions(track: MappedRecording) -> Array:
     """Return recorded positions (N, NQ), with gaps interpolated linearly."""
     out = np.zeros((len(track.times), track.program.module.NQ))
     for c, code in enumerate(track.codes):
@@ -145,13 +155,13 @@ def positions(track: MappedRecording) -> Array:
     return out
 
 
-def widest(y: Array, noise: float) -> int:
+def widest_unbiased_window(y: Array, noise: float) -> int:
     """Return the rows of the widest window whose errors do not exceed those of noise alone."""
     best = NARROWEST
     for n in range(NARROWEST, max(int(WIDEST * len(y)), NARROWEST + 1), 2):
         inside = slice(n // 2, len(y) - n // 2)
-        left = (y - derived(y, n, 0, 1.0))[inside]
-        alone = noise * sqrt(1.0 - float(coefficients(n, 0)[n // 2]))
+        left = (y - smoothed_derivative(y, n, 0, 1.0))[inside]
+        alone = noise * sqrt(1.0 - float(convolution_weights(n, 0)[n // 2]))
         if float(np.sqrt(np.mean(left**2))) > ALLOWED * alone:
             break
         best = n
@@ -159,21 +169,21 @@ def widest(y: Array, noise: float) -> int:
 
 
 @cache
-def coefficients(n: int, order: int) -> Array:
+def convolution_weights(n: int, order: int) -> Array:
     """Return the convolution weights (n,) of a derivative per row."""
     return np.asarray(savgol_coeffs(n, ORDER, order))
 
 
-def derived(y: Array, n: int, order: int, h: float) -> Array:
+def smoothed_derivative(y: Array, n: int, order: int, h: float) -> Array:
     """Return a derivative (N,) of a signal by windows of n rows at intervals of h seconds."""
     padded = np.concatenate([np.full(n // 2, y[0]), y, np.full(n // 2, y[-1])])
-    return np.asarray(np.convolve(padded, coefficients(n, order), "valid")) / h**order
+    return np.asarray(np.convolve(padded, convolution_weights(n, order), "valid")) / h**order
 
 
 @cache
-def kernel(n: int) -> Array:
+def acceleration_weights(n: int) -> Array:
     """Return the weights (n,) of accelerations in second differences; their sum is 1."""
-    twice = np.cumsum(np.cumsum(coefficients(n, 2)))
+    twice = np.cumsum(np.cumsum(convolution_weights(n, 2)))
     return np.append(0.0, twice[:-1])
 
 
@@ -193,7 +203,7 @@ def mean_actuators(track: MappedRecording, effects: tuple[str, ...], values: Arr
     return np.asarray(0.5 * (before + after))
 
 
-def predicted(
+def predicted_accelerations(
     track: MappedRecording, states: Array, held: Array, values: Array, on: Array
 ) -> Array:
     """Return joint accelerations (N, NQ) at states (N, 2 NQ) and actuators (N, HELD)."""

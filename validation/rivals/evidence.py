@@ -22,12 +22,12 @@ class Judge:
     plain: bool
     tried: int  # number of candidates tested
 
-    def alike(self, stretches: Sequence[Array]) -> Array:
+    def rows_per_independent_value(self, stretches: Sequence[Array]) -> Array:
         """Return the rows (C,) per independent value, for errors (M, C) with gaps as nan."""
         channels = stretches[0].shape[1]
         if self.plain:
             return np.ones(channels)
-        return np.array([_alike(stretches, c) for c in range(channels)])
+        return np.array([_correlation_length(stretches, c) for c in range(channels)])
 
     def gain(
         self, before: Sequence[Array], after: Sequence[Array], more: int, entries: int = 1
@@ -40,29 +40,29 @@ class Judge:
             more: additional parameters.
             entries: additional effects.
         """
-        one, two, counts = squares(before), squares(after), rows(after)
-        independent = counts / self.alike(after)
+        one, two, counts = sum_of_squares(before), sum_of_squares(after), count_values(after)
+        independent = counts / self.rows_per_independent_value(after)
         fit = 0.5 * float(np.sum(independent * np.log(one / two)))
         price = 0.0 if self.plain else entries * float(np.log(max(self.tried, 1)))
         return fit - 0.5 * more * float(np.log(max(independent.sum(), 2.0))) - price
 
 
-def squares(stretches: Sequence[Array]) -> Array:
+def sum_of_squares(stretches: Sequence[Array]) -> Array:
     """Return the sum of squares (C,)."""
     return np.asarray(np.sum([np.nansum(e**2, axis=0) for e in stretches], axis=0)) + 1e-30
 
 
-def rows(stretches: Sequence[Array]) -> Array:
+def count_values(stretches: Sequence[Array]) -> Array:
     """Return the number of values (C,)."""
     return np.asarray(np.sum([np.isfinite(e).sum(axis=0) for e in stretches], axis=0), dtype=float)
 
 
-def sizes(stretches: Sequence[Array]) -> Array:
+def rms_by_channel(stretches: Sequence[Array]) -> Array:
     """Return the rms (C,)."""
-    return np.sqrt(squares(stretches) / np.maximum(rows(stretches), 1.0))
+    return np.sqrt(sum_of_squares(stretches) / np.maximum(count_values(stretches), 1.0))
 
 
-def _alike(stretches: Sequence[Array], channel: int) -> float:
+def _correlation_length(stretches: Sequence[Array], channel: int) -> float:
     """Return one plus twice the sum of the correlations, up to the first negligible one."""
     errors = [np.nan_to_num(e[:, channel]) for e in stretches]
     whole, total = sum(float(e @ e) for e in errors), 1.0

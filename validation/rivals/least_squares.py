@@ -14,9 +14,9 @@ from boatsim.diagnosis.candidates import base_name
 from boatsim.diagnosis.problem import Fit
 from boatsim.diagnosis.search.screening import add_effect, hand_over_coefficient, starting_points
 from boatsim.physics.base import Array
-from validation.rivals.evidence import Judge, sizes
-from validation.rivals.linear import Linear, descended, solved
-from validation.rivals.question import Question, fit_of, free_of
+from validation.rivals.evidence import Judge, rms_by_channel
+from validation.rivals.linear import LinearisedErrors, bounded_least_squares_step, iterate_steps
+from validation.rivals.question import Question, as_diagnosis_fit, free_parameters
 from validation.rivals.windows import Windows
 
 MOST = 4  # largest number of effects
@@ -53,34 +53,40 @@ class LeastSquares:
         """Return the fit, the evidence gain of each effect [nats], and False: never unknown."""
         best = self.nominal()
         for _ in range(STEPS):
-            found = self.next(best) if len(best.effects) < MOST else None
-            fewer = self.pruned(found) if found else best
+            found = self.add_best_effect(best) if len(best.effects) < MOST else None
+            fewer = self.prune(found) if found else best
             if set(fewer.effects) == set(
                 best.effects
             ):  # no effect was added, or it was removed again
                 break
             best = fewer
-        gains = {n: self.gain(self.without(best, n), best) for n in best.effects}
-        return fit_of(self.question, best.effects, best.theta, self.covariance(best)), gains, False
+        gains = {n: self.gain(self.fit_without(best, n), best) for n in best.effects}
+        return (
+            as_diagnosis_fit(self.question, best.effects, best.theta, self.covariance(best)),
+            gains,
+            False,
+        )
 
     def nominal(self) -> State:
         """Return the recalibrated vessel, with outliers removed."""
-        begun = self.at(
+        begun = self.simulate(
             (), self.question.start(), tuple(w.guess() for w in self.runs), np.ones(self.channels)
         )
-        found = self.settled(begun)
-        masks = [np.abs(e) > FAR * sizes(found.errors) for e in found.errors]
+        found = self.fit_with_consistent_weights(begun)
+        masks = [np.abs(e) > FAR * rms_by_channel(found.errors) for e in found.errors]
         for run, measured in zip(
             self.runs, (t.measured for t in self.problem.recordings), strict=True
         ):
             for w in range(len(run.begins)):
                 measured[run.begins[w] : run.ends[w] + 1][masks.pop(0)] = np.nan
-        return self.settled(self.at((), found.theta, found.starts, found.weights))
+        return self.fit_with_consistent_weights(
+            self.simulate((), found.theta, found.starts, found.weights)
+        )
 
-    def settled(self, state: State) -> State:
+    def fit_with_consistent_weights(self, state: State) -> State:
         """Return the fit with weights that agree with its errors."""
         for _ in range(WEIGHINGS):
-            state = self.fitted(self.weighed(state))
+            state = self.fit(self.update_weights(state))
         return state
 
     @property
@@ -88,10 +94,10 @@ class LeastSquares:
         """Return the number of recorded channels."""
         return self.problem.recordings[0].measured.shape[1]
 
-    def next(self, best: State) -> State | None:
+    def add_best_effect(self, best: State) -> State | None:
         """Return the set with the best further effect, or None if BIC would rise."""
         there = {base_name(n) for n in best.effects}
-        base = self.linear(best)
+        base = self.linearise(best)
         screened = [
             self.screen_entry(best, base, n)
             for n in self.question.entries
@@ -102,30 +108,30 @@ class LeastSquares:
             (x for x in screened if x is not None),
             key=lambda s: s.square + len(s.theta) * np.log(rows),
         )
-        full = [self.fitted(state) for state in screened[:FULL]]
+        full = [self.fit(state) for state in screened[:FULL]]
         first = max(full, key=lambda s: self.gain(best, s), default=best)
         if full and self.gain(best, first) > 0.0:
-            return self.settled(first)
+            return self.fit_with_consistent_weights(first)
         return None
 
-    def pruned(self, best: State) -> State:
+    def prune(self, best: State) -> State:
         """Return the set without effects whose removal lowers BIC."""
         while len(best.effects) > 1:
             fewer = min(
-                (self.without(best, n) for n in best.effects), key=lambda s: self.gain(s, best)
+                (self.fit_without(best, n) for n in best.effects), key=lambda s: self.gain(s, best)
             )
             if self.gain(fewer, best) > 0.0:
                 break
-            best = self.settled(fewer)
+            best = self.fit_with_consistent_weights(fewer)
         return best
 
-    def without(self, best: State, name: str) -> State:
+    def fit_without(self, best: State, name: str) -> State:
         """Return the refitted set without one of its effects."""
         left = tuple(n for n in best.effects if n != name)
-        pairs = zip(free_of(self.question, best.effects), best.theta, strict=True)
+        pairs = zip(free_parameters(self.question, best.effects), best.theta, strict=True)
         known = {(f.effect, f.name): x for f, x in pairs if f.relative or f.effect != name}
-        theta = np.array([known[f.effect, f.name] for f in free_of(self.question, left)])
-        return self.fitted(self.at(left, theta, best.starts, best.weights))
+        theta = np.array([known[f.effect, f.name] for f in free_parameters(self.question, left)])
+        return self.fit(self.simulate(left, theta, best.starts, best.weights))
 
     def gain(self, before: State, after: State) -> float:
         """Return the evidence gain of a set over one with one effect fewer [nats]."""
@@ -140,16 +146,16 @@ class LeastSquares:
     def prior(self, effects: tuple[str, ...], theta: Array) -> Array:
         """Return the squared deviations (N,) of the nominal coefficients in specified sds."""
         own = []
-        for f, x in zip(free_of(self.question, effects), theta, strict=True):
+        for f, x in zip(free_parameters(self.question, effects), theta, strict=True):
             if f.relative:
                 own.append((f.mean, f.sd, x))
         return np.array([((x - mean) / sd) ** 2 for mean, sd, x in own])
 
-    def at(
+    def simulate(
         self, effects: tuple[str, ...], theta: Array, begun: tuple[Array, ...], weights: Array
     ) -> State:
         """Simulate a hypothesis."""
-        free, on = free_of(self.question, effects), self.problem.program.switches(effects)
+        free, on = free_parameters(self.question, effects), self.problem.program.switches(effects)
         errors = tuple(
             e
             for run, s in zip(self.runs, begun, strict=True)
@@ -172,34 +178,37 @@ class LeastSquares:
             for a, b in zip(run.begins, run.ends, strict=True)
         ]
 
-    def weighed(self, state: State) -> State:
+    def update_weights(self, state: State) -> State:
         """Return the state with channels weighted by the rms and correlation of their errors."""
-        weights = 1.0 / (sizes(state.errors) * np.sqrt(self.judge.alike(state.errors)))
-        return self.at(state.effects, state.theta, state.starts, weights)
+        weights = 1.0 / (
+            rms_by_channel(state.errors)
+            * np.sqrt(self.judge.rows_per_independent_value(state.errors))
+        )
+        return self.simulate(state.effects, state.theta, state.starts, weights)
 
-    def fitted(self, state: State) -> State:
+    def fit(self, state: State) -> State:
         """Take Gauss-Newton steps until the improvement is negligible."""
-        return descended(state, lambda s: self.damped_step(s, self.linear(s)), ROUNDS)
+        return iterate_steps(state, lambda s: self.damped_step(s, self.linearise(s)), ROUNDS)
 
-    def damped_step(self, state: State, linear: Linear) -> State | None:
+    def damped_step(self, state: State, linear: LinearisedErrors) -> State | None:
         """Return the state after a step, halved until it improves; None if none improves."""
-        free = free_of(self.question, state.effects)
-        move = solved(
+        free = free_parameters(self.question, state.effects)
+        move = bounded_least_squares_step(
             linear.columns, linear.rest, [f.low for f in free], [f.high for f in free], state.theta
         )
         by_window = linear.by_window(move)
         for i in range(HALVINGS):
             share = 0.5**i
-            begun = self.shifted(state.starts, by_window, share)
+            begun = self.shift_starts(state.starts, by_window, share)
             theta = np.clip(
                 state.theta + share * move, [f.low for f in free], [f.high for f in free]
             )
-            step = self.at(state.effects, theta, begun, state.weights)
+            step = self.simulate(state.effects, theta, begun, state.weights)
             if step.square < state.square:
                 return step
         return None
 
-    def shifted(
+    def shift_starts(
         self, begun: tuple[Array, ...], by_window: list[Array], share: float
     ) -> tuple[Array, ...]:
         """Return the starts after a share of a step."""
@@ -208,60 +217,61 @@ class LeastSquares:
             out.append(s + share * np.array([next(moves) for _ in s]))
         return tuple(out)
 
-    def linear(self, state: State) -> Linear:
+    def linearise(self, state: State) -> LinearisedErrors:
         """Linearise a hypothesis in all its fitted values."""
-        free = free_of(self.question, state.effects)
+        free = free_parameters(self.question, state.effects)
         on = self.problem.program.switches(state.effects)
         slopes = list[Array]()
         errors = iter(state.errors)
         for run, s in zip(self.runs, state.starts, strict=True):
             own = [next(errors) for _ in s]
             slopes += run.by_starts(self.problem.values(run.track, free, state.theta), on, s, own)
-        linear = Linear.of(state.errors, state.weights, slopes)
+        linear = LinearisedErrors.of(state.errors, state.weights, slopes)
         return linear.with_columns(
-            [self.column(state, linear, j) for j in range(len(free))], self.prior_rows(state)
+            [self.derivative_by_parameter(state, linear, j) for j in range(len(free))],
+            self.prior_rows(state),
         )
 
     def prior_rows(self, state: State) -> tuple[Array, Array]:
         """Return rows (N, F) and errors (N,) of the prior of the nominal coefficients."""
-        free = free_of(self.question, state.effects)
+        free = free_parameters(self.question, state.effects)
         own = [j for j, f in enumerate(free) if f.relative]
         slopes = np.zeros((len(own), len(free)))
         for i, j in enumerate(own):
             slopes[i, j] = 1.0 / free[j].sd
         return slopes, np.array([(state.theta[j] - free[j].mean) / free[j].sd for j in own])
 
-    def column(self, state: State, linear: Linear, j: int) -> Array:
+    def derivative_by_parameter(self, state: State, linear: LinearisedErrors, j: int) -> Array:
         """Return the derivative of all errors by one parameter."""
-        f, moved = free_of(self.question, state.effects)[j], state.theta.copy()
+        f, moved = free_parameters(self.question, state.effects)[j], state.theta.copy()
         h = STEP * f.sd if state.theta[j] + STEP * f.sd <= f.high else -STEP * f.sd
         moved[j] += h
-        beside = self.at(state.effects, moved, state.starts, state.weights).errors
+        beside = self.simulate(state.effects, moved, state.starts, state.weights).errors
         return linear.flat([(a - b) / h for a, b in zip(beside, state.errors, strict=True)])
 
     def covariance(self, state: State) -> Array:
         """Return the covariance (F, F) of a fit; undetermined values keep their prior spread."""
-        J = self.linear(state).columns
-        sd = np.array([f.sd for f in free_of(self.question, state.effects)])
+        J = self.linearise(state).columns
+        sd = np.array([f.sd for f in free_parameters(self.question, state.effects)])
         return np.asarray(
             np.linalg.inv((J * sd).T @ (J * sd) + 1e-6 * np.eye(len(sd))) * np.outer(sd, sd)
         )
 
     # ---- screening of a candidate
 
-    def screen_entry(self, best: State, base: Linear, entry: str) -> State | None:
+    def screen_entry(self, best: State, base: LinearisedErrors, entry: str) -> State | None:
         """Return the set with one more effect after a few steps; None if they do not improve it.
 
         The derivatives by all other parameters are held.
         """
         effects, found = (*best.effects, entry), list[State]()
-        begun_at = fit_of(self.question, best.effects, best.theta, np.zeros((0, 0)))
+        begun_at = as_diagnosis_fit(self.question, best.effects, best.theta, np.zeros((0, 0)))
         for start in starting_points(self.problem, self.question.entries[entry]):
             fit = hand_over_coefficient(
                 add_effect(self.problem, begun_at, entry, start), self.question.entries[entry]
             )
             theta = np.clip(fit.theta, [f.low for f in fit.free], [f.high for f in fit.free])
-            begun = self.at(effects, theta, best.starts, best.weights)
+            begun = self.simulate(effects, theta, best.starts, best.weights)
             step = self.half_step(begun, base) if np.isfinite(begun.square) else None
             if step is not None:
                 found.append(step)
@@ -272,20 +282,22 @@ class LeastSquares:
             state = self.half_step(state, base) or state
         return state
 
-    def half_step(self, state: State, base: Linear) -> State | None:
+    def half_step(self, state: State, base: LinearisedErrors) -> State | None:
         """Take a step with held derivatives by all but the last effect's parameters."""
-        free = free_of(self.question, state.effects)
+        free = free_parameters(self.question, state.effects)
         new = [j for j, f in enumerate(free) if f.effect == state.effects[-1] and not f.relative]
         here = base.about(state.errors)
         columns = []
         for j in range(len(free)):
             columns.append(
-                base.raw[:, self.before(state, j)] if j not in new else self.column(state, here, j)
+                base.raw[:, self.index_before_last_effect(state, j)]
+                if j not in new
+                else self.derivative_by_parameter(state, here, j)
             )
         return self.damped_step(state, here.with_columns(columns, self.prior_rows(state)))
 
-    def before(self, state: State, j: int) -> int:
+    def index_before_last_effect(self, state: State, j: int) -> int:
         """Return the index of a parameter before the last effect was added."""
-        free = free_of(self.question, state.effects)
+        free = free_parameters(self.question, state.effects)
         rest = [(f.effect, f.name) for f in free if f.effect != state.effects[-1] or f.relative]
         return rest.index((free[j].effect, free[j].name))

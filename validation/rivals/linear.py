@@ -24,13 +24,13 @@ class Squared(Protocol):
 S = TypeVar("S", bound=Squared)
 
 
-def nothing() -> Array:
+def no_columns() -> Array:
     """Return an empty matrix of columns."""
     return np.zeros((0, 0))
 
 
 @dataclass(frozen=True)
-class Linear:
+class LinearisedErrors:
     """Weighted errors (R,) of all windows as one vector, and their derivatives."""
 
     weights: Array  # (C,)
@@ -38,13 +38,15 @@ class Linear:
     bases: tuple[Array, ...]  # (M C, 2 NQ) orthonormal basis of the start's influence
     triangles: tuple[Array, ...]  # (2 NQ, 2 NQ): derivatives by the start = basis @ triangle
     errors: Array  # (R,)
-    raw: Array = field(default_factory=nothing)  # (R, F) by the parameters, starts held
+    raw: Array = field(default_factory=no_columns)  # (R, F) by the parameters, starts held
     # (R + N,) errors with the starts projected out, then those of the prior
-    rest: Array = field(default_factory=nothing)
-    columns: Array = field(default_factory=nothing)  # (R + N, F) derivatives, projected likewise
+    rest: Array = field(default_factory=no_columns)
+    columns: Array = field(default_factory=no_columns)  # (R + N, F) derivatives, projected likewise
 
     @classmethod
-    def of(cls, errors: Sequence[Array], weights: Array, by_starts: Sequence[Array]) -> "Linear":
+    def of(
+        cls, errors: Sequence[Array], weights: Array, by_starts: Sequence[Array]
+    ) -> "LinearisedErrors":
         """Build from errors (M, C) and derivatives (M, C, 2 NQ) by the starts, by window."""
         masks = tuple(np.isfinite(e).ravel() for e in errors)
         bases, triangles = [], []
@@ -58,7 +60,7 @@ class Linear:
             triangles.append(triangle)
         return cls(weights, masks, tuple(bases), tuple(triangles), np.zeros(0)).about(errors)
 
-    def about(self, errors: Sequence[Array]) -> "Linear":
+    def about(self, errors: Sequence[Array]) -> "LinearisedErrors":
         """Return the same linearisation about other errors."""
         return replace(self, errors=self.flat(errors))
 
@@ -79,7 +81,9 @@ class Linear:
         """Split rows by window."""
         return np.split(rows, np.cumsum([len(m) for m in self.masks])[:-1])
 
-    def with_columns(self, columns: Sequence[Array], prior: tuple[Array, Array]) -> "Linear":
+    def with_columns(
+        self, columns: Sequence[Array], prior: tuple[Array, Array]
+    ) -> "LinearisedErrors":
         """Add columns (R,) of parameters, and rows (N, F) and errors (N,) of their prior."""
         raw = np.column_stack(columns) if columns else np.zeros((len(self.errors), 0))
         rest = np.concatenate([self.projected(self.errors), prior[1]])
@@ -92,7 +96,7 @@ class Linear:
         return [-np.linalg.lstsq(t, q.T @ e, rcond=1e-9)[0] for q, t, e in pairs]
 
 
-def descended(state: S, step: Callable[[S], S | None], rounds: int) -> S:
+def iterate_steps(state: S, step: Callable[[S], S | None], rounds: int) -> S:
     """Take at most `rounds` steps, until one does not improve or improves little."""
     for _ in range(rounds):
         after = step(state)
@@ -105,7 +109,7 @@ def descended(state: S, step: Callable[[S], S | None], rounds: int) -> S:
     return state
 
 
-def solved(
+def bounded_least_squares_step(
     J: Array, errors: Array, low: Sequence[float], high: Sequence[float], theta: Array
 ) -> Array:
     """Return the step (F,) to the least squares of errors + J step, within bounds.

@@ -74,20 +74,22 @@ def read_question(trial: Path) -> Question:
     return Question(vessel, problem, entries, noise)
 
 
-def free_of(question: Question, effects: tuple[str, ...]) -> tuple[FreeParameter, ...]:
+def free_parameters(question: Question, effects: tuple[str, ...]) -> tuple[FreeParameter, ...]:
     """Return the free parameters: the nominal coefficients, then those of the effects."""
     if effects not in question.known:
         question.known[effects] = question.problem.parameters(effects)
     return question.known[effects]
 
 
-def fit_of(question: Question, effects: tuple[str, ...], theta: Array, covariance: Array) -> Fit:
+def as_diagnosis_fit(
+    question: Question, effects: tuple[str, ...], theta: Array, covariance: Array
+) -> Fit:
     """Return the fit in the form of the diagnosis, for the patched vessel."""
     problem = question.problem
-    return Fit(effects, free_of(question, effects), theta, covariance, problem.ambient, 0.0)
+    return Fit(effects, free_parameters(question, effects), theta, covariance, problem.ambient, 0.0)
 
 
-def answer(
+def write_answer(
     question: Question, found: Fit, gains: dict[str, float], unknown: bool, trial: Path, out: Path
 ) -> None:
     """Write diagnosis.json, patched.toml and replay.csv of one trial."""
@@ -101,7 +103,7 @@ def answer(
         "effects": [
             {
                 "name": base_name(n),
-                "parameters": parameters(question, found, n),
+                "parameters": parameter_entries(question, found, n),
                 "gain_nats": round(gains[n], 2),
             }
             for n in found.effects
@@ -111,7 +113,7 @@ def answer(
     (out / "diagnosis.json").write_text(json.dumps(said, indent=1) + "\n")
 
 
-def parameters(question: Question, found: Fit, entry: str) -> dict[str, dict[str, Any]]:
+def parameter_entries(question: Question, found: Fit, entry: str) -> dict[str, dict[str, Any]]:
     """Return value, sd and unit of an effect's parameters by their names in answers."""
     kind = type(question.entries[entry])
     stated = {}

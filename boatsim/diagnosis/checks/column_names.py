@@ -5,7 +5,12 @@ from boatsim.diagnosis.config import ChecksConfig
 from boatsim.physics.vessel import Vessel
 from boatsim.recordings.expression import UNITS
 from boatsim.recordings.importing.log import Log, Signal
-from boatsim.recordings.importing.signal_classification import Guess, guesses, side_of, tokens_of
+from boatsim.recordings.importing.signal_classification import (
+    Classification,
+    classify_signals,
+    side_of,
+    tokens_of,
+)
 from boatsim.recordings.table import Recording
 
 POSE_AXES = {"x_m": "surge", "y_m": "sway", "psi_rad": "yaw"}
@@ -61,7 +66,7 @@ def _missing_poses(recording: Recording, vessel: Vessel) -> list[str]:
     return missing
 
 
-def _other_columns(recording: Recording, vessel: Vessel) -> list[Guess]:
+def _other_columns(recording: Recording, vessel: Vessel) -> list[Classification]:
     """Classify the columns that are neither a pose nor an input of the vessel."""
     known = {*POSE_AXES, *vessel.inputs}
     signals = {
@@ -69,10 +74,10 @@ def _other_columns(recording: Recording, vessel: Vessel) -> list[Guess]:
         for name, values in recording.signals.items()
         if name not in known
     }
-    return guesses(Log(recording.path or vessel.file, signals), vessel.actuators)
+    return classify_signals(Log(recording.path or vessel.file, signals), vessel.actuators)
 
 
-def _command_guesses(name: str, other: list[Guess]) -> list[Guess]:
+def _command_guesses(name: str, other: list[Classification]) -> list[Classification]:
     """Command columns of the same side; those that share a word with the name come first."""
     words = set(tokens_of(name))
     side = side_of(frozenset(words))
@@ -81,7 +86,7 @@ def _command_guesses(name: str, other: list[Guess]) -> list[Guess]:
     return same_word or same_side
 
 
-def _factor(guess: Guess) -> float:
+def _factor(guess: Classification) -> float:
     """Conversion factor that the words of a guess stand for."""
     factor = 1.0
     if not guess.word:

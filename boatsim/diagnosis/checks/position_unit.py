@@ -9,7 +9,7 @@ from boatsim.physics.base import Array
 from boatsim.physics.particulars import GRAVITY
 from boatsim.physics.vessel import Vessel
 from boatsim.recordings.expression import UNITS
-from boatsim.recordings.importing.frames import radii
+from boatsim.recordings.importing.frames import curvature_radii
 from boatsim.recordings.table import Recording
 
 INTEGER_DEGREES = 1e-7  # [deg] unit of positions that GNSS receivers write as integers
@@ -49,7 +49,7 @@ def _check_degrees(
         if not _may_be_degrees(lat, lon, config):
             continue
         latitude = float(np.radians(lat[0]))
-        meridian, across = np.multiply(radii(latitude), UNITS["deg"]).tolist()
+        meridian, across = np.multiply(curvature_radii(latitude), UNITS["deg"]).tolist()
         across *= float(np.cos(latitude))
         froude = _froude_number(
             t, (lat - lat[0]) * meridian, (lon - lon[0]) * across, vessel, config

@@ -33,7 +33,7 @@ YEAR_2000, YEAR_2100 = 946684800.0, 4102444800.0  # [s] since 1970
 EPOCH_UNITS = (1.0, 1e-3, 1e-6, 1e-9)  # [s] units in which times since 1970 are counted
 
 
-def clock_of(columns: Mapping[str, Array]) -> str | None:
+def time_column(columns: Mapping[str, Array]) -> str | None:
     """Return the name of the time column by the names.
 
     None if there is none whose values increase.
@@ -46,7 +46,7 @@ def clock_of(columns: Mapping[str, Array]) -> str | None:
     return None
 
 
-def seconds(name: str, values: Array) -> Array:
+def times_in_seconds(name: str, values: Array) -> Array:
     """Return times (N,) in s.
 
     Args:
@@ -67,7 +67,7 @@ def seconds(name: str, values: Array) -> Array:
     return values * UNITS[word]
 
 
-def dates(cells: Sequence[str]) -> Array | None:
+def seconds_from_dates(cells: Sequence[str]) -> Array | None:
     """Return the times (N,) [s] since 1970 of ISO 8601 dates, UTC without a zone.
 
     None if some cells are not dates.

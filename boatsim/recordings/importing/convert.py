@@ -16,17 +16,17 @@ from boatsim.physics.base import Array
 from boatsim.physics.signals import POSE, RATES
 from boatsim.recordings.expression import Expression, parse
 from boatsim.recordings.importing.clocks import YEAR_2000, YEAR_2100
-from boatsim.recordings.importing.frames import local
+from boatsim.recordings.importing.frames import local_position
 from boatsim.recordings.importing.log import Log, Signal, rate_of
 from boatsim.recordings.importing.mapping import Map, Position, Range
 from boatsim.recordings.importing.resample import (
     MIN_LOST,
     Samples,
-    clock,
-    held,
+    clean_samples,
     longest_hold,
-    placed,
-    samples,
+    mean_held_values,
+    nearest_samples,
+    row_times,
 )
 from boatsim.recordings.raw_table import file_error, select_rows
 from boatsim.recordings.repeated_values import repeated_rows
@@ -96,15 +96,15 @@ def convert(
     for name, what in map.columns.items():
         t, values = _column(work, name, what)
         is_held = name in work.channels or is_command(name) or name.startswith(HELD)
-        work.columns[name] = Column(_not_empty(work, name, samples(t, values)), is_held)
+        work.columns[name] = Column(_check_not_empty(work, name, clean_samples(t, values)), is_held)
     _drop_repeats(work)
-    rows, near = _clock(work)
+    rows, near = _row_times(work)
     signals: dict[str, Array] = {}
     for name, column in work.columns.items():
         if column.held:
-            signals[name] = held(rows, column.given)
+            signals[name] = mean_held_values(rows, column.given)
         else:
-            signals[name] = placed(rows, column.given, near)
+            signals[name] = nearest_samples(rows, column.given, near)
     _remark_held(work, rows)
     rows, signals = _complete_rows(work, rows, signals)
     _remark_times(work, rows)
@@ -178,7 +178,7 @@ def _add_position(work: _Work, position: Position) -> None:
             "found, are left out"
         )
     there &= ~nowhere
-    inside = there & _in_use(work, t)
+    inside = there & _rows_in_use(work, t)
     if not inside.any():
         raise BadInput(
             f"{work.file}: position: there is no fix of {position.latitude!r} in the part to use"
@@ -186,20 +186,20 @@ def _add_position(work: _Work, position: Position) -> None:
     t, lat, lon = t[inside], lat[inside], lon[inside]
     first = int(np.argmin(t))
     at = position.origin or (degrees(lat[first]), degrees(lon[first]))
-    x, y = local(lat, lon, (radians(at[0]), radians(at[1])))
+    x, y = local_position(lat, lon, (radians(at[0]), radians(at[1])))
     work.remark(f"x_m and y_m are counted from latitude {at[0]:.8f}, longitude {at[1]:.8f}")
     for name, values in (("x_m", x), ("y_m", y)):
-        work.columns[name] = Column(samples(t, values), False)
+        work.columns[name] = Column(clean_samples(t, values), False)
 
 
-def _in_use(work: _Work, t: Array) -> "np.ndarray[tuple[int, ...], np.dtype[np.bool_]]":
+def _rows_in_use(work: _Work, t: Array) -> "np.ndarray[tuple[int, ...], np.dtype[np.bool_]]":
     if work.map.use is None:
         return np.ones(len(t), dtype=np.bool_)
     since = t - work.begin
     return np.asarray((since >= work.map.use[0] - 1e-9) & (since <= work.map.use[1] + 1e-9))
 
 
-def _not_empty(work: _Work, name: str, given: Samples) -> Samples:
+def _check_not_empty(work: _Work, name: str, given: Samples) -> Samples:
     if not len(given.t):
         raise BadInput(f"{work.file}: columns.{name} has no number in {work.log.path.name}")
     return given
@@ -224,7 +224,7 @@ def _drop_repeats(work: _Work) -> None:
                 )
 
 
-def _clock(work: _Work) -> tuple[Array, float]:
+def _row_times(work: _Work) -> tuple[Array, float]:
     """Times (N,) of the rows [s], and the largest distance of a sample from its row [s].
 
     The rows are the samples of the fastest signal and those of others at other times, or evenly
@@ -253,7 +253,7 @@ def _clock(work: _Work) -> tuple[Array, float]:
         rows = begin + np.arange(0.0, max(end - begin, 0.0) + 1e-9, 1.0 / work.map.rate)
     else:
         rows = fastest.t[(fastest.t >= begin - 1e-9) & (fastest.t <= end + 1e-9)]
-    rows = rows[_in_use(work, rows)]
+    rows = rows[_rows_in_use(work, rows)]
     if len(rows) < FEWEST_ROWS:
         span = "no time at all"
         if end > begin:
@@ -274,8 +274,8 @@ def _clock(work: _Work) -> tuple[Array, float]:
     near = ROW_TOLERANCE * float(np.median(np.diff(rows)))
     others = [one for one in poses if one is not fastest]
     others.sort(key=lambda one: -one.rate)
-    rows = clock(rows, others, near)
-    return rows[_in_use(work, rows)], near
+    rows = row_times(rows, others, near)
+    return rows[_rows_in_use(work, rows)], near
 
 
 def _remark_rates(work: _Work, rows: Array) -> None:
@@ -375,7 +375,7 @@ def position_fix(map: Map) -> str | None:
     return None
 
 
-def notes_of(path: Path, vessel: str, fix: str | None) -> str:
+def recording_notes_text(path: Path, vessel: str, fix: str | None) -> str:
     """Return the text of a recording.toml.
 
     Args:
@@ -385,14 +385,14 @@ def notes_of(path: Path, vessel: str, fix: str | None) -> str:
     """
     key = path.stem
     if not (key.replace("_", "").replace("-", "").isalnum() and key.isascii()):
-        key = f'"{_quoted(key)}"'
-    lines = [f"[runs.{key}]", f'vessel = "{_quoted(vessel)}"']
+        key = f'"{_quote(key)}"'
+    lines = [f"[runs.{key}]", f'vessel = "{_quote(vessel)}"']
     if fix:
         lines.append(f'facts.position_fix = "{fix}"')
     return "\n".join(lines) + "\n"
 
 
-def _quoted(text: str) -> str:
+def _quote(text: str) -> str:
     quoted = ""
     for c in text:
         if ord(c) >= 0x10000:

@@ -15,7 +15,9 @@ ATTITUDE = re.compile(r"(^|[._/])(q|quat|quaternion|orientation|rotation|attitud
 UNIT_LENGTH = 0.01  # largest difference of a quaternion's length from 1
 
 
-def local(latitude: Array, longitude: Array, origin: tuple[float, float]) -> tuple[Array, Array]:
+def local_position(
+    latitude: Array, longitude: Array, origin: tuple[float, float]
+) -> tuple[Array, Array]:
     """Return the position north and east of an origin, each (N,) [m].
 
     north = (lat - lat0) M, east = (lon - lon0) N cos(lat0), with the radii of curvature of WGS 84
@@ -28,12 +30,12 @@ def local(latitude: Array, longitude: Array, origin: tuple[float, float]) -> tup
         origin: Latitude and longitude of the origin [rad].
     """
     lat0, lon0 = origin
-    meridian, across = radii(lat0)
+    meridian, across = curvature_radii(lat0)
     turned = np.remainder(longitude - lon0 + np.pi, 2.0 * np.pi) - np.pi  # across the date line
     return (latitude - lat0) * meridian, turned * across * np.cos(lat0)
 
 
-def radii(latitude: float) -> tuple[float, float]:
+def curvature_radii(latitude: float) -> tuple[float, float]:
     """Return the radii of curvature M and N of WGS 84 [m] at a latitude [rad]."""
     squared = FLATTENING * (2.0 - FLATTENING)  # of the first eccentricity
     w = 1.0 - squared * np.sin(latitude) ** 2
@@ -41,7 +43,7 @@ def radii(latitude: float) -> tuple[float, float]:
     return float(across * (1.0 - squared) / w), float(across)
 
 
-def angles(w: Array, x: Array, y: Array, z: Array) -> tuple[Array, Array, Array]:
+def angles_of_quaternions(w: Array, x: Array, y: Array, z: Array) -> tuple[Array, Array, Array]:
     """Return roll, pitch and yaw, each (N,) [rad], of quaternions.
 
     The rotations are in the order yaw, pitch, roll.
@@ -68,6 +70,8 @@ def with_angles(signals: Mapping[str, Signal]) -> dict[str, Signal]:
         with np.errstate(over="ignore", invalid="ignore"):
             valid = np.abs(np.sqrt(w * w + x * x + y * y + z * z) - 1.0) < UNIT_LENGTH
         w, x, y, z = (np.where(valid, part, np.nan) for part in (w, x, y, z))
-        for name, angle in zip(("roll", "pitch", "yaw"), angles(w, x, y, z), strict=True):
+        for name, angle in zip(
+            ("roll", "pitch", "yaw"), angles_of_quaternions(w, x, y, z), strict=True
+        ):
             found[f"{base}.{name}"] = Signal(group["w"].t, angle, "rad")
     return found

@@ -60,7 +60,7 @@ class Log:
     remarks: tuple[str, ...] = ()
 
 
-class Room:
+class MemoryBudget:
     """Counter of the values that a reader keeps, which limits its memory."""
 
     def __init__(self, path: Path) -> None:
@@ -79,21 +79,21 @@ class Room:
             )
 
 
-def needs(path: Path, library: str, extra: str) -> BadInput:
+def missing_library_error(path: Path, library: str, extra: str) -> BadInput:
     """Return the error of a reader whose library is not installed."""
     return file_error(
         path, f"reading it needs {library}; install it with: pip install 'boatsim[{extra}]'"
     )
 
 
-def damaged(path: Path, what: str, error: BaseException) -> BadInput:
+def damaged_log_error(path: Path, what: str, error: BaseException) -> BadInput:
     """Return the error of a log that the library of its format can not read."""
     reason = " ".join(str(error).split())[:150] or type(error).__name__
     return file_error(path, f"can not be read as {what} ({reason})")
 
 
 @contextmanager
-def quiet() -> Iterator[None]:
+def suppress_output() -> Iterator[None]:
     """Suppress the output of a library, also of its native code."""
     for stream in (sys.stdout, sys.stderr):
         stream.flush()
@@ -120,14 +120,16 @@ def open_log(path: Path) -> Log:
     if not found.signals:
         raise file_error(path, "has no signals: nothing in it has numbers and times")
     # Signals of one stream share their times
-    times = {id(signal.t): _plausible(signal.t) for signal in found.signals.values()}
+    times = {id(signal.t): _without_implausible(signal.t) for signal in found.signals.values()}
     signals: dict[str, Signal] = {}
     for name, signal in found.signals.items():
-        signals[name] = replace(signal, t=times[id(signal.t)], values=_plausible(signal.values))
+        signals[name] = replace(
+            signal, t=times[id(signal.t)], values=_without_implausible(signal.values)
+        )
     return replace(found, signals=signals)
 
 
-def _plausible(values: Array) -> Array:
+def _without_implausible(values: Array) -> Array:
     beyond = np.abs(values) >= HUGE
     if beyond.any():
         return np.where(beyond, np.nan, values)
@@ -199,7 +201,7 @@ def rate_of(t: Array) -> float:
     return float(1.0 / np.median(steps))
 
 
-def numbered(names: Sequence[tuple[str, int]]) -> dict[tuple[str, int], str]:
+def names_of_streams(names: Sequence[tuple[str, int]]) -> dict[tuple[str, int], str]:
     """Return the name of each (name, instance) of streams: GPS, GPS[1] and so on."""
     first: dict[str, int] = {}
     for name, instance in names:

@@ -116,10 +116,10 @@ class Map(Table):
 
 def read_map(path: Path) -> Map:
     """Return the map of a file. Raises BadInput."""
-    return map_of(read_toml(path), str(path))
+    return parse_map(read_toml(path), str(path))
 
 
-def map_of(table: Mapping[str, object], file: str) -> Map:
+def parse_map(table: Mapping[str, object], file: str) -> Map:
     """Return the map of the content of a file. Raises BadInput."""
     try:
         return checked(Map, table, file)

@@ -12,8 +12,8 @@ from boatsim.recordings.importing.log import Log, Signal, rate_of
 from boatsim.recordings.importing.signal_classification import (
     HELM,
     PULSE,
-    Guess,
-    guesses,
+    Classification,
+    classify_signals,
     side_of,
     tokens_of,
 )
@@ -46,7 +46,7 @@ INCLINATIONS = {"phi_rad": "roll", "p_radps": "roll", "theta_rad": "pitch", "q_r
 
 
 @dataclass(frozen=True)
-class Drive:
+class VesselChannel:
     """A command channel of a vessel.
 
     Attributes:
@@ -62,10 +62,10 @@ class Drive:
     turns: int = 0
 
 
-def listing(log: Log) -> list[str]:
+def signal_table(log: Log) -> list[str]:
     """Return a table of the signals of a log: name, unit, rate, samples, range, classification."""
     columns: dict[str, str] = {}
-    for g in guesses(log):
+    for g in classify_signals(log):
         columns[g.name] = g.column
     rows = [("signal", "unit", "Hz", "samples", "lowest", "highest", "probably")]
     listed = list(log.signals)
@@ -74,20 +74,20 @@ def listing(log: Log) -> list[str]:
     for name in listed:
         signal = log.signals[name]
         probably = ", ".join(filter(None, (columns.get(name), signal.about)))
-        rows.append((_safe(name), *_figures(signal), probably))
+        rows.append((_without_control_characters(name), *_signal_figures(signal), probably))
     lines = _aligned(rows)
     if len(listed) < len(log.signals):
         lines.append(f"and {len(log.signals) - len(listed)} unknown signals")
     return lines
 
 
-def _figures(signal: Signal) -> tuple[str, str, str, str, str]:
+def _signal_figures(signal: Signal) -> tuple[str, str, str, str, str]:
     values = signal.values[np.isfinite(signal.values)]
     low = high = ""
     if len(values):
         low, high = f"{values.min():.6g}", f"{values.max():.6g}"
     return (
-        _safe(signal.unit)[:12],
+        _without_control_characters(signal.unit)[:12],
         f"{rate_of(signal.t[np.isfinite(signal.values)]):.3g}",
         str(len(values)),
         low,
@@ -106,7 +106,7 @@ def _aligned(rows: Sequence[tuple[str, ...]]) -> list[str]:
     return lines
 
 
-def _safe(name: str) -> str:
+def _without_control_characters(name: str) -> str:
     """A name without control characters."""
     safe = ""
     for character in name[:120]:
@@ -116,10 +116,10 @@ def _safe(name: str) -> str:
     return safe
 
 
-def proposal(
+def propose_map(
     log: Log,
     vessel: str | None = None,
-    drives: Sequence[Drive] = (),
+    drives: Sequence[VesselChannel] = (),
     dof: Sequence[str] = (),
     stated: Mapping[str, str] | None = None,
 ) -> str:
@@ -139,8 +139,8 @@ def proposal(
         if signal in log.signals:
             known[column] = expression
             used_signals.add(signal)
-    best: dict[str, list[Guess]] = {}
-    for g in guesses(log, [d.name for d in drives]):
+    best: dict[str, list[Classification]] = {}
+    for g in classify_signals(log, [d.name for d in drives]):
         if g.column not in known and g.name not in used_signals:
             best.setdefault(g.column, []).append(g)
     lines = [
@@ -150,16 +150,16 @@ def proposal(
         lines.append(f'vessel = "{vessel}"')
     else:
         lines.append('# vessel = "NAME"')
-    body, used = _poses(log, best, dof, known)
+    body, used = _motion_lines(log, best, dof, known)
     for column, expression in known.items():
-        body.append(f"{_key(column)} = {_text(expression)}  # by the vessel's file")
+        body.append(f"{_toml_key(column)} = {_toml_string(expression)}  # by the vessel's file")
     open_drives = [d for d in drives if d.name not in known]
     turning = Turning(best, log.frame == "ENU")
-    driven: list[Guess] = []
+    driven: list[Classification] = []
     if drives and not open_drives:
         commands = ["# all are above"]
     else:
-        commands, driven = _commands(best, open_drives, turning)
+        commands, driven = _command_lines(best, open_drives, turning)
     fastest = 0.0
     for g in (*used, *driven):
         fastest = max(fastest, rate_of(g.signal.t))
@@ -177,7 +177,7 @@ def proposal(
         ("actual", "measured state of the drives"),
         ("stick", "the pilot's sticks, recorded with the commands"),
     ):
-        moving = list(filterfalse(_still, best.get(kind, [])))
+        moving = list(filterfalse(_is_constant, best.get(kind, [])))
         if moving:
             lines += [
                 "",
@@ -187,18 +187,20 @@ def proposal(
     return "\n".join(lines) + "\n"
 
 
-def _poses(
-    log: Log, best: Mapping[str, list[Guess]], dof: Sequence[str], known: Collection[str]
-) -> tuple[list[str], list[Guess]]:
+def _motion_lines(
+    log: Log, best: Mapping[str, list[Classification]], dof: Sequence[str], known: Collection[str]
+) -> tuple[list[str], list[Classification]]:
     """Lines of the position and the columns of motion, and their signals."""
     lines: list[str] = []
-    used: list[Guess] = []
-    pair = _pair(best.get("latitude", []), best.get("longitude", []))
+    used: list[Classification] = []
+    pair = _latitude_and_longitude(best.get("latitude", []), best.get("longitude", []))
     if pair:
         used += pair
         lines.append("[position]")
         for g in pair:
-            lines.append(f"{g.column} = {_text(_expression(g))}{_note(g, best[g.column])}")
+            lines.append(
+                f"{g.column} = {_toml_string(_expression(g))}{_comment(g, best[g.column])}"
+            )
         if pair[0].word == "deg":
             middle = ", ".join(f"{np.nanmedian(g.signal.values):.4f}" for g in pair)
             lines.append(f"# origin = [{middle}]  # [deg]; else the first fix")
@@ -226,9 +228,9 @@ def _poses(
             sign = ""  # a compass heading is clockwise from north
         elif column == "psi_rad" and enu:
             quarter = QUARTER_TURN
-        expression = _text(sign + _expression(g) + quarter)
-        line = f"{column} = {expression}{_note(g, best[source])}"
-        if column in INCLINATIONS and (INCLINATIONS[column] not in dof or _still(g)):
+        expression = _toml_string(sign + _expression(g) + quarter)
+        line = f"{column} = {expression}{_comment(g, best[source])}"
+        if column in INCLINATIONS and (INCLINATIONS[column] not in dof or _is_constant(g)):
             lines.append(f"# {line}")
         else:
             lines.append(line)
@@ -240,12 +242,14 @@ def _poses(
     return lines, used
 
 
-def _still(g: Guess) -> bool:
+def _is_constant(g: Classification) -> bool:
     """Whether a signal is constant."""
     return float(np.ptp(g.signal.values[np.isfinite(g.signal.values)])) == 0.0
 
 
-def _pair(latitudes: Sequence[Guess], longitudes: Sequence[Guess]) -> list[Guess]:
+def _latitude_and_longitude(
+    latitudes: Sequence[Classification], longitudes: Sequence[Classification]
+) -> list[Classification]:
     """The most probable latitude with the longitude of its stream."""
     for lat in latitudes:
         stream = lat.name.rpartition(".")[0]
@@ -255,23 +259,23 @@ def _pair(latitudes: Sequence[Guess], longitudes: Sequence[Guess]) -> list[Guess
     return []
 
 
-def _expression(g: Guess) -> str:
+def _expression(g: Classification) -> str:
     if not g.word:
         return g.name
     return f"{g.name} * {g.word}"
 
 
-def _note(g: Guess, others: Sequence[Guess]) -> str:
+def _comment(g: Classification, others: Sequence[Classification]) -> str:
     """A comment with the rate, the assumption and further possible signals."""
     parts = [f"{rate_of(g.signal.t):.3g} Hz"]
     if g.why:
         parts.append(g.why)
-    if also := [_safe(o.name) for o in others if o is not g][:4]:
+    if also := [_without_control_characters(o.name) for o in others if o is not g][:4]:
         parts.append(f"also {', '.join(also)}")
     return "  # " + "; ".join(parts)
 
 
-def _text(value: str) -> str:
+def _toml_string(value: str) -> str:
     """A TOML string."""
     plain = value.replace("\\", "\\\\").replace('"', '\\"')
     text = ""
@@ -282,23 +286,23 @@ def _text(value: str) -> str:
     return f'"{text}"'
 
 
-def _commands(
-    best: Mapping[str, Sequence[Guess]], drives: Sequence[Drive], turning: Turning
-) -> tuple[list[str], list[Guess]]:
+def _command_lines(
+    best: Mapping[str, Sequence[Classification]], drives: Sequence[VesselChannel], turning: Turning
+) -> tuple[list[str], list[Classification]]:
     """Lines of the vessel's channels, or without a vessel of all outputs that are not constant."""
     channels = [drive.name for drive in drives]
-    moving: list[Guess] = []
+    moving: list[Classification] = []
     for g in best.get("command", []):
-        if g.name in channels or not _still(g):
+        if g.name in channels or not _is_constant(g):
             moving.append(g)
-    moving.sort(key=lambda g: _order(g.name))
+    moving.sort(key=lambda g: _natural_sort_key(g.name))
     lines: list[str] = []
     if not drives:
-        for name, g in zip(_names(list(map(_called, moving))), moving, strict=True):
-            lines.append(_drive_line(name, g, None))
+        for name, g in zip(_unique_names(list(map(_column_name, moving))), moving, strict=True):
+            lines.append(_channel_line(name, g, None))
         return lines, moving
-    taken: list[Guess] = []
-    chosen = _chosen(best, drives, moving, turning)
+    taken: list[Classification] = []
+    chosen = _match_channels(best, drives, moving, turning)
     for drive in drives:
         if drive.name not in chosen:
             lines.append(
@@ -309,72 +313,80 @@ def _commands(
         g, why = chosen[drive.name]
         sense = 0.0
         if _steers(drive) and g.name != drive.name:
-            sense = drive.turns * turning.by((g, 1.0))
+            sense = drive.turns * turning.correlation((g, 1.0))
         taken.append(g)
-        lines.append(_drive_line(drive.name, g, drive, sense) + why)
+        lines.append(_channel_line(drive.name, g, drive, sense) + why)
     for g in moving:
         if g not in taken:
-            lines.append(f"# not used: {_safe(g.name)}")
+            lines.append(f"# not used: {_without_control_characters(g.name)}")
     return lines, taken
 
 
-def _chosen(
-    best: Mapping[str, Sequence[Guess]],
-    drives: Sequence[Drive],
-    moving: Sequence[Guess],
+def _match_channels(
+    best: Mapping[str, Sequence[Classification]],
+    drives: Sequence[VesselChannel],
+    moving: Sequence[Classification],
     turning: Turning,
-) -> dict[str, tuple[Guess, str]]:
+) -> dict[str, tuple[Classification, str]]:
     """Signals of the channels by name, motion or order, and what the user must check."""
-    found = _with_note(_matched(drives, moving), "")
+    found = _with_note(_match_by_name(drives, moving), "")
     helms = [d for d in drives if d.name not in found and _steers(d)]
     if helms:
-        named: list[Guess] = []
+        named: list[Classification] = []
         for name, (g, _) in found.items():
             if frozenset(tokens_of(name)) & HELM and not side_of(g.tokens):
                 named.append(g)
-        measured = list(filterfalse(_still, best.get("actual", [])))
-        found |= _helms(helms, named, _unused(moving, found), measured, turning)
-    left = _unused(moving, found)
+        measured = list(filterfalse(_is_constant, best.get("actual", [])))
+        found |= _match_steering_channels(
+            helms, named, _unassigned(moving, found), measured, turning
+        )
+    left = _unassigned(moving, found)
     missing = [d for d in drives if d.name not in found]
-    found |= _by_order(missing, _as_many(left, len(missing)), turning)
+    found |= _match_by_order(missing, _signals_of_matching_stream(left, len(missing)), turning)
     return found
 
 
-def _unused(signals: Sequence[Guess], found: Mapping[str, tuple[Guess, str]]) -> list[Guess]:
+def _unassigned(
+    signals: Sequence[Classification], found: Mapping[str, tuple[Classification, str]]
+) -> list[Classification]:
     used = [g for g, _ in found.values()]
     return [g for g in signals if g not in used]
 
 
-def _helms(
-    helms: Sequence[Drive],
-    named: Sequence[Guess],
-    left: Sequence[Guess],
-    measured: Sequence[Guess],
+def _match_steering_channels(
+    helms: Sequence[VesselChannel],
+    named: Sequence[Classification],
+    left: Sequence[Classification],
+    measured: Sequence[Classification],
     turning: Turning,
-) -> dict[str, tuple[Guess, str]]:
+) -> dict[str, tuple[Classification, str]]:
     """Signals of channels that steer: by name, by the turning, or a measured angle."""
     if named:
-        return _for_all(helms, named[0], "; CHECK: one helm is used for all")
-    if steers := turning.helm([g for g in left if _fits(helms[0], g)]):
+        return _assign_to_all(helms, named[0], "; CHECK: one helm is used for all")
+    if steers := turning.steering_signal([g for g in left if _units_are_compatible(helms[0], g)]):
         why = f"; CHECK: chosen because the boat turns with it (correlation {steers[1]:+.2f})"
-        return _for_all(helms, steers[0], why)
+        return _assign_to_all(helms, steers[0], why)
     why = "; CHECK: the measured angle is used as the command"
-    rudders = [g for g in measured if g.tokens & HELM and _fits(helms[0], g)]
+    rudders = [g for g in measured if g.tokens & HELM and _units_are_compatible(helms[0], g)]
     if len(rudders) == 1:
-        return _for_all(helms, rudders[0], why)
-    return _with_note(_matched(helms, rudders), why)
+        return _assign_to_all(helms, rudders[0], why)
+    return _with_note(_match_by_name(helms, rudders), why)
 
 
-def _with_note(matched: Mapping[str, Guess], note: str) -> dict[str, tuple[Guess, str]]:
+def _with_note(
+    matched: Mapping[str, Classification], note: str
+) -> dict[str, tuple[Classification, str]]:
     """The signals of channels, each with the same note."""
     return dict(zip(matched, zip(matched.values(), repeat(note)), strict=True))
 
 
-def _for_all(helms: Sequence[Drive], g: Guess, why: str) -> dict[str, tuple[Guess, str]]:
+def _assign_to_all(
+    helms: Sequence[VesselChannel], g: Classification, why: str
+) -> dict[str, tuple[Classification, str]]:
     return dict.fromkeys([helm.name for helm in helms], (g, why))
 
 
-def _steers(drive: Drive) -> bool:
+def _steers(drive: VesselChannel) -> bool:
     """Whether a channel is an angle or has the name of one."""
     unit = unit_of(drive.name)
     if unit:
@@ -382,9 +394,9 @@ def _steers(drive: Drive) -> bool:
     return not HELM.isdisjoint(tokens_of(drive.name))
 
 
-def _by_order(
-    missing: Sequence[Drive], left: Sequence[Guess], turning: Turning
-) -> dict[str, tuple[Guess, str]]:
+def _match_by_order(
+    missing: Sequence[VesselChannel], left: Sequence[Classification], turning: Turning
+) -> dict[str, tuple[Classification, str]]:
     """Signals of channels by order; two sides are exchanged if the turning shows it."""
     why = "; CHECK: the only signal that is left"
     if len(left) > 1:
@@ -392,21 +404,23 @@ def _by_order(
     sides = [side_of(frozenset(tokens_of(d.name))) for d in missing]
     if len(left) == 2 and sorted(sides) == list(SIDED):
         port = sides.index(SIDED[0])
-        sense = turning.by((left[port], 1.0), (left[1 - port], -1.0))
+        sense = turning.correlation((left[port], 1.0), (left[1 - port], -1.0))
         if abs(sense) > MIN_CORRELATION:
             if sense < 0.0:
                 left = [left[1], left[0]]
             why = f"; CHECK: side by the turning of the boat (correlation {abs(sense):.2f})"
-    found: dict[str, tuple[Guess, str]] = {}
+    found: dict[str, tuple[Classification, str]] = {}
     for drive, g in zip(missing, left, strict=False):
-        if _fits(drive, g) or _turns_a_screw(drive, g):
+        if _units_are_compatible(drive, g) or _is_thrust_by_revolutions(drive, g):
             found[drive.name] = (g, why)
     return found
 
 
-def _as_many(moving: Sequence[Guess], count: int) -> list[Guess]:
+def _signals_of_matching_stream(
+    moving: Sequence[Classification], count: int
+) -> list[Classification]:
     """The signals of the stream with this number of signals; [] if no stream has it."""
-    streams: dict[str, list[Guess]] = {}
+    streams: dict[str, list[Classification]] = {}
     for g in moving:
         streams.setdefault(g.name.rpartition(".")[0], []).append(g)
     for signals in (*streams.values(), list(moving)):
@@ -415,7 +429,7 @@ def _as_many(moving: Sequence[Guess], count: int) -> list[Guess]:
     return []
 
 
-def _order(name: str) -> list[tuple[int, str]]:
+def _natural_sort_key(name: str) -> list[tuple[int, str]]:
     """Sort key by which output 10 comes after output 9."""
     key = []
     for part in filter(None, re.split(r"(\d+)", name)):
@@ -426,14 +440,16 @@ def _order(name: str) -> list[tuple[int, str]]:
     return key
 
 
-def _matched(drives: Sequence[Drive], moving: Sequence[Guess]) -> dict[str, Guess]:
+def _match_by_name(
+    drives: Sequence[VesselChannel], moving: Sequence[Classification]
+) -> dict[str, Classification]:
     """The signal with the most similar name of each channel; no signal is used twice."""
     pairs = []
     for drive in drives:
         for i, g in enumerate(moving):
-            pairs.append((_likeness(drive, g), -i, drive.name, g))
+            pairs.append((_name_similarity(drive, g), -i, drive.name, g))
     pairs.sort(key=lambda pair: pair[:2], reverse=True)
-    found: dict[str, Guess] = {}
+    found: dict[str, Classification] = {}
     for score, _, name, g in pairs:
         if score < 1.0 or name in found or g in found.values():
             continue
@@ -446,19 +462,19 @@ def _matched(drives: Sequence[Drive], moving: Sequence[Guess]) -> dict[str, Gues
     return found
 
 
-def _likeness(drive: Drive, g: Guess) -> float:
+def _name_similarity(drive: VesselChannel, g: Classification) -> float:
     if drive.name == g.name:
         return 10.0
     theirs = g.tokens | frozenset(tokens_of(g.signal.about))
     ours = frozenset(tokens_of(drive.name))
     mine, other = side_of(ours), side_of(theirs)
     opposite = mine != other and "" not in (mine, other)
-    if opposite or not _fits(drive, g) or bool(ours & HELM) != bool(theirs & HELM):
+    if opposite or not _units_are_compatible(drive, g) or bool(ours & HELM) != bool(theirs & HELM):
         return 0.0
     return 1.0 * (mine == other and mine != "") + 1.0 * bool(ours & HELM) + 0.5 * len(ours & theirs)
 
 
-def _fits(drive: Drive, g: Guess) -> bool:
+def _units_are_compatible(drive: VesselChannel, g: Classification) -> bool:
     """Whether channel and signal may be of one kind: angle, rate or force.
 
     Pulses and plain numbers fit any kind.
@@ -474,18 +490,20 @@ def _kind_of(unit: str) -> str:
     return ""
 
 
-def _turns_a_screw(drive: Drive, g: Guess) -> bool:
+def _is_thrust_by_revolutions(drive: VesselChannel, g: Classification) -> bool:
     """Whether the channel is a thrust and the signal revolutions."""
     return unit_of(drive.name) in KINDS["force"] and _unit(g) in KINDS["turning"]
 
 
-def _unit(g: Guess) -> str:
+def _unit(g: Classification) -> str:
     if g.signal.unit:
         return g.signal.unit
     return {"deg": "deg", "rpm": "rpm", "degps": "deg/s"}.get(g.word, unit_of(g.name))
 
 
-def _drive_line(name: str, g: Guess, drive: Drive | None, sense: float = 0.0) -> str:
+def _channel_line(
+    name: str, g: Classification, drive: VesselChannel | None, sense: float = 0.0
+) -> str:
     """A line of the map.
 
     Args:
@@ -501,7 +519,7 @@ def _drive_line(name: str, g: Guess, drive: Drive | None, sense: float = 0.0) ->
         low, high = drive.low, drive.high
     note = f"  # {rate_of(g.signal.t):.3g} Hz"
     if g.signal.about:
-        note += f"; {_safe(g.signal.about)}"
+        note += f"; {_without_control_characters(g.signal.about)}"
     turned = sense < -MIN_CORRELATION
     if turned:
         note += (
@@ -510,10 +528,10 @@ def _drive_line(name: str, g: Guess, drive: Drive | None, sense: float = 0.0) ->
         )
     scale = _scale(g, values, drive)
     if scale is None:
-        expression = _converted(g, name)
+        expression = _expression_with_unit(g, name)
         if turned:
             expression = f"-{expression}"
-        return f"{_key(name)} = {_text(expression)}{note}"
+        return f"{_toml_key(name)} = {_toml_string(expression)}{note}"
     ends, why = scale
     if turned:
         low, high = high, low
@@ -525,13 +543,15 @@ def _drive_line(name: str, g: Guess, drive: Drive | None, sense: float = 0.0) ->
             f"; CHECK: full helm is assumed to be {np.degrees(max(abs(low), abs(high))):.0f} deg"
         )
     return (
-        f"{_key(name)} = {{ signal = {_text(g.name)}, {given}, least = {low:g}, most = "
+        f"{_toml_key(name)} = {{ signal = {_toml_string(g.name)}, {given}, least = {low:g}, most = "
         f"{high:g} }}{note}"
     )
 
 
 def _scale(
-    g: Guess, values: "np.ndarray[tuple[int, ...], np.dtype[np.float64]]", drive: Drive | None
+    g: Classification,
+    values: "np.ndarray[tuple[int, ...], np.dtype[np.float64]]",
+    drive: VesselChannel | None,
 ) -> tuple[tuple[float, float, float], str] | None:
     """Low, neutral and high of a signal in proportion to full command, and their source.
 
@@ -548,7 +568,7 @@ def _scale(
     if PULSE[0] <= values.min() and values.max() <= PULSE[1]:
         return USUAL_PULSE, f"usual pulses of 1100 to 1900 us are assumed, {share}"
     largest = float(np.max(np.abs(values)))
-    if drive and _turns_a_screw(drive, g):
+    if drive and _is_thrust_by_revolutions(drive, g):
         why = (
             "CHECK: full thrust is assumed at the most revolutions here; thrust grows with "
             "their square"
@@ -566,7 +586,7 @@ def _scale(
     return None
 
 
-def _converted(g: Guess, name: str) -> str:
+def _expression_with_unit(g: Classification, name: str) -> str:
     """An expression in the unit of the column."""
     if g.name == name or g.word == "rpm" and name.endswith("_rpm"):
         return g.name
@@ -575,7 +595,7 @@ def _converted(g: Guess, name: str) -> str:
     return _expression(g)
 
 
-def _called(g: Guess) -> str:
+def _column_name(g: Classification) -> str:
     words = g.tokens | frozenset(tokens_of(g.signal.about))
     name = "throttle"
     if words & HELM:
@@ -585,7 +605,7 @@ def _called(g: Guess) -> str:
     return name + {"deg": "_rad", "rpm": "_radps"}.get(g.word, "")
 
 
-def _names(names: Sequence[str]) -> list[str]:
+def _unique_names(names: Sequence[str]) -> list[str]:
     """The names, numbered where several are equal."""
     found: list[str] = []
     seen: dict[str, int] = {}
@@ -598,22 +618,22 @@ def _names(names: Sequence[str]) -> list[str]:
     return found
 
 
-def _further_columns(kind: str, found: Sequence[Guess]) -> list[str]:
+def _further_columns(kind: str, found: Sequence[Classification]) -> list[str]:
     """Lines of further columns, named by kind and signal."""
     names = []
     for g in found:
         plain = re.sub(r"[^a-z0-9]+", "_", g.name.lower()).strip("_")
         names.append(f"{kind}_{plain}")
     lines = []
-    for name, g in zip(_names(names), found, strict=True):
+    for name, g in zip(_unique_names(names), found, strict=True):
         expression = _expression(g)
         if g.word == "us":
             expression = g.name
-        lines.append(f"{_key(name)} = {_text(expression)}")
+        lines.append(f"{_toml_key(name)} = {_toml_string(expression)}")
     return lines
 
 
-def _key(name: str) -> str:
+def _toml_key(name: str) -> str:
     if re.fullmatch(r"[A-Za-z0-9_-]+", name):
         return name
-    return _text(name)
+    return _toml_string(name)

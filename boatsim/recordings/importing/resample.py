@@ -36,7 +36,7 @@ class Samples:
         return rate_of(self.t)
 
 
-def samples(t: Array, values: Array) -> Samples:
+def clean_samples(t: Array, values: Array) -> Samples:
     """Return the samples sorted by time, without nan.
 
     Of two at one time the later logged is kept.
@@ -49,7 +49,7 @@ def samples(t: Array, values: Array) -> Samples:
     return Samples(t[last], values[last])
 
 
-def clock(base: Array, others: Sequence[Samples], near: float) -> Array:
+def row_times(base: Array, others: Sequence[Samples], near: float) -> Array:
     """Return the times (N,) of rows [s]: `base`, and samples farther than `near` [s] from it."""
     rows = base
     for given in others:
@@ -63,7 +63,7 @@ def _distance(rows: Array, t: Array) -> Array:
     return np.asarray(np.minimum(np.abs(t - rows[after - 1]), np.abs(t - rows[after])))
 
 
-def placed(rows: Array, given: Samples, near: float) -> Array:
+def nearest_samples(rows: Array, given: Samples, near: float) -> Array:
     """Return the nearest sample of each row (N,).
 
     Nan where none is within `near` [s] or nearest to this row.
@@ -79,7 +79,7 @@ def placed(rows: Array, given: Samples, near: float) -> Array:
     return found
 
 
-def held(rows: Array, given: Samples) -> Array:
+def mean_held_values(rows: Array, given: Samples) -> Array:
     """Return the mean until the next row (N,) of a signal that holds each sample until the next.
 
     Nan before the first.

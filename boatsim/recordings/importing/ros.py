@@ -11,7 +11,7 @@ import numpy as np
 
 from boatsim.physics.base import Array
 from boatsim.recordings.importing.frames import with_angles
-from boatsim.recordings.importing.log import MAX_SIGNALS, Log, Room, Signal, signals_of
+from boatsim.recordings.importing.log import MAX_SIGNALS, Log, MemoryBudget, Signal, signals_of
 
 # Type of number -> letter of `struct` and size; char is one byte, signed or not, time is two words
 NUMBERS = {
@@ -57,7 +57,7 @@ UNITS = {  # of fields of common_interfaces and mavros_msgs, by the end of the n
 
 
 @dataclass(frozen=True)
-class Part:
+class MessageField:
     """One field of a message."""
 
     name: str
@@ -73,7 +73,7 @@ class Topic:
     logged: array = field(default_factory=lambda: array("d"))  # type: ignore[type-arg]
     columns: dict[str, array] = field(default_factory=dict)  # type: ignore[type-arg]
 
-    def add(self, when: float, data: bytes, room: Room) -> None:
+    def add(self, when: float, data: bytes, room: MemoryBudget) -> None:
         """Add a message that was logged at `when` [s].
 
         Raises ValueError if it does not fit its definition.
@@ -88,7 +88,7 @@ class Topic:
         room.take(len(found) + 1, len(self.columns))
 
 
-def definitions(text: str, root: str) -> dict[str, list[Part]]:
+def parse_definitions(text: str, root: str) -> dict[str, list[MessageField]]:
     """Return the fields of a message and of the messages in it, by name of the message.
 
     Args:
@@ -101,29 +101,29 @@ def definitions(text: str, root: str) -> dict[str, list[Part]]:
     pieces = SECTION.split(text)
     texts = (
         BUILT_IN
-        | dict(zip(map(_full, pieces[1::2]), pieces[2::2], strict=True))
-        | {_full(root): pieces[0]}
+        | dict(zip(map(_full_type_name, pieces[1::2]), pieces[2::2], strict=True))
+        | {_full_type_name(root): pieces[0]}
     )
-    found: dict[str, list[Part]] = {}
+    found: dict[str, list[MessageField]] = {}
     for name, body in texts.items():
         found[name] = []
         for line in body.splitlines():
-            if part := _part(line, name, texts):
+            if part := _parse_field(line, name, texts):
                 found[name].append(part)
     return found
 
 
-def _full(name: str) -> str:
+def _full_type_name(name: str) -> str:
     """The name in the form geometry_msgs/Pose."""
     return name.replace("/msg/", "/")
 
 
-def _part(line: str, owner: str, known: Mapping[str, str]) -> Part | None:
+def _parse_field(line: str, owner: str, known: Mapping[str, str]) -> MessageField | None:
     """The field that a line defines; None for constants, comments and blank lines."""
     found = FIELD.match(line.partition("#")[0])
     if found is None or found[5].startswith("="):
         return None
-    kind, brackets, count, name = _full(found[1]), found[2], found[3], found[4]
+    kind, brackets, count, name = _full_type_name(found[1]), found[2], found[3], found[4]
     if kind not in NUMBERS and kind not in STAMP and kind not in ("string", "wstring"):
         if kind == "Header" and kind not in known:
             kind = "std_msgs/Header"
@@ -132,10 +132,10 @@ def _part(line: str, owner: str, known: Mapping[str, str]) -> Part | None:
         if kind not in known:
             raise ValueError(f"{owner} has a part {found[1]} without a definition")
     if not brackets:
-        return Part(name, kind)
+        return MessageField(name, kind)
     if count and "<=" not in brackets:
-        return Part(name, kind, int(count))
-    return Part(name, kind, -1)
+        return MessageField(name, kind, int(count))
+    return MessageField(name, kind, -1)
 
 
 class Decoder:
@@ -153,7 +153,7 @@ class Decoder:
         Raises:
             ValueError: If a definition is missing or recursive.
         """
-        self.parts, self.root, self.cdr = definitions(text, root), _full(root), cdr
+        self.parts, self.root, self.cdr = parse_definitions(text, root), _full_type_name(root), cdr
         self._check()
 
     def _check(self) -> None:
@@ -193,7 +193,7 @@ class _Cursor:
     """Position in a message."""
 
     def __init__(
-        self, data: bytes, order: str, aligned: bool, parts: Mapping[str, list[Part]]
+        self, data: bytes, order: str, aligned: bool, parts: Mapping[str, list[MessageField]]
     ) -> None:
         self.data, self.order, self.aligned, self.parts, self.at = data, order, aligned, parts, 0
         # Number of messages that are still decoded; messages without content have no other limit
@@ -239,7 +239,7 @@ class _Cursor:
                 size *= 4
             self.skip(size)
 
-    def several(self, part: Part, name: str, found: dict[str, float] | None) -> None:
+    def several(self, part: MessageField, name: str, found: dict[str, float] | None) -> None:
         count = part.count or 0
         if count == -1:
             count = int(self.number("uint32"))
@@ -268,7 +268,7 @@ class _Cursor:
             raise ValueError("the message is cut")
 
 
-def log_of(path: Path, topics: Mapping[str, Topic], remarks: list[str]) -> Log:
+def log_from_topics(path: Path, topics: Mapping[str, Topic], remarks: list[str]) -> Log:
     """Return all topics that have messages as one log.
 
     Messages have the time of their stamps if these agree with the time of logging, else the time of
@@ -300,7 +300,7 @@ def log_of(path: Path, topics: Mapping[str, Topic], remarks: list[str]) -> Log:
         units = dict(zip(columns, map(_unit_of, columns), strict=True))
         signals |= signals_of(name, t, columns, units)
         if len(signals) > MAX_SIGNALS:
-            Room(path).take(0, len(signals))
+            MemoryBudget(path).take(0, len(signals))
     return Log(path, with_angles(signals), "ENU", tuple(dict.fromkeys(remarks)))
 
 

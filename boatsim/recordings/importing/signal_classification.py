@@ -122,7 +122,7 @@ COLUMNS = (*POSE, *RATES)
 
 
 @dataclass(frozen=True)
-class Guess:
+class Classification:
     """Classification of one signal.
 
     Attributes:
@@ -161,21 +161,23 @@ def tokens_of(name: str) -> list[str]:
     return list(filter(None, words))
 
 
-def guesses(log: Log, channels: Sequence[str] = ()) -> list[Guess]:
+def classify_signals(log: Log, channels: Sequence[str] = ()) -> list[Classification]:
     """Return the classified signals of a log, the highest score first.
 
     Args:
         log: The log.
         channels: Names of the vessel's commands.
     """
-    found: list[Guess] = []
+    found: list[Classification] = []
     for name, signal in log.signals.items():
-        if (classified := guess(name, signal, log, channels)) is not None:
+        if (classified := classify_signal(name, signal, log, channels)) is not None:
             found.append(classified)
     return sorted(found, key=lambda g: -g.score)
 
 
-def guess(name: str, signal: Signal, log: Log, channels: Sequence[str] = ()) -> Guess | None:
+def classify_signal(
+    name: str, signal: Signal, log: Log, channels: Sequence[str] = ()
+) -> Classification | None:
     """Return the classification of a signal by name, unit and range, None if it is unknown.
 
     Args:
@@ -204,26 +206,26 @@ def guess(name: str, signal: Signal, log: Log, channels: Sequence[str] = ()) -> 
     if name in channels or is_command(name):
         kind = "command"
     if kind:
-        word, why = _word(name, signal), ""
+        word, why = _unit_word(name, signal), ""
         if (
             not (signal.unit or word)
             and tokens & ANGLES
             and MAX_RUDDER < float(np.max(np.abs(values))) <= 90.0
         ):
             word, why = "deg", "degrees by its range"
-        return Guess(name, signal, kind, word, moves + rate, why, tokens)
+        return Classification(name, signal, kind, word, moves + rate, why, tokens)
     column: str | None = name
     if name not in COLUMNS:
         column = _motion(last, tokens, log)
     if column is None or tokens & NOT_MEASURED:
         return None
-    word, why = _angle(column, signal, tokens, _word(name, signal))
+    word, why = _angle(column, signal, tokens, _unit_word(name, signal))
     own = (
         100.0 * (column == name)
         + 3.0 * (words[0] == "att")
         + 2.0 * bool(tokens & {"attitude", "imu", "odom"})
     )
-    return Guess(name, signal, column, word, moves + rate + own, why, tokens)
+    return Classification(name, signal, column, word, moves + rate + own, why, tokens)
 
 
 def _angle(column: str, signal: Signal, tokens: frozenset[str], word: str) -> tuple[str, str]:
@@ -243,7 +245,7 @@ def _angle(column: str, signal: Signal, tokens: frozenset[str], word: str) -> tu
     return word, "radians by its range"
 
 
-def _word(name: str, signal: Signal) -> str:
+def _unit_word(name: str, signal: Signal) -> str:
     """The unit as a word of expressions, by the format, else by the name."""
     if signal.unit:
         return WORDS.get(signal.unit.lower(), "")
@@ -255,18 +257,18 @@ def _word(name: str, signal: Signal) -> str:
 
 def _degrees(
     name: str, signal: Signal, column: str, tokens: frozenset[str], score: float
-) -> Guess | None:
+) -> Classification | None:
     """Classification of a latitude or longitude, with its unit by name and range."""
     largest = float(np.nanmax(np.abs(signal.values)))
     if signal.unit == "rad" or "rad" in tokens:
-        return Guess(name, signal, column, "", score, "", tokens)
+        return Classification(name, signal, column, "", score, "", tokens)
     limit = 360.0
     if column == "latitude":
         limit = 90.0
     if largest <= limit:
-        return Guess(name, signal, column, "deg", score, "", tokens)
+        return Classification(name, signal, column, "deg", score, "", tokens)
     if largest <= limit * 1e7:
-        return Guess(
+        return Classification(
             name, signal, column, "deg * 1e-7", score, "in 1e-7 degrees by its range", tokens
         )
     return None
@@ -294,7 +296,7 @@ def _drive_kind(signal: Signal, tokens: frozenset[str]) -> str | None:
 def _motion(last: list[str], tokens: frozenset[str], log: Log) -> str | None:
     """The pose or velocity of a name; None for another."""
     end = last[-1]
-    if found := _turn(end, tokens):
+    if found := _angular_rate(end, tokens):
         return found
     if end in POSE_WORDS:
         return POSE_WORDS[end]
@@ -315,7 +317,7 @@ def _motion(last: list[str], tokens: frozenset[str], log: Log) -> str | None:
     return None
 
 
-def _turn(end: str, tokens: frozenset[str]) -> str | None:
+def _angular_rate(end: str, tokens: frozenset[str]) -> str | None:
     """The angular rate of a name; None for another."""
     for column, (axis, spelt) in TURNS.items():
         number = str("xyz".index(axis))

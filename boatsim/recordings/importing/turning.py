@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from boatsim.physics.base import Array
-from boatsim.recordings.importing.signal_classification import Guess
+from boatsim.recordings.importing.signal_classification import Classification
 
 MIN_CORRELATION = 0.3  # with the turning, of a signal that steers
 # By which the score of the helm (correlation with turning less that with speed) must exceed all
@@ -23,7 +23,7 @@ RATE = 10.0  # [Hz] of these rows
 class Turning:
     """Turning to starboard and speed over ground in a log."""
 
-    def __init__(self, best: Mapping[str, Sequence[Guess]], enu: bool) -> None:
+    def __init__(self, best: Mapping[str, Sequence[Classification]], enu: bool) -> None:
         """Compute turning and speed.
 
         Args:
@@ -47,17 +47,22 @@ class Turning:
                 self.t, self.r = t, values
                 return
 
-    def by(self, *signals: tuple[Guess, float]) -> float:
+    def correlation(self, *signals: tuple[Classification, float]) -> float:
         """Return the correlation of a weighted sum of signals with the turning, at the best delay.
 
         1: all turning to starboard follows it; 0 where there is no data.
         """
-        return _followed(signals, self.t, self.r)
+        return _best_delayed_correlation(signals, self.t, self.r)
 
-    def helm(self, signals: Sequence[Guess]) -> tuple[Guess, float] | None:
+    def steering_signal(
+        self, signals: Sequence[Classification]
+    ) -> tuple[Classification, float] | None:
         """Return the signal that steers, with its correlation; None where several are possible."""
-        turns = [(g, self.by((g, 1.0))) for g in signals]
-        scores = [abs(c) - abs(_followed(((g, 1.0),), self.at, self.speed)) for g, c in turns]
+        turns = [(g, self.correlation((g, 1.0))) for g in signals]
+        scores = [
+            abs(c) - abs(_best_delayed_correlation(((g, 1.0),), self.at, self.speed))
+            for g, c in turns
+        ]
         order = np.argsort(scores)[::-1]
         if not len(order) or abs(turns[order[0]][1]) < MIN_CORRELATION:
             return None
@@ -67,19 +72,19 @@ class Turning:
         return turns[int(order[0])]
 
 
-def _sorted_samples(g: Guess) -> tuple[Array, Array]:
+def _sorted_samples(g: Classification) -> tuple[Array, Array]:
     """Times and values of a signal, sorted and one per time."""
     finite = np.isfinite(g.signal.values) & np.isfinite(g.signal.t)
     t, order = np.unique(g.signal.t[finite], return_index=True)
     return t, g.signal.values[finite][order]
 
 
-def _speed(best: Mapping[str, Sequence[Guess]]) -> tuple[Array, Array]:
+def _speed(best: Mapping[str, Sequence[Classification]]) -> tuple[Array, Array]:
     """Times [s] and speeds over ground, in an arbitrary unit."""
-    pair = _both(best, "x_m", "y_m")
+    pair = _most_probable_pair(best, "x_m", "y_m")
     is_earth = not pair
     if is_earth:
-        pair = _both(best, "latitude", "longitude")
+        pair = _most_probable_pair(best, "latitude", "longitude")
     if not pair or len(pair[0].signal.t) != len(pair[1].signal.t):
         return np.empty(0), np.empty(0)
     north, east, t = pair[0].signal.values, pair[1].signal.values, pair[0].signal.t
@@ -98,14 +103,18 @@ def _speed(best: Mapping[str, Sequence[Guess]]) -> tuple[Array, Array]:
     return t, np.asarray(np.abs(z[after] - z) / np.maximum(t[after] - t, 1e-9))
 
 
-def _both(best: Mapping[str, Sequence[Guess]], first: str, second: str) -> list[Guess]:
+def _most_probable_pair(
+    best: Mapping[str, Sequence[Classification]], first: str, second: str
+) -> list[Classification]:
     """The most probable signals of two columns; [] if one has none."""
     if best.get(first) and best.get(second):
         return [best[first][0], best[second][0]]
     return []
 
 
-def _followed(signals: Sequence[tuple[Guess, float]], t: Array, values: Array) -> float:
+def _best_delayed_correlation(
+    signals: Sequence[tuple[Classification, float]], t: Array, values: Array
+) -> float:
     """Correlation of a weighted sum of signals with a signal that follows, at the best delay.
 
     0 without data.
@@ -122,18 +131,18 @@ def _followed(signals: Sequence[tuple[Guess, float]], t: Array, values: Array) -
     followed = np.interp(rows, t, values)
     correlations = []
     for delay in DELAYS:
-        weighted = [weight * _held(g, rows - delay) for g, weight in signals]
-        correlations.append(_alike(np.asarray(np.sum(weighted, axis=0)), followed))
+        weighted = [weight * _held_values(g, rows - delay) for g, weight in signals]
+        correlations.append(_correlation(np.asarray(np.sum(weighted, axis=0)), followed))
     return max(correlations, key=abs)
 
 
-def _held(g: Guess, rows: Array) -> Array:
+def _held_values(g: Classification, rows: Array) -> Array:
     """Values (N,) in force at the rows."""
     t, values = _sorted_samples(g)
     return np.asarray(values[np.searchsorted(t, rows, side="right").clip(min=1) - 1])
 
 
-def _alike(a: Array, b: Array) -> float:
+def _correlation(a: Array, b: Array) -> float:
     """Correlation; 0 for a constant signal."""
     a, b = a - np.mean(a), b - np.mean(b)
     size = float(np.linalg.norm(a) * np.linalg.norm(b))

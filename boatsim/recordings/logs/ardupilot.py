@@ -15,13 +15,13 @@ from numpy.typing import NDArray
 from boatsim.errors import BadInput
 from boatsim.recordings.importing.log import (
     Log,
-    Room,
+    MemoryBudget,
     Signal,
-    damaged,
-    needs,
-    numbered,
-    quiet,
+    damaged_log_error,
+    missing_library_error,
+    names_of_streams,
     signals_of,
+    suppress_output,
 )
 from boatsim.recordings.raw_table import file_error
 
@@ -85,24 +85,24 @@ def read(path: Path) -> Log:
     try:
         from pymavlink import DFReader
     except ImportError as error:
-        raise needs(path, "pymavlink", "ardupilot") from error
+        raise missing_library_error(path, "pymavlink", "ardupilot") from error
     if path.stat().st_size == 0:
         raise file_error(path, "is empty")
     # No search for a clock: times are since the start of the autopilot
     methods = {"init_clock": lambda self: None, "formats": _Formats.kept}
     quick = type("Quick", (DFReader.DFReader_binary,), methods)
     try:
-        with quiet():
+        with suppress_output():
             index = quick(str(path))
         return _log(path, index)
     except BadInput:
         raise
     except Exception as error:  # the library raises any exception on a damaged file
-        raise damaged(path, "an ArduPilot log", error) from error
+        raise damaged_log_error(path, "an ArduPilot log", error) from error
 
 
 def _log(path: Path, index: Any) -> Log:
-    data, room = np.fromfile(path, dtype=np.uint8), Room(path)
+    data, room = np.fromfile(path, dtype=np.uint8), MemoryBudget(path)
     streams: dict[tuple[str, int], dict[str, Signal]] = {}
     skipped: list[str] = []
     for number, format in index.formats.items():
@@ -114,7 +114,7 @@ def _log(path: Path, index: Any) -> Log:
             for instance, part in _instances(rows, format):
                 if found := _signals(part, format):
                     streams[format.name, instance] = found
-    stream_names = numbered(list(streams))
+    stream_names = names_of_streams(list(streams))
     signals: dict[str, Signal] = {}
     for key, found in streams.items():
         for name, signal in found.items():
@@ -123,7 +123,7 @@ def _log(path: Path, index: Any) -> Log:
     if skipped:
         numbers = ", ".join(skipped)[:200]
         remarks.append(f"{path}: not read, its length is not that of its format: {numbers}")
-    described = _described(signals, _parameters(data, index))
+    described = _with_descriptions(signals, _parameters(data, index))
     return Log(path, described, "NED", tuple(remarks))
 
 
@@ -197,7 +197,9 @@ def _parameters(data: NDArray[np.uint8], index: Any) -> dict[str, float]:
     return parameters
 
 
-def _described(signals: Mapping[str, Signal], parameters: Mapping[str, float]) -> dict[str, Signal]:
+def _with_descriptions(
+    signals: Mapping[str, Signal], parameters: Mapping[str, float]
+) -> dict[str, Signal]:
     """The signals with a description of outputs and sticks, and the range of outputs [us]."""
     found = dict(signals)
     for name, signal in signals.items():
@@ -208,12 +210,12 @@ def _described(signals: Mapping[str, Signal], parameters: Mapping[str, float]) -
         elif stream == "RCOU" and number.isdigit():
             function = int(parameters.get(f"SERVO{number}_FUNCTION", -1))
             about = FUNCTIONS.get(function, f"{OUTPUT} {number}")
-            pulse = _pulse(parameters, f"SERVO{number}")
+            pulse = _pulse_range(parameters, f"SERVO{number}")
             found[name] = replace(signal, unit="us", about=about, pulse=pulse)
     return found
 
 
-def _pulse(parameters: Mapping[str, float], servo: str) -> tuple[float, float, float] | None:
+def _pulse_range(parameters: Mapping[str, float], servo: str) -> tuple[float, float, float] | None:
     """Low, neutral and high pulse [us] of an output; None where the log has no valid range."""
     keys = (f"{servo}_MIN", f"{servo}_TRIM", f"{servo}_MAX")
     low, neutral, high = map(parameters.get, keys, repeat(np.nan))

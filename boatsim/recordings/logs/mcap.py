@@ -6,8 +6,14 @@ from pathlib import Path
 from typing import Any
 
 from boatsim.errors import BadInput
-from boatsim.recordings.importing.log import MAX_SIGNALS, Log, Room, damaged, needs
-from boatsim.recordings.importing.ros import MAX_NESTING, MAX_SIZE, Decoder, Topic, log_of
+from boatsim.recordings.importing.log import (
+    MAX_SIGNALS,
+    Log,
+    MemoryBudget,
+    damaged_log_error,
+    missing_library_error,
+)
+from boatsim.recordings.importing.ros import MAX_NESTING, MAX_SIZE, Decoder, Topic, log_from_topics
 
 SUFFIXES = (".mcap",)
 MAX_CHUNK = 256_000_000  # [bytes] of a chunk when it is unpacked
@@ -23,24 +29,24 @@ def read(path: Path) -> Log:
         import mcap.stream_reader  # noqa: F401
         import zstandard  # noqa: F401
     except ImportError as error:
-        raise needs(path, "mcap", "ros") from error
+        raise missing_library_error(path, "mcap", "ros") from error
     topics: dict[str, Topic] = {}
     remarks: list[str] = []
     try:
-        _fill(path, topics, remarks)
+        _read_topics(path, topics, remarks)
     except BadInput:
         raise
     except Exception as error:  # the library raises any exception on a damaged file
         if not any(len(topic.logged) for topic in topics.values()):
-            raise damaged(path, "MCAP", error) from error
+            raise damaged_log_error(path, "MCAP", error) from error
         remarks.append(f"{path}: ends early or is damaged; the part before is used")
-    return log_of(path, topics, remarks)
+    return log_from_topics(path, topics, remarks)
 
 
-def _fill(path: Path, topics: dict[str, Topic], remarks: list[str]) -> None:
+def _read_topics(path: Path, topics: dict[str, Topic], remarks: list[str]) -> None:
     from mcap.records import Channel, Message, Schema
 
-    schemas, names, room = {}, dict[int, str](), Room(path)
+    schemas, names, room = {}, dict[int, str](), MemoryBudget(path)
     for record in _records(path):
         if isinstance(record, Schema):
             schemas[record.id] = record
@@ -71,13 +77,13 @@ def _records(path: Path) -> "Iterator[Any]":
     with path.open("rb") as file:
         for record in StreamReader(file, emit_chunks=True, record_size_limit=MAX_CHUNK).records:
             if isinstance(record, Chunk):
-                record.data, record.compression = _unpacked(record.compression, record.data), ""
+                record.data, record.compression = _decompress(record.compression, record.data), ""
                 yield from breakup_chunk(record)
             else:
                 yield record
 
 
-def _unpacked(compression: str, data: bytes) -> bytes:
+def _decompress(compression: str, data: bytes) -> bytes:
     if compression == "zstd":
         import zstandard
 

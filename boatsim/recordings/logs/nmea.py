@@ -12,7 +12,13 @@ from typing import Any
 import numpy as np
 
 from boatsim.physics.base import Array
-from boatsim.recordings.importing.log import MAX_TEXT_BYTES, Log, Room, Signal, needs
+from boatsim.recordings.importing.log import (
+    MAX_TEXT_BYTES,
+    Log,
+    MemoryBudget,
+    Signal,
+    missing_library_error,
+)
 from boatsim.recordings.raw_table import file_error
 
 SUFFIXES = (".nmea", ".0183", ".txt", ".log")
@@ -55,7 +61,7 @@ def read(path: Path) -> Log:
     try:
         import pynmea2
     except ImportError as error:
-        raise needs(path, "pynmea2", "nmea") from error
+        raise missing_library_error(path, "pynmea2", "nmea") from error
     if path.stat().st_size > MAX_TEXT_BYTES:
         raise file_error(
             path,
@@ -94,10 +100,10 @@ def _sentences(
 ) -> tuple[list[tuple[float | None, str, dict[str, float]]], int]:
     """Time or None, name and numbers of every sentence, and the number of other lines."""
     found: list[tuple[float | None, str, dict[str, float]]] = []
-    room, bad = Room(path), 0
-    stamped, clock = any(_stamp(line) is not None for line in lines[:50]), _Clock()
+    room, bad = MemoryBudget(path), 0
+    stamped, clock = any(_logger_time(line) is not None for line in lines[:50]), _Clock()
     for line in lines:
-        sentence = _parsed(line, parse)
+        sentence = _parse_line(line, parse)
         if sentence is None:
             bad += bool(line.strip())
             continue
@@ -105,7 +111,7 @@ def _sentences(
         if name not in FIELDS:
             continue
         if stamped:
-            when = _stamp(line)
+            when = _logger_time(line)
         else:
             when = clock.read(sentence)
         valid = name not in STATUS or getattr(sentence, STATUS[name], "A") == "A"
@@ -146,7 +152,7 @@ class _Clock:
         return now + self.days
 
 
-def _parsed(line: str, parse: "Callable[..., Any]") -> Any:
+def _parse_line(line: str, parse: "Callable[..., Any]") -> Any:
     """The sentence in a line; None where there is none or its checksum is wrong."""
     found = SENTENCE.search(line)
     if found is None or not _checksum_is_valid(found[0]):
@@ -168,7 +174,7 @@ def _checksum_is_valid(text: str) -> bool:
     return given[:2].upper() == f"{total:02X}"
 
 
-def _stamp(line: str) -> float | None:
+def _logger_time(line: str) -> float | None:
     """The time of the logger in front of a sentence [s since 1970]."""
     found = STAMP.search(line.partition("$")[0].partition("!")[0])
     if not found:

@@ -7,8 +7,15 @@ from pathlib import Path
 from typing import Any
 
 from boatsim.errors import BadInput
-from boatsim.recordings.importing.log import BAG, MAX_BYTES, Log, Room, damaged, needs
-from boatsim.recordings.importing.ros import MAX_SIZE, Decoder, Topic, log_of
+from boatsim.recordings.importing.log import (
+    BAG,
+    MAX_BYTES,
+    Log,
+    MemoryBudget,
+    damaged_log_error,
+    missing_library_error,
+)
+from boatsim.recordings.importing.ros import MAX_SIZE, Decoder, Topic, log_from_topics
 from boatsim.recordings.raw_table import file_error
 
 SUFFIXES = (".bag", ".db3", "/")
@@ -22,7 +29,7 @@ def read(path: Path) -> Log:
         from rosbags.rosbag1 import Reader as Bag1
         from rosbags.rosbag2 import Reader as Bag2
     except ImportError as error:
-        raise needs(path, "rosbags", "ros") from error
+        raise missing_library_error(path, "rosbags", "ros") from error
     topics: dict[str, Topic] = {}
     remarks: list[str] = []
     try:
@@ -35,15 +42,15 @@ def read(path: Path) -> Log:
             _check_folder(path, folder)
             opened = Bag2(folder)
         with opened as bag:
-            _bound(bag)
-            _fill(path, bag, topics, remarks)
+            _limit_chunk_size(bag)
+            _read_topics(path, bag, topics, remarks)
     except BadInput:
         raise
     except Exception as error:  # the library raises any exception on a damaged file
         if not any(len(topic.logged) for topic in topics.values()):
-            raise damaged(path, "a bag of ROS", error) from error
+            raise damaged_log_error(path, "a bag of ROS", error) from error
         remarks.append(f"{path}: ends early or is damaged; the part before is used")
-    return log_of(path, topics, remarks)
+    return log_from_topics(path, topics, remarks)
 
 
 def _check_folder(path: Path, folder: Path) -> None:
@@ -68,13 +75,13 @@ def _check_folder(path: Path, folder: Path) -> None:
         raise file_error(path, f"has more than {MAX_BYTES:,} bytes; cut the log")
 
 
-def _bound(bag: Any) -> None:
+def _limit_chunk_size(bag: Any) -> None:
     """Limit the size of unpacked chunks of a bag of ROS 1."""
     for position, chunk in getattr(bag, "chunks", {}).items():
-        bag.chunks[position] = chunk._replace(decompressor=partial(_unpacked, chunk.decompressor))
+        bag.chunks[position] = chunk._replace(decompressor=partial(_decompress, chunk.decompressor))
 
 
-def _unpacked(usual: "Callable[[bytes], bytes]", data: bytes) -> bytes:
+def _decompress(usual: "Callable[[bytes], bytes]", data: bytes) -> bytes:
     from lz4.frame import LZ4FrameDecompressor
 
     library = str(usual.__module__).partition(".")[0]
@@ -89,11 +96,11 @@ def _unpacked(usual: "Callable[[bytes], bytes]", data: bytes) -> bytes:
     return found
 
 
-def _fill(path: Path, bag: Any, topics: dict[str, Topic], remarks: list[str]) -> None:
-    room, read = Room(path), []
+def _read_topics(path: Path, bag: Any, topics: dict[str, Topic], remarks: list[str]) -> None:
+    room, read = MemoryBudget(path), []
     for connection in bag.connections:
         try:
-            text = connection.msgdef.data or _usual(connection.msgtype)
+            text = connection.msgdef.data or _standard_definition(connection.msgtype)
             cdr = hasattr(connection.ext, "serialization_format")
             topics.setdefault(connection.topic, Topic(Decoder(text, connection.msgtype, cdr)))
             read.append(connection)
@@ -112,7 +119,7 @@ def _fill(path: Path, bag: Any, topics: dict[str, Topic], remarks: list[str]) ->
                 )
 
 
-def _usual(name: str) -> str:
+def _standard_definition(name: str) -> str:
     """Definition of a message of ROS 2 itself, for bags without definitions. Raises ValueError."""
     from rosbags.typesys import Stores, get_typestore
 

@@ -11,8 +11,15 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from boatsim.physics.base import Array
-from boatsim.recordings.importing.clocks import clock_of, dates, seconds
-from boatsim.recordings.importing.log import MAX_SIGNALS, MAX_TEXT_BYTES, Log, Room, Signal, damaged
+from boatsim.recordings.importing.clocks import seconds_from_dates, time_column, times_in_seconds
+from boatsim.recordings.importing.log import (
+    MAX_SIGNALS,
+    MAX_TEXT_BYTES,
+    Log,
+    MemoryBudget,
+    Signal,
+    damaged_log_error,
+)
 from boatsim.recordings.notes import unit_of
 from boatsim.recordings.raw_table import check_unique_names, file_error
 
@@ -42,12 +49,12 @@ def _log(
     units: Mapping[str, str],
     remarks: tuple[str, ...] = (),
 ) -> Log:
-    clock = clock_of(columns)
+    clock = time_column(columns)
     count = len(next(iter(columns.values()), ()))
     if clock is None:
         t = np.arange(count, dtype=float)
     else:
-        t = seconds(clock, columns[clock])
+        t = times_in_seconds(clock, columns[clock])
     signals: dict[str, Signal] = {}
     for name, values in columns.items():
         if np.isfinite(values).any():
@@ -77,13 +84,13 @@ def _parquet(path: Path) -> dict[str, Array]:
 
     try:
         file = parquet.ParquetFile(path)
-        Room(path).take(
+        MemoryBudget(path).take(
             file.metadata.num_rows * file.metadata.num_columns, file.metadata.num_columns
         )
         numeric = [f.name for f in file.schema_arrow if _is_number(pa.types, f.type)]
         table = file.read(columns=numeric)
     except (pa.ArrowException, OSError, ValueError) as error:
-        raise damaged(path, "Parquet", error) from error
+        raise damaged_log_error(path, "Parquet", error) from error
     check_unique_names(path, table.column_names)
     columns: dict[str, Array] = {}
     for name, column in zip(table.column_names, table.columns, strict=True):
@@ -104,7 +111,7 @@ def _is_number(types: Any, kind: Any) -> bool:
 
 
 @dataclass(frozen=True)
-class _Head:
+class _Header:
     """Names, separator and units at the begin of a table."""
 
     columns: list[str]
@@ -114,7 +121,7 @@ class _Head:
 
 
 def _csv(path: Path) -> Log:
-    head = _head(path)
+    head = _read_header(path)
     remarks: tuple[str, ...] = ()
     columns = _read_fast(path, head)
     if columns is None:
@@ -123,7 +130,7 @@ def _csv(path: Path) -> Log:
     return _log(path, columns, head.units, remarks)
 
 
-def _head(path: Path) -> _Head:
+def _read_header(path: Path) -> _Header:
     """Separator, names and units of a table. Raises BadInput."""
     with path.open("rb") as file:
         begin = _text(path, file.read(MAX_HEAD))
@@ -156,10 +163,10 @@ def _head(path: Path) -> _Head:
             raise file_error(path, "has a header and no rows")
         units = dict(zip(header, map(str.strip, below, repeat("[]() ")), strict=True))
         lines.pop(0)
-    return _Head(header, separator, units, lines[1][0])
+    return _Header(header, separator, units, lines[1][0])
 
 
-def _read_fast(path: Path, head: _Head) -> dict[str, Array] | None:
+def _read_fast(path: Path, head: _Header) -> dict[str, Array] | None:
     """The columns of a table, read by native code.
 
     None if some rows differ from the header in length.
@@ -169,7 +176,7 @@ def _read_fast(path: Path, head: _Head) -> dict[str, Array] | None:
 
     if len(set(head.columns)) < len(head.columns) or "" in head.columns:
         return None
-    room, batches = Room(path), []
+    room, batches = MemoryBudget(path), []
     try:
         pieces = arrow.open_csv(
             path,
@@ -185,10 +192,10 @@ def _read_fast(path: Path, head: _Head) -> dict[str, Array] | None:
     except (pa.ArrowException, OSError, ValueError):
         return None
     found = pa.Table.from_batches(batches, pieces.schema)
-    return {name: _of_texts(found[name], head.separator) for name in head.columns}
+    return {name: _numbers_of_texts(found[name], head.separator) for name in head.columns}
 
 
-def _of_texts(column: "ChunkedArray", separator: str) -> Array:
+def _numbers_of_texts(column: "ChunkedArray", separator: str) -> Array:
     """Numbers (N,) of a column of texts, by native code if all cells are numbers or empty."""
     import pyarrow as pa
     from pyarrow import compute
@@ -204,7 +211,7 @@ def _of_texts(column: "ChunkedArray", separator: str) -> Array:
         return _column(column.to_pylist(), separator)
 
 
-def _read_line_by_line(path: Path, head: _Head) -> tuple[dict[str, Array], tuple[str, ...]]:
+def _read_line_by_line(path: Path, head: _Header) -> tuple[dict[str, Array], tuple[str, ...]]:
     """The columns of any other table, and remarks. Raises BadInput with the line of a mistake."""
     if path.stat().st_size > MAX_TEXT_BYTES:
         raise file_error(
@@ -215,7 +222,7 @@ def _read_line_by_line(path: Path, head: _Head) -> tuple[dict[str, Array], tuple
         )
     lines = enumerate(_text(path, path.read_bytes()).splitlines())
     kept = [(i + 1, line) for i, line in lines if i >= head.row and line.strip()]
-    Room(path).take(len(head.columns) * len(kept), len(head.columns))
+    MemoryBudget(path).take(len(head.columns) * len(kept), len(head.columns))
     rows, remarks = _rows(path, kept, head.separator, len(head.columns))
     if not rows:
         raise file_error(path, "has a header and no rows")
@@ -275,7 +282,7 @@ def _is_units(row: Sequence[str], header: Sequence[str], separator: str) -> bool
     for cell in filled:
         if _number(cell, separator) is not None or len(cell.strip()) > 10:
             return False
-        if dates([cell]) is not None:
+        if seconds_from_dates([cell]) is not None:
             return False
     return True
 
@@ -287,7 +294,7 @@ def _column(cells: Sequence[str], separator: str) -> Array:
     except ValueError:
         pass
     found = np.array(list(map(_number, cells, repeat(separator))), dtype=float)  # None becomes nan
-    if np.isnan(found).all() and (when := dates(cells)) is not None:
+    if np.isnan(found).all() and (when := seconds_from_dates(cells)) is not None:
         return when
     return found
 

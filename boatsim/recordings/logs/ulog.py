@@ -10,13 +10,13 @@ from boatsim.errors import BadInput
 from boatsim.recordings.importing.frames import with_angles
 from boatsim.recordings.importing.log import (
     Log,
-    Room,
+    MemoryBudget,
     Signal,
-    damaged,
-    needs,
-    numbered,
-    quiet,
+    damaged_log_error,
+    missing_library_error,
+    names_of_streams,
     signals_of,
+    suppress_output,
 )
 
 SUFFIXES = (".ulg", ".ulog")
@@ -76,20 +76,20 @@ def read(path: Path) -> Log:
     try:
         from pyulog import ULog
     except ImportError as error:
-        raise needs(path, "pyulog", "px4") from error
+        raise missing_library_error(path, "pyulog", "px4") from error
     try:
-        with quiet(), path.open("rb") as file:
+        with suppress_output(), path.open("rb") as file:
             found = ULog(_ProgressingFile(file))
         return _log(path, found.data_list, found.file_corruption)
     except BadInput:
         raise
     except Exception as error:  # the library raises any exception on a damaged file
-        raise damaged(path, "a ULog", error) from error
+        raise damaged_log_error(path, "a ULog", error) from error
 
 
 def _log(path: Path, topics: list, corrupt: bool) -> Log:  # type: ignore[type-arg]
-    room, signals = Room(path), dict[str, Signal]()
-    stream_names = numbered([(topic.name, int(topic.multi_id)) for topic in topics])
+    room, signals = MemoryBudget(path), dict[str, Signal]()
+    stream_names = names_of_streams([(topic.name, int(topic.multi_id)) for topic in topics])
     for topic in topics:
         t = topic.data.get("timestamp")
         if t is None or not len(t):

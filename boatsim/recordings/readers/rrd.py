@@ -28,7 +28,7 @@ READ = """
 import json, sys
 sys.path[:] = json.loads(sys.argv[1])
 from boatsim.recordings.readers import rrd
-rrd.child()
+rrd.main_of_child_process()
 """
 REFUSED = 3  # exit code of the child process when it prints the reason
 
@@ -66,7 +66,7 @@ def read(path: Path) -> Raw:
     return Raw(path, columns, range(1, 1 + len(columns["t_s"])))
 
 
-def child() -> None:
+def main_of_child_process() -> None:
     """Read the file in the child process.
 
     `sys.argv` has the path of the `.rrd` and of the table to write.

@@ -16,7 +16,7 @@ from boatsim.diagnosis.log_check import check_files
 from boatsim.physics import vessel as vessels
 from boatsim.physics.base import Array
 from boatsim.physics.vessel import Vessel
-from boatsim.recordings.importing.convert import notes_of
+from boatsim.recordings.importing.convert import recording_notes_text
 from boatsim.recordings.table import Recording
 from boatsim.simulate.batch import Batch
 from validation.log_faults import Columns, write
@@ -119,7 +119,9 @@ def test_what_is_advised_may_be_written_at_the_end_of_the_file(
 ) -> None:
     notes = tmp_path / "recording.toml"
     if imported:
-        notes.write_text(notes_of(tmp_path / "run.csv", str(Path(str(rib.file)).parent), "gnss"))
+        notes.write_text(
+            recording_notes_text(tmp_path / "run.csv", str(Path(str(rib.file)).parent), "gnss")
+        )
     log = sailed(rib)
     late = np.arange(len(log["t_s"])) > 480
     leaps = in_per_cent(log) | {"x_m": log["x_m"] + 40.0 * late}

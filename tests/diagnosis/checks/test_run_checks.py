@@ -25,7 +25,7 @@ from boatsim.physics import vessel
 from boatsim.physics.base import Array
 from boatsim.recordings.expression import parse
 from boatsim.recordings.table import Recording, read, write_csv
-from validation.log_faults import FAULTS, Columns, sailed, write
+from validation.log_faults import FAULTS, Columns, simulate_log, write
 
 TRIALS = Path(__file__).parents[2] / "data" / "trials"
 BOAT = vessel.load("trial_boat")
@@ -191,7 +191,7 @@ def test_nothing_is_advised_that_the_boat_can_not_do(tmp_path: Path) -> None:
     """Thrusters that can not be turned are not told to turn, and one that can only push is not told
     to go astern."""
     boat = vessel.load("blueboat")
-    log = sailed(boat, 1)
+    log = simulate_log(boat, 1)
     for name in boat.commands:
         log[name] = np.abs(log[name])
     path = files(tmp_path, [log])[0]

@@ -8,7 +8,12 @@ import pytest
 from make_logs import geodetic, quaternion
 from scipy.spatial.transform import Rotation
 
-from boatsim.recordings.importing.frames import angles, local, radii, with_angles
+from boatsim.recordings.importing.frames import (
+    angles_of_quaternions,
+    curvature_radii,
+    local_position,
+    with_angles,
+)
 from boatsim.recordings.importing.log import Signal
 
 
@@ -22,31 +27,33 @@ def test_a_local_place_is_that_of_the_exact_tangent_plane_within_what_is_stated(
     for course in np.linspace(0.0, 2.0 * math.pi, 16, endpoint=False):
         north, east = distance * math.cos(course), distance * math.sin(course)
         lat, lon = geodetic(north, east)
-        x, y = local(np.radians([lat]), np.radians([lon]), origin)
+        x, y = local_position(np.radians([lat]), np.radians([lon]), origin)
         assert math.hypot(x[0] - north, y[0] - east) < most
 
 
 def test_radii_of_curvature_are_those_of_the_ellipsoid_at_equator_and_pole():
-    meridian, across = radii(0.0)
+    meridian, across = curvature_radii(0.0)
     assert across == 6378137.0 and meridian == pytest.approx(6335439.327, abs=1e-3)  # a (1 - e^2)
-    assert radii(math.pi / 2) == (
+    assert curvature_radii(math.pi / 2) == (
         pytest.approx(6399593.626, abs=1e-3),
         pytest.approx(6399593.626, abs=1e-3),
     )  # a^2 / b
 
 
 def test_a_boat_that_crosses_the_date_line_does_not_go_round_the_world():
-    x, y = local(np.zeros(2), np.radians([179.9999, -179.9999]), (0.0, math.radians(179.9999)))
+    x, y = local_position(
+        np.zeros(2), np.radians([179.9999, -179.9999]), (0.0, math.radians(179.9999))
+    )
     assert y[1] == pytest.approx(22.26, abs=0.01) and x[1] == 0.0
 
 
 @pytest.mark.parametrize("roll, pitch, yaw", [(0.1, -0.2, 0.3), (-0.4, 0.5, 3.0), (0.0, 0.0, -2.5)])
 def test_angles_of_a_quaternion_are_those_it_was_made_of(roll, pitch, yaw):
-    found = angles(*(np.array([part]) for part in quaternion(roll, pitch, yaw)))
+    found = angles_of_quaternions(*(np.array([part]) for part in quaternion(roll, pitch, yaw)))
     np.testing.assert_allclose([a[0] for a in found], (roll, pitch, yaw), atol=1e-12)
     x, y, z, w = Rotation.from_euler("ZYX", [yaw, pitch, roll]).as_quat()
     np.testing.assert_allclose(
-        [a[0] for a in angles(*(np.array([p]) for p in (w, x, y, z)))],
+        [a[0] for a in angles_of_quaternions(*(np.array([p]) for p in (w, x, y, z)))],
         (roll, pitch, yaw),
         atol=1e-12,
     )

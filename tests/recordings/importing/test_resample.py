@@ -8,11 +8,11 @@ from hypothesis import strategies as st
 
 from boatsim.recordings.importing.resample import (
     Samples,
-    clock,
-    held,
+    clean_samples,
     longest_hold,
-    placed,
-    samples,
+    mean_held_values,
+    nearest_samples,
+    row_times,
 )
 from boatsim.recordings.table import Recording
 
@@ -20,17 +20,19 @@ ROWS = 0.1 * np.arange(50)
 
 
 def test_samples_are_sorted_each_time_once_and_numbers_only():
-    found = samples(np.array([2.0, 1.0, 2.0, 3.0, np.nan]), np.array([1.0, 2.0, 3.0, np.nan, 5.0]))
+    found = clean_samples(
+        np.array([2.0, 1.0, 2.0, 3.0, np.nan]), np.array([1.0, 2.0, 3.0, np.nan, 5.0])
+    )
     np.testing.assert_array_equal(found.t, [1.0, 2.0])
     np.testing.assert_array_equal(found.values, [2.0, 3.0])
 
 
 @given(st.lists(st.floats(0.0, 4.9), min_size=2, max_size=40, unique=True))
 def test_every_sample_is_in_one_row_of_its_own_time_and_no_value_is_new(times):
-    given_ = samples(np.array(times), np.arange(len(times), dtype=float))
+    given_ = clean_samples(np.array(times), np.arange(len(times), dtype=float))
     near = 0.005
-    rows = clock(ROWS, [given_], near)
-    found = placed(rows, given_, near)
+    rows = row_times(ROWS, [given_], near)
+    found = nearest_samples(rows, given_, near)
     assert (np.diff(rows) > 0).all() and set(ROWS) <= set(rows)
     there = np.isfinite(found)
     assert set(found[there]) <= set(given_.values)
@@ -54,10 +56,10 @@ def test_every_sample_is_in_one_row_of_its_own_time_and_no_value_is_new(times):
     )
 )
 def test_the_area_under_a_held_command_is_that_of_the_command_itself(points):
-    given_ = samples(
+    given_ = clean_samples(
         np.array([0.0, *(t for t, _ in points)]), np.array([0.3, *(v for _, v in points)])
     )
-    found = held(ROWS, given_)
+    found = mean_held_values(ROWS, given_)
     ends = np.append(given_.t, ROWS[-1])
     inside = np.diff(np.minimum(ends, ROWS[-1]))
     assert float(found[:-1] @ np.diff(ROWS)) == pytest.approx(
@@ -66,7 +68,7 @@ def test_the_area_under_a_held_command_is_that_of_the_command_itself(points):
 
 
 def test_a_command_between_whose_rows_none_comes_is_the_command_itself():
-    found = held(ROWS, Samples(np.array([0.1, 2.0]), np.array([0.123456789, -0.7])))
+    found = mean_held_values(ROWS, Samples(np.array([0.1, 2.0]), np.array([0.123456789, -0.7])))
     assert np.isnan(found[0])
     assert set(found[1:]) == {0.123456789, -0.7} and found[20] == -0.7 and found[19] == 0.123456789
 

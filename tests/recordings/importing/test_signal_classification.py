@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from boatsim.recordings.importing.log import Log, Signal
-from boatsim.recordings.importing.mapping_proposal import Drive, proposal
-from boatsim.recordings.importing.signal_classification import guess
+from boatsim.recordings.importing.mapping_proposal import VesselChannel, propose_map
+from boatsim.recordings.importing.signal_classification import classify_signal
 
 T = np.linspace(0.0, 60.0, 600)
 NAMES = """
@@ -68,28 +68,31 @@ def test_a_name_with_its_unit_and_range_says_what_a_signal_is(line):
     name, low, high, unit, column, word = line.split()
     frame = "ENU" if name.startswith("/") else "NED" if "." in name else ""
     signal = Signal(T, np.linspace(float(low), float(high), 600), "" if unit == "-" else unit)
-    found = guess(name.replace("_(", " ("), signal, Log(Path("log"), {}, frame))
+    found = classify_signal(name.replace("_(", " ("), signal, Log(Path("log"), {}, frame))
     assert (found.column if found else "nothing") == column
     assert ((found.word.replace(" ", "") if found else "") or "-") == word
 
 
 def test_what_stands_still_is_no_latitude_and_what_has_few_samples_is_nothing():
-    assert guess("lat", Signal(T, np.zeros(600)), log_of()) is None
-    assert guess("yaw", Signal(T[:5], T[:5]), log_of()) is None
+    assert classify_signal("lat", Signal(T, np.zeros(600)), log_of()) is None
+    assert classify_signal("yaw", Signal(T[:5], T[:5]), log_of()) is None
 
 
 def test_a_compass_counts_from_north_in_a_log_of_ros_too():
     signals = {"/compass_hdg.data": Signal(T, np.linspace(0.0, 350.0, 600))}
-    assert 'psi_rad = "/compass_hdg.data * deg"' in proposal(Log(Path("log"), signals, "ENU"))
+    assert 'psi_rad = "/compass_hdg.data * deg"' in propose_map(Log(Path("log"), signals, "ENU"))
     signals = {"/imu.orientation.yaw": Signal(T, np.linspace(0.0, 3.0, 600), "rad")}
-    assert 'psi_rad = "-/imu.orientation.yaw + 90 * deg"' in proposal(
+    assert 'psi_rad = "-/imu.orientation.yaw + 90 * deg"' in propose_map(
         Log(Path("log"), signals, "ENU")
     )
 
 
 def test_channels_get_the_signals_of_their_side_and_per_cent_becomes_their_range():
-    drives = [Drive("thrust_port_N", -27.7, 55.3), Drive("thrust_starboard_N", -27.7, 55.3)]
-    text = proposal(
+    drives = [
+        VesselChannel("thrust_port_N", -27.7, 55.3),
+        VesselChannel("thrust_starboard_N", -27.7, 55.3),
+    ]
+    text = propose_map(
         log_of(motor_right=(-80.0, 90.0), motor_left=(-80.0, 91.0), psi=(0.0, 3.0)), "v", drives
     )
     ends = "low = -100, neutral = 0, high = 100, least = -27.7, most = 55.3"
@@ -98,18 +101,18 @@ def test_channels_get_the_signals_of_their_side_and_per_cent_becomes_their_range
 
 
 def test_a_column_called_as_the_channel_is_that_channel_even_if_it_stands_still_and_no_other_kind_of_thing_is():
-    drives = [Drive("delta_rad", -0.7, 0.7), Drive("n_rps", 0.0, 30.0)]
+    drives = [VesselChannel("delta_rad", -0.7, 0.7), VesselChannel("n_rps", 0.0, 30.0)]
     signals = {"psi": (0.0, 3.0), "delta_rad": (-0.3, 0.3), "thrust_N": (39.0, 52.0)}
-    text = proposal(log_of(**signals), "v", drives)
+    text = propose_map(log_of(**signals), "v", drives)
     assert 'delta_rad = "delta_rad"' in text and '# n_rps = "..."' in text
-    text = proposal(log_of(**signals, n_rps=(10.0, 10.0)), "v", drives)
+    text = propose_map(log_of(**signals, n_rps=(10.0, 10.0)), "v", drives)
     assert 'n_rps = "n_rps"' in text
 
 
 def test_what_the_vessels_file_says_of_its_recordings_comes_before_any_guess():
     stated = {"thrust_port_N": "force_right", "y_m": "-port", "x_m": "none"}
     log = log_of(psi=(0.0, 3.0), force_right=(0.0, 1.0), port=(0.0, 9.0), y=(0.0, 3.0))
-    text = proposal(log, "v", [Drive("thrust_port_N", -1.0, 1.0)], (), stated)
+    text = propose_map(log, "v", [VesselChannel("thrust_port_N", -1.0, 1.0)], (), stated)
     assert (
         'thrust_port_N = "force_right"  # by' in text
         and 'y_m = "-port"  # by' in text
@@ -119,10 +122,10 @@ def test_what_the_vessels_file_says_of_its_recordings_comes_before_any_guess():
 
 
 def test_channels_that_no_name_fits_get_the_outputs_in_order_and_it_is_said():
-    drives = [Drive("thrust_port_N", -1.0, 1.0), Drive("rudder_rad", -0.5, 0.5)]
-    text = proposal(
+    drives = [VesselChannel("thrust_port_N", -1.0, 1.0), VesselChannel("rudder_rad", -0.5, 0.5)]
+    text = propose_map(
         log_of(psi=(0.0, 3.0), **{"rudder": (-0.4, 0.4), "motor 1": (-0.9, 0.9)}), "v", drives
     )
     assert 'rudder_rad = "rudder"' in text and "CHECK: the only signal that is left" in text
-    text = proposal(log_of(psi=(0.0, 3.0)), "v", drives)
+    text = propose_map(log_of(psi=(0.0, 3.0)), "v", drives)
     assert '# rudder_rad = "..."' in text

@@ -8,12 +8,18 @@ import numpy as np
 import pytest
 
 from boatsim.recordings.importing.log import Log, Signal
-from boatsim.recordings.importing.mapping import map_of
-from boatsim.recordings.importing.mapping_proposal import Drive, proposal
+from boatsim.recordings.importing.mapping import parse_map
+from boatsim.recordings.importing.mapping_proposal import VesselChannel, propose_map
 
 T = np.arange(0.0, 120.0, 0.1)
-OUTBOARD = [Drive("thrust_motor_N", -830.0, 1300.0), Drive("steer_motor_rad", -0.7, 0.7, turns=-1)]
-TWIN = [Drive("thrust_port_N", -73.0, 100.0), Drive("thrust_starboard_N", -73.0, 100.0)]
+OUTBOARD = [
+    VesselChannel("thrust_motor_N", -830.0, 1300.0),
+    VesselChannel("steer_motor_rad", -0.7, 0.7, turns=-1),
+]
+TWIN = [
+    VesselChannel("thrust_port_N", -73.0, 100.0),
+    VesselChannel("thrust_starboard_N", -73.0, 100.0),
+]
 
 
 def steps(seed: int, low: float, high: float) -> np.ndarray:
@@ -39,9 +45,9 @@ def log_of(turned: np.ndarray, speed: np.ndarray, outputs: dict[str, Signal]) ->
     return Log(Path("log"), poses | rates | outputs, "NED")
 
 
-def proposed(log: Log, drives: list[Drive]) -> tuple[str, dict]:
-    text = proposal(log, "boat", drives, ("surge", "sway", "yaw"))
-    map_of(tomllib.loads(text), "map.toml")
+def proposed(log: Log, drives: list[VesselChannel]) -> tuple[str, dict]:
+    text = propose_map(log, "boat", drives, ("surge", "sway", "yaw"))
+    parse_map(tomllib.loads(text), "map.toml")
     return text, tomllib.loads(text)["columns"]
 
 
@@ -85,7 +91,7 @@ def test_where_the_boat_shows_nothing_order_decides_and_it_is_said() -> None:
 def test_a_sign_is_left_alone_where_the_vessel_does_not_say_which_way_it_steers() -> None:
     outputs = {"rudder_cmd": Signal(T, 0.5 * HELM, "rad"), "throttle_cmd": pulses(THROTTLE)}
     log = log_of(-0.3 * follows(HELM, 0.8), 3.0 * follows(THROTTLE, 3.0), outputs)
-    text, columns = proposed(log, [OUTBOARD[0], Drive("rudder_rad", -0.6, 0.6)])
+    text, columns = proposed(log, [OUTBOARD[0], VesselChannel("rudder_rad", -0.6, 0.6)])
     assert columns["rudder_rad"] == "rudder_cmd" and "sign inverted" not in text
 
 
@@ -124,7 +130,11 @@ def test_the_sign_of_a_thrust_is_never_turned_for_what_it_does_alone() -> None:
     outputs = {"thrust_left": pulses(port), "thrust_right": pulses(starboard)}
     log = log_of(-0.4 * follows(port, 0.8), 2.0 * follows(port + starboard, 3.0), outputs)
     text, columns = proposed(
-        log, [Drive(d.name, d.low, d.high, turns) for d, turns in zip(TWIN, (1, -1), strict=True)]
+        log,
+        [
+            VesselChannel(d.name, d.low, d.high, turns)
+            for d, turns in zip(TWIN, (1, -1), strict=True)
+        ],
     )
     assert (
         all(columns[d.name]["least"] < columns[d.name]["most"] for d in TWIN)
@@ -139,7 +149,10 @@ def test_one_helm_steers_both_motors_where_there_is_but_one() -> None:
     }
     drives = [
         *TWIN,
-        *(Drive(f"steer_{side}_rad", -0.5, 0.5, turns=-1) for side in ("port", "starboard")),
+        *(
+            VesselChannel(f"steer_{side}_rad", -0.5, 0.5, turns=-1)
+            for side in ("port", "starboard")
+        ),
     ]
     log = log_of(0.3 * follows(HELM, 0.8), 3.0 * follows(THROTTLE, 3.0), outputs)
     text, columns = proposed(log, drives)

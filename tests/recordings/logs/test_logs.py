@@ -24,16 +24,16 @@ from boatsim.errors import BadInput
 from boatsim.physics.vessel import load
 from boatsim.recordings.importing.convert import convert
 from boatsim.recordings.importing.log import known_suffixes, open_log
-from boatsim.recordings.importing.mapping import map_of, read_map
-from boatsim.recordings.importing.mapping_proposal import Drive, listing, proposal
-from boatsim.recordings.importing.signal_classification import guesses
+from boatsim.recordings.importing.mapping import parse_map, read_map
+from boatsim.recordings.importing.mapping_proposal import VesselChannel, propose_map, signal_table
+from boatsim.recordings.importing.signal_classification import classify_signals
 from boatsim.recordings.table import read
 
 LOGS = Path(__file__).parents[2] / "data" / "logs"
 TRUTH = np.genfromtxt(LOGS / "truth.csv", delimiter=",", names=True)
 FULL = 104.0
 CHANNELS = {"n_port_radps": (-FULL, FULL), "n_starboard_radps": (-FULL, FULL)}
-DRIVES = [Drive(name, *ends) for name, ends in CHANNELS.items()]
+DRIVES = [VesselChannel(name, *ends) for name, ends in CHANNELS.items()]
 FREEDOMS = ("surge", "sway", "yaw")
 # [s] by which rows of the .BIN are off: its gyro comes so much behind the attitude
 ATT_CLOCK = 0.0013
@@ -54,14 +54,14 @@ MAPS = {}  # log -> the text of the map that is proposed for it
 
 def proposed(name: str) -> str:
     if name not in MAPS:
-        MAPS[name] = proposal(open_log(LOGS / name), "otter", DRIVES, FREEDOMS)
+        MAPS[name] = propose_map(open_log(LOGS / name), "otter", DRIVES, FREEDOMS)
     return MAPS[name]
 
 
 def converted(name: str, **changes: object):
     return convert(
         open_log(LOGS / name),
-        map_of(tomllib.loads(proposed(name)) | changes, "map.toml"),
+        parse_map(tomllib.loads(proposed(name)) | changes, "map.toml"),
         "map.toml",
         CHANNELS,
     )
@@ -143,7 +143,7 @@ def test_the_origin_of_the_map_is_where_positions_are_counted_from():
         geodetic(-111.0, -50.0)
     )  # of a place so far south and west of the start
     run = convert(
-        open_log(LOGS / "instruments.nmea"), map_of(table, "map.toml"), "map.toml", CHANNELS
+        open_log(LOGS / "instruments.nmea"), parse_map(table, "map.toml"), "map.toml", CHANNELS
     )
     assert run["x_m"][0] == pytest.approx(111.0, abs=2e-3) and run["y_m"][0] == pytest.approx(
         50.0, abs=2e-3
@@ -151,7 +151,7 @@ def test_the_origin_of_the_map_is_where_positions_are_counted_from():
 
 
 def test_outputs_are_commands_and_the_stick_stays_beside_them():
-    found = {g.name: g.column for g in guesses(open_log(LOGS / "rover.BIN"))}
+    found = {g.name: g.column for g in classify_signals(open_log(LOGS / "rover.BIN"))}
     assert found["RCOU.C1"] == found["RCOU.C3"] == "command" and found["RCIN.C1"] == "stick"
     run = converted("rover.BIN")
     assert {"n_port_radps", "n_starboard_radps", "stick_rcin_c1"} <= run.signals.keys()
@@ -159,7 +159,7 @@ def test_outputs_are_commands_and_the_stick_stays_beside_them():
 
 
 def test_a_proposal_without_a_vessel_names_the_drives_by_what_the_log_says_of_them():
-    text = proposal(open_log(LOGS / "rover.BIN"))
+    text = propose_map(open_log(LOGS / "rover.BIN"))
     table = tomllib.loads(text)
     assert table["columns"]["throttle_port"] == {
         "signal": "RCOU.C1",
@@ -170,20 +170,20 @@ def test_a_proposal_without_a_vessel_names_the_drives_by_what_the_log_says_of_th
         "most": 1,
     }
     assert {"throttle_starboard", "psi_rad", "r_radps"} <= table["columns"].keys()
-    map_of(table, "map.toml")
+    parse_map(table, "map.toml")
 
 
 @pytest.mark.parametrize("name", [*RESOLUTION, "truth.csv"])
 def test_every_signal_is_listed_with_unit_rate_and_range(name):
     log = open_log(LOGS / name)
-    lines = listing(log)
+    lines = signal_table(log)
     assert len(lines) == 1 + len(log.signals)
     assert all(len(line) < 200 for line in lines)
 
 
 def test_a_recording_of_ours_is_proposed_as_it_is():
     log = open_log(LOGS / "truth.csv")
-    table = tomllib.loads(proposal(log, "otter", DRIVES, FREEDOMS))
+    table = tomllib.loads(propose_map(log, "otter", DRIVES, FREEDOMS))
     assert all(table["columns"][n] == n for n in ("x_m", "y_m", "psi_rad", "r_radps", *CHANNELS))
 
 
@@ -362,8 +362,8 @@ def test_a_log_with_bytes_changed_is_read_or_refused_in_one_line(tmp_path, name)
         path = damaged(tmp_path, name, spoilt)
         try:
             log = open_log(path)
-            listing(log)
-            map_of(tomllib.loads(proposal(log, "otter", DRIVES, FREEDOMS)), "map.toml")
+            signal_table(log)
+            parse_map(tomllib.loads(propose_map(log, "otter", DRIVES, FREEDOMS)), "map.toml")
         except BadInput as error:
             assert "\n" not in str(error)
 
@@ -410,8 +410,8 @@ def test_names_from_a_log_reach_neither_terminal_nor_map_as_they_are(tmp_path):
         header + "\n" + "".join(f"{0.1 * i:.1f},{i},{i},{0.01 * i}\n" for i in range(40))
     )
     log = open_log(path)
-    assert "\x1b" not in "\n".join(listing(log)) + proposal(log)
-    tomllib.loads(proposal(log))
+    assert "\x1b" not in "\n".join(signal_table(log)) + propose_map(log)
+    tomllib.loads(propose_map(log))
 
 
 @pytest.mark.parametrize(
@@ -594,7 +594,7 @@ def test_the_logs_are_what_their_script_writes(tmp_path, monkeypatch):
 def test_the_map_that_the_documents_show_is_one():
     page = (Path(__file__).parents[3] / "docs" / "logs.md").read_text()
     shown = tomllib.loads(re.search(r"```toml\n(.*?)```", page, re.DOTALL)[1])
-    assert map_of(shown, "map.toml").columns.keys() == shown["columns"].keys()
+    assert parse_map(shown, "map.toml").columns.keys() == shown["columns"].keys()
 
 
 @pytest.mark.parametrize(
@@ -605,4 +605,4 @@ def test_a_rate_whose_name_says_degrees_per_second_is_one(tmp_path, name):
     (tmp_path / "log.csv").write_text("\n".join([f"time_s,psi_rad,{name}", *rows]) + "\n")
     signal = open_log(tmp_path / "log.csv").signals[name]
     assert signal.unit in ("deg/s", "")
-    assert f'r_radps = "{name} * degps"' in proposal(open_log(tmp_path / "log.csv"))
+    assert f'r_radps = "{name} * degps"' in propose_map(open_log(tmp_path / "log.csv"))

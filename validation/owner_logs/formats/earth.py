@@ -40,16 +40,16 @@ def quaternion(yaw: float) -> tuple[float, float, float, float]:
     return cos(yaw / 2), 0.0, 0.0, sin(yaw / 2)
 
 
-def compass(psi: Array) -> Array:
+def compass_degrees(psi: Array) -> Array:
     """Return the heading in degrees from 0 to 360."""
     return np.degrees(psi) % 360.0
 
 
-def held(t: Array, values: Array, at: Array) -> Array:
+def last_values(t: Array, values: Array, at: Array) -> Array:
     """Return the last value before each time."""
     return values[np.clip(np.searchsorted(t, at + 1e-9, side="right") - 1, 0, len(t) - 1)]
 
 
-def merged(*times: Array) -> list[tuple[float, int, int]]:
+def merge_streams(*times: Array) -> list[tuple[float, int, int]]:
     """Return (time, stream, row) of several streams in order of time."""
     return sorted((float(t), k, i) for k, stream in enumerate(times) for i, t in enumerate(stream))

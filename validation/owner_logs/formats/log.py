@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from validation.owner_logs.boats import Boat
-from validation.owner_logs.instruments import Seen
+from validation.owner_logs.instruments import RecordedSignals
 
 
 @dataclass(frozen=True)
@@ -19,11 +19,13 @@ class Scale:
 
 
 @dataclass(frozen=True)
-class Written:
+class WrittenLog:
     """A log and the signal of each order (`port`, `helm`, ...)."""
 
     path: Path
     orders: dict[str, Scale] = field(default_factory=dict)
 
 
-Writer = Callable[[Seen, Boat, Path, str], Written]  # the last two arguments are stem and folder
+Writer = Callable[
+    [RecordedSignals, Boat, Path, str], WrittenLog
+]  # the last two arguments are stem and folder

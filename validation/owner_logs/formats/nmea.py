@@ -7,8 +7,8 @@ import numpy as np
 
 from validation.owner_logs.boats import Boat
 from validation.owner_logs.formats import earth
-from validation.owner_logs.formats.log import Scale, Written
-from validation.owner_logs.instruments import Seen
+from validation.owner_logs.formats.log import Scale, WrittenLog
+from validation.owner_logs.instruments import RecordedSignals
 
 
 def _sentence(body: str) -> str:
@@ -23,13 +23,13 @@ def _angle(value: float, digits: int, ends: str) -> str:
     return f"{int(whole):0{digits}d}{minutes:09.6f},{ends[int(value < 0)]}"
 
 
-def write(seen: Seen, boat: Boat, folder: Path, stem: str) -> Written:
+def write(seen: RecordedSignals, boat: Boat, folder: Path, stem: str) -> WrittenLog:
     """Write a burst of sentences with each fix."""
     out, t = [], seen.fixes.t
     lat, lon = earth.geodetic(seen.fixes.values["north"], seen.fixes.values["east"])
-    psi = earth.compass(np.interp(t, seen.compass.t, seen.compass.values["psi"]))
+    psi = earth.compass_degrees(np.interp(t, seen.compass.t, seen.compass.values["psi"]))
     r = np.degrees(np.interp(t, seen.gyro.t, seen.gyro.values["r"])) * 60.0
-    orders = {n: earth.held(seen.orders.t, v, t) for n, v in seen.orders.values.items()}
+    orders = {n: earth.last_values(seen.orders.t, v, t) for n, v in seen.orders.values.items()}
     knots = seen.fixes.values["speed"] / 0.514444
     course = np.degrees(seen.fixes.values["course"]) % 360.0
     engines = [n for n in ("motor", "port", "starboard") if n in orders]
@@ -54,7 +54,7 @@ def write(seen: Seen, boat: Boat, folder: Path, stem: str) -> Written:
     for k, n in enumerate(engines, 1):
         scales[n] = Scale(f"RPM[{k}].shaft", -boat.top_rpm, 0.0, boat.top_rpm)
     most = float(np.degrees(boat.helm_most))
-    return Written(
+    return WrittenLog(
         path,
         scales
         | ({"helm": Scale("RSA.rudder_starboard", -most, 0.0, most)} if "helm" in orders else {}),

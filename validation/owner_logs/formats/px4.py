@@ -7,8 +7,8 @@ import numpy as np
 
 from validation.owner_logs.boats import Boat
 from validation.owner_logs.formats import earth
-from validation.owner_logs.formats.log import Scale, Written
-from validation.owner_logs.instruments import Seen
+from validation.owner_logs.formats.log import Scale, WrittenLog
+from validation.owner_logs.instruments import RecordedSignals
 
 TOPICS = {
     "vehicle_attitude": ("uint64_t timestamp;float[4] q;", "<Q4f"),
@@ -28,7 +28,7 @@ def _message(kind: str, body: bytes) -> bytes:
     return struct.pack("<HB", len(body), ord(kind)) + body
 
 
-def write(seen: Seen, boat: Boat, folder: Path, stem: str) -> Written:
+def write(seen: RecordedSignals, boat: Boat, folder: Path, stem: str) -> WrittenLog:
     """Write attitude as quaternions, local position north and east, outputs as pulses."""
     us = round(earth.BOOT * 1e6)
     out = [b"\x55\x4c\x6f\x67\x01\x12\x35\x01" + struct.pack("<Q", us), _message("B", bytes(40))]
@@ -40,7 +40,7 @@ def write(seen: Seen, boat: Boat, folder: Path, stem: str) -> Written:
     shares = [seen.orders.values[n] / (boat.helm_most if n == "helm" else 1.0) for n in outputs]
     psi, fixes = seen.compass.values["psi"], seen.fixes.values
     shown = np.interp(seen.fixes.t, seen.compass.t, psi)
-    for t, kind, i in earth.merged(seen.compass.t, seen.gyro.t, seen.fixes.t, seen.orders.t):
+    for t, kind, i in earth.merge_streams(seen.compass.t, seen.gyro.t, seen.fixes.t, seen.orders.t):
         at = us + round(t * 1e6) + (0, 0, 1100, 200)[kind]
         values: tuple[float, ...]
         if kind == 0:
@@ -59,7 +59,7 @@ def write(seen: Seen, boat: Boat, folder: Path, stem: str) -> Written:
         out.append(_message("D", struct.pack("<H", kind) + struct.pack(layout, at, *packed)))
     path = folder / f"{stem}.ulg"
     path.write_bytes(b"".join(out))
-    return Written(
+    return WrittenLog(
         path,
         {
             n: Scale(f"actuator_outputs.output[{i}]", 1100.0, 1500.0, 1900.0)

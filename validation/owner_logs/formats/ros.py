@@ -13,13 +13,13 @@ import numpy as np
 
 from validation.owner_logs.boats import Boat
 from validation.owner_logs.formats import earth
-from validation.owner_logs.formats.log import Scale, Written
-from validation.owner_logs.instruments import Seen
+from validation.owner_logs.formats.log import Scale, WrittenLog
+from validation.owner_logs.instruments import RecordedSignals
 
 Message = tuple[str, str, int, Any]  # topic, type, time [ns], message
 
 
-class Nodes:
+class MessageBuilder:
     """Builder of messages of one set of types."""
 
     def __init__(self, store: Any) -> None:
@@ -47,17 +47,19 @@ class Nodes:
         return self.make("geometry_msgs/Quaternion", w=w, x=x, y=y, z=z)
 
 
-def messages(seen: Seen, boat: Boat, store: Any, local: bool, ned: bool) -> Iterator[Message]:
+def messages(
+    seen: RecordedSignals, boat: Boat, store: Any, local: bool, ned: bool
+) -> Iterator[Message]:
     """Return all messages of a voyage.
 
     With `local`, poses on a map replace satellite fixes; with `ned`, the axes are not those of ROS.
     """
-    nodes, psi, fixes = Nodes(store), seen.compass.values["psi"], seen.fixes.values
+    nodes, psi, fixes = MessageBuilder(store), seen.compass.values["psi"], seen.fixes.values
     lat, lon = earth.geodetic(fixes["north"], fixes["east"])
     shown = np.interp(seen.fixes.t, seen.compass.t, psi)
     none = np.zeros(9)
     gyro = np.interp(seen.compass.t, seen.gyro.t, seen.gyro.values["r"])
-    for t, kind, i in earth.merged(seen.compass.t, seen.fixes.t, seen.orders.t):
+    for t, kind, i in earth.merge_streams(seen.compass.t, seen.fixes.t, seen.orders.t):
         ns = round((earth.EPOCH + t) * 1e9) + (0, 1_000_000, 400_000)[kind]
         if kind == 0:
             yaw, rate = (psi[i], gyro[i]) if ned else (pi / 2 - psi[i], -gyro[i])
@@ -106,14 +108,14 @@ def messages(seen: Seen, boat: Boat, store: Any, local: bool, ned: bool) -> Iter
             for name, share in seen.orders.values.items():
                 value = float(share[i])
                 yield (
-                    topic(name, boat),
+                    topic_name(name, boat),
                     "std_msgs/msg/Float64",
                     ns,
                     nodes.make("std_msgs/Float64", data=value),
                 )
 
 
-def topic(name: str, boat: Boat) -> str:
+def topic_name(name: str, boat: Boat) -> str:
     """Return the topic of an order."""
     if name == "helm":
         if boat.plant.rudder:
@@ -124,17 +126,19 @@ def topic(name: str, boat: Boat) -> str:
     return f"/thrusters/{name}/cmd"
 
 
-def scales(seen: Seen, boat: Boat) -> dict[str, Scale]:
+def order_scales(seen: RecordedSignals, boat: Boat) -> dict[str, Scale]:
     """Return the scales: throttles from -1 to 1, the helm in rad."""
     return {
-        n: Scale(f"{topic(n, boat)}.data", -boat.helm_most, 0.0, boat.helm_most)
+        n: Scale(f"{topic_name(n, boat)}.data", -boat.helm_most, 0.0, boat.helm_most)
         if n == "helm"
-        else Scale(f"{topic(n, boat)}.data", -1.0, 0.0, 1.0)
+        else Scale(f"{topic_name(n, boat)}.data", -1.0, 0.0, 1.0)
         for n in seen.orders.values
     }
 
 
-def mcap(seen: Seen, boat: Boat, folder: Path, stem: str, local: bool, ned: bool) -> Written:
+def write_mcap(
+    seen: RecordedSignals, boat: Boat, folder: Path, stem: str, local: bool, ned: bool
+) -> WrittenLog:
     """Write ROS 2 messages in MCAP."""
     from mcap.writer import CompressionType, Writer
     from rosbags.typesys import Stores, get_typestore
@@ -155,10 +159,12 @@ def mcap(seen: Seen, boat: Boat, folder: Path, stem: str, local: bool, ned: bool
             data = bytes(store.serialize_cdr(message, kind))
             writer.add_message(channels[name], log_time=ns, data=data, publish_time=ns)
         writer.finish()
-    return Written(path, scales(seen, boat))
+    return WrittenLog(path, order_scales(seen, boat))
 
 
-def bag1(seen: Seen, boat: Boat, folder: Path, stem: str, local: bool, ned: bool) -> Written:
+def write_ros1_bag(
+    seen: RecordedSignals, boat: Boat, folder: Path, stem: str, local: bool, ned: bool
+) -> WrittenLog:
     """Write a bag of ROS 1."""
     from rosbags.rosbag1 import Writer
     from rosbags.typesys import Stores, get_typestore
@@ -172,10 +178,12 @@ def bag1(seen: Seen, boat: Boat, folder: Path, stem: str, local: bool, ned: bool
             if name not in known:
                 known[name] = writer.add_connection(name, kind, typestore=store)
             writer.write(known[name], ns, store.serialize_ros1(message, kind))
-    return Written(path, scales(seen, boat))
+    return WrittenLog(path, order_scales(seen, boat))
 
 
-def bag2(seen: Seen, boat: Boat, folder: Path, stem: str, local: bool, ned: bool) -> Written:
+def write_ros2_bag(
+    seen: RecordedSignals, boat: Boat, folder: Path, stem: str, local: bool, ned: bool
+) -> WrittenLog:
     """Write the folder of a bag of ROS 2."""
     from rosbags.rosbag2 import StoragePlugin, Writer
     from rosbags.typesys import Stores, get_typestore
@@ -189,4 +197,4 @@ def bag2(seen: Seen, boat: Boat, folder: Path, stem: str, local: bool, ned: bool
             if name not in known:
                 known[name] = writer.add_connection(name, kind, typestore=store)
             writer.write(known[name], ns, store.serialize_cdr(message, kind))
-    return Written(path, scales(seen, boat))
+    return WrittenLog(path, order_scales(seen, boat))

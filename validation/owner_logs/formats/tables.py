@@ -6,19 +6,19 @@ import numpy as np
 
 from validation.owner_logs.boats import Boat
 from validation.owner_logs.formats import earth
-from validation.owner_logs.formats.log import Scale, Written
-from validation.owner_logs.instruments import Seen, names
+from validation.owner_logs.formats.log import Scale, WrittenLog
+from validation.owner_logs.instruments import RecordedSignals, drive_names
 from validation.owner_logs.sail import Array
 
 Columns = dict[str, Array]
 
 
-def plain(seen: Seen, boat: Boat) -> Columns:
+def recording_columns(seen: RecordedSignals, boat: Boat) -> Columns:
     """Return rows at the rate of the fixes, in the names and units of a recording."""
     t = seen.fixes.t
-    orders = {n: earth.held(seen.orders.t, v, t) for n, v in seen.orders.values.items()}
+    orders = {n: earth.last_values(seen.orders.t, v, t) for n, v in seen.orders.values.items()}
     thrusts = {}
-    drives = zip(names(boat), boat.channels, boat.stated, boat.plant.propellers, strict=True)
+    drives = zip(drive_names(boat), boat.channels, boat.stated, boat.plant.propellers, strict=True)
     for name, channel, full, propeller in drives:
         back = full * propeller.astern
         thrusts[channel] = np.round(np.where(orders[name] > 0.0, full, back) * orders[name], 2)
@@ -33,23 +33,23 @@ def plain(seen: Seen, boat: Boat) -> Columns:
     }
 
 
-def instrument(seen: Seen, boat: Boat) -> tuple[Columns, dict[str, Scale]]:
+def instrument_columns(seen: RecordedSignals, boat: Boat) -> tuple[Columns, dict[str, Scale]]:
     """Return rows at 10 Hz: degrees, per cent, knots, each fix held until the next."""
     t = seen.compass.t
     lat, lon = earth.geodetic(seen.fixes.values["north"], seen.fixes.values["east"])
     columns: Columns = {
         "timestamp_s": np.round(earth.EPOCH + t, 3),
-        "gps_lat_deg": np.round(earth.held(seen.fixes.t, lat, t), 8),
-        "gps_lon_deg": np.round(earth.held(seen.fixes.t, lon, t), 8),
+        "gps_lat_deg": np.round(earth.last_values(seen.fixes.t, lat, t), 8),
+        "gps_lon_deg": np.round(earth.last_values(seen.fixes.t, lon, t), 8),
         "gps_speed_kn": np.round(
-            earth.held(seen.fixes.t, seen.fixes.values["speed"], t) / 0.514444, 2
+            earth.last_values(seen.fixes.t, seen.fixes.values["speed"], t) / 0.514444, 2
         ),
-        "heading_deg": np.round(earth.compass(seen.compass.values["psi"]), 2),
+        "heading_deg": np.round(earth.compass_degrees(seen.compass.values["psi"]), 2),
         "yaw_rate_deg_s": np.round(np.degrees(np.interp(t, seen.gyro.t, seen.gyro.values["r"])), 2),
     }
     scales = {}
     for name, share in seen.orders.values.items():
-        values = earth.held(seen.orders.t, share, t)
+        values = earth.last_values(seen.orders.t, share, t)
         if name == "helm":
             column = "rudder_deg" if boat.plant.rudder else "steering_deg"
             most = np.degrees(boat.helm_most)
@@ -62,7 +62,7 @@ def instrument(seen: Seen, boat: Boat) -> tuple[Columns, dict[str, Scale]]:
     return columns, scales
 
 
-def csv(columns: Columns, path: Path) -> None:
+def write_csv(columns: Columns, path: Path) -> None:
     """As text."""
     rows = zip(*columns.values(), strict=True)
     lines = [
@@ -72,7 +72,7 @@ def csv(columns: Columns, path: Path) -> None:
     path.write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 
-def parquet(columns: Columns, path: Path) -> None:
+def write_parquet(columns: Columns, path: Path) -> None:
     """As columns."""
     import pyarrow as pa
     from pyarrow import parquet as pq
@@ -83,7 +83,7 @@ def parquet(columns: Columns, path: Path) -> None:
     )
 
 
-def write(columns: Columns, scales: dict[str, Scale], path: Path) -> Written:
+def write(columns: Columns, scales: dict[str, Scale], path: Path) -> WrittenLog:
     """Write the table in the format of its suffix."""
-    (csv if path.suffix == ".csv" else parquet)(columns, path)
-    return Written(path, scales)
+    (write_csv if path.suffix == ".csv" else write_parquet)(columns, path)
+    return WrittenLog(path, scales)

@@ -24,14 +24,14 @@ from pathlib import Path
 
 from validation.real.common import OUT, print_table
 from validation.real.concealed.alterations import unaltered
-from validation.real.concealed.base import Patched
+from validation.real.concealed.base import PatchedVesselStudy
 from validation.real.concealed.cases import STUDIES, Case, Study
-from validation.real.concealed.judging import Verdict, identified_names, shares, sizes_of
+from validation.real.concealed.judging import Verdict, goal_rows, identified_names, sizes_of
 
 HEADER = ["set", "concealed", "truth", "unaltered", "gain [nats]", "outcome", "answer"]
 
 
-def row(study: Study, case: Case, verdict: Verdict) -> list[str]:
+def table_row(study: Study, case: Case, verdict: Verdict) -> list[str]:
     """Return a row of the table."""
     gain = ""
     if verdict.gain is not None:
@@ -40,7 +40,7 @@ def row(study: Study, case: Case, verdict: Verdict) -> list[str]:
     return [study.name, case.name, truth, verdict.own, gain, verdict.outcome, verdict.answer]
 
 
-def requested(study: Study, case: str, only: Sequence[str]) -> bool:
+def is_requested(study: Study, case: str, only: Sequence[str]) -> bool:
     """Whether a case is requested by the name of its set or by a part of its name."""
     return not only or study.name in only or any(part in case for part in only)
 
@@ -50,7 +50,7 @@ def any_requested(study: Study, only: Sequence[str]) -> bool:
     if not only or study.name in only or any("removed" in part for part in only):
         return True
     for case in study.cases(study.open(None, unaltered).vessel):
-        if requested(study, case.name, only):
+        if is_requested(study, case.name, only):
             return True
     return False
 
@@ -77,14 +77,14 @@ def main() -> None:
             run(study, options.only, options.out, rows, verdicts)
     if verdicts:
         print_table("concealed causes and answers", HEADER, rows)
-        print_table("goals", ["", "", "goal"], shares(verdicts))
+        print_table("goals", ["", "", "goal"], goal_rows(verdicts))
 
 
 def print_cases(study: Study, only: Sequence[str]) -> None:
     """Print the cases of a set, with the sizes for its plain vessel."""
     print(f"{study.name}: {study.about}")
     for case in study.cases(study.open(None, unaltered).vessel):
-        if requested(study, case.name, only):
+        if is_requested(study, case.name, only):
             print(f"  {case.name}: {sizes_of(case.truth) or 'nothing that a recording shows'}")
     print("  each effect that is identified in the unaltered recordings, removed")
 
@@ -98,16 +98,16 @@ def run(
 ) -> None:
     """Run the requested cases of a set, and append their rows and verdicts."""
     begin = time.perf_counter()
-    patched = Patched(study, out)
+    patched = PatchedVesselStudy(study, out)
     print(f"\n{study.name}: {study.about}")
     print(f"  the vessel lacks: {sizes_of(patched.found) or 'nothing'}")
     left = ", ".join(sorted(identified_names(patched.before))) or "nothing"
     verdict = patched.before.findings.answer["verdict"]
     print(f"  still identified with the patched vessel: {left} ({verdict})", flush=True)
     for case in patched.cases():
-        if requested(study, case.name, only):
+        if is_requested(study, case.name, only):
             verdicts.append(patched.verdict(case))
-            rows.append(row(study, case, verdicts[-1]))
+            rows.append(table_row(study, case, verdicts[-1]))
             seconds = time.perf_counter() - begin
             print(f"  {' | '.join(rows[-1][1:])}  [{seconds:.0f} s]", flush=True)
 

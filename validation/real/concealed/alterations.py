@@ -23,7 +23,7 @@ def unaltered(recording: Recording) -> Recording:
     return recording
 
 
-def chained(*alterations: Alteration) -> Alteration:
+def chain(*alterations: Alteration) -> Alteration:
     """Return several alterations in sequence."""
 
     def alter(recording: Recording) -> Recording:
@@ -34,12 +34,12 @@ def chained(*alterations: Alteration) -> Alteration:
     return alter
 
 
-def _replaced(recording: Recording, signals: Mapping[str, Array]) -> Recording:
+def _replace_signals(recording: Recording, signals: Mapping[str, Array]) -> Recording:
     """Return a recording with other values of some signals."""
     return replace(recording, signals={**recording.signals, **signals})
 
 
-def _plus(recording: Recording, added: Mapping[str, Array]) -> Recording:
+def _add_to_signals(recording: Recording, added: Mapping[str, Array]) -> Recording:
     """Return a recording with values added to the signals that it has."""
     signals = dict(recording.signals)
     for name in signals.keys() & added.keys():
@@ -50,7 +50,7 @@ def _plus(recording: Recording, added: Mapping[str, Array]) -> Recording:
 # ---- commands
 
 
-def rewritten(names: Sequence[str], written: Callable[[Array], Array]) -> Alteration:
+def rewrite_commands(names: Sequence[str], written: Callable[[Array], Array]) -> Alteration:
     """Replace commands by a function of them.
 
     Args:
@@ -59,37 +59,37 @@ def rewritten(names: Sequence[str], written: Callable[[Array], Array]) -> Altera
     """
 
     def alter(recording: Recording) -> Recording:
-        return _replaced(recording, {name: written(recording[name]) + 0.0 for name in names})
+        return _replace_signals(recording, {name: written(recording[name]) + 0.0 for name in names})
 
     return alter
 
 
-def weaker(names: Sequence[str], factor: float) -> Alteration:
+def weaken_motors(names: Sequence[str], factor: float) -> Alteration:
     """Motors that give a factor of their commands."""
-    return rewritten(names, lambda given: given / factor)
+    return rewrite_commands(names, lambda given: given / factor)
 
 
-def weaker_astern(names: Sequence[str], factor: float) -> Alteration:
+def weaken_motors_astern(names: Sequence[str], factor: float) -> Alteration:
     """Motors that give a factor of their commands astern."""
-    return rewritten(names, lambda given: np.where(given < 0.0, given / factor, given))
+    return rewrite_commands(names, lambda given: np.where(given < 0.0, given / factor, given))
 
 
-def dead_band(names: Sequence[str], width: float) -> Alteration:
+def add_dead_band(names: Sequence[str], width: float) -> Alteration:
     """Motors that lack a constant width of every command, in its unit."""
-    return rewritten(names, lambda given: given + width * np.sign(given))
+    return rewrite_commands(names, lambda given: given + width * np.sign(given))
 
 
-def off_by(names: Sequence[str], offset: float) -> Alteration:
+def offset_commands(names: Sequence[str], offset: float) -> Alteration:
     """Actuators that add an offset to every command, in its unit."""
-    return rewritten(names, lambda given: given - offset)
+    return rewrite_commands(names, lambda given: given - offset)
 
 
-def steering_harder(names: Sequence[str], gain: float) -> Alteration:
+def steer_harder_to_one_side(names: Sequence[str], gain: float) -> Alteration:
     """Rudders that add a share of the size of every angle: they steer harder to one side."""
-    return rewritten(names, lambda given: given / (1.0 + gain * np.sign(given)))
+    return rewrite_commands(names, lambda given: given / (1.0 + gain * np.sign(given)))
 
 
-def delayed_commands(names: Sequence[str], seconds: float) -> Alteration:
+def delay_commands(names: Sequence[str], seconds: float) -> Alteration:
     """Commands that take effect later [s] than they were recorded, or earlier if negative.
 
     The delay is rounded to whole rows, and rows without commands are removed. For positions and
@@ -111,7 +111,7 @@ def delayed_commands(names: Sequence[str], seconds: float) -> Alteration:
 # ---- the water
 
 
-def current(north: float, east: float) -> Alteration:
+def add_current(north: float, east: float) -> Alteration:
     """A current [m/s] that carries the same motion through the water: a Galilean transformation.
 
     Positions drift, and speeds over the ground change; speeds through the water stay the same.
@@ -123,7 +123,7 @@ def current(north: float, east: float) -> Alteration:
         added = {"x_m": north * since, "y_m": east * since}
         for kind in KINDS:
             added |= {f"{kind}u_mps": north * c + east * s, f"{kind}v_mps": east * c - north * s}
-        return _plus(recording, added)
+        return _add_to_signals(recording, added)
 
     return alter
 
@@ -131,7 +131,7 @@ def current(north: float, east: float) -> Alteration:
 # ---- instruments
 
 
-def heading_off(offset: float, cos: float = 0.0, sin: float = 0.0) -> Alteration:
+def add_compass_error(offset: float, cos: float = 0.0, sin: float = 0.0) -> Alteration:
     """A compass that reads psi + offset + cos cos(psi) + sin sin(psi) [rad].
 
     Recorded speeds are resolved along the reading.
@@ -154,7 +154,7 @@ def heading_off(offset: float, cos: float = 0.0, sin: float = 0.0) -> Alteration
     return alter
 
 
-def of_another_point(forward: float, starboard: float) -> Alteration:
+def move_antenna(forward: float, starboard: float) -> Alteration:
     """Position, and speed where it was recorded, of a point ahead and to starboard [m]."""
 
     def alter(recording: Recording) -> Recording:
@@ -165,39 +165,41 @@ def of_another_point(forward: float, starboard: float) -> Alteration:
             r = recording.signals.get(f"{kind}r_radps")
             if r is not None:
                 added |= {f"{kind}u_mps": -r * starboard, f"{kind}v_mps": r * forward}
-        return _plus(recording, added)
+        return _add_to_signals(recording, added)
 
     return alter
 
 
-def stretched(x: float, y: float) -> Alteration:
+def stretch_positions(x: float, y: float) -> Alteration:
     """Positions (1 + x) and (1 + y) times as far from the origin, and unchanged speeds."""
 
     def alter(recording: Recording) -> Recording:
         factors = {"x_m": 1.0 + x, "y_m": 1.0 + y}
-        return _replaced(recording, {name: recording[name] * k for name, k in factors.items()})
+        return _replace_signals(
+            recording, {name: recording[name] * k for name, k in factors.items()}
+        )
 
     return alter
 
 
-def late_fixes(seconds: float) -> Alteration:
+def delay_positions(seconds: float) -> Alteration:
     """Positions that are recorded later [s] than all other signals, by whole rows."""
-    return delayed_commands(POSITIONS, -seconds)
+    return delay_commands(POSITIONS, -seconds)
 
 
-def rolled(offset: float = 0.0, scale: float = 1.0) -> Alteration:
+def alter_roll(offset: float = 0.0, scale: float = 1.0) -> Alteration:
     """Roll readings multiplied by a scale, plus an offset [rad]; scale -1 is a reversed sensor."""
 
     def alter(recording: Recording) -> Recording:
         signals = {"phi_rad": scale * recording["phi_rad"] + offset}
         if "p_radps" in recording.signals:
             signals["p_radps"] = scale * recording["p_radps"]
-        return _replaced(recording, signals)
+        return _replace_signals(recording, signals)
 
     return alter
 
 
-def clock_scaled(factor: float) -> Alteration:
+def scale_clock(factor: float) -> Alteration:
     """A clock that counts `factor` s per second from the first row on, for poses alone."""
 
     def alter(recording: Recording) -> Recording:
@@ -209,24 +211,24 @@ def clock_scaled(factor: float) -> Alteration:
 # ---- changes of the frame, which no recording shows
 
 
-def clock_shifted(seconds: float) -> Alteration:
+def shift_clock(seconds: float) -> Alteration:
     """Another zero of the clock."""
     return lambda recording: replace(recording, t=recording.t + seconds)
 
 
-def moved(x: float, y: float) -> Alteration:
+def shift_origin(x: float, y: float) -> Alteration:
     """Another origin of positions [m]."""
-    return lambda recording: _plus(
+    return lambda recording: _add_to_signals(
         recording, {"x_m": np.full(len(recording), x), "y_m": np.full(len(recording), y)}
     )
 
 
-def turned(angle: float) -> Alteration:
+def rotate_axes(angle: float) -> Alteration:
     """Another direction of the axes [rad]: positions and heading are rotated together."""
 
     def alter(recording: Recording) -> Recording:
         x, y, c, s = recording["x_m"], recording["y_m"], np.cos(angle), np.sin(angle)
         signals = {"x_m": c * x - s * y, "y_m": s * x + c * y}
-        return _replaced(recording, signals | {"psi_rad": recording["psi_rad"] + angle})
+        return _replace_signals(recording, signals | {"psi_rad": recording["psi_rad"] + angle})
 
     return alter

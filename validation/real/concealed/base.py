@@ -15,7 +15,7 @@ from boatsim.physics.content import load_class
 from boatsim.physics.vessel import Vessel, load
 from validation.real.common import by_name, effects_of, names_of, values_of
 from validation.real.concealed.alterations import Alteration, unaltered
-from validation.real.concealed.cases import Case, Study, removed
+from validation.real.concealed.cases import Case, Study, removal_cases
 from validation.real.concealed.judging import (
     Cause,
     Verdict,
@@ -32,7 +32,7 @@ def causes_of(diagnosis: Diagnosis) -> list[Cause]:
     return [Cause(effect["name"], values_of(effect)) for effect in effects_of(diagnosis)]
 
 
-class Patched:
+class PatchedVesselStudy:
     """The effects missing in a set's unaltered recordings, found once, and the patched vessel."""
 
     def __init__(self, study: Study, folder: Path) -> None:
@@ -71,7 +71,7 @@ class Patched:
     def cases(self) -> list[Case]:
         """Return the cases of the set, and those with one identified effect removed."""
         removable = [cause for cause in self.found if self._is_removable(cause.name)]
-        return [*self.study.cases(self.vessel), *removed(removable)]
+        return [*self.study.cases(self.vessel), *removal_cases(removable)]
 
     def verdict(self, case: Case) -> Verdict:
         """Return the verdict of one case."""

@@ -57,7 +57,7 @@ def split(fitted: Sequence[Recording], held_out: Sequence[Recording], vessel: Ve
     return Loaded(fitted, held_out, dict.fromkeys(paths, vessel), "one recording")
 
 
-def planar(
+def planar_opener(
     name: str,
     fitted: Mapping[str, float],
     held_out: Mapping[str, float],
@@ -82,18 +82,18 @@ def planar(
             altered = alter(whole.between(whole.t[0], whole.t[0] + seconds))
             rate = priors.used_sample_rate(vessel)
             thin = altered.thinned(min(rate, hertz or rate))
-            runs.append(replace(clean(thin, vessel), name=run))
+            runs.append(replace(clean_recording(thin, vessel), name=run))
         return split(runs[: len(fitted)], runs[len(fitted) :], vessel)
 
     return open_runs
 
 
-def clean(recording: Recording, vessel: Vessel) -> Recording:
+def clean_recording(recording: Recording, vessel: Vessel) -> Recording:
     """Return a recording without repeated positions and outliers."""
     return drop_position_outliers(drop_repeated_positions(recording), vessel)
 
 
-def roll_at_rest(patched: str | None, alter: Alteration) -> Loaded:
+def open_release_at_rest(patched: str | None, alter: Alteration) -> Loaded:
     """Return windows of 20 s of the release at rest, every second one held out."""
     parts, vessel = _release(
         kvlcc2_roll_decay.AT_REST, patched, alter, kvlcc2_roll_decay.windows_of
@@ -101,7 +101,7 @@ def roll_at_rest(patched: str | None, alter: Alteration) -> Loaded:
     return split(parts[::2], parts[1::2], vessel)
 
 
-def roll_at_speed(patched: str | None, alter: Alteration) -> Loaded:
+def open_release_at_speed(patched: str | None, alter: Alteration) -> Loaded:
     """Return thirds of the release at 15.5 kn, the middle one held out."""
     parts, vessel = _release(
         kvlcc2_roll_decay.AT_SPEED, patched, alter, kvlcc2_roll_decay.thirds_of
@@ -125,7 +125,7 @@ ESSO_HELD_OUT = "zigzag_0731_1403"
 ESSO_LONGEST = 150.0  # [s] of a stretch, to limit the computing time
 
 
-def esso_osaka(patched: str | None, alter: Alteration) -> Loaded:
+def open_esso_osaka(patched: str | None, alter: Alteration) -> Loaded:
     """Return the longest sound stretch of three runs, one of them held out.
 
     Runs are cut where positions jump, before they are altered.
@@ -149,24 +149,24 @@ THRUSTS = ("thrust_port_N", "thrust_starboard_N")
 RUDDER = ("delta_rad",)
 
 
-def removed(found: Sequence[Cause]) -> list[Case]:
+def removal_cases(found: Sequence[Cause]) -> list[Case]:
     """Return cases in which each effect of the patched vessel is removed."""
     return [Case(f"{cause.name} removed", (cause,), without=cause.name) for cause in found]
 
 
-def number(effect: Effect | None, name: str) -> float:
+def effect_parameter(effect: Effect | None, name: str) -> float:
     """Return a parameter of an effect of a vessel."""
     return float(getattr(effect, name))
 
 
-def delayed(channels: Sequence[str], seconds: float) -> Case:
+def delay_case(channels: Sequence[str], seconds: float) -> Case:
     """Return a case of delayed commands, or early ones if the delay is negative."""
     when = "late" if seconds > 0.0 else "early"
-    alter = a.delayed_commands(channels, seconds)
-    return Case(f"commands {when} by {abs(seconds):g} s", (delay_of(seconds),), alter)
+    alter = a.delay_commands(channels, seconds)
+    return Case(f"commands {when} by {abs(seconds):g} s", (delay_cause(seconds),), alter)
 
 
-def delay_of(seconds: float) -> Cause:
+def delay_cause(seconds: float) -> Cause:
     """Return the cause of delayed commands.
 
     For poses and commands alone a delay is equivalent to a delayed clock. Early commands can only
@@ -178,27 +178,27 @@ def delay_of(seconds: float) -> Cause:
     return Cause("command_delay", {"delay_s": seconds}, (clock,))
 
 
-def current(north: float, east: float, digits: str = "g") -> Case:
+def current_case(north: float, east: float, digits: str = "g") -> Case:
     """Return a case of a current [m/s]."""
     cause = Cause("current", {"north_mps": north, "east_mps": east})
     name = f"current of {north:{digits}}, {east:{digits}} m/s"
-    return Case(name, (cause,), a.current(north, east))
+    return Case(name, (cause,), a.add_current(north, east))
 
 
-def compass_off(offset: float) -> Case:
+def compass_case(offset: float) -> Case:
     """Return a case of a compass with a constant error [rad]."""
     cause = Cause("heading_offset", {"offset_rad": offset})
-    return Case(f"compass off by {offset:g} rad", (cause,), a.heading_off(offset))
+    return Case(f"compass off by {offset:g} rad", (cause,), a.add_compass_error(offset))
 
 
-def rudder_off(offset: float) -> Case:
+def rudder_case(offset: float) -> Case:
     """Return a case of a rudder with a constant error [rad]."""
     cause = Cause("steering_offset", {"middle_rad": offset})
     name = f"rudder off by {offset:.5f}".rstrip("0") + " rad"
-    return Case(name, (cause,), a.off_by(RUDDER, offset))
+    return Case(name, (cause,), a.offset_commands(RUDDER, offset))
 
 
-def uneven(factor: float, side: str) -> Cause:
+def motor_cause(factor: float, side: str) -> Cause:
     """Return the cause of a motor that gives a factor of its thrust.
 
     It is an imbalance together with a slightly lower thrust of both motors.
@@ -209,10 +209,10 @@ def uneven(factor: float, side: str) -> Cause:
     return Cause("thrust_imbalance", {"fraction": fraction})
 
 
-def weak_motor(side: str, factor: float) -> Case:
+def motor_case(side: str, factor: float) -> Case:
     """Return a case of a motor that gives a factor of its thrust."""
-    alter = a.weaker((f"thrust_{side}_N",), factor)
-    return Case(f"{side} motor gives {factor:g}", (uneven(factor, side),), alter)
+    alter = a.weaken_motors((f"thrust_{side}_N",), factor)
+    return Case(f"{side} motor gives {factor:g}", (motor_cause(factor, side),), alter)
 
 
 def blueboat_cases(vessel: Vessel) -> list[Case]:
@@ -221,20 +221,22 @@ def blueboat_cases(vessel: Vessel) -> list[Case]:
     astern = Cause("weak_reverse", {"astern_factor": 0.65})
     fixes = Cause("late_fixes", {"latency_s": 0.4})
     deviation = Cause("heading_deviation", {"cos_rad": 0.15, "sin_rad": -0.1})
-    frame = a.chained(a.moved(80.0, -30.0), a.clock_shifted(500.0))
+    frame = a.chain(a.shift_origin(80.0, -30.0), a.shift_clock(500.0))
     return [
-        weak_motor("starboard", 0.8),
-        Case("dead band of 4 N", (band,), a.dead_band(THRUSTS, 4.0)),
-        Case("both give 0.65 astern", (astern,), a.weaker_astern(THRUSTS, 0.65)),
-        delayed(THRUSTS, 0.4),
-        current(0.25, -0.15),
-        compass_off(0.12),
+        motor_case("starboard", 0.8),
+        Case("dead band of 4 N", (band,), a.add_dead_band(THRUSTS, 4.0)),
+        Case("both give 0.65 astern", (astern,), a.weaken_motors_astern(THRUSTS, 0.65)),
+        delay_case(THRUSTS, 0.4),
+        current_case(0.25, -0.15),
+        compass_case(0.12),
         Case("origin 80, -30 m away, clock 500 s on", (), frame),
-        Case("fixes late by 0.4 s", (fixes,), a.late_fixes(0.4)),
-        Case("compass deviates by 0.15, -0.1 rad", (deviation,), a.heading_off(0.0, 0.15, -0.1)),
-        weak_motor("port", 0.99),
-        delayed(THRUSTS, -0.4),
-        weak_motor("port", 0.85),
+        Case("fixes late by 0.4 s", (fixes,), a.delay_positions(0.4)),
+        Case(
+            "compass deviates by 0.15, -0.1 rad", (deviation,), a.add_compass_error(0.0, 0.15, -0.1)
+        ),
+        motor_case("port", 0.99),
+        delay_case(THRUSTS, -0.4),
+        motor_case("port", 0.85),
     ]
 
 
@@ -249,17 +251,21 @@ def release_cases(vessel: Vessel) -> list[Case]:
     inertia by k^2, damping by k, and multiplies cubic damping by k.
     """
     arm, damping = vessel.effect("righting_arm"), vessel.effect("cubic_damping")
-    stiffness = number(arm, "stiffness")
+    stiffness = effect_parameter(arm, "stiffness")
     slower, scale = 1.5, 0.75
     growth = scale**-2 - 1.0
-    bent = [Cause("righting_arm_stiffening", {"cubic_perrad2": number(arm, "cubic") * growth})]
+    bent = [
+        Cause("righting_arm_stiffening", {"cubic_perrad2": effect_parameter(arm, "cubic") * growth})
+    ]
     if damping is not None:
-        bent.append(Cause("cubic_damping", {"roll_Nms3": number(damping, "roll") * growth}))
+        bent.append(
+            Cause("cubic_damping", {"roll_Nms3": effect_parameter(damping, "roll") * growth})
+        )
     slow = Cause("metacentric_height_error", {"factor": slower**-2})
     moment = 0.0
     for effect in vessel.effects:
         if type(effect).idea() == "steady_force":
-            moment += number(effect, "roll")
+            moment += effect_parameter(effect, "roll")
     reversed_roll: tuple[Cause, ...] = ()
     if moment:
         steady = Cause("steady_force", {"roll_Nm": -2.0 * moment})
@@ -269,7 +275,7 @@ def release_cases(vessel: Vessel) -> list[Case]:
     def more(name: str, offset: float, plain: bool = False) -> Case:
         steady = Cause("steady_force", {"roll_Nm": stiffness * offset})
         cause = Cause("roll_offset", {"offset_rad": offset}, (steady,))
-        return Case(f"roll reading {name}", (cause,), a.rolled(offset), plain=plain)
+        return Case(f"roll reading {name}", (cause,), a.alter_roll(offset), plain=plain)
 
     return [
         more("0.012 rad more", 0.012),
@@ -277,17 +283,17 @@ def release_cases(vessel: Vessel) -> list[Case]:
         more("0.05 rad more", 0.05),
         more("0.012 rad more, vessel as published", 0.012, plain=True),
         more("0.05 rad more, vessel as published", 0.05, plain=True),
-        Case(f"roll reading {scale:g} times as large", tuple(bent), a.rolled(0.0, scale)),
-        Case(f"clock {slower:g} times as fast", (slow,), a.clock_scaled(slower)),
-        Case("roll sensor reversed", reversed_roll, a.rolled(0.0, -1.0)),
+        Case(f"roll reading {scale:g} times as large", tuple(bent), a.alter_roll(0.0, scale)),
+        Case(f"clock {slower:g} times as fast", (slow,), a.scale_clock(slower)),
+        Case("roll sensor reversed", reversed_roll, a.alter_roll(0.0, -1.0)),
         more("0.00001 rad more", 1e-5),
-        Case("clock 500 s on", (), a.clock_shifted(500.0)),
+        Case("clock 500 s on", (), a.shift_clock(500.0)),
     ]
 
 
 def tank_cases(vessel: Vessel) -> list[Case]:
     """Return the cases of one rudder, with recorded positions and speeds over the ground."""
-    U = number(vessel.effect("approach_balance"), "speed")
+    U = effect_parameter(vessel.effect("approach_balance"), "speed")
     step = 0.5 * vessel.length / U  # [s] half a length
     delay: float = round(0.2 * step)
     if vessel.length < 100.0:
@@ -299,14 +305,18 @@ def tank_cases(vessel: Vessel) -> list[Case]:
     gain = Cause("steering_asymmetry", {"gain": 0.25})
     scale = Cause("camera_scale", {"x_fraction": 0.06, "y_fraction": -0.05})
     return [
-        rudder_off(0.03),
-        Case("rudder steers harder to starboard by 0.25", (gain,), a.steering_harder(RUDDER, 0.25)),
-        delayed(commands, delay),
-        delayed(commands, -delay),
-        current(0.04 * U, 0.03 * U, ".2g"),
-        compass_off(0.05),
-        Case("positions 1.06, 0.95 as far", (scale,), a.stretched(0.06, -0.05)),
-        rudder_off(1e-5),
+        rudder_case(0.03),
+        Case(
+            "rudder steers harder to starboard by 0.25",
+            (gain,),
+            a.steer_harder_to_one_side(RUDDER, 0.25),
+        ),
+        delay_case(commands, delay),
+        delay_case(commands, -delay),
+        current_case(0.04 * U, 0.03 * U, ".2g"),
+        compass_case(0.05),
+        Case("positions 1.06, 0.95 as far", (scale,), a.stretch_positions(0.06, -0.05)),
+        rudder_case(1e-5),
     ]
 
 
@@ -314,12 +324,12 @@ def pond_cases(vessel: Vessel) -> list[Case]:
     """Return the cases of rudder and shaft, ahead and astern, in wind."""
     band = Cause("shaft_deadband", {"width_pers": 1.5})
     return [
-        rudder_off(0.06),
-        Case("shaft's dead band of 1.5 1/s", (band,), a.dead_band(("n_rps",), 1.5)),
-        delayed(("delta_rad", "n_rps"), 1.0),
-        current(0.06, -0.04),
-        compass_off(0.1),
-        rudder_off(1e-5),
+        rudder_case(0.06),
+        Case("shaft's dead band of 1.5 1/s", (band,), a.add_dead_band(("n_rps",), 1.5)),
+        delay_case(("delta_rad", "n_rps"), 1.0),
+        current_case(0.06, -0.04),
+        compass_case(0.1),
+        rudder_case(1e-5),
     ]
 
 
@@ -328,21 +338,21 @@ STUDIES = (
         "roll_at_rest",
         "tanker released at rest, windows of 20 s",
         kvlcc2_roll_decay.DATA,
-        roll_at_rest,
+        open_release_at_rest,
         release_cases,
     ),
     Study(
         "roll_at_speed",
         "tanker released at 15.5 kn, thirds",
         kvlcc2_roll_decay.DATA,
-        roll_at_speed,
+        open_release_at_speed,
         release_cases,
     ),
     Study(
         "blueboat",
         "two motors on a lake: 45 and 79 s of two runs at 5 Hz, one held out",
         RECORDINGS / "blueboat_lake" / "runs",
-        planar(
+        planar_opener(
             "blueboat_lake",
             {"run_218": 45.0, "run_232": 79.0},
             {"run_222": 50.0},
@@ -355,14 +365,16 @@ STUDIES = (
         "marin",
         "tanker at full scale, 1 Hz: the first 500 s of two zig-zags, one held out",
         RECORDINGS / "kvlcc2_marin_free" / "runs",
-        planar("kvlcc2_marin_free", {"zz_10": 500.0, "zz_m20": 500.0}, {"zz_m10": 500.0}, None),
+        planar_opener(
+            "kvlcc2_marin_free", {"zz_10": 500.0, "zz_m20": 500.0}, {"zz_m10": 500.0}, None
+        ),
         tank_cases,
     ),
     Study(
         "hsva",
         "tanker model: the first 80 s of two zig-zags at 4 Hz, one held out",
         RECORDINGS / "kvlcc2_hsva_zigzag" / "runs",
-        planar(
+        planar_opener(
             "kvlcc2_hsva_zigzag", {"Z_20_05": 80.0, "Z_20_10_P": 80.0}, {"Z_15_05": 80.0}, None, 4.0
         ),
         tank_cases,
@@ -371,7 +383,7 @@ STUDIES = (
         "esso_osaka",
         "tanker model on a pond: 150 s of two runs, one held out",
         SOURCE,
-        esso_osaka,
+        open_esso_osaka,
         pond_cases,
     ),
 )

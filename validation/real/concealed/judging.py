@@ -124,7 +124,7 @@ def judge(
         if visible:
             outcome = RIGHT
             for hit, cause in zip(hits, truth, strict=False):
-                if hit and not right_size(hit, cause, own.get(hit["name"])):
+                if hit and not size_is_right(hit, cause, own.get(hit["name"])):
                     outcome = SIZE
     elif visible or doubt:
         outcome = MISSED
@@ -175,7 +175,7 @@ def _matches(entry: EffectEntry, cause: Cause) -> bool:
     return bool(accepted_names([cause]) & {entry["name"], *entry["tied_with"]})
 
 
-def right_size(entry: EffectEntry, cause: Cause, own: Mapping[str, Size] | None = None) -> bool:
+def size_is_right(entry: EffectEntry, cause: Cause, own: Mapping[str, Size] | None = None) -> bool:
     """Whether the sizes of an effect are those of a cause, alone or with the boat's own.
 
     Parameters with one unit are the components of one vector.
@@ -313,7 +313,7 @@ def _fitted(diagnosis: Diagnosis, effect: Effect) -> dict[str, float]:
     return values
 
 
-def shares(verdicts: Sequence[Verdict]) -> list[list[str]]:
+def goal_rows(verdicts: Sequence[Verdict]) -> list[list[str]]:
     """Return rows of what the goals require: name, count, goal."""
     visible, invisible = [], []
     for v in verdicts:
