@@ -14,20 +14,15 @@ from time import perf_counter
 
 import numpy as np
 
+from benchmarks.engine import COMMANDS, STEP
 from boatsim.physics import vessel
 from boatsim.simulate.batch import Batch
 
-STEP, ROUNDS = 0.02, 5  # [s] of integration
+ROUNDS = 5
 MINUTES = (1, 10, 60, 360, 1440)
 BOATS = (1, 10, 100, 1_000, 10_000, 100_000)
 ENTRIES = (0, 2, 4, 8, 16)  # effects in addition to those of the vessel file
 STEPS = {"boats": 100, "entries": 200_000}
-COMMANDS = {
-    "pwm_port": 120.0,
-    "pwm_starboard": -90.0,
-    "steer_port_rad": 0.4,
-    "steer_starboard_rad": -0.3,
-}
 
 
 def median_time(work: Callable[[], object]) -> float:

@@ -15,20 +15,13 @@ from time import perf_counter
 
 import numpy as np
 
+from benchmarks.engine import COMMANDS, SHAFTS, STEP
 from boatsim.physics import vessel
 from boatsim.simulate.batch import Batch
 from boatsim.simulate.engine import Engine, State
 from boatsim.simulate.env import load as load_env
 
-STEP = 0.02  # [s]
-SHAFTS = {"n_port_radps": 80.0, "n_starboard_radps": 60.0}  # [rad/s]
 RUDDER = {"delta_rad": radians(-35.0), "n_rps": 11.8516}
-PWM = {
-    "pwm_port": 120.0,
-    "pwm_starboard": -90.0,
-    "steer_port_rad": 0.4,
-    "steer_starboard_rad": -0.3,
-}
 ELLIPSOID = """<mujoco>
   <option timestep="{step}" gravity="0 0 0" density="1000" viscosity="0.001" integrator="RK4"/>
   <worldbody><body>
@@ -153,7 +146,7 @@ def compare_mujoco_fluid() -> Pair:
         data.ctrl[0] = 0.3
         mujoco.mj_step(model, data, nstep=steps)
 
-    ours = boatsim_runs(vessel.load("joystick_boat"), PWM, [0.0] * 6, steps)
+    ours = boatsim_runs(vessel.load("joystick_boat"), COMMANDS, [0.0] * 6, steps)
     return Pair("MuJoCo's ellipsoid in fluid, RK4, 400 s", theirs, ours)
 
 

@@ -14,21 +14,8 @@ from boatsim.simulate.evaluation import requested_metrics
 from boatsim.simulate.run import run
 
 BANDWIDTHS = (
-    5.0,
-    10.0,
-    11.0,
-    12.0,
-    12.2,
-    13.0,
-    15.0,
-    20.0,
-    25.0,
-    30.0,
-    35.0,
-    40.0,
-    50.0,
-    60.0,
-)  # [1/s] k_u
+    5.0, 10.0, 11.0, 12.0, 12.2, 13.0, 15.0, 20.0, 25.0, 30.0, 35.0, 40.0, 50.0, 60.0,
+)  # fmt: skip  # [1/s] k_u
 DELAYS = (0.002, 0.004, 0.006, 0.010, 0.020)  # [s]
 FILTERS = (80.0, 40.0, 20.0, 10.0)  # [1/s] k_h
 PERIODS = (0.0005, 0.001, 0.002, 0.004, 0.008)  # [s]

@@ -25,6 +25,7 @@ AROUND = (  # causes of any boat in the plane
     hulls.clock_offset,
 )
 STEERED = (drives.steering_offset, drives.steering_backlash, drives.steering_rate_limit)
+OUTSIDE = (hulls.bilge_pump, hulls.eddies, hulls.lifting_hull, drives.seized_motor)
 PUSHED = (drives.thrust_deadband, drives.thrust_gain_error, drives.thrust_loss_with_speed)
 
 
@@ -65,7 +66,7 @@ PLANS = {
             hulls.mass_centre_shift,
             hulls.added_mass_coriolis,
         ),
-        (hulls.bilge_pump, hulls.eddies, hulls.lifting_hull, drives.seized_motor),
+        OUTSIDE,
     ),
     "eastward_ho": Plan(
         30.5,
@@ -113,7 +114,7 @@ PLANS = {
             hulls.mass_centre_shift,
             hulls.added_mass_coriolis,
         ),
-        (hulls.bilge_pump, hulls.eddies, hulls.lifting_hull, drives.seized_motor),
+        OUTSIDE,
     ),
     "martin_tank_model": Plan(
         1.805,
@@ -137,6 +138,6 @@ PLANS = {
         4,
         {"position": 0.015, "heading": 0.005, "heave": 0.01, "roll": 3e-3, "pitch": 3e-3},
         (*AROUND, hulls.added_mass_coriolis),
-        (hulls.bilge_pump, hulls.eddies, hulls.lifting_hull, drives.seized_motor),
+        OUTSIDE,
     ),
 }

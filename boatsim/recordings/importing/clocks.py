@@ -18,15 +18,9 @@ ENDING = re.compile(
     r"[\s_.\[(/]*(?<![a-z])(seconds?|secs?|milliseconds?|s|ms|us|µs|ns|usec|msec|nsec)[\])]*$"
 )
 UNIT_WORDS = {
-    "second": "s",
-    "seconds": "s",
-    "sec": "s",
-    "secs": "s",
-    "millisecond": "ms",
-    "milliseconds": "ms",
-    "msec": "ms",
-    "µs": "us",
-    "usec": "us",
+    **dict.fromkeys(("second", "seconds", "sec", "secs"), "s"),
+    **dict.fromkeys(("millisecond", "milliseconds", "msec"), "ms"),
+    **dict.fromkeys(("µs", "usec"), "us"),
     "nsec": "ns",
 }
 YEAR_2000, YEAR_2100 = 946684800.0, 4102444800.0  # [s] since 1970

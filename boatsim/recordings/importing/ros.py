@@ -35,24 +35,13 @@ MAX_EMPTY = 1000  # messages without content in a message
 MAX_SIZE = 1_000_000  # [bytes] of a message that is read; only images and point clouds are larger
 MAX_CLOCK_OFFSET = 10.0  # [s] between the stamp of a message and the time of its logging
 
-UNITS = {  # of fields of common_interfaces and mavros_msgs, by the end of the name
-    "angular_velocity.x": "rad/s",
-    "angular_velocity.y": "rad/s",
-    "angular_velocity.z": "rad/s",
-    "angular.x": "rad/s",
-    "angular.y": "rad/s",
-    "angular.z": "rad/s",
-    "linear.x": "m/s",
-    "linear.y": "m/s",
-    "linear.z": "m/s",
-    "position.x": "m",
-    "position.y": "m",
-    "position.z": "m",
-    "latitude": "deg",
-    "longitude": "deg",
-    "linear_acceleration.x": "m/s^2",
-    "linear_acceleration.y": "m/s^2",
-    "linear_acceleration.z": "m/s^2",
+# of vectors x, y, z in common_interfaces and mavros_msgs; latitude and longitude are in degrees
+VECTOR_UNITS = {
+    "angular_velocity": "rad/s",
+    "angular": "rad/s",
+    "linear": "m/s",
+    "position": "m",
+    "linear_acceleration": "m/s^2",
 }
 
 
@@ -305,9 +294,11 @@ def log_from_topics(path: Path, topics: Mapping[str, Topic], remarks: list[str])
 
 
 def _unit_of(name: str) -> str:
-    for end, unit in UNITS.items():
-        if f".{name}".endswith(f".{end}"):
-            return unit
+    *_, vector, field = ("", *name.split("."))
+    if field in ("latitude", "longitude"):
+        return "deg"
+    if field in ("x", "y", "z"):
+        return VECTOR_UNITS.get(vector, "")
     return ""
 
 
