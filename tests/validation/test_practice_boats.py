@@ -1,4 +1,4 @@
-"""The boats of the second practice set sail as the tool's own do while nothing is concealed."""
+"""The boats of the practice set and of the calibration campaign sail as those of boatsim do."""
 
 import ast
 from pathlib import Path
@@ -9,8 +9,8 @@ import pytest
 from boatsim.physics import vessel
 from boatsim.physics.base import Array
 from boatsim.simulate.batch import Batch
+from validation.calibration.vessels import BOATS
 from validation.practice import motion
-from validation.practice.boats import BOATS
 
 COMMANDS = {  # seconds and rows of commands in the vessel's order
     "catamaran": (3.0, [[6.0, 0.4], [2.0, -0.9], [10.0, 0.1], [0.0, 0.0], [4.0, 1.2]]),
@@ -21,8 +21,14 @@ COMMANDS = {  # seconds and rows of commands in the vessel's order
     "otter": (3.0, [[60.0, 80.0], [90.0, 20.0], [-40.0, 50.0], [0.0, 0.0], [70.0, -70.0]]),
     "eastward_ho": (20.0, [[0.2], [-0.35], [0.0], [0.5], [-0.1]]),
     "martin_tank_model": (2.0, [[], [], [], [], []]),
+    "blueboat": (3.0, [[20.0, 5.0], [-10.0, 30.0], [40.0, 40.0], [0.0, 0.0], [-20.0, 10.0]]),
+    "mariner": (60.0, [[0.2], [-0.35], [0.0], [0.5], [-0.1]]),
 }  # fmt: skip
-STARTS = {"eastward_ho": {"u": 6.68777}, "martin_tank_model": {"phi": 0.3}}
+STARTS = {
+    "eastward_ho": {"u": 6.68777},
+    "mariner": {"u": 7.7175},
+    "martin_tank_model": {"phi": 0.3},
+}
 SYMBOLS = ("x", "y", "z", "phi", "theta", "psi", "u", "v", "w", "p", "q", "r")
 
 

@@ -11,7 +11,7 @@ from validation.practice.motion import RUNS, Array, Boat, Motion
 
 def usual_thrust(boat: Boat) -> float:
     """Return a usual thrust [N] of one drive."""
-    return {"catamaran": 6.0, "joystick_boat": 0.6}.get(boat.name, 1.0)
+    return {"blueboat": 16.0, "catamaran": 6.0, "joystick_boat": 0.6}.get(boat.name, 1.0)
 
 
 def apply_curve(rows: tuple[int, ...], by: Callable[[Array], Array]) -> GoalMap:

@@ -149,7 +149,21 @@ def choose_strengths(trial: Trial, seeds: tuple[int, int]) -> tuple[Array, Oracl
 
 def simulate_trial(trial: Trial, seeds: tuple[int, int], strengths: Array) -> Oracle:
     """Simulate the trial with causes of these strengths; all other samples are unchanged."""
-    nominal, plan = BOATS[trial.vessel](), PLANS[trial.vessel]
+    return simulate_boat_trial(trial, BOATS[trial.vessel](), PLANS[trial.vessel], seeds, strengths)
+
+
+def simulate_boat_trial(
+    trial: Trial, nominal: Boat, plan: Plan, seeds: tuple[int, ...], strengths: Array
+) -> Oracle:
+    """Simulate a trial of a boat.
+
+    Args:
+        trial: Specification; its causes, and whether a track keeper conceals them.
+        nominal: Boat with the numbers of its vessel file.
+        plan: Recording plan of the boat.
+        seeds: Seeds of all samples.
+        strengths: Strength of each cause; it does not change any other sample.
+    """
     grid, rng = plan.grid(), np.random.default_rng([*seeds, 2])
     noise, real = sample_instrument_noise(nominal, plan, rng), sample_true_boat(nominal, rng)
     causes = []

@@ -5,10 +5,13 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from validation.practice.cause import Rng
-from validation.practice.motion import RUNS, Array, Boat
+from validation.practice.motion import RUNS, Array, Boat, Motion
 from validation.practice.sail import Grid
 
-HELM = np.radians([5.0, 10.0, 20.0, 30.0])  # rudder angles of the ship's zig-zags
+HELM = np.radians([5.0, 10.0, 20.0, 30.0])  # rudder angles of a ship's zig-zags
+# [s] shortest and longest time for which an open-loop pilot holds a ship's rudder
+HELM_TIMES = {"eastward_ho": (8.0, 28.0), "mariner": (20.0, 65.0)}
+COURSE_TIMES = {"eastward_ho": 25.0, "mariner": 60.0}  # [s] for which a ship keeps a course
 RELEASES = (
     0.32,
     0.12,
@@ -39,9 +42,8 @@ def sample_open_loop_pilot(boat: Boat, grid: Grid, rng: Rng) -> OpenLoopPilot:
     The ship runs zig-zags at several rudder angles; the tank model is released from several heels.
     """
     table = np.zeros((grid.rows, len(boat.channels), RUNS))
-    shortest, longest = (
-        (8.0, 28.0) if boat.name == "eastward_ho" else (1.5 * boat.scale, 4.0 * boat.scale)
-    )
+    usual = (1.5 * boat.scale, 4.0 * boat.scale)
+    shortest, longest = HELM_TIMES.get(boat.name, usual)
     for run in range(RUNS):
         row = 0
         while row < grid.rows and len(boat.channels):
@@ -71,6 +73,10 @@ def sample_level(boat: Boat, rng: Rng) -> Array:
         both = rng.choice([-50.0, 0.0, 40.0, 60.0, 78.0])
         turn = rng.choice([-25.0, -10.0, 0.0, 10.0, 25.0])
         return np.array([both + turn, both - turn])
+    if boat.name == "blueboat":
+        both = rng.choice([-12.0, 0.0, 8.0, 16.0, 28.0])
+        turn = rng.choice([-9.0, -4.0, 0.0, 4.0, 9.0])
+        return np.array([both + turn, both - turn])
     helm = rng.choice([*HELM, 0.0])
     return np.array([helm if rng.integers(2) else -helm])
 
@@ -92,7 +98,10 @@ class TrackKeeper:
 
     def __post_init__(self) -> None:
         b, count = self.boat, 12
-        self.speeds = self.rng.choice([0.25, 0.45], (count, RUNS)) * b.scale
+        usual = [0.25, 0.45]
+        if b.name == "blueboat":  # its thrusters are strong for its length
+            usual = [0.7, 1.2]
+        self.speeds = self.rng.choice(usual, (count, RUNS)) * b.scale
         if b.cruise:
             self.legs = self.rng.uniform(-0.5, 0.5, (count, 1, RUNS))
         else:
@@ -120,7 +129,7 @@ class TrackKeeper:
         """Return desired heading [rad] and speed [m/s] (RUNS,)."""
         runs = np.arange(RUNS)
         if self.boat.cruise:
-            leg = int(row * self.grid.row / 25.0)
+            leg = int(row * self.grid.row / COURSE_TIMES[self.boat.name])
             return np.asarray(self.legs[min(leg, len(self.legs) - 1), 0]), np.full(
                 RUNS, self.boat.cruise
             )
@@ -153,10 +162,27 @@ class TrackKeeper:
         return allocate_commands(b, X, N)
 
 
+def rudder_moment(boat: Boat) -> float:
+    """Return the yaw moment of a ship's rudder at cruising speed [N m/rad]."""
+    angle = 0.01  # [rad]
+    none = np.zeros(2)
+    nu = np.zeros((6, 2))
+    nu[0] = boat.cruise
+    act = np.array([[0.0, angle]])
+    motion = Motion(none, np.zeros(2, dtype=np.int64), np.zeros((6, 2)), nu, nu, act)
+    N = boat.law(boat.c, motion)[5]
+    return float(N[1] - N[0]) / angle
+
+
 def allocate_commands(boat: Boat, X: Array, N: Array) -> Array:
     """Return commands (C, RUNS) for X [N] ahead and N [N m], within the limits."""
     if boat.name == "eastward_ho":
         return np.clip(N / (-12.997 * boat.c["steer"]), -0.5, 0.5)[None]
+    if boat.name == "mariner":
+        return np.clip(N / rudder_moment(boat), -0.5, 0.5)[None]
+    if boat.name == "blueboat":
+        thrust = np.array([X / 2 + N / 0.57, X / 2 - N / 0.57])
+        return np.asarray(np.clip(thrust, -27.7, 55.3))
     if boat.name == "catamaran":
         side = N / 0.4
         ahead = np.maximum(X, 0.3)

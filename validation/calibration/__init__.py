@@ -1,0 +1,1 @@
+"""Calibration campaign: how often the stated probabilities of diagnoses are right."""
