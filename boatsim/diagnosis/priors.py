@@ -86,7 +86,7 @@ def coefficient_uncertainty(vessel: Vessel, config: LoadConfig = DEFAULT.load) -
     """Return the relative prior sd of the vessel's coefficients, by kind.
 
     Args:
-        vessel: Vessel whose [diagnosis] table may override the rule.
+        vessel: Vessel whose [diagnosis] table, or else [estimated] table, may override the rule.
         config: Settings of the rule.
     """
     kinds = set()
@@ -95,6 +95,9 @@ def coefficient_uncertainty(vessel: Vessel, config: LoadConfig = DEFAULT.load) -
             if param.axis in ("", *vessel.dof):
                 kinds.add(param.calibrates)
     by_rule = {kind: config.coefficient_uncertainty for kind in UNCERTAIN if kind in kinds}
+    for group, sd in vessel.estimated.items():
+        if group in kinds:
+            by_rule[group] = sd
     specified: Mapping[str, float] = {
         str(kind): sd for kind, sd in vessel.diagnosis.coefficient_uncertainty.items()
     }

@@ -258,6 +258,10 @@ def _written(problem: Problem, boat: Vessel, own: Fit, logs: str) -> str:
         f"relative sd: the largest of those fitted, at least {MIN_SD:g}"
     )
     diagnosis["reasons"]["coefficient_uncertainty"] = f"fitted to {logs}"
+    for group in boat.estimated:
+        if group in sd:
+            document["estimated"][group] = min(sd[group], float(boat.estimated[group]))
+            document["estimated"][group].comment(f"fitted to {logs}")
     return str(tomlkit.dumps(document)).replace("# found by the diagnosis", f"# fitted to {logs}")
 
 

@@ -28,6 +28,8 @@ DAMPING_SD = 1.0  # rules of thumb for damping are off by a factor of two
 GIVEN_THRUST_SD = 0.3  # bollard pull differs from the thrust under way
 ESTIMATED_THRUST_SD = 0.6
 ADDED_MASS_SD = 0.4  # difference of strip theory, regressions and measurements
+INERTIA_SD = 0.3  # radii of gyration of boats differ by this from the usual share of the length
+UNKNOWN_SD = 1.0  # numbers that the file sets to zero for want of anything better
 
 
 def vessel_text(boat: Particulars) -> str:
@@ -44,6 +46,7 @@ def vessel_text(boat: Particulars) -> str:
             *_effects(boat),
             *_manoeuvring(boat),
             *_diagnosis(boat),
+            *_estimated(boat),
             "",
         ]
     )
@@ -344,15 +347,30 @@ def steering(boat: Particulars) -> dict[str, float]:
     return gains
 
 
-def _diagnosis(boat: Particulars) -> Iterator[str]:
+def _thrust_uncertainty(boat: Particulars) -> tuple[float, str]:
+    """Relative standard deviation of the thrust, and its reason."""
     _, all_given = full_thrust(boat)
-    yield from ("", "[diagnosis]")
-    thrust_sd = ESTIMATED_THRUST_SD
-    thrust_reason = "no thrust was given"
     if all_given:
-        thrust_sd = GIVEN_THRUST_SD
-        thrust_reason = "a given thrust is one at rest"
+        return GIVEN_THRUST_SD, "a given thrust is one at rest"
+    return ESTIMATED_THRUST_SD, "no thrust was given"
+
+
+def _diagnosis(boat: Particulars) -> Iterator[str]:
+    thrust_sd, thrust_reason = _thrust_uncertainty(boat)
+    yield from ("", "[diagnosis]")
     sds = f"damping = {DAMPING_SD}, thrust = {thrust_sd}, added_mass = {ADDED_MASS_SD}"
     yield f"coefficient_uncertainty = {{ {sds} }}  # relative sd"
     reason = f"rules of thumb for damping are off by a factor of two; {thrust_reason}"
     yield f'reasons.coefficient_uncertainty = "{reason}"'
+
+
+def _estimated(boat: Particulars) -> Iterator[str]:
+    thrust_sd, thrust_reason = _thrust_uncertainty(boat)
+    yield from ("", "[estimated]  # relative sd of the numbers that nobody measured or published")
+    yield line("damping", DAMPING_SD, "", "rules of thumb")
+    yield line("thrust", thrust_sd, "", thrust_reason)
+    yield line("added_mass", ADDED_MASS_SD, "", "strip theory or regression")
+    yield line('"body.roll_inertia"', INERTIA_SD, "", "usual radius of gyration")
+    yield line('"body.yaw_inertia"', INERTIA_SD, "", "usual radius of gyration")
+    yield line("mass_centre", UNKNOWN_SD, "", "assumed at mid-length")
+    yield line("lag", UNKNOWN_SD, "", "lags of motors and steering are assumed to be zero")

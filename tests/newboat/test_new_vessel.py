@@ -137,6 +137,13 @@ def test_every_number_of_a_boat_says_where_it_comes_from(name: str, tmp_path: Pa
     assert not bare
 
 
+@pytest.mark.parametrize("name", BOATS)
+def test_the_file_states_which_numbers_are_estimates(name: str, tmp_path: Path) -> None:
+    estimated = vessel.load(str(made(tmp_path / name, BOATS[name]))).estimated
+    assert {"damping", "thrust", "added_mass", "mass_centre", "lag"} <= set(estimated)
+    assert "body.yaw_inertia" in estimated and "body.mass" not in estimated
+
+
 def test_a_stated_top_speed_is_reached_at_full_thrust(tmp_path: Path) -> None:
     folder = made(tmp_path / "fast", BOATS["outboard"])
     (folder / "full.toml").write_text(

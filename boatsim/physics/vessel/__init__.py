@@ -2,6 +2,7 @@
 
 from boatsim.physics.vessel.bindings import check_bindings
 from boatsim.physics.vessel.effect_tables import effect_from_table, effect_name
+from boatsim.physics.vessel.estimated import number_sd, refined_sd
 from boatsim.physics.vessel.loading import load, merged_loads, with_effect_tables
 from boatsim.physics.vessel.loads import overlaid
 from boatsim.physics.vessel.model import Vessel
@@ -27,6 +28,8 @@ __all__ = [
     "effect_name",
     "load",
     "merged_loads",
+    "number_sd",
     "overlaid",
+    "refined_sd",
     "with_effect_tables",
 ]

@@ -9,6 +9,7 @@ from boatsim.files import checked, read_toml
 from boatsim.physics.content import find
 from boatsim.physics.vessel import loads as load_conditions
 from boatsim.physics.vessel.effect_tables import effect_from_table, effect_name
+from boatsim.physics.vessel.estimated import check_estimated
 from boatsim.physics.vessel.model import FILE_NAME, Vessel
 from boatsim.physics.vessel.schema import VesselFile
 
@@ -55,6 +56,7 @@ def load(
     vessel = with_effect_tables(vessel, content.effect, folder, label)
     vessel = with_effect_tables(vessel, extra, base_folder or folder, label)
     vessel.check(label)
+    check_estimated(vessel.estimated, vessel, label)
     return vessel
 
 

@@ -20,6 +20,7 @@ from boatsim.physics.param import UNSET
 from boatsim.physics.spread import Spread
 from boatsim.physics.vessel.bindings import Bindings, check_bindings
 from boatsim.physics.vessel.effect_tables import effect_from_table, table_of
+from boatsim.physics.vessel.estimated import check_estimated
 from boatsim.physics.vessel.plain_hull import hull_xml
 from boatsim.physics.vessel.schema import (
     Body,
@@ -47,6 +48,7 @@ SAME_IN_FILE = (
     "manoeuvring",
     "marks",
     "measured",
+    "estimated",
 )
 
 
@@ -98,6 +100,8 @@ class Vessel(Bindings):
         load: Load conditions in force.
         loads: Names of all load conditions of the file.
         diagnosis: Assumptions of a diagnosis.
+        estimated: Relative standard deviations of numbers that were neither measured nor published,
+            by group ("damping") or by number ("thrust_lag.time_constant").
         scale: Full-scale length / this length.
         scales: Vessels that are the same hull at another scale -> their scale.
         columns: Signal -> column of the vessel's recordings; "-" in front inverts the sign.
@@ -118,6 +122,7 @@ class Vessel(Bindings):
     load: tuple[str, ...] = ()
     loads: tuple[str, ...] = ()
     diagnosis: DiagnosisTable = DiagnosisTable()
+    estimated: Mapping[str, float] = field(default_factory=dict)
     scale: float | None = None
     scales: Mapping[str, float] = field(default_factory=dict)
     columns: Mapping[str, str] = field(default_factory=dict)
@@ -207,7 +212,9 @@ class Vessel(Bindings):
         text = hull_xml(
             hull, name, "Drawn by boatsim from the dimensions; forces are in vessel.toml."
         )
-        return dataclasses.replace(vessel, hull_xml=text)._rebuilt(effects)
+        vessel = dataclasses.replace(vessel, hull_xml=text)._rebuilt(effects)
+        check_estimated(vessel.estimated, vessel, name)
+        return vessel
 
     # Changes
     # ----------------------------------------------------------------------------------------------

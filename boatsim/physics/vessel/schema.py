@@ -197,7 +197,22 @@ class VesselFile(Table):
     effect: list[dict[str, object]] = []
     loads: dict[str, dict[str, object]] = {}
     diagnosis: DiagnosisTable = DiagnosisTable()
+    estimated: dict[str, PositiveFloat] = {}
     manoeuvring: ManoeuvringTable = ManoeuvringTable()
+
+    @field_validator("estimated", mode="before")
+    @classmethod
+    def _flatten_estimated(cls, table: object) -> object:
+        """The table with the keys of its inner tables joined to theirs by a dot."""
+        if not isinstance(table, dict):
+            return table
+        flat: dict[str, object] = {}
+        for key, value in table.items():
+            if isinstance(value, dict):
+                flat |= {f"{key}.{inner}": number for inner, number in value.items()}
+            else:
+                flat[key] = value
+        return flat
 
     def check_channels(self, label: str) -> None:
         """Check names and ranges of the command channels.
