@@ -1,5 +1,6 @@
 """Reading of TOML files with checks by pydantic models, and atomic writing of files."""
 
+import json
 import os
 import re
 import tomllib
@@ -185,6 +186,33 @@ class AppendedFile:
     def close(self) -> None:
         """Close the file."""
         self._file.close()
+
+
+def toml_value(value: object) -> str:
+    """Return a text, number, truth value or list of them in TOML.
+
+    Args:
+        value: The value; characters of a text that are not printable are escaped.
+    """
+    if isinstance(value, list):
+        return f"[{', '.join(map(toml_value, value))}]"
+    if not isinstance(value, str):
+        return json.dumps(value)  # TOML has JSON's syntax for these
+    text = ""
+    for character in value.encode("utf-8", "backslashreplace").decode("utf-8"):
+        if character in ('"', "\\"):
+            character = f"\\{character}"
+        elif not character.isprintable():
+            character = f"\\U{ord(character):08x}"
+        text += character
+    return f'"{text}"'
+
+
+def toml_key(name: str) -> str:
+    """Return a key in TOML, in quotation marks where it needs them."""
+    if re.fullmatch(r"[A-Za-z0-9_-]+", name):
+        return name
+    return toml_value(name)
 
 
 @contextmanager

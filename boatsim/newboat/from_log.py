@@ -21,10 +21,10 @@ from boatsim.diagnosis.candidates import diagnosis_program
 from boatsim.diagnosis.checks.data_cleaning import clean_recording, total_duration
 from boatsim.diagnosis.checks.initial_actuator_state import with_initial_actuators
 from boatsim.diagnosis.filter import map_recording, prior_levels
-from boatsim.diagnosis.fit import converge
+from boatsim.diagnosis.fit import converge, unfitted_hypothesis
 from boatsim.diagnosis.free_runs import free_runs, rms_errors
 from boatsim.diagnosis.loading import open_recording
-from boatsim.diagnosis.problem import Fit, FreeParameter, Problem
+from boatsim.diagnosis.problem import Fit, Problem, theta_of
 from boatsim.diagnosis.report import patched_vessel
 from boatsim.diagnosis.search.ranking import fit_baseline
 from boatsim.errors import BadInput
@@ -178,13 +178,7 @@ def _start(problem: Problem, best: Fit, name: str) -> Fit:
     """The initial values of a fit with one more effect."""
     effects = (*best.effects, name)
     free = problem.parameters(effects)
-    known = dict(zip(map(_key, best.free), best.theta, strict=True))
-    theta = np.array([known.get(_key(f), f.mean) for f in free])
-    return Fit(effects, free, theta, np.diag([f.sd**2 for f in free]), best.levels, -np.inf)
-
-
-def _key(parameter: FreeParameter) -> tuple[str, str]:
-    return parameter.effect, parameter.name
+    return unfitted_hypothesis(effects, free, theta_of(free, best.values()), best.levels)
 
 
 def _without(best: Fit, names: Sequence[str]) -> Fit:

@@ -1,9 +1,9 @@
 """The vessel.toml of a new boat from its particulars: every number has the rule it follows from."""
 
-import json
 import math
 from collections.abc import Iterator
 
+from boatsim.files import toml_value
 from boatsim.newboat.particulars import Blade, Mount, Particulars
 from boatsim.physics.estimate import (
     added_mass,
@@ -84,10 +84,6 @@ def _of(key: str, found: Estimate, unit: str) -> str:
     return line(key, found.value, unit, found.rule)
 
 
-def _text(value: str) -> str:
-    return json.dumps(value, ensure_ascii=False)
-
-
 def full_thrust(boat: Particulars) -> tuple[list[float], bool]:
     """Return the largest thrust of each thruster [N], and whether the owner gave all.
 
@@ -129,7 +125,7 @@ def _head(boat: Particulars) -> Iterator[str]:
     kind = "one hull" if hull.hulls == 1 else "two hulls"
     size = f"{hull.length:g} m, {hull.mass:g} kg"
     about = f"{boat.name}: {size}, {kind}, from its particulars"
-    yield f"about = {_text(about)}"
+    yield f"about = {toml_value(about)}"
     yield (
         "source = \"boatsim new: sizes are the owner's, each other number follows the rule in "
         'its comment"'
@@ -241,7 +237,7 @@ def given_thrust(boat: Particulars) -> float | None:
 
 
 def _thruster(name: str, mount: Mount) -> Iterator[str]:
-    yield from ("", "[[effect]]", 'use = "thruster"', f"name = {_text(name)}")
+    yield from ("", "[[effect]]", 'use = "thruster"', f"name = {toml_value(name)}")
     steer = ""
     if mount.turns:
         steer = f', angle = "{steer_channel(name)}"'

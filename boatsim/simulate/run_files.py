@@ -17,7 +17,7 @@ import numpy as np
 
 from boatsim.atomic_folder import atomic_folder
 from boatsim.errors import BadInput
-from boatsim.files import AppendedFile, replacing
+from boatsim.files import AppendedFile, replacing, toml_key, toml_value
 from boatsim.interruption import deferred_signals
 from boatsim.physics.content import vessel_address
 from boatsim.recordings.table import Recording, csv_header, csv_rows
@@ -287,9 +287,9 @@ def notes_toml(scenario: Scenario, seed: int, complete: bool, facts: Mapping[str
     """
     notes = notes_of(scenario)
     address = vessel_address(scenario.vessel.file)
-    lines = [f"vessel = {_value(address)}", f"load = {_value(list(notes.load))}"]
+    lines = [f"vessel = {toml_value(address)}", f"load = {toml_value(list(notes.load))}"]
     for effect, values in notes.settings.items():
-        lines += _table(f"set.{_key(effect)}", values)
+        lines += _table(f"set.{toml_key(effect)}", values)
     # recording.csv has no noise: it holds the true motion
     lines += _table(f"runs.{CAMERA}.noise", notes.noise)
     place = scenario.address or scenario.name
@@ -300,20 +300,5 @@ def notes_toml(scenario: Scenario, seed: int, complete: bool, facts: Mapping[str
 def _table(name: str, values: Mapping[str, object]) -> list[str]:
     lines = ["", f"[{name}]"]
     for key, value in values.items():
-        lines.append(f"{_key(key)} = {_value(value)}")
+        lines.append(f"{toml_key(key)} = {toml_value(value)}")
     return lines
-
-
-def _key(name: str) -> str:
-    if name.isascii() and name.replace("_", "a").replace("-", "a").isalnum():
-        return name
-    return _value(name)
-
-
-def _value(value: object) -> str:
-    """A text, number, truth value or list of them in TOML, which has JSON's syntax for these."""
-    if isinstance(value, list):
-        return f"[{', '.join(map(_value, value))}]"
-    if isinstance(value, str):
-        value = value.encode("utf-8", "backslashreplace").decode("utf-8")
-    return json.dumps(value, ensure_ascii=False)

@@ -26,11 +26,11 @@ from boatsim.diagnosis import loading, pipeline, priors
 from boatsim.diagnosis.checks.position_outliers import drop_position_outliers
 from boatsim.diagnosis.coordinate_search import maximize
 from boatsim.diagnosis.filter import MappedRecording, free_run_segments, shared_noise
-from boatsim.diagnosis.fit import converge, fit
+from boatsim.diagnosis.fit import converge, fit, unfitted_hypothesis
 from boatsim.diagnosis.free_runs import FreeRun, free_runs, rms_errors
 from boatsim.diagnosis.loading import Loaded
 from boatsim.diagnosis.pipeline import Diagnosis
-from boatsim.diagnosis.problem import Fit, FreeParameter, Problem
+from boatsim.diagnosis.problem import Fit, Problem, theta_of
 from boatsim.physics.base import Array
 from boatsim.physics.vessel import Vessel
 from boatsim.recordings.table import Recording
@@ -247,22 +247,20 @@ class Weather:
         if "wind" not in names:
             names = (*names, "wind")
         free = problem.parameters(names)
-        known = {(f.effect, f.name): x for f, x in zip(ship.free, ship.theta, strict=True)}
-        theta = []
+        theta = theta_of(free, ship.values())
         self.rest = []  # positions of all parameters but those of the wind
         for i, f in enumerate(free):
-            theta.append(known.get((f.effect, f.name), f.mean))
             if f.effect != "wind" or f.name not in WEATHER:
                 self.rest.append(i)
             elif f.name == "force":
                 self.prior_sd = f.sd  # of the wind's force [N]
         self.problem = problem
-        self.ship = Fit(names, free, np.array(theta), _prior(free), ship.levels, -np.inf)
+        self.ship = unfitted_hypothesis(names, free, theta, ship.levels)
 
     def _without_wind(self) -> Fit:
         free = itemgetter(*self.rest)(self.ship.free)
         theta = self.ship.theta[self.rest]
-        return Fit(self.ship.effects, free, theta, _prior(free), self.ship.levels, -np.inf)
+        return unfitted_hypothesis(self.ship.effects, free, theta, self.ship.levels)
 
     def find_wind(self, recordings: Sequence[MappedRecording]) -> Wind:
         """Return the wind common to some recordings, with the ship as fitted.
@@ -313,11 +311,6 @@ class Weather:
         """Return free runs of the ship over a recording in a wind."""
         models = {"patched": self._without_wind()}
         return free_runs(self.problem, models, self.in_wind([recording], wind), HORIZON)
-
-
-def _prior(free: Sequence[FreeParameter]) -> Array:
-    """Return the prior covariance of free parameters."""
-    return np.diag([f.sd**2 for f in free])
 
 
 def parts_outside(stretches: Sequence[Recording], a: float, b: float) -> list[Recording]:

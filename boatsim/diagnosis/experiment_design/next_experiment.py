@@ -28,6 +28,7 @@ from boatsim.diagnosis.problem import Fit, Problem, froude_scale
 from boatsim.diagnosis.report.schema import NextEntry
 from boatsim.diagnosis.search.pruning import IdentifiedEffect
 from boatsim.diagnosis.search.ranking import Ranking
+from boatsim.files import toml_value
 from boatsim.physics.base import Array
 from boatsim.physics.content import vessel_address
 from boatsim.physics.vessel import Vessel
@@ -196,13 +197,12 @@ def command_steps(plan: Plan | None) -> tuple[tuple[float, Mapping[str, float]],
 def scenario_text(plan: Plan, vessel: Vessel) -> str:
     """Return the text of a scenario file that runs a plan on the vessel of the diagnosis."""
     step = min(float(f"{SCENARIO_STEP * froude_scale('s', vessel):.1g}"), 1.0)
-    load = ", ".join(map(_quoted, vessel.load))
     separates = ", ".join(plan.separates)
     lines = [
         "#!/usr/bin/env -S boatsim run",
         f'about = "Next recording: {plan.manoeuvre}. It distinguishes: {separates}."',
-        f"vessel = {_quoted(vessel_address(vessel.file))}  # or patched.toml, with all effects",
-        f"load = [{load}]",
+        f"vessel = {toml_value(vessel_address(vessel.file))}  # or patched.toml, with all effects",
+        f"load = {toml_value(list(vessel.load))}",
         f"duration = {plan.duration:g}  # [s]",
         f"step = {step:g}  # [s]",
         "",
@@ -218,10 +218,6 @@ def scenario_text(plan: Plan, vessel: Vessel) -> str:
             for name, value in level.items():
                 lines.append(f"{name} = {value:g}")
     return "\n".join(lines) + "\n"
-
-
-def _quoted(text: str) -> str:
-    return '"' + text.replace("\\", "\\\\").replace('"', '\\"') + '"'
 
 
 def other_effects(named: IdentifiedEffect) -> list[str]:

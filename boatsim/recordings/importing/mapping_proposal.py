@@ -7,6 +7,7 @@ from itertools import filterfalse, repeat
 
 import numpy as np
 
+from boatsim.files import toml_key, toml_value
 from boatsim.recordings.expression import parse
 from boatsim.recordings.importing.log import Log, Signal, rate_of
 from boatsim.recordings.importing.signal_classification import (
@@ -152,7 +153,7 @@ def propose_map(
         lines.append('# vessel = "NAME"')
     body, used = _motion_lines(log, best, dof, known)
     for column, expression in known.items():
-        body.append(f"{_toml_key(column)} = {_toml_string(expression)}  # by the vessel's file")
+        body.append(f"{toml_key(column)} = {toml_value(expression)}  # by the vessel's file")
     open_drives = [d for d in drives if d.name not in known]
     turning = Turning(best, log.frame == "ENU")
     driven: list[Classification] = []
@@ -198,9 +199,7 @@ def _motion_lines(
         used += pair
         lines.append("[position]")
         for g in pair:
-            lines.append(
-                f"{g.column} = {_toml_string(_expression(g))}{_comment(g, best[g.column])}"
-            )
+            lines.append(f"{g.column} = {toml_value(_expression(g))}{_comment(g, best[g.column])}")
         if pair[0].word == "deg":
             middle = ", ".join(f"{np.nanmedian(g.signal.values):.4f}" for g in pair)
             lines.append(f"# origin = [{middle}]  # [deg]; else the first fix")
@@ -228,7 +227,7 @@ def _motion_lines(
             sign = ""  # a compass heading is clockwise from north
         elif column == "psi_rad" and enu:
             quarter = QUARTER_TURN
-        expression = _toml_string(sign + _expression(g) + quarter)
+        expression = toml_value(sign + _expression(g) + quarter)
         line = f"{column} = {expression}{_comment(g, best[source])}"
         if column in INCLINATIONS and (INCLINATIONS[column] not in dof or _is_constant(g)):
             lines.append(f"# {line}")
@@ -273,17 +272,6 @@ def _comment(g: Classification, others: Sequence[Classification]) -> str:
     if also := [_without_control_characters(o.name) for o in others if o is not g][:4]:
         parts.append(f"also {', '.join(also)}")
     return "  # " + "; ".join(parts)
-
-
-def _toml_string(value: str) -> str:
-    """A TOML string."""
-    plain = value.replace("\\", "\\\\").replace('"', '\\"')
-    text = ""
-    for character in plain:
-        if not character.isprintable():
-            character = f"\\u{ord(character):04x}"
-        text += character
-    return f'"{text}"'
 
 
 def _command_lines(
@@ -531,7 +519,7 @@ def _channel_line(
         expression = _expression_with_unit(g, name)
         if turned:
             expression = f"-{expression}"
-        return f"{_toml_key(name)} = {_toml_string(expression)}{note}"
+        return f"{toml_key(name)} = {toml_value(expression)}{note}"
     ends, why = scale
     if turned:
         low, high = high, low
@@ -543,7 +531,7 @@ def _channel_line(
             f"; CHECK: full helm is assumed to be {np.degrees(max(abs(low), abs(high))):.0f} deg"
         )
     return (
-        f"{_toml_key(name)} = {{ signal = {_toml_string(g.name)}, {given}, least = {low:g}, most = "
+        f"{toml_key(name)} = {{ signal = {toml_value(g.name)}, {given}, least = {low:g}, most = "
         f"{high:g} }}{note}"
     )
 
@@ -629,11 +617,5 @@ def _further_columns(kind: str, found: Sequence[Classification]) -> list[str]:
         expression = _expression(g)
         if g.word == "us":
             expression = g.name
-        lines.append(f"{_toml_key(name)} = {_toml_string(expression)}")
+        lines.append(f"{toml_key(name)} = {toml_value(expression)}")
     return lines
-
-
-def _toml_key(name: str) -> str:
-    if re.fullmatch(r"[A-Za-z0-9_-]+", name):
-        return name
-    return _toml_string(name)
