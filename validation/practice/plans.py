@@ -8,22 +8,23 @@ from validation.practice import drives, hulls, outside
 from validation.practice.cause import Maker
 from validation.practice.sail import LEAD, Grid
 
-AROUND = (  # causes of any boat in the plane
-    outside.wind,
-    outside.current,
-    outside.wave_forcing,
-    outside.tether,
-    drives.command_delay,
-    hulls.extra_mass,
-    hulls.lateral_centre_shift,
-    hulls.quadratic_damping,
-    hulls.damping_error,
+INSTRUMENTS = (
     hulls.camera_scale,
     hulls.heading_deviation,
     hulls.heading_offset,
     hulls.position_frame_error,
     hulls.clock_offset,
 )
+SURROUNDINGS = (
+    outside.wind,
+    outside.current,
+    outside.wave_forcing,
+    outside.tether,
+    drives.command_delay,
+    hulls.extra_mass,
+)
+LINEAR_HULL = (hulls.lateral_centre_shift, hulls.quadratic_damping, hulls.damping_error)
+AROUND = (*SURROUNDINGS, *LINEAR_HULL, *INSTRUMENTS)  # causes of any boat in the plane
 STEERED = (drives.steering_offset, drives.steering_backlash, drives.steering_rate_limit)
 OUTSIDE = (hulls.bilge_pump, hulls.eddies, hulls.lifting_hull, drives.seized_motor)
 PUSHED = (drives.thrust_deadband, drives.thrust_gain_error, drives.thrust_loss_with_speed)
@@ -95,17 +96,8 @@ PLANS = {
         4,
         CAMERA,
         (
-            outside.wind,
-            outside.current,
-            outside.wave_forcing,
-            outside.tether,
-            drives.command_delay,
-            hulls.extra_mass,
-            hulls.camera_scale,
-            hulls.heading_deviation,
-            hulls.heading_offset,
-            hulls.position_frame_error,
-            hulls.clock_offset,
+            *SURROUNDINGS,
+            *INSTRUMENTS,
             *STEERED,
             *PUSHED,
             drives.weak_reverse,

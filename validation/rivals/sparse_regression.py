@@ -14,7 +14,7 @@ import numpy as np
 from scipy.stats import chi2
 
 from boatsim.diagnosis.candidates import base_name
-from boatsim.diagnosis.problem import Fit
+from boatsim.diagnosis.problem import Fit, FreeParameter
 from boatsim.diagnosis.search.screening import add_effect, hand_over_coefficient, starting_points
 from boatsim.physics.base import Array, Force, Measurement
 from validation.rivals.accelerations import (
@@ -115,15 +115,13 @@ class SparseRegression:
             errors.append(left[smoother.margin : len(left) - smoother.margin])
         with np.errstate(over="ignore", invalid="ignore"):
             square = sum(float(np.sum((e * self.weights) ** 2)) for e in errors)
-        square += sum(
-            ((x - f.mean) / f.sd) ** 2 for f, x in zip(free, theta, strict=True) if f.relative
-        )
+        square += sum(error**2 for error in _prior_errors(free, theta))
         return State(effects, theta, tuple(errors), square if np.isfinite(square) else np.inf)
 
     def error_row(self, state: State) -> Array:
         """Return weighted errors (R,) of both runs, then those of the prior of the coefficients."""
         free = free_parameters(self.question, state.effects)
-        prior = [(x - f.mean) / f.sd for f, x in zip(free, state.theta, strict=True) if f.relative]
+        prior = _prior_errors(free, state.theta)
         return np.concatenate([*((e * self.weights).ravel() for e in state.errors), prior])
 
     def derivatives(self, state: State, only: str = "") -> Array:
@@ -195,9 +193,7 @@ class SparseRegression:
     def prior(self, state: State) -> float:
         """Return the sum of squared deviations of the nominal coefficients in specified sds."""
         free = free_parameters(self.question, state.effects)
-        return sum(
-            ((x - f.mean) / f.sd) ** 2 for f, x in zip(free, state.theta, strict=True) if f.relative
-        )
+        return sum(error**2 for error in _prior_errors(free, state.theta))
 
     # ---- the sparse regression
 
@@ -312,3 +308,8 @@ class SparseRegression:
             )
         self.recorded = recorded
         return np.asarray(np.mean(found, axis=0))
+
+
+def _prior_errors(free: Sequence[FreeParameter], theta: Array) -> list[float]:
+    """Return the deviations of the nominal coefficients in specified sds."""
+    return [(x - f.mean) / f.sd for f, x in zip(free, theta, strict=True) if f.relative]

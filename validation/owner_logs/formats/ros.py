@@ -4,7 +4,7 @@ Axes: x east, y north, yaw counterclockwise.
 """
 
 import shutil
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from math import pi
 from pathlib import Path
 from typing import Any
@@ -173,11 +173,7 @@ def write_ros1_bag(
     path = folder / f"{stem}.bag"
     path.unlink(missing_ok=True)
     with Writer(path) as writer:
-        known: dict[str, Any] = {}
-        for name, kind, ns, message in messages(seen, boat, store, local, ned):
-            if name not in known:
-                known[name] = writer.add_connection(name, kind, typestore=store)
-            writer.write(known[name], ns, store.serialize_ros1(message, kind))
+        _write_bag(writer, store, store.serialize_ros1, messages(seen, boat, store, local, ned))
     return WrittenLog(path, order_scales(seen, boat))
 
 
@@ -192,9 +188,15 @@ def write_ros2_bag(
     path = folder / f"{stem}_bag"
     shutil.rmtree(path, ignore_errors=True)
     with Writer(path, version=8, storage_plugin=StoragePlugin.SQLITE3) as writer:
-        known: dict[str, Any] = {}
-        for name, kind, ns, message in messages(seen, boat, store, local, ned):
-            if name not in known:
-                known[name] = writer.add_connection(name, kind, typestore=store)
-            writer.write(known[name], ns, store.serialize_cdr(message, kind))
+        _write_bag(writer, store, store.serialize_cdr, messages(seen, boat, store, local, ned))
     return WrittenLog(path, order_scales(seen, boat))
+
+
+def _write_bag(
+    writer: Any, store: Any, serialize: Callable[[Any, str], Any], content: Iterator[Message]
+) -> None:
+    known: dict[str, Any] = {}
+    for name, kind, ns, message in content:
+        if name not in known:
+            known[name] = writer.add_connection(name, kind, typestore=store)
+        writer.write(known[name], ns, serialize(message, kind))
