@@ -40,7 +40,7 @@ def steps_per_second(steps: int, advance: Callable[[], object]) -> float:
 
 def open_loop(boats: int) -> list[Figure]:
     """Measure constant commands, and commands of all boats that jump every period."""
-    batch = Batch(vessel.load("joystick_boat", extra=EXTRA), boats, STEP)
+    batch = Batch(vessel.load_vessel("joystick_boat", extra=EXTRA), boats, STEP)
     row = batch.program.command_array(COMMANDS)
     jumps = (
         np.random.default_rng(0).uniform(-1.0, 1.0, (PERIODS, boats, len(row))) * np.abs(row) * 0.2

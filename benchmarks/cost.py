@@ -38,7 +38,7 @@ COLUMNS = {
 def simulate_joystick_run(seconds: float, rate: float, seed: int) -> Recording:
     """Return a run of random joystick steps, recorded by a camera at `rate` [Hz]."""
     rng = np.random.default_rng(seed)
-    boat = vessel.load(BOAT)
+    boat = vessel.load_vessel(BOAT)
     steps = rng.uniform(-1.0, 1.0, (int(seconds / HELD) + 1, 4)) * (0.9, 0.9, 0.6, 0.6)
     t = np.arange(0.0, seconds, 1.0 / rate)
     commands = steps[(t / HELD + 1e-9).astype(int)]
@@ -105,7 +105,7 @@ def main() -> None:
         run = simulate_joystick_run(180.0, 50.0, 1)
         write_csv(run, folder / "long.csv")
         begin = time.process_time()
-        read(folder / "long.csv", vessel.load(BOAT).limits())
+        read(folder / "long.csv", vessel.load_vessel(BOAT).limits())
         took = time.process_time() - begin
         print(
             f"reading {len(run)} rows of {len(run.signals) + 1} columns: {took:.2f} s CPU",

@@ -52,7 +52,7 @@ def scaling_column(
 
 def scaling_with_length() -> str:
     """Return the column for the simulated length."""
-    compiled_engine = Batch(vessel.load("joystick_boat"), step=STEP)
+    compiled_engine = Batch(vessel.load_vessel("joystick_boat"), step=STEP)
     steps = [round(60 * m / STEP) for m in MINUTES]
     return scaling_column(
         "minutes",
@@ -64,7 +64,7 @@ def scaling_with_length() -> str:
 
 def scaling_with_boats() -> str:
     """Return the column for the number of boats, on all cores."""
-    made, seconds = vessel.load("joystick_boat"), []
+    made, seconds = vessel.load_vessel("joystick_boat"), []
     for n in BOATS:
         batch = Batch(made, n, STEP)
         seconds.append(median_time(lambda batch=batch: batch.advance(COMMANDS, STEPS["boats"])))
@@ -73,13 +73,13 @@ def scaling_with_boats() -> str:
 
 def scaling_with_effects() -> str:
     """Return the column for the number of effects, without the time to compile each vessel."""
-    own, sizes, seconds = len(vessel.load("joystick_boat").effects), [], []
+    own, sizes, seconds = len(vessel.load_vessel("joystick_boat").effects), [], []
     for extra in ENTRIES:
         effects = [
             {"use": "fan_wind", "name": f"wind_{i}", "speed": 0.1 * (i + 1), "toward": 0.1 * i}
             for i in range(extra)
         ]
-        compiled_engine = Batch(vessel.load("joystick_boat", extra=effects), step=STEP)
+        compiled_engine = Batch(vessel.load_vessel("joystick_boat", extra=effects), step=STEP)
         sizes.append(own + extra)
         seconds.append(
             median_time(

@@ -63,7 +63,7 @@ def write_vessel(folder: Path) -> Vessel:
     """Write the vessel into a folder and load it."""
     (folder / "hull.xml").write_text(HULL, encoding="utf-8")
     (folder / "vessel.toml").write_text(BOAT, encoding="utf-8")
-    return vessel.load(str(folder / "vessel.toml"))
+    return vessel.load_vessel(str(folder / "vessel.toml"))
 
 
 def constants_of_motion(state: Array) -> Array:

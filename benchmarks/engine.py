@@ -98,14 +98,14 @@ class Figure:
 
 def measure_stepping() -> list[Figure]:
     """Return the steps per second of MuJoCo with and without forces, and of the compiled engine."""
-    boat = vessel.load("joystick_boat", extra=EXTRA)
+    boat = vessel.load_vessel("joystick_boat", extra=EXTRA)
     tank = Tank(1e4, 1e4, 1.0)
     engines = {
         name: Engine(boat, tank, STEP, callback=name, show=False) for name in ("native", "python")
     }
     engines["floor"] = Engine(boat, tank, STEP, show=False)
     engines["floor"].callback = None
-    compiled_engine, six = Batch(boat, step=STEP), Batch(vessel.load("otter"), step=STEP)
+    compiled_engine, six = Batch(boat, step=STEP), Batch(vessel.load_vessel("otter"), step=STEP)
     start = [START.x, START.y, START.psi, START.u, START.v, START.r]
 
     def coast(name: str, steps: int) -> None:

@@ -95,7 +95,7 @@ def difference_table(device: str) -> Table:
     """Return the table of differences."""
     table = Table("vessel", *WAYS, box=None)
     for path in sorted(Path("models").glob("*/vessel.toml")):
-        boat = vessel.load(path.parent.name)
+        boat = vessel.load_vessel(path.parent.name)
         table.add_row(
             boat.name,
             *(f"{largest_difference(boat, device, on_mujoco):.1e}" for on_mujoco in WAYS.values()),
@@ -122,7 +122,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
             + ("" if given.agreement else f", {given.vessel}")
         )
         most = given.most or LARGEST.get(given.device, max(SIZES))
-        boat = vessel.load(given.vessel)
+        boat = vessel.load_vessel(given.vessel)
         Console().print(
             difference_table(given.device)
             if given.agreement

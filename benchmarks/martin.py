@@ -26,7 +26,7 @@ import numpy as np
 
 from boatsim.control.base import Sense
 from boatsim.physics.base import Array
-from boatsim.physics.kernel.records import Model
+from boatsim.physics.kernel.records import VesselNumbers
 from boatsim.physics.program import Program
 from boatsim.recordings.table import Recording
 from boatsim.simulate import scenario
@@ -105,23 +105,23 @@ def autopilot_table(vessel: str, kind: str, rate: float = 5.0) -> dict[str, Any]
 
 def simulate_log(test: Scenario, seed: int = 0) -> Recording:
     """Return the log of course, roll and rudder of a scenario, a row each control period."""
-    boat = replace(test.vessel, effects=tuple(e.seeded(seed) for e in test.vessel.effects))
+    boat = replace(test.vessel, effects=tuple(e.with_seed(seed) for e in test.vessel.effects))
     program, start = Program(boat), State(**test.file.start.motion())
     code, p, on = program.module, program.values(), program.switches()
     memory, after = np.zeros(program.memory_size), np.empty((2, 2 * code.NQ))
-    code.settle(program.command_array({}), memory, p, on, np.zeros(program.held_size))
+    code.settle_actuators(program.command_array({}), memory, p, on, np.zeros(program.held_size))
     y = program.joint_rates(np.array(start[1:])[list(code.SHOWS)])
     pilot, period, step = test.controller, test.controller.period, test.file.step
     pilot.reset()
     rows = np.empty((round(test.file.duration / period) + 1, 4))
     for i, row in enumerate(rows):
-        s = State(i * period, *program.shown(y.tolist()))
+        s = State(i * period, *program.pose_and_velocities(y.tolist()))
         sense = Sense(s.t, s.psi, s.r, nan, nan, nan, nan, nan, nan, s.phi, s.p)
         commands = program.command_array(pilot.step(sense, test.goal_at(s.t)))
         row[:] = s.t, s.psi, s.phi, commands[0]
         code.rollout(
-            Model(program.body, p, on),
-            program.plant(y, memory),
+            VesselNumbers(program.body, p, on),
+            program.vessel_state(y, memory),
             commands[None],
             s.t,
             step,

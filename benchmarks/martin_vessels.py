@@ -112,7 +112,7 @@ def simulate_on_mujoco(boat: Vessel, rudder: Array, waves: Array, step: float = 
     """Return the states (N + 1, 5) of the same run in MuJoCo."""
     engine, mass = Engine(boat, step=step), mass_matrix(boat).diagonal()
     engine.reset(State(u=speed_of(boat)))
-    at, rows = [engine.program.index("push", n) for n in WAVES], [[0.0] * 5]
+    at, rows = [engine.program.parameter_index("push", n) for n in WAVES], [[0.0] * 5]
     for angle, wave in zip(rudder, waves, strict=True):
         engine._values[at] = wave * mass
         engine._write_userdata()
@@ -129,7 +129,7 @@ def rms_accelerations(boat: Vessel, sea: IrregularSea) -> tuple[list[float], flo
     The accelerations are yaw, sway and direct roll [deg/s^2].
     """
     law, m = IrregularSea.law, motion()
-    w = Wrench(*np.array([law(m, sea.seeded(i).values()) for i in range(REALISATIONS)]).T)
+    w = Wrench(*np.array([law(m, sea.with_seed(i).values()) for i in range(REALISATIONS)]).T)
     direct = w.K - sea.arm * w.Y
     parts = zip((w.N, w.Y, direct), mass_matrix(boat).diagonal(), strict=True)
     slope = direct.std() / (sea.stiffness * abs(np.sin(sea.toward)))
@@ -152,7 +152,7 @@ def sea_for_condition(boat: Vessel, angle: float, height: float, period: float) 
         flat=beam,
         course_kept=1.0,
     )
-    return sea.completed(boat)
+    return sea.with_all_parameters(boat)
 
 
 def coefficient_table() -> Table:
@@ -172,7 +172,7 @@ def coefficient_table() -> Table:
     )
     table = Table("vessel", "V [m/s]", *names, "T_phi [s]", "zeta", title="rates of (r, v, p)")
     for name, condition in ((n, c) for n in ("kynoc", "eastward_ho") for c in range(1, 5)):
-        boat = vessel.load(name, [f"condition_{condition}"])
+        boat = vessel.load_vessel(name, [f"condition_{condition}"])
         A, B, _ = linear_model(boat)
         rows = [*A[1, 1:4], *A[2, 1:3], *A[4, 1:4], B[1], B[2], B[4]]
         w = sqrt(-A[4, 3])
@@ -190,7 +190,7 @@ def sea_response_table() -> Table:
     )
     for name in ("kynoc", "eastward_ho"):
         for condition, angle, height, period in SEAS:
-            boat = vessel.load(name, [f"condition_{condition}"])
+            boat = vessel.load_vessel(name, [f"condition_{condition}"])
             found, slope = rms_accelerations(boat, sea_for_condition(boat, angle, height, period))
             table.add_row(
                 f"{name} {condition}", f"{angle} deg", *(f"{a:.2f}" for a in found), f"{slope:.2f}"
@@ -202,7 +202,7 @@ def main() -> None:
     """Print all results."""
     console = Console(width=150)
     console.print(coefficient_table(), sea_response_table())
-    boat = vessel.load("eastward_ho", ["condition_3"])
+    boat = vessel.load_vessel("eastward_ho", ["condition_3"])
     truth, rudder = simulate_zigzag(boat, random_waves())
     for step in (0.02, 0.1):
         off = np.degrees(
@@ -213,7 +213,7 @@ def main() -> None:
             f"{off[3]:.1e} deg"
         )
     engine = Engine(
-        vessel.load(
+        vessel.load_vessel(
             "eastward_ho", ["condition_3"], {"irregular_sea": {"significant_height": 0.88}}
         ),
         step=0.1,

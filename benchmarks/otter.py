@@ -26,7 +26,7 @@ def final_state(port: float, starboard: float, seconds: float, stations: int = 0
         seconds: Length of the run [s].
         stations: Number of hull sections for the cross-flow drag; 0 for the exact integral.
     """
-    boat = vessel.load("otter", settings={"cross_flow_drag": {"stations": stations}})
+    boat = vessel.load_vessel("otter", settings={"cross_flow_drag": {"stations": stations}})
     engine = Engine(boat)
     engine.command({"n_port_radps": port, "n_starboard_radps": starboard})
     engine.advance(round(seconds / engine.step))

@@ -63,7 +63,7 @@ def compare_fossen_otter() -> Pair:
             nu, n = boat.dynamics(eta, nu, n, np.array([80.0, 60.0]), STEP)
             eta = attitudeEuler(eta, nu, STEP)
 
-    made = vessel.load("otter")
+    made = vessel.load_vessel("otter")
     return Pair(
         "Python vehicle simulator, Otter, 60 s",
         theirs,
@@ -125,7 +125,7 @@ def compare_shipmmg_tanker() -> Pair:
     def theirs() -> None:
         simulate_mmg_3dof(hull, polynomials, times, rudder, propeller, u0=1.179, ρ=rho)
 
-    made, start = vessel.load("kvlcc2_mmg"), [0.0, 0.0, 0.0, 1.179, 0.0, 0.0]
+    made, start = vessel.load_vessel("kvlcc2_mmg"), [0.0, 0.0, 0.0, 1.179, 0.0, 0.0]
     ours = boatsim_runs(made, RUDDER, start, round(seconds / 0.1), 0.1)
     return Pair("ShipMMG, KVLCC2 turning circle, 200 s", theirs, ours)
 
@@ -146,7 +146,7 @@ def compare_mujoco_fluid() -> Pair:
         data.ctrl[0] = 0.3
         mujoco.mj_step(model, data, nstep=steps)
 
-    ours = boatsim_runs(vessel.load("joystick_boat"), COMMANDS, [0.0] * 6, steps)
+    ours = boatsim_runs(vessel.load_vessel("joystick_boat"), COMMANDS, [0.0] * 6, steps)
     return Pair("MuJoCo's ellipsoid in fluid, RK4, 400 s", theirs, ours)
 
 

@@ -215,7 +215,7 @@ def load_vessel(name: Name, load: Names = ()) -> Vessel:
     >>> vessel.dof, vessel.length
     (('surge', 'sway', 'yaw'), 1.25)
     """
-    return vessels.load(str(name), _names(load))
+    return vessels.load_vessel(str(name), _names(load))
 
 
 def load_scenario(
@@ -298,7 +298,7 @@ def _equals_its_file(vessel: Vessel) -> bool:
     """Whether loading the vessel's file again gives the same vessel."""
     if not vessel.file.is_file():
         return False
-    return vessels.load(str(vessel.file), vessel.load) == vessel
+    return vessels.load_vessel(str(vessel.file), vessel.load) == vessel
 
 
 def _scenario(given: Name | Scenario, controller: Name | None, vessel: Vessel | None) -> Scenario:

@@ -106,7 +106,7 @@ def planar(
     folder: Path, settings: Mapping[str, Mapping[str, Any]] | None = None, **more: Any
 ) -> Vessel:
     """The boat of the reference cases, `settings` laid over its effects and body."""
-    return vessel.load(str(written(folder, "test_boat", PLANAR)), settings=settings, **more)
+    return vessel.load_vessel(str(written(folder, "test_boat", PLANAR)), settings=settings, **more)
 
 
 def push(X: float, N: float) -> dict[str, float]:

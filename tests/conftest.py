@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from hypothesis import settings
 
-from boatsim.physics.trust import trusting
+from boatsim.physics.trust import trust_folders
 
 settings.register_profile("boatsim", deadline=None, print_blob=True)
 settings.load_profile("boatsim")
@@ -16,5 +16,5 @@ settings.load_profile("boatsim")
 @pytest.fixture
 def trusted(tmp_path: Path) -> Iterator[None]:
     """The Python files of the test's own folder may run, as with --trust."""
-    with trusting(allowed=[tmp_path]):
+    with trust_folders(allowed=[tmp_path]):
         yield

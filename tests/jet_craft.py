@@ -149,7 +149,7 @@ def solved(craft: Craft, h: float, delta: float, start: Array, times: Array) -> 
 
 def nominal_without(folder: Path, *effects: str) -> Path:
     """The vessel file of the craft with some of its effects left out, in a folder of its own."""
-    own = vessel.load("jet_ski").file
+    own = vessel.load_vessel("jet_ski").file
     head, *blocks = re.split(
         r"(?=^\[\[effect\]\]$|^\[diagnosis\]$)", own.read_text(encoding="utf-8"), flags=re.M
     )

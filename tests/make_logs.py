@@ -28,13 +28,13 @@ A, F = 6378137.0, 1.0 / 298.257223563
 
 def simulated() -> dict[str, np.ndarray]:
     """Columns of the run at every step, commands in force from their row on."""
-    from boatsim.physics.vessel import load
+    from boatsim.physics.vessel import load_vessel
     from boatsim.simulate.batch import Batch
 
     t = STEP * np.arange(round(DURATION / STEP) + 1)
     turn = np.where(np.floor(t / 5.0) % 2 == 0, 1.0, -1.0) * np.where(t < 2.0, 0.0, 1.0)
     port, starboard = 62.4 + 20.8 * turn, 62.4 - 20.8 * turn
-    boat = Batch(load("otter"), step=STEP)
+    boat = Batch(load_vessel("otter"), step=STEP)
     assert list(boat.vessel.commands) == ["n_port_radps", "n_starboard_radps"]
     start = [0.0] * 12
     start[5] = math.radians(350.0)

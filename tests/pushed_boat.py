@@ -16,7 +16,7 @@ from boatsim.physics.base import Array
 from boatsim.physics.program import Program
 from boatsim.recordings.table import Notes, Recording
 
-BOAT = vessel.load("trial_boat")
+BOAT = vessel.load_vessel("trial_boat")
 M, IZ, A11, A22, A66 = 4.6, 0.6, 0.3, 9.0, 0.7  # kg, kg m^2
 DAMPING, X_MOTOR, Y_MOTOR = np.array([3.0, 10.0, 1.0]), -0.6, 0.19
 RATE, ROWS = 6.0, 240

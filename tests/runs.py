@@ -5,13 +5,13 @@ from functools import cache
 from math import nan
 from typing import Any
 
-from boatsim.physics.content import names
+from boatsim.physics.content import library_names
 from boatsim.simulate import scenario
 from boatsim.simulate.cases import content
 from boatsim.simulate.evaluation import Metric, requested_metrics
 from boatsim.simulate.run import run
 
-SHIPPED = tuple(name for name in names("scenario") if name.startswith("joystick_boat/"))
+SHIPPED = tuple(name for name in library_names("scenario") if name.startswith("joystick_boat/"))
 TESTS = (
     "sway_1",
     "sway_2",

@@ -19,7 +19,7 @@ from numba import carray, njit, types
 from numba.core.caching import FunctionCache, IndexDataCacheFile
 
 from boatsim.physics import compiler_internals as internals
-from boatsim.physics.content import root
+from boatsim.physics.content import content_root
 from boatsim.physics.kernel.compiling import compiled, lean
 from boatsim.physics.signals import Wrench, wrench
 
@@ -39,15 +39,15 @@ print(doubled(1.5), sum(doubled.stats.cache_hits.values()))
 
 def test_only_one_module_uses_private_parts_of_the_compilers() -> None:
     users = set()
-    for file in (root() / "boatsim").rglob("*.py"):
+    for file in (content_root() / "boatsim").rglob("*.py"):
         if PRIVATE.search(file.read_text(encoding="utf-8")):
-            users.add(file.relative_to(root() / "boatsim").as_posix())
+            users.add(file.relative_to(content_root() / "boatsim").as_posix())
     # numba.core.errors holds documented warnings
     assert users == {"physics/compiler_internals.py", "control/compiled.py"}
 
 
 def test_the_installed_versions_lie_below_their_bounds() -> None:
-    text = (root() / "pyproject.toml").read_text(encoding="utf-8")
+    text = (content_root() / "pyproject.toml").read_text(encoding="utf-8")
     bound = re.search(r'"numba>=[\d.]+,<(\d+)\.(\d+)"', text)
     assert bound is not None, "numba has no upper bound"
     installed = tuple(int(n) for n in numba.__version__.split(".")[:2])
@@ -82,7 +82,7 @@ def test_2_compiled_code_is_found_on_disk_and_a_damaged_file_is_compiled_again(
     tmp_path: Path,
 ) -> None:
     (tmp_path / "script.py").write_text(CACHED)
-    environment = os.environ | {"PYTHONPATH": str(root()), "NUMBA_CACHE_DIR": str(tmp_path)}
+    environment = os.environ | {"PYTHONPATH": str(content_root()), "NUMBA_CACHE_DIR": str(tmp_path)}
 
     def hits() -> str:
         command = [sys.executable, str(tmp_path / "script.py")]
@@ -143,11 +143,11 @@ def test_6_the_fields_of_the_structs_of_mujoco_are_found() -> None:
     model = mujoco.MjModel.from_xml_string(internals.PROBE_MODELS[1])
     data = mujoco.MjData(model)
     data.time = 1.25
-    words = internals._words(data._address, max(layout.values()) + 1)
+    words = internals._memory_words(data._address, max(layout.values()) + 1)
     for name in internals.FIELDS:
         assert words[layout[name]] == getattr(data, name).ctypes.data, f"mjData.{name}"
     assert words.view(np.float64)[layout["time"]] == 1.25
-    sizes = internals._words(model._address, 256).view(np.int32)
+    sizes = internals._memory_words(model._address, 256).view(np.int32)
     assert sizes[layout["nuserdata"]] == model.nuserdata
 
 

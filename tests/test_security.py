@@ -115,11 +115,11 @@ def test_1_an_effect_that_a_vessel_asks_to_be_tried_does_not_run(tmp_path: Path)
         tmp_path, "test_boat", boats.ROLL + '[diagnosis]\nalso = [{ use = "slime" }]\n'
     )
     (place / "slime.py").write_text(EFFECT)
-    boat = vessel.load(f"{place}/")
+    boat = vessel.load_vessel(f"{place}/")
     with pytest.raises(BadInput, match="is not run"):
         library_for(boat)
     assert not (place / "slime.ran").exists()
-    with trust.trusting(allowed=[place]):
+    with trust.trust_folders(allowed=[place]):
         assert "slime" in library_for(boat).tested
 
 
@@ -153,7 +153,7 @@ def test_2_content_runs_and_its_names_resolve(tmp_path: Path) -> None:
         for name in ("slime", "slimy", "calm/still", "thruster")
     )
     (home / "effects" / "thruster.py").write_text("1 / 0")
-    with trust.trusting(home):
+    with trust.trust_folders(home):
         assert (
             content.load_class("effect", "thruster").__module__
             == "boatsim.physics.effects.thruster"
@@ -286,7 +286,7 @@ def test_8_names_do_not_become_code(
     (place / "vessel.toml").write_text(
         text.replace('use = "roll_damping"', 'use = "quadratic_damping"\nroll = 0.1')
     )
-    program = Program(vessel.load(str(place / "vessel.toml")))
+    program = Program(vessel.load_vessel(str(place / "vessel.toml")))
     assert program.module.HELD == 1 and not (tmp_path / "ran").exists()
 
 
@@ -298,19 +298,19 @@ def test_9_processes_may_run_what_their_parent_may(tmp_path: Path) -> None:
         boatsim("run", file, twin, "--jobs", 2, "--trust", "--out", tmp_path / "out").exit_code == 0
     )
     assert {p.name for p in (tmp_path / "out").iterdir()} == {"still", "twin"} and ran.exists()
-    with trust.trusting(allowed=[tmp_path], ask=lambda folder: True):
-        assert trust.current_trust().ask is None and trust.current_trust().holds(ran)
+    with trust.trust_folders(allowed=[tmp_path], ask=lambda folder: True):
+        assert trust.current_trust().ask is None and trust.current_trust().contains(ran)
 
 
 def test_10_trust_in_python_ends_with_its_block(tmp_path: Path) -> None:
     file, ran = with_slime(tmp_path)
     place = str(file.parent / "test_boat") + "/"
     with pytest.raises(BadInput, match="is not run"):
-        vessel.load(place)
-    assert not ran.exists() and not trust.content()
-    with trust.trusting(tmp_path):
-        assert vessel.load(place).effects[-1].name == "slime"
-    assert not trust.content()
+        vessel.load_vessel(place)
+    assert not ran.exists() and not trust.user_content_folders()
+    with trust.trust_folders(tmp_path):
+        assert vessel.load_vessel(place).effects[-1].name == "slime"
+    assert not trust.user_content_folders()
 
 
 # Compiled programs
@@ -360,9 +360,9 @@ def test_13_a_damaged_cache_is_built_again(
     monkeypatch.setenv("BOATSIM_CACHE", str(tmp_path / "cache"))
     code = (
         "import sys, numpy as np; from boatsim.physics import vessel; from boatsim.physics.program import Program\n"
-        "p = Program(vessel.load(sys.argv[1]))\n"
+        "p = Program(vessel.load_vessel(sys.argv[1]))\n"
         "state, act = np.array([0.1, 0.0]), np.zeros(p.held_size)\n"
-        "print(p.module.forces(0.0, state, act, np.int64(0), p.values(), p.switches())[0])"
+        "print(p.module.total_body_force(0.0, state, act, np.int64(0), p.values(), p.switches())[0])"
     )
 
     def moment() -> str:

@@ -35,7 +35,7 @@ def horizon_of(trial: Path) -> float:
     """Return the duration [s] of a free run: 6 s at 1.2 m, Froude-scaled for others."""
     from boatsim.physics import vessel as vessels
 
-    return HORIZON * math.sqrt(vessels.load(vessel_of(trial), []).length / LENGTH)
+    return HORIZON * math.sqrt(vessels.load_vessel(vessel_of(trial), []).length / LENGTH)
 
 
 def read_answers(results: Path, trials: list[str]) -> dict[str, dict[str, Any]]:

@@ -34,7 +34,7 @@ from boatsim.diagnosis.problem import Problem, froude_scale
 from boatsim.diagnosis.search.ranking import Ranking, rank
 from boatsim.physics import vessel
 from boatsim.physics.base import Array
-from boatsim.physics.kernel.records import Model
+from boatsim.physics.kernel.records import VesselNumbers
 from boatsim.physics.program import Program
 from boatsim.recordings.table import Recording
 
@@ -76,7 +76,7 @@ class Outcome:
 @cache
 def program() -> Program:
     """Return the compiled program of the vessel with all its candidates."""
-    boat = vessel.load(BOAT)
+    boat = vessel.load_vessel(BOAT)
     return Program(boat, library_for(boat).compiled)
 
 
@@ -86,7 +86,9 @@ def perturbed_boat(truth: str, rng: np.random.Generator) -> Boat:
     for effect in boat.effects:
         for name, about in type(effect).params().items():
             if about.calibrates:
-                values[program().index(effect.name, name)] *= 1.0 + ERROR * rng.standard_normal()
+                values[program().parameter_index(effect.name, name)] *= (
+                    1.0 + ERROR * rng.standard_normal()
+                )
     kind = next(type(e) for e in program().candidates if e.name == truth)
     for name, about in kind.params().items():
         if about.fit:
@@ -95,9 +97,9 @@ def perturbed_boat(truth: str, rng: np.random.Generator) -> Boat:
                 away = rng.choice((-1.0, 1.0)) * STRENGTH
             else:
                 away = rng.normal()
-            inside = about.low <= about.absent + away * spread <= about.high
-            value = about.absent + (away if inside else -away) * spread
-            values[program().index(truth, name)] = np.clip(value, about.low, about.high)
+            inside = about.low <= about.inactive_value + away * spread <= about.high
+            value = about.inactive_value + (away if inside else -away) * spread
+            values[program().parameter_index(truth, name)] = np.clip(value, about.low, about.high)
     return Boat(
         values, program().switches([truth]), rng.uniform(*POSITION_SD), rng.uniform(*HEADING_SD)
     )
@@ -135,7 +137,7 @@ def record_boat(
     """Return the recording of a boat under the commands, with ambient force and camera noise."""
     code, y, out = program().module, start.copy(), np.zeros((2, 6))
     memory, act = np.zeros(program().memory_size), np.zeros(program().held_size)
-    code.settle(commands[0], memory, boat.values, boat.on, act)
+    code.settle_actuators(commands[0], memory, boat.values, boat.on, act)
     about = program().vessel.diagnosis
     rms = np.array([about.ambient[axis] for axis in axes_of(program().vessel)])
     kept = np.exp(-1.0 / RATE / priors.time_constant(program().vessel))
@@ -143,8 +145,8 @@ def record_boat(
     for i in range(len(commands)):
         rows.append(y[:3].copy())
         code.rollout(
-            Model(program().body, boat.values, boat.on),
-            program().plant(y, memory, force),
+            VesselNumbers(program().body, boat.values, boat.on),
+            program().vessel_state(y, memory, force),
             commands[i : i + 1],
             i / RATE,
             1.0 / RATE / SUBSTEPS,

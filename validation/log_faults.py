@@ -208,7 +208,7 @@ def judge_findings(
 
 def table(names: Sequence[str], seeds: int, ask: bool = True) -> Iterator[str]:
     """Yield the rates for each fault and vessel, then the false alarms on good logs."""
-    boats = [vessels.load(n) for n in names]
+    boats = [vessels.load_vessel(n) for n in names]
     yield f"{'fault':24s}" + "".join(f"{n:>24s}" for n in names)
     yield f"{'':24s}" + f"{'named / physics / of':>24s}" * len(names)
     logs = {b.name: [simulate_log(b, seed) for seed in range(1, seeds + 1)] for b in boats}

@@ -18,7 +18,7 @@ from boatsim.newboat.from_log import Fitted, fitted
 from boatsim.newboat.particulars import Particulars, particulars
 from boatsim.newboat.write import VESSEL, files
 from boatsim.physics.base import Array
-from boatsim.physics.content import find
+from boatsim.physics.content import find_content_file
 from tests import pushed_three_metre
 from validation.real import esso_osaka_pond, esso_osaka_vessel
 from validation.real.common import RECORDINGS, print_table
@@ -89,7 +89,7 @@ def blueboat_case(_: Path) -> Case:
             ours: read[theirs] for ours, theirs in names.items()
         }
     held_out = sorted(logs)[2::4]
-    return Case(boat, logs, held_out, lambda _: find("vessel", "blueboat"))
+    return Case(boat, logs, held_out, lambda _: find_content_file("vessel", "blueboat"))
 
 
 def esso_osaka_case(_: Path) -> Case:

@@ -66,7 +66,7 @@ def _summary(kind: str, name: str) -> str:
     if kind == "scenario":
         return str(cases.content(name)[0].get("about", ""))
     if kind == "vessel":
-        return str(read_toml(content.find(kind, name)).get("about", ""))
+        return str(read_toml(content.find_content_file(kind, name)).get("about", ""))
     return str(content.load_class(kind, name).words)
 
 
@@ -119,7 +119,7 @@ def _class_lines(kind: str, name: str) -> list[str]:
 
 def _vessel_lines(name: str) -> list[str]:
     """Description of a vessel of the library or of a user's folder."""
-    boat = vessel.load(name)
+    boat = vessel.load_vessel(name)
     body = boat.body
     inertia = f"inertia in roll {body.roll_inertia:g} and yaw {body.yaw_inertia:g} kg m^2"
     lines = [
@@ -177,8 +177,8 @@ def _effect_line(effect: Effect) -> str:
     """Name of an effect, and its parameters that differ from their defaults, with units."""
     kind = type(effect)
     name = effect.name
-    if name != kind.idea():
-        name = f"{name} ({kind.idea()})"
+    if name != kind.type_name():
+        name = f"{name} ({kind.type_name()})"
     default = {field.name: field.default for field in fields(effect)}
     cells = []
     for key, param in kind.params().items():
@@ -190,7 +190,7 @@ def _effect_line(effect: Effect) -> str:
 
 def _scenario_lines(name: str) -> list[str]:
     """Description of a scenario, with the values of the files it builds on."""
-    if name.endswith(".toml") and cases.cases(content.find("scenario", name)):
+    if name.endswith(".toml") and cases.cases(content.find_content_file("scenario", name)):
         return [f"{Path(name).name}: scenarios", *map("  {}".format, cases.matching(name))]
     table, place = cases.content(name)
     lines = [

@@ -205,7 +205,7 @@ def _with_scenario_effects(recording: Recording, boat: Vessel) -> Vessel:
     seed = recording.notes.facts.get("seed")
     if not isinstance(seed, int):
         return found
-    return replace(found, effects=tuple(effect.seeded(seed) for effect in found.effects))
+    return replace(found, effects=tuple(effect.with_seed(seed) for effect in found.effects))
 
 
 def _simulate_scenario(recording: Recording, name: str) -> dict[str, Array]:

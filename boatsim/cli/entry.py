@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from boatsim.physics import content
-from boatsim.physics.base import Channel, Effect, Param
+from boatsim.physics.base import ChannelEffect, Effect, Param
 
 # Kinds of content that are classes, with the table in which each is used.
 TABLES = {
@@ -99,7 +99,7 @@ def _effect_facts(cls: type[Effect]) -> Iterator[tuple[str, str]]:
         if port.fixed is not None:
             default = f"; {port.fixed:g} if omitted"
         yield f"on.{role}", f"{port.words} [{port.unit}]{default}"
-    if issubclass(cls, Channel) and cls.acts_on:
+    if issubclass(cls, ChannelEffect) and cls.acts_on:
         yield "acts on", f"commands of {cls.acts_on.replace('|', ' or ')}"
     if cls.per_instance_of:
         yield "acts on each", cls.per_instance_of

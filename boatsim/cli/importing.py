@@ -63,7 +63,7 @@ def _propose_map(
     log: Log, propose: Path | None, out: Path | None, vessel: str | None, load: Sequence[str]
 ) -> int:
     if vessel:
-        boat = vessels.load(vessel, load)
+        boat = vessels.load_vessel(vessel, load)
         drives = []
         for channel, (low, high) in boat.limits().items():
             drives.append(VesselChannel(channel, low, high, _turn_direction(boat, channel)))
@@ -95,7 +95,7 @@ def _turn_direction(boat: Vessel, channel: str) -> int:
 def _convert(path: Path, out: Path, map: Path, vessel: str | None, load: Sequence[str]) -> int:
     mapping = read_map(map)
     name = vessel or mapping.vessel
-    boat = vessels.load(name, load) if name else None
+    boat = vessels.load_vessel(name, load) if name else None
     limits = boat.limits() if boat else {}
     with report_stages() as report:
         report("reading the log")

@@ -388,10 +388,12 @@ def _result(task: Task, future: Future[Outcome]) -> Outcome:
         return Outcome(task, error=f"{task.name}: its process was killed (out of memory?)")
 
 
-def _start_worker(stop: Event, reached: "SynchronizedArray[float]", trusted: trust.Trust) -> None:
+def _start_worker(
+    stop: Event, reached: "SynchronizedArray[float]", trusted: trust.TrustedFolders
+) -> None:
     """Set up a worker process with the shared state and the trusted folders of its parent."""
     global _stop, _reached
-    trust.adopt(trusted)
+    trust.adopt_trust(trusted)
     _stop, _reached = stop, reached
     Thread(target=_end_with_parent, daemon=True).start()
 

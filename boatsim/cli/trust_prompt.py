@@ -28,14 +28,14 @@ def trusted_content(
     Raises:
         BadInput: A folder does not exist.
     """
-    from boatsim.physics.trust import trusting
+    from boatsim.physics.trust import trust_folders
 
     allowed: list[Path] = []
     if trust:
         for argument in filter(None, map(str, filter(None, arguments))):
             allowed += _folder_of(argument)
     ask = _ask if _is_interactive() else None
-    with trusting(*(content or ()), allowed=allowed, ask=ask):
+    with trust_folders(*(content or ()), allowed=allowed, ask=ask):
         yield
 
 

@@ -18,7 +18,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from boatsim.control.compiled import record
-from boatsim.physics.base import Checked, param
+from boatsim.physics.base import CheckedParameters, param
 from boatsim.physics.kernel.compiling import lean, merged
 
 PWM_RATED = 150.0  # thrusts are quoted at this PWM value (Bayless 2017, appendix H: nominalpower)
@@ -316,7 +316,7 @@ def push(q: Any, port: float, starboard: float, angle: float) -> tuple[float, fl
 
 
 @dataclass
-class Outboards(Checked):
+class Outboards(CheckedParameters):
     """Nominal properties of two outboards, and the allocation that uses them."""
 
     half_spacing: float = param(

@@ -5,11 +5,11 @@ from math import atan2, cos, hypot, sin
 
 from boatsim.control.allocation import Stick
 from boatsim.control.base import clip, wrap
-from boatsim.physics.base import Checked, param
+from boatsim.physics.base import CheckedParameters, param
 
 
 @dataclass
-class Approach(Checked):
+class Approach(CheckedParameters):
     """Approach to a berth: first to a point abeam of it, then sideways, with integral action.
 
     Poses are relative to the berth: x along its heading, y to starboard. The gains suit a boat of

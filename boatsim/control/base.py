@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from math import exp, inf, isnan, nan, pi
 from typing import ClassVar, NamedTuple
 
-from boatsim.physics.base import Checked, param
+from boatsim.physics.base import CheckedParameters, param
 
 
 @dataclass(frozen=True)
@@ -40,7 +40,7 @@ class Estimate(NamedTuple):
 
 
 @dataclass
-class Controller(Checked):
+class Controller(CheckedParameters):
     """Base of controllers: call `reset` before a run, then `step` once every `period` seconds."""
 
     words: ClassVar[str] = ""  # one line for `boatsim list`

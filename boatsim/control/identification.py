@@ -11,11 +11,11 @@ from math import degrees
 
 import numpy as np
 
-from boatsim.physics.base import Array, Checked, param
+from boatsim.physics.base import Array, CheckedParameters, param
 
 
 @dataclass
-class Forgetting(Checked):
+class Forgetting(CheckedParameters):
     """Constants of exponential forgetting and resetting.
 
     Martin (1993) does not print his constants; these are chosen.

@@ -5,7 +5,7 @@ from math import degrees
 
 from boatsim.control.adaptive import LoopChannel, SampledChannel, l1_condition, loop_margins
 from boatsim.errors import BadInput
-from boatsim.physics.content import load_class, names, snake_case
+from boatsim.physics.content import library_names, load_class, snake_case
 
 HEADINGS = (
     "channel",
@@ -50,7 +50,7 @@ def table(controller: object) -> list[Row]:
         asked = snake_case(type(controller).__name__)
         able = [
             name
-            for name in names("controller")
+            for name in library_names("controller")
             if hasattr(load_class("controller", name), "loop_channels")
         ]
         raise BadInput(

@@ -13,8 +13,8 @@ from typing import NamedTuple
 import numpy as np
 
 from boatsim.errors import BadInput, unknown_name
-from boatsim.physics.base import Channel, Effect, Measurement, Release
-from boatsim.physics.content import load_class, names
+from boatsim.physics.base import ChannelEffect, CoefficientRelease, Effect, Measurement
+from boatsim.physics.content import library_names, load_class
 from boatsim.physics.facts import WANDER, describe_fact, excluding_fact
 from boatsim.physics.program import Program
 from boatsim.physics.vessel import Vessel, check_bindings
@@ -92,7 +92,7 @@ def library_for(
     excluded, inapplicable = dict[str, str](), dict[str, str]()
     for source in _sources(vessel, own):
         kind = source.kind
-        name = str(source.table.get("name", kind.idea()))
+        name = str(source.table.get("name", kind.type_name()))
         if not has_fittable_parameter(kind):
             if source.requested:
                 raise BadInput(
@@ -128,9 +128,9 @@ def _exclusions_by_vessel(vessel: Vessel) -> dict[str, str]:
     """The vessel's own reasons for excluding candidates. Raises BadInput for an unknown name."""
     reasons = {}
     for name, why in vessel.diagnosis.leave_out.items():
-        if name not in names("effect"):
+        if name not in library_names("effect"):
             where = f"{vessel.name}: diagnosis.leave_out"
-            raise BadInput(unknown_name(where, name, names("effect")))
+            raise BadInput(unknown_name(where, name, library_names("effect")))
         reasons[name] = f"the vessel's reason: {why}"
     return reasons
 
@@ -148,7 +148,7 @@ def placeholders(vessel: Vessel) -> tuple[Effect, ...]:
             continue
         free = (f"{prefix}{k}" for k in count(1) if f"{prefix}{k}" not in taken)
         for name in islice(free, number):
-            found.append(kind.from_settings({"name": name}).completed(vessel))
+            found.append(kind.from_settings({"name": name}).with_all_parameters(vessel))
     return tuple(found)
 
 
@@ -157,12 +157,14 @@ def _both_sides_of_lag(effect: Effect, vessel: Vessel) -> tuple[Effect, ...]:
 
     A dead band of the command and one of the shaft differ only where a lag lies between them.
     """
-    if not isinstance(effect, Channel) or not type(effect).either_side:
+    if not isinstance(effect, ChannelEffect) or not type(effect).either_side:
         return (effect,)
-    targets = set(vessel.targets(effect))
+    targets = set(vessel.target_actuators(effect))
     for other in vessel.effects:
-        lags = isinstance(other, Channel) and type(other).slots and other.standing == 0
-        if lags and targets & set(vessel.targets(other)):
+        lags = (
+            isinstance(other, ChannelEffect) and type(other).slots and other.program_position == 0
+        )
+        if lags and targets & set(vessel.target_actuators(other)):
             reordered = replace(effect, name=REORDERED + effect.name, other_side=True)
             return effect, reordered
     return (effect,)
@@ -170,7 +172,7 @@ def _both_sides_of_lag(effect: Effect, vessel: Vessel) -> tuple[Effect, ...]:
 
 def _sources(vessel: Vessel, own: Sequence[str]) -> Iterator[_Source]:
     """Every effect of the library, those that the vessel requests, and those of the user."""
-    for name in names("effect"):
+    for name in library_names("effect"):
         yield _Source({"use": name}, load_class("effect", name), False)
     for table in vessel.diagnosis.also:
         yield _Source(table, load_class("effect", str(table.get("use")), vessel.path), True)
@@ -215,18 +217,20 @@ def missing_requirements(
     for fact in kind.facts:
         if fact not in facts:
             return f"not specified: {describe_fact(fact)}"
-    if issubclass(kind, Measurement) and kind.late is not None and not vessel.actuators:
+    if issubclass(kind, Measurement) and kind.motion_latency is not None and not vessel.actuators:
         return "no commands relative to which a latency could be estimated"
-    if kind.alone and vessel.names_of(kind.idea()):
-        own = vessel.names_of(kind.idea())[0]
+    if kind.alone and vessel.names_of(kind.type_name()):
+        own = vessel.names_of(kind.type_name())[0]
         return f"the vessel has its own {own}, whose parameters other candidates adjust"
     try:
         found = instantiate_candidate(kind, vessel, facts, table)
     except BadInput as error:
         return str(error).removeprefix(f"{vessel.name}: ")
-    if isinstance(found, Channel) and not vessel.targets(found):
+    if isinstance(found, ChannelEffect) and not vessel.target_actuators(found):
         return f"no command of {type(found).acts_on.replace('|', ' or ') or 'any kind'}"
-    if isinstance(found, Release) and all(c.weight == 0.0 for c in found.changes(vessel)):
+    if isinstance(found, CoefficientRelease) and all(
+        c.weight == 0.0 for c in found.changes(vessel)
+    ):
         return "none of the parameters that it would adjust"
     return ""
 
@@ -250,9 +254,13 @@ def instantiate_candidate(
     """
     given = dict(table or {})
     given.pop("use", None)
-    if not given.get("name") and vessel.names_of(kind.idea()) and not issubclass(kind, Release):
-        given["name"] = FURTHER + kind.idea()
-    effect = effect_at_zero(kind, facts, given).completed(vessel)
+    if (
+        not given.get("name")
+        and vessel.names_of(kind.type_name())
+        and not issubclass(kind, CoefficientRelease)
+    ):
+        given["name"] = FURTHER + kind.type_name()
+    effect = effect_at_zero(kind, facts, given).with_all_parameters(vessel)
     check_bindings(replace(vessel, effects=(*vessel.effects, effect)), vessel.name)
     return effect
 
@@ -276,7 +284,7 @@ def effect_at_zero(
             settings |= dict(zip(places, values.tolist(), strict=True))
     for name, param in kind.params().items():
         if param.fit:
-            settings[name] = param.absent
+            settings[name] = param.inactive_value
     return kind.from_settings(settings | dict(given or {}))
 
 
@@ -294,7 +302,7 @@ def names_without(library: Library, without: Sequence[str]) -> tuple[str, ...]:
     """
     tested = library.tested
     for name in without:
-        if name not in tested and name not in names("effect"):
+        if name not in tested and name not in library_names("effect"):
             raise BadInput(unknown_name("--without", name, tested))
     return tuple(n for n in tested if n not in without and base_name(n) not in without)
 
@@ -333,7 +341,7 @@ def with_specified_position_drift(vessel: Vessel, facts: Mapping[str, object]) -
     sd = float(str(known[sd_fact]))
     time = float(str(known[time_fact]))
     error = load_class("effect", "position_wander").from_settings({"position": sd, "time": time})
-    return replace(vessel, effects=(*vessel.effects, error.completed(vessel)))
+    return replace(vessel, effects=(*vessel.effects, error.with_all_parameters(vessel)))
 
 
 def diagnosis_program(vessel: Vessel) -> tuple[Program, tuple[str, ...]]:

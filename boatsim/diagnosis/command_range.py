@@ -11,7 +11,7 @@ import numpy as np
 
 from boatsim.diagnosis.config import DEFAULT, LoadConfig
 from boatsim.diagnosis.filter import MappedRecording
-from boatsim.physics.base import Channel, Effect, Release
+from boatsim.physics.base import ChannelEffect, CoefficientRelease, Effect
 from boatsim.physics.vessel import Vessel
 
 
@@ -48,9 +48,9 @@ def command_channels(vessel: Vessel, effect: Effect) -> tuple[str, ...]:
         vessel: Vessel of the recordings.
         effect: A candidate effect.
     """
-    if isinstance(effect, Channel):
-        return vessel.targets(effect)
-    if not isinstance(effect, Release):
+    if isinstance(effect, ChannelEffect):
+        return vessel.target_actuators(effect)
+    if not isinstance(effect, CoefficientRelease):
         return ()
     kind = type(effect)
     units = {kind.params()[name].unit for name in kind.thresholds}

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from boatsim.diagnosis.problem import Fit
 from boatsim.physics.base import Array
-from boatsim.physics.described_laws import Described
+from boatsim.physics.described_laws import SymbolicTerm
 
 
 @dataclass(frozen=True)
@@ -23,7 +23,7 @@ class Curve:
 class FittedTerm:
     """A term of a symbolic description, with its fit and its curve."""
 
-    term: Described  # with its coefficient
+    term: SymbolicTerm  # with its coefficient
     sd: float  # of the coefficient
     gain: float  # [nats] beyond the other terms and effects
     # whether free runs over held-out recordings get better by it; an event of one run never does
@@ -39,6 +39,6 @@ class Description:
     fit: Fit
     left_over: float  # [nats] that a force beyond the assumed level gains in addition to all terms
 
-    def effects(self) -> Mapping[str, Described]:
+    def effects(self) -> Mapping[str, SymbolicTerm]:
         """Return the terms that hold for further recordings, by the names of their effects."""
         return {w.term.name: w.term for w in self.terms if w.carries}

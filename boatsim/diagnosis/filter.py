@@ -15,17 +15,17 @@ import numpy as np
 from boatsim.diagnosis import priors
 from boatsim.diagnosis.config import DEFAULT, DiagnosisConfig, FilterConfig
 from boatsim.errors import BadInput
-from boatsim.physics.base import Unsteady, Wandering
-from boatsim.physics.commands import clipped_rows
+from boatsim.physics.base import DriftingMeasurement, RandomForce
+from boatsim.physics.commands import clipped_recorded_commands
 from boatsim.physics.kernel.records import (
+    FilterHistory,
     FilterStart,
-    History,
     Inputs,
     LatentForce,
     Measurements,
-    Model,
     PassArrays,
     PassOptions,
+    VesselNumbers,
 )
 from boatsim.physics.particulars import GRAVITY
 from boatsim.physics.program import Program
@@ -261,9 +261,9 @@ class MappedRecording:
         gains, rates = np.zeros_like(transitions), self.initial.rates
         force, _ = self.latent_force_rms(values, on, levels)
         for _ in range(self.config.smoother_passes):
-            keep = History(means, covariances, transitions, predicted)
+            keep = FilterHistory(means, covariances, transitions, predicted)
             self._run(values, on, levels, arrays, rates=rates, keep=keep)
-            self.program.module.smooth(
+            self.program.module.smooth_states(
                 keep, gains, self.times, LatentForce(force**2, levels.time_constant), values, on
             )
             before, rates = rates, means[0, nq : 2 * nq].copy()
@@ -296,10 +296,10 @@ class MappedRecording:
         nq = self.program.module.NQ
         out = np.full((len(starts), len(self.times), 2 * nq), np.nan)
         states = np.ascontiguousarray(means[starts, : 2 * nq])
-        self.program.module.free_runs(
+        self.program.module.simulate_intervals(
             self.inputs,
             self.config.free_run_step,
-            Model(rigid_body_values(values), values, on),
+            VesselNumbers(rigid_body_values(values), values, on),
             np.array(starts),
             np.array(ends),
             states,
@@ -310,8 +310,8 @@ class MappedRecording:
             runs.append((begin, simulated[begin : end + 1].copy()))
         oscillators = 2 if self._oscillates(values, on) else 0
         for effect, acts in zip(self.program.effects, on, strict=True):
-            if isinstance(effect, Wandering) and acts:
-                decay_time = values[self.program.index(effect.name, "time")]
+            if isinstance(effect, DriftingMeasurement) and acts:
+                decay_time = values[self.program.parameter_index(effect.name, "time")]
                 self._add_sensor_error(runs, means, decay_time, oscillators)
         return runs
 
@@ -328,8 +328,10 @@ class MappedRecording:
     def _oscillates(self, values: Array, on: Array) -> bool:
         """Whether the filter's state contains an oscillating force."""
         for effect, acts in zip(self.program.effects, on, strict=True):
-            if isinstance(effect, Unsteady) and acts:
-                places = [self.program.index(effect.name, n) for n in type(effect).strength]
+            if isinstance(effect, RandomForce) and acts:
+                places = [
+                    self.program.parameter_index(effect.name, n) for n in type(effect).strength
+                ]
                 if (values[places] > 0.0).any():
                     return True
         return False
@@ -363,7 +365,7 @@ class MappedRecording:
         full: bool = True,
         fresh: bool = True,
         rates: Array | None = None,
-        keep: History | None = None,
+        keep: FilterHistory | None = None,
     ) -> float:
         """Run the compiled filter, which fills or uses `arrays`; return the log likelihood."""
         nq = self.program.module.NQ
@@ -380,10 +382,10 @@ class MappedRecording:
                 covariance[nq + i, nq + i] = 1.0
         if rates is None:
             rates = self.initial.rates
-        found = self.program.module.kalman(
+        found = self.program.module.kalman_filter(
             self.inputs,
             Measurements(self.measured, self.codes, noise),
-            Model(rigid_body_values(values), values, on),
+            VesselNumbers(rigid_body_values(values), values, on),
             LatentForce(force**2, levels.time_constant),
             FilterStart(self.initial.mean, covariance, rates),
             PassOptions(self.step, full, fresh, keep is not None),
@@ -393,9 +395,11 @@ class MappedRecording:
         return float(found)
 
 
-def _no_history() -> History:
+def _no_history() -> FilterHistory:
     """Placeholders for the arrays of a smoothing pass."""
-    return History(np.zeros((1, 1)), np.zeros((1, 1, 1)), np.zeros((1, 1, 1)), np.zeros((1, 1)))
+    return FilterHistory(
+        np.zeros((1, 1)), np.zeros((1, 1, 1)), np.zeros((1, 1, 1)), np.zeros((1, 1))
+    )
 
 
 def _read_only(array: Array) -> Array:
@@ -525,7 +529,7 @@ def map_recording(
     scale = {family: own.get(family, sd) / sd for family, sd in shared.items()}
     commands = np.zeros((len(recording), 1))
     if vessel.inputs:
-        commands = clipped_rows(vessel, recording.signals, len(recording))
+        commands = clipped_recorded_commands(vessel, recording.signals, len(recording))
     facts = facts_of(vessel, recording)
     mapped = MappedRecording(
         recording.name,
@@ -578,7 +582,7 @@ def _commands_at_own_times(recording: Recording, vessel: Vessel) -> tuple[Array,
     if recording.orders is None or not vessel.inputs:
         return np.zeros(0), np.zeros((0, 0))
     t, signals = recording.orders.t, recording.orders.signals
-    return command_changes(t, clipped_rows(vessel, signals, len(t)))
+    return command_changes(t, clipped_recorded_commands(vessel, signals, len(t)))
 
 
 def hull_motion(
@@ -598,11 +602,11 @@ def hull_motion(
     nq = code.NQ
     constants, memory = np.zeros(code.K), np.zeros(program.memory_size)
     actuators = np.zeros(program.held_size)
-    code.constants(rigid_body_values(values), values, on, constants)
-    code.settle(command, memory, values, on, actuators)
+    code.compute_mass_constants(rigid_body_values(values), values, on, constants)
+    code.settle_actuators(command, memory, values, on, actuators)
     slopes = np.zeros((nq, 2 * nq))
     rest = np.zeros(2 * nq)
-    code.slopes(0.0, rest, actuators, values, on, constants, np.zeros(nq), slopes)
+    code.acceleration_jacobian(0.0, rest, actuators, values, on, constants, np.zeros(nq), slopes)
     if not np.isfinite(slopes).all():
         return HullMotion(0.0, np.inf)
     whole = np.block([[np.zeros((nq, nq)), np.eye(nq)], [slopes]])
@@ -626,7 +630,7 @@ def inertia_of(program: Program, values: Array, on: Array) -> Array:
     """
     code = program.module
     constants = np.zeros(code.K)
-    code.constants(rigid_body_values(values), values, on, constants)
+    code.compute_mass_constants(rigid_body_values(values), values, on, constants)
     order = [AXES.index(axis) for axis in axes_of(program.vessel)]
     diagonal = constants[-MASS_ENTRIES:][order]
     if code.CLOSED:  # the constants hold the inverse
@@ -645,11 +649,11 @@ def parameter_values(program: Program, facts: Mapping[str, Any]) -> Array:
     """
     values = np.append(program.values(), program.body)
     for effect in program.effects:
-        if isinstance(effect, Unsteady):
-            values[program.index(effect.name, "realisation")] = 0.0
+        if isinstance(effect, RandomForce):
+            values[program.parameter_index(effect.name, "realisation")] = 0.0
         for fact, names in type(effect).facts.items():
             for name, x in zip(names, facts.get(fact, ()), strict=False):
-                values[program.index(effect.name, name)] = x
+                values[program.parameter_index(effect.name, name)] = x
     return values
 
 
@@ -665,7 +669,9 @@ def _missing_inputs(recording: Recording, vessel: Vessel) -> list[str]:
 
 def _drives(vessel: Vessel, command: str, actuator: str) -> bool:
     """Whether a channel effect of the vessel converts this command into that actuator."""
-    return any(vessel.feeding_command(effect, actuator) == command for effect in vessel.effects)
+    return any(
+        vessel.command_for_actuator(effect, actuator) == command for effect in vessel.effects
+    )
 
 
 def shared_noise(

@@ -135,7 +135,7 @@ def vessel_for(
         )
     conditions = load_conditions or notes.load
     try:
-        found = vessels.load(name, conditions, notes.settings, base_folder=base_folder)
+        found = vessels.load_vessel(name, conditions, notes.settings, base_folder=base_folder)
     except BadInput as error:
         by_notes = not vessel or notes.settings or (notes.load and not load_conditions)
         where = f"{path} by its recording.toml: " if by_notes else ""
@@ -149,7 +149,7 @@ def vessel_for(
         raise BadInput(
             f"{path}: scale = {wanted:g}, but {found.name} is at scale {found.scale:g}{hint}"
         )
-    return vessels.load(alike[0], conditions, notes.settings)
+    return vessels.load_vessel(alike[0], conditions, notes.settings)
 
 
 def open_recording(

@@ -9,7 +9,7 @@ from boatsim.diagnosis.coordinate_search import maximize
 from boatsim.diagnosis.filter import NoiseLevels
 from boatsim.diagnosis.priors import CHI_SQUARE_MEDIAN
 from boatsim.diagnosis.problem import FilterPasses, Fit, Problem, priors_of
-from boatsim.physics.base import Array, Wandering
+from boatsim.physics.base import Array, DriftingMeasurement
 
 # first steps along a coordinate, in logarithms of levels and prior sds of parameters
 FORCE_STEP = 0.5
@@ -84,7 +84,7 @@ def fit_force(problem: Problem, found: Fit, enough: float | None = None) -> Fit:
     free = [found.free[j] for j in searched]
     mean, sd, low, high = priors_of(free)
     families: list[str] = []
-    if any(isinstance(problem.candidates[name], Wandering) for name in found.effects):
+    if any(isinstance(problem.candidates[name], DriftingMeasurement) for name in found.effects):
         families = _families(problem)
     specified = _log_noise(problem.ambient, families)
     k, n = len(searched), len(searched) + len(families)

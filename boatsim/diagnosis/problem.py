@@ -15,7 +15,14 @@ from boatsim.diagnosis.command_range import largest_command
 from boatsim.diagnosis.config import DEFAULT, DiagnosisConfig
 from boatsim.diagnosis.filter import BODY, FilterPass, MappedRecording, NoiseLevels
 from boatsim.errors import BadInput
-from boatsim.physics.base import Array, Channel, Effect, Param, Release, Wandering
+from boatsim.physics.base import (
+    Array,
+    ChannelEffect,
+    CoefficientRelease,
+    DriftingMeasurement,
+    Effect,
+    Param,
+)
 from boatsim.physics.program import Program
 from boatsim.physics.vessel import Vessel
 
@@ -276,7 +283,7 @@ class Problem:
                     effect.name,
                     name,
                     target.at,
-                    mean=param.absent,
+                    mean=param.inactive_value,
                     sd=self.spreads.get(effect.name, usual),
                     low=low,
                     high=high,
@@ -304,8 +311,8 @@ class Problem:
 
     def _target(self, effect: Effect, name: str) -> _Target | None:
         """Places that a parameter of a candidate changes: its own, or those that it releases."""
-        if not isinstance(effect, Release):
-            return _Target((self.program.index(effect.name, name),), (1.0,))
+        if not isinstance(effect, CoefficientRelease):
+            return _Target((self.program.parameter_index(effect.name, name),), (1.0,))
         at, weights = list[int](), list[float]()
         for change in effect.changes(self.program.vessel):
             if change.parameter == name:
@@ -324,7 +331,7 @@ class Problem:
         """
         if owner == "body":
             return len(self.program.values()) + BODY.index(key)
-        return self.program.index(owner, key)
+        return self.program.parameter_index(owner, key)
 
     def filter(
         self,
@@ -394,7 +401,7 @@ class Problem:
             name: Name of its parameter.
         """
         unit = type(effect).params()[name].unit
-        if isinstance(effect, Wandering):
+        if isinstance(effect, DriftingMeasurement):
             noise = {"m": "position_sd_m", "rad": "heading_sd_rad"}
             return self.ambient.sensors[noise[unit]] if unit in noise else 1.0
         if name in type(effect).thresholds and unit != "rad":
@@ -411,10 +418,10 @@ class Problem:
 
     def _has_actuator(self, effect: Effect, parameter: str) -> bool:
         """Whether the vessel has an actuator on the side to which a parameter belongs, if any."""
-        if not isinstance(effect, Channel) or parameter not in SIDES:
+        if not isinstance(effect, ChannelEffect) or parameter not in SIDES:
             return True
         vessel = self.program.vessel
-        return SIDES[parameter] in {vessel.side(name) for name in vessel.targets(effect)}
+        return SIDES[parameter] in {vessel.side(name) for name in vessel.target_actuators(effect)}
 
     @property
     def stiff(self) -> bool:
@@ -434,11 +441,11 @@ class Problem:
         for effect in vessel.effects:
             for name, param in type(effect).params().items():
                 sd = self.uncertainty.get(param.calibrates, 0.0)
-                at = self.program.index(effect.name, name)
+                at = self.program.parameter_index(effect.name, name)
                 applies = not param.axis or param.axis in vessel.dof
                 used = self.recordings[0].values[at] != 0.0 and applies
                 if param.calibrates and sd > 0 and used:
-                    shared[type(effect).idea(), name, sd].append((effect.name, at))
+                    shared[type(effect).type_name(), name, sd].append((effect.name, at))
         low, high = self.config.fit.coefficient_range
         found = []
         for (idea, name, sd), places in shared.items():
@@ -468,6 +475,6 @@ class Problem:
                 source = type(effect).params()[name].follows
                 owner, _, key = source.removesuffix("?").removeprefix("vessel.").partition(".")
                 if owner in owners:
-                    to = self.program.index(effect.name, name)
+                    to = self.program.parameter_index(effect.name, name)
                     links.append((to, self.index_of_parameter(owner, key)))
         return tuple(links)

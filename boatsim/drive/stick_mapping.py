@@ -8,7 +8,7 @@ from typing import NamedTuple
 from boatsim.control.base import Controller, clip, wrap
 from boatsim.drive.driver_input import Sticks
 from boatsim.errors import BadInput
-from boatsim.physics.signals import STATE, follower
+from boatsim.physics.signals import STATE, measured_column_for_goal
 from boatsim.physics.vessel import ManoeuvringTable, Vessel
 from boatsim.simulate.manoeuvre import approach, handled, transverse_thrusters
 
@@ -157,7 +157,7 @@ def _motion_dials(
     }
     found: list[Dial] = []
     for key in goals:
-        axis = axes.get(follower(key) or "")
+        axis = axes.get(measured_column_for_goal(key) or "")
         if axis is None or axis not in vessel.dof:
             continue
         if key in specified:

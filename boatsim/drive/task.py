@@ -10,7 +10,7 @@ import tomlkit
 from boatsim.drive.stick_mapping import Dials, dials_of
 from boatsim.errors import BadInput
 from boatsim.files import MAX_TOML_BYTES, Value
-from boatsim.physics.content import find, names
+from boatsim.physics.content import find_content_file, library_names
 from boatsim.simulate.cases import Place, content, matching
 from boatsim.simulate.controllers import controller_table
 from boatsim.simulate.scenario import OFF, Scenario, from_table
@@ -124,7 +124,7 @@ def _environment(
     vessel: str, scenario: str | None, load: Sequence[str]
 ) -> tuple[dict[str, Value], Place]:
     """Table of vessel, water and wind: those of a scenario without its own task, or open water."""
-    path = find("vessel", vessel)
+    path = find_content_file("vessel", vessel)
     if scenario is None:
         table: dict[str, Value] = {
             "vessel": _vessel(vessel, path),
@@ -136,7 +136,7 @@ def _environment(
     name = own.get("vessel")
     if (
         not isinstance(name, str)
-        or find("vessel", name, place.path.parent).resolve() != path.resolve()
+        or find_content_file("vessel", name, place.path.parent).resolve() != path.resolve()
     ):
         raise BadInput(f"--scenario {scenario} is for {name}, not for {vessel}")
     table = {key: value for key, value in own.items() if key not in TASK_KEYS}
@@ -147,7 +147,7 @@ def _environment(
 
 def _vessel(name: str, path: Path) -> str:
     """Name of a vessel of the library, or its absolute path."""
-    if name in names("vessel"):
+    if name in library_names("vessel"):
         return name
     return str(path.resolve())
 
@@ -155,7 +155,7 @@ def _vessel(name: str, path: Path) -> str:
 def _find_scenario(vessel: str, scenario: str) -> str:
     """Address of a scenario given by name, by its name for this vessel, or by file."""
     own = f"{vessel}/{scenario}"
-    if own in names("scenario"):
+    if own in library_names("scenario"):
         return own
     found = matching(scenario)
     if len(found) > 1:

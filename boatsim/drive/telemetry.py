@@ -7,7 +7,7 @@ from boatsim.control.base import wrap
 from boatsim.drive.clock import Clock
 from boatsim.drive.driver_input import Hands
 from boatsim.drive.stick_mapping import HEADING, Dials
-from boatsim.physics.signals import follower
+from boatsim.physics.signals import measured_column_for_goal
 from boatsim.recordings.notes import unit_of
 from boatsim.recordings.table import Recording
 from boatsim.simulate.engine import Engine
@@ -55,7 +55,7 @@ class Painter:
         """A goal or channel with its range, its unit and the sticks that set it."""
         own = [d for d in self._dials.dials if d.key == key]
         ends = [self._dials.neutral[key] + x for d in own for x in (d.low, d.high)]
-        follows = follower(key)
+        follows = measured_column_for_goal(key)
         channel = key in self._scenario.vessel.commands
         low, high = self._dials.limits.get(key, (min(ends), max(ends)))
         return {
@@ -108,8 +108,8 @@ class Painter:
         if key in self._scenario.vessel.commands:
             wanted, reached = now.get(f"sent_{key}"), now.get(key)
         else:
-            wanted, reached = now.get(f"goal_{key}"), now.get(follower(key) or "")
-        if reached is not None and follower(key) == HEADING:
+            wanted, reached = now.get(f"goal_{key}"), now.get(measured_column_for_goal(key) or "")
+        if reached is not None and measured_column_for_goal(key) == HEADING:
             reached = wrap(reached)
         return [_finite_or_none(wanted), _finite_or_none(reached)]
 

@@ -112,7 +112,7 @@ def drive_channels(vessel: Vessel) -> list[DriveChannel]:
     for actuator in vessel.actuators:
         channel = actuator
         for effect in vessel.effects:
-            source = vessel.feeding_command(effect, actuator)
+            source = vessel.command_for_actuator(effect, actuator)
             if source is not None:
                 channel = source
                 break

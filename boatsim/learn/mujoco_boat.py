@@ -97,7 +97,7 @@ class TankWorld:
         effects = list(self.vessel.effects)
         for index, effect in enumerate(effects):
             if effect is self.vessel.effect(owner):
-                effects[index] = effect.having({name: value})
+                effects[index] = effect.with_values({name: value})
         self._replace_vessel(replace(self.vessel, effects=tuple(effects)))
 
     def get(self, parameter: str) -> Array:

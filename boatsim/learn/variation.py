@@ -12,7 +12,7 @@ from boatsim.physics import vessel as vessels
 from boatsim.physics.kinds.effect import Effect
 from boatsim.physics.param import Param
 from boatsim.physics.signals import Array
-from boatsim.physics.spread import Spread
+from boatsim.physics.spread import FittedUncertainty
 from boatsim.physics.vessel import Vessel
 from boatsim.simulate.batch import BODY
 
@@ -27,7 +27,7 @@ class Variation:
         self,
         boats: Sequence[Vessel],
         sampled: Sequence[SampledParameter],
-        spread: Spread | None,
+        spread: FittedUncertainty | None,
     ) -> None:
         """Create a variation.
 
@@ -66,7 +66,7 @@ class Variation:
         which = np.minimum((uniforms[:, 0] * len(self.boats)).astype(np.int64), last)
         world.assign(which, boats)
         if self.spread is not None:
-            changes = self.spread.sample(uniforms[:, 1 + len(self.sampled) :])
+            changes = self.spread.sample_changes(uniforms[:, 1 + len(self.sampled) :])
             for name, change in changes.items():
                 param = _definition(self.boats[0], name)
                 value = world.get(name)[boats] * change.factor + change.shift
@@ -118,7 +118,7 @@ def variation(
     fixed = {key: float(x) for key, x in varied.items() if isinstance(x, int | float)}
     boats = []
     for conditions in loads or [", ".join(load)]:
-        boat = vessels.load(vessel, _split_load(conditions), settings, extra)
+        boat = vessels.load_vessel(vessel, _split_load(conditions), settings, extra)
         boats.append(_with_values(boat, fixed))
     sampled = []
     for key, text in varied.items():
@@ -126,7 +126,7 @@ def variation(
             sampled.append(make_sampled_parameter(key, str(text)))
     spread = boats[0].spread
     if spread is not None:
-        spread = spread.scaled(factor) if factor > 0.0 else None
+        spread = spread.with_scaled_sd(factor) if factor > 0.0 else None
     return Variation(boats, sampled, spread)
 
 
@@ -141,7 +141,7 @@ def _missing_effects(
     varied: Mapping[str, object],
 ) -> list[str]:
     """Effects that vary and that the vessel lacks."""
-    own = vessels.load(vessel, list(load), extra=list(effects))
+    own = vessels.load_vessel(vessel, list(load), extra=list(effects))
     missing: dict[str, None] = {}
     for key in varied:
         name = key.partition(".")[0]
@@ -165,7 +165,7 @@ def _with_values(boat: Vessel, values: Mapping[str, float]) -> Vessel:
         effects = list(boat.effects)
         for index, effect in enumerate(effects):
             if effect is owner:
-                effects[index] = effect.having({name: value})
+                effects[index] = effect.with_values({name: value})
         boat = replace(boat, effects=tuple(effects))
     return boat
 

@@ -159,7 +159,7 @@ def _problems(
 
 def _with_more(problem: Problem, best: Fit, report: Report) -> Fit:
     """Add the candidate effects that increase the evidence enough, the best first."""
-    candidates = [n for n in (*OF_BOAT, *OF_DAY) if n in problem.program.entries]
+    candidates = [n for n in (*OF_BOAT, *OF_DAY) if n in problem.program.candidate_names]
     while candidates:
         fits: dict[str, Fit] = {}
         for i, candidate in enumerate(candidates):

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 from boatsim.newboat.particulars import Mount, Particulars
 from boatsim.physics.vessel import plain_hull
-from boatsim.physics.vessel.plain_hull import geom, numbers
+from boatsim.physics.vessel.plain_hull import format_numbers, geom_element
 
 COMMENT = "Drawn by boatsim new from the boat's sizes; forces and masses are in vessel.toml."
 
@@ -27,7 +27,7 @@ def _fittings(boat: Particulars) -> Iterator[str]:
     if boat.rudder is not None:
         at = (0.5 * hull.length + boat.rudder.x, 0, -0.5 * hull.draught)
         size = (0.02 * hull.length, 0.003 * hull.length, 0.5 * hull.draught)
-        yield geom("rudder", "box", at, size, "seen", "dark")
+        yield geom_element("rudder", "box", at, size, "seen", "dark")
 
 
 def _outboard(boat: Particulars, name: str, mount: Mount) -> Iterator[str]:
@@ -37,13 +37,13 @@ def _outboard(boat: Particulars, name: str, mount: Mount) -> Iterator[str]:
     x, y = 0.5 * hull.length + mount.x, -mount.y
     leg, radius = 0.5 * (high + hull.draught), 0.02 * hull.length
     size = (0.6 * radius, 0.3 * radius, leg)
-    yield geom(f"leg_{name}", "box", (x, y, high - leg), size, "seen", "dark")
+    yield geom_element(f"leg_{name}", "box", (x, y, high - leg), size, "seen", "dark")
     if mount.turns:
         at = (x, y, high + 1.5 * radius)
         size = (2.2 * radius, 1.6 * radius, 2.2 * radius)
-        yield geom(f"cowl_{name}", "ellipsoid", at, size, "seen", "dark")
+        yield geom_element(f"cowl_{name}", "ellipsoid", at, size, "seen", "dark")
     yield (
         f'<geom name="propeller_{name}" class="seen" type="cylinder" material="dark" '
-        f'pos="{numbers(x, y, -hull.draught)}" euler="0 90 0" size="{radius:.4g} '
+        f'pos="{format_numbers(x, y, -hull.draught)}" euler="0 90 0" size="{radius:.4g} '
         f'{1.5 * radius:.4g}"/>'
     )

@@ -5,8 +5,8 @@ import re
 from dataclasses import dataclass
 
 from boatsim.errors import BadInput
-from boatsim.physics.estimate.base import Hull
-from boatsim.physics.estimate.displacement import hull
+from boatsim.physics.estimate.base import HullParticulars
+from boatsim.physics.estimate.displacement import hull_particulars
 
 NAME = re.compile(r"[A-Za-z0-9][\w.+-]{0,59}")
 
@@ -67,7 +67,7 @@ class Particulars:
     """
 
     name: str
-    hull: Hull
+    hull: HullParticulars
     draught_given: bool
     speed: float | None
     thrusters: tuple[Mount, ...]
@@ -149,7 +149,7 @@ def particulars(
         blade = _blade(rudder, length)
     return Particulars(
         name,
-        hull(length, beam, mass, hulls, draught),
+        hull_particulars(length, beam, mass, hulls, draught),
         draught is not None,
         speed,
         tuple(mounts),

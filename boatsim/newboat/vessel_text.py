@@ -90,7 +90,7 @@ def full_thrust(boat: Particulars) -> tuple[list[float], bool]:
     Args:
         boat: Particulars of the boat.
     """
-    by_rule = thrust.full(boat.hull).value / len(boat.thrusters)
+    by_rule = thrust.full_thrust(boat.hull).value / len(boat.thrusters)
     all_given = True
     largest = []
     for mount in boat.thrusters:
@@ -136,15 +136,15 @@ def _head(boat: Particulars) -> Iterator[str]:
     yield line("beam", hull.beam, "m", OWNER)
     rule = OWNER
     if not boat.draught_given:
-        rule = displacement.draught(hull.length, hull.beam, hull.mass, hull.hulls).rule
+        rule = displacement.hull_draught(hull.length, hull.beam, hull.mass, hull.hulls).rule
     yield line("draught", hull.draught, "m", rule)
 
 
 def _body(boat: Particulars) -> Iterator[str]:
     hull = boat.hull
     yield from ("", "[body]", line("mass", hull.mass, "kg", OWNER))
-    yield _of("roll_inertia", inertia.roll(hull), "kg m^2")
-    yield _of("yaw_inertia", inertia.yaw(hull), "kg m^2")
+    yield _of("roll_inertia", inertia.roll_inertia(hull), "kg m^2")
+    yield _of("yaw_inertia", inertia.yaw_inertia(hull), "kg m^2")
     yield from ("", "[geometry]")
     yield line(
         "cg_from_transom", 0.5 * hull.length, "m", "for the drawing: mass centre at mid-length"
@@ -159,7 +159,7 @@ def _channels(boat: Particulars) -> Iterator[str]:
         least = mount.largest_astern(most)
         rule = OWNER
         if mount.ahead is None:
-            rule = thrust.full(boat.hull).rule
+            rule = thrust.full_thrust(boat.hull).rule
         if mount.astern is None:
             rule = f"{rule}; the same astern"
         low = "0.0"
@@ -181,21 +181,21 @@ def _channels(boat: Particulars) -> Iterator[str]:
 
 def _effects(boat: Particulars) -> Iterator[str]:
     hull, speed = boat.hull, service(boat)
-    sway, yaw = sway_yaw_damping.at_rest(hull)
+    sway, yaw = sway_yaw_damping.damping_at_rest(hull)
     yield from ("", "[[effect]]", 'use = "added_mass"')
-    yield _of("surge", added_mass.surge(hull), "kg")
-    yield _of("sway", added_mass.sway(hull), "kg")
-    yield _of("yaw", added_mass.yaw(hull), "kg m^2")
-    linear, quadratic = resistance.coefficients(hull, given_thrust(boat), boat.speed)
+    yield _of("surge", added_mass.surge_added_mass(hull), "kg")
+    yield _of("sway", added_mass.sway_added_mass(hull), "kg")
+    yield _of("yaw", added_mass.yaw_added_mass(hull), "kg m^2")
+    linear, quadratic = resistance.surge_damping(hull, given_thrust(boat), boat.speed)
     yield from ("", "[[effect]]", 'use = "linear_damping"')
     yield _of("surge", linear, "N s/m")
     yield _of("sway", sway, "N s/m")
     yield _of("yaw", yaw, "N m s")
     yield from ("", "[[effect]]", 'use = "surge_drag"', _of("quadratic", quadratic, "N s^2/m^2"))
     yield from ("", "[[effect]]", 'use = "cross_flow_drag"')
-    yield _of("section_drag_coefficient", sway_yaw_damping.section_drag(), "")
+    yield _of("section_drag_coefficient", sway_yaw_damping.section_drag_coefficient(), "")
     yield line("density", DENSITY, "kg/m^3", "fresh water")
-    lift = sway_yaw_damping.lift(hull)
+    lift = sway_yaw_damping.lift_derivatives(hull)
     yield from ("", "[[effect]]", 'use = "forward_speed_damping"')
     yield _of("sway", lift.sway, "N s^2/m^2")
     yield _of("at", lift.at, "m")
@@ -206,7 +206,7 @@ def _effects(boat: Particulars) -> Iterator[str]:
         "",
         "[[effect]]",
         'use = "thrust_loss_with_speed"',
-        _of("loss", thrust.loss(hull, boat.speed), "s/m"),
+        _of("loss", thrust.thrust_loss_with_speed(hull, boat.speed), "s/m"),
     )
     if boat.rudder is not None:
         yield from _rudder(boat, speed)
@@ -247,12 +247,12 @@ def _thruster(name: str, mount: Mount) -> Iterator[str]:
 
 
 def _rudder(boat: Particulars, speed: float) -> Iterator[str]:
-    blade, by_rule = boat.rudder, rudders.area(boat.hull)
+    blade, by_rule = boat.rudder, rudders.rudder_area(boat.hull)
     assert blade is not None
     area = by_rule
     if blade.area is not None:
         area = Estimate(blade.area, OWNER)
-    slope = rudders.slope(area.value, speed)
+    slope = rudders.rudder_force_slope(area.value, speed)
     # A positive angle pushes a blade aft to port, which turns the bow to starboard
     sign = 1.0 if blade.x < 0 else -1.0
     yield from ("", "[[effect]]", 'use = "rudder"', f"# area {number(area.value)} m^2: {area.rule}")
@@ -269,7 +269,7 @@ def _rudder(boat: Particulars, speed: float) -> Iterator[str]:
     yield line("rudder_sway", 1.0, "", "the force grows with the square of the speed")
     yield line("rudder_yaw", 1.0, "", "same")
     if washed := _washing(boat, blade):
-        found = rudders.race()
+        found = rudders.slipstream_rudder_force()
         yield from ("", "[[effect]]", 'use = "rudder_race"')
         yield f'on = {{ angle = "rudder_rad", thrust = "{thrust_channel(washed)}" }}'
         yield line("normal_force_per_thrust", found.value, "", found.rule)
@@ -295,7 +295,7 @@ def approach(boat: Particulars) -> float:
     full, _ = full_thrust(boat)
     return min(
         APPROACH_PART,
-        APPROACH_RESISTANCE * resistance.at_service(boat.hull).value / math.fsum(full),
+        APPROACH_RESISTANCE * resistance.service_resistance(boat.hull).value / math.fsum(full),
     )
 
 

@@ -9,34 +9,42 @@ heading and yaw rate clockwise seen from above.
 from math import cos, sin
 
 from boatsim.physics.content import snake_case
-from boatsim.physics.kinds.channel import Channel
+from boatsim.physics.kinds.channel import ChannelEffect
 from boatsim.physics.kinds.effect import Boat, Effect, Role
-from boatsim.physics.kinds.flow import Flow
+from boatsim.physics.kinds.flow import WaterFlow
 from boatsim.physics.kinds.force import Force
 from boatsim.physics.kinds.inertia import Inertia
 from boatsim.physics.kinds.measurement import Measurement
 from boatsim.physics.kinds.reaction import Reaction
-from boatsim.physics.kinds.recall import Recall
-from boatsim.physics.kinds.release import Change, Release
-from boatsim.physics.kinds.unsteady import Unsteady
-from boatsim.physics.kinds.wandering import Wandering
-from boatsim.physics.param import UNSET, Checked, Param, factor, number, param, shift
-from boatsim.physics.presets import preset
+from boatsim.physics.kinds.recall import SignalHistory
+from boatsim.physics.kinds.release import CoefficientChange, CoefficientRelease
+from boatsim.physics.kinds.unsteady import RandomForce
+from boatsim.physics.kinds.wandering import DriftingMeasurement
+from boatsim.physics.param import (
+    UNSET,
+    CheckedParameters,
+    Param,
+    factor_parameter,
+    param,
+    replacement_parameter,
+    shift_parameter,
+)
+from boatsim.physics.presets import preset_effect
 from boatsim.physics.signals import (
     AXES,
     Array,
-    Course,
-    Mass,
+    InstrumentDrift,
+    MassMatrix,
+    MeasuredMotion,
     Motion,
-    Shown,
-    Swell,
-    Wander,
+    OscillatingForce,
+    SignalSegment,
     Wrench,
-    course,
-    followed,
-    lagged,
-    mass,
-    mean_of,
+    first_order_lag,
+    longest_lag_step,
+    mass_matrix,
+    segment_mean,
+    segment_with_mean,
     wrench,
 )
 
@@ -45,39 +53,39 @@ __all__ = [
     "UNSET",
     "Array",
     "Boat",
-    "Change",
-    "Channel",
-    "Checked",
-    "Course",
+    "CoefficientChange",
+    "ChannelEffect",
+    "CheckedParameters",
+    "SignalSegment",
     "Effect",
-    "Flow",
+    "WaterFlow",
     "Force",
     "Inertia",
-    "Mass",
+    "MassMatrix",
     "Measurement",
     "Motion",
     "Param",
     "Reaction",
-    "Recall",
-    "Release",
+    "SignalHistory",
+    "CoefficientRelease",
     "Role",
-    "Shown",
-    "Swell",
-    "Unsteady",
-    "Wander",
-    "Wandering",
+    "MeasuredMotion",
+    "OscillatingForce",
+    "RandomForce",
+    "InstrumentDrift",
+    "DriftingMeasurement",
     "Wrench",
-    "course",
-    "factor",
-    "followed",
-    "lagged",
-    "mass",
-    "mean_of",
+    "segment_with_mean",
+    "factor_parameter",
+    "longest_lag_step",
+    "first_order_lag",
+    "mass_matrix",
+    "segment_mean",
     "motion",
-    "number",
+    "replacement_parameter",
     "param",
-    "preset",
-    "shift",
+    "preset_effect",
+    "shift_parameter",
     "snake_case",
     "wrench",
 ]

@@ -32,7 +32,7 @@ import platformdirs
 
 from boatsim.errors import BadInput
 from boatsim.physics.debugging import DEBUG
-from boatsim.physics.dependency_hash import PACKAGE, content, reach
+from boatsim.physics.dependency_hash import PACKAGE, file_content, imported_files
 from boatsim.physics.kinds.effect import Effect
 
 KERNEL = PACKAGE / "physics" / "kernel"
@@ -53,7 +53,7 @@ from .run import *
 KEPT = 90 * 86400.0  # [s] time after the last use of a program until it is removed
 
 
-def module(written: Mapping[str, str], classes: Iterable[type[Effect]]) -> ModuleType:
+def import_program(written: Mapping[str, str], classes: Iterable[type[Effect]]) -> ModuleType:
     """Return a vessel's program, compiled before if the same one was composed before.
 
     Args:
@@ -65,13 +65,13 @@ def module(written: Mapping[str, str], classes: Iterable[type[Effect]]) -> Modul
         if path.name not in (*SHARED, *GENERATORS, *WRITTEN):
             copied[path.name] = path.read_text(encoding="utf-8")
     own = {**written, "__init__.py": EXPORTS}
-    stamp = stamp_of(copied | own, classes)
+    stamp = program_digest(copied | own, classes)
     if DEBUG:
-        return package(own, f"{stamp}_debug", KERNEL)
-    return package(copied | own, stamp)
+        return import_cached_package(own, f"{stamp}_debug", KERNEL)
+    return import_cached_package(copied | own, stamp)
 
 
-def package(files: Mapping[str, str], stamp: str, *further: Path) -> ModuleType:
+def import_cached_package(files: Mapping[str, str], stamp: str, *further: Path) -> ModuleType:
     """Write a package to the cache folder, if it is not there, and import it.
 
     Args:
@@ -84,13 +84,13 @@ def package(files: Mapping[str, str], stamp: str, *further: Path) -> ModuleType:
     if not _is_complete(files, path):
         shutil.rmtree(path, ignore_errors=True)
         _write(files, path)
-        _prune(folder)
+        _remove_unused_programs(folder)
     with suppress(OSError):
         os.utime(path)  # it is in use
-    return _imported((path, *further), f"boatsim_program_{stamp}")
+    return _import_package((path, *further), f"boatsim_program_{stamp}")
 
 
-def stamp_of(files: Mapping[str, str], classes: Iterable[type[Effect]]) -> str:
+def program_digest(files: Mapping[str, str], classes: Iterable[type[Effect]]) -> str:
     """Return the name of a program: a digest of its text and of all that it depends on.
 
     Args:
@@ -106,11 +106,11 @@ def stamp_of(files: Mapping[str, str], classes: Iterable[type[Effect]]) -> str:
         # The name of the module distinguishes versions of a user's file within one process.
         digest.update(f"{kind.__module__}\n".encode())
         if source := getsourcefile(kind):
-            reached |= reach(Path(source))
+            reached |= imported_files(Path(source))
     for name in SHARED:
-        reached |= reach(KERNEL / name)
+        reached |= imported_files(KERNEL / name)
     for path in sorted(reached):
-        digest.update(content(path))
+        digest.update(file_content(path))
     digest.update(f"{numba.__version__} {sys.version}".encode())
     return digest.hexdigest()[:16]
 
@@ -180,7 +180,7 @@ def _write(files: Mapping[str, str], path: Path) -> None:
         shutil.rmtree(temporary, ignore_errors=True)
 
 
-def _imported(folders: tuple[Path, ...], name: str) -> ModuleType:
+def _import_package(folders: tuple[Path, ...], name: str) -> ModuleType:
     """The package in the first of these folders; its modules are searched in all of them."""
     if name in sys.modules:
         return sys.modules[name]
@@ -202,7 +202,7 @@ def _imported(folders: tuple[Path, ...], name: str) -> ModuleType:
     return found
 
 
-def _prune(folder: Path) -> None:
+def _remove_unused_programs(folder: Path) -> None:
     """Remove programs that have not been used for a long time.
 
     Other processes are not disturbed: one that has loaded a program no longer needs its files, and

@@ -33,8 +33,8 @@ def command_row(vessel: Vessel, given: Mapping[str, float]) -> Array:
     return np.array(sent, dtype=float)
 
 
-def clipped_row(vessel: Vessel, given: Mapping[str, float]) -> Array:
-    """Return commands (inputs,) that act when these are sent: `clip` of `command_row`.
+def clipped_commands(vessel: Vessel, given: Mapping[str, float]) -> Array:
+    """Return commands (inputs,) as sent, limited to the ranges of their channels.
 
     Args:
         vessel: The vessel.
@@ -43,10 +43,10 @@ def clipped_row(vessel: Vessel, given: Mapping[str, float]) -> Array:
     Raises:
         BadInput: The vessel has no such command, or a value is not finite.
     """
-    return clip(vessel, command_row(vessel, given))
+    return clip_to_channel_ranges(vessel, command_row(vessel, given))
 
 
-def clipped_rows(vessel: Vessel, signals: Mapping[str, Array], count: int) -> Array:
+def clipped_recorded_commands(vessel: Vessel, signals: Mapping[str, Array], count: int) -> Array:
     """Return inputs (N, inputs) that act under the columns of a recording.
 
     Args:
@@ -61,10 +61,10 @@ def clipped_rows(vessel: Vessel, signals: Mapping[str, Array], count: int) -> Ar
     columns = []
     for name, neutral in zip(vessel.inputs, command_row(vessel, {}).tolist(), strict=True):
         columns.append(signals.get(name, np.full(count, neutral)))
-    return clip(vessel, np.column_stack(columns))
+    return clip_to_channel_ranges(vessel, np.column_stack(columns))
 
 
-def clip(vessel: Vessel, sent: Array) -> Array:
+def clip_to_channel_ranges(vessel: Vessel, sent: Array) -> Array:
     """Return inputs limited to the ranges of their channels.
 
     Args:
@@ -96,7 +96,7 @@ def saturated_channels(vessel: Vessel, sent: Array) -> list[str]:
         vessel: The vessel.
         sent: (inputs,) in the vessel's order.
     """
-    excess = np.abs(sent - clip(vessel, sent)).tolist()
+    excess = np.abs(sent - clip_to_channel_ranges(vessel, sent)).tolist()
     # measured inputs follow the commands and have no range
     pairs = zip(vessel.commands.items(), excess, strict=False)
     return [name for (name, c), off in pairs if off > SLACK * (c.high - c.low)]

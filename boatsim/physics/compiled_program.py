@@ -8,7 +8,7 @@ Arguments of many functions:
 
 - p: (P,) parameters, `Program.values()`.
 - on: (E,) 1 for each effect that acts, `Program.switches()`.
-- k: (K,) masses, filled by `constants`.
+- k: (K,) masses, filled by `compute_mass_constants`.
 - act: (3 HELD,) actuators at the begin, in the middle and at the end of a step; `at` is the first
   of those to use.
 - memory: (MEMORY,) state of the actuators.
@@ -24,18 +24,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from boatsim.physics.kernel.records import (
+    FilterHistory,
     FilterStart,
-    Fleet,
-    History,
+    FleetArrays,
     Inputs,
     LatentForce,
     Measurements,
-    Model,
     PassArrays,
     PassOptions,
-    Plant,
+    VesselNumbers,
+    VesselState,
 )
-from boatsim.physics.signals import Array, Shown, Swell
+from boatsim.physics.signals import Array, MeasuredMotion, OscillatingForce
 
 Rows = NDArray[np.int64]
 
@@ -51,41 +51,45 @@ class CompiledProgram(Protocol):
     NZ: int  # entries of the filter's state
     K: int  # masses
     FREE: tuple[int, ...]  # places of the degrees of freedom among `AXES`
-    SHOWS: tuple[int, ...]  # places of a state's entries among the fields of `Shown`
+    SHOWS: tuple[int, ...]  # places of a state's entries among the fields of `MeasuredMotion`
     CLOSED: bool  # whether the last 12 masses are inverted
     HELD: int
-    HAS_PAUSE: bool  # whether the signal of a channel may jump or bend while its command is held
+    HAS_TIME_TO_DISCONTINUITY: (
+        bool  # whether the signal of a channel may jump or bend while its command is held
+    )
     SHORTEST: float  # [s] shortest part of a step
     ENOUGH: float  # [s] remainder of a step that is neglected
 
     # Mass
-    def constants(self, body: Array, p: Array, on: Array, k: Array) -> None:
+    def compute_mass_constants(self, body: Array, p: Array, on: Array, k: Array) -> None:
         """Fill k from the rigid body (6,) and the parameters."""
 
     # Actuators
-    def actuate_in_place(
+    def advance_actuators(
         self, commands: Array, memory: Array, dt: float, p: Array, on: Array, act: Array
     ) -> None:
         """Advance all channels by one step of dt [s] under commands (inputs,)."""
 
-    def settle(self, commands: Array, memory: Array, p: Array, on: Array, act: Array) -> None:
+    def settle_actuators(
+        self, commands: Array, memory: Array, p: Array, on: Array, act: Array
+    ) -> None:
         """Let the actuators reach their commands (inputs,)."""
 
-    def until_bend(
+    def substep_length(
         self, commands: Array, memory: Array, left: float, least: float, p: Array, on: Array
     ) -> float:
         """Length [s] of the next part of a step of which `left` remains; at least `least`."""
 
-    def least_after(self, part: float, before: float, least: float) -> float:
+    def minimum_substep(self, part: float, before: float, least: float) -> float:
         """Least length [s] of the next part of a step, after parts of `before` and `part`."""
 
     # Motion
-    def forces(
+    def total_body_force(
         self, t: float, s: Array, act: Array, at: np.int64, p: Array, on: Array
     ) -> tuple[float, ...]:
         """Body force (NQ,) of all laws [N, N m]."""
 
-    def slopes(
+    def acceleration_jacobian(
         self,
         t: float,
         s: Array,
@@ -118,8 +122,8 @@ class CompiledProgram(Protocol):
 
     def rollout(
         self,
-        model: Model,
-        plant: Plant,
+        model: VesselNumbers,
+        plant: VesselState,
         commands: Array,
         t0: float,
         dt: float,
@@ -131,45 +135,47 @@ class CompiledProgram(Protocol):
         Fills out (N + 1, 2 NQ) with the states and changes the arrays of `plant`.
         """
 
-    def flow(self, p: Array, on: Array) -> tuple[float, float]:
+    def water_velocity(self, p: Array, on: Array) -> tuple[float, float]:
         """Velocity of the water over the ground, north and east [m/s]."""
 
-    def moved(self, s: Any) -> Shown:
+    def pose_and_velocities(self, s: Any) -> MeasuredMotion:
         """Pose and body-axes velocities of a state."""
 
     def jacobian(self, s: Any, J: Array) -> None:
         """Fill J (6, NQ), zeros before, with the body rates per joint rate."""
 
     # Many vessels
-    def weigh_boats(self, boats: Rows, body: Array, p: Array, on: Array, k: Array) -> None:
+    def compute_mass_constants_of_boats(
+        self, boats: Rows, body: Array, p: Array, on: Array, k: Array
+    ) -> None:
         """Fill rows of k (B, K) from rigid bodies (B, 6) and parameters (B, P)."""
 
-    def settle_boats(self, boats: Rows, fleet: Fleet) -> None:
+    def settle_actuators_of_boats(self, boats: Rows, fleet: FleetArrays) -> None:
         """Reset the actuators of vessels and let them reach their commands."""
 
-    def advance_boats(self, boats: Rows, fleet: Fleet, dt: float, steps: int) -> None:
+    def advance_boats(self, boats: Rows, fleet: FleetArrays, dt: float, steps: int) -> None:
         """Advance vessels by steps of dt [s] with their commands held."""
 
-    def feel_boats(self, boats: Rows, fleet: Fleet, felt: Array) -> None:
+    def read_instruments_of_boats(self, boats: Rows, fleet: FleetArrays, felt: Array) -> None:
         """Write time and readings of instruments without noise to rows of felt (B, 11)."""
 
     # Recordings
-    def kalman(
+    def kalman_filter(
         self,
         inputs: Inputs,
         measured: Measurements,
-        model: Model,
+        model: VesselNumbers,
         force: LatentForce,
         start: FilterStart,
         options: PassOptions,
         out: PassArrays,
-        history: History,
+        history: FilterHistory,
     ) -> float:
         """Run one pass of the filter; return the log likelihood."""
 
-    def smooth(
+    def smooth_states(
         self,
-        history: History,
+        history: FilterHistory,
         gains: Array,
         times: Array,
         force: LatentForce,
@@ -178,11 +184,11 @@ class CompiledProgram(Protocol):
     ) -> None:
         """Smooth the means and covariances of a pass; fill the smoother's gains (N, NZ, NZ)."""
 
-    def free_runs(
+    def simulate_intervals(
         self,
         inputs: Inputs,
         max_step: float,
-        model: Model,
+        model: VesselNumbers,
         starts: Rows,
         ends: Rows,
         states: Array,
@@ -193,22 +199,22 @@ class CompiledProgram(Protocol):
         Fills out (runs, N, 2 NQ) with all channels as the recording would show them.
         """
 
-    def undistorted(self, z: Array, p: Array, on: Array) -> None:
+    def remove_position_errors(self, z: Array, p: Array, on: Array) -> None:
         """Replace recorded positions z[:NQ] by those of the vessel."""
 
-    def swell(self, p: Array, on: Array) -> Swell:
+    def oscillating_force(self, p: Array, on: Array) -> OscillatingForce:
         """The random oscillating force; frequency 0: none."""
 
     # MuJoCo
-    def passive_in_place(
+    def add_passive_forces_in_place(
         self, t: float, q: Array, qd: Array, user: Array, f: Array, M: Array
     ) -> None:
         """Add the vessel's forces to f and its added inertia to M, in MuJoCo's coordinates."""
 
-    def make_native(self, offsets: dict[str, int], size: int) -> Any:
+    def compile_passive_callback(self, offsets: dict[str, int], size: int) -> Any:
         """Compile the passive-force callback for models whose `userdata` has `size` floats."""
 
-    def add_to_mujoco(
+    def add_force_and_inertia_to_mujoco(
         self,
         t: float,
         q: Array,

@@ -5,7 +5,7 @@ No other module may rely on them. Each assumption below is checked by
 exist because of this module: raise a bound after that test has passed on the new version.
 
 1. numba reads the default of each argument of a Python function through an `AbstractTemplate`
-   (`known_to_numba`).
+   (`register_with_numba`).
 2. numba keeps compiled code in a `FunctionCache`, whose file object may be given another class
    (`keep_on_disk`).
 3. The option `_nrt=False` switches off numba's reference counts (`WITHOUT_REFERENCE_COUNTS`).
@@ -38,7 +38,7 @@ from numba.extending import intrinsic, lower_builtin
 from numpy.typing import NDArray
 
 from boatsim.errors import BadPhysics
-from boatsim.physics.dependency_hash import stamp
+from boatsim.physics.dependency_hash import dependency_digest
 
 # numba counts references to arrays with locked instructions at every assignment, which takes longer
 # than the laws of a vessel themselves. Functions that allocate no arrays do without.
@@ -48,7 +48,7 @@ WITHOUT_REFERENCE_COUNTS: Mapping[str, Any] = {"_nrt": False}
 # ------------------------------------------------------------------------------------------------
 
 
-def known_to_numba(constructor: Callable[..., object], record: type) -> None:
+def register_with_numba(constructor: Callable[..., object], record: type) -> None:
     """Let compiled code call a function that builds a named tuple with default values.
 
     numba does not support defaults of named tuples, and a small compiled function in place of the
@@ -106,7 +106,7 @@ class SealedCacheFile(IndexDataCacheFile):
     def _source_stamp(self) -> str:
         if self.source.parent.name.startswith("program_"):
             return ""  # the folder of a compiled program is named by its content
-        return stamp(self.source)
+        return dependency_digest(self.source)
 
     def load(self, key: Any) -> Any:
         """Return the compiled code of a signature, None if there is none that can be read."""
@@ -257,14 +257,14 @@ def _search(address: int, wanted: int) -> set[int]:
     """
     hits: set[int] = set()
     for start in range(0, SEARCH_LIMIT, 32):
-        found = np.flatnonzero(_words(address + 8 * start, 32) == wanted)
+        found = np.flatnonzero(_memory_words(address + 8 * start, 32) == wanted)
         hits |= set((start + found).tolist())
         if hits and not len(found):
             break
     return hits
 
 
-def _words(address: int, count: int) -> NDArray[np.int64]:
+def _memory_words(address: int, count: int) -> NDArray[np.int64]:
     """View of `count` 8-byte words of memory."""
     return np.ctypeslib.as_array(ctypes.cast(address, ctypes.POINTER(ctypes.c_int64)), (count,))
 

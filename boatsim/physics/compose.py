@@ -13,21 +13,25 @@ from math import cos, sin
 from textwrap import indent
 
 from boatsim.errors import BadInput
-from boatsim.physics.content import address, load_class, module_of, names
+from boatsim.physics.content import effect_address, import_library_module, library_names, load_class
 from boatsim.physics.debugging import is_compiled
-from boatsim.physics.kinds.channel import WHOLE, Channel
-from boatsim.physics.kinds.effect import Effect, Kind, Part, Site
-from boatsim.physics.kinds.recall import Recall
+from boatsim.physics.kinds.channel import WHOLE, ChannelEffect
+from boatsim.physics.kinds.effect import Effect, EffectKind, LawCall, ProgramFunction
+from boatsim.physics.kinds.recall import SignalHistory
 from boatsim.physics.vessel import Vessel
 
 
-def kinds() -> list[type[Kind]]:
+def effect_kinds() -> list[type[EffectKind]]:
     """Return all kinds of effects, one for each file of `boatsim/physics/kinds`."""
-    found: list[type[Kind]] = []
-    for name in names("kind"):
-        module = module_of("kind", name)
+    found: list[type[EffectKind]] = []
+    for name in library_names("kind"):
+        module = import_library_module("kind", name)
         for value in vars(module).values():
-            is_kind = isinstance(value, type) and issubclass(value, Kind) and value is not Kind
+            is_kind = (
+                isinstance(value, type)
+                and issubclass(value, EffectKind)
+                and value is not EffectKind
+            )
             if is_kind and value.__module__ == module.__name__:
                 found.append(value)
     return found
@@ -47,57 +51,57 @@ class Composition:
         self.vessel, self.offsets = vessel, tuple(offsets)
         self.effects = tuple(effects)
         self.signals, self.commands = (*vessel.actuators, *vessel.readings), vessel.inputs
-        self.sums: Mapping[str, Sequence[str]] = {}
+        self.signal_sums: Mapping[str, Sequence[str]] = {}
         if any(type(e).sees_held for e in self.effects):
-            self.sums = vessel.sums
-        held = [*vessel.held, *self.sums]
+            self.signal_sums = vessel.signal_sums
+        held = [*vessel.law_signals, *self.signal_sums]
         self._own: dict[int, int] = {}
         for i, effect in enumerate(self.effects):
-            if isinstance(effect, Recall) and self._may_look_back(i, effect):
+            if isinstance(effect, SignalHistory) and self._may_use_history(i, effect):
                 self._own[i] = len(held)
                 held.append(f"recalled by {effect.name}")
-        self.held: Sequence[str] = tuple(held)
+        self.law_signals: Sequence[str] = tuple(held)
 
     # Used by the kinds of effects
     # ------------------------------------------------------------------------------------------
 
-    def sites(self, number: int) -> Sequence[Site]:
+    def law_calls(self, number: int) -> Sequence[LawCall]:
         """Return the calls of an effect's laws: one, or one for each effect that it acts on.
 
         Args:
             number: Place of the effect.
         """
         effect = self.effects[number]
-        own = self._values(number)
+        own = self._parameters_text(number)
         held: tuple[str, ...] = ()
         if type(effect).sees_held:
-            held = ("act", "at", f"np.int64({self.own(number)})")
+            held = ("act", "at", f"np.int64({self.history_place(number)})")
         if not type(effect).per_instance_of:
-            signals = (self._signals(number),) if type(effect).roles else ()
-            return [Site(number, own, signals + held)]
+            signals = (self._signals_text(number),) if type(effect).roles else ()
+            return [LawCall(number, own, signals + held)]
         calls = []
-        for carrier in self.vessel.carriers(effect):
+        for carrier in self.vessel.carrier_effects(effect):
             i = self.effects.index(carrier)
-            carried = self._carried(i, type(effect).per_instance_of)
-            calls.append(Site(number, own, (carried, self._values(i), *held)))
+            carried = self._carrier_signals(i, type(effect).per_instance_of)
+            calls.append(LawCall(number, own, (carried, self._parameters_text(i), *held)))
         return calls
 
-    def targets(self, number: int) -> Sequence[str]:
+    def target_actuators(self, number: int) -> Sequence[str]:
         """Return the actuators that a channel effect acts on.
 
         Args:
             number: Place of the effect.
         """
-        return self.vessel.targets(self.effects[number])
+        return self.vessel.target_actuators(self.effects[number])
 
-    def source(self, number: int, actuator: str) -> str | None:
+    def command_for_actuator(self, number: int, actuator: str) -> str | None:
         """Return the command that drives an actuator through a channel effect, or None.
 
         Args:
             number: Place of the effect.
             actuator: Name of the actuator.
         """
-        return self.vessel.feeding_command(self.effects[number], actuator)
+        return self.vessel.command_for_actuator(self.effects[number], actuator)
 
     def side(self, actuator: str) -> float:
         """Return the side on which an actuator acts: -1 port, 0 middle, +1 starboard.
@@ -107,71 +111,71 @@ class Composition:
         """
         return self.vessel.side(actuator)
 
-    def memory(self, number: int, actuator: str) -> int:
+    def memory_offset(self, number: int, actuator: str) -> int:
         """Return the place of the first state that an effect has of an actuator.
 
         Args:
             number: Place of the effect.
             actuator: Name of the actuator.
         """
-        return self._memory[number, actuator]
+        return self._memory_offsets[number, actuator]
 
-    def own(self, number: int) -> int:
-        """Return the place in `held` of the lagged signal of an effect; 0 if it has none.
+    def history_place(self, number: int) -> int:
+        """Return the place in `law_signals` of the lagged signal of an effect; 0 if it has none.
 
         Args:
             number: Place of the effect.
         """
         return self._own.get(number, 0)
 
-    def _may_look_back(self, number: int, effect: Recall) -> bool:
+    def _may_use_history(self, number: int, effect: SignalHistory) -> bool:
         """Whether an effect may use the history of a signal.
 
         A placeholder of symbolic regression may.
         """
-        return number >= len(self.vessel.effects) or effect.looks_back
+        return number >= len(self.vessel.effects) or effect.uses_history
 
-    def behind(self, number: int) -> Sequence[int]:
+    def later_effects(self, number: int) -> Sequence[int]:
         """Return the places of the effects that follow an effect in the program.
 
         Args:
             number: Place of the effect.
         """
-        return self._order[self._order.index(number) + 1 :]
+        return self._effect_order[self._effect_order.index(number) + 1 :]
 
     @cached_property
-    def _order(self) -> list[int]:
+    def _effect_order(self) -> list[int]:
         """Places of the effects, by stage, then in the order of the vessel file."""
-        return sorted(range(len(self.effects)), key=lambda i: self.effects[i].standing)
+        return sorted(range(len(self.effects)), key=lambda i: self.effects[i].program_position)
 
     @cached_property
     def memory_size(self) -> int:
         """Number of states of all channels and of all lags."""
         size = len(self._own)
         for i, effect in enumerate(self.effects):
-            if isinstance(effect, Channel):
-                size += type(effect).slots * len(self.targets(i))
+            if isinstance(effect, ChannelEffect):
+                size += type(effect).slots * len(self.target_actuators(i))
         return size
 
     @cached_property
-    def _memory(self) -> dict[tuple[int, str], int]:
+    def _memory_offsets(self) -> dict[tuple[int, str], int]:
         found: dict[tuple[int, str], int] = {}
         at = 0
         for actuator in self.signals:
             for i, effect in enumerate(self.effects):
-                if isinstance(effect, Channel) and actuator in self.targets(i):
+                if isinstance(effect, ChannelEffect) and actuator in self.target_actuators(i):
                     found[i, actuator] = at
                     at += type(effect).slots
         for k, i in enumerate(self._own):
             found[i, WHOLE] = at + k
         return found
 
-    def _values(self, i: int) -> str:
+    def _parameters_text(self, i: int) -> str:
         """`V3(p[7], p[8])`: an effect's parameters as its law receives them."""
         first, count = self.offsets[i], len(type(self.effects[i]).params())
         return f"V{i}({', '.join(map('p[{}]'.format, range(first, first + count)))})"
 
-    def _signals(self, i: int) -> str:
+    def _signals_text(self, i: int) -> str:
         """`S3(act[at], ...)`: signals of an effect's roles, then cosine and sine of angles."""
         effect = self.effects[i]
         texts: list[str] = []
@@ -179,26 +183,26 @@ class Composition:
         bound = self.vessel.bindings(effect)
         for role, about in type(effect).roles.items():
             channel = bound.get(role, about.fixed)
-            texts.append(self._signal(channel))
+            texts.append(self._signal_text(channel))
             if about.unit != "rad":
                 continue
             if isinstance(channel, str):
-                angles += [self._signal(f"cos_{channel}"), self._signal(f"sin_{channel}")]
+                angles += [self._signal_text(f"cos_{channel}"), self._signal_text(f"sin_{channel}")]
             else:
                 angle = float(channel or 0.0)
-                angles += [self._signal(cos(angle)), self._signal(sin(angle))]
+                angles += [self._signal_text(cos(angle)), self._signal_text(sin(angle))]
         return f"S{i}({', '.join([*texts, *angles])})"
 
-    def _carried(self, i: int, idea: str) -> str:
+    def _carrier_signals(self, i: int, idea: str) -> str:
         """Signals of an effect that another one acts on, as the other's law takes them."""
-        if type(self.effects[i]).idea() == idea:
-            return self._signals(i)
-        return f"as_{idea}{i}({self._signals(i)}, {self._values(i)})"
+        if type(self.effects[i]).type_name() == idea:
+            return self._signals_text(i)
+        return f"as_{idea}{i}({self._signals_text(i)}, {self._parameters_text(i)})"
 
-    def _signal(self, bound: str | float | None) -> str:
+    def _signal_text(self, bound: str | float | None) -> str:
         """A signal by its place, a fixed one by its value."""
         if isinstance(bound, str):
-            return f"act[at + {self.held.index(bound)}]"
+            return f"act[at + {self.law_signals.index(bound)}]"
         if bound is None:
             raise BadInput(f"{self.vessel.name}: a signal is bound to no channel")
         return repr(float(bound))
@@ -210,52 +214,59 @@ class Composition:
         """Return the text of `laws.py`."""
         functions: list[str] = []
         used: set[str] = set()
-        constants = [f"HELD, MEMORY = {max(len(self.held), 1)}, {max(self.memory_size, 1)}"]
-        everything = kinds()
+        constants = [f"HELD, MEMORY = {max(len(self.law_signals), 1)}, {max(self.memory_size, 1)}"]
+        everything = effect_kinds()
         for part in chain.from_iterable(kind.parts for kind in everything):
-            body, has_effects = self._body(part, everything)
+            body, has_effects = self._function_lines(part, everything)
             head = f"@{part.compiled}\ndef {part.name}({part.arguments}):\n"
             lines = [*body, f"return {part.result}".rstrip()]
             functions.append(head + indent("\n".join(lines), "    ") + "\n\n")
             constants.append(f"HAS_{part.name.upper()} = {has_effects}")
-            used.update(*map(_calls, body))
-        return "\n".join([*self._head(used), *constants, "", "", *functions])
+            used.update(*map(_called_functions, body))
+        return "\n".join([*self._module_head(used), *constants, "", "", *functions])
 
-    def _head(self, used: set[str]) -> Iterator[str]:
+    def _module_head(self, used: set[str]) -> Iterator[str]:
         """Imports, and the compiled functions and types that the text below calls."""
         # Without the name of the vessel, so that vessels with the same effects share a program.
         yield '"""Effects of a vessel, composed by boatsim; not meant to be edited."""'
         yield ""
         yield "import numpy as np"
         yield ""
-        yield "from boatsim.physics.compose import classes_of"
-        yield "from boatsim.physics.kernel.compiling import inlined, merged, shared"
-        yield "from boatsim.physics.kernel.rotation import hold_turned"
-        yield "from boatsim.physics.signals import Course, Swell, Wander, Wrench"
+        yield "from boatsim.physics.compose import effect_classes"
+        yield "from boatsim.physics.kernel.compiling import compile_shared_law, inlined, merged"
+        yield "from boatsim.physics.kernel.rotation import write_cosine_and_sine"
+        yield "from boatsim.physics.signals import ("
+        yield "    InstrumentDrift,"
+        yield "    OscillatingForce,"
+        yield "    SignalSegment,"
+        yield "    Wrench,"
+        yield ")"
         yield ""
-        yield f"E = classes_of({[address(type(e)) for e in self.effects]!r})"
+        yield f"E = effect_classes({[effect_address(type(e)) for e in self.effects]!r})"
         for i, effect in enumerate(self.effects):
             if f"V{i}" in used:
-                yield f"V{i} = E[{i}].values_type()  # {_remark(effect.name)}"
+                yield f"V{i} = E[{i}].values_type()  # {_comment_text(effect.name)}"
             if f"S{i}" in used:
                 yield f"S{i} = E[{i}].signals_type()"
             laws = chain.from_iterable(getattr(kind, "laws", ()) for kind in type(effect).__mro__)
             for law in dict.fromkeys(laws):
                 if f"{law}{i}" in used:
                     _check_compiled(type(effect), law)
-                    yield f"{law}{i} = shared(E[{i}].{law})"
+                    yield f"{law}{i} = compile_shared_law(E[{i}].{law})"
 
-    def _body(self, part: Part, everything: Sequence[type[Kind]]) -> tuple[list[str], bool]:
+    def _function_lines(
+        self, part: ProgramFunction, everything: Sequence[type[EffectKind]]
+    ) -> tuple[list[str], bool]:
         """Lines of a part, and whether any effect contributes to it."""
         body, has_effects = list(part.begin), False
         for station in part.stations(self):
             body += station.begin
-            for i in self._order:
+            for i in self._effect_order:
                 effect = self.effects[i]
                 lines: list[str] = []
                 for kind in everything:
                     if isinstance(effect, kind):
-                        lines += kind.lines(part, station, i, self)
+                        lines += kind.program_lines(part, station, i, self)
                 has_effects = has_effects or bool(lines)
                 if lines and i >= len(self.vessel.effects):  # a candidate has a switch
                     lines = [f"if on[{i}] != 0.0:", *map("    ".__add__, lines)]
@@ -264,7 +275,7 @@ class Composition:
         return body, has_effects
 
 
-def _remark(name: str) -> str:
+def _comment_text(name: str) -> str:
     """A user's name without characters that could end a comment or a docstring."""
     return re.sub(r"[^\w .+-]", "?", name)
 
@@ -278,7 +289,7 @@ def _check_compiled(kind: type[Effect], law: str) -> None:
         )
 
 
-def _calls(line: str) -> Iterator[str]:
+def _called_functions(line: str) -> Iterator[str]:
     """Names of the functions that a line calls."""
     for piece in line.split("(")[:-1]:
         word = piece
@@ -287,10 +298,10 @@ def _calls(line: str) -> Iterator[str]:
         yield word
 
 
-def classes_of(addresses: Sequence[str]) -> list[type[Effect]]:
+def effect_classes(addresses: Sequence[str]) -> list[type[Effect]]:
     """Return the classes of effects, for use in generated programs.
 
     Args:
-        addresses: Their addresses (`content.address`).
+        addresses: Their addresses (`content.effect_address`).
     """
     return [load_class("effect", a) for a in addresses]

@@ -30,7 +30,7 @@ PACKAGES = {
     "log": "recordings.logs",
 }
 # Class statement or preset of an effect
-EFFECT_CLASS = re.compile(r"^(?:class (?=\w+\()|(?=\w+ = preset\())([A-Z]\w*)", re.MULTILINE)
+EFFECT_CLASS = re.compile(r"^(?:class (?=\w+\()|(?=\w+ = preset_effect\())([A-Z]\w*)", re.MULTILINE)
 KINDS = {"vessel": "models", "controller": "controllers", "scenario": "scenarios"}
 # Folders of a user's own content
 USER_FOLDERS = {
@@ -42,14 +42,14 @@ USER_FOLDERS = {
 
 
 @cache
-def root() -> Path:
+def content_root() -> Path:
     """Return the folder of models/, controllers/ and scenarios/."""
     package = Path(__file__).parents[1]
     packed = package / "_content"
     return packed if packed.is_dir() else package.parent
 
 
-def names(kind: str) -> list[str]:
+def library_names(kind: str) -> list[str]:
     """Return the names of all content of a kind in the library.
 
     Scenarios are folder/file or folder/case.
@@ -58,12 +58,12 @@ def names(kind: str) -> list[str]:
         return sorted(_effect_files())
     if kind in PACKAGES:
         return sorted(p.stem for p in _package(kind).glob("[!_]*.py"))
-    folder = root() / KINDS[kind]
+    folder = content_root() / KINDS[kind]
     if kind == "vessel":
         return sorted(p.parent.name for p in folder.glob("*/vessel.toml"))
     if kind == "controller":
         return sorted(p.stem for p in folder.glob("[!_]*.py"))
-    return sorted(_scenarios(root()))
+    return sorted(_scenarios(content_root()))
 
 
 def _package(kind: str) -> Path:
@@ -87,7 +87,7 @@ def _effect_files() -> dict[str, str]:
 def user_names(kind: str) -> list[str]:
     """Return the names of content of a kind that the user's folders add to the library."""
     found: set[str] = set()
-    for folder in trust.content() if kind in USER_FOLDERS else ():
+    for folder in trust.user_content_folders() if kind in USER_FOLDERS else ():
         inside = folder / USER_FOLDERS[kind]
         if kind == "scenario":
             found.update(_scenarios(folder))
@@ -96,15 +96,15 @@ def user_names(kind: str) -> list[str]:
             found.update(file.parent.name for file in files)
         else:
             found.update(file.stem for file in inside.glob("[!_]*.py"))
-    return sorted(found - set(names(kind)))
+    return sorted(found - set(library_names(kind)))
 
 
 def all_names(kind: str) -> list[str]:
     """Return the names of all content of a kind, of the library and of the user."""
-    return sorted([*names(kind), *user_names(kind)])
+    return sorted([*library_names(kind), *user_names(kind)])
 
 
-def full_name(kind: str, name: str) -> str:
+def full_scenario_name(kind: str, name: str) -> str:
     """Return folder/name of a scenario that is given by its bare name.
 
     Any other name is returned unchanged.
@@ -120,7 +120,7 @@ def full_name(kind: str, name: str) -> str:
     return found[0] if found else name
 
 
-def find(kind: str, name: str, base_folder: Path | None = None) -> Path:
+def find_content_file(kind: str, name: str, base_folder: Path | None = None) -> Path:
     """Return the path of a vessel.toml, a controller's .py or a scenario's .toml.
 
     Args:
@@ -133,7 +133,7 @@ def find(kind: str, name: str, base_folder: Path | None = None) -> Path:
         BadInput: If there is none, with the nearest valid name.
     """
     if base_folder is None:
-        name = full_name(kind, name)
+        name = full_scenario_name(kind, name)
     for search in (_by_path, _in_library, _in_user_content, _in_working_directory):
         if (found := search(kind, name, base_folder)) is not None:
             return found
@@ -148,7 +148,7 @@ def _by_path(kind: str, name: str, base_folder: Path | None) -> Path | None:
     path = (base_folder or Path()) / name
     if path.suffix == suffix and path.is_file():
         return path.resolve()
-    if base_folder and kind == "controller" and name not in names(kind):
+    if base_folder and kind == "controller" and name not in library_names(kind):
         controller = base_folder / f"{name}{suffix}"
         if controller.is_file():
             return controller.resolve()
@@ -158,17 +158,17 @@ def _by_path(kind: str, name: str, base_folder: Path | None) -> Path | None:
 
 
 def _in_library(kind: str, name: str, base_folder: Path | None) -> Path | None:
-    if name not in names(kind):
+    if name not in library_names(kind):
         return None
-    folder = root() / KINDS[kind]
+    folder = content_root() / KINDS[kind]
     if kind == "scenario":
-        return _scenarios(root())[name]
+        return _scenarios(content_root())[name]
     return folder / name / "vessel.toml" if kind == "vessel" else folder / f"{name}.py"
 
 
 def _in_user_content(kind: str, name: str, base_folder: Path | None = None) -> Path | None:
     if kind == "scenario":
-        for folder in trust.content():
+        for folder in trust.user_content_folders():
             scenarios = _scenarios(folder)
             if name in scenarios:
                 return scenarios[name]
@@ -176,7 +176,7 @@ def _in_user_content(kind: str, name: str, base_folder: Path | None = None) -> P
     file = name if name.endswith(".py") else f"{name}.py"
     if kind == "vessel":
         file = f"{name}/vessel.toml"
-    for folder in trust.content():
+    for folder in trust.user_content_folders():
         for path in (folder / USER_FOLDERS[kind] / file, folder / file):
             if path.is_file():
                 return path.resolve()
@@ -212,7 +212,7 @@ def _cases(path: Path, _modified_ns: int) -> tuple[str, ...]:
     return tuple(str(case.get("name")) for case in tables(read_toml(path).get("case")))
 
 
-def module_at(path: Path, name: str) -> ModuleType:
+def import_module_file(path: Path, name: str) -> ModuleType:
     """Import a file under a module name, or return the module of that name.
 
     Args:
@@ -256,7 +256,7 @@ def snake_case(name: str) -> str:
     return re.sub(r"(?<!^)(?=[A-Z])", "_", name).lower()
 
 
-def module_of(kind: str, name: str) -> ModuleType:
+def import_library_module(kind: str, name: str) -> ModuleType:
     """Return the module of this package that defines content of a kind."""
     file = _effect_files()[name] if kind == "effect" else name
     return importlib.import_module(f"boatsim.{PACKAGES[kind]}.{file}")
@@ -279,16 +279,16 @@ def load_class(
     Raises:
         BadInput: If there is no such class, or its file is not trusted.
     """
-    if kind in PACKAGES and name in names(kind):
-        module = module_of(kind, name)
+    if kind in PACKAGES and name in library_names(kind):
+        module = import_library_module(kind, name)
     else:
         if kind == "controller":
-            path = find("controller", name, base_folder)
+            path = find_content_file("controller", name, base_folder)
         else:
             path = _user_file(kind, name, base_folder)
         name = path.stem
-        if path.parent == root() / KINDS["controller"]:
-            module = module_at(path, f"boatsim.controllers.{name}")
+        if path.parent == content_root() / KINDS["controller"]:
+            module = import_module_file(path, f"boatsim.controllers.{name}")
         else:
             module = _user_module(path, named)
     found = getattr(module, camel_case(name), None)
@@ -312,7 +312,7 @@ def _user_file(kind: str, name: str, base_folder: Path | None) -> Path:
     return found
 
 
-def address(effect: type) -> str:
+def effect_address(effect: type) -> str:
     """Return the name of an effect class of the library, or the path of the file of another."""
     if effect.__module__.startswith("boatsim.physics.effects."):
         return snake_case(effect.__name__)
@@ -321,7 +321,7 @@ def address(effect: type) -> str:
 
 def vessel_address(file: Path) -> str:
     """Return the name of a shipped vessel, or the absolute path of another vessel.toml."""
-    if file.parent.parent == root() / KINDS["vessel"]:
+    if file.parent.parent == content_root() / KINDS["vessel"]:
         return file.parent.name
     return str(file.resolve())
 
@@ -336,5 +336,5 @@ def _user_module(path: Path, named: bool) -> ModuleType:
     name = f"boatsim_own_{path.stem}_{digest}"
     # A module that was imported before has been trusted before
     if not named and name not in sys.modules:
-        trust.check(path)
-    return module_at(path, name)
+        trust.check_trusted(path)
+    return import_module_file(path, name)

@@ -9,20 +9,20 @@ PACKAGE = Path(__file__).parents[1]
 
 
 @cache
-def stamp(path: Path) -> str:
+def dependency_digest(path: Path) -> str:
     """Return a digest of a file and of all files of boatsim that it reaches by imports.
 
     Args:
         path: A Python file.
     """
     digest = hashlib.sha256()
-    for file in sorted(reach(path)):
-        digest.update(content(file))
+    for file in sorted(imported_files(path)):
+        digest.update(file_content(file))
     return digest.hexdigest()
 
 
 @cache
-def content(path: Path) -> bytes:
+def file_content(path: Path) -> bytes:
     """Return the content that a file had at the first call, as for an imported module.
 
     Args:
@@ -32,7 +32,7 @@ def content(path: Path) -> bytes:
 
 
 @cache
-def reach(path: Path) -> frozenset[Path]:
+def imported_files(path: Path) -> frozenset[Path]:
     """Return a file and all files of boatsim that it imports, directly or indirectly.
 
     Args:
@@ -50,7 +50,7 @@ def reach(path: Path) -> frozenset[Path]:
 def _imports(path: Path) -> frozenset[Path]:
     """Files of boatsim that a file imports."""
     found = set()
-    for node in ast.walk(ast.parse(content(path))):
+    for node in ast.walk(ast.parse(file_content(path))):
         names = []
         if isinstance(node, ast.Import):
             names = [alias.name for alias in node.names]

@@ -6,8 +6,8 @@ from typing import ClassVar
 
 from boatsim.errors import BadInput
 from boatsim.physics import terms
-from boatsim.physics.base import UNSET, Boat, Force, Recall, param
-from boatsim.physics.param import code
+from boatsim.physics.base import UNSET, Boat, Force, SignalHistory, param
+from boatsim.physics.param import code_parameter
 from boatsim.physics.particulars import GRAVITY
 
 EVER = 1e12  # [s] beyond any clock, also one that counts from 1970
@@ -17,13 +17,13 @@ LITTLE = 0.01
 
 
 @dataclass(frozen=True)
-class Described(Force, Recall):
+class SymbolicTerm(Force, SignalHistory):
     """One term of a law: a coefficient times up to three factors and a course in time."""
 
     described: ClassVar[bool] = True
     sees_held: ClassVar[bool] = True
-    recall: ClassVar = terms.recall
-    reach: ClassVar = terms.reach
+    update_signal_history: ClassVar = terms.update_signal_history
+    longest_history_step: ClassVar = terms.longest_history_step
 
     # the factors; none: it is constant
     of: Sequence[str] = field(default=(), hash=False)
@@ -63,17 +63,17 @@ class Described(Force, Recall):
         UNSET, low=1e-9, high=1e3, unit="", words="speed [SI] within which a factor sign_ changes"
     )
 
-    first: float = code("first factor")
-    second: float = code("second factor")
-    third: float = code("third factor")
-    course: float = code("course in time")
-    looks_at: float = code("signal whose history is used")
-    looks: float = code("kind of history")
+    first: float = code_parameter("first factor")
+    second: float = code_parameter("second factor")
+    third: float = code_parameter("third factor")
+    course: float = code_parameter("course in time")
+    looks_at: float = code_parameter("signal whose history is used")
+    looks: float = code_parameter("kind of history")
 
     def __post_init__(self) -> None:
         super().__post_init__()
         object.__setattr__(self, "of", (self.of,) if isinstance(self.of, str) else tuple(self.of))
-        terms.code_of(f"{self.name}: acts", self.acts, terms.COURSES)
+        terms.index_code(f"{self.name}: acts", self.acts, terms.COURSES)
         if not self.begin < self.end:
             raise BadInput(
                 f"{self.name}: begin = {self.begin:g}, end = {self.end:g} s; "
@@ -81,11 +81,11 @@ class Described(Force, Recall):
             )
 
     @property
-    def looks_back(self) -> bool:
+    def uses_history(self) -> bool:
         """Whether one of its factors is the history of a signal."""
-        return self.stated("memory") and "memory" not in self.filled
+        return self.has_value("memory") and "memory" not in self.filled
 
-    def rules(self, vessel: Boat) -> dict[str, float]:
+    def derived_parameters(self, vessel: Boat) -> dict[str, float]:
         """Return the numbers that stand for names in the compiled law.
 
         Args:
@@ -94,13 +94,13 @@ class Described(Force, Recall):
         Raises:
             BadInput: A factor does not exist on the vessel, or `memory` is missing.
         """
-        first, second, third = terms.codes(self.name, self.of, vessel.described_signals)
+        first, second, third = terms.factor_codes(self.name, self.of, vessel.described_signals)
         turning = any(terms.UNITS.get(name.removeprefix("sign_")) == "rad/s" for name in self.of)
         square = GRAVITY / vessel.length if turning else GRAVITY * vessel.length
         little = LITTLE * square**0.5
-        acts = terms.code_of(self.name, self.acts, terms.COURSES)
+        acts = terms.index_code(self.name, self.acts, terms.COURSES)
         looks_at, looks = terms.history_codes(self.name, self.of, vessel.described_signals)
-        if looks_at and not self.stated("memory"):
+        if looks_at and not self.has_value("memory"):
             raise BadInput(
                 f"{self.name}: memory is missing: the time constant [s] of of = {list(self.of)}"
             )
@@ -115,11 +115,11 @@ class Described(Force, Recall):
             "memory": 1.0,
         }
 
-    def by_name(self) -> dict[str, float]:
+    def law_parameters(self) -> dict[str, float]:
         """Return the parameters of the compiled law by name, without the coefficient."""
         return {n: getattr(self, n) for n in type(self).params() if n != "coefficient"}
 
-    def shape(self) -> dict[str, object]:
+    def fixed_settings(self) -> dict[str, object]:
         """Return the keys of its table that describe the law, without those that it ignores."""
         found: dict[str, object] = {"of": list(self.of), "acts": self.acts}
         if self.acts != "always":
@@ -128,6 +128,6 @@ class Described(Force, Recall):
             found |= {"wavelength": self.wavelength, "crest": self.crest}
         if set(self.of) & set(terms.BEYOND):
             found["beyond"] = self.beyond
-        if self.looks_back:
+        if self.uses_history:
             found["memory"] = self.memory
         return found

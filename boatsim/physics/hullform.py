@@ -37,7 +37,7 @@ class DeepV:
     fullness: float = 2.4
     chine_end: float = 0.95  # [-] where the chine runs into the stem
 
-    def ahead(self, s: Array) -> Array:
+    def forebody_fraction(self, s: Array) -> Array:
         """Return 0 up to the end of the parallel body, rising from there to 1 at the bow.
 
         Args:
@@ -45,7 +45,7 @@ class DeepV:
         """
         return np.clip((s - self.parallel) / (1 - self.parallel), 0, 1)
 
-    def keel(self, s: Array) -> Array:
+    def keel_height(self, s: Array) -> Array:
         """Return the height of the keel and stem [m].
 
         Args:
@@ -55,10 +55,10 @@ class DeepV:
         return (
             self.rocker * aft**2
             - self.draught
-            + (self.draught + self.stem_height) * self.ahead(s) ** self.fullness
+            + (self.draught + self.stem_height) * self.forebody_fraction(s) ** self.fullness
         )
 
-    def chine(self, s: Array) -> tuple[Array, Array]:
+    def chine_points(self, s: Array) -> tuple[Array, Array]:
         """Return half-breadth and height of the chine [m].
 
         Args:
@@ -66,10 +66,10 @@ class DeepV:
         """
         along = np.clip((s - 0.4) / (self.chine_end - 0.4), 0, 1)
         half = self.chine_beam / 2 * (1 - along**2.2)
-        rise = np.tan(self.deadrise + math.radians(30) * self.ahead(s))
-        return half, self.keel(s) + half * rise
+        rise = np.tan(self.deadrise + math.radians(30) * self.forebody_fraction(s))
+        return half, self.keel_height(s) + half * rise
 
-    def sheer(self, s: Array) -> tuple[Array, Array]:
+    def sheer_points(self, s: Array) -> tuple[Array, Array]:
         """Return half-breadth and height of the deck edge [m].
 
         Args:
@@ -80,7 +80,7 @@ class DeepV:
         rise = np.clip((s - 0.3) / 0.7, 0, 1) ** 1.6
         return half, self.freeboard + (self.stem_height - self.freeboard) * rise
 
-    def stations(self, count: int = 49) -> Array:
+    def station_positions(self, count: int = 49) -> Array:
         """Return places along the hull (count,), closer to each other towards the bow.
 
         Args:
@@ -96,7 +96,7 @@ class Mesh:
     points: list[Array] = field(default_factory=list)
     faces: list[tuple[int, int, int]] = field(default_factory=list)
 
-    def add(self, grid: Array, *, flip: bool = False) -> None:
+    def add_surface(self, grid: Array, *, flip: bool = False) -> None:
         """Add the surface through a grid of points.
 
         Args:
@@ -113,27 +113,29 @@ class Mesh:
                 for corners in ((a, b, b + 1), (a, b + 1, a + 1)):
                     self.faces.append(corners if flip else corners[::-1])
 
-    def both_sides(self, grid: Array) -> None:
+    def add_surface_and_mirror(self, grid: Array) -> None:
         """Add a surface of the port side (y > 0) and its mirror image.
 
         Args:
             grid: (rows, columns, 3).
         """
-        self.add(grid)
-        self.add(grid * (1, -1, 1), flip=True)
+        self.add_surface(grid)
+        self.add_surface(grid * (1, -1, 1), flip=True)
 
-    def body(self, rings: Sequence[Array]) -> None:
+    def add_closed_body(self, rings: Sequence[Array]) -> None:
         """Add a closed body.
 
         Args:
             rings: Rings (n, 3) through which it passes, counter-clockwise seen against their order.
         """
         closed = np.array([np.vstack([r, r[:1]]) for r in rings])
-        self.add(closed)
+        self.add_surface(closed)
         for ring, flip in ((closed[0], True), (closed[-1], False)):
-            self.add(np.array([ring, np.tile(ring[:-1].mean(0), (len(ring), 1))]), flip=flip)
+            self.add_surface(
+                np.array([ring, np.tile(ring[:-1].mean(0), (len(ring), 1))]), flip=flip
+            )
 
-    def obj(self, about: str) -> str:
+    def obj_text(self, about: str) -> str:
         """Return the mesh as text of an OBJ file, without triangles of zero area.
 
         Args:
@@ -147,7 +149,7 @@ class Mesh:
         return "\n".join(lines) + "\n"
 
 
-def between(a: Array, b: Array, rows: int) -> Array:
+def ruled_surface(a: Array, b: Array, rows: int) -> Array:
     """Return the ruled surface (n, rows, 3) between two curves.
 
     Args:
@@ -159,12 +161,12 @@ def between(a: Array, b: Array, rows: int) -> Array:
     return np.asarray(a[:, None, :] * (1 - t) + b[:, None, :] * t)
 
 
-def curve(x: Array, y: Array | float, z: Array | float) -> Array:
+def curve_points(x: Array, y: Array | float, z: Array | float) -> Array:
     """Return the points (n, 3) of a curve from their coordinates, (n,) or scalar."""
     return np.stack(np.broadcast_arrays(x, y, z), axis=-1).astype(float)
 
 
-def ring(
+def rounded_rectangle(
     centre: Sequence[float], half: tuple[float, float], power: float = 2.0, axis: str = "z"
 ) -> Array:
     """Return the points (n, 3) of a rounded rectangle.
@@ -180,77 +182,102 @@ def ring(
     p = half[0] * np.sign(c) * np.abs(c) ** (2 / power)
     q = half[1] * np.sign(s) * np.abs(s) ** (2 / power)
     zero = np.zeros_like(p)
-    return np.asarray(centre) + (curve(p, q, zero) if axis == "z" else curve(zero, p, q))
+    return np.asarray(centre) + (
+        curve_points(p, q, zero) if axis == "z" else curve_points(zero, p, q)
+    )
 
 
-def shell(hull: DeepV) -> Mesh:
+def hull_mesh(hull: DeepV) -> Mesh:
     """Return bottom, topsides and transom of a hull."""
-    s = hull.stations()
+    s = hull.station_positions()
     x = s * hull.length
-    chine_half, chine_z = hull.chine(s)
-    sheer_half, sheer_z = hull.sheer(s)
-    keel = curve(x, 0.0, hull.keel(s))
-    chine = curve(x, chine_half, chine_z)
-    step = curve(x, np.minimum(chine_half * 1.04, np.maximum(sheer_half, chine_half)), chine_z)
-    sheer = curve(x, sheer_half, np.maximum(sheer_z, hull.keel(s)))
+    chine_half, chine_z = hull.chine_points(s)
+    sheer_half, sheer_z = hull.sheer_points(s)
+    keel = curve_points(x, 0.0, hull.keel_height(s))
+    chine = curve_points(x, chine_half, chine_z)
+    step = curve_points(
+        x, np.minimum(chine_half * 1.04, np.maximum(sheer_half, chine_half)), chine_z
+    )
+    sheer = curve_points(x, sheer_half, np.maximum(sheer_z, hull.keel_height(s)))
     mesh = Mesh()
     for lower, upper, rows in ((keel, chine, 4), (chine, step, 2), (step, sheer, 6)):
-        mesh.both_sides(between(lower, upper, rows))
+        mesh.add_surface_and_mirror(ruled_surface(lower, upper, rows))
     side = np.array([keel[0], chine[0], step[0], sheer[0]])
-    mesh.both_sides(np.array([side, side * (1, 0, 1)]).transpose(1, 0, 2))
+    mesh.add_surface_and_mirror(np.array([side, side * (1, 0, 1)]).transpose(1, 0, 2))
     return mesh
 
 
-def deck(hull: DeepV) -> Mesh:
+def deck_mesh(hull: DeepV) -> Mesh:
     """Return foredeck, side decks, cockpit, and a stripe below the deck edge of a hull."""
-    s = np.unique(np.concatenate([hull.stations(), [0.04, 0.0401, 0.56, 0.5601]]))
-    half, z = hull.sheer(s)
+    s = np.unique(np.concatenate([hull.station_positions(), [0.04, 0.0401, 0.56, 0.5601]]))
+    half, z = hull.sheer_points(s)
     x = s * hull.length
     open_here = (s > 0.04) & (s < 0.5601)
     camber = 0.06 * half
     inner = np.where(open_here, 0.74 * half, 0.0)
     floor = np.where(open_here, 0.012, z + camber)
-    edge = curve(x, half, z)
-    rim = curve(x, inner, z + camber * (1 - (inner / np.maximum(half, 1e-9)) ** 2))
-    foot = curve(x, inner, floor)
+    edge = curve_points(x, half, z)
+    rim = curve_points(x, inner, z + camber * (1 - (inner / np.maximum(half, 1e-9)) ** 2))
+    foot = curve_points(x, inner, floor)
     mesh = Mesh()
-    for outer, inward in ((edge, rim), (rim, foot), (foot, curve(x, 0.0, floor))):
-        mesh.both_sides(between(outer, inward, 5))
+    for outer, inward in ((edge, rim), (rim, foot), (foot, curve_points(x, 0.0, floor))):
+        mesh.add_surface_and_mirror(ruled_surface(outer, inward, 5))
     out = 0.0008  # [m] the stripe lies this far outside the shell
-    mesh.both_sides(between(edge + (0, out, -0.014), edge + (0, out, 0.001), 2)[: len(s) - 1])
-    return mesh
-
-
-def fittings() -> Mesh:
-    """Return console, seats and windscreen frame."""
-    mesh = Mesh()
-    console = ((0.0, 0.045), (0.06, 0.045), (0.075, 0.034), (0.1, 0.02))
-    mesh.body([ring((0.52 - 0.1 * up, 0, 0.012 + up), (half, 0.05), 6) for up, half in console])
-    for y in (-0.045, 0.045):
-        mesh.body([ring((0.33, y, 0.012 + up), (0.035, 0.032), 5) for up in (0.0, 0.04)])
-        mesh.body(
-            [ring((0.30 - 0.15 * up, y, 0.052 + up), (0.008, 0.032), 5) for up in (0.0, 0.05)]
-        )
-    mesh.body([ring((0.12, 0, 0.012 + up), (0.03, 0.085), 6) for up in (0.0, 0.04)])
-    return mesh
-
-
-def outboard_cowl() -> Mesh:
-    """Return the cover of the motor; origin on the steering axis at the waterline."""
-    mesh = Mesh()
-    levels = ((0.062, 0.75), (0.068, 0.93), (0.085, 1.0), (0.11, 0.98), (0.128, 0.88), (0.137, 0.6))
-    mesh.body(
-        [ring((-0.028 - 0.05 * (z - 0.06), 0, z), (0.036 * k, 0.025 * k), 3.2) for z, k in levels]
+    mesh.add_surface_and_mirror(
+        ruled_surface(edge + (0, out, -0.014), edge + (0, out, 0.001), 2)[: len(s) - 1]
     )
     return mesh
 
 
-def outboard_leg() -> Mesh:
+def fittings_mesh() -> Mesh:
+    """Return console, seats and windscreen frame."""
+    mesh = Mesh()
+    console = ((0.0, 0.045), (0.06, 0.045), (0.075, 0.034), (0.1, 0.02))
+    mesh.add_closed_body(
+        [
+            rounded_rectangle((0.52 - 0.1 * up, 0, 0.012 + up), (half, 0.05), 6)
+            for up, half in console
+        ]
+    )
+    for y in (-0.045, 0.045):
+        mesh.add_closed_body(
+            [rounded_rectangle((0.33, y, 0.012 + up), (0.035, 0.032), 5) for up in (0.0, 0.04)]
+        )
+        mesh.add_closed_body(
+            [
+                rounded_rectangle((0.30 - 0.15 * up, y, 0.052 + up), (0.008, 0.032), 5)
+                for up in (0.0, 0.05)
+            ]
+        )
+    mesh.add_closed_body(
+        [rounded_rectangle((0.12, 0, 0.012 + up), (0.03, 0.085), 6) for up in (0.0, 0.04)]
+    )
+    return mesh
+
+
+def outboard_cowl_mesh() -> Mesh:
+    """Return the cover of the motor; origin on the steering axis at the waterline."""
+    mesh = Mesh()
+    levels = ((0.062, 0.75), (0.068, 0.93), (0.085, 1.0), (0.11, 0.98), (0.128, 0.88), (0.137, 0.6))
+    mesh.add_closed_body(
+        [
+            rounded_rectangle((-0.028 - 0.05 * (z - 0.06), 0, z), (0.036 * k, 0.025 * k), 3.2)
+            for z, k in levels
+        ]
+    )
+    return mesh
+
+
+def outboard_leg_mesh() -> Mesh:
     """Return leg, cavitation plate, gear case, skeg and a propeller of three blades."""
     mesh = Mesh()
     strut = ((-0.055, 0.017), (0.0, 0.018), (0.064, 0.026))
-    mesh.body([ring((-0.026, 0, z), (half, 0.35 * half), 2.4) for z, half in strut])
-    mesh.body([ring((-0.036, 0, z), (0.032, 0.018), 2.6) for z in (-0.031, -0.028)])
+    mesh.add_closed_body(
+        [rounded_rectangle((-0.026, 0, z), (half, 0.35 * half), 2.4) for z, half in strut]
+    )
+    mesh.add_closed_body(
+        [rounded_rectangle((-0.036, 0, z), (0.032, 0.018), 2.6) for z in (-0.031, -0.028)]
+    )
     case = (
         (-0.062, 0.008),
         (-0.052, 0.0095),
@@ -259,18 +286,20 @@ def outboard_leg() -> Mesh:
         (-0.002, 0.005),
         (0.002, 0.001),
     )
-    mesh.body([ring((x, 0, -0.055), (r, r), axis="x") for x, r in case])
+    mesh.add_closed_body([rounded_rectangle((x, 0, -0.055), (r, r), axis="x") for x, r in case])
     skeg = ((-0.082, 0.006), (-0.06, 0.016))
-    mesh.body([ring((-0.034 + 0.3 * (z + 0.055), 0, z), (half, 0.0018)) for z, half in skeg])
+    mesh.add_closed_body(
+        [rounded_rectangle((-0.034 + 0.3 * (z + 0.055), 0, z), (half, 0.0018)) for z, half in skeg]
+    )
     hub = ((-0.078, 0.004), (-0.074, 0.0065), (-0.062, 0.0078))
-    mesh.body([ring((x, 0, -0.055), (r, r), axis="x") for x, r in hub])
+    mesh.add_closed_body([rounded_rectangle((x, 0, -0.055), (r, r), axis="x") for x, r in hub])
     for turn in (0.0, 2 * math.pi / 3, 4 * math.pi / 3):
-        mesh.add(blade(turn))
-        mesh.add(blade(turn), flip=True)
+        mesh.add_surface(propeller_blade(turn))
+        mesh.add_surface(propeller_blade(turn), flip=True)
     return mesh
 
 
-def blade(turn: float) -> Array:
+def propeller_blade(turn: float) -> Array:
     """Return one propeller blade (4, 3, 3), its pitch angle decreasing towards the tip.
 
     Args:
@@ -291,32 +320,35 @@ def blade(turn: float) -> Array:
     return np.array(rows).reshape(4, 3, 3)
 
 
-def collision(hull: DeepV) -> Mesh:
+def collision_mesh(hull: DeepV) -> Mesh:
     """Return a convex prism of few vertices around the deck edge, for contacts with walls."""
     s = np.array([0.0, 0.4, 0.6, 0.75, 0.87, 0.95, 1.0])
-    half, _ = hull.sheer(s)
+    half, _ = hull.sheer_points(s)
     plan = np.vstack(
-        [curve(s * hull.length, -half, 0.0), curve(s * hull.length, half, 0.0)[-2::-1]]
+        [
+            curve_points(s * hull.length, -half, 0.0),
+            curve_points(s * hull.length, half, 0.0)[-2::-1],
+        ]
     )
     mesh = Mesh()
-    mesh.body([plan + (0, 0, -hull.draught), plan + (0, 0, hull.freeboard)])
+    mesh.add_closed_body([plan + (0, 0, -hull.draught), plan + (0, 0, hull.freeboard)])
     return mesh
 
 
-def meshes() -> dict[str, str]:
+def obj_texts() -> dict[str, str]:
     """Return the text of each OBJ file of the boat, by file name."""
     hull = DeepV()
     parts = {
-        "shell": shell(hull),
-        "deck": deck(hull),
-        "fittings": fittings(),
-        "outboard_cowl": outboard_cowl(),
-        "outboard_leg": outboard_leg(),
-        "collision": collision(hull),
+        "shell": hull_mesh(hull),
+        "deck": deck_mesh(hull),
+        "fittings": fittings_mesh(),
+        "outboard_cowl": outboard_cowl_mesh(),
+        "outboard_leg": outboard_leg_mesh(),
+        "collision": collision_mesh(hull),
     }
     texts = {}
     for name, mesh in parts.items():
-        texts[f"{name}.obj"] = mesh.obj(f"{name}, drawn by boatsim.physics.hullform")
+        texts[f"{name}.obj"] = mesh.obj_text(f"{name}, drawn by boatsim.physics.hullform")
     return texts
 
 
@@ -327,7 +359,7 @@ def main(arguments: Iterable[str]) -> None:
         arguments: The folders.
     """
     for folder in arguments:
-        for name, text in meshes().items():
+        for name, text in obj_texts().items():
             (Path(folder) / name).write_text(text)
 
 

@@ -20,7 +20,7 @@ def seeded_realisation(realisation: float, seed: int) -> float:
 
 
 @njit(inline="always")
-def uniform(realisation: float, k: int) -> float:
+def uniform_random(realisation: float, k: int) -> float:
     """Return number k of a sequence, uniform in [0, 1) (SplitMix; G. Steele et al., OOPSLA 2014).
 
     Args:
@@ -36,7 +36,7 @@ def uniform(realisation: float, k: int) -> float:
 
 
 @njit(inline="always")
-def spectral_line(share: float, damping: float) -> tuple[float, float]:
+def random_spectral_line(share: float, damping: float) -> tuple[float, float]:
     """Return a frequency of filtered white noise and its weight in the energy.
 
     In the variable a = w - 1 / w the spectrum is a Lorentz line times 1 + a / sqrt(a^2 + 4), whose
@@ -72,7 +72,9 @@ def narrow_band_noise(
     total = 0.0
     for k in range(int(count)):
         first = 2 * (int(channel) * int(count) + k)
-        w, weight = spectral_line((k + uniform(realisation, first)) / count - 0.5, damping)
-        phase = 2.0 * pi * uniform(realisation, first + 1)
+        w, weight = random_spectral_line(
+            (k + uniform_random(realisation, first)) / count - 0.5, damping
+        )
+        phase = 2.0 * pi * uniform_random(realisation, first + 1)
         total += sqrt(weight) * cos(frequency * w * t + phase)
     return total * sqrt(2.0 / count)

@@ -8,7 +8,8 @@ from typing import NamedTuple, Self, TypeVar
 from boatsim.errors import BadInput, unknown_name
 
 N = TypeVar("N", bound=float)  # int or float
-# A parameter without a value: it is set for a vessel by `follows` or `Effect.rules`, else to 0.
+# A parameter without a value. For a vessel it is set by `follows`, by `Effect.derived_parameters`
+# or to 0.
 UNSET = math.nan
 
 
@@ -24,7 +25,7 @@ class Param(NamedTuple):
     spread: float = 0.0
     # degree of freedom that it belongs to ("roll", ...); fitted only on vessels that have it
     axis: str = ""
-    absent: float = 0.0  # value at which the effect has no influence
+    inactive_value: float = 0.0  # value at which the effect has no influence
     # "damping", "thrust", ...: a coefficient of the nominal model that is never known exactly
     calibrates: str = ""
     # value of an unset parameter: that of "linear_damping.surge" or "vessel.body.mass" of the
@@ -47,7 +48,7 @@ def param(
     fit: bool = False,
     spread: float = 0.0,
     axis: str = "",
-    absent: float = 0.0,
+    inactive_value: float = 0.0,
     calibrates: str = "",
     follows: str = "",
     releases: tuple[str, ...] = (),
@@ -65,7 +66,7 @@ def param(
         fit: Whether a diagnosis may fit it.
         spread: Prior sd of a fitted parameter, in its unit.
         axis: Degree of freedom that it belongs to.
-        absent: Value at which the effect has no influence.
+        inactive_value: Value at which the effect has no influence.
         calibrates: Kind of coefficient of the nominal model, "damping" for example.
         follows: Number of the vessel that an unset parameter has, "linear_damping.surge" for
             example.
@@ -78,12 +79,12 @@ def param(
     """
     if fit and not spread > 0.0:
         raise ValueError(f"a parameter with fit=True needs a spread, its prior sd ({words})")
-    about = Param(low, high, unit, words, fit, spread, axis, absent, calibrates, follows)
+    about = Param(low, high, unit, words, fit, spread, axis, inactive_value, calibrates, follows)
     about = about._replace(releases=releases, how=how, within=within)
     return field(default=nominal, metadata={"param": about})
 
 
-def factor(
+def factor_parameter(
     *releases: str,
     words: str,
     spread: float = 0.4,
@@ -91,7 +92,7 @@ def factor(
     low: float = 0.1,
     high: float = 5.0,
 ) -> float:
-    """Return the field of a `Release` that multiplies numbers of the vessel.
+    """Return the field of a `CoefficientRelease` that multiplies numbers of the vessel.
 
     Args:
         releases: The numbers, "linear_damping.surge" for example.
@@ -110,13 +111,13 @@ def factor(
         fit=True,
         spread=spread,
         axis=axis,
-        absent=1.0,
+        inactive_value=1.0,
         releases=releases,
         how="scales",
     )
 
 
-def shift(
+def shift_parameter(
     *releases: str,
     words: str,
     unit: str,
@@ -126,7 +127,7 @@ def shift(
     axis: str = "",
     within: tuple[float, float] = (-math.inf, math.inf),
 ) -> float:
-    """Return the field of a `Release` that is added to numbers of the vessel.
+    """Return the field of a `CoefficientRelease` that is added to numbers of the vessel.
 
     Args:
         releases: The numbers, "body.centre" for example.
@@ -153,17 +154,17 @@ def shift(
     )
 
 
-def number(
+def replacement_parameter(
     *releases: str,
     words: str,
     unit: str,
     spread: float,
     low: float,
     high: float,
-    absent: float,
+    inactive_value: float,
     axis: str = "",
 ) -> float:
-    """Return the field of a `Release` that replaces a number of the vessel.
+    """Return the field of a `CoefficientRelease` that replaces a number of the vessel.
 
     Args:
         releases: The number, "body.mass" for example.
@@ -172,11 +173,11 @@ def number(
         spread: Prior sd.
         low: Lower bound.
         high: Upper bound.
-        absent: Value in the vessel file.
+        inactive_value: Value in the vessel file.
         axis: Degree of freedom that it belongs to.
     """
     return param(
-        absent,
+        inactive_value,
         low=low,
         high=high,
         unit=unit,
@@ -184,15 +185,15 @@ def number(
         fit=True,
         spread=spread,
         axis=axis,
-        absent=absent,
+        inactive_value=inactive_value,
         releases=releases,
     )
 
 
-def code(words: str) -> float:
+def code_parameter(words: str) -> float:
     """Return the field of a number that stands for a name in a compiled law.
 
-    `Effect.rules` sets it, files cannot.
+    `Effect.derived_parameters` sets it, files cannot.
 
     Args:
         words: Description.
@@ -201,7 +202,7 @@ def code(words: str) -> float:
     return field(default=UNSET, kw_only=True, repr=False, metadata={"param": about, "ours": True})
 
 
-class Checked:
+class CheckedParameters:
     """Mixin of dataclasses that checks `param` fields and reports unknown settings."""
 
     @classmethod

@@ -1,6 +1,6 @@
 """Coefficients of a displacement hull from its particulars, by published formulas.
 
-Effects call them when a vessel is loaded (`completed`); none of them is compiled. SI units and
+Effects call them when a vessel is loaded; none of them is compiled. SI units and
 radians.
 """
 
@@ -13,7 +13,7 @@ GRAVITY = 9.81  # [m/s^2] of all formulas here, as in Martin 1993
 SEA_WATER = 1025.0  # [kg/m^3]
 
 
-class Spheroid(NamedTuple):
+class SpheroidAddedMass(NamedTuple):
     """Added mass and inertia of a spheroid, divided by its displaced mass and yaw inertia."""
 
     surge: float  # k1
@@ -21,7 +21,7 @@ class Spheroid(NamedTuple):
     yaw: float  # k'
 
 
-class Derivatives(NamedTuple):
+class LinearDerivatives(NamedTuple):
     """Non-dimensional derivatives about midship.
 
     Forces per 0.5 rho L T V^2, moments per 0.5 rho L^2 T V^2.
@@ -33,7 +33,7 @@ class Derivatives(NamedTuple):
     yaw_by_yaw: float  # N'r
 
 
-def spheroid(length: float, draught: float) -> Spheroid:
+def spheroid_added_mass(length: float, draught: float) -> SpheroidAddedMass:
     """Return the added mass of a prolate spheroid (Lamb 1932, sections 114 and 115).
 
     Args:
@@ -54,16 +54,16 @@ def spheroid(length: float, draught: float) -> Spheroid:
     alpha = 2.0 * round_part / (e * square) * (atanh(e) - e)
     beta = 1.0 / square - round_part / (e * square) * atanh(e)
     turn = square * square * (beta - alpha)
-    return Spheroid(
+    return SpheroidAddedMass(
         alpha / (2.0 - alpha),
         beta / (2.0 - beta),
         turn / ((2.0 - square) * (2.0 * square - (2.0 - square) * (beta - alpha))),
     )
 
 
-def derivatives(
+def linear_derivatives(
     length: float, beam: float, draught: float, trim: float, block: float
-) -> Derivatives:
+) -> LinearDerivatives:
     """Return the linear derivatives of a trimmed hull.
 
     S. Inoue, M. Hirano, K. Kijima, Int. Shipbuilding Progress 28 (1981), in the form of C. R.
@@ -78,7 +78,7 @@ def derivatives(
     """
     k, tau = 2.0 * draught / length, trim / draught
     lift = 0.5 * pi * k + 1.4 * block * beam / length
-    return Derivatives(
+    return LinearDerivatives(
         -lift * (1.0 + 2.0 / 3.0 * tau),
         0.25 * pi * k * (1.0 + 0.8 * tau),
         -k * (1.0 - 0.27 * tau * lift / k),
@@ -86,7 +86,9 @@ def derivatives(
     )
 
 
-def rudder_slope(area: float, aspect: float, inflow: float, density: float = SEA_WATER) -> float:
+def rudder_force_slope(
+    area: float, aspect: float, inflow: float, density: float = SEA_WATER
+) -> float:
     """Return the force normal to a rudder per angle of attack [N/rad] (A. Fujii, T. Tsuda 1961).
 
     Args:
@@ -95,10 +97,10 @@ def rudder_slope(area: float, aspect: float, inflow: float, density: float = SEA
         inflow: Speed of the inflow [m/s].
         density: Density of the water [kg/m^3].
     """
-    return 0.5 * density * lift_slope(aspect) * area * inflow * inflow
+    return 0.5 * density * rudder_lift_slope(aspect) * area * inflow * inflow
 
 
-def lift_slope(aspect: float) -> float:
+def rudder_lift_slope(aspect: float) -> float:
     """Return f_alpha, the slope of a rudder's normal force coefficient (Fujii, Tsuda 1961).
 
     Args:
@@ -107,7 +109,7 @@ def lift_slope(aspect: float) -> float:
     return 6.13 * aspect / (aspect + 2.25)
 
 
-def hull_share(block: float) -> float:
+def hull_force_ratio(block: float) -> float:
     """Return a_H, the force on the hull per force on its rudder (Inoue et al. 1981).
 
     Args:
@@ -116,7 +118,7 @@ def hull_share(block: float) -> float:
     return 0.627 * block - 0.153
 
 
-def roll_ratio_by_speed(
+def roll_damping_ratio_by_speed(
     length: float, beam: float, block: float, metacentric_height: float, speed: float
 ) -> float:
     """Return the increase of the roll damping ratio with speed (Martin 1993, Appendix IV).

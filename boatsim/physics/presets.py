@@ -20,10 +20,10 @@ class ParameterChanges(TypedDict, total=False):
     words: str
     spread: float
     axis: str
-    absent: float
+    inactive_value: float
 
 
-def preset(
+def preset_effect(
     law: type[E],
     name: str,
     *,
@@ -54,7 +54,7 @@ def preset(
         nominal = defaults[key]
         if key in frees:
             known = known._replace(fit=True, calibrates="", **frees[key])
-            nominal = known.absent
+            nominal = known.inactive_value
         elif key in fixed:
             nominal = fixed[key]
             known = known._replace(low=nominal, high=nominal, fit=False, calibrates="", follows="")

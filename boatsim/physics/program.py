@@ -14,18 +14,21 @@ import numpy as np
 
 from boatsim.physics import cache
 from boatsim.physics import vessel as vessels
-from boatsim.physics.commands import clipped_row
+from boatsim.physics.commands import clipped_commands
 from boatsim.physics.compiled_program import CompiledProgram
 from boatsim.physics.compose import Composition
 from boatsim.physics.debugging import python_function
-from boatsim.physics.kernel.records import Model, Plant
-from boatsim.physics.kernel.source import written
+from boatsim.physics.kernel.records import VesselNumbers, VesselState
+from boatsim.physics.kernel.source import motion_module_text
 from boatsim.physics.kinds.effect import Effect
-from boatsim.physics.kinds.release import Release
-from boatsim.physics.signals import AXES, Array, Shown
+from boatsim.physics.kinds.release import CoefficientRelease
+from boatsim.physics.signals import AXES, Array, MeasuredMotion
 from boatsim.physics.vessel import Vessel
 
-KINEMATICS = ("moved", "jacobian")  # functions of one state that are used in Python too
+KINEMATICS = (
+    "pose_and_velocities",
+    "jacobian",
+)  # functions of one state that are used in Python too
 
 
 @dataclass(frozen=True)
@@ -46,13 +49,13 @@ class Program:
 
     def __post_init__(self) -> None:
         # A release changes a coefficient of the vessel and has no law.
-        laws = (e for e in self.candidates if not isinstance(e, Release))
+        laws = (e for e in self.candidates if not isinstance(e, CoefficientRelease))
         object.__setattr__(self, "effects", (*self.vessel.effects, *laws))
         sizes = [len(type(e).params()) for e in self.effects]
         object.__setattr__(self, "offsets", tuple(int(n) for n in np.cumsum([0, *sizes])[:-1]))
 
     @property
-    def entries(self) -> tuple[str, ...]:
+    def candidate_names(self) -> tuple[str, ...]:
         """Names of the candidates without the placeholder effects of symbolic regression."""
         return tuple(e.name for e in self.candidates if not type(e).described)
 
@@ -71,7 +74,7 @@ class Program:
             on[i] = float(self.effects[i].name in active)
         return on
 
-    def index(self, effect: str, parameter: str) -> int:
+    def parameter_index(self, effect: str, parameter: str) -> int:
         """Return the place of a parameter in the flat array.
 
         Args:
@@ -96,15 +99,17 @@ class Program:
             ]
         )
 
-    def model(self, active: Sequence[str] = ()) -> Model:
+    def vessel_numbers(self, active: Sequence[str] = ()) -> VesselNumbers:
         """Return rigid body, parameters and switches together.
 
         Args:
             active: Names of the candidates that act.
         """
-        return Model(self.body, self.values(), self.switches(active))
+        return VesselNumbers(self.body, self.values(), self.switches(active))
 
-    def plant(self, y: Array, memory: Array | None = None, force: Array | None = None) -> Plant:
+    def vessel_state(
+        self, y: Array, memory: Array | None = None, force: Array | None = None
+    ) -> VesselState:
         """Return the state of a vessel for `rollout`.
 
         Args:
@@ -117,7 +122,7 @@ class Program:
             memory = np.zeros(self.memory_size)
         if force is None:
             force = np.zeros(code.NQ)
-        return Plant(y, memory, np.zeros(self.held_size), force)
+        return VesselState(y, memory, np.zeros(self.held_size), force)
 
     @cached_property
     def composition(self) -> Composition:
@@ -143,11 +148,11 @@ class Program:
         Raises:
             BadInput: A command does not exist or is not finite.
         """
-        return clipped_row(self.vessel, commands)
+        return clipped_commands(self.vessel, commands)
 
-    def shown(self, state: Sequence[float]) -> Shown:
+    def pose_and_velocities(self, state: Sequence[float]) -> MeasuredMotion:
         """Return pose and body-axes velocities of joint coordinates and rates (2 NQ,)."""
-        found: Shown = self._python_functions["moved"](state)
+        found: MeasuredMotion = self._python_functions["pose_and_velocities"](state)
         return found
 
     def jacobian(self, state: Sequence[float]) -> Array:
@@ -159,7 +164,7 @@ class Program:
     def body_rates(self, states: Array) -> Array:
         """Return states (N, 2 NQ) with body rates in place of joint rates."""
         out = np.empty(states.shape)
-        seen = self._vectorised("moved")(states.T)
+        seen = self._vectorised("pose_and_velocities")(states.T)
         for i, k in enumerate(self.module.SHOWS):
             out[:, i] = seen[k]
         return out
@@ -192,9 +197,11 @@ class Program:
         """The compiled program, from the cache if the same one was composed before."""
         text = {
             "laws.py": self.composition.source_text(),
-            "motion.py": written(self.vessel.dof, centred=self.vessel.body.centre == (0.0, 0.0)),
+            "motion.py": motion_module_text(
+                self.vessel.dof, centred=self.vessel.body.centre == (0.0, 0.0)
+            ),
         }
-        package: ModuleType = cache.module(text, {type(e) for e in self.effects})
+        package: ModuleType = cache.import_program(text, {type(e) for e in self.effects})
         return cast(CompiledProgram, package)
 
 
@@ -204,7 +211,7 @@ def main(arguments: Sequence[str]) -> None:
     Args:
         arguments: Name or folder of the vessel.
     """
-    print(Program(vessels.load(arguments[0])).composition.source_text())
+    print(Program(vessels.load_vessel(arguments[0])).composition.source_text())
 
 
 if __name__ == "__main__":

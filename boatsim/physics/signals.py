@@ -14,7 +14,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from boatsim.physics.compiler_internals import known_to_numba
+from boatsim.physics.compiler_internals import register_with_numba
 
 Array = NDArray[np.float64]
 
@@ -27,7 +27,7 @@ COMPONENTS = dict(zip(AXES, ("X_N", "Y_N", "Z_N", "K_Nm", "M_Nm", "N_Nm"), stric
 class Signal:
     """One coordinate of a hull's motion, or its rate, with its names in files and controllers."""
 
-    symbol: str  # field of `Motion`, `Shown` and the engine's `State`
+    symbol: str  # field of `Motion`, `MeasuredMotion` and the engine's `State`
     column: str  # in recordings and logs, with its unit
     axis: str  # degree of freedom
     rate: bool  # a body-axes rate, else a coordinate
@@ -64,7 +64,7 @@ def signals_of(dof: tuple[str, ...]) -> tuple[Signal, ...]:
     return tuple(s for s in STATE if s.axis in dof)
 
 
-def follower(goal: str) -> str | None:
+def measured_column_for_goal(goal: str) -> str | None:
     """Return the column that follows a goal, as v_mps for `sway_mps`; None if no column does.
 
     Args:
@@ -98,7 +98,7 @@ class Motion(NamedTuple):
     sin_psi: float
 
 
-class Shown(NamedTuple):
+class MeasuredMotion(NamedTuple):
     """Motion as instruments measure it; a measurement effect changes it before it is recorded."""
 
     x: float  # [m]
@@ -136,7 +136,7 @@ def wrench(
     return Wrench(X, Y, Z, K, M, N)
 
 
-class Mass(NamedTuple):
+class MassMatrix(NamedTuple):
     """Inertia matrix of a hull that is symmetric to port and starboard.
 
     All other entries are zero.
@@ -165,11 +165,11 @@ class Mass(NamedTuple):
 
 MASS_ENTRIES = tuple(
     (AXES.index(name.partition("_")[0]), AXES.index(name.partition("_")[2] or name))
-    for name in Mass._fields
+    for name in MassMatrix._fields
 )
 
 
-def mass(
+def mass_matrix(
     surge: float = 0.0,
     sway: float = 0.0,
     heave: float = 0.0,
@@ -182,14 +182,14 @@ def mass(
     sway_roll: float = 0.0,
     sway_yaw: float = 0.0,
     roll_yaw: float = 0.0,
-) -> Mass:
-    """Return a `Mass` from the names of its entries; the others are zero."""
+) -> MassMatrix:
+    """Return a `MassMatrix` from the names of its entries; the others are zero."""
     diagonal = (surge, sway, heave, roll, pitch, yaw)
     couplings = (surge_heave, surge_pitch, heave_pitch, sway_roll, sway_yaw, roll_yaw)
-    return Mass(*diagonal, *couplings)
+    return MassMatrix(*diagonal, *couplings)
 
 
-class Swell(NamedTuple):
+class OscillatingForce(NamedTuple):
     """Random oscillating force: a damped oscillator per axis, driven by white noise."""
 
     X: float  # [N] rms
@@ -202,7 +202,7 @@ class Swell(NamedTuple):
     damping: float  # damping ratio
 
 
-def swell(
+def oscillating_force(
     X: float = 0.0,
     Y: float = 0.0,
     Z: float = 0.0,
@@ -211,15 +211,15 @@ def swell(
     N: float = 0.0,
     frequency: float = 0.0,
     damping: float = 1.0,
-) -> Swell:
-    """Return a `Swell` from the names of its fields.
+) -> OscillatingForce:
+    """Return a `OscillatingForce` from the names of its fields.
 
     A frequency of zero means that there is none.
     """
-    return Swell(X, Y, Z, K, M, N, frequency, damping)
+    return OscillatingForce(X, Y, Z, K, M, N, frequency, damping)
 
 
-class Wander(NamedTuple):
+class InstrumentDrift(NamedTuple):
     """Slowly varying error of instruments, a first-order Gauss-Markov process."""
 
     position: float  # [m] rms, north and east alike
@@ -227,11 +227,15 @@ class Wander(NamedTuple):
     time: float  # [s] correlation time
 
 
-for _constructor, _record in ((wrench, Wrench), (mass, Mass), (swell, Swell)):
-    known_to_numba(_constructor, _record)
+for _constructor, _record in (
+    (wrench, Wrench),
+    (mass_matrix, MassMatrix),
+    (oscillating_force, OscillatingForce),
+):
+    register_with_numba(_constructor, _record)
 
 
-class Course(NamedTuple):
+class SignalSegment(NamedTuple):
     """A signal over one step: at its begin, in its middle and at its end.
 
     A Runge-Kutta step weighs the three by Simpson's rule. The middle is chosen so that this gives
@@ -245,12 +249,12 @@ class Course(NamedTuple):
 
 
 @njit(inline="always")
-def course(begin: float, mean: float, end: float) -> Course:
+def segment_with_mean(begin: float, mean: float, end: float) -> SignalSegment:
     """Return the course of a signal with this mean over the step.
 
     A constant signal is exactly constant.
     """
-    return Course(begin, mean + 0.25 * ((mean - begin) + (mean - end)), end)
+    return SignalSegment(begin, mean + 0.25 * ((mean - begin) + (mean - end)), end)
 
 
 # [s] Shortest step that a lag requires: over a shorter one only the mean of the signal matters.
@@ -258,13 +262,15 @@ BRIEF = 0.02
 
 
 @njit(inline="always")
-def followed(lag: float) -> float:
+def longest_lag_step(lag: float) -> float:
     """Return the longest step [s] over which three points describe a lagged signal: one lag."""
     return max(lag, BRIEF) if lag > 0.0 else np.inf
 
 
 @njit(inline="always")
-def lagged(x: Course, time_constant: float, memory: Array, at: int, dt: float) -> Course:
+def first_order_lag(
+    x: SignalSegment, time_constant: float, memory: Array, at: int, dt: float
+) -> SignalSegment:
     """Return a signal behind a first-order lag, exact if its course is a parabola.
 
     Memory[at] is its state.
@@ -285,11 +291,11 @@ def lagged(x: Course, time_constant: float, memory: Array, at: int, dt: float) -
     f = x.begin - g / quick
     decay = np.exp(-quick)
     memory[at] = f + g + d + (y - f) * decay
-    return course(y, f + 0.5 * g + d / 3.0 + (y - f) * (1.0 - decay) / quick, memory[at])
+    return segment_with_mean(y, f + 0.5 * g + d / 3.0 + (y - f) * (1.0 - decay) / quick, memory[at])
 
 
 @njit(inline="always")
-def mean_of(x: Course) -> float:
+def segment_mean(x: SignalSegment) -> float:
     """Return the mean of a signal over the step.
 
     That of a constant signal is exactly the signal.

@@ -29,7 +29,7 @@ class SpreadTable(Table):
     of: list[FittedTable] = Field(default=[])
 
     @model_validator(mode="after")
-    def _square(self) -> Self:
+    def _check_square_covariance(self) -> Self:
         wanted = (len(self.of), len(self.of))
         if self.of and np.shape(self.correlation) != wanted:
             raise ValueError(f"correlation is not a table of {wanted[0]} rows of {wanted[1]}")
@@ -38,7 +38,7 @@ class SpreadTable(Table):
         return self
 
 
-class Change(NamedTuple):
+class SampledChange(NamedTuple):
     """Change of a number of k vessels: it is multiplied by the factor, and the shift is added."""
 
     factor: Array | float = 1.0
@@ -46,7 +46,7 @@ class Change(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Spread:
+class FittedUncertainty:
     """Normal distribution of the F fitted quantities about the numbers of the vessel file."""
 
     of: tuple[FittedTable, ...]
@@ -54,7 +54,7 @@ class Spread:
     root: Array  # (F, F) of the correlation matrix
 
     @classmethod
-    def read(cls, table: SpreadTable) -> "Spread | None":
+    def from_table(cls, table: SpreadTable) -> "FittedUncertainty | None":
         """Return the distribution in a vessel file; None if there is none.
 
         Args:
@@ -66,12 +66,12 @@ class Spread:
         sd = np.array([f.sd for f in table.of])
         return cls(tuple(table.of), sd, vectors * np.sqrt(np.maximum(values, 0.0)))
 
-    def table(self) -> dict[str, object]:
+    def to_table(self) -> dict[str, object]:
         """Return the [spread] table of a vessel file."""
         correlation = np.round(self.root @ self.root.T, CORRELATION_DECIMALS)
         return {"correlation": correlation.tolist(), "of": [one.model_dump() for one in self.of]}
 
-    def scaled(self, factor: float) -> "Spread":
+    def with_scaled_sd(self, factor: float) -> "FittedUncertainty":
         """Return the distribution with all standard deviations multiplied by a factor.
 
         Args:
@@ -79,19 +79,19 @@ class Spread:
         """
         return replace(self, sd=self.sd * factor)
 
-    def sample(self, shares: Array) -> dict[str, Change]:
+    def sample_changes(self, shares: Array) -> dict[str, SampledChange]:
         """Return the change of each "effect.number" for k samples.
 
         Args:
             shares: (k, F) independent numbers, uniform in (0, 1).
         """
         off = ndtri(shares) @ self.root.T * self.sd
-        found: dict[str, Change] = {}
+        found: dict[str, SampledChange] = {}
         for one, x in zip(self.of, off.T, strict=True):
             for name in one.scales:
-                had = found.get(name, Change())
-                found[name] = Change(had.factor * (1.0 + x), had.shift)
+                had = found.get(name, SampledChange())
+                found[name] = SampledChange(had.factor * (1.0 + x), had.shift)
             for name, weight in one.shifts.items():
-                had = found.get(name, Change())
-                found[name] = Change(had.factor, had.shift + weight * x)
+                had = found.get(name, SampledChange())
+                found[name] = SampledChange(had.factor, had.shift + weight * x)
         return found

@@ -1,8 +1,8 @@
 """Terms of symbolic regression: products of factors that have names, and their course in time.
 
 Files contain the names of factors, courses and directions; a program uses a number for each
-(`codes`), so that one compiled law serves all of them. The same functions work on single numbers
-and on arrays over the rows of a recording.
+(`factor_codes`), so that one compiled law serves all of them. The same functions work on single
+numbers and on arrays over the rows of a recording.
 """
 
 from collections.abc import Sequence
@@ -14,7 +14,7 @@ from numba import njit
 
 from boatsim.errors import BadInput, unknown_name
 from boatsim.physics.kernel.compiling import apart
-from boatsim.physics.signals import Course, Wrench, followed, lagged, wrench
+from boatsim.physics.signals import SignalSegment, Wrench, first_order_lag, longest_lag_step, wrench
 
 # through the water
 SPEEDS = ("surge_speed", "sway_speed", "heave_speed", "roll_rate", "pitch_rate", "yaw_rate")
@@ -51,7 +51,7 @@ WITHIN, RISING, FADING, SWINGING = map(float, range(1, len(COURSES)))
 
 
 @apart
-def factor(m: Any, act: Any, at: Any, own: Any, number: float, detail: Detail) -> Any:
+def factor_value(m: Any, act: Any, at: Any, own: Any, number: float, detail: Detail) -> Any:
     """Return one factor.
 
     Args:
@@ -59,7 +59,7 @@ def factor(m: Any, act: Any, at: Any, own: Any, number: float, detail: Detail) -
         act: Actuators.
         at: First of the actuators to use.
         own: Place of the term's lagged signal after `at`.
-        number: Number of the factor, see `codes`.
+        number: Number of the factor, see `factor_codes`.
         detail: Wavelength and crest of a ripple, which is 1 at its crest; speed `little` within
             which a sense changes; threshold `beyond`.
     """
@@ -84,7 +84,7 @@ def factor(m: Any, act: Any, at: Any, own: Any, number: float, detail: Detail) -
 
 
 @apart
-def course(t: Any, acts: float, begin: float, end: float) -> Any:
+def time_profile(t: Any, acts: float, begin: float, end: float) -> Any:
     """Return the course of a law in time.
 
     Args:
@@ -106,7 +106,7 @@ def course(t: Any, acts: float, begin: float, end: float) -> Any:
 
 
 @njit(inline="always")
-def term(m: Any, q: Any, act: Any, at: Any, own: Any) -> Any:
+def term_value(m: Any, q: Any, act: Any, at: Any, own: Any) -> Any:
     """Return the product of a term's factors and its course.
 
     Args:
@@ -118,15 +118,15 @@ def term(m: Any, q: Any, act: Any, at: Any, own: Any) -> Any:
     """
     detail = (q.wavelength, q.crest, q.little, q.beyond)
     return (
-        factor(m, act, at, own, q.first, detail)
-        * factor(m, act, at, own, q.second, detail)
-        * factor(m, act, at, own, q.third, detail)
-        * course(m.t, q.course, q.begin, q.end)
+        factor_value(m, act, at, own, q.first, detail)
+        * factor_value(m, act, at, own, q.second, detail)
+        * factor_value(m, act, at, own, q.third, detail)
+        * time_profile(m.t, q.course, q.begin, q.end)
     )
 
 
 @apart
-def recalled(
+def write_signal_history(
     act: Any,
     held: Any,
     own: Any,
@@ -156,15 +156,17 @@ def recalled(
     begin, middle, end = act[k], act[held + k], act[2 * held + k]
     if int(looks_at) % 2:
         begin, middle, end = abs(begin), abs(middle), abs(end)
-    late = lagged(Course(begin, middle, end), memory, kept, at, dt)
+    late = first_order_lag(SignalSegment(begin, middle, end), memory, kept, at, dt)
     act[own] = beyond * begin + sign * late.begin
     act[held + own] = beyond * middle + sign * late.middle
     act[2 * held + own] = beyond * end + sign * late.end
 
 
 @njit(inline="always")
-def recall(act: Any, held: Any, own: Any, kept: Any, at: Any, dt: float, q: Any) -> None:
-    """Apply `recalled` with the parameters of an effect.
+def update_signal_history(
+    act: Any, held: Any, own: Any, kept: Any, at: Any, dt: float, q: Any
+) -> None:
+    """Apply `write_signal_history` with the parameters of an effect.
 
     Args:
         act: Actuators.
@@ -175,17 +177,17 @@ def recall(act: Any, held: Any, own: Any, kept: Any, at: Any, dt: float, q: Any)
         dt: Length of the step [s].
         q: Parameters of the effect.
     """
-    recalled(act, held, own, kept, at, dt, q.looks_at, q.looks, q.memory)
+    write_signal_history(act, held, own, kept, at, dt, q.looks_at, q.looks, q.memory)
 
 
 @njit(inline="always")
-def reach(q: Any) -> float:
+def longest_history_step(q: Any) -> float:
     """Return the longest step [s] over which three points describe the lagged signal."""
-    return followed(q.memory) if q.looks_at > 0.0 else np.inf
+    return longest_lag_step(q.memory) if q.looks_at > 0.0 else np.inf
 
 
 @apart
-def along(m: Any, direction: float, force: float) -> Wrench:
+def wrench_along(m: Any, direction: float, force: float) -> Wrench:
     """Return a force or moment along one of `DIRECTIONS`.
 
     Args:
@@ -208,7 +210,7 @@ def along(m: Any, direction: float, force: float) -> Wrench:
     )
 
 
-def names_for(held: Sequence[str]) -> tuple[str, ...]:
+def factor_names(held: Sequence[str]) -> tuple[str, ...]:
     """Return the names of all factors of a vessel.
 
     Args:
@@ -225,7 +227,7 @@ def names_for(held: Sequence[str]) -> tuple[str, ...]:
     return (*FACTORS[1:], *signals, *histories)
 
 
-def history_of(name: str, held: Sequence[str]) -> tuple[str, str]:
+def split_history_name(name: str, held: Sequence[str]) -> tuple[str, str]:
     """Return the kind of history of a factor and its signal; "", "" for other factors.
 
     Args:
@@ -250,17 +252,17 @@ def history_codes(what: str, of: Sequence[str], held: Sequence[str]) -> tuple[fl
     Raises:
         BadInput: The factors use more than one history.
     """
-    found = sorted({history_of(name, held) for name in of} - {("", "")})
+    found = sorted({split_history_name(name, held) for name in of} - {("", "")})
     if len(found) > 1:
         raise BadInput(
             f"{what}: of = {list(of)}; allowed is the history of one signal, of one kind"
         )
     for how, signal in found:
-        return codes(what, (signal,), held)[0], float(HISTORIES.index(how))
+        return factor_codes(what, (signal,), held)[0], float(HISTORIES.index(how))
     return 0.0, 0.0
 
 
-def codes(what: str, of: Sequence[str], held: Sequence[str]) -> tuple[float, ...]:
+def factor_codes(what: str, of: Sequence[str], held: Sequence[str]) -> tuple[float, ...]:
     """Return the numbers (MOST_FACTORS,) of a term's factors.
 
     Args:
@@ -282,14 +284,14 @@ def codes(what: str, of: Sequence[str], held: Sequence[str]) -> tuple[float, ...
             found.append(float(FIRST_HELD + 2 * list(held).index(signal) + absolute))
         elif name and name in FACTORS:
             found.append(float(FACTORS.index(name)))
-        elif name in names_for(held):
+        elif name in factor_names(held):
             found.append(float(RECALLED + name.startswith("abs_")))
         else:
-            raise BadInput(unknown_name(f"{what}: of", name, names_for(held)))
+            raise BadInput(unknown_name(f"{what}: of", name, factor_names(held)))
     return (*found, *[0.0] * (MOST_FACTORS - len(found)))
 
 
-def code_of(what: str, word: str, words: Sequence[str]) -> float:
+def index_code(what: str, word: str, words: Sequence[str]) -> float:
     """Return the number of a course or direction.
 
     Args:

@@ -1,6 +1,6 @@
 """Which Python files may run: those of boatsim and of folders that the user trusts.
 
-Data files alone never cause Python code to run. Trust holds for a block of `trusting`, and in the
+Data files alone never cause Python code to run. Trust holds in a `trust_folders` block, and in the
 processes that the block starts if they are given `current_trust()`.
 """
 
@@ -14,7 +14,7 @@ from boatsim.errors import BadInput
 
 
 @dataclass(frozen=True)
-class Trust:
+class TrustedFolders:
     """The trusted folders.
 
     Attributes:
@@ -31,7 +31,7 @@ class Trust:
     ask: Callable[[Path], bool] | None = None
     answers: dict[Path, bool] = field(default_factory=dict)
 
-    def holds(self, path: Path) -> bool:
+    def contains(self, path: Path) -> bool:
         """Return whether a file lies in a trusted folder or below one.
 
         Args:
@@ -40,21 +40,21 @@ class Trust:
         return any(path.is_relative_to(folder) for folder in (*self.content, *self.allowed))
 
 
-_now: ContextVar[Trust] = ContextVar("trust")
+_now: ContextVar[TrustedFolders] = ContextVar("trust")
 
 
-def current_trust() -> Trust:
+def current_trust() -> TrustedFolders:
     """Return what is trusted here, for another process, which cannot ask the user."""
-    return replace(_now.get(Trust()), ask=None, answers={})
+    return replace(_now.get(TrustedFolders()), ask=None, answers={})
 
 
-def content() -> tuple[Path, ...]:
+def user_content_folders() -> tuple[Path, ...]:
     """Return the folders of the user's own content."""
-    return _now.get(Trust()).content
+    return _now.get(TrustedFolders()).content
 
 
 @contextmanager
-def trusting(
+def trust_folders(
     *content: Path | str,
     allowed: Sequence[Path | str] = (),
     ask: Callable[[Path], bool] | None = None,
@@ -70,8 +70,8 @@ def trusting(
     Raises:
         BadInput: A folder does not exist.
     """
-    before = _now.get(Trust())
-    inner = Trust(
+    before = _now.get(TrustedFolders())
+    inner = TrustedFolders(
         (*before.content, *map(_folder, content)),
         (*before.allowed, *map(_folder, allowed)),
         ask or before.ask,
@@ -84,7 +84,7 @@ def trusting(
         _now.reset(token)
 
 
-def adopt(trust: Trust) -> None:
+def adopt_trust(trust: TrustedFolders) -> None:
     """Trust what another process trusts, until this process ends.
 
     Args:
@@ -93,7 +93,7 @@ def adopt(trust: Trust) -> None:
     _now.set(trust)
 
 
-def check(path: Path) -> None:
+def check_trusted(path: Path) -> None:
     """Check that a Python file may run; ask the user if that is possible.
 
     Args:
@@ -102,8 +102,8 @@ def check(path: Path) -> None:
     Raises:
         BadInput: The file is not trusted.
     """
-    real, trust = path.resolve(), _now.get(Trust())
-    if trust.holds(real):
+    real, trust = path.resolve(), _now.get(TrustedFolders())
+    if trust.contains(real):
         return
     if trust.ask and real.parent not in trust.answers:
         trust.answers[real.parent] = trust.ask(real.parent)

@@ -15,7 +15,7 @@ import numpy as np
 
 from boatsim.errors import BadInput, unknown_name
 from boatsim.files import replacing
-from boatsim.physics.content import module_of, names
+from boatsim.physics.content import import_library_module, library_names
 from boatsim.physics.signals import POSE, RATES, Array
 from boatsim.recordings import limits, units
 from boatsim.recordings.expression import Expression, parse
@@ -312,9 +312,9 @@ def _read_raw(path: Path) -> Raw:
         limits.check_file(path)
         suffix = path.suffix.removeprefix(".").lower()
         format = "csv"
-        if suffix in names("reader"):
+        if suffix in library_names("reader"):
             format = suffix
-        found = module_of("reader", format).read(path)
+        found = import_library_module("reader", format).read(path)
         if not isinstance(found, Raw):
             raise file_error(
                 path,

@@ -14,8 +14,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from boatsim.errors import BadInput, unknown_name
-from boatsim.physics.commands import clip, clipped_row
-from boatsim.physics.kernel.records import Fleet, Model
+from boatsim.physics.commands import clip_to_channel_ranges, clipped_commands
+from boatsim.physics.kernel.records import FleetArrays, VesselNumbers
 from boatsim.physics.kinds.effect import Effect
 from boatsim.physics.param import Param
 from boatsim.physics.program import Program
@@ -94,7 +94,7 @@ class Batch:
             raise BadInput(f"{self._seeds.size} seeds for {self.n} boats; allowed is one for each")
         self.t = np.zeros(self.n)  # [s]
         self._y = np.zeros((self.n, 2 * self.code.NQ))
-        self._commands = np.tile(clipped_row(self.vessels[0], {}), (self.n, 1))
+        self._commands = np.tile(clipped_commands(self.vessels[0], {}), (self.n, 1))
         self._memory = np.zeros((self.n, self.program.memory_size))
         self._act = np.zeros((self.n, self.program.held_size))
         self._p = np.zeros((self.n, len(self.program.values())))
@@ -106,9 +106,9 @@ class Batch:
         return self.n
 
     @property
-    def fleet(self) -> Fleet:
+    def fleet(self) -> FleetArrays:
         """States and parameters as compiled functions take them: views, not copies."""
-        return Fleet(
+        return FleetArrays(
             self.t,
             self._y,
             self._commands,
@@ -179,7 +179,7 @@ class Batch:
         )
         self._commands[chosen] = self._clip({} if commands is None else commands, chosen)
         self.t[chosen] = 0.0
-        self.shared(lambda some: self.code.settle_boats(some, self.fleet), chosen)
+        self.shared(lambda some: self.code.settle_actuators_of_boats(some, self.fleet), chosen)
 
     def advance(
         self, commands: ArrayLike | Mapping[str, float] | None = None, steps: int = 1
@@ -277,10 +277,12 @@ class Batch:
         if substeps < 1 or abs(substeps * self.step - interval) > 1e-9 * interval:
             raise BadInput(f"step {self.step:g} s does not divide the interval {interval:g} s")
         p = self._values[0] if values is None else values
-        commands = np.ascontiguousarray(clip(self.vessels[0], np.asarray(commands, dtype=float)))
-        model = Model(self.program.body, p, self._on)
-        plant = self.program.plant(self.program.joint_rates(np.array(start, dtype=float)))
-        self.code.settle(commands[0], plant.memory, p, self._on, plant.act)
+        commands = np.ascontiguousarray(
+            clip_to_channel_ranges(self.vessels[0], np.asarray(commands, dtype=float))
+        )
+        model = VesselNumbers(self.program.body, p, self._on)
+        plant = self.program.vessel_state(self.program.joint_rates(np.array(start, dtype=float)))
+        self.code.settle_actuators(commands[0], plant.memory, p, self._on, plant.act)
         out = np.empty((len(commands) + 1, len(plant.y)))
         self.code.rollout(model, plant, commands, t0, self.step, substeps, out)
         return self.program.body_rates(out)
@@ -303,8 +305,8 @@ class Batch:
         act = np.zeros(self.program.held_size)
         k = np.zeros(self.code.K)
         memory = np.zeros(self.program.memory_size)
-        self.code.settle(self.program.command_array(commands), memory, p, self._on, act)
-        self.code.constants(self.program.body, p, self._on, k)
+        self.code.settle_actuators(self.program.command_array(commands), memory, p, self._on, act)
+        self.code.compute_mass_constants(self.program.body, p, self._on, k)
         y = self.program.joint_rates(np.array(start, dtype=float))
         self.code.steps(0.0, y, self.step, steps, act, p, self._on, k)
         state: Array = self.program.body_rates(y[None])[0]
@@ -313,16 +315,16 @@ class Batch:
     def _sample(self, program: Program, boats: Boats) -> None:
         """Parameters of effects with random parameters, by the seed of each vessel."""
         for effect, first in zip(program.effects, program.offsets, strict=True):
-            if type(effect).seeded is not Effect.seeded:
+            if type(effect).with_seed is not Effect.with_seed:
                 for b in boats:
-                    values = effect.seeded(int(self._seeds[b])).values()
+                    values = effect.with_seed(int(self._seeds[b])).values()
                     self._p[b, first : first + len(values)] = values
 
     def _stepped(self, boats: Boats, steps: int) -> None:
         self.code.advance_boats(boats, self.fleet, self.step, steps)
 
     def _weigh(self, boats: Boats) -> None:
-        self.code.weigh_boats(boats, self._body, self._p, self._on, self._k)
+        self.code.compute_mass_constants_of_boats(boats, self._body, self._p, self._on, self._k)
 
     def shared(self, work: Callable[[Boats], None], boats: Boats | None = None) -> None:
         """Work on vessels on all threads.
@@ -346,7 +348,7 @@ class Batch:
         Args:
             felt: Rows (n, 11) in the order of `control.compiled.SENSE_FIELDS`; they are changed.
         """
-        self.shared(lambda some: self.code.feel_boats(some, self.fleet, felt))
+        self.shared(lambda some: self.code.read_instruments_of_boats(some, self.fleet, felt))
 
     def _chosen(self, boats: ArrayLike | None) -> Boats:
         """Numbers of vessels, from numbers or a mask. Raises BadInput."""
@@ -389,7 +391,7 @@ class Batch:
         """Commands (k, C) in force when these are sent. Raises BadInput."""
         vessel = self.vessels[0]
         if isinstance(commands, Mapping):
-            return clipped_row(vessel, commands)
+            return clipped_commands(vessel, commands)
         given, width = np.asarray(commands, dtype=float), len(vessel.commands)
         fits = given.shape[:-1] in ((), (1,), boats.shape)
         if not (given.ndim and fits and given.shape[-1] in (width, len(vessel.inputs))):
@@ -399,7 +401,7 @@ class Batch:
             )
         rows = self._commands[boats]
         rows[:, : given.shape[-1]] = given
-        return clip(vessel, rows)
+        return clip_to_channel_ranges(vessel, rows)
 
     @cached_property
     def _parameters(self) -> dict[str, tuple[int, Param]]:

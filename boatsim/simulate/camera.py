@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from boatsim.errors import BadInput
-from boatsim.physics.base import Array, Checked, param
+from boatsim.physics.base import Array, CheckedParameters, param
 from boatsim.physics.vessel import Vessel
 
 Pose = tuple[float, float, float]  # x, y [m] of the CG, psi [rad]
@@ -26,7 +26,7 @@ class Frame(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Camera(Checked):
+class Camera(CheckedParameters):
     """A camera whose pictures are evaluated by hand: the user marks points of the hull.
 
     Positions in the plane of the water are complex numbers, north + i east, on the hull ahead +

@@ -20,7 +20,7 @@ from pathlib import Path
 from boatsim.errors import BadInput, unknown_name
 from boatsim.files import Value, read_toml, tables
 from boatsim.physics import trust
-from boatsim.physics.content import all_names, find, full_name, root
+from boatsim.physics.content import all_names, content_root, find_content_file, full_scenario_name
 
 NAME = re.compile(r"[\w.+-]+")
 # files in a folder of scenarios that are none
@@ -48,7 +48,7 @@ class Place:
     def name(self) -> str:
         """Vessel/case for shipped scenarios; the case or the file's stem for a file of the user."""
         own = self.case or self.path.stem
-        for home in (root(), *trust.content()):
+        for home in (content_root(), *trust.user_content_folders()):
             if self.path.parent.parent == home / "scenarios":
                 return f"{self.path.parent.name}/{own}"
         return own
@@ -109,9 +109,9 @@ def matching(given: str) -> list[str]:
             raise BadInput(f"no scenario is like {given!r} (they are in {', '.join(folders)})")
         return found
     if given.endswith(".toml"):
-        names = cases(find("scenario", given))
+        names = cases(find_content_file("scenario", given))
         return [f"{given}:{case}" for case in names] or [given]
-    return [full_name("scenario", given)]
+    return [full_scenario_name("scenario", given)]
 
 
 def files_of(folder: Path) -> list[Path]:
@@ -162,7 +162,7 @@ def located(given: str, base_folder: Path | None = None) -> Place:
     """
     file, _, case = given.rpartition(":")
     named = file.endswith(".toml")
-    path = find("scenario", file if named else given, base_folder)
+    path = find_content_file("scenario", file if named else given, base_folder)
     names = cases(path)
     if named:
         if case not in names:

@@ -13,7 +13,7 @@ from boatsim.physics.commands import SLACK
 from boatsim.physics.compiler_internals import FunctionPointer
 from boatsim.physics.debugging import DEBUG
 from boatsim.physics.kernel.compiling import merged, unlocked
-from boatsim.physics.kernel.records import Fleet
+from boatsim.physics.kernel.records import FleetArrays
 from boatsim.physics.signals import Array
 from boatsim.simulate.sensing import disturb
 
@@ -75,8 +75,8 @@ class Loop(NamedTuple):
 Boats = types.Array(types.int64, 1, "C")
 Row = types.Array(types.float64, 1, "C")
 Rows = types.Array(types.float64, 2, "C")
-FLEET = types.NamedTuple([Row, Rows, Rows, Rows, Rows, Rows, Row, Rows, Row], Fleet)
-FEEL = types.void(Boats, FLEET, Rows)  # `feel_boats` of a program
+FLEET = types.NamedTuple([Row, Rows, Rows, Rows, Rows, Rows, Row, Rows, Row], FleetArrays)
+FEEL = types.void(Boats, FLEET, Rows)  # `read_instruments_of_boats` of a program
 ADVANCE = types.void(Boats, FLEET, types.float64, types.int64)  # `advance_boats` of a program
 PERIODS = types.NamedTuple([types.boolean, types.int64, types.int64, types.float64], Periods)
 
@@ -101,13 +101,13 @@ def count_orders(boats: Any, commands: Array, orders: Orders, steps: int, dt: fl
 
 
 def run_periods(
-    law: Any, feel: Any, advance: Any, boats: Any, periods: Periods, fleet: Fleet, loop: Loop
+    law: Any, feel: Any, advance: Any, boats: Any, periods: Periods, fleet: FleetArrays, loop: Loop
 ) -> None:
     """Run control periods in place.
 
     Args:
         law: Law of the controllers.
-        feel: `feel_boats` of the program.
+        feel: `read_instruments_of_boats` of the program.
         advance: `advance_boats` of the program.
         boats: Rows of the vessels to work on.
         periods: Number and length of the periods.
@@ -141,7 +141,7 @@ def pointers(law: Any, feel: Any, advance: Any, records: tuple[Any, ...]) -> tup
 
     Args:
         law: Law of the controllers.
-        feel: `feel_boats` of the program.
+        feel: `read_instruments_of_boats` of the program.
         advance: `advance_boats` of the program.
         records: Types of the five records in `Control`.
     """

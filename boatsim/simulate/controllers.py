@@ -5,7 +5,7 @@ from typing import Any
 
 from boatsim.control.base import Sense
 from boatsim.errors import BadInput
-from boatsim.physics.content import find, load_class, names
+from boatsim.physics.content import find_content_file, library_names, load_class
 from boatsim.physics.vessel import Vessel
 from boatsim.simulate.cases import content
 from boatsim.simulate.control_loop import controller_error
@@ -58,7 +58,11 @@ def controller_table(controller: str, own: object) -> Mapping[str, Any]:
         BadInput: There is no such controller.
     """
     load_class("controller", controller, named=True)
-    use = controller if controller in names("controller") else str(find("controller", controller))
+    use = (
+        controller
+        if controller in library_names("controller")
+        else str(find_content_file("controller", controller))
+    )
     if isinstance(own, Mapping) and own.get("use") == use:
         return own
     return {"use": use}

@@ -1,7 +1,7 @@
 """Steps a vessel on MuJoCo: added mass and all forces enter through the passive-force callback.
 
 Files, controllers and effects use SNAME axes (z down), MuJoCo's model has z up. This module
-converts states, and `add_to_mujoco` of the equations converts forces in the compiled step.
+converts states, and `add_force_and_inertia_to_mujoco` converts forces in the compiled step.
 """
 
 from collections.abc import Callable, Iterator
@@ -69,7 +69,7 @@ class Engine(Stepper):
         super().__init__(vessel, step)
         self.tank = tank or world.open_water(vessel)
         self._k = np.zeros(self.code.K)
-        self.code.constants(self.program.body, self._values, self._on, self._k)
+        self.code.compute_mass_constants(self.program.body, self._values, self._on, self._k)
         size = len(self._values) + self.code.K + self.program.held_size + 2
         with no_callback():
             self.model = world.build(vessel, self.tank, step, size, **options)
@@ -95,9 +95,9 @@ class Engine(Stepper):
         self.data.qpos[self._place] = self._sign * state[: self.code.NQ]
         self.data.qvel[self._place] = self._sign * state[self.code.NQ :]
 
-    def settle(self) -> None:
+    def settle_actuators(self) -> None:
         """Set the actuators to the steady state of their commands."""
-        super().settle()
+        super().settle_actuators()
         self._write_userdata()
 
     def advance(self, steps: int = 1, length: float | None = None) -> None:
@@ -186,7 +186,7 @@ def python_callback(
 
     def passive(model: mujoco.MjModel, data: mujoco.MjData) -> None:
         if model.nuserdata == size:
-            code.passive_in_place(
+            code.add_passive_forces_in_place(
                 data.time, data.qpos, data.qvel, data.userdata, data.qfrc_passive, data.M
             )
             mujoco.mj_factorM(model, data)

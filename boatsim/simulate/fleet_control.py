@@ -198,7 +198,9 @@ class ByLaw:
         loop = self._loop(np.zeros((1, len(self.kind.goals))), np.zeros((1, 1, NOISES)))
         records = tuple(map(numba.typeof, loop.control))
         law = self.kind.law
-        self._pointers = compiled_loop.pointers(law, code.feel_boats, code.advance_boats, records)
+        self._pointers = compiled_loop.pointers(
+            law, code.read_instruments_of_boats, code.advance_boats, records
+        )
         if DEBUG:
             self._run = compiled_loop.run_periods
         else:

@@ -69,7 +69,7 @@ def scenario_of(
     if manoeuvre not in ANGLES:
         raise BadInput(unknown_name("manoeuvre", manoeuvre, ANGLES))
     _check_heading(manoeuvre, heading)
-    vessel = vessels.load(name, loads)
+    vessel = vessels.load_vessel(name, loads)
     usual = ANGLES[manoeuvre] if angle is None else angle
     if usual == 0.0 and manoeuvre != "crash_stop":
         raise BadInput(

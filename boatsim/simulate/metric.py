@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from boatsim.errors import BoatsimError
-from boatsim.physics.base import Array, Checked
+from boatsim.physics.base import Array, CheckedParameters
 from boatsim.recordings.table import Recording
 
 # last part of a metric's name -> how it summarises a signal
@@ -31,7 +31,7 @@ class TooShort(BoatsimError):
 
 
 @dataclass(frozen=True)
-class MetricSet(Checked):
+class MetricSet(CheckedParameters):
     """Base class of metric sets.
 
     `measure = { use = "arrival", x = 20.0 }` in a scenario creates one and calls `values` after the

@@ -34,7 +34,7 @@ def compile_native(code: CompiledProgram, size: int) -> Any:
     """
     try:
         load_mujoco_symbols()
-        return code.make_native(mujoco_layout(), size).ctypes
+        return code.compile_passive_callback(mujoco_layout(), size).ctypes
     except OSError as error:
         raise BadPhysics(f"the library of MuJoCo cannot be loaded: {error}") from None
 

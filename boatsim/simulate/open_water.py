@@ -66,6 +66,6 @@ class OpenWater(Stepper):
 
     def acceleration(self) -> tuple[float, float]:
         """Return the acceleration of the origin over ground along body x and y [m/s^2]."""
-        self.code.feel_boats(ONE, self.batch.fleet, self._sensed)
+        self.code.read_instruments_of_boats(ONE, self.batch.fleet, self._sensed)
         ahead, starboard = self._sensed[0, 3:5].tolist()
         return ahead, starboard

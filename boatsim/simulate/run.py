@@ -245,7 +245,7 @@ def engine_for(scenario: Scenario, seed: int | None = None) -> Engine | OpenWate
         BadPhysics: If the model can not be stepped.
     """
     file, number = scenario.file, seed_of(scenario, seed)
-    effects = tuple(effect.seeded(number) for effect in scenario.vessel.effects)
+    effects = tuple(effect.with_seed(number) for effect in scenario.vessel.effects)
     vessel = replace(scenario.vessel, effects=effects)
     if file.is_compiled:
         return OpenWater(vessel, file.step)

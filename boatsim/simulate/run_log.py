@@ -51,8 +51,8 @@ class RunLog:
             estimates = list(controller.estimates())
         self._references = [name for name in estimates if name.startswith(REFERENCE)]
         self._estimates = [name for name in estimates if not name.startswith(REFERENCE)]
-        self._signals = signals_of(vessel.dof)
-        self._motion_of = attrgetter(*(signal.symbol for signal in self._signals))
+        self._signals_text = signals_of(vessel.dof)
+        self._motion_of = attrgetter(*(signal.symbol for signal in self._signals_text))
         self._axes = [i for i, axis in enumerate(AXES) if axis in vessel.dof]
         self._readings: dict[str, str] = {}  # reading of a further sensor -> its column
         for sensor in self.scenario.additional_sensors:
@@ -68,7 +68,7 @@ class RunLog:
 
     def _columns(self) -> list[str]:
         components = [COMPONENTS[AXES[i]] for i in self._axes]
-        columns = ["t_s", *(signal.column for signal in self._signals), *self._loop.channels]
+        columns = ["t_s", *(signal.column for signal in self._signals_text), *self._loop.channels]
         columns += self._measured
         columns += map("sent_{}".format, self._loop.channels)
         columns += map("actual_{}".format, self._loop.engine.vessel.actuators)

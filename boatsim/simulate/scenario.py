@@ -287,7 +287,7 @@ def from_table(raw: Mapping[str, object], place: Place, vessel: Vessel | None = 
 def _vessel(file: ScenarioFile, folder: Path, vessel: Vessel | None) -> Vessel:
     """The scenario's vessel, or another one, with the changes that the scenario makes."""
     if vessel is None:
-        vessel = vessels.load(file.vessel, file.load, file.set, file.effect, folder)
+        vessel = vessels.load_vessel(file.vessel, file.load, file.set, file.effect, folder)
         return vessel.with_measured(file.measured)
     if file.set:
         vessel = vessel.with_parameters(file.set)

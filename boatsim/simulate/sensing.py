@@ -12,7 +12,7 @@ from typing import ClassVar
 import numpy as np
 
 from boatsim.control.base import Sense
-from boatsim.physics.base import Array, Checked, param
+from boatsim.physics.base import Array, CheckedParameters, param
 from boatsim.physics.kernel.compiling import lean
 from boatsim.simulate.stepper import Stepper
 
@@ -50,7 +50,7 @@ def disturb(felt: Array, sensors: Array, noise: Array) -> None:
 
 
 @dataclass(frozen=True)
-class Sensors(Checked):
+class Sensors(CheckedParameters):
     """The usual sensors: a BNO055 inertial unit, and a speed log if `speed_sd` is not negative.
 
     One sample of the unit's sensor fusion (100 Hz) holds for a whole control step, since readings
@@ -122,7 +122,7 @@ class Sensors(Checked):
 
 
 @dataclass(frozen=True)
-class Sensor(Checked):
+class Sensor(CheckedParameters):
     """Base class of further sensors; `[[sensor]]` with `use = "inclinometer"` adds one.
 
     A reading with the name of a field of `Sense` fills that field; others are in `sense.more`.

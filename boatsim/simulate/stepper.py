@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from boatsim.errors import BadInput, BadPhysics
-from boatsim.physics.commands import clip, command_row, saturated_channels
+from boatsim.physics.commands import clip_to_channel_ranges, command_row, saturated_channels
 from boatsim.physics.program import Program
 from boatsim.physics.signals import Array, Wrench
 from boatsim.physics.vessel import Vessel
@@ -112,11 +112,11 @@ class Stepper(ABC):
         self._put(state.t, self.program.joint_rates(np.array(state[1:])[list(self.code.SHOWS)]))
         self._memory[:] = 0.0
         self.command(commands or {})
-        self.settle()
+        self.settle_actuators()
 
-    def settle(self) -> None:
+    def settle_actuators(self) -> None:
         """Set the actuators to the steady state of their commands."""
-        self.code.settle(self._commands, self._memory, self._values, self._on, self._act)
+        self.code.settle_actuators(self._commands, self._memory, self._values, self._on, self._act)
         self._mean[:] = self._mean_of_part()
 
     def command(self, commands: Mapping[str, float]) -> None:
@@ -134,7 +134,9 @@ class Stepper(ABC):
                 raise BadInput(self.vessel.unknown_command(name))
             sent[self._places[name]] = float(value)
         if not isfinite(sum(sent)):
-            clip(self.vessel, np.array(sent))  # raises an error that names the channel
+            clip_to_channel_ranges(
+                self.vessel, np.array(sent)
+            )  # raises an error that names the channel
         self.sent = sent
         self._commands[:] = [
             min(max(x, low), high) for x, (low, high) in zip(sent, self._limits, strict=True)
@@ -180,12 +182,12 @@ class Stepper(ABC):
         self._mean[:] = 0.0
         while left > 1e-9:
             dt = left
-            if self.code.HAS_PAUSE:
-                dt = self.code.until_bend(
+            if self.code.HAS_TIME_TO_DISCONTINUITY:
+                dt = self.code.substep_length(
                     self._commands, self._memory, left, least, self._values, self._on
                 )
-                least, before = self.code.least_after(dt, before, least), dt
-            self.code.actuate_in_place(
+                least, before = self.code.minimum_substep(dt, before, least), dt
+            self.code.advance_actuators(
                 self._commands, self._memory, dt, self._values, self._on, self._act
             )
             self._step(dt)
@@ -203,7 +205,7 @@ class Stepper(ABC):
     @property
     def state(self) -> State:
         """The present state."""
-        return State(self.t, *self.program.shown(self._joint_state().tolist()))
+        return State(self.t, *self.program.pose_and_velocities(self._joint_state().tolist()))
 
     @property
     def actuators(self) -> dict[str, float]:
@@ -213,7 +215,7 @@ class Stepper(ABC):
     def wrench(self) -> Wrench:
         """Return the sum of all effects in body axes [N, N m]; fixed degrees of freedom have 0."""
         last = np.int64(2 * self.code.HELD)  # the actuators at the end of the last step
-        found = self.code.forces(
+        found = self.code.total_body_force(
             self.t, self._joint_state(), self._act, last, self._values, self._on
         )
         return Wrench(**dict(zip((Wrench._fields[i] for i in self.code.FREE), found, strict=True)))

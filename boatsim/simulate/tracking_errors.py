@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from boatsim.physics.base import Array
-from boatsim.physics.signals import follower
+from boatsim.physics.signals import measured_column_for_goal
 from boatsim.recordings.notes import unit_of
 from boatsim.recordings.table import Recording, join_recordings
 
@@ -113,7 +113,7 @@ def _tracked(goals: Iterable[str]) -> list[tuple[str, str, list[str]]]:
     """
     signals: dict[str, str] = {}
     for key in goals:
-        if signal := follower(key):
+        if signal := measured_column_for_goal(key):
             signals[key] = signal
     stems = [key.rpartition("_")[0] for key in signals]
     found: list[tuple[str, str, list[str]]] = []

@@ -10,7 +10,7 @@ import mujoco
 import numpy as np
 
 from boatsim.errors import BadInput, BadPhysics, unknown_name
-from boatsim.physics.content import root
+from boatsim.physics.content import content_root
 from boatsim.physics.signals import Array
 from boatsim.physics.vessel import Vessel
 from boatsim.simulate.hull_xml_check import check_text
@@ -92,7 +92,7 @@ def build(
         BadPhysics: If MuJoCo does not store the full mass matrix.
     """
     tank = tank or open_water(vessel)
-    spec = mujoco.MjSpec.from_file(str(root() / "models" / "tank.xml"))
+    spec = mujoco.MjSpec.from_file(str(content_root() / "models" / "tank.xml"))
     spec.option.timestep = step
     spec.option.integrator = mujoco.mjtIntegrator.mjINT_RK4
     spec.option.gravity = (0, 0, 0)

@@ -14,7 +14,7 @@ from typing import Literal, NamedTuple, TypeAlias
 from boatsim.errors import BadInput, unknown_name
 from boatsim.files import tables
 from boatsim.physics import vessel as vessels
-from boatsim.physics.content import all_names, load_class, names
+from boatsim.physics.content import all_names, library_names, load_class
 from boatsim.physics.kinds.effect import Effect
 from boatsim.simulate.cases import Place
 from boatsim.simulate.controllers import controller_table
@@ -176,7 +176,7 @@ def _find_effect(
 ) -> tuple[ScenarioTable, list[KeyPath]]:
     """Values of effects of the scenario, of the vessel, or of one added from the library."""
     name = rest[0] if rest else ""
-    if len(rest) == 1 and name in names("effect"):
+    if len(rest) == 1 and name in library_names("effect"):
         kind: type[Effect] = load_class("effect", name)
         raise BadInput(f"{key} is an effect; add one of its parameters: {', '.join(kind.params())}")
     effects = tables(table.get("effect"))
@@ -285,7 +285,7 @@ def _loads(table: ScenarioTable, place: Place, value: str) -> list[str]:
     if isinstance(specified, list):
         before = list(map(str, specified))
     more = list(filter(None, map(str.strip, value.split("+"))))
-    return vessels.merged_loads(str(table.get("vessel")), before, more, place.path.parent)
+    return vessels.merge_load_conditions(str(table.get("vessel")), before, more, place.path.parent)
 
 
 def _with_value(table: object, path: KeyPath, value: object) -> dict[str, object]:

@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from boatsim.errors import BadInput, BadPhysics
-from boatsim.physics.content import find
+from boatsim.physics.content import find_content_file
 from boatsim.physics.signals import Array
 from boatsim.simulate.cases import Place, content, matching
 from boatsim.simulate.evaluation import metric_names
@@ -264,10 +264,10 @@ def _digests(points: Sequence[Point]) -> dict[str, str]:
 def _files(point: Point) -> Iterator[Path]:
     """Files of its vessel and its controller."""
     folder = point.place.path.parent
-    yield find("vessel", str(point.table["vessel"]), folder)
+    yield find_content_file("vessel", str(point.table["vessel"]), folder)
     controller = point.table["controller"]
     if isinstance(controller, Mapping):
-        yield find("controller", str(controller["use"]), folder)
+        yield find_content_file("controller", str(controller["use"]), folder)
 
 
 def _digest(data: bytes) -> str:

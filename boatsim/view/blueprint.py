@@ -7,7 +7,7 @@ from itertools import chain
 import rerun as rr
 import rerun.blueprint as rrb
 
-from boatsim.physics.signals import COMPONENTS, POSE, RATES, follower
+from boatsim.physics.signals import COMPONENTS, POSE, RATES, measured_column_for_goal
 from boatsim.recordings.notes import unit_of
 from boatsim.recordings.readers.rrd import SIGNALS, TIMELINE
 from boatsim.simulate.tracking_errors import GOAL
@@ -114,7 +114,9 @@ def with_goals(signals: Sequence[str], names: Iterable[str]) -> list[str]:
     """Return the names that are one of some signals, or a goal for one of them."""
     found: list[str] = []
     for name in names:
-        is_goal = name.startswith(GOAL) and follower(name.removeprefix(GOAL)) in signals
+        is_goal = (
+            name.startswith(GOAL) and measured_column_for_goal(name.removeprefix(GOAL)) in signals
+        )
         if is_goal or name in signals:
             found.append(name)
     return found
@@ -284,7 +286,7 @@ def _colour(name: str, number: int) -> Colour:
         if side in name.split("_"):
             return dark if name.startswith("actual_") else light
     if name.startswith(GOAL):
-        return paler(_colour(follower(name.removeprefix(GOAL)) or "", number))
+        return paler(_colour(measured_column_for_goal(name.removeprefix(GOAL)) or "", number))
     return FIXED.get(name, PALETTE[number % len(PALETTE)])
 
 

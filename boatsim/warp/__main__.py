@@ -6,4 +6,4 @@ from boatsim.physics import vessel
 from boatsim.physics.program import Program
 from boatsim.warp.program import text_of
 
-print(text_of(Program(vessel.load(sys.argv[1])), "float32"))
+print(text_of(Program(vessel.load_vessel(sys.argv[1])), "float32"))

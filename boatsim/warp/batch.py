@@ -150,7 +150,7 @@ class Batch(batch.Batch):
         """Raise BadInput for a realisation whose number is not exact in single precision."""
         for effect, first in zip(self.program.effects, self.program.offsets, strict=True):
             pairs = zip(
-                type(effect).params(), effect.values(), effect.seeded(1).values(), strict=True
+                type(effect).params(), effect.values(), effect.with_seed(1).values(), strict=True
             )
             for place, (key, value, other) in enumerate(pairs):
                 worst = self._p[:, first + place].max()

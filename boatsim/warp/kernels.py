@@ -68,7 +68,7 @@ def add_forces(
 ):
     """Add forces and the added mass at one stage of a Runge-Kutta step."""
     i = wp.tid()
-    motion_add_to_mujoco(
+    motion_add_force_and_inertia_to_mujoco(
         T(t[i]) + share * part[i], q[i], qd[i], act[i], at,
         p[i % p.shape[0]], k[i % k.shape[0]], force[i], M[i]
     )
@@ -93,10 +93,10 @@ def begin_part(
         before[i] = T(0.0)
     own = i % p.shape[0]
     if left[i] > T({enough}):
-        length = run_until_bend(commands[i], memory[i], left[i], least[i], p[own])
-        least[i] = run_least_after(length, before[i], least[i])
+        length = run_substep_length(commands[i], memory[i], left[i], least[i], p[own])
+        least[i] = run_minimum_substep(length, before[i], least[i])
         before[i] = length
-        run_actuate_in_place(commands[i], memory[i], length, p[own], act[i])
+        run_advance_actuators(commands[i], memory[i], length, p[own], act[i])
         left[i] = left[i] - length
         part[i] = length
 
@@ -134,10 +134,10 @@ def run_on(
         dt = T(step)
         left, least, before = T(dt), T({shortest}), T(0.0)
         while left > T({enough}):
-            part = run_until_bend(commands[i], memory[i], left, least, p[own])
-            least = run_least_after(part, before, least)
+            part = run_substep_length(commands[i], memory[i], left, least, p[own])
+            least = run_minimum_substep(part, before, least)
             before = T(part)
-            run_actuate_in_place(commands[i], memory[i], part, p[own], act[i])
+            run_advance_actuators(commands[i], memory[i], part, p[own], act[i])
             motion_step_in_place(T(now), y[i], part, act[i], p[own], k[mass], none)
             now = now + wp.float64(part)
             left = left - part

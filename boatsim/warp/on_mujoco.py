@@ -128,7 +128,7 @@ class OnMujoco:
             self._ahead.fill_(steps)
             for _ in range(steps):
                 self._advance_part()
-            while b.code.HAS_PAUSE and self._any_left():
+            while b.code.HAS_TIME_TO_DISCONTINUITY and self._any_left():
                 self._advance_part()
         b.launch("rest", self._part)
 

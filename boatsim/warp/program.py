@@ -12,11 +12,11 @@ from boatsim.warp.values import NOTHING, REAL, ROW, WHOLE, Kind
 
 # Functions that the kernels call, and the kinds of their arguments
 ENTRIES: dict[str, tuple[Kind, ...]] = {
-    "add_to_mujoco": (REAL, ROW, ROW, ROW, WHOLE, ROW, ROW, ROW, ROW),
+    "add_force_and_inertia_to_mujoco": (REAL, ROW, ROW, ROW, WHOLE, ROW, ROW, ROW, ROW),
     "step_in_place": (REAL, ROW, REAL, ROW, ROW, NOTHING, ROW, ROW),
-    "actuate_in_place": (ROW, ROW, REAL, ROW, NOTHING, ROW),
-    "until_bend": (ROW, ROW, REAL, REAL, ROW, NOTHING),
-    "least_after": (REAL, REAL, REAL),
+    "advance_actuators": (ROW, ROW, REAL, ROW, NOTHING, ROW),
+    "substep_length": (ROW, ROW, REAL, REAL, ROW, NOTHING),
+    "minimum_substep": (REAL, REAL, REAL),
 }
 
 
@@ -63,4 +63,6 @@ def import_text(text: str) -> ModuleType:
     Args:
         text: Source of the module.
     """
-    return cache.package({"__init__.py": text}, f"warp_{sha256(text.encode()).hexdigest()[:16]}")
+    return cache.import_cached_package(
+        {"__init__.py": text}, f"warp_{sha256(text.encode()).hexdigest()[:16]}"
+    )

@@ -47,9 +47,9 @@ def pages() -> dict[str, str]:
     """Return all pages: path below `reference/` without the suffix -> text."""
     texts = dict(_command_pages())
     for kind in CLASSES:
-        for name in content.names(kind):
+        for name in content.library_names(kind):
             texts[f"{kind}s/{name}"] = _entry_page(kind, name)
-    for name in content.names("vessel"):
+    for name in content.library_names("vessel"):
         texts[f"vessels/{name}"] = _vessel_page(name)
     texts |= dict(_scenario_pages())
     texts |= dict(_setting_pages())
@@ -95,7 +95,7 @@ def _vessel_page(name: str) -> str:
 def _scenario_pages() -> Iterator[tuple[str, str]]:
     """Yield a page for each folder of scenarios."""
     folders: dict[str, list[str]] = {}
-    for name in content.names("scenario"):
+    for name in content.library_names("scenario"):
         folders.setdefault(name.partition("/")[0], []).append(name)
     for folder, names in folders.items():
         lines = [f"# {folder}", "", "| `boatsim run` | purpose |", "| --- | --- |"]

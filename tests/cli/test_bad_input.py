@@ -17,7 +17,7 @@ from hypothesis.errors import InvalidArgument
 from typer.testing import CliRunner
 
 from boatsim.cli import app
-from boatsim.physics.content import root
+from boatsim.physics.content import content_root
 
 DIAGNOSIS = {"diagnosis.json", "report.html", "report.md", "patched.toml", "diagnosis.rrd"}
 WRITTEN = {
@@ -486,8 +486,8 @@ def test_a_diagnosis_uses_notes_or_says_why_not(content: bytes, place: Callable[
     obeys(folder / "out", ("recording.toml", "run.csv"), "diagnose", folder / "run.csv")
 
 
-ROLLER = (root() / "models" / "kvlcc2_roll" / "vessel.toml").read_text(encoding="utf-8")
-HULL = (root() / "models" / "kvlcc2_roll" / "hull.xml").read_bytes()
+ROLLER = (content_root() / "models" / "kvlcc2_roll" / "vessel.toml").read_text(encoding="utf-8")
+HULL = (content_root() / "models" / "kvlcc2_roll" / "hull.xml").read_bytes()
 
 
 @pytest.mark.slow

@@ -280,7 +280,9 @@ def test_wrong_usage_is_exit_code_2(arguments: list[str]) -> None:
 def test_list_has_a_line_about_everything(kind: str) -> None:
     result = boatsim("list", f"{kind}s")
     lines = [line.split(maxsplit=1) for line in result.stdout.splitlines()[1:]]
-    assert result.exit_code == 0 and [name for name, about in lines if about] == content.names(kind)
+    assert result.exit_code == 0 and [
+        name for name, about in lines if about
+    ] == content.library_names(kind)
     assert result.stdout.strip() in boatsim("list").stdout
 
 
@@ -351,7 +353,7 @@ def test_options_of_a_diagnosis_reach_it(monkeypatch: pytest.MonkeyPatch) -> Non
 def test_a_shipped_scenario_is_a_script(tmp_path: Path) -> None:
     # where the installed `boatsim` lies
     path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
-    script = content.root() / "scenarios" / "joystick_boat" / "berth.toml"
+    script = content.content_root() / "scenarios" / "joystick_boat" / "berth.toml"
     done = subprocess.run(
         [script], cwd=tmp_path, env=os.environ | {"PATH": path}, capture_output=True, text=True
     )
@@ -359,9 +361,9 @@ def test_a_shipped_scenario_is_a_script(tmp_path: Path) -> None:
     assert {f.name for f in (tmp_path / "out" / "joystick_boat" / "berth").iterdir()} == FILES
 
 
-@pytest.mark.parametrize("name", content.names("scenario"))
+@pytest.mark.parametrize("name", content.library_names("scenario"))
 def test_every_shipped_scenario_can_be_executed(name: str) -> None:
-    file = content.find("scenario", name)
+    file = content.find_content_file("scenario", name)
     assert os.access(file, os.X_OK) and file.read_text().startswith(
         "#!/usr/bin/env -S boatsim run\n"
     )
@@ -418,7 +420,7 @@ def test_ctrl_c_stops_all_processes_and_keeps_what_each_had(tmp_path: Path) -> N
 def test_a_folder_of_vessel_and_scenarios_runs_the_scenarios_and_one_without_any_is_a_line(
     tmp_path: Path,
 ) -> None:
-    shutil.copytree(content.find("vessel", "trial_boat").parent, tmp_path / "mine")
+    shutil.copytree(content.find_content_file("vessel", "trial_boat").parent, tmp_path / "mine")
     bare = boatsim("run", str(tmp_path / "mine"))
     assert bare.exit_code == 2 and "there is no scenario (*.toml) in this folder" in bare.stderr
     (tmp_path / "mine" / "drift.toml").write_text(
@@ -469,7 +471,7 @@ class MistyDrag(Force):
 def test_a_mistake_in_an_effect_of_ones_own_is_a_line_that_says_where(
     tmp_path: Path, right: str, wrong: str, said: str
 ) -> None:
-    shutil.copytree(content.find("vessel", "trial_boat").parent, tmp_path / "mine")
+    shutil.copytree(content.find_content_file("vessel", "trial_boat").parent, tmp_path / "mine")
     text = (tmp_path / "mine" / "vessel.toml").read_text()
     own = '[[effect]]\nuse = "misty_drag.py"\nc = 1.0\n\n'
     (tmp_path / "mine" / "vessel.toml").write_text(

@@ -15,7 +15,7 @@ from boatsim.diagnosis import pipeline
 from boatsim.diagnosis.candidates import library_for
 from boatsim.errors import BadInput
 from boatsim.physics import vessel
-from boatsim.physics.base import AXES, Array, Course, Wrench, mean_of, motion
+from boatsim.physics.base import AXES, Array, SignalSegment, Wrench, motion, segment_mean
 from boatsim.physics.effects.added_mass import AddedMass, AddedMassCoriolis
 from boatsim.physics.effects.command_delay import HISTORY, CommandDelay
 from boatsim.physics.effects.damping import LateralCentreShift, LinearDamping
@@ -31,7 +31,7 @@ from boatsim.physics.effects.wall_effect import WallEffect
 from boatsim.physics.program import Program
 from boatsim.recordings import table as recording
 
-BOAT = vessel.load("trial_boat")
+BOAT = vessel.load_vessel("trial_boat")
 
 
 def signal(effect: Any, commands: Array, steps: Array) -> Array:
@@ -41,7 +41,11 @@ def signal(effect: Any, commands: Array, steps: Array) -> Array:
     held = zip(commands, steps, strict=True)
     return np.array(
         [
-            mean_of(type(effect).channel(Course(x, x, x), 1.0, 0.0, memory, 0, dt, values))
+            segment_mean(
+                type(effect).transform_signal(
+                    SignalSegment(x, x, x), 1.0, 0.0, memory, 0, dt, values
+                )
+            )
             for x, dt in held
         ]
     )
@@ -80,28 +84,34 @@ def test_delay_says_when_the_next_command_arrives() -> None:
     for i, (command, left) in enumerate(
         [(1.0, 0.12), (1.0, 0.07), (1.0, 0.02), (0.5, 0.12), (0.5, 0.07), (0.5, 0.02)]
     ):
-        assert CommandDelay.pause(command, memory, 0, values) == pytest.approx(left), i
-        CommandDelay.channel(Course(*3 * [command]), 1.0, 0.0, memory, 0, dt, values)
-    CommandDelay.channel(Course(0.5, 0.5, 0.5), 1.0, 0.0, memory, 0, dt, values)
-    assert CommandDelay.pause(0.5, memory, 0, values) == np.inf  # nothing is on its way
-    assert CommandDelay.pause(0.7, memory, 0, values) == 0.12
+        assert CommandDelay.time_to_discontinuity(command, memory, 0, values) == pytest.approx(
+            left
+        ), i
+        CommandDelay.transform_signal(
+            SignalSegment(*3 * [command]), 1.0, 0.0, memory, 0, dt, values
+        )
+    CommandDelay.transform_signal(SignalSegment(0.5, 0.5, 0.5), 1.0, 0.0, memory, 0, dt, values)
+    assert (
+        CommandDelay.time_to_discontinuity(0.5, memory, 0, values) == np.inf
+    )  # nothing is on its way
+    assert CommandDelay.time_to_discontinuity(0.7, memory, 0, values) == 0.12
 
 
 def test_what_rides_on_thrusters_rides_on_propellers_by_their_rate() -> None:
     """The Otter's propellers at 50 rad/s ahead and astern: prop walk goes by k n |n|, as at
     thrusters."""
-    otter = vessel.load("otter")
+    otter = vessel.load_vessel("otter")
     port, starboard = (e for e in otter.effects if isinstance(e, Propeller))
-    walk = PropWalk(side_force_per_thrust=0.2, ahead_share=0.5).completed(otter)
+    walk = PropWalk(side_force_per_thrust=0.2, ahead_share=0.5).with_all_parameters(otter)
     program = Program(otter, candidates=(walk,))
     act, still = np.zeros(program.held_size), np.zeros(2 * program.module.NQ)
     sent = program.command_array({"n_port_radps": 50.0, "n_starboard_radps": -50.0})
     off, on = program.switches(), program.switches(["prop_walk"])
-    program.module.settle(sent, np.zeros(program.memory_size), program.values(), off, act)
+    program.module.settle_actuators(sent, np.zeros(program.memory_size), program.values(), off, act)
     values = np.concatenate([program.values(), program.body])
     first = np.int64(0)
     forces = [
-        np.array(program.module.forces(0.0, still, act, first, values, switches))
+        np.array(program.module.total_body_force(0.0, still, act, first, values, switches))
         for switches in (off, on)
     ]
     Y = 0.2 * 2500.0 * (0.5 * port.ahead - starboard.astern)
@@ -149,7 +159,7 @@ def test_added_mass_coriolis_is_kirchhoffs_force_of_the_water(fraction: float) -
     Tu, Tv = (
         ((e @ M @ nu) + (nu @ M @ e)) / 2 for e in np.eye(6)[:2]
     )  # derivatives of the energy nu' M nu / 2
-    boat = replace(BOAT, effects=(replace(water, coriolis=0.0),)).composed_with(
+    boat = replace(BOAT, effects=(replace(water, coriolis=0.0),)).with_completed_effect(
         AddedMassCoriolis(fraction=fraction)
     )
     own: Any = boat.effects[0]
@@ -158,7 +168,10 @@ def test_added_mass_coriolis_is_kirchhoffs_force_of_the_water(fraction: float) -
 
 
 def test_prop_walk_pushes_the_stern_to_port_astern_and_a_third_as_much_to_starboard_ahead() -> None:
-    walk, stern = PropWalk(side_force_per_thrust=0.09).completed(BOAT), Thruster(x=-0.6).values()
+    walk, stern = (
+        PropWalk(side_force_per_thrust=0.09).with_all_parameters(BOAT),
+        Thruster(x=-0.6).values(),
+    )
 
     def pushed(thrust: float) -> Wrench:
         return walk.wrench(motion(), Thruster.signals_type()(thrust, 0.0, 1.0, 0.0), stern)
@@ -169,7 +182,7 @@ def test_prop_walk_pushes_the_stern_to_port_astern_and_a_third_as_much_to_starbo
 
 @pytest.mark.parametrize("shift", [-0.1, 0.25])
 def test_shifted_lateral_centre_takes_only_the_power_of_the_cross_flow_there(shift: float) -> None:
-    boat = replace(BOAT, effects=(LinearDamping(sway=10.0),)).composed_with(
+    boat = replace(BOAT, effects=(LinearDamping(sway=10.0),)).with_completed_effect(
         LateralCentreShift(shift=shift)
     )
     m = motion(v=0.3, r=-0.5)
@@ -180,7 +193,9 @@ def test_shifted_lateral_centre_takes_only_the_power_of_the_cross_flow_there(shi
 
 
 def test_tether_pulls_towards_its_anchor_with_tension_and_stretch() -> None:
-    line = Tether(tension=0.05, stiffness=0.2, length=1.0, north=3.0, east=-2.0).completed(BOAT)
+    line = Tether(
+        tension=0.05, stiffness=0.2, length=1.0, north=3.0, east=-2.0
+    ).with_all_parameters(BOAT)
     psi = 0.7
     stern = np.array([0.5 - 0.6 * cos(psi), 0.2 - 0.6 * sin(psi)])
     reach = np.array([3.0, -2.0]) - stern
@@ -192,9 +207,9 @@ def test_tether_pulls_towards_its_anchor_with_tension_and_stretch() -> None:
 
 
 def test_slack_tether_keeps_its_weight_and_its_drag_takes_power_at_the_stern() -> None:
-    slack = Tether(tension=0.05, stiffness=0.2, length=9.0, north=3.0).completed(BOAT)
+    slack = Tether(tension=0.05, stiffness=0.2, length=9.0, north=3.0).with_all_parameters(BOAT)
     assert slack.wrench(motion()).X == pytest.approx(0.05, rel=1e-3)
-    line = Tether(drag=0.4).completed(BOAT)
+    line = Tether(drag=0.4).with_all_parameters(BOAT)
     m = motion(u=0.2, v=-0.1, r=0.3)
     force = line.wrench(m)
     assert force.X * m.u + force.Y * m.v + force.N * m.r == pytest.approx(
@@ -205,7 +220,7 @@ def test_slack_tether_keeps_its_weight_and_its_drag_takes_power_at_the_stern() -
 def test_wall_effect_halves_with_every_ln2_of_its_reach_and_is_symmetric() -> None:
     wall = WallEffect(
         damping_rise=1.5, pull=0.1, x_low=-40.0, x_high=40.0, y_low=-30.0, y_high=30.0
-    ).completed(BOAT)
+    ).with_all_parameters(BOAT)
     near, far = (
         wall.wrench(motion(y=30.0 - 0.6 * n * log(2.0), u=0.2, v=0.1, r=0.4)) for n in (1, 2)
     )
@@ -246,7 +261,7 @@ def two_bodies(parts: list[tuple[float, float]], y: Array, rates: Array) -> Arra
 def test_inertia_and_coriolis_force_are_newtons_law_of_each_part(
     effect: Any, more: Any, less: Any
 ) -> None:
-    effect = effect.completed(BOAT)
+    effect = effect.with_all_parameters(BOAT)
     nu, rates = np.array([0.4, -0.2, 0.9]), np.array([0.3, 0.5, -0.7])
     m = motion(
         current=(0.3, 0.2), u=nu[0], v=nu[1], r=nu[2]
@@ -332,4 +347,4 @@ def test_walls_that_nobody_states_are_not_tried_and_not_assumed() -> None:
         BadInput,
         match="trial_boat: wall_effect needs x_low: state it in its table, or walls_m among",
     ):
-        vessel.load("trial_boat", extra=[{"use": "wall_effect", "damping_rise": 1.0}])
+        vessel.load_vessel("trial_boat", extra=[{"use": "wall_effect", "damping_rise": 1.0}])

@@ -16,27 +16,27 @@ from boatsim.diagnosis.filter import map_recording, prior_levels
 from boatsim.errors import BadInput
 from boatsim.files import read_toml
 from boatsim.physics import vessel
-from boatsim.physics.content import find, names
+from boatsim.physics.content import find_content_file, library_names
 from boatsim.physics.program import Program
 from boatsim.recordings.table import Notes, Recording, write_csv
 
 
-@pytest.mark.parametrize("name", names("vessel"))
+@pytest.mark.parametrize("name", library_names("vessel"))
 def test_no_vessel_states_one_and_the_usual_one_goes_by_froudes_law(name: str) -> None:
-    text = read_toml(find("vessel", name))
+    text = read_toml(find_content_file("vessel", name))
     assert "time_constant" not in text.get("diagnosis", {})
-    boat = vessel.load(name)
+    boat = vessel.load_vessel(name)
     assert priors.time_constant(boat) == pytest.approx(np.sqrt(boat.length / 1.2))
 
 
 def test_a_vessel_file_that_states_one_is_told_so(tmp_path: Path) -> None:
-    own = vessel.load("kvlcc2_roll").file
+    own = vessel.load_vessel("kvlcc2_roll").file
     (tmp_path / "hull.xml").write_text((own.parent / "hull.xml").read_text())
     (tmp_path / "vessel.toml").write_text(
         own.read_text().replace("[diagnosis]", "[diagnosis]\ntime_constant = 2.0")
     )
     with pytest.raises(BadInput, match="time_constant"):
-        vessel.load(str(tmp_path))
+        vessel.load_vessel(str(tmp_path))
 
 
 @pytest.mark.parametrize(
@@ -72,7 +72,7 @@ def test_what_swings_from_run_to_run_is_not_clearly_less() -> None:
 
 
 def test_a_single_recording_is_halved_in_time_and_each_row_is_in_one_half() -> None:
-    boat = vessel.load("kvlcc2_roll")
+    boat = vessel.load_vessel("kvlcc2_roll")
     t = np.arange(0.0, 20.0, 0.2)
     whole = map_recording(
         Recording("decay", t, {"phi_rad": 0.2 * np.cos(2.5 * t) * np.exp(-0.05 * t)}),
@@ -88,7 +88,9 @@ def test_a_single_recording_is_halved_in_time_and_each_row_is_in_one_half() -> N
 @pytest.mark.slow
 def test_what_a_recordings_notes_state_is_a_fact(tmp_path: Path) -> None:
     assert (
-        prior_levels(vessel.load("trial_boat"), [Recording("r", np.zeros(1), {})]).time_constant
+        prior_levels(
+            vessel.load_vessel("trial_boat"), [Recording("r", np.zeros(1), {})]
+        ).time_constant
         == 1.0
     )
     run = replace(recorded(Real(power=(1.15, 0.85)), 1), notes=Notes())

@@ -64,7 +64,7 @@ def test_derivatives_learnt_from_a_step_agree_with_it_and_stay_across_it() -> No
 def test_the_filter_follows_drag_that_dies_out_faster_than_its_steps_and_as_shorter_steps_do() -> (
     None
 ):
-    boat = vessel.load("jet_ski")
+    boat = vessel.load_vessel("jet_ski")
     run = sailed(Craft(cube=0.2), np.repeat([2.0, 6.0, 3.0], 50), np.zeros(150), 5.0)
     program = Program(boat, library_for(boat).entries)
     said = []
@@ -73,7 +73,7 @@ def test_the_filter_follows_drag_that_dies_out_faster_than_its_steps_and_as_shor
         laid = replace(laid, specified_step=share * laid.step)
         values = laid.values.copy()
         # 15 /s at 5 m/s; at rest the craft has less than 1 /s
-        values[program.index("cubic_damping", "surge")] = 90.0
+        values[program.parameter_index("cubic_damping", "surge")] = 90.0
         levels = prior_levels(boat, [run])
         said.append(laid.log_likelihood(values, program.switches(("cubic_damping",)), levels))
     assert np.isfinite(said).all() and said[0] == pytest.approx(said[1], abs=3.0)
@@ -81,7 +81,7 @@ def test_the_filter_follows_drag_that_dies_out_faster_than_its_steps_and_as_shor
 
 def test_a_recording_that_begins_at_full_speed_is_followed_from_its_first_row_on() -> None:
     """The filter knows nothing of the speed it begins at; linearised at rest it went far astray."""
-    boat, craft = vessel.load("jet_ski"), Craft()
+    boat, craft = vessel.load_vessel("jet_ski"), Craft()
     run = sailed(craft, np.full(100, 4.0), np.repeat([0.1, -0.1], 50), 24.0)
     del run.signals["u_mps"]
     program = Program(boat, library_for(boat).entries)
@@ -101,7 +101,7 @@ def test_a_recording_that_begins_at_full_speed_is_followed_from_its_first_row_on
 
 
 def test_a_recording_without_positions_begins_at_the_speeds_that_it_shows() -> None:
-    boat = vessel.load("jet_ski")
+    boat = vessel.load_vessel("jet_ski")
     run = sailed(Craft(), np.full(100, 4.0), np.repeat([0.1, -0.1], 50), 24.0)
     for name in ("x_m", "y_m"):
         del run.signals[name]
@@ -116,7 +116,7 @@ def test_a_recording_without_positions_begins_at_the_speeds_that_it_shows() -> N
 
 
 def test_the_order_of_independent_calls_changes_no_number() -> None:
-    boat = vessel.load("jet_ski")
+    boat = vessel.load_vessel("jet_ski")
     run = sailed(Craft(), np.full(60, 4.0), np.repeat([0.1, -0.1], 30), 24.0)
     program = Program(boat, library_for(boat).entries)
     laid, levels = map_recording(run, program), prior_levels(boat, [run])

@@ -19,7 +19,7 @@ from boatsim.diagnosis.problem import froude_scale
 from boatsim.diagnosis.report.answer import parameter_key
 from boatsim.errors import BadInput
 from boatsim.physics import vessel
-from boatsim.physics.content import address, load_class
+from boatsim.physics.content import effect_address, load_class
 from boatsim.physics.program import Program
 from boatsim.recordings import table as recording
 from boatsim.recordings.table import Notes, Recording
@@ -44,7 +44,7 @@ def roll_recording(n: int = 40, dt: float = 0.2) -> Recording:
 
 
 def test_filter_and_smoother_equal_the_dense_gaussian_of_the_same_linear_model():
-    boat = vessel.load("kvlcc2_roll")
+    boat = vessel.load_vessel("kvlcc2_roll")
     rec = roll_recording()
     found = map_recording(rec, Program(boat))
     levels = NoiseLevels(np.array([3.0]), 1.5, {"roll_sd_rad": 1e-3})
@@ -88,7 +88,7 @@ def test_filter_and_smoother_equal_the_dense_gaussian_of_the_same_linear_model()
 
 
 def test_one_outlier_moves_neither_states_nor_evidence_much():
-    boat = vessel.load("kvlcc2_roll")
+    boat = vessel.load_vessel("kvlcc2_roll")
     clean = roll_recording()
     spoilt = replace(clean, signals={"phi_rad": clean["phi_rad"].copy()})
     spoilt["phi_rad"][20] += 0.5
@@ -100,7 +100,7 @@ def test_one_outlier_moves_neither_states_nor_evidence_much():
 
 
 def test_evidence_has_no_step_where_a_measurement_becomes_an_outlier():
-    boat = vessel.load("kvlcc2_roll")
+    boat = vessel.load_vessel("kvlcc2_roll")
     levels = NoiseLevels(np.array([0.2]), 1.5, {"roll_sd_rad": 1e-3})
     program = Program(boat)
 
@@ -122,7 +122,9 @@ def test_evidence_has_no_step_where_a_measurement_becomes_an_outlier():
 def joystick():
     """Servos lag by 60 ms, motors fed by PWM by 150 ms; a delay is suspected; a rate limit that
     limits nothing."""
-    boat = vessel.load("joystick_boat", extra=[{"use": "rate_limit", "on": ["thrust_port_N"]}])
+    boat = vessel.load_vessel(
+        "joystick_boat", extra=[{"use": "rate_limit", "on": ["thrust_port_N"]}]
+    )
     return Program(boat, library_for(boat).compiled)
 
 
@@ -176,14 +178,14 @@ def test_a_ramp_ends_where_the_signal_that_pwm_is_turned_into_is_reached(joystic
     ) = 0.0, 2.0
     memory, act = np.zeros(joystick.memory_size), np.zeros(joystick.held_size)
     full, none = (joystick.command_array({"pwm_port": pwm}) for pwm in (150.0, 0.0))
-    code.settle(full, memory, values, on, act)  # 0.617 N
-    assert code.until_bend(full, memory, 1.0, code.SHORTEST, values, on) == pytest.approx(
+    code.settle_actuators(full, memory, values, on, act)  # 0.617 N
+    assert code.substep_length(full, memory, 1.0, code.SHORTEST, values, on) == pytest.approx(
         0.06
     )  # of the servos
-    code.actuate_in_place(none, memory, 0.2, values, on, act)  # 0.4 N at 2 N/s
-    assert code.until_bend(none, memory, 1.0, code.SHORTEST, values, on) == pytest.approx(0.06)
-    code.actuate_in_place(none, memory, 0.1, values, on, act)  # 0.017 N are left
-    assert code.until_bend(none, memory, 1.0, code.SHORTEST, values, on) == pytest.approx(
+    code.advance_actuators(none, memory, 0.2, values, on, act)  # 0.4 N at 2 N/s
+    assert code.substep_length(none, memory, 1.0, code.SHORTEST, values, on) == pytest.approx(0.06)
+    code.advance_actuators(none, memory, 0.1, values, on, act)  # 0.017 N are left
+    assert code.substep_length(none, memory, 1.0, code.SHORTEST, values, on) == pytest.approx(
         0.017 / 2.0, abs=1e-5
     )
 
@@ -304,7 +306,7 @@ def test_patched_file_gives_the_fitted_motion_back(folder):
     )
     found = pipeline.diagnose(runs[:1], runs[1:], "trial_boat")
     commands.write(found, folder)
-    again = vessel.load(str(folder / "patched.toml"))
+    again = vessel.load_vessel(str(folder / "patched.toml"))
     assert {e.name for e in again.effects} >= {"weak_reverse", "wind"}
     assert "# [kg]" in (folder / "patched.toml").read_text()  # comments are kept
     rec = recording.read(runs[1], again.limits())
@@ -455,21 +457,21 @@ class RollWeed(Force):
 def test_own_preset_of_a_shipped_law_is_found_by_its_own_file(tmp_path):
     file = tmp_path / "weed.py"
     file.write_text(
-        "from boatsim.physics.base import preset\n"
+        "from boatsim.physics.base import preset_effect\n"
         "from boatsim.physics.effects.damping import LinearDamping\n"
-        'Weed = preset(LinearDamping, "Weed", words="weed", fixed={"roll_exponent": 3.0})\n'
+        'Weed = preset_effect(LinearDamping, "Weed", words="weed", fixed={"roll_exponent": 3.0})\n'
     )
-    assert address(load_class("effect", str(file), named=True)) == str(file.resolve())
+    assert effect_address(load_class("effect", str(file), named=True)) == str(file.resolve())
 
 
 @pytest.mark.slow
 def test_own_vessel_and_own_library_file_give_a_patched_boat_that_replays(folder, tmp_path, capsys):
-    text = (vessel.load("kvlcc2_roll").file).read_text()
+    text = (vessel.load_vessel("kvlcc2_roll").file).read_text()
     mine = tmp_path / "mine"
     mine.mkdir()
     (mine / "vessel.toml").write_text(text)
     for file in ("hull.xml",):
-        (mine / file).write_text((vessel.load("kvlcc2_roll").path / file).read_text())
+        (mine / file).write_text((vessel.load_vessel("kvlcc2_roll").path / file).read_text())
     own = tmp_path / "roll_weed.py"
     own.write_text(WEED)
     without = ["cubic_damping", "quadratic_damping"]
@@ -490,7 +492,7 @@ def test_own_vessel_and_own_library_file_give_a_patched_boat_that_replays(folder
 
 
 def test_froude_scaled_priors_are_those_of_the_small_boat():
-    small, large = vessel.load("trial_boat"), vessel.load("kvlcc2_roll")
+    small, large = vessel.load_vessel("trial_boat"), vessel.load_vessel("kvlcc2_roll")
     length = large.length / small.length
     assert all(
         froude_scale(unit, small) == pytest.approx(1.0)

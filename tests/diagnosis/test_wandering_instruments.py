@@ -27,7 +27,7 @@ NOISE, RMS, TIME = 0.01, 0.05, 4.0  # [m], [m], [s]
 
 
 def laid_at_rest(x: Array, every: float) -> tuple[Program, MappedRecording]:
-    boat = vessel.load("trial_boat")
+    boat = vessel.load_vessel("trial_boat")
     program = Program(boat, library_for(boat).entries)
     t = every * np.arange(len(x))
     still = {name: np.zeros(len(x)) for name in ("y_m", "psi_rad", *boat.commands)}
@@ -46,7 +46,7 @@ def likelihood(x: Array, every: float, rms: float) -> float:
     laid = replace(laid, measured=measured, specified_initial=initial)
     values = laid.values.copy()
     for name, value in (("position", rms), ("time", TIME)):
-        values[program.index("position_wander", name)] = value
+        values[program.parameter_index("position_wander", name)] = value
     families = {"position_sd_m": NOISE, "heading_sd_rad": 0.01}
     levels = NoiseLevels(np.full(3, 1e-9), 1.0, families)
     return float(laid.log_likelihood(values, program.switches(["position_wander"]), levels))
@@ -74,11 +74,11 @@ def test_likelihood_is_that_of_the_normal_distribution_written_out() -> None:
 def test_added_mass_does_not_calm_the_water() -> None:
     """The latent force shakes a heavier hull as much: otherwise mass would be believed for making
     errors smaller."""
-    boat = vessel.load("trial_boat")
+    boat = vessel.load_vessel("trial_boat")
     program = Program(boat, library_for(boat).entries)
     values = np.append(program.values(), program.body)
     heavier = values.copy()
-    heavier[program.index("extra_mass", "mass")] = boat.body.mass
+    heavier[program.parameter_index("extra_mass", "mass")] = boat.body.mass
     light, heavy = (
         inertia_of(program, v, program.switches(["extra_mass"])) for v in (values, heavier)
     )
@@ -127,7 +127,7 @@ def test_wander_is_named_as_such_and_physics_beside_it(
 
 
 def test_a_camera_does_not_wander() -> None:
-    boat = vessel.load("trial_boat")
+    boat = vessel.load_vessel("trial_boat")
     left_out = library_for(boat, facts={"position_fix": "camera"}).excluded
     assert left_out["position_wander"] == "position_fix = camera"
     assert "position_wander" in library_for(boat, facts={"position_fix": "gnss"}).tested

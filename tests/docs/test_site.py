@@ -9,7 +9,7 @@ import pytest
 from typer.testing import CliRunner
 
 from boatsim.cli import app
-from boatsim.physics.content import names
+from boatsim.physics.content import library_names
 from boatsim.physics.facts import WORDS
 from boatsim.physics.vessel import DiagnosisTable, ManoeuvringTable, VesselFile
 from boatsim.recordings.notes import KEYS, NOISE
@@ -48,7 +48,7 @@ def test_every_link_leads_somewhere(page: Path) -> None:
 
 @pytest.mark.parametrize("kind", ["effect", "controller", "measure", "sensor", "vessel"])
 def test_all_of_a_kind_have_a_page_with_words_and_something_to_paste(kind: str) -> None:
-    for name in names(kind):
+    for name in library_names(kind):
         page = REFERENCE[f"{kind}s/{name}"]
         assert page.startswith(f"# {name}\n\n"), name
         assert len(page.splitlines()[2]) > 10, name
@@ -67,7 +67,7 @@ def test_the_page_of_an_effect_has_each_parameter_and_what_is_fitted_and_what_ru
 
 
 def test_every_scenario_and_every_command_is_in_the_reference() -> None:
-    for name in names("scenario"):
+    for name in library_names("scenario"):
         assert f"`{name}`" in REFERENCE[f"scenarios/{name.partition('/')[0]}"]
     for command in (
         "run",

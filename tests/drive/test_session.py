@@ -27,7 +27,7 @@ from boatsim.drive.driver_input import DEAD, PATIENCE, Hands, Sticks, beyond_dea
 from boatsim.drive.stick_mapping import dials_of
 from boatsim.drive.task import Task
 from boatsim.errors import BadInput
-from boatsim.physics.content import names
+from boatsim.physics.content import library_names
 from boatsim.recordings.table import Recording, read
 from boatsim.simulate import scenario, tracking_errors
 from boatsim.simulate.manoeuvre import handled
@@ -102,7 +102,7 @@ def test_a_stick_is_dead_about_the_middle_and_whole_at_its_ends(way: float) -> N
 def of_hands() -> list[str]:
     """Vessels that can be driven by their channels."""
     found = []
-    for name in names("vessel"):
+    for name in library_names("vessel"):
         try:
             Task(name)
         except BadInput:
@@ -226,7 +226,7 @@ def test_while_a_goal_is_off_commands_are_neutral_and_the_controller_begins_anew
     assert abs(log["psi_rad"][-1] - log["psi_rad"][log.t >= 7.99][0]) < 0.1 < log["psi_rad"][-1]
 
 
-@pytest.mark.parametrize("name", names("controller"))
+@pytest.mark.parametrize("name", library_names("controller"))
 def test_a_controller_tells_the_same_estimates_after_it_was_reset(name: str) -> None:
     from boatsim.physics.content import load_class
 

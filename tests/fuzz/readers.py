@@ -51,7 +51,7 @@ def _notes(path: Path) -> object:
 
 
 def _hull(path: Path) -> object:
-    return world.build(vessel.load(f"{path.parent}/"))
+    return world.build(vessel.load_vessel(f"{path.parent}/"))
 
 
 def _log(path: Path) -> object:
@@ -90,7 +90,7 @@ READERS = {
     "vessel.toml": Reader(
         "boat/vessel.toml",
         files(*(f"models/{n}/vessel.toml" for n in BOATS)),
-        lambda path: vessel.load(str(path)),
+        lambda path: vessel.load_vessel(str(path)),
     ),
     "hull.xml": Reader("hull/hull.xml", files("models/trial_boat/hull.xml"), _hull, XML),
     "scenario.toml": Reader(

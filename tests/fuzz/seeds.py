@@ -12,7 +12,7 @@ import pyarrow as pa
 import rerun as rr
 from pyarrow import parquet
 
-from boatsim.physics.content import root
+from boatsim.physics.content import content_root
 
 DATA = Path(__file__).parents[1] / "data"
 LOGS = DATA / "logs"
@@ -86,7 +86,7 @@ def folder() -> Path:
     for name in ("noted", "boat", "hull", "map", "bag", "bag_about"):
         (place / name).mkdir()
     (place / "noted" / "run.csv").write_bytes(csv_file())
-    boat = root() / "models" / "trial_boat"
+    boat = content_root() / "models" / "trial_boat"
     (place / "boat" / "hull.xml").write_bytes((boat / "hull.xml").read_bytes())
     shutil.copy(boat / "vessel.toml", place / "hull")
     (place / "map" / "log.csv").write_text(table())
@@ -102,7 +102,7 @@ def _kept() -> "tempfile.TemporaryDirectory[str]":
 
 def files(*paths: str | Path) -> Callable[[], list[bytes]]:
     """Seeds that are files, those of the library by their path in it."""
-    return lambda: [(root() / path).read_bytes() for path in paths]
+    return lambda: [(content_root() / path).read_bytes() for path in paths]
 
 
 def csv_file() -> bytes:

@@ -27,7 +27,7 @@ MASS, IXX, IZZ = 6.0, 0.1, 0.5
 def heeling(folder: Path, **settings: dict[str, float]) -> Vessel:
     settings["added_mass"] = {**WATER, **settings.get("added_mass", {})}
     place = boats.written(folder, "heeling_boat", HEELING + RIGHTING)
-    return vessel.load(str(place), settings=settings)
+    return vessel.load_vessel(str(place), settings=settings)
 
 
 def independent(

@@ -18,17 +18,17 @@ HELD = 5.0  # [s] each row of commands
 TOLERANCE = 1e-9  # [m, rad, m/s, rad/s] of a run of minutes in which ships go hundreds of metres
 CASES = [
     (name, load)
-    for name in content.names("vessel")
-    for load in ([], *([one] for one in vessel.load(name).loads))
+    for name in content.library_names("vessel")
+    for load in ([], *([one] for one in vessel.load_vessel(name).loads))
     if "surge"
-    in vessel.load(name).dof  # a hull that only rolls about a fixed axis is carried nowhere
+    in vessel.load_vessel(name).dof  # a hull that only rolls about a fixed axis is carried nowhere
 ]
 
 
 def in_flow(name: str, loads: list[str]) -> Vessel:
     """A vessel in water that may move."""
-    boat = vessel.load(name, loads)
-    return boat if boat.effect("current") else boat.composed_with(Current())
+    boat = vessel.load_vessel(name, loads)
+    return boat if boat.effect("current") else boat.with_completed_effect(Current())
 
 
 def commands(boat: Vessel) -> Array:
@@ -66,7 +66,7 @@ def sails_as_in_still_water(boat: Vessel) -> None:
     compiled, rows, start = Batch(boat), commands(boat), start_of(boat)
     still, moving = compiled.program.values(), compiled.program.values()
     for way, velocity in (("north", NORTH), ("east", EAST)):
-        at = compiled.program.index("current", way)
+        at = compiled.program.parameter_index("current", way)
         still[at], moving[at] = 0.0, velocity
     t = HELD * np.arange(len(rows) + 1.0)
     wanted = compiled.rollout(start, rows, HELD, still)
@@ -91,4 +91,4 @@ def test_so_does_a_boat_whose_model_lacks_what_is_on_board() -> None:
         {"use": "mass_centre_shift", "shift": -0.1},
         {"use": "current"},
     ]
-    sails_as_in_still_water(vessel.load("trial_boat", extra=ballast))
+    sails_as_in_still_water(vessel.load_vessel("trial_boat", extra=ballast))

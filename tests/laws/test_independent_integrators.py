@@ -37,7 +37,7 @@ def on_engine(
     name: str, start: list[float], commands: dict[str, float], until: float, step: float
 ) -> Array:
     """The same on MuJoCo, its actuators settled from the start."""
-    engine = Engine(vessel.load(name), step=step)
+    engine = Engine(vessel.load_vessel(name), step=step)
     x, y, psi, u, v, r = start
     engine.reset(State(x=x, y=y, psi=psi, u=u, v=v, r=r), commands)
     engine.advance(round(until / step))
@@ -111,7 +111,7 @@ def mmg(s: Array, delta: float) -> Array:
 
 def mmg_wrench(angle: float, shaft: float, **given: float) -> Array:
     """X, Y, N of the three effects together, without the Coriolis force of the added mass."""
-    boat, m = vessel.load("kvlcc2_mmg"), motion(**given)
+    boat, m = vessel.load_vessel("kvlcc2_mmg"), motion(**given)
     hull, propeller, rudder = (
         boat.effect(f"mmg_{part}") for part in ("hull", "propeller", "rudder")
     )
@@ -136,7 +136,7 @@ def test_mmg_effects_are_the_published_formulas(seed: int) -> None:
 
 
 def test_mmg_propeller_that_stands_still_drags_and_a_ship_at_rest_feels_its_race() -> None:
-    boat = vessel.load("kvlcc2_mmg")
+    boat = vessel.load_vessel("kvlcc2_mmg")
     propeller, rudder, hull = (
         boat.effect(f"mmg_{part}") for part in ("propeller", "rudder", "hull")
     )
@@ -149,7 +149,7 @@ def test_mmg_propeller_that_stands_still_drags_and_a_ship_at_rest_feels_its_race
 
 
 def test_mmg_resistance_is_against_the_way_through_the_water() -> None:
-    hull = vessel.load("kvlcc2_mmg").effect("mmg_hull")
+    hull = vessel.load_vessel("kvlcc2_mmg").effect("mmg_hull")
     ahead, astern = (hull.wrench(motion(u=u)).X for u in (0.8, -0.8))  # type: ignore[union-attr]
     assert ahead == pytest.approx(-0.5 * RHO * L * D * 0.022 * 0.8**2) and astern == pytest.approx(
         -ahead
@@ -164,7 +164,7 @@ def test_mmg_resistance_is_against_the_way_through_the_water() -> None:
 
 
 def test_mmg_propeller_and_rudder_amidships_do_not_drive_a_ship_that_goes_straight_astern() -> None:
-    boat, astern = vessel.load("kvlcc2_mmg"), motion(u=-0.8)
+    boat, astern = vessel.load_vessel("kvlcc2_mmg"), motion(u=-0.8)
     stopped = boat.effect("mmg_propeller").wrench(astern, shaft=0.0).X  # type: ignore[union-attr]
     assert stopped == pytest.approx(
         0.78 * RHO * D_P**2 * 0.1385 * (0.6 * 0.8) ** 2
@@ -176,7 +176,7 @@ def test_mmg_propeller_and_rudder_amidships_do_not_drive_a_ship_that_goes_straig
 def test_mmg_ship_without_power_comes_to_rest_in_the_water_from_any_start(delta: float) -> None:
     """Its energy falls all the time, and with resistance in square of the speed as 1 / t^2 at
     last."""
-    boat = vessel.load("kvlcc2_mmg")
+    boat = vessel.load_vessel("kvlcc2_mmg")
     inertia = MASS * (0.25 * L) ** 2 + X_G**2 * MASS + J_Z
     whole = np.array([[MASS + M_X, 0, 0], [0, MASS + M_Y, X_G * MASS], [0, X_G * MASS, inertia]])
     rows = np.tile([delta, 0.0], (300, 1))

@@ -28,7 +28,7 @@ RANGE = {"throttle": (4.2, 7.0)}
 @cache
 def paths(name: str) -> dict[float, Array]:
     """States by step, over the same commands."""
-    boat = vessel.load(name)
+    boat = vessel.load_vessel(name)
     compiled, rng, n = Batch(boat), np.random.default_rng(0), len(boat.dof)
     limits = [RANGE.get(c, limits) for c, limits in boat.limits().items()]
     rows = (
@@ -50,16 +50,16 @@ def paths(name: str) -> dict[float, Array]:
 
 def errors(name: str) -> Array:
     """Largest error of any coordinate [m, rad], by step."""
-    found, n = paths(name), len(vessel.load(name).dof)
+    found, n = paths(name), len(vessel.load_vessel(name).dof)
     return np.array([np.abs(found[step] - found[FINE])[:, :n].max() for step in STEPS])
 
 
-@pytest.mark.parametrize("name", few(content.names("vessel")))
+@pytest.mark.parametrize("name", few(content.library_names("vessel")))
 def test_twenty_milliseconds_are_exact_to_a_hundredth_of_a_millimetre(name: str) -> None:
     assert errors(name)[STEPS.index(0.02)] < 1e-5
 
 
-@pytest.mark.parametrize("name", few(n for n in content.names("vessel") if n not in BENDS))
+@pytest.mark.parametrize("name", few(n for n in content.library_names("vessel") if n not in BENDS))
 def test_halving_the_step_divides_the_error_by_sixteen(name: str) -> None:
     found = errors(name)
     size = max(1.0, float(np.abs(paths(name)[FINE]).max()))

@@ -12,7 +12,7 @@ from scipy.integrate import quad, solve_ivp
 
 from boatsim.physics import vessel
 from boatsim.physics.base import Array
-from boatsim.physics.kernel.equations import tilts
+from boatsim.physics.kernel.equations import has_hull_fixed_axes
 from boatsim.physics.signals import AXES, signals_of
 from boatsim.physics.vessel import Vessel
 from boatsim.simulate.batch import Batch
@@ -145,7 +145,7 @@ def whole(state: State) -> Array:
 
 @cache
 def otter(stations: int) -> Engine:
-    return Engine(vessel.load("otter", settings={"cross_flow_drag": {"stations": stations}}))
+    return Engine(vessel.load_vessel("otter", settings={"cross_flow_drag": {"stations": stations}}))
 
 
 def sailed(stations: int, port: float, starboard: float, seconds: float) -> Array:
@@ -200,7 +200,7 @@ def test_otter_turns_as_by_an_independent_integrator_with_the_exact_integral() -
 
 
 def test_a_heavier_otter_floats_deeper_by_her_weight() -> None:
-    boat = vessel.load("otter", extra=[{"use": "payload", "mass": 5.5}])
+    boat = vessel.load_vessel("otter", extra=[{"use": "payload", "mass": 5.5}])
     engine = Engine(boat)
     engine.advance(2000)
     assert engine.state.z == pytest.approx(
@@ -210,7 +210,9 @@ def test_a_heavier_otter_floats_deeper_by_her_weight() -> None:
 
 def test_a_mass_ahead_sinks_and_trims_the_otter_by_its_weight() -> None:
     mass, x, stiff, trimming, flotation = 4.0, 0.5, 7541.4375, 2551.776402439025, -0.2
-    engine = Engine(vessel.load("otter", extra=[{"use": "extra_mass", "mass": mass, "x": x}]))
+    engine = Engine(
+        vessel.load_vessel("otter", extra=[{"use": "extra_mass", "mass": mass, "x": x}])
+    )
     engine.advance(2000)
     theta = (flotation - x) * mass * 9.81 / trimming  # bow down, about the centre of flotation
     assert engine.state.theta == pytest.approx(theta, rel=1e-3)
@@ -221,7 +223,7 @@ def test_a_point_mass_is_the_body_that_has_it_in_its_inertia() -> None:
     """Otter and mass as one body by Steiner's theorem; both at one height, so that roll and yaw
     stay principal axes."""
     mass, x, level = 4.0, 0.5, {"centre": [0.2, 0.0]}
-    body = vessel.load("otter", settings={"body": level}).body
+    body = vessel.load_vessel("otter", settings={"body": level}).body
     ahead = (body.mass * body.centre[0] + mass * x) / (body.mass + mass)
     steiner = body.mass * (body.centre[0] - ahead) ** 2 + mass * (x - ahead) ** 2
     one = {
@@ -234,10 +236,10 @@ def test_a_point_mass_is_the_body_that_has_it_in_its_inertia() -> None:
     at_rest = State(z=0.01, phi=0.1, theta=-0.05)
     moving = at_rest._replace(u=1.0, v=0.3, w=0.1, p=0.2, q=-0.1, r=0.4)
     for laden in (
-        vessel.load(
+        vessel.load_vessel(
             "otter", settings={"body": level}, extra=[{"use": "extra_mass", "mass": mass, "x": x}]
         ),
-        vessel.load(
+        vessel.load_vessel(
             "otter", settings={"body": one, "hydrostatics": {"displacement": body.mass + mass}}
         ),
     ):
@@ -315,7 +317,7 @@ def sway_lever(below: float) -> Array:
 
 def floating(folder: Path, dof: tuple[str, ...], damped: bool = True) -> tuple[Vessel, Array]:
     """The hull with those freedoms, and its whole mass matrix (6, 6)."""
-    level = not tilts(frozenset(dof))
+    level = not has_hull_fixed_axes(frozenset(dof))
     centre, below = (
         (0.05, 0.0 if level else -0.08),
         0.0 if level and "roll" not in dof else 0.04,
@@ -324,7 +326,9 @@ def floating(folder: Path, dof: tuple[str, ...], damped: bool = True) -> tuple[V
         0.8 if level else 0.7
     )  # a level hull rolls about an axis through its mass centre, pitch as yaw
     text = HULL.format(dof=list(dof), centre=list(centre), pitch=pitch, below=below)
-    boat = vessel.load(str(boats.written(folder, "floating", text + (DAMPED if damped else ""))))
+    boat = vessel.load_vessel(
+        str(boats.written(folder, "floating", text + (DAMPED if damped else "")))
+    )
     c = skew(np.array([centre[0], 0.0, centre[1]]))
     inertia = np.diag([0.3, pitch, 0.8])
     rigid = np.block([[6.0 * np.eye(3), -6.0 * c], [6.0 * c, inertia - 6.0 * c @ c]])
@@ -342,7 +346,7 @@ def jacobian(q: Array, free: list[int], tilting: bool) -> Array:
 def lagrange(boat: Vessel, M: Array, damped: bool) -> Callable[[float, Array], Array]:
     """Rates of (q, generalised momentum)."""
     free = [AXES.index(a) for a in AXES if a in boat.dof]
-    tilting, n = tilts(frozenset(boat.dof)), len(free)
+    tilting, n = has_hull_fixed_axes(frozenset(boat.dof)), len(free)
 
     def at(q: Array) -> Array:
         full = np.zeros(6, dtype=q.dtype)
@@ -396,7 +400,7 @@ def test_engine_and_twin_follow_lagrange_in_any_set_of_freedoms(
     rate = np.array([0.4, -0.3, 0.1, 0.5, -0.4, 0.6])
     engine, compiled = Engine(boat, step=0.01), Batch(boat, step=0.01)
     start = np.concatenate([pose[free], rate[free]])  # joint coordinates and rates
-    tilting = tilts(frozenset(dof))
+    tilting = has_hull_fixed_axes(frozenset(dof))
     full = np.zeros(6)
     full[free] = pose[free]
     J = jacobian(full, free, tilting)

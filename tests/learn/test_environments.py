@@ -147,11 +147,11 @@ def test_boats_that_are_over_begin_when_the_mode_says_so() -> None:
 def test_actions_follow_from_the_channels_of_a_boat(
     boat: str, use: Any, names: tuple[str, ...]
 ) -> None:
-    found = controls(vessel.load(boat), use)
+    found = controls(vessel.load_vessel(boat), use)
     assert found.names == names
     assert np.linalg.matrix_rank(found.pattern) == len(names)  # none is there twice
     ends = found.commands(np.random.default_rng(1).uniform(-3.0, 3.0, (50, len(names))))
-    limits = np.array([(c.low, c.high) for c in vessel.load(boat).commands.values()])
+    limits = np.array([(c.low, c.high) for c in vessel.load_vessel(boat).commands.values()])
     assert (ends >= limits[:, 0]).all() and (ends <= limits[:, 1]).all()
 
 
@@ -232,7 +232,7 @@ def test_what_varies_differs_from_boat_to_boat_and_stays_within_what_is_said() -
 def test_boats_are_as_uncertain_as_their_diagnosis_says(tmp_path: Path) -> None:
     patched = tmp_path / "patched.toml"
     patched.write_text(
-        (Path(vessel.load("trial_boat").file)).read_text()
+        (Path(vessel.load_vessel("trial_boat").file)).read_text()
         + """
 [spread]
 correlation = [[1.0, -0.8], [-0.8, 1.0]]

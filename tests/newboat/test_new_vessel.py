@@ -19,11 +19,11 @@ from boatsim.newboat.particulars import Particulars, particulars
 from boatsim.newboat.write import files
 from boatsim.physics import vessel
 from boatsim.physics.base import motion
-from boatsim.physics.content import names
+from boatsim.physics.content import library_names
 from boatsim.physics.effects.added_mass import AddedMass
 from boatsim.physics.effects.forward_speed_damping import ForwardSpeedDamping
 from boatsim.physics.estimate import added_mass, inertia, sway_yaw_damping
-from boatsim.physics.estimate.displacement import hull
+from boatsim.physics.estimate.displacement import hull_particulars
 from boatsim.simulate import scenario, world
 from boatsim.simulate.run import run
 from tests import pushed_three_metre
@@ -63,51 +63,55 @@ def boat(**changed: object) -> Particulars:
 def test_clarkes_regression_is_near_what_was_measured_on_the_mariner() -> None:
     """L 160.93 m, B 23.17 m, T 8.23 m, C_b 0.59; Clarke's own figures scatter by a third about his
     lines."""
-    ship = hull(160.93, 23.17, 0.59 * 1000 * 160.93 * 23.17 * 8.23, 1, 8.23)
+    ship = hull_particulars(160.93, 23.17, 0.59 * 1000 * 160.93 * 23.17 * 8.23, 1, 8.23)
     unit = 0.5 * 1000 * 160.93**3
     # measured on a planar motion mechanism: M. S. Chislett, J. Stroem-Tejsen 1965, Y'_vdot =
     # -748e-5, N'_r = -166e-5
-    assert added_mass.sway(ship).value / unit == pytest.approx(748e-5, rel=0.4)
-    damping = sway_yaw_damping.clarke(ship)
+    assert added_mass.sway_added_mass(ship).value / unit == pytest.approx(748e-5, rel=0.4)
+    damping = sway_yaw_damping.clarke_derivatives(ship)
     assert damping.yaw / (0.5 * 1000 * 160.93**4) == pytest.approx(166e-5, rel=0.4)
     assert damping.sway / (0.5 * 1000 * 160.93**2) == pytest.approx(1160e-5, rel=0.4)
 
 
 def test_the_lift_of_a_slender_hull_with_its_munk_moment_is_clarkes_regression() -> None:
-    ship = hull(160.93, 23.17, 0.59 * 1000 * 160.93 * 23.17 * 8.23, 1, 8.23)
-    water = AddedMass(surge=added_mass.surge(ship).value, sway=added_mass.sway(ship).value, yaw=0.0)
-    told = sway_yaw_damping.lift(ship)
+    ship = hull_particulars(160.93, 23.17, 0.59 * 1000 * 160.93 * 23.17 * 8.23, 1, 8.23)
+    water = AddedMass(
+        surge=added_mass.surge_added_mass(ship).value,
+        sway=added_mass.sway_added_mass(ship).value,
+        yaw=0.0,
+    )
+    told = sway_yaw_damping.lift_derivatives(ship)
     lift = ForwardSpeedDamping(sway=told.sway.value, at=told.at.value, yaw=told.yaw.value)
-    of_ship, u, v, r = sway_yaw_damping.clarke(ship), 5.0, 0.1, 1e-3
+    of_ship, u, v, r = sway_yaw_damping.clarke_derivatives(ship), 5.0, 0.1, 1e-3
     drifting = np.add(water.wrench(motion(u=u, v=v)), lift.wrench(motion(u=u, v=v)))
     assert drifting[[1, 5]] == pytest.approx([-of_ship.sway * u * v, -of_ship.yaw_by_sway * u * v])
     assert lift.wrench(motion(u=u, r=r)).N == pytest.approx(-of_ship.yaw * u * r)
 
 
 def test_the_rules_for_a_catamaran_give_what_the_otter_is_said_to_have() -> None:
-    otter = vessel.load("otter")
-    made_by_rule = hull(2.0, 1.08, 55.0, 2, None)
+    otter = vessel.load_vessel("otter")
+    made_by_rule = hull_particulars(2.0, 1.08, 55.0, 2, None)
     assert made_by_rule.draught == pytest.approx(otter.draught, rel=0.1)
     mass = otter.effect("added_mass")
     assert mass is not None
-    assert inertia.yaw(made_by_rule).value == pytest.approx(otter.body.yaw_inertia)
-    one = added_mass.surge(hull(2.0, 1.08, 55.0, 1, None)).value * (1025.0 / 1000.0) ** (
-        1.0 - 5.0 / 3.0
-    )
+    assert inertia.yaw_inertia(made_by_rule).value == pytest.approx(otter.body.yaw_inertia)
+    one = added_mass.surge_added_mass(hull_particulars(2.0, 1.08, 55.0, 1, None)).value * (
+        1025.0 / 1000.0
+    ) ** (1.0 - 5.0 / 3.0)
     assert one == pytest.approx(mass.surge, rel=1e-6)  # type: ignore[attr-defined]
 
 
 @pytest.mark.parametrize("scale", [0.1, 10.0])
 def test_added_mass_goes_with_the_size_by_froudes_law(scale: float) -> None:
     small, large = (
-        hull(3.0, 1.6, 90.0, 1, None),
-        hull(3.0 * scale, 1.6 * scale, 90.0 * scale**3, 1, None),
+        hull_particulars(3.0, 1.6, 90.0, 1, None),
+        hull_particulars(3.0 * scale, 1.6 * scale, 90.0 * scale**3, 1, None),
     )
     for rule, power in (
-        (added_mass.surge, 3),
-        (added_mass.sway, 3),
-        (added_mass.yaw, 5),
-        (inertia.yaw, 5),
+        (added_mass.surge_added_mass, 3),
+        (added_mass.sway_added_mass, 3),
+        (added_mass.yaw_added_mass, 5),
+        (inertia.yaw_inertia, 5),
     ):
         assert rule(large).value == pytest.approx(rule(small).value * scale**power)
 
@@ -118,7 +122,7 @@ def test_added_mass_goes_with_the_size_by_froudes_law(scale: float) -> None:
 @pytest.mark.parametrize("name", BOATS)
 def test_a_boat_of_any_kind_is_whole_and_runs_its_first_scenario(name: str, tmp_path: Path) -> None:
     folder = made(tmp_path / name, BOATS[name])
-    found = vessel.load(str(folder))
+    found = vessel.load_vessel(str(folder))
     assert world.build(found).nv == 3
     mujoco.MjModel.from_xml_path(str(folder / "hull.xml"))  # as any viewer opens it
     log = run(scenario.load(str(folder / "turn.toml"))).recording
@@ -139,7 +143,7 @@ def test_every_number_of_a_boat_says_where_it_comes_from(name: str, tmp_path: Pa
 
 @pytest.mark.parametrize("name", BOATS)
 def test_the_file_states_which_numbers_are_estimates(name: str, tmp_path: Path) -> None:
-    estimated = vessel.load(str(made(tmp_path / name, BOATS[name]))).estimated
+    estimated = vessel.load_vessel(str(made(tmp_path / name, BOATS[name]))).estimated
     assert {"damping", "thrust", "added_mass", "mass_centre", "lag"} <= set(estimated)
     assert "body.yaw_inertia" in estimated and "body.mass" not in estimated
 
@@ -219,7 +223,7 @@ def test_a_log_of_an_independent_boat_gives_its_lag_weak_reverse_and_current(
     for family, before in found.before.items():
         assert found.after[family] < 0.2 * before
     (folder / "vessel.toml").write_text(text(found, [tmp_path / "run.csv"]), encoding="utf-8")
-    again = vessel.load(str(folder))
+    again = vessel.load_vessel(str(folder))
     assert again.effect("current") is None  # the water's, not the boat's
     assert {"thrust_lag", "weak_reverse"} <= {e.name for e in again.effects}
     assert max(again.diagnosis.coefficient_uncertainty.values()) < 1.0
@@ -254,7 +258,7 @@ def test_an_example_of_an_effect_can_be_pasted() -> None:
     lines = CliRunner().invoke(app, ["show", "weak_reverse"]).output.splitlines()
     pasted = "\n".join(line.strip() for line in lines[lines.index("example:") + 1 :])
     [table] = tomllib.loads(pasted)["effect"]
-    assert vessel.load("blueboat", extra=[table]).effect("weak_reverse") is not None
+    assert vessel.load_vessel("blueboat", extra=[table]).effect("weak_reverse") is not None
 
 
 @pytest.mark.parametrize(
@@ -278,7 +282,7 @@ def test_a_list_is_narrowed_to_names_with_a_word_or_like_a_pattern() -> None:
 
 def test_the_bare_name_of_a_scenario_is_enough_where_one_only_has_it() -> None:
     assert scenario.load("sway_1").name == "joystick_boat/sway_1"
-    bare = Counter(name.rpartition("/")[2] for name in names("scenario"))
+    bare = Counter(name.rpartition("/")[2] for name in library_names("scenario"))
     shared = next(name for name, times in bare.items() if times > 1)
     with pytest.raises(BadInput, match=f"several scenarios are called {shared}; give one of "):
         scenario.load(shared)

@@ -21,7 +21,7 @@ from boatsim.metrics.speed_reached import SpeedReached
 from boatsim.metrics.turning_radius import TurningRadius
 from boatsim.physics import vessel
 from boatsim.physics.base import Array, Wrench, motion
-from boatsim.physics.content import load_class, names
+from boatsim.physics.content import library_names, load_class
 from boatsim.physics.effects.added_mass import AddedMassError
 from boatsim.physics.effects.damping import DampingExponent
 from boatsim.physics.effects.extra_mass import Payload
@@ -37,7 +37,7 @@ from boatsim.simulate.evaluation import requested_metrics
 from boatsim.simulate.run import Run, run
 from boatsim.simulate.run_files import run_into_folder
 
-SHIPPED = [name for name in names("scenario") if name.startswith("catamaran/")]
+SHIPPED = [name for name in library_names("scenario") if name.startswith("catamaran/")]
 TABLE_III = {
     0: (2.4, 2.7),
     45: (2.6, 2.8),
@@ -71,7 +71,7 @@ def values(name: str) -> dict[str, float | None]:
 
 
 def test_particulars_are_those_of_table_1_with_a_mean_submerged_depth_of_45_mm() -> None:
-    boat, L, W, m, D = vessel.load("catamaran"), 1.0, 0.55, 7.0, 0.045
+    boat, L, W, m, D = vessel.load_vessel("catamaran"), 1.0, 0.55, 7.0, 0.045
     assert boat.body.yaw_inertia == pytest.approx(m * (W**2 + L**2) / 12, rel=1e-4)
     water: Any = boat.effect("added_mass")
     assert water.surge == pytest.approx(0.05 * m)
@@ -121,12 +121,16 @@ def test_a_disturbance_fixed_to_the_hull_gives_the_published_outcomes_too(
 
 @pytest.mark.parametrize("thrust", STEADY)
 def test_steady_circle_at_full_azimuth(thrust: int) -> None:
-    u, v, r = Batch(vessel.load("catamaran"), step=0.01).coast([0.0] * 6, held(thrust), 6000)[3:]
+    u, v, r = Batch(vessel.load_vessel("catamaran"), step=0.01).coast(
+        [0.0] * 6, held(thrust), 6000
+    )[3:]
     assert sqrt(u * u + v * v) / r == pytest.approx(STEADY[thrust], abs=5e-4)
 
 
 def test_a_weak_thrust_turns_in_a_circle_of_damping_alone() -> None:
-    u, v, r = Batch(vessel.load("catamaran"), step=0.01).coast([0.0] * 6, held(0.01), 6000)[3:]
+    u, v, r = Batch(vessel.load_vessel("catamaran"), step=0.01).coast([0.0] * 6, held(0.01), 6000)[
+        3:
+    ]
     b = 0.47 * pi
     limit = sqrt((cos(b) / 14) ** 2 + (sin(b) / 80) ** 2) / (0.4 * sin(b) / 5)
     assert sqrt(u * u + v * v) / r == pytest.approx(limit, rel=1e-3)
@@ -185,7 +189,7 @@ def test_left_and_right_are_mirror_images() -> None:
 
 
 def test_without_thrust_and_disturbance_the_energy_only_falls() -> None:
-    engine = Engine(vessel.load("catamaran"), step=0.01)
+    engine = Engine(vessel.load_vessel("catamaran"), step=0.01)
     engine.reset(State(psi=0.3, u=1.2, v=-0.4, r=1.5))
     mass, energy = np.array([7.35, 7.0 + 3.1809, 0.75979 + 0.27389]), []
     for _ in range(500):
@@ -334,9 +338,9 @@ def test_gust_is_a_sine_in_one_direction_of_the_world() -> None:
 
 def test_gust_off_centre_is_what_a_lever_adds_to_the_vessels_own_gust() -> None:
     told = {"mean": 10.0, "amplitude": 5.0, "toward": 2.0}
-    boat, m = vessel.load("catamaran", settings={"gust": told}), motion(t=1.0, psi=0.7)
+    boat, m = vessel.load_vessel("catamaran", settings={"gust": told}), motion(t=1.0, psi=0.7)
     own: Any = boat.effect("gust")
-    off: Any = boat.composed_with(GustOffCentre(arm=0.1)).effect("gust")
+    off: Any = boat.with_completed_effect(GustOffCentre(arm=0.1)).effect("gust")
     Y = own.wrench(m).Y
     assert off.wrench(m) == pytest.approx(own.wrench(m)._replace(N=own.wrench(m).N + 0.1 * Y))
 
@@ -347,32 +351,32 @@ def test_speed_hold_keeps_the_speed_whatever_the_turn() -> None:
         -7.0 * 0.5 * 0.3
     )  # m(u' - v r) = X: u' = 0
     assert held.wrench(motion(u=2.1)).X == pytest.approx(-10.0)
-    assert SpeedHold().completed(vessel.load("catamaran")).mass == 7.0
+    assert SpeedHold().with_all_parameters(vessel.load_vessel("catamaran")).mass == 7.0
 
 
 def test_payload_and_deeper_draught_make_the_heavier_boat() -> None:
-    boat = vessel.load("catamaran")
-    more = boat.composed_with(Payload(mass=2.0))
+    boat = vessel.load_vessel("catamaran")
+    more = boat.with_completed_effect(Payload(mass=2.0))
     assert more.body.mass == 9.0
     assert more.body.yaw_inertia - boat.body.yaw_inertia == pytest.approx(
         2.0 * (0.55**2 + 1.0) / 12, rel=1e-4
     )
     own: Any = boat.effect("added_mass")
     error = AddedMassError(surge_factor=1.3, sway_factor=1.5, yaw_factor=0.8)
-    off: Any = boat.composed_with(error).effect("added_mass")
+    off: Any = boat.with_completed_effect(error).effect("added_mass")
     assert (off.surge, off.sway, off.yaw) == pytest.approx(
         (1.3 * own.surge, 1.5 * own.sway, 0.8 * own.yaw)
     )
     with pytest.raises(BadInput, match="body.mass = -1"):
-        boat.composed_with(Payload(mass=-8.0))
+        boat.with_completed_effect(Payload(mass=-8.0))
 
 
 def test_damping_exponent_makes_a_power_law_of_the_vessels_linear_damping() -> None:
-    boat, m = vessel.load("catamaran"), motion(u=0.5, v=-0.2, r=0.4)
+    boat, m = vessel.load_vessel("catamaran"), motion(u=0.5, v=-0.2, r=0.4)
     release = DampingExponent(
         surge_exponent=1.5, sway_exponent=2.0, sway_equal=0.5, yaw_exponent=3.0
     )
-    power: Any = boat.composed_with(release).effect("linear_damping")
+    power: Any = boat.with_completed_effect(release).effect("linear_damping")
     assert power.wrench(m) == pytest.approx(
         Wrench(X=-14 * 0.5**1.5, Y=80 * 0.2**2 / 0.5, N=-5 * 0.4**3)
     )

@@ -123,8 +123,8 @@ TABLE = {
 
 def example(**more: dict[str, float]) -> Vessel:
     """The worked example as a vessel."""
-    boat = vessel.load("eastward_ho", ["condition_3"], EXAMPLE)
-    return vessel.load("eastward_ho", ["condition_3"], {**EXAMPLE, **more}) if more else boat
+    boat = vessel.load_vessel("eastward_ho", ["condition_3"], EXAMPLE)
+    return vessel.load_vessel("eastward_ho", ["condition_3"], {**EXAMPLE, **more}) if more else boat
 
 
 # ---- coefficients
@@ -140,19 +140,21 @@ def test_added_mass_is_that_of_a_spheroid_by_lambs_integrals() -> None:
         (a * a - b * b) ** 2 * (beta - alpha),
         2 * (a * a - b * b) + (b * b + a * a) * (alpha - beta),
     )
-    found = particulars.spheroid(2 * a, b)
+    found = particulars.spheroid_added_mass(2 * a, b)
     assert found.surge == pytest.approx(alpha / (2 - alpha), rel=1e-7)
     assert found.sway == pytest.approx(beta / (2 - beta), rel=1e-7)
     assert found.yaw == pytest.approx(over / under / (a * a + b * b), rel=1e-6)
-    assert particulars.spheroid(2.001, 1.0)[:2] == pytest.approx((0.5, 0.5), abs=1e-3)  # a sphere
+    assert particulars.spheroid_added_mass(2.001, 1.0)[:2] == pytest.approx(
+        (0.5, 0.5), abs=1e-3
+    )  # a sphere
 
 
 def test_worked_example_coefficient_by_coefficient() -> None:
     boat = example()
-    d = particulars.derivatives(boat.length, boat.beam, boat.draught, 1.0731, 0.513686)
+    d = particulars.linear_derivatives(boat.length, boat.beam, boat.draught, 1.0731, 0.513686)
     assert d == pytest.approx((-0.72545, 0.249876, -0.21816, -0.07865), rel=3e-4)
-    assert particulars.hull_share(0.513686) == pytest.approx(0.169081, abs=1e-6)
-    assert particulars.rudder_slope(2.787091, 1.875, 7.430879) == pytest.approx(
+    assert particulars.hull_force_ratio(0.513686) == pytest.approx(0.169081, abs=1e-6)
+    assert particulars.rudder_force_slope(2.787091, 1.875, 7.430879) == pytest.approx(
         219.7674e3, rel=1e-5
     )
     mass, hull, roll = (
@@ -214,7 +216,7 @@ def test_the_printed_roll_by_sway_waves_does_not_give_the_printed_step(
 
 @pytest.mark.parametrize(("name", "condition"), TABLE)
 def test_every_condition_is_the_table(name: str, condition: int) -> None:
-    boat = vessel.load(name, [f"condition_{condition}"])
+    boat = vessel.load_vessel(name, [f"condition_{condition}"])
     A, B, _ = linear_model(boat)
     found = [
         -A[1, 1],
@@ -238,7 +240,7 @@ def test_every_condition_is_the_table(name: str, condition: int) -> None:
 
 @pytest.mark.parametrize(("name", "condition"), TABLE)
 def test_inertias_of_a_load_are_its_mass_on_the_stated_radii(name: str, condition: int) -> None:
-    boat = vessel.load(name, [f"condition_{condition}"])
+    boat = vessel.load_vessel(name, [f"condition_{condition}"])
     across = {"kynoc": 2.60, "eastward_ho": 3.50094}[name]
     assert boat.body.roll_inertia == pytest.approx(boat.body.mass * across**2, rel=1e-5)
     assert boat.body.yaw_inertia == pytest.approx(boat.body.mass * (boat.length / 4) ** 2, rel=1e-5)
@@ -251,7 +253,7 @@ def test_a_rudder_to_starboard_heels_inwards_first_and_outwards_in_the_turn() ->
     in both."""
     for condition, speed, wanted in ((3, 6.68777, -0.25), (4, 4.63, -0.12)):
         fast = {"rudder": {"inflow": 1.1111 * speed}}
-        A, B, _ = linear_model(vessel.load("eastward_ho", [f"condition_{condition}"], fast))
+        A, B, _ = linear_model(vessel.load_vessel("eastward_ho", [f"condition_{condition}"], fast))
         steady = np.linalg.solve(A[np.ix_([1, 2, 4], [1, 2, 3])], -B[[1, 2, 4]])
         assert B[4] > 0.0 and steady[2] == pytest.approx(wanted, abs=6e-3)
 
@@ -304,9 +306,11 @@ def test_damping_at_rest_grows_with_the_root_of_the_amplitude() -> None:
 
 
 def test_sway_added_mass_heels_one_way_as_printed_or_both_ways_as_energy_demands() -> None:
-    printed = vessel.load("eastward_ho", ["condition_3"])
+    printed = vessel.load_vessel("eastward_ho", ["condition_3"])
     below = printed.effect("linear_hull").below  # type: ignore[union-attr]
-    symmetric = vessel.load("eastward_ho", ["condition_3"], {"added_mass": {"sway_below": below}})
+    symmetric = vessel.load_vessel(
+        "eastward_ho", ["condition_3"], {"added_mass": {"sway_below": below}}
+    )
     one, both = linear_model(printed)[0], linear_model(symmetric)[0]
     assert one[2, 3] == one[2, 4] == 0.0  # a roll does not push the printed ship sideways
     mass = mass_matrix(symmetric)
@@ -328,7 +332,7 @@ def on_twin(boat: Vessel, rudder: Array, waves: Array) -> Array:
     compiled, symbols = Batch(boat, step=0.02), [signal.symbol for signal in signals_of(boat.dof)]
     y = np.array([speed_of(boat) if n == "u" else 0.0 for n in symbols])
     at, values, rows = (
-        [compiled.program.index("push", n) for n in WAVES],
+        [compiled.program.parameter_index("push", n) for n in WAVES],
         compiled.program.values(),
         [y],
     )
@@ -342,7 +346,7 @@ def on_twin(boat: Vessel, rudder: Array, waves: Array) -> Array:
 @pytest.mark.parametrize("run", [simulate_on_mujoco, on_twin])
 def test_mujoco_and_twin_follow_the_exact_step_through_a_zigzag_in_random_waves(run: Any) -> None:
     """120 s, accelerations of the waves drawn anew every half second: less than 1e-6 deg."""
-    boat, waves = vessel.load("eastward_ho", ["condition_3"]), random_waves()
+    boat, waves = vessel.load_vessel("eastward_ho", ["condition_3"]), random_waves()
     truth, rudder = simulate_zigzag(boat, waves)
     assert np.degrees(np.abs(truth[:, 0]).max()) > 15 and np.degrees(np.abs(truth[:, 3]).max()) > 5
     off = np.degrees(np.abs(run(boat, rudder, waves) - truth).max(axis=0))

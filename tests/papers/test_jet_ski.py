@@ -23,8 +23,8 @@ from boatsim.control.adaptive_loop import (
 )
 from boatsim.control.jet import JET_Q2, power_of, throttle_of
 from boatsim.physics import vessel
-from boatsim.physics.base import Course, Force, Wrench, mean_of, motion
-from boatsim.physics.content import load_class, names
+from boatsim.physics.base import Force, SignalSegment, Wrench, motion, segment_mean
+from boatsim.physics.content import library_names, load_class
 from boatsim.physics.effects.jet_steering import JetSteering
 from boatsim.physics.effects.nomoto_yaw import NomotoYaw
 from boatsim.physics.effects.push import Push
@@ -39,7 +39,7 @@ from boatsim.simulate.engine import Engine, State
 from boatsim.simulate.evaluation import requested_metrics
 from boatsim.simulate.run import run
 
-CRAFT = vessel.load(
+CRAFT = vessel.load_vessel(
     "jet_ski", settings={"throttle_rate_limit": {"rate": 1e6}, "servo": {"rate": 1e3}}
 )
 MASS, ROLL, YAW = CRAFT.body.mass, CRAFT.body.roll_inertia, CRAFT.body.yaw_inertia
@@ -126,9 +126,9 @@ def test_a_push_begins_and_ends() -> None:
 
 
 def test_throttle_follows_a_ramp_and_its_mean_is_exact() -> None:
-    memory, limit, full = np.zeros(1), RateLimit(rate=3.0).values(), Course(1.0, 1.0, 1.0)
-    courses = [RateLimit.channel(full, 0.0, 0.0, memory, 0, 0.2, limit) for _ in range(3)]
-    assert [mean_of(c) for c in courses] == pytest.approx(
+    memory, limit, full = np.zeros(1), RateLimit(rate=3.0).values(), SignalSegment(1.0, 1.0, 1.0)
+    courses = [RateLimit.transform_signal(full, 0.0, 0.0, memory, 0, 0.2, limit) for _ in range(3)]
+    assert [segment_mean(c) for c in courses] == pytest.approx(
         [0.3, 1.0 - 0.5 * 0.4 * (0.4 / 3.0) / 0.2, 1.0]
     )
     assert [(c.begin, c.end) for c in courses] == [
@@ -140,9 +140,9 @@ def test_throttle_follows_a_ramp_and_its_mean_is_exact() -> None:
 
 def test_asymmetric_steering_is_even_in_the_angle() -> None:
     values = SteeringAsymmetry(gain=0.05).values()
-    held = [Course(x, x, x) for x in (0.2, -0.2)]
+    held = [SignalSegment(x, x, x) for x in (0.2, -0.2)]
     right, left = (
-        SteeringAsymmetry.channel(x, 0.0, 0.0, np.zeros(1), 0, 0.1, values) for x in held
+        SteeringAsymmetry.transform_signal(x, 0.0, 0.0, np.zeros(1), 0, 0.1, values) for x in held
     )
     assert right == pytest.approx([0.21] * 3) and left == pytest.approx([-0.19] * 3)
 
@@ -277,7 +277,7 @@ def test_l1_norm_condition_of_the_cruise_control() -> None:
     assert l1_norm(unfiltered([[-1.4]], [1.0], 3.5)) * 1.7716 == pytest.approx(at[35.0])
 
 
-NAMES = [name for name in names("scenario") if name.startswith("jet_ski/")]
+NAMES = [name for name in library_names("scenario") if name.startswith("jet_ski/")]
 
 
 def test_staircase_first_four_steps_are_alike_and_the_last_saturates() -> None:

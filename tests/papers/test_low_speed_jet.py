@@ -20,10 +20,10 @@ from boatsim.metrics.heading_hold import HeadingHold
 from boatsim.metrics.step_response import StepResponse
 from boatsim.physics import vessel
 from boatsim.physics.base import Array, Wrench, motion
-from boatsim.physics.content import load_class, names
+from boatsim.physics.content import library_names, load_class
 from boatsim.physics.effects.astern_time_constant import AsternTimeConstant
 from boatsim.physics.effects.reversing_jet import JetLeak, ReversingJet
-from boatsim.physics.effects.yaw_rate_waves import WAVES, YawRateWaves, component
+from boatsim.physics.effects.yaw_rate_waves import WAVES, YawRateWaves, wave_component
 from boatsim.recordings.table import Notes, Recording
 from boatsim.simulate import scenario
 from boatsim.simulate.engine import Engine, State
@@ -34,7 +34,7 @@ Heading = load_class("controller", "l1_heading_discrete")
 ASTERN = 0.9599  # [rad] bucket at 55 deg
 T_N, T_S = 1.67, 0.1  # [s]
 F22 = exp(-T_S / T_N)
-SHIPPED = [n for n in names("scenario") if n.startswith("jet_ski/low_")]
+SHIPPED = [n for n in library_names("scenario") if n.startswith("jet_ski/low_")]
 
 
 @cache
@@ -63,7 +63,7 @@ def value(name: str, norm: str) -> float:
 
 
 def craft(**settings: dict[str, float]) -> Engine:
-    return Engine(vessel.load("jet_ski", ["low_speed"], settings=settings), step=0.01)
+    return Engine(vessel.load_vessel("jet_ski", ["low_speed"], settings=settings), step=0.01)
 
 
 @pytest.mark.parametrize("bucket", [0.0, 0.4, pi / 4, ASTERN])
@@ -104,8 +104,10 @@ def test_leak_and_time_constant_astern_are_the_nomoto_model_with_another_gain_or
 ) -> None:
     own = ReversingJet(thrust=185.0, yaw=275.0)
     m, seen = motion(u=-0.5, r=0.1), {"angle": 0.2, "bucket": beta}
-    boat = vessel.load("jet_ski", ["low_speed"])
-    leaking: Any = replace(boat, effects=(own,)).composed_with(JetLeak(fraction=0.25)).effects[0]
+    boat = vessel.load_vessel("jet_ski", ["low_speed"])
+    leaking: Any = (
+        replace(boat, effects=(own,)).with_completed_effect(JetLeak(fraction=0.25)).effects[0]
+    )
     share = cos(2 * beta) + 0.25
     assert leaking.wrench(m, **seen) == pytest.approx(
         Wrench(X=185.0 * share, N=275.0 * share * 0.2)
@@ -122,7 +124,7 @@ def test_leak_and_time_constant_astern_are_the_nomoto_model_with_another_gain_or
 
 def components(sea: YawRateWaves) -> Array:
     """Frequencies [rad/s], amplitudes [rad/s] and phases [rad] of the realisation."""
-    return np.array([component.py_func(k, sea) for k in range(WAVES)]).T  # type: ignore[attr-defined]
+    return np.array([wave_component.py_func(k, sea) for k in range(WAVES)]).T  # type: ignore[attr-defined]
 
 
 @pytest.mark.parametrize("frequency", [1.5, 2.5, 4.5])
@@ -143,8 +145,8 @@ def test_waves_have_the_autocorrelation_of_the_filter(frequency: float) -> None:
 @pytest.mark.parametrize("seed", [0, 7])
 def test_hull_in_waves_turns_with_their_yaw_rate(seed: int) -> None:
     waves = {"rms": 0.06, "frequency": 4.5, "damping": 0.1}
-    boat = vessel.load("jet_ski", ["low_speed"], settings={"yaw_rate_waves": waves})
-    boat = replace(boat, effects=tuple(e.seeded(seed) for e in boat.effects))
+    boat = vessel.load_vessel("jet_ski", ["low_speed"], settings={"yaw_rate_waves": waves})
+    boat = replace(boat, effects=tuple(e.with_seed(seed) for e in boat.effects))
     sea = boat.effect("yaw_rate_waves")
     assert isinstance(sea, YawRateWaves) and (sea.inertia, sea.drag) == (460.0, 275.45)
     w, size, phases = components(sea)
@@ -164,10 +166,10 @@ def test_hull_in_waves_turns_with_their_yaw_rate(seed: int) -> None:
 
 def test_seed_draws_the_waves_and_still_water_stays_still() -> None:
     sea = YawRateWaves(rms=0.05, inertia=460.0, drag=275.0)
-    first, again, other = (sea.seeded(n).wrench(motion(t=3.0)).N for n in (1, 1, 2))
+    first, again, other = (sea.with_seed(n).wrench(motion(t=3.0)).N for n in (1, 1, 2))
     assert first == again != other
     assert (
-        YawRateWaves(rms=0.05, inertia=460.0, realisation=0.0).seeded(3).wrench(motion(t=3.0)).N
+        YawRateWaves(rms=0.05, inertia=460.0, realisation=0.0).with_seed(3).wrench(motion(t=3.0)).N
         == 0.0
     )
 

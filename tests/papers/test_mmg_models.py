@@ -16,7 +16,7 @@ from boatsim.simulate.run import Run, run
 from validation.real import kvlcc2_mmg as bench
 from validation.real.common import RECORDINGS, runs_of
 
-MODEL, SHIP = vessel.load("kvlcc2_mmg"), vessel.load("kvlcc2_mmg_full_scale")
+MODEL, SHIP = vessel.load_vessel("kvlcc2_mmg"), vessel.load_vessel("kvlcc2_mmg_full_scale")
 RATIO = SHIP.length / MODEL.length
 TIME = RATIO**0.5  # Froude's law
 
@@ -81,7 +81,7 @@ def test_a_recalibration_moves_every_derivative_of_the_hull_and_the_flow_at_the_
     alone."""
     derivatives = {n for n in MmgHull.params() if n[:2] in ("X_", "Y_", "N_")}
     free = {
-        (type(e).idea(), n)
+        (type(e).type_name(), n)
         for e in MODEL.effects
         for n, about in type(e).params().items()
         if about.calibrates

@@ -66,7 +66,7 @@ def test_reference_model_turns_in_a_pure_sway() -> None:
 def moment(load: str, spacing: str) -> Callable[[float], float]:
     """Yaw moment [N m] about the centre of lateral resistance over the inward angle [deg], 1 N
     ahead, 1 N astern."""
-    boat: Any = vessel.load("joystick_boat", [load, spacing])
+    boat: Any = vessel.load_vessel("joystick_boat", [load, spacing])
 
     def at(angle: float) -> float:
         pushed = inward(boat, 1.0, -1.0, angle)
@@ -120,6 +120,6 @@ def test_turning_lever_spans_the_published_range(
 
 
 def test_sway_force_of_the_motors_is_the_sum_of_both_thrusts_times_the_sine() -> None:
-    boat: Any = vessel.load("joystick_boat", ["light", "narrow"])
+    boat: Any = vessel.load_vessel("joystick_boat", ["light", "narrow"])
     wrench, a = inward(boat, 0.5, -0.3, 20.0), radians(20.0)
     assert (wrench.X, wrench.Y) == pytest.approx((0.2 * cos(a), 0.8 * sin(a)))

@@ -15,7 +15,7 @@ from boatsim.cli import diagnosis as commands
 from boatsim.metrics.sway_hold import SwayHold
 from boatsim.physics import vessel
 from boatsim.physics.base import Array, Wrench
-from boatsim.physics.content import names
+from boatsim.physics.content import library_names
 from boatsim.recordings.table import Recording
 from boatsim.simulate import scenario
 from boatsim.simulate.engine import Engine, State
@@ -25,7 +25,7 @@ from boatsim.simulate.run_files import run_into_folder
 
 SHIPPED = [
     name.removeprefix("thesis_linear/")
-    for name in names("scenario")
+    for name in library_names("scenario")
     if name.startswith("thesis_linear/")
 ]
 A = {  # T10 to T14, states v and r
@@ -78,7 +78,7 @@ def sideways(F: float, d: float) -> dict[str, float]:
 def test_engine_is_the_state_space_of_the_thesis(loads: tuple[str, str]) -> None:
     load, motors = loads
     (m, inertia), L, B, d, F = INERTIA[load], LEVERS[load], LEVERS[motors], 0.3, 0.5
-    engine = Engine(vessel.load("thesis_linear", loads), step=0.01)
+    engine = Engine(vessel.load_vessel("thesis_linear", loads), step=0.01)
     engine.reset(State(psi=0.4, v=0.02, r=-0.01), sideways(F, d))
     engine.advance(2000)
     push = np.array([F * sin(d) / m, F * (B * cos(d) - L * sin(d)) / inertia])
@@ -116,7 +116,7 @@ def test_boat_replays_a_recording_of_its_own(
 
 
 def test_wind_of_t12_is_a_force_and_a_moment_that_turn_with_the_boat() -> None:
-    boat = vessel.load("thesis_linear", ["light", "wide"], {"gust": {"mean": 0.2}})
+    boat = vessel.load_vessel("thesis_linear", ["light", "wide"], {"gust": {"mean": 0.2}})
     engine = Engine(boat, step=0.01)
     for psi in (0.0, 1.0):
         engine.reset(State(psi=psi))

@@ -9,7 +9,7 @@ import pytest
 from runs import SHIPPED, TESTS, found, mean, mean_of, raw
 
 from boatsim.errors import BadInput
-from boatsim.physics.content import find
+from boatsim.physics.content import find_content_file
 from boatsim.simulate import scenario
 from boatsim.simulate.evaluation import requested_metrics
 from boatsim.simulate.run import run
@@ -202,7 +202,7 @@ def test_one_run_of_a_shipped_scenario_meets_its_bars_and_touches_no_wall(name: 
 
 @pytest.mark.parametrize("name", SHIPPED)
 def test_a_shipped_scenario_is_a_script(name: str) -> None:
-    path = find("scenario", name)
+    path = find_content_file("scenario", name)
     assert path.read_text(encoding="utf-8").startswith("#!/usr/bin/env -S boatsim run\n")
     assert os.access(path, os.X_OK)
 

@@ -13,8 +13,8 @@ from boatsim.cli import app
 from boatsim.diagnosis.filter import map_recording
 from boatsim.errors import BadInput
 from boatsim.physics import vessel
-from boatsim.physics.commands import clipped_row, clipped_rows
-from boatsim.physics.content import load_class, names
+from boatsim.physics.commands import clipped_commands, clipped_recorded_commands
+from boatsim.physics.content import library_names, load_class
 from boatsim.physics.program import Program
 from boatsim.physics.vessel import Vessel
 from boatsim.recordings import table
@@ -78,15 +78,15 @@ def boatsim(*arguments: object) -> Any:
 
 
 def test_nothing_leaves_its_range(boat: Vessel) -> None:
-    assert clipped_row(boat, WILD).tolist() == [100.0, -100.0, 3.2, 0.0]
+    assert clipped_commands(boat, WILD).tolist() == [100.0, -100.0, 3.2, 0.0]
 
 
 def test_rows_of_a_recording_are_limited_and_what_it_lacks_is_neutral(tmp_path: Path) -> None:
     text = PLANAR.replace(
         "steer_starboard_rad = { low", "steer_starboard_rad = { neutral = 0.5, low"
     )
-    own = vessel.load(str(written(tmp_path, "test_boat", text)))
-    rows = clipped_rows(
+    own = vessel.load_vessel(str(written(tmp_path, "test_boat", text)))
+    rows = clipped_recorded_commands(
         own, {"thrust_port_N": np.array([1.0, 500.0]), "sent_thrust_port_N": np.full(2, 7.0)}, 2
     )
     assert rows.tolist() == [[1.0, 0.0, 0.0, 0.5], [100.0, 0.0, 0.0, 0.5]]
@@ -95,7 +95,7 @@ def test_rows_of_a_recording_are_limited_and_what_it_lacks_is_neutral(tmp_path: 
 @pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf])
 def test_a_command_that_is_not_finite_is_refused(boat: Vessel, value: float) -> None:
     for way in (
-        lambda: clipped_row(boat, {"steer_port_rad": value}),
+        lambda: clipped_commands(boat, {"steer_port_rad": value}),
         lambda: Engine(boat).command({"steer_port_rad": value}),
     ):
         with pytest.raises(
@@ -135,21 +135,21 @@ def test_a_diagnosis_sees_the_commands_that_acted(boat: Vessel) -> None:
 def test_a_boat_left_alone_stays_where_it_is() -> None:
     """Nothing is sent, nothing drives it; of pulses from 800 to 2200 us none at all would mean full
     astern."""
-    engine = Engine(vessel.load("twin_usv"))
+    engine = Engine(vessel.load_vessel("twin_usv"))
     engine.advance(100)
     assert np.hypot(engine.state.x, engine.state.y) < 1e-9
 
 
-@pytest.mark.parametrize("name", names("vessel"))
+@pytest.mark.parametrize("name", library_names("vessel"))
 def test_every_vessel_takes_its_own_neutral(name: str) -> None:
-    boat = vessel.load(name)
-    assert clipped_row(boat, {}).tolist() == [c.neutral for c in boat.commands.values()]
+    boat = vessel.load_vessel(name)
+    assert clipped_commands(boat, {}).tolist() == [c.neutral for c in boat.commands.values()]
 
 
 def test_a_pulse_that_is_not_sent_is_the_neutral_one() -> None:
-    boat = vessel.load("twin_usv")
-    assert clipped_row(boat, {}).tolist() == [0.0, 0.0, 1500.0, 1500.0]
-    assert clipped_row(boat, {"pwm_left_us": 0.0}).tolist()[2:] == [800.0, 1500.0]
+    boat = vessel.load_vessel("twin_usv")
+    assert clipped_commands(boat, {}).tolist() == [0.0, 0.0, 1500.0, 1500.0]
+    assert clipped_commands(boat, {"pwm_left_us": 0.0}).tolist()[2:] == [800.0, 1500.0]
 
 
 @pytest.mark.parametrize(
@@ -163,7 +163,7 @@ def test_a_pulse_that_is_not_sent_is_the_neutral_one() -> None:
 def test_a_neutral_must_lie_in_range(tmp_path: Path, channel: str, said: str) -> None:
     place = written(tmp_path, "boat", PLANAR.replace("low = -3.2, high = 3.2", channel, 1))
     with pytest.raises(BadInput, match=r"^boat/vessel.toml: channels.steer_port_rad: ") as raised:
-        vessel.load(str(place))
+        vessel.load_vessel(str(place))
     assert str(raised.value).endswith(said)
 
 

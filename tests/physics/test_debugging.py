@@ -10,7 +10,7 @@ import boats
 import pytest
 
 from boatsim.errors import BadPhysics
-from boatsim.physics.content import root
+from boatsim.physics.content import content_root
 from boatsim.simulate import native_callback
 from boatsim.simulate.engine import Engine
 
@@ -22,7 +22,7 @@ from boatsim.physics.kernel.records import Inputs
 from boatsim.simulate.engine import Engine
 from boatsim.simulate.open_water import OpenWater
 
-boat = vessel.load(sys.argv[1])
+boat = vessel.load_vessel(sys.argv[1])
 engine, water = Engine(boat), OpenWater(boat)
 for stepper in (engine, water):
     stepper.command({"thrust_port_N": 1.0})
@@ -32,11 +32,11 @@ program = engine.program
 times, out = 0.1 * np.arange(5), np.zeros((1, 5, 6))
 inputs = Inputs(times, times[:1], program.command_array({"thrust_port_N": 1.0})[None])
 begin, end, start = np.array([0]), np.array([4]), np.zeros((1, 6))
-program.module.free_runs(inputs, 0.02, program.model(), begin, end, start, out)
+program.module.simulate_intervals(inputs, 0.02, program.vessel_numbers(), begin, end, start, out)
 print(*(repr(float(x)) for x in out[0, -1]))
-code = getattr(program.module.free_runs, "py_func", program.module.free_runs).__code__
+code = getattr(program.module.simulate_intervals, "py_func", program.module.simulate_intervals).__code__
 print(code.co_filename)
-print(hasattr(program.module.free_runs, "py_func"))
+print(hasattr(program.module.simulate_intervals, "py_func"))
 """
 
 
@@ -45,7 +45,7 @@ def run(place: Path, debug: str) -> list[str]:
     done = subprocess.run(
         [sys.executable, "-c", RUN, str(place)],
         cwd=place.parent,
-        env=os.environ | {"BOATSIM_DEBUG": debug, "PYTHONPATH": str(root())},
+        env=os.environ | {"BOATSIM_DEBUG": debug, "PYTHONPATH": str(content_root())},
         capture_output=True,
         text=True,
         check=True,
@@ -60,7 +60,7 @@ def test_a_run_in_plain_python_has_the_same_numbers_and_the_files_of_the_reposit
     *numbers, file, has_compiled = run(place, "1")
     *compiled_numbers, compiled_file, was_compiled = run(place, "0")
     assert (has_compiled, was_compiled) == ("False", "True")
-    assert file == str(root() / "boatsim" / "physics" / "kernel" / "filter.py")
+    assert file == str(content_root() / "boatsim" / "physics" / "kernel" / "filter.py")
     assert compiled_file != file
     for line, other in zip(numbers, compiled_numbers, strict=True):
         found, wanted = ([float(x) for x in text.split()] for text in (line, other))

@@ -23,11 +23,13 @@ thrust_lag.time_constant = 1.0
 
 def of(text: str, tmp_path: Path) -> vessel.Vessel:
     """The test boat with more lines in its file."""
-    return vessel.load(str(boats.written(tmp_path, "test_boat", boats.PLANAR + text)))
+    return vessel.load_vessel(str(boats.written(tmp_path, "test_boat", boats.PLANAR + text)))
 
 
 def candidate(name: str, of_vessel: vessel.Vessel) -> Effect:
-    found: Effect = content.load_class("effect", name).from_settings({}).completed(of_vessel)
+    found: Effect = (
+        content.load_class("effect", name).from_settings({}).with_all_parameters(of_vessel)
+    )
     return found
 
 
@@ -35,7 +37,9 @@ def test_the_table_is_read_and_saved(tmp_path: Path) -> None:
     loaded = of(TABLE, tmp_path)
     assert loaded.estimated == {"damping": 0.5, "body.mass": 0.1, "thrust_lag.time_constant": 1.0}
     saved = loaded.save(tmp_path / "saved")
-    assert vessel.load(str(tmp_path / "saved")).estimated == saved.estimated == loaded.estimated
+    assert (
+        vessel.load_vessel(str(tmp_path / "saved")).estimated == saved.estimated == loaded.estimated
+    )
     assert of("", tmp_path).estimated == {}
 
 
@@ -55,7 +59,7 @@ def test_a_wrong_key_or_value_gives_one_line(line: str, message: str, tmp_path: 
     assert "\n" not in str(error.value)
 
 
-@pytest.mark.parametrize("name", content.names("effect"))
+@pytest.mark.parametrize("name", content.library_names("effect"))
 def test_every_effect_refines_a_known_group_or_none(name: str) -> None:
     kind: type[Effect] = content.load_class("effect", name)
     assert kind.refines in ("", *REFINED_GROUPS)

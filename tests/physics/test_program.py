@@ -57,12 +57,12 @@ import sys
 import numpy as np
 from boatsim.physics import vessel
 from boatsim.physics.program import Program
-from boatsim.physics.trust import trusting
+from boatsim.physics.trust import trust_folders
 
-with trusting(sys.argv[1]):
-    program = Program(vessel.load(sys.argv[1]))
+with trust_folders(sys.argv[1]):
+    program = Program(vessel.load_vessel(sys.argv[1]))
 act = np.zeros(program.held_size)
-print(program.module.forces(0.0, np.array([0.1, 0.0]), act, np.int64(0), program.values(), program.switches())[0])
+print(program.module.total_body_force(0.0, np.array([0.1, 0.0]), act, np.int64(0), program.values(), program.switches())[0])
 """
 
 
@@ -92,7 +92,9 @@ def forces(program: Program, state: Sequence[float], on: Array | None = None) ->
     rest."""
     act, switches = np.zeros(program.held_size), program.switches() if on is None else on
     return tuple(
-        program.module.forces(0.0, np.array(state), act, np.int64(0), program.values(), switches)
+        program.module.total_body_force(
+            0.0, np.array(state), act, np.int64(0), program.values(), switches
+        )
     )
 
 
@@ -117,7 +119,7 @@ def test_a_law_edited_while_the_program_runs_gives_its_new_number(
     law = place / "spring.py"
     for factor in (3.0, 4.0):
         law.write_text(SPRING.replace("-3.0", f"-{factor}"))
-        assert forces(Program(vessel.load(str(place))), [0.1, 0.0]) == pytest.approx(
+        assert forces(Program(vessel.load_vessel(str(place))), [0.1, 0.0]) == pytest.approx(
             [-0.1 * (2.0 + factor)]
         )
 
@@ -133,7 +135,7 @@ def test_effects_of_one_name_beside_two_vessels_are_two_effects(
         places.append(with_spring(tmp_path / folder))
         law = places[-1] / "spring.py"
         law.write_text(law.read_text().replace("-3.0", factor))
-    found = [forces(Program(vessel.load(str(place))), [0.1, 0.0]) for place in places]
+    found = [forces(Program(vessel.load_vessel(str(place))), [0.1, 0.0]) for place in places]
     assert found == [pytest.approx([-0.1 * (2.0 + 3.0)]), pytest.approx([-0.1 * (2.0 + 5.0)])]
 
 
@@ -160,8 +162,8 @@ def test_a_suspect_acts_only_when_it_is_switched_on(tmp_path: Path) -> None:
 
 def test_parameters_lie_where_the_index_says(tmp_path: Path) -> None:
     program = Program(boats.planar(tmp_path, {"quadratic_damping": {"yaw": 1.25}}))
-    assert program.values()[program.index("quadratic_damping", "yaw")] == 1.25
-    assert program.values()[program.index("port", "y")] == -0.5
+    assert program.values()[program.parameter_index("quadratic_damping", "yaw")] == 1.25
+    assert program.values()[program.parameter_index("port", "y")] == -0.5
 
 
 def test_commands_that_are_not_given_are_zero(tmp_path: Path) -> None:
@@ -178,7 +180,7 @@ def test_any_freedoms_feel_their_part_of_the_same_law(tmp_path: Path, dof: tuple
     text = boats.PLANAR.replace('["surge", "sway", "yaw"]', str(list(dof))).replace(
         "body = { ", f"body = {{ {PITCH}"
     )
-    program = Program(vessel.load(str(boats.written(tmp_path, "test_boat", text))))
+    program = Program(vessel.load_vessel(str(boats.written(tmp_path, "test_boat", text))))
     rates = {"surge": 0.3, "sway": -0.2, "yaw": 0.1, "heave": 0.2, "roll": 0.4, "pitch": -0.3}
     moving = {a: rates.get(a, 0.0) if a in dof else 0.0 for a in AXES}
     m = motion(**{symbol: moving[a] for symbol, a in zip("uvwpqr", AXES, strict=True)})
@@ -199,7 +201,7 @@ def test_an_unwritable_cache_folder_falls_back(
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
     for name in [n for n in sys.modules if n.startswith("boatsim_program_")]:
         monkeypatch.delitem(sys.modules, name)  # another test may have composed the same program
-    boat = vessel.load(str(boats.written(tmp_path, "test_fallback", boats.ROLL)))
+    boat = vessel.load_vessel(str(boats.written(tmp_path, "test_fallback", boats.ROLL)))
     assert str(Program(boat).module.__file__).startswith(str(tmp_path / "boatsim-"))
 
 
@@ -226,7 +228,7 @@ def test_programs_not_used_for_90_days_are_removed_when_a_new_one_is_composed(
 
 def boats_own_roller(folder: Path) -> vessel.Vessel:
     """A vessel whose program no other test composes."""
-    return vessel.load(
+    return vessel.load_vessel(
         str(boats.written(folder, "roller", boats.ROLL + '[[effect]]\nuse = "wind"\n'))
     )
 
@@ -239,8 +241,8 @@ import sys
 from boatsim.physics import cache, vessel
 from boatsim.physics.program import Program
 
-cache._imported = lambda path, name: name  # the name alone: nothing is compiled
-print(*(Program(vessel.load(place)).module for place in sys.argv[1:]))
+cache._import_package = lambda path, name: name  # the name alone: nothing is compiled
+print(*(Program(vessel.load_vessel(place)).module for place in sys.argv[1:]))
 """
 # a file, what of it is changed into what, whether a spring in roll, and waves, can feel it
 EDITS = [
@@ -262,7 +264,9 @@ def copied(tmp_path_factory: pytest.TempPathFactory) -> Path:
     programs."""
     folder = tmp_path_factory.mktemp("copy")
     shutil.copytree(
-        content.root() / "boatsim", folder / "boatsim", ignore=shutil.ignore_patterns("__pycache__")
+        content.content_root() / "boatsim",
+        folder / "boatsim",
+        ignore=shutil.ignore_patterns("__pycache__"),
     )
     boats.written(folder, "sprung", boats.ROLL)
     waves = boats.ROLL[: boats.ROLL.index("[[effect]]")].replace(
@@ -310,9 +314,9 @@ def test_what_a_file_imports_by_dots_is_reached_too(
     monkeypatch.setattr(dependency_hash, "PACKAGE", copied / "boatsim")
     effect = physics / "effects" / "by_dots.py"
     effect.write_text(
-        "from .thruster import at_mount\nfrom ..noise import uniform\nfrom .. import particulars\n"
+        "from .thruster import thrust_wrench_at_mount\nfrom ..noise import uniform_random\nfrom .. import particulars\n"
     )
-    reached = dependency_hash.reach(effect)
+    reached = dependency_hash.imported_files(effect)
     assert {
         physics / n for n in ("effects/thruster.py", "noise.py", "particulars.py", "signals.py")
     } <= reached
@@ -320,13 +324,13 @@ def test_what_a_file_imports_by_dots_is_reached_too(
 
 
 def test_a_controllers_compiled_law_is_known_by_all_that_it_reaches() -> None:
-    law = content.root() / "controllers" / "pid_autopilot.py"
-    home = content.root() / "boatsim"
+    law = content.content_root() / "controllers" / "pid_autopilot.py"
+    home = content.content_root() / "boatsim"
     needed = ("control/allocation.py", "control/compiled.py", "physics/kernel/compiling.py")
-    assert {law, *(home / n for n in needed)} <= dependency_hash.reach(law)
+    assert {law, *(home / n for n in needed)} <= dependency_hash.imported_files(law)
     assert content.load_class(
         "controller", "pid_autopilot"
-    ).law._cache._cache_file._source_stamp == dependency_hash.stamp(law)
+    ).law._cache._cache_file._source_stamp == dependency_hash.dependency_digest(law)
 
 
 def test_an_edited_constant_gives_its_new_force(tmp_path: Path, copied: Path) -> None:

@@ -26,31 +26,31 @@ COMMANDS = ("thrust_port_N", "thrust_starboard_N", "steer_port_rad", "steer_star
 
 
 def of(text: str, tmp_path: Path, **more: Any) -> vessel.Vessel:
-    return vessel.load(str(boats.written(tmp_path, "test_boat", text)), **more)
+    return vessel.load_vessel(str(boats.written(tmp_path, "test_boat", text)), **more)
 
 
-@pytest.mark.parametrize("name", content.names("vessel"))
+@pytest.mark.parametrize("name", content.library_names("vessel"))
 def test_every_vessel_loads_in_every_load(name: str) -> None:
-    boat = vessel.load(name)
+    boat = vessel.load_vessel(name)
     assert boat.about and boat.source and (boat.path / boat.hull).is_file()
     for load in boat.loads:
-        assert vessel.load(name, [load]).load == (load,)
+        assert vessel.load_vessel(name, [load]).load == (load,)
     for command in boat.commands.values():
         assert command.low < command.high
 
 
-@pytest.mark.parametrize("name", content.names("vessel"))
+@pytest.mark.parametrize("name", content.library_names("vessel"))
 def test_every_entry_that_is_tried_can_be_put_on_the_vessel_and_fitted(name: str) -> None:
-    boat = vessel.load(name)
+    boat = vessel.load_vessel(name)
     library = library_for(boat)
     for entry in library.entries:
         own = [p for p in type(entry).params().values() if p.fit and p.axis in ("", *boat.dof)]
         assert own and set(type(entry).needs) <= set(boat.dof)
-        vessel.check_bindings(boat.composed_with(entry), name)
+        vessel.check_bindings(boat.with_completed_effect(entry), name)
     there = {base_name(e.name) for e in library.entries}
     of_shelf = {
         n
-        for n in content.names("effect")
+        for n in content.library_names("effect")
         if has_fittable_parameter(content.load_class("effect", n))
     }
     assert there | set(library.inapplicable) | set(
@@ -59,7 +59,7 @@ def test_every_entry_that_is_tried_can_be_put_on_the_vessel_and_fitted(name: str
 
 
 def test_facts_and_the_vessels_reasons_leave_entries_out(tmp_path: Path) -> None:
-    boat = vessel.load("trial_boat")
+    boat = vessel.load_vessel("trial_boat")
     everything = set(library_for(boat).tested)
     facts = {
         "indoors": True,
@@ -98,7 +98,7 @@ def test_facts_and_the_vessels_reasons_leave_entries_out(tmp_path: Path) -> None
 
 def test_what_facts_rule_out_does_not_act_either_where_it_is_the_vessels_own() -> None:
     """A measured angle is behind the steering machine: its limit would hold it back once more."""
-    ship = vessel.load("kvlcc2_mmg")
+    ship = vessel.load_vessel("kvlcc2_mmg")
     measured = without_excluded_effects(ship, {"steering_measured": True})
     assert [e.name for e in ship.effects if e not in measured.effects] == ["steering_rate_limit"]
     assert (
@@ -108,7 +108,7 @@ def test_what_facts_rule_out_does_not_act_either_where_it_is_the_vessels_own() -
 
 
 def test_an_entry_that_shows_as_another_does_is_tried_where_it_is_asked_for() -> None:
-    boat = vessel.load("trial_boat")
+    boat = vessel.load_vessel("trial_boat")
     usual = library_for(boat)
     assert (
         "shallow_water" not in usual.tested
@@ -129,7 +129,7 @@ def test_what_takes_the_place_of_a_rule_needs_a_reason(tmp_path: Path) -> None:
 def test_rows_of_a_long_recording_are_thinned_by_its_length_but_never_to_less_than_a_quarter() -> (
     None
 ):
-    boat = vessel.load("trial_boat")
+    boat = vessel.load_vessel("trial_boat")
     usual = priors.used_sample_rate(boat)
     assert priors.used_sample_rate(boat, 300.0) == usual
     assert 1200.0 * priors.used_sample_rate(boat, 1200.0) == pytest.approx(DEFAULT.load.enough_rows)
@@ -138,9 +138,9 @@ def test_rows_of_a_long_recording_are_thinned_by_its_length_but_never_to_less_th
     )
 
 
-@pytest.mark.parametrize("name", content.names("vessel"))
+@pytest.mark.parametrize("name", content.library_names("vessel"))
 def test_every_uncertainty_that_a_vessel_states_is_one_of_its_coefficients(name: str) -> None:
-    boat = vessel.load(name)
+    boat = vessel.load_vessel(name)
     check_uncertainty(boat, priors.coefficient_uncertainty(boat), name)
 
 
@@ -190,7 +190,7 @@ def test_a_load_changes_what_it_names_and_nothing_else(tmp_path: Path) -> None:
 
 
 def test_loads_add_up_and_settings_go_on_top() -> None:
-    boat = vessel.load("joystick_boat", ["heavy", "wide"], {"port": {"gain": 0.9}})
+    boat = vessel.load_vessel("joystick_boat", ["heavy", "wide"], {"port": {"gain": 0.9}})
     assert boat.load == ("heavy", "wide")
     on = {"thrust": "thrust_port_N", "angle": "steer_port_rad"}
     assert boat.effect("port") == Thruster(x=-0.571, y=-0.28, gain=0.9, name="port", on=on)
@@ -203,14 +203,14 @@ def test_settings_can_change_the_body(tmp_path: Path) -> None:
 
 
 def test_extra_effects_come_after_the_vessels_own() -> None:
-    boat = vessel.load(
+    boat = vessel.load_vessel(
         "trial_boat", extra=[{"use": "current", "north": 0.1}, {"use": "weak_reverse"}]
     )
     assert [e.name for e in boat.effects][-4:] == ["port", "starboard", "current", "weak_reverse"]
 
 
 def test_what_the_vessel_is_asked_for() -> None:
-    boat = vessel.load("joystick_boat")
+    boat = vessel.load_vessel("joystick_boat")
     assert boat.effect("wind") is None
     assert boat.actuators == (
         "thrust_port_N",
@@ -222,7 +222,9 @@ def test_what_the_vessel_is_asked_for() -> None:
     assert boat.roles["thrust_port_N"] == "thrust" and "pwm_port" not in boat.roles
     assert boat.angles == ("steer_port_rad", "steer_starboard_rad")
     fed = boat.effect("pwm_thrust")
-    assert fed is not None and boat.feeding_command(fed, "thrust_starboard_N") == "pwm_starboard"
+    assert (
+        fed is not None and boat.command_for_actuator(fed, "thrust_starboard_N") == "pwm_starboard"
+    )
     assert [boat.side(n) for n in ("thrust_port_N", "pwm_starboard", "steer_starboard_rad")] == [
         -1,
         1,
@@ -295,7 +297,7 @@ def test_a_class_that_is_no_effect_is_one_line(tmp_path: Path) -> None:
         BadInput,
         match=r"plain\.py: class Plain is no effect; it must be derived from the base class of one",
     ):
-        vessel.load(str(tmp_path / "test_boat" / "vessel.toml"))
+        vessel.load_vessel(str(tmp_path / "test_boat" / "vessel.toml"))
 
 
 PORT = 'on = { thrust = "thrust_port_N", angle = "steer_port_rad" }'
@@ -409,8 +411,10 @@ def test_a_vessel_that_does_not_exist_is_named_with_the_nearest() -> None:
     with pytest.raises(
         BadInput, match="vessel 'joystik_boat' does not exist; did you mean 'joystick_boat'"
     ):
-        vessel.load("joystik_boat")
+        vessel.load_vessel("joystik_boat")
 
 
 def test_a_command_that_does_not_exist_is_named_with_the_nearest() -> None:
-    assert "did you mean 'pwm_port'" in vessel.load("joystick_boat").unknown_command("pmw_port")
+    assert "did you mean 'pwm_port'" in vessel.load_vessel("joystick_boat").unknown_command(
+        "pmw_port"
+    )

@@ -12,7 +12,7 @@ from boatsim.diagnosis.config import DEFAULT
 from boatsim.diagnosis.filter import map_recording, relative_noise, rigid_body_values
 from boatsim.physics import vessel
 from boatsim.physics.base import Array
-from boatsim.physics.kernel.records import Inputs, Model
+from boatsim.physics.kernel.records import Inputs, VesselNumbers
 from boatsim.physics.program import Program
 from boatsim.recordings.table import Recording
 from boatsim.simulate.batch import Batch
@@ -23,7 +23,7 @@ EVERY, ROWS = 0.02, 1501  # [s]; 30 s
 def quick() -> tuple[Recording, Array]:
     """The tool's own exact log at 50 Hz of a boat whose thrusts change every 40 ms, and twice as
     many states (N, 6)."""
-    boat, rng = vessel.load("trial_boat"), np.random.default_rng(4)
+    boat, rng = vessel.load_vessel("trial_boat"), np.random.default_rng(4)
     commands = np.repeat(rng.uniform(-0.6, 0.9, (ROWS // 2 + 1, len(boat.commands))), 2, axis=0)[
         :ROWS
     ]
@@ -37,15 +37,15 @@ def quick() -> tuple[Recording, Array]:
 
 def test_thinned_rows_keep_every_command_at_its_own_time() -> None:
     run, states = quick()
-    boat = vessel.load("trial_boat")
+    boat = vessel.load_vessel("trial_boat")
     laid = map_recording(run.thinned(5.0), Program(boat))
     assert len(laid.times) == ROWS // 10 + 1 and len(laid.command_times) == ROWS // 2 + 1
     n, out = len(laid.times), np.full((1, len(laid.times), 6), np.nan)
     there = np.rint(laid.times / (EVERY / 2)).astype(int)
-    laid.program.module.free_runs(
+    laid.program.module.simulate_intervals(
         Inputs(laid.times, laid.command_times, laid.command_values),
         DEFAULT.filter.free_run_step,
-        Model(rigid_body_values(laid.values), laid.values, laid.program.switches()),
+        VesselNumbers(rigid_body_values(laid.values), laid.values, laid.program.switches()),
         np.array([0]),
         np.array([n - 1]),
         states[there[:1]],
@@ -76,7 +76,9 @@ def test_channels_of_any_name_are_commands() -> None:
 def test_an_exact_log_is_named_exactly(tmp_path: Path) -> None:
     """The tool's own log without any noise: what is left over is rounding, which is nobody's
     fault."""
-    boat = vessel.load("trial_boat", settings={n: {"gain": 0.7} for n in ("port", "starboard")})
+    boat = vessel.load_vessel(
+        "trial_boat", settings={n: {"gain": 0.7} for n in ("port", "starboard")}
+    )
     exact = []
     for seed in (1, 2, 3):
         run = recorded(Real(), seed, 5)
@@ -95,7 +97,7 @@ def test_an_exact_log_is_named_exactly(tmp_path: Path) -> None:
 
 
 def test_how_noisy_an_unseen_log_is_does_not_hang_on_those_fitted() -> None:
-    boat, rng = vessel.load("trial_boat"), np.random.default_rng(1)
+    boat, rng = vessel.load_vessel("trial_boat"), np.random.default_rng(1)
     exact, _ = quick()
     noisy = {
         n: exact[n] + sd * rng.standard_normal(ROWS) for n, sd in (("x_m", 0.01), ("y_m", 0.01))

@@ -12,7 +12,7 @@ EXTRA = (
     {"use": "fan_wind", "speed": 1.5, "toward": 0.8},
     {"use": "current", "north": 0.02, "east": -0.01},
 )
-BOAT = vessel.load("joystick_boat", extra=EXTRA)
+BOAT = vessel.load_vessel("joystick_boat", extra=EXTRA)
 START = [0.0, 0.0, 0.3, 0.2, 0.05, 0.1]
 
 
@@ -54,7 +54,7 @@ def test_a_boat_in_a_batch_moves_to_the_last_bit_as_it_does_alone_on_any_number_
 
 @pytest.mark.parametrize("name", ["joystick_boat", "otter", "kvlcc2_mmg", "jet_ski"])
 def test_a_batch_agrees_with_the_twin(name):
-    boat = vessel.load(name)
+    boat = vessel.load_vessel(name)
     compiled, batch = Batch(boat, step=0.02), Batch(boat, 3, 0.02)
     low, high = np.array(list(boat.limits().values())).T
     rows = np.random.default_rng(1).uniform(0.3 * low, 0.3 * high, (20, len(low)))
@@ -82,7 +82,7 @@ def test_actuators_keep_what_they_remember_from_call_to_call():
 
 def test_only_the_boats_meant_are_reset_set_and_assigned():
     batch = Batch(
-        [vessel.load("joystick_boat", [load], extra=EXTRA) for load in ("light", "heavy")], 6
+        [vessel.load_vessel("joystick_boat", [load], extra=EXTRA) for load in ("light", "heavy")], 6
     )
     mass = batch._body[:, 0].copy()
     assert mass[0] != mass[1] and (mass[::2] == mass[0]).all()
@@ -115,7 +115,7 @@ def test_added_mass_that_is_set_acts():
 
 def test_boats_in_waves_take_their_courses_from_their_seeds():
     waves = {"significant_height": 1.9, "modal_period": 8.8, "toward": 0.5}
-    sea = vessel.load("kynoc", settings={"irregular_sea": waves})
+    sea = vessel.load_vessel("kynoc", settings={"irregular_sea": waves})
     batch = Batch(sea, 4, 0.1, seeds=[3, 3, 4, 5])
     batch.advance(steps=200)
     x = batch.states
@@ -144,7 +144,7 @@ def test_boats_in_waves_take_their_courses_from_their_seeds():
         (lambda b: b.advance({"pwm_prt": 1.0}), "pwm_port"),
         (lambda b: b.reset([1.0, 2.0]), "states of shape (2,)"),
         (lambda b: b.reset(boats=[2]), "boat 2; allowed 0 to 1"),
-        (lambda b: Batch([BOAT, vessel.load("otter")]), "otter"),
+        (lambda b: Batch([BOAT, vessel.load_vessel("otter")]), "otter"),
         (lambda b: Batch(BOAT, 0), "at least one"),
     ],
 )

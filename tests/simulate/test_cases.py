@@ -7,7 +7,7 @@ import pytest
 
 from boatsim.cli.run_many import plan_runs
 from boatsim.errors import BadInput
-from boatsim.physics.content import find, names
+from boatsim.physics.content import find_content_file, library_names
 from boatsim.simulate import scenario
 from boatsim.simulate.cases import cases, content, matching, merged
 
@@ -92,15 +92,15 @@ def test_paths_start_at_the_file_they_stand_in(tmp_path: Path) -> None:
 
 
 def test_every_name_of_a_shipped_scenario_is_a_case_or_a_file_of_its_folder() -> None:
-    for name in names("scenario"):
+    for name in library_names("scenario"):
         folder, own = name.split("/")
-        path = find("scenario", name)
+        path = find_content_file("scenario", name)
         assert path.parent.name == folder and own in (cases(path) or [path.stem])
         assert content(name)[1].name == name
 
 
 def test_a_folder_a_pattern_and_a_file_stand_for_their_scenarios(tmp_path: Path) -> None:
-    everything = names("scenario")
+    everything = library_names("scenario")
     assert (
         matching("jet_ski")
         == matching("jet_ski/")

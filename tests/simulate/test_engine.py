@@ -38,7 +38,7 @@ VESSELS = [
         ("joystick_boat", loads)
         for loads in [("light",), ("heavy",), ("light", "wide"), ("heavy", "wide")]
     ),
-    *((name, ()) for name in content.names("vessel") if name != "joystick_boat"),
+    *((name, ()) for name in content.library_names("vessel") if name != "joystick_boat"),
 ]
 START = State(x=0.1, y=-0.2, psi=0.4, phi=0.1, u=0.2, v=-0.1, p=0.05, r=0.3)
 
@@ -50,8 +50,8 @@ def on_water(name: str, loads: tuple[str, ...] = (), *without: str) -> Vessel:
     `without`: effects that do nothing.
     """
     if name != "joystick_boat":
-        return vessel.load(name, loads)
-    return vessel.load(
+        return vessel.load_vessel(name, loads)
+    return vessel.load_vessel(
         name,
         loads,
         extra=[{"use": n, **v, **(NEUTRAL[n] if n in without else {})} for n, v in EXTRA.items()],
@@ -245,7 +245,7 @@ def mirror_commands(boat: Vessel, rows: Array) -> Array:
 
 def test_mirror_image_of_commands_and_weather_gives_the_mirror_image_of_the_run() -> None:
     boat = on_water("joystick_boat")
-    image = vessel.load(
+    image = vessel.load_vessel(
         "joystick_boat",
         extra=[
             {"use": n} | v | {k: -v[k] for k in ("toward", "east") if k in v}
@@ -274,7 +274,7 @@ def test_a_uniform_current_only_carries_the_boat_along() -> None:
 
 
 def test_joints_are_z_up_and_states_are_sname(tmp_path: Path) -> None:
-    engine = Engine(vessel.load("jet_ski"))
+    engine = Engine(vessel.load_vessel("jet_ski"))
     engine.reset(START)
     c, s = cos(START.psi), sin(START.psi)
     assert [engine.model.joint(i).name for i in range(4)] == ["x", "y", "psi", "phi"]

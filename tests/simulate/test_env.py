@@ -20,7 +20,7 @@ pytest.importorskip("dm_control", reason="dm_control does not support Python 3.1
 from dm_env import test_utils
 
 from boatsim.errors import BadInput, BadPhysics
-from boatsim.physics.commands import clipped_rows
+from boatsim.physics.commands import clipped_recorded_commands
 from boatsim.recordings.notes import unit_of
 from boatsim.simulate import env, scenario  # before dm_control, whose renderer it chooses
 from boatsim.simulate.cases import Place
@@ -101,7 +101,7 @@ class TestFlatConformance(test_utils.EnvironmentTestMixin, unittest.TestCase):  
 def test_commands_of_a_scenario_give_its_trajectory(name: str, more: dict[str, Any]) -> None:
     one = short(name, 12.0, **more)
     rows = run(one).recording
-    actions = clipped_rows(one.vessel, rows.signals, len(rows))[
+    actions = clipped_recorded_commands(one.vessel, rows.signals, len(rows))[
         :600:4
     ]  # steps of 20 ms, a new command every 80 ms
     expected = np.column_stack([rows[n] for n in POSE])[:601:4]
@@ -116,7 +116,9 @@ def test_actuators_follow_as_in_the_scenario() -> None:
     one = short("joystick_boat/sway_1", 4.0)
     rows, boat = run(one).recording, env.load(one)
     boat.reset()
-    for k, action in enumerate(clipped_rows(one.vessel, rows.signals, len(rows))[:200:4]):
+    for k, action in enumerate(
+        clipped_recorded_commands(one.vessel, rows.signals, len(rows))[:200:4]
+    ):
         step = boat.step(action)
         for name in one.vessel.actuators:
             assert step.observation[f"actual_{name}"] == pytest.approx(

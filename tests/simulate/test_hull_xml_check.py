@@ -87,4 +87,4 @@ def test_a_hull_that_is_none_is_one_line(tmp_path: Path, hull: bytes) -> None:
     place = boats.written(tmp_path, "test_boat", boats.ROLL)
     (place / "hull.xml").write_bytes(hull)
     with pytest.raises(BadInput, match=r"hull\.xml: "):
-        build(vessel.load(f"{place}/"))
+        build(vessel.load_vessel(f"{place}/"))

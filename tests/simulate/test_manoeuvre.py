@@ -315,7 +315,9 @@ def test_limits_stand_beside_the_manoeuvres_they_are_for(
 
 # Vessels
 
-STEERED = [name for name in content.names("vessel") if "yaw" in vessel.load(name).dof]
+STEERED = [
+    name for name in content.library_names("vessel") if "yaw" in vessel.load_vessel(name).dof
+]
 
 
 @pytest.mark.parametrize("name", few(STEERED))
@@ -409,12 +411,14 @@ def test_a_tunnel_across_the_bow_drives_no_boat_ahead(tmp_path: Path) -> None:
         boats.PLANAR.replace("[channels]\n", "[channels]\nbow_N = { low = -8.0, high = 8.0 }\n")
         + bow
     )
-    table = handled(vessel.load(str(boats.written(tmp_path, "test_boat", text) / "vessel.toml")))
+    table = handled(
+        vessel.load_vessel(str(boats.written(tmp_path, "test_boat", text) / "vessel.toml"))
+    )
     assert set(table.ahead) == set(table.astern) == {"thrust_port_N", "thrust_starboard_N"}
 
 
 def test_a_boat_without_a_table_is_handled_by_its_channels() -> None:
-    table = handled(vessel.load("trial_boat"))
+    table = handled(vessel.load_vessel("trial_boat"))
     assert table.ahead == {"thrust_port_N": 0.5, "thrust_starboard_N": 0.5}
     assert table.astern == {"thrust_port_N": -0.5, "thrust_starboard_N": -0.5}
     assert table.steer == {

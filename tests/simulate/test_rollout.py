@@ -22,7 +22,7 @@ NO_COMMANDS = np.zeros((100, 0))
 @pytest.fixture
 def roller(tmp_path: Path) -> Vessel:
     """A roll oscillator without damping: stiffness 2 N m, inertia 0.5 kg m2, 2 rad/s."""
-    return vessel.load(str(boats.written(tmp_path, "test_roller", boats.ROLL)))
+    return vessel.load_vessel(str(boats.written(tmp_path, "test_roller", boats.ROLL)))
 
 
 def held(compiled: Batch, rows: int, X: float, N: float) -> Array:
@@ -36,7 +36,7 @@ def freed(folder: Path, dof: tuple[str, ...]) -> Program:
     """The boat of the reference cases with other freedoms."""
     text = boats.PLANAR.replace('["surge", "sway", "yaw"]', f"{list(dof)}")
     text = text.replace("yaw_inertia = 0.5 }", "yaw_inertia = 0.5, pitch_inertia = 0.4 }", 1)
-    return Program(vessel.load(str(boats.written(folder, "freed", text))))
+    return Program(vessel.load_vessel(str(boats.written(folder, "freed", text))))
 
 
 @pytest.mark.parametrize("dof", FREEDOMS, ids=["3", "4", "6"])
@@ -77,7 +77,7 @@ def test_the_method_is_of_fourth_order(roller: Vessel) -> None:
 
 
 def test_a_roll_period_is_that_of_the_whole_inertia() -> None:
-    boat = vessel.load("kvlcc2_roll", settings={"linear_damping": {"roll": 0.0}})
+    boat = vessel.load_vessel("kvlcc2_roll", settings={"linear_damping": {"roll": 0.0}})
     phi = Batch(boat).rollout([0.1, 0.0], np.zeros((1500, 0)), 0.02)[:, 0]
     rising = np.flatnonzero((phi[:-1] < 0) & (phi[1:] >= 0))
     ends = rising + phi[rising] / (phi[rising] - phi[rising + 1])
@@ -102,7 +102,7 @@ def test_values_given_take_the_place_of_the_vessels(tmp_path: Path) -> None:
     own, other = boats.planar(tmp_path), boats.planar(tmp_path, {"linear_damping": {"surge": 5.0}})
     compiled = Batch(own)
     values = compiled.program.values()
-    values[compiled.program.index("linear_damping", "surge")] = 5.0
+    values[compiled.program.parameter_index("linear_damping", "surge")] = 5.0
     start, rows = [0.0] * 6, held(compiled, 20, 2.0, 0.1)
     changed = compiled.rollout(start, rows, 0.1, values)
     assert (changed == Batch(other).rollout(start, rows, 0.1)).all()

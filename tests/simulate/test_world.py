@@ -15,11 +15,11 @@ import pytest
 
 from boatsim.errors import BadInput, BadPhysics
 from boatsim.physics import hullform, vessel
-from boatsim.physics.content import root
+from boatsim.physics.content import content_root
 from boatsim.simulate import world
 from boatsim.simulate.world import Tank
 
-MODELS = root() / "models"
+MODELS = content_root() / "models"
 VESSELS = ("joystick_boat", "trial_boat", "kvlcc2_roll")
 JOINTS = {
     "joystick_boat": ["x", "y", "psi"],
@@ -39,7 +39,7 @@ def no_callback() -> Iterator[None]:
 
 @pytest.fixture(scope="module")
 def boat() -> vessel.Vessel:
-    return vessel.load("joystick_boat")
+    return vessel.load_vessel("joystick_boat")
 
 
 def mass_matrix(model: mujoco.MjModel) -> np.ndarray:
@@ -78,7 +78,7 @@ def read_obj(path: Path) -> tuple[np.ndarray, np.ndarray]:
 
 @pytest.mark.parametrize("name", VESSELS)
 def test_joints_follow_the_freedoms_in_order(name: str) -> None:
-    model = world.build(vessel.load(name), WALLED)
+    model = world.build(vessel.load_vessel(name), WALLED)
     assert [model.joint(i).name for i in range(model.njnt)] == JOINTS[name]
     assert model.nu == 0 and not model.opt.gravity.any()
     assert model.opt.integrator == mujoco.mjtIntegrator.mjINT_RK4
@@ -115,7 +115,7 @@ def test_a_model_that_would_lose_added_mass_is_refused(boat: vessel.Vessel) -> N
 def test_mass_and_inertia_are_those_of_the_vessel_about_its_mass_centre(
     loads: tuple[str, ...],
 ) -> None:
-    boat = replace(vessel.load("joystick_boat", loads), dof=("surge", "sway", "roll", "yaw"))
+    boat = replace(vessel.load_vessel("joystick_boat", loads), dof=("surge", "sway", "roll", "yaw"))
     body = boat.body
     expected = np.diag([body.mass, body.mass, body.yaw_inertia, body.roll_inertia])
     assert mass_matrix(world.build(boat, WALLED)) == pytest.approx(expected, abs=1e-12)
@@ -123,7 +123,10 @@ def test_mass_and_inertia_are_those_of_the_vessel_about_its_mass_centre(
 
 @pytest.mark.parametrize("name", VESSELS)
 def test_hull_opens_alone_and_agrees_with_the_vessel_file(name: str) -> None:
-    boat, model = vessel.load(name), mujoco.MjModel.from_xml_path(str(MODELS / name / "hull.xml"))
+    boat, model = (
+        vessel.load_vessel(name),
+        mujoco.MjModel.from_xml_path(str(MODELS / name / "hull.xml")),
+    )
     hull = model.body("hull")
     assert model.numeric("drawn_for").data.tolist() == [boat.length, boat.beam, boat.draught]
     assert hull.mass[0] == boat.body.mass
@@ -134,7 +137,7 @@ def test_hull_opens_alone_and_agrees_with_the_vessel_file(name: str) -> None:
 
 @pytest.mark.parametrize("name", VESSELS)
 def test_what_is_drawn_weighs_and_touches_nothing(name: str) -> None:
-    model = world.build(vessel.load(name), WALLED)
+    model = world.build(vessel.load_vessel(name), WALLED)
     assert (
         not model.geom_contype.any() and not model.geom_conaffinity.any()
     )  # contacts only by explicit pair
@@ -143,7 +146,7 @@ def test_what_is_drawn_weighs_and_touches_nothing(name: str) -> None:
         for a, b in zip(model.pair_geom1, model.pair_geom2, strict=True)
     }
     assert {n for pair in pairs for n in pair} == {"collision"} | WALLS and len(pairs) == 4
-    assert model.body_mass.sum() == vessel.load(name).body.mass
+    assert model.body_mass.sum() == vessel.load_vessel(name).body.mass
 
 
 def test_leaving_out_what_is_only_seen_changes_no_motion(boat: vessel.Vessel) -> None:
@@ -206,7 +209,9 @@ def test_a_wall_gives_little_back_at_the_usual_step(name: str, speed: float) -> 
     step = 0.02  # [s]
     assert (
         0.09
-        < restitution(vessel.load(name), speed * max(1.0, vessel.load(name).length / 50), step)
+        < restitution(
+            vessel.load_vessel(name), speed * max(1.0, vessel.load_vessel(name).length / 50), step
+        )
         < 0.19
     )
 
@@ -261,7 +266,7 @@ def test_port_is_up_in_mujoco_and_the_tank_lies_where_start_axes_put_it(
 def test_all_of_the_water_lies_before_the_sun(name: str, centre: tuple[float, float]) -> None:
     """What lies behind the plane of the sun is drawn in shadow, whose edge would cross the
     water."""
-    boat = vessel.load(name)
+    boat = vessel.load_vessel(name)
     side = 10.0 * boat.length
     where = (centre[0] * boat.length, centre[1] * boat.length)
     model = world.build(boat, Tank(side, side, boat.length, walls=False, centre=where))
@@ -293,7 +298,7 @@ def test_tank_without_size_and_hull_without_body_are_refused(
     ("loads", "half"), [((), 0.19), (("wide",), 0.28), (("heavy", "wide"), 0.28)]
 )
 def test_outboards_stand_where_the_load_has_them(loads: tuple[str, ...], half: float) -> None:
-    boat = vessel.load("joystick_boat", loads)
+    boat = vessel.load_vessel("joystick_boat", loads)
     model = world.build(boat, WALLED)
     aft = -boat.geometry["cg_from_transom"]
     assert model.body("outboard_port").pos == pytest.approx((aft, half, 0), abs=0.006)
@@ -302,7 +307,9 @@ def test_outboards_stand_where_the_load_has_them(loads: tuple[str, ...], half: f
 
 
 def test_ballast_is_there_only_when_it_weighs_something() -> None:
-    light, heavy = (world.build(vessel.load("joystick_boat", loads)) for loads in ((), ("heavy",)))
+    light, heavy = (
+        world.build(vessel.load_vessel("joystick_boat", loads)) for loads in ((), ("heavy",))
+    )
     names = [light.geom(i).name for i in range(light.ngeom)]
     assert "ballast" not in names and "led" in names
     assert heavy.geom("ballast").pos[0] == pytest.approx(
@@ -314,7 +321,7 @@ def test_ballast_is_there_only_when_it_weighs_something() -> None:
 def test_hull_reaches_from_transom_to_bow_about_its_mass_centre(
     loads: tuple[str, ...], length: float
 ) -> None:
-    boat = vessel.load("joystick_boat", loads)
+    boat = vessel.load_vessel("joystick_boat", loads)
     model = world.build(boat, WALLED)
     data = mujoco.MjData(model)
     mujoco.mj_forward(model, data)
@@ -394,7 +401,7 @@ except Exception as error:
 import mujoco
 from boatsim.physics import vessel
 from boatsim.simulate import world
-model = world.build(vessel.load("joystick_boat"), world.Tank(1.5, 3.0, 0.1, centre=(0.1, 0.0)))
+model = world.build(vessel.load_vessel("joystick_boat"), world.Tank(1.5, 3.0, 0.1, centre=(0.1, 0.0)))
 data = mujoco.MjData(model)
 pictures = {}
 with mujoco.Renderer(model, 240, 320) as renderer:

@@ -13,7 +13,7 @@ from boatsim.cli import diagnosis as commands
 from boatsim.diagnosis import loading
 from boatsim.errors import BadInput
 from boatsim.physics import vessel
-from boatsim.physics.base import Course, motion
+from boatsim.physics.base import SignalSegment, motion
 from boatsim.physics.effects.added_mass import AddedMass
 from boatsim.physics.effects.dragged_propeller import DraggedPropeller
 from boatsim.physics.effects.sway_yaw_coupling import SwayYawCoupling
@@ -64,7 +64,7 @@ def recorded(folder: Path, seconds: float = 40.0) -> Path:
 
 def test_a_vessel_names_the_columns_of_its_recordings(tmp_path: Path) -> None:
     path = recorded(tmp_path)
-    boat = vessel.load("blueboat")
+    boat = vessel.load_vessel("blueboat")
     seen = recording.read(path, boat.limits(), boat.columns)
     table = np.genfromtxt(path, delimiter=",", names=True)
     assert seen["x_m"] == pytest.approx(table["north_m"])
@@ -76,7 +76,7 @@ def test_a_vessel_names_the_columns_of_its_recordings(tmp_path: Path) -> None:
 def test_a_recording_toml_has_the_last_word_about_columns(tmp_path: Path) -> None:
     path = recorded(tmp_path)
     (tmp_path / "recording.toml").write_text('[columns]\npsi_rad = "-heading_rad"\n')
-    boat = vessel.load("blueboat")
+    boat = vessel.load_vessel("blueboat")
     seen = recording.read(path, boat.limits(), boat.columns)
     table = np.genfromtxt(path, delimiter=",", names=True)
     assert seen["psi_rad"] == pytest.approx(-table["heading_rad"])
@@ -97,7 +97,7 @@ def test_without_a_vessel_the_line_says_that_there_is_none(tmp_path: Path) -> No
 
 
 def test_more_of_the_channel_called_left_turns_the_blueboat_to_port(tmp_path: Path) -> None:
-    boat = vessel.load("blueboat")
+    boat = vessel.load_vessel("blueboat")
     assert boat.columns["thrust_starboard_N"] == "force_left_N"
     left, right = 30.0, 10.0
     thrusts = {"port": right, "starboard": left}
@@ -169,7 +169,7 @@ def test_an_idle_propeller_and_one_at_rest_lack_nothing() -> None:
 
 
 def test_the_usv_of_no_mass_turns_to_the_side_whose_thruster_pushes_less() -> None:
-    boat = vessel.load("twin_usv")
+    boat = vessel.load_vessel("twin_usv")
     seen, _ = loading.open_recording(DATA / "sin.csv", "twin_usv", [])
     assert boat.columns.get("pwm_left_us", "pwm_left_us") == "pwm_left_us"
     smooth = np.ones(20) / 20
@@ -177,7 +177,7 @@ def test_the_usv_of_no_mass_turns_to_the_side_whose_thruster_pushes_less() -> No
     push = np.convolve(seen["pwm_left_us"] - seen["pwm_right_us"], smooth, "same")
     assert np.corrcoef(turning, push)[0, 1] > 0.9
     port = replace(boat.effect("pulse_thrust"), at_span=2.0)  # type: ignore[type-var]
-    given = type(port).channel(
-        Course(0.0, 0.0, 0.0), -1.0, 1700.0, np.zeros(1), 0, 0.1, port.values()
+    given = type(port).transform_signal(
+        SignalSegment(0.0, 0.0, 0.0), -1.0, 1700.0, np.zeros(1), 0, 0.1, port.values()
     )
     assert given == pytest.approx((1.0, 1.0, 1.0))

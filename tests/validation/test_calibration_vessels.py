@@ -52,7 +52,7 @@ def law_accelerations(name: str, states: Array, commands: Array) -> Array:
 def tool_accelerations(name: str, states: Array, commands: Array) -> Array:
     """Accelerations (STATES, 3) of boatsim: difference quotients extrapolated to no step."""
     step = 1e-5 * vessels.BOATS[name]().scale  # [s]
-    batch = Batch(vessel.load(name), STATES, step=step)
+    batch = Batch(vessel.load_vessel(name), STATES, step=step)
     batch.reset(states, commands)
     batch.advance()
     one = batch.states[:, 3:].copy()

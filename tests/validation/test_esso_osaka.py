@@ -249,7 +249,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def ship(folder: Path) -> Vessel:
-    return vessel.load(str(folder / "vessel.toml"))
+    return vessel.load_vessel(str(folder / "vessel.toml"))
 
 
 @pytest.fixture(scope="module")

@@ -90,7 +90,7 @@ def test_an_error_has_grown_where_it_is_beyond_its_scatter_and_five_percent() ->
 
 
 def test_tolerated_forces_go_with_the_weight_and_their_moments_with_the_hull() -> None:
-    boat, ship = vessel.load("trial_boat"), vessel.load("eastward_ho")
+    boat, ship = vessel.load_vessel("trial_boat"), vessel.load_vessel("eastward_ho")
     force, moment = (
         assumed_disturbance(ship)[axis] / assumed_disturbance(boat)[axis]
         for axis in ("surge", "yaw")
@@ -108,12 +108,12 @@ def test_noise_that_nobody_states_is_found_in_a_moving_signal_with_outliers(nois
     x = 2.0 * np.sin(0.5 * t) + 0.1 * t + noise * rng.standard_normal(len(t))
     x[::50] += 1.0
     found = estimate_sensor_noise(
-        vessel.load("trial_boat"), [Recording("r", t, {"x_m": x, "y_m": x})], "position_sd_m"
+        vessel.load_vessel("trial_boat"), [Recording("r", t, {"x_m": x, "y_m": x})], "position_sd_m"
     )
     assert found == pytest.approx(noise, rel=0.25)
     assert (
         estimate_sensor_noise(
-            vessel.load("trial_boat"), [Recording("r", t, {"x_m": x})], "heading_sd_rad"
+            vessel.load_vessel("trial_boat"), [Recording("r", t, {"x_m": x})], "heading_sd_rad"
         )
         == 0.0
     )

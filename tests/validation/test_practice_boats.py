@@ -66,7 +66,7 @@ def sailed(name: str, dt: float) -> Array:
 @pytest.mark.parametrize("name", COMMANDS)
 def test_a_boat_with_nothing_concealed_sails_as_the_tools_own(name: str) -> None:
     held, rows = COMMANDS[name]
-    boat = vessel.load(name)
+    boat = vessel.load_vessel(name)
     free = BOATS[name]().free
     at = [*free, *(6 + i for i in free)]
     start = [STARTS.get(name, {}).get(SYMBOLS[i], 0.0) for i in at]

@@ -131,7 +131,7 @@ def statics(c: Mapping[str, float]) -> Array:
 
 
 def test_each_channel_drives_what_it_is_bound_to(place: Path) -> None:
-    boat = vessel.load(str(place))
+    boat = vessel.load_vessel(str(place))
     assert boat.actuators == COMMANDS and boat.angles == ("pod_rad", "fore_rad", "aft_rad")
     assert [boat.side(n) for n in COMMANDS] == [0, 1, -1, -1, 0, 0]
     assert [e.name for e in boat.effects_of("thruster")] == list(THRUSTERS)
@@ -144,12 +144,12 @@ def test_forces_and_moments_are_those_of_statics(tmp_path: Path, seed: int) -> N
     text = WORKBOAT.replace('["surge", "sway", "yaw"]', six).replace(
         "body = { ", "body = { pitch_inertia = 15.0, "
     )
-    boat = vessel.load(str(boats.written(tmp_path, "workboat", text)))
+    boat = vessel.load_vessel(str(boats.written(tmp_path, "workboat", text)))
     program, (row,) = Program(boat), drawn(boat, 1, seed)
     act, memory = np.zeros(program.held_size), np.zeros(program.memory_size)
-    program.module.settle(row, memory, program.values(), program.switches(), act)
+    program.module.settle_actuators(row, memory, program.values(), program.switches(), act)
     at_rest = np.zeros(12)
-    force = program.module.forces(
+    force = program.module.total_body_force(
         0.0, at_rest, act, np.int64(0), program.values(), program.switches()
     )
     assert force == pytest.approx(statics(dict(zip(COMMANDS, row, strict=True))), abs=1e-12)
@@ -159,14 +159,14 @@ def test_a_fixed_thruster_does_not_turn_with_the_only_rudder(tmp_path: Path) -> 
     text = WORKBOAT.replace('angle = "pod_rad"', "angle = 0.3").replace(
         'angle = "fore_rad"', "angle = 0.0"
     )
-    boat = vessel.load(str(boats.written(tmp_path, "workboat", text)))
+    boat = vessel.load_vessel(str(boats.written(tmp_path, "workboat", text)))
     assert boat.angles == ("aft_rad",)
     screw = boat.effect("screw")
     assert screw is not None and boat.bindings(screw) == {"thrust": "screw_N"}
 
 
 def test_engine_and_twin_sail_alike(place: Path) -> None:
-    boat = vessel.load(str(place))
+    boat = vessel.load_vessel(str(place))
     rows, start = drawn(boat, 30, 3), State(psi=0.4, u=0.5, v=-0.2, r=0.1)
     pose_and_rates = [signal.symbol for signal in signals_of(boat.dof)]
     wanted = Batch(boat).rollout([getattr(start, n) for n in pose_and_rates], rows, 1.0)

@@ -234,7 +234,7 @@ def test_the_scene_of_a_vessel_has_its_hull_and_a_thruster_on_each_side():
     from boatsim.physics import vessel
     from boatsim.simulate import world
 
-    boat, tank = vessel.load("trial_boat"), world.Tank(length=8.0, width=6.0)
+    boat, tank = vessel.load_vessel("trial_boat"), world.Tank(length=8.0, width=6.0)
     scene = scene_from(world.build(boat, tank), boat, tank)
     hull = np.concatenate([solid.vertices for solid in scene.solids if solid.part == "hull"])
     assert np.ptp(hull[:, 0]) == pytest.approx(boat.length, rel=0.1)
@@ -274,7 +274,7 @@ def track_of(size: float, aside: float = 0.0) -> Recording:
 def test_boats_are_as_large_as_the_track_asks_for_and_all_of_it_lies_in_view_on_water(size):
     from boatsim.physics import vessel
 
-    boat = vessel.load("trial_boat")
+    boat = vessel.load_vessel("trial_boat")
     boats = {
         "recording": [track_of(size)],
         "nominal": [track_of(1e4 * size)],
@@ -305,7 +305,8 @@ def test_a_boat_that_goes_nowhere_is_drawn_at_its_size():
 
     t = np.linspace(0.0, 5.0, 20)
     scene = water.around(
-        vessel.load("kvlcc2_roll"), {"recording": [Recording("a", t, {"phi_rad": 0.1 * np.sin(t)})]}
+        vessel.load_vessel("kvlcc2_roll"),
+        {"recording": [Recording("a", t, {"phi_rad": 0.1 * np.sin(t)})]},
     )
     assert scene.times == 1.0 and scene.tank[2:] == (0.0, 0.0)
 

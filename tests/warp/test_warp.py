@@ -18,7 +18,7 @@ from boatsim.errors import BadInput
 from boatsim.physics import vessel
 from boatsim.physics.base import Array
 from boatsim.physics.program import Program
-from boatsim.physics.trust import trusting
+from boatsim.physics.trust import trust_folders
 from boatsim.physics.vessel import Vessel
 from boatsim.simulate import batch as cores
 from boatsim.warp import Batch
@@ -44,8 +44,8 @@ def check(
     force[i, 0] = X
     force[i, 1] = Y
     force[i, 2] = N
-    pauses[i] = run_until_bend(commands[i], memory[i], T(0.02), T(1e-6), p[i], on[i])
-    run_actuate_in_place(commands[i], memory[i], T(0.02), p[i], on[i], moved[i])
+    pauses[i] = run_substep_length(commands[i], memory[i], T(0.02), T(1e-6), p[i], on[i])
+    run_advance_actuators(commands[i], memory[i], T(0.02), p[i], on[i], moved[i])
 """
 
 
@@ -84,18 +84,18 @@ def furthest(batch: Batch, boats_there: int) -> float:
 
 
 def test_a_batch_on_mujoco_goes_as_the_twin() -> None:
-    assert furthest(Batch(vessel.load("joystick_boat"), 1000), 50) < 1e-4
+    assert furthest(Batch(vessel.load_vessel("joystick_boat"), 1000), 50) < 1e-4
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", MODELS)
 def test_a_thousand_boats_of_any_vessel_go_as_the_twin(name: str) -> None:
-    assert furthest(Batch(vessel.load(name), 1000), 1000) < 1e-4
+    assert furthest(Batch(vessel.load_vessel(name), 1000), 1000) < 1e-4
 
 
 @pytest.mark.parametrize("double", [False, True])
 def test_a_batch_without_mujoco_goes_as_the_twin(double: bool) -> None:
-    batch = Batch(vessel.load("joystick_boat"), 100, mujoco=False, double=double)
+    batch = Batch(vessel.load_vessel("joystick_boat"), 100, mujoco=False, double=double)
     assert furthest(batch, 100) < (1e-9 if double else 1e-4)
 
 
@@ -126,7 +126,7 @@ def test_accelerations_are_the_forces_by_the_whole_mass(tmp_path: Path) -> None:
 def test_the_whole_library_has_the_same_forces_and_actuators() -> None:
     """All that a diagnosis may find on a boat, described laws with it: to rounding in double
     precision."""
-    boat, n, rng = vessel.load("joystick_boat"), 200, np.random.default_rng(3)
+    boat, n, rng = vessel.load_vessel("joystick_boat"), 200, np.random.default_rng(3)
     program = Program(boat, library_for(boat).compiled)
     code, own = program.module, len(boat.effects)
     values = np.tile(program.values(), (n, 1))
@@ -145,9 +145,9 @@ def test_the_whole_library_has_the_same_forces_and_actuators() -> None:
     )
 
     translation = Translation()
-    translation.function(code.forces, [REAL, ROW, ROW, WHOLE, ROW, ROW])
-    translation.function(code.until_bend, [ROW, ROW, REAL, REAL, ROW, ROW])
-    translation.function(code.actuate_in_place, [ROW, ROW, REAL, ROW, ROW, ROW])
+    translation.function(code.total_body_force, [REAL, ROW, ROW, WHOLE, ROW, ROW])
+    translation.function(code.substep_length, [ROW, ROW, REAL, REAL, ROW, ROW])
+    translation.function(code.advance_actuators, [ROW, ROW, REAL, ROW, ROW, ROW])
     wp, kernels = warp(), import_text(HEAD.replace("{real}", "float64") + translation.text + CHECK)
     there = [
         wp.array(x, dtype=wp.float64)
@@ -155,10 +155,12 @@ def test_the_whole_library_has_the_same_forces_and_actuators() -> None:
     ]
     wp.launch(kernels.check, dim=n, inputs=there, device="cpu")
 
-    force = [code.forces(t[i], s[i], act[i], np.int64(0), values[i], on[i]) for i in range(n)]
+    force = [
+        code.total_body_force(t[i], s[i], act[i], np.int64(0), values[i], on[i]) for i in range(n)
+    ]
     for i in range(n):
-        pauses[i] = code.until_bend(commands[i], memory[i], 0.02, 1e-6, values[i], on[i])
-        code.actuate_in_place(commands[i], memory[i], 0.02, values[i], on[i], moved[i])
+        pauses[i] = code.substep_length(commands[i], memory[i], 0.02, 1e-6, values[i], on[i])
+        code.advance_actuators(commands[i], memory[i], 0.02, values[i], on[i], moved[i])
     for found, wanted in zip(there[-4:], (memory, moved, pauses, np.array(force)), strict=True):
         assert np.abs(wanted).max() > 1e-3
         assert found.numpy() == pytest.approx(wanted, rel=1e-9, abs=1e-9)
@@ -167,14 +169,14 @@ def test_the_whole_library_has_the_same_forces_and_actuators() -> None:
 @pytest.fixture(scope="module")
 def batch() -> Batch:
     """Five boats, which tests put back to where they begin."""
-    return Batch(vessel.load("joystick_boat"), 5)
+    return Batch(vessel.load_vessel("joystick_boat"), 5)
 
 
 @pytest.mark.parametrize("mujoco", [True, False])
 def test_all_calls_do_what_they_do_on_cores(mujoco: bool) -> None:
     """Parameters, resets of some boats, another load, commands by name: a batch on cores beside
     that of a device."""
-    boats_there = [vessel.load("joystick_boat", [load]) for load in ("light", "heavy")]
+    boats_there = [vessel.load_vessel("joystick_boat", [load]) for load in ("light", "heavy")]
     there, here = Batch(boats_there, 5, mujoco=mujoco), cores.Batch(boats_there, 5)
     commands, starts = drawn_commands(boats_there[0], (5,)), drawn_starts(boats_there[0], 5)
     for batch in (there, here):
@@ -217,7 +219,8 @@ def test_what_comes_in_two_calls_is_what_comes_in_one(batch: Batch) -> None:
         (lambda f: Batch(f.vessels[0], 2, double=True), "mujoco_warp has single precision only"),
         (
             lambda f: Batch(
-                vessel.load("kynoc", settings={"filtered_sea": {"realisation": 2**24 + 1}}), 2
+                vessel.load_vessel("kynoc", settings={"filtered_sea": {"realisation": 2**24 + 1}}),
+                2,
             ),
             "allowed to",
         ),
@@ -243,10 +246,10 @@ def test_an_effect_that_has_no_form_there_is_named_with_its_line(tmp_path: Path)
     place = boats.written(tmp_path, "odd_boat", boats.PLANAR + '\n[[effect]]\nuse = "odd.py"\n')
     (place / "odd.py").write_text(law)
     with (
-        trusting(allowed=[tmp_path]),
+        trust_folders(allowed=[tmp_path]),
         pytest.raises(BadInput, match=r"odd_boat: .*odd.py:10: .* has no Warp form"),
     ):
-        Batch(vessel.load(str(place)), 2)
+        Batch(vessel.load_vessel(str(place)), 2)
 
 
 @pytest.mark.parametrize("missing", ["warp", "mujoco_warp"])
@@ -255,12 +258,14 @@ def test_without_the_libraries_one_line_says_what_brings_them(
 ) -> None:
     monkeypatch.setitem(sys.modules, missing, None)
     with pytest.raises(BadInput, match=r'pip install "boatsim\[warp\]"'):
-        Batch(vessel.load("joystick_boat"), 2)
+        Batch(vessel.load_vessel("joystick_boat"), 2)
 
 
 @pytest.mark.parametrize("name", ["joystick_boat", "otter"])
 def test_a_program_compiles_for_a_gpu_where_there_is_none(name: str, tmp_path: Path) -> None:
-    warp().compile_aot_module(module(Program(vessel.load(name))), arch=90, module_dir=tmp_path)
+    warp().compile_aot_module(
+        module(Program(vessel.load_vessel(name))), arch=90, module_dir=tmp_path
+    )
     assert any(path.stat().st_size > 10_000 for path in tmp_path.glob("*.cubin"))
 
 

@@ -23,7 +23,7 @@ from boatsim.diagnosis.free_runs import FreeRun, free_runs, rms_errors
 from boatsim.diagnosis.pipeline import Diagnosis
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.diagnosis.search.ranking import select_effects
-from boatsim.physics.base import Array, Measurement, Shown
+from boatsim.physics.base import Array, MeasuredMotion, Measurement
 from boatsim.recordings.table import Recording
 from validation.real.common import (
     by_name,
@@ -75,9 +75,9 @@ def corrected_heading(heading: Array, effects: Sequence[Measurement]) -> Array:
 
 
 def _reading(psi: float, effects: Sequence[Measurement]) -> float:
-    reading = Shown(**dict.fromkeys(Shown._fields, 0.0) | {"psi": psi})
+    reading = MeasuredMotion(**dict.fromkeys(MeasuredMotion._fields, 0.0) | {"psi": psi})
     for effect in effects:
-        show_as = type(effect).shown
+        show_as = type(effect).apply_measurement_error
         if show_as is not None:
             reading = show_as(reading, effect.values())
     return float(reading.psi)
@@ -129,7 +129,7 @@ def leave_one_out(diagnosis: Diagnosis, runs: dict[str, Path]) -> list[Fold]:
     for i in range(GROUPS):
         group = mapped[i::GROUPS]
         rest = hold_out(usual, mapped, group)
-        names = rest.program.entries
+        names = rest.program.candidate_names
         selected = select_effects(rest, names)
         again = with_correlation_time(rest, selected[1])
         if again is not rest:

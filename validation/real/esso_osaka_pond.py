@@ -293,7 +293,7 @@ class Weather:
         for recording in recordings:
             values = recording.values.copy()
             for name in WEATHER:
-                values[self.problem.program.index("wind", name)] = getattr(wind, name)
+                values[self.problem.program.parameter_index("wind", name)] = getattr(wind, name)
             found.append(replace(recording, values=values))
         return found
 

@@ -134,7 +134,7 @@ def simulate(problem: Problem, mapped: MappedRecording, model: Fit) -> Array:
 
 def natural_frequency(mapped: MappedRecording) -> float:
     """Return the natural frequency of the nominal vessel [rad/s], the scale of the phase plane."""
-    index, values = mapped.program.index, mapped.values
+    index, values = mapped.program.parameter_index, mapped.values
     inertia = mapped.program.vessel.body.roll_inertia + values[index("added_mass", "roll")]
     return float(np.sqrt(values[index("righting_arm", "stiffness")] / inertia))
 
@@ -234,7 +234,9 @@ def coefficients(problem: Problem, fitted: Fit) -> dict[str, tuple[float, float]
         values[f.effect, f.name] = (float(fitted.theta[i] * scale), sd)
     damping, damping_sd = values["linear_damping", "roll"]
     stiffness, sd = values["righting_arm", "stiffness"]
-    inertia = body.roll_inertia + mapped.values[problem.program.index("added_mass", "roll")]
+    inertia = (
+        body.roll_inertia + mapped.values[problem.program.parameter_index("added_mass", "roll")]
+    )
     percent = 100.0 / (2.0 * np.sqrt(stiffness * inertia))
     period = 2.0 * np.pi * np.sqrt(inertia / stiffness)
     arm = 1e3 / (body.mass * GRAVITY)
@@ -301,7 +303,7 @@ def last_third_rows(diagnosis: Diagnosis, whole: Recording) -> tuple[Rows, Ranki
     (tail,) = map_all(diagnosis, thirds_of(whole)[2:])
     problem = diagnosis.problem
     alone = Problem([tail], problem.ambient, problem.uncertainty)
-    ranking = rank(alone, problem.program.entries)
+    ranking = rank(alone, problem.program.candidate_names)
     fits = dict(compared_fits(diagnosis.ranking))
     fits["linear, fitted here"] = ranking.recalibrated
     gains = {}

@@ -159,7 +159,7 @@ def write_vessel(folder: Path = OUT / NAME / "vessel" / NAME) -> Vessel:
     )
     file = folder / "vessel.toml"
     file.write_text(text, encoding="utf-8")
-    return vessels.load(str(file))
+    return vessels.load_vessel(str(file))
 
 
 def open_set(path: Path, interpolation: str = "band") -> Recording:

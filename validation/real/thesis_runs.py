@@ -15,9 +15,9 @@ from typing import Any
 import numpy as np
 
 from boatsim.control.base import Sense
-from boatsim.physics.base import Array, Release
+from boatsim.physics.base import Array, CoefficientRelease
 from boatsim.physics.content import load_class
-from boatsim.physics.kernel.records import Model
+from boatsim.physics.kernel.records import VesselNumbers
 from boatsim.physics.program import Program
 from boatsim.simulate import scenario
 from boatsim.simulate.camera_metric import CameraFrames, CameraMetricSet
@@ -105,7 +105,7 @@ class ThesisTest:
         self._released = {}
         for use in added:
             kind = load_class("effect", use)
-            if issubclass(kind, Release):
+            if issubclass(kind, CoefficientRelease):
                 self._released[use] = kind().changes(self.scenario.vessel)
         self._own = None
         if replayed:
@@ -143,10 +143,10 @@ class ThesisTest:
             elif knob.effect in self._released:
                 for change in self._released[knob.effect]:
                     if change.parameter == knob.name:
-                        at = self.program.index(change.owner, change.key)
+                        at = self.program.parameter_index(change.owner, change.key)
                         p[at] = change.of(p[at], x)
             else:
-                at = self.program.index(knob.effect, knob.name)
+                at = self.program.parameter_index(knob.effect, knob.name)
                 p[at] = knob.applied(p[at], x)
         for copy, source in self._links:
             p[copy] = p[source]
@@ -187,9 +187,9 @@ class ThesisTest:
         code, on = program.module, program.switches()
         memory, out = np.zeros(program.memory_size), np.zeros((len(commands) + 1, 6))
         start = program.command_array(self.scenario.controller.initial_commands())
-        code.settle(start, memory, p, on, np.zeros(program.held_size))
-        plant = program.plant(np.zeros(6), memory)
-        code.rollout(Model(body, p, on), plant, commands, 0.0, step, 1, out)
+        code.settle_actuators(start, memory, p, on, np.zeros(program.held_size))
+        plant = program.vessel_state(np.zeros(6), memory)
+        code.rollout(VesselNumbers(body, p, on), plant, commands, 0.0, step, 1, out)
         return np.asarray(step * np.arange(len(out)), float), np.asarray(out, float)
 
     def _run(
@@ -205,7 +205,9 @@ class ThesisTest:
         period = round(controller.period / file.step)
         memory, act = np.zeros(program.memory_size), np.zeros(program.held_size)
         on = program.switches()
-        code.settle(program.command_array(controller.initial_commands()), memory, p, on, act)
+        code.settle_actuators(
+            program.command_array(controller.initial_commands()), memory, p, on, act
+        )
         y, out, pull = np.zeros(6), np.zeros((period + 1, 6)), (0.0, 0.0)
         parts, t = [np.zeros((1, 6))], 0.0
         while t < file.duration - 1e-9 and not _run_has_ended(file.until, y):
@@ -214,8 +216,8 @@ class ThesisTest:
             sense: Sense = sensors.sample(t, (x, east, psi), (u, v, r), pull, rng)
             row = program.command_array(controller.step(sense, self.scenario.goal_at(t)))
             commands = np.tile(row, (period, 1))
-            plant = program.plant(y, memory)
-            code.rollout(Model(body, p, on), plant, commands, t, file.step, 1, out)
+            plant = program.vessel_state(y, memory)
+            code.rollout(VesselNumbers(body, p, on), plant, commands, t, file.step, 1, out)
             if log is not None:
                 log.append(commands)
             a, b = (out[-1] - out[-2])[3:5]  # over the last step
@@ -241,5 +243,10 @@ def _inherited_places(program: Program) -> list[tuple[int, int]]:
         for name in effect.filled:
             owner, _, key = type(effect).params()[name].follows.removesuffix("?").partition(".")
             if owner in owners:
-                found.append((program.index(effect.name, name), program.index(owner, key)))
+                found.append(
+                    (
+                        program.parameter_index(effect.name, name),
+                        program.parameter_index(owner, key),
+                    )
+                )
     return found

@@ -47,7 +47,7 @@ def main() -> None:
     steps = DEFAULT.fit.correlation_time_steps
     for name in sys.argv[1:] or HELD_OUT:
         problem = problem_of(runs_except(runs_of(name), HELD_OUT[name]), VESSELS.get(name))
-        _, best = select_effects(problem, problem.program.entries)
+        _, best = select_effects(problem, problem.program.candidate_names)
         usual = problem.ambient.time_constant
         selected = correlation_time(problem, best)
         rows = []

@@ -192,7 +192,7 @@ def true_positions(track: MappedRecording, recorded: Array, values: Array, on: A
     nq, out = track.program.module.NQ, np.zeros((len(recorded), track.program.module.NZ))
     out[:, :nq] = recorded
     for row in out:
-        track.program.module.undistorted(row, values, on)
+        track.program.module.remove_position_errors(row, values, on)
     return out[:, :nq].copy()
 
 
@@ -209,7 +209,7 @@ def predicted_accelerations(
     """Return joint accelerations (N, NQ) at states (N, 2 NQ) and actuators (N, HELD)."""
     code = track.program.module
     k, nothing, nq = np.zeros(code.K), np.zeros(code.NQ), code.NQ
-    code.constants(rigid_body_values(values), values, on, k)
+    code.compute_mass_constants(rigid_body_values(values), values, on, k)
     after, acts = states.copy(), np.hstack([held, held, held])
     for t, y, act in zip(track.times.tolist(), after, acts, strict=True):
         code.step_in_place(t, y, SHORT, act, values, on, k, nothing)

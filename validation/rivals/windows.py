@@ -12,7 +12,7 @@ import numpy as np
 
 from boatsim.diagnosis.filter import MappedRecording, free_run_segments, rigid_body_values
 from boatsim.physics.base import Array
-from boatsim.physics.kernel.records import Inputs, Model
+from boatsim.physics.kernel.records import Inputs, VesselNumbers
 
 FIRST = 1.0  # [s] duration from which a window's start is estimated
 STEP = 1e-4  # [m, rad and per s] step of finite differences of starts
@@ -50,10 +50,10 @@ class Windows:
         """Return recorded minus simulated, (M, C) for each window, nan for missing values."""
         track, program = self.track, self.track.program
         out = np.full((len(starts), len(track.times), starts.shape[1]), np.nan)
-        program.module.free_runs(
+        program.module.simulate_intervals(
             Inputs(track.times, track.command_times, track.command_values),
             track.step,
-            Model(rigid_body_values(values), values, on),
+            VesselNumbers(rigid_body_values(values), values, on),
             self.begins,
             self.ends,
             np.ascontiguousarray(starts),

@@ -10,7 +10,7 @@ import numpy as np
 
 from boatsim.diagnosis.config import DEFAULT, ChecksConfig
 from boatsim.diagnosis.filter import MappedRecording, NoiseLevels
-from boatsim.physics.commands import clip, command_row
+from boatsim.physics.commands import clip_to_channel_ranges, command_row
 
 # [s] before the first row; the value has no effect, because actuators settle to earlier commands
 COMMAND_LEAD = 1.0
@@ -33,7 +33,7 @@ def with_initial_actuators(
     vessel = recording.program.vessel
     neutral = recording.command_values[0].copy()
     commands = len(vessel.commands)
-    neutral[:commands] = clip(vessel, command_row(vessel, {}))[:commands]
+    neutral[:commands] = clip_to_channel_ranges(vessel, command_row(vessel, {}))[:commands]
     if not commands or np.array_equal(neutral, recording.command_values[0]):
         return recording
     resting = replace(

@@ -127,8 +127,8 @@ def driven_commands(vessel: Vessel) -> tuple[str, ...]:
     """Return the commands of a manoeuvre; a command that feeds an actuator (PWM) replaces it."""
     fed = set()
     for effect in vessel.effects:
-        for target in vessel.targets(effect):
-            if vessel.feeding_command(effect, target):
+        for target in vessel.target_actuators(effect):
+            if vessel.command_for_actuator(effect, target):
                 fed.add(target)
     return tuple(name for name in vessel.commands if name not in fed)
 

@@ -15,7 +15,7 @@ from boatsim.diagnosis.filter import (
 )
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.physics.base import Array
-from boatsim.physics.kernel.records import Inputs, Model
+from boatsim.physics.kernel.records import Inputs, VesselNumbers
 
 
 @dataclass(frozen=True)
@@ -114,10 +114,10 @@ def _free_run(problem: Problem, fit: Fit, times: Array, commands: Array, start: 
     """Channels (N, 2 NQ) of a free run as a recording has them, without the latent force."""
     values = problem.values(problem.recordings[0], fit.free, fit.theta)
     out = np.full((1, len(times), len(start)), np.nan)
-    problem.program.module.free_runs(
+    problem.program.module.simulate_intervals(
         Inputs(times, times, commands),
         problem.config.filter.filter_step,
-        Model(rigid_body_values(values), values, problem.program.switches(fit.effects)),
+        VesselNumbers(rigid_body_values(values), values, problem.program.switches(fit.effects)),
         np.array([0]),
         np.array([len(times) - 1]),
         start[None],

@@ -122,8 +122,8 @@ def _steering_play(mapped: MappedRecording, config: LocateConfig) -> Iterator[Re
         high = held[row, angles] + play / 2
         lagging[row, angles] = np.clip(lagging[row - 1, angles], low, high)
     for angle, column in zip(vessel.angles, angles, strict=True):
-        lagging[:, vessel.held.index(f"cos_{angle}")] = np.cos(lagging[:, column])
-        lagging[:, vessel.held.index(f"sin_{angle}")] = np.sin(lagging[:, column])
+        lagging[:, vessel.law_signals.index(f"cos_{angle}")] = np.cos(lagging[:, column])
+        lagging[:, vessel.law_signals.index(f"sin_{angle}")] = np.sin(lagging[:, column])
     shape = (_force_at_rest(mapped, lagging) - _force_at_rest(mapped, held)) / play
     yield RegionCandidate("steering reversals", (shape,), _play_sentence)
 

@@ -78,7 +78,7 @@ def _damping_force(problem: Problem, fit: Fit, parts: Array) -> Array:
     params = {}
     for effect in problem.program.effects:
         params[effect.name] = type(effect).params()
-        params[type(effect).idea()] = type(effect).params()
+        params[type(effect).type_name()] = type(effect).params()
     is_damping = np.zeros(len(fit.free))
     for j, parameter in enumerate(fit.free):
         is_damping[j] = params[parameter.effect][parameter.name].calibrates == "damping"

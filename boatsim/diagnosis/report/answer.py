@@ -35,7 +35,7 @@ from boatsim.diagnosis.report.schema import (
 from boatsim.diagnosis.report.sentences import verdict_sentences
 from boatsim.diagnosis.search.pruning import IdentifiedEffect
 from boatsim.diagnosis.search.ranking import Ranking
-from boatsim.physics.base import Channel, Effect
+from boatsim.physics.base import ChannelEffect, Effect
 from boatsim.physics.vessel import Vessel
 from boatsim.version import version
 
@@ -189,7 +189,7 @@ def effect_meanings(candidates: Iterable[Effect], vessel: Vessel) -> dict[str, s
             if param.fit:
                 parameters[f"{name}.{parameter_key(key, param.unit)}"] = param.words
     for effect in candidates:
-        for key, (_, words) in effect.ratios(vessel).items():
+        for key, (_, words) in effect.identifiable_ratios(vessel).items():
             parameters[f"{base_name(effect.name)}.{key}"] = words
     return found | parameters
 
@@ -257,9 +257,9 @@ def _ratios(problem: Problem, best: Fit, effect: Effect) -> dict[str, ParameterE
 
     def moved(name: str, step: float) -> Mapping[str, tuple[float, str]]:
         value = np.clip(fitted[name] + step, own[name].low, own[name].high)
-        return effect.having(fitted | {name: float(value)}).ratios(vessel)
+        return effect.with_values(fitted | {name: float(value)}).identifiable_ratios(vessel)
 
-    found = effect.having(fitted).ratios(vessel)
+    found = effect.with_values(fitted).identifiable_ratios(vessel)
     variance = dict.fromkeys(found, 0.0)
     if found:
         for name in fitted:
@@ -279,7 +279,7 @@ def _words(best: Fit, effect: Effect) -> str:
     words, own = kind.words, list(_fitted_parameters(best, effect))
     if own and kind.words_above and best.value(effect.name, own[0])[0] > 1.0:
         words = kind.words_above
-    if isinstance(effect, Channel) and effect.other_side:
+    if isinstance(effect, ChannelEffect) and effect.other_side:
         if kind.stage < 0:
             return f"{words}, in the actuator and not in its command"
         return f"{words}, already in the command"
@@ -300,7 +300,7 @@ def reported_sd(best: Fit, effect: Effect, name: str, config: AnswerConfig) -> f
     param = kind.params()[name]
     if name in (kind.strength or kind.params()):
         # some laws are absent at an infinite value
-        strength = min(abs(value - param.absent), abs(value) or np.inf)
+        strength = min(abs(value - param.inactive_value), abs(value) or np.inf)
         return float(np.hypot(sd, config.law_error * strength))
     if param.unit == "rad":
         return float(np.hypot(sd, config.law_error))
@@ -320,7 +320,7 @@ def _parameter(best: Fit, effect: Effect, name: str, config: AnswerConfig) -> Pa
         entry["value"] = wrap(value)
     free = _fitted_parameters(best, effect)[name]
     for end in (free.low, free.high):
-        if end != param.absent and abs(value - end) <= config.at_bound * abs(end):
+        if end != param.inactive_value and abs(value - end) <= config.at_bound * abs(end):
             entry["at_bound"] = True
     return entry
 
@@ -356,6 +356,6 @@ def _limits(problem: Problem, fitted: Fit, name: str) -> dict[str, float]:
             continue
         value, sd = fitted.value(name, f.name)
         if sd < config.limit_share * f.sd:
-            limit = abs(value - params[f.name].absent) + config.limit_quantile * sd
+            limit = abs(value - params[f.name].inactive_value) + config.limit_quantile * sd
             limits[parameter_key(f.name, params[f.name].unit)] = float(f"{limit:.3g}")
     return limits

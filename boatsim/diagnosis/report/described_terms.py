@@ -15,10 +15,10 @@ from boatsim.diagnosis.report.formatting import (
     words_of_name,
 )
 from boatsim.diagnosis.report.schema import DescribedEntry, TermEntry
-from boatsim.physics.described_laws import EVER, Described
+from boatsim.physics.described_laws import EVER, SymbolicTerm
 from boatsim.physics.effects.described_force import DescribedForce
 from boatsim.physics.effects.described_thrust import DescribedThrust
-from boatsim.physics.terms import BEYOND, RIPPLES, UNITS, history_of
+from boatsim.physics.terms import BEYOND, RIPPLES, UNITS, split_history_name
 from boatsim.physics.vessel import Vessel
 
 FORCES = {
@@ -75,7 +75,7 @@ def _group(w: FittedTerm) -> tuple[str, bool, str]:
     return term_axis(w.term), w.carries, w.term.run
 
 
-def term_axis(term: Described) -> str:
+def term_axis(term: SymbolicTerm) -> str:
     """Return the axis of a term; "thrust" if it changes the thrust of the drives."""
     if isinstance(term, DescribedForce):
         return term.axis
@@ -99,7 +99,7 @@ def abscissa_label(over: str) -> str:
         return "product of the factors [SI]"
     if over in RIPPLES:
         return f"position {over.removeprefix('ripple_')} [m]"
-    how, signal = history_of(over, ())
+    how, signal = split_history_name(over, ())
     if how:
         return _recent_words(how, signal)
     if unit := UNITS.get(over, ""):
@@ -120,7 +120,7 @@ def _recent_words(how: str, signal: str) -> str:
     return words
 
 
-def term_unit(term: Described) -> str:
+def term_unit(term: SymbolicTerm) -> str:
     """Return the unit of a term: "N", "N m", or "" for a share of the thrust."""
     axis = term_axis(term)
     if axis == "thrust":
@@ -182,7 +182,7 @@ def _change_of_thrust(term: DescribedThrust, unit: str, sd: float) -> str:
     return f"{text} {more}{SIDES[term.side]}{SENSES[term.sense]}"
 
 
-def _varies_with(term: Described, vessel: Vessel) -> str:
+def _varies_with(term: SymbolicTerm, vessel: Vessel) -> str:
     """Return what a term varies with, and when it acts."""
     parts = []
     if isinstance(term, DescribedThrust):
@@ -202,7 +202,7 @@ def _varies_with(term: Described, vessel: Vessel) -> str:
     return ", ".join(parts)
 
 
-def _activity_condition(term: Described) -> str:
+def _activity_condition(term: SymbolicTerm) -> str:
     """Return when a term acts; "" if it always does."""
     begin, span = format_number(term.begin), term.end - term.begin
     recording = f" of {term.run}" if term.run else ""
@@ -220,7 +220,7 @@ def _activity_condition(term: Described) -> str:
     return ""
 
 
-def factors_in_words(term: Described) -> str:
+def factors_in_words(term: SymbolicTerm) -> str:
     """Return the product of the factors of a term in words; "" if it is constant."""
     parts = []
     for name, power in Counter(term.of).items():
@@ -232,7 +232,7 @@ def factors_in_words(term: Described) -> str:
     return " times ".join(parts)
 
 
-def _factor(name: str, term: Described) -> str:
+def _factor(name: str, term: SymbolicTerm) -> str:
     if name in FACTORS:
         return FACTORS[name]
     if name in RIPPLES:
@@ -248,8 +248,8 @@ def _factor(name: str, term: Described) -> str:
     if name.startswith("sign_"):
         return f"the sign of {_factor(name.removeprefix('sign_'), term)}"
     how, signal = "", name
-    if term.looks_back:
-        how, signal = history_of(name, ())
+    if term.uses_history:
+        how, signal = split_history_name(name, ())
     if how:
         average = f"average over the last {format_number(term.memory)} s"
         if how == "recent":
@@ -260,7 +260,7 @@ def _factor(name: str, term: Described) -> str:
     return name_and_unit(name)[0]
 
 
-def coefficient_unit(term: Described, vessel: Vessel) -> str:
+def coefficient_unit(term: SymbolicTerm, vessel: Vessel) -> str:
     """Return the unit of the coefficient of a term.
 
     Args:
@@ -275,7 +275,7 @@ def coefficient_unit(term: Described, vessel: Vessel) -> str:
         powers["N"] = 1
         powers["m"] = int(term.axis in TURNING)
     for name in term.of:
-        signal = history_of(name, vessel.described_signals)[1] or name
+        signal = split_history_name(name, vessel.described_signals)[1] or name
         unit = UNITS.get(name) or vessel.unit(signal.removeprefix("abs_"))
         above, _, below = unit.partition("/")
         _multiply(powers, above, -1)

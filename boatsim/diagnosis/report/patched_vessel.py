@@ -11,9 +11,9 @@ from tomlkit.items import InlineTable, Table
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.diagnosis.report import spread_table
 from boatsim.files import replacing
-from boatsim.physics.base import Change, Channel, Effect, Release
-from boatsim.physics.content import address, find, vessel_address
-from boatsim.physics.vessel import Body, Vessel, effect_from_table, overlaid
+from boatsim.physics.base import ChannelEffect, CoefficientChange, CoefficientRelease, Effect
+from boatsim.physics.content import effect_address, find_content_file, vessel_address
+from boatsim.physics.vessel import Body, Vessel, apply_load_values, effect_from_table
 
 DIGITS = 10  # significant, so that the file reproduces the fitted motion
 SAME = 1e-9  # relative difference below which two numbers are the same
@@ -47,7 +47,7 @@ def patched_vessel_text(
     document = _document(vessel, path)
     added = []
     for effect in candidates:
-        if effect.name in found.effects and not isinstance(effect, Release):
+        if effect.name in found.effects and not isinstance(effect, CoefficientRelease):
             added.append(effect.name)
     document["found"] = tomlkit.item(added)
     document["found"].comment("effects that the diagnosis added")
@@ -57,12 +57,12 @@ def patched_vessel_text(
             settings[free.effect][free.name] = float(x)
             continue
         for name in vessel.names_of(free.effect):
-            change = Change(free.name, name, free.name, "scales", 1.0)
+            change = CoefficientChange(free.name, name, free.name, "scales", 1.0)
             _change_number(document, vessel, change, float(x), f"recalibrated x {x:.4f}")
     for effect in candidates:  # channels act in the order of the diagnosis
         if effect.name not in settings:
             continue
-        if isinstance(effect, Release):
+        if isinstance(effect, CoefficientRelease):
             _apply_release(document, vessel, effect, settings[effect.name])
         else:
             document["effect"].append(_effect_table(effect, vessel, settings[effect.name]))
@@ -111,7 +111,7 @@ def _document(vessel: Vessel, path: Path) -> tomlkit.TOMLDocument:
 
 def _based_on(vessel: Vessel, base: str | None, path: Path) -> str:
     """Return a shipped vessel by its name, another one by its path from the patched file."""
-    file = find("vessel", base, vessel.file.parent) if base else vessel.file
+    file = find_content_file("vessel", base, vessel.file.parent) if base else vessel.file
     name = vessel_address(file)
     if name.endswith(".toml"):
         return os.path.relpath(file.resolve(), path.resolve().parent)
@@ -120,14 +120,17 @@ def _based_on(vessel: Vessel, base: str | None, path: Path) -> str:
 
 def _effect_reference(kind: type[Effect], vessel: Vessel) -> str:
     """Return a shipped effect by its name, another one by its path from the vessel's folder."""
-    name = address(kind)
+    name = effect_address(kind)
     if name.endswith(".py"):
         return os.path.relpath(name, vessel.path)
     return name
 
 
 def _apply_release(
-    document: tomlkit.TOMLDocument, vessel: Vessel, release: Release, values: Mapping[str, float]
+    document: tomlkit.TOMLDocument,
+    vessel: Vessel,
+    release: CoefficientRelease,
+    values: Mapping[str, float],
 ) -> None:
     """Write the numbers of the vessel that a release changes."""
     for change in release.changes(vessel):
@@ -139,7 +142,7 @@ def _apply_release(
 
 
 def _change_number(
-    document: tomlkit.TOMLDocument, vessel: Vessel, change: Change, x: float, reason: str
+    document: tomlkit.TOMLDocument, vessel: Vessel, change: CoefficientChange, x: float, reason: str
 ) -> None:
     """Change a number wherever the file specifies it: in its own table and in those of loads."""
     if change.owner == "body":
@@ -152,9 +155,11 @@ def _change_number(
         table = tables.get(change.owner, {})
         if change.key in table:
             loads.add(name)
-            _set_number(table, change.key, change.of(float(table[change.key]), x), reason)
+            _set_number(table, change.key, change.apply_to(float(table[change.key]), x), reason)
     if change.key in own or loads.isdisjoint(vessel.load):
-        _set_number(own, change.key, change.of(float(own.get(change.key, nominal)), x), reason)
+        _set_number(
+            own, change.key, change.apply_to(float(own.get(change.key, nominal)), x), reason
+        )
 
 
 def _keep_fitted_defaults(
@@ -164,17 +169,17 @@ def _keep_fitted_defaults(
     values = problem.values(problem.recordings[0], found.free, found.theta)
     raw = document.unwrap()
     for name in vessel.load:
-        raw = overlaid(raw, raw["loads"][name], name)
+        raw = apply_load_values(raw, raw["loads"][name], name)
     boat = replace(vessel, body=Body(**raw["body"]), effects=())
     for table, given in zip(document["effect"], raw["effect"], strict=True):
-        effect = effect_from_table(given, vessel.name, vessel.path).completed(boat)
+        effect = effect_from_table(given, vessel.name, vessel.path).with_all_parameters(boat)
         changed = {}
         for name in sorted(effect.filled):
             fitted = float(values[problem.index_of_parameter(effect.name, name)])
             if abs(fitted - getattr(effect, name)) > SAME * abs(fitted):
                 changed[name] = _rounded(fitted)
                 _set_number(table, name, changed[name], "as fitted")
-        boat = boat.composed_with(effect.having(changed))
+        boat = boat.with_completed_effect(effect.with_values(changed))
 
 
 def _set_number(table: Table | InlineTable, name: str, value: float, reason: str) -> None:
@@ -193,13 +198,13 @@ def _effect_table(effect: Effect, vessel: Vessel, settings: Mapping[str, float])
     table = tomlkit.table()
     table["use"] = _effect_reference(type(effect), vessel)
     table["use"].comment("found by the diagnosis")
-    if effect.name != type(effect).idea():
+    if effect.name != type(effect).type_name():
         table["name"] = effect.name
     if effect.on:
         table["on"] = list(effect.on)
-    if isinstance(effect, Channel) and effect.other_side:
+    if isinstance(effect, ChannelEffect) and effect.other_side:
         table["other_side"] = True
-    for key, value in (effect.shape() | dict(settings)).items():
+    for key, value in (effect.fixed_settings() | dict(settings)).items():
         if isinstance(value, float):
             value = _rounded(value)
         table[key] = value

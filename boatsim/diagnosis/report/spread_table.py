@@ -66,7 +66,7 @@ def _numbers(problem: Problem, free: FreeParameter) -> dict[str, float]:
     places = {}
     for effect in problem.program.effects:
         for name in effect.params():
-            places[problem.program.index(effect.name, name)] = f"{effect.name}.{name}"
+            places[problem.program.parameter_index(effect.name, name)] = f"{effect.name}.{name}"
     for k, name in enumerate(BODY, len(problem.program.values())):
         places[k] = f"body.{name}"
     own = dict(zip(free.at, free.weights, strict=True))

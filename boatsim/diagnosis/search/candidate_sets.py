@@ -22,7 +22,7 @@ from boatsim.diagnosis.search.screening import (
     starting_fits,
     starting_points,
 )
-from boatsim.physics.base import Unsteady
+from boatsim.physics.base import RandomForce
 
 SCREENING = (0.2, 0.5)  # of a selection, by experience, is the first screening
 CALM_STEPS = 4  # Gauss-Newton steps of a refit with the assumed levels
@@ -68,7 +68,7 @@ class CandidateSets:
         for name, effect in problem.candidates.items():
             if type(effect).random:
                 self.random.add(name)
-            if isinstance(effect, Unsteady):
+            if isinstance(effect, RandomForce):
                 self.unsteady.add(name)
         self.required_gain = required_gain(len(candidates), self.config.select)
 

@@ -37,7 +37,7 @@ def braking_force(sets: CandidateSets, best: Fit) -> str:
 def _share_of_power(sets: CandidateSets, best: Fit) -> float:
     """Mean power of the smoothed oscillating force, relative to one in phase with the rates."""
     problem, on = sets.problem, sets.problem.program.switches(best.effects)
-    nq, swell = problem.program.module.NQ, problem.program.module.swell
+    nq, swell = problem.program.module.NQ, problem.program.module.oscillating_force
     power, largest = 0.0, 0.0
     for mapped in problem.recordings:
         values = problem.values(mapped, best.free, best.theta)

@@ -172,7 +172,7 @@ def differs_from_zero(sets: CandidateSets, best: Fit, name: str) -> bool:
     sure = config.certainty_stochastic if kind.random else config.certainty
     for parameter in strength:
         value, sd = best.value(name, parameter)
-        if abs(value - params[parameter].absent) > sure * sd:
+        if abs(value - params[parameter].inactive_value) > sure * sd:
             return True
     if kind.random:
         return False

@@ -24,7 +24,7 @@ from boatsim.diagnosis.search.validation import (
     remove_dwarfed_effects,
     remove_refuted_rivals,
 )
-from boatsim.physics.described_laws import Described
+from boatsim.physics.described_laws import SymbolicTerm
 from boatsim.progress import Report, silent
 
 JUDGING = 0.8  # share of the work, by experience, that is done when held-out recordings decide
@@ -60,7 +60,7 @@ class Ranking:
         return bool(self.named) or bool(self.described_terms)
 
     @property
-    def described_terms(self) -> Mapping[str, Described]:
+    def described_terms(self) -> Mapping[str, SymbolicTerm]:
         """Described terms that the best fit adds, by name."""
         return self.description.effects() if self.description else {}
 

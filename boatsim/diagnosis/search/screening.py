@@ -21,7 +21,7 @@ from boatsim.diagnosis.fit import (
 )
 from boatsim.diagnosis.noise_levels import log_force_prior
 from boatsim.diagnosis.problem import FilterPasses, Fit, Problem, theta_of
-from boatsim.physics.base import Array, Effect, Unsteady
+from boatsim.physics.base import Array, Effect, RandomForce
 
 
 @dataclass(frozen=True)
@@ -156,7 +156,11 @@ def starting_points(problem: Problem, effect: Effect) -> list[dict[str, float]]:
     default = {}
     for name, p in kind.params().items():
         step = problem.config.select.screening_start * p.spread * problem.scale(effect, name)
-        default[name] = p.absent + step if p.absent + step <= p.high else p.absent - step
+        default[name] = (
+            p.inactive_value + step
+            if p.inactive_value + step <= p.high
+            else p.inactive_value - step
+        )
     specified = []
     for start in kind.starts:
         specified.append({n: x * problem.scale(effect, n) for n, x in start.items()})
@@ -320,7 +324,7 @@ def _screen_stochastic(problem: Problem, base: Fit, effect: Effect, about: Linea
         return replace(at, evidence=evidence)
 
     best = _most_likely(list(map(with_likelihood, stochastic_starting_fits(problem, base, effect))))
-    if isinstance(effect, Unsteady):
+    if isinstance(effect, RandomForce):
         for i, axis in enumerate(axes_of(problem.program.vessel)):
             best = _most_likely(
                 [best, with_likelihood(_without_axis(best, base, effect.name, i, axis))]
@@ -364,7 +368,7 @@ def stochastic_starting_fits(problem: Problem, base: Fit, effect: Effect) -> lis
         effect: The candidate.
     """
     shared = problem.config.select.swell_share * base.levels.force
-    if isinstance(effect, Unsteady):
+    if isinstance(effect, RandomForce):
         of_axis = dict(zip(axes_of(problem.program.vessel), shared.tolist(), strict=True))
         levels = replace(base.levels, force=shared)
         rms = {name: of_axis.get(name, 0.0) for name in type(effect).strength}

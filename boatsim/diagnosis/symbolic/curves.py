@@ -7,15 +7,15 @@ import numpy as np
 from boatsim.diagnosis.description import Curve
 from boatsim.diagnosis.symbolic.term_forces import NO_AVERAGE, FittedRecording
 from boatsim.physics.base import Array
-from boatsim.physics.described_laws import Described
-from boatsim.physics.terms import RIPPLES, codes, history_codes
+from boatsim.physics.described_laws import SymbolicTerm
+from boatsim.physics.terms import RIPPLES, factor_codes, history_codes
 
 BINS = 40  # of a curve; the figure of a report is not wider
 FEWEST_ROWS = 3  # of a bin that is drawn; fewer show noise only
 
 
 def curve(
-    recordings: Sequence[FittedRecording], term: Described, coefficient: float, sd: float
+    recordings: Sequence[FittedRecording], term: SymbolicTerm, coefficient: float, sd: float
 ) -> Curve | None:
     """Return the curve of a fitted term.
 
@@ -49,7 +49,7 @@ def curve(
     return Curve(over, mean(x), coefficient * law, sd * np.abs(law), mean(found))
 
 
-def _over(term: Described) -> str:
+def _over(term: SymbolicTerm) -> str:
     """Return what a curve is drawn over: a factor, "product" of several, "time", or "" for none."""
     if not term.of:
         return "" if term.acts == "always" else "time"
@@ -62,7 +62,7 @@ def _over(term: Described) -> str:
 
 
 def _along(
-    fitted: FittedRecording, term: Described, over: str, coefficient: float
+    fitted: FittedRecording, term: SymbolicTerm, over: str, coefficient: float
 ) -> tuple[Array, Array, Array, Array]:
     """Return abscissa, size of the term, estimated size and weight of each row, (N,) each.
 
@@ -70,7 +70,7 @@ def _along(
     The estimate is the residual force of the fit plus the force of the term.
     """
     size, force = fitted.size(term), fitted.force(term)
-    unit = fitted.force(term.having({"of": (), "acts": "always"}))
+    unit = fitted.force(term.with_values({"of": (), "acts": "always"}))
     weight = np.einsum("na,na->n", unit, unit)
     with np.errstate(divide="ignore", invalid="ignore"):
         found = np.einsum("na,na->n", fitted.residual + coefficient * force, unit) / weight
@@ -78,7 +78,7 @@ def _along(
     return x, size, np.where(weight > 0.0, found, 0.0), weight
 
 
-def _abscissa(fitted: FittedRecording, term: Described, over: str, size: Array) -> Array:
+def _abscissa(fitted: FittedRecording, term: SymbolicTerm, over: str, size: Array) -> Array:
     """Return the quantity (N,) over which a curve is drawn."""
     if over == "time":
         return fitted.recording.times
@@ -88,7 +88,7 @@ def _abscissa(fitted: FittedRecording, term: Described, over: str, size: Array) 
         motion = fitted.motion
         return np.asarray(motion.x if over.endswith("north") else motion.y)
     signals = fitted.problem.program.vessel.described_signals
-    code, *_ = codes(term.name, (over,), signals)
+    code, *_ = factor_codes(term.name, (over,), signals)
     average = NO_AVERAGE
     looks_at, deviation = history_codes(term.name, (over,), signals)
     if looks_at:

@@ -15,7 +15,7 @@ import numpy as np
 from boatsim.diagnosis.config import DescribeConfig
 from boatsim.diagnosis.filter import MappedRecording, axes_of
 from boatsim.physics.base import Array
-from boatsim.physics.described_laws import EVER, Described
+from boatsim.physics.described_laws import EVER, SymbolicTerm
 from boatsim.physics.effects.described_force import DescribedForce
 from boatsim.physics.effects.described_thrust import SENSES, SIDES, DescribedThrust
 from boatsim.physics.terms import BEYOND, RIPPLES, SPEEDS
@@ -53,7 +53,7 @@ def terms(
     speeds: Mapping[str, Array],
     commands: Sequence[str],
     config: DescribeConfig,
-) -> Iterator[Described]:
+) -> Iterator[SymbolicTerm]:
     """Yield all terms that are tested.
 
     Args:
@@ -95,7 +95,7 @@ def _thrust_terms(
     commands: Sequence[str],
     courses: Sequence[Course],
     memories: Sequence[float],
-) -> Iterator[Described]:
+) -> Iterator[SymbolicTerm]:
     """Yield changes of the thrust, of the drives on each side and in each sense."""
     sides = SIDES if _has_side_drives(vessel) else ("all",)
     for side, sense in product(sides, SENSES):
@@ -115,12 +115,12 @@ def _thrust_terms(
 
 def _drives(vessel: Vessel, signal: str, side: float) -> bool:
     """Return whether a signal belongs to drives on a side; 0 for all drives, or the only one."""
-    first, *others = vessel.sums.get(signal, (signal,))
+    first, *others = vessel.signal_sums.get(signal, (signal,))
     if vessel.roles[first] not in THRUST_ROLES:
         return False
     if side:
         return vessel.side(signal) == side
-    return bool(others) or vessel.roles[first] not in vessel.sums
+    return bool(others) or vessel.roles[first] not in vessel.signal_sums
 
 
 def _has_side_drives(vessel: Vessel) -> bool:
@@ -190,7 +190,7 @@ def _memories(recordings: Recordings, config: DescribeConfig) -> list[float]:
 
 def _allowed_memory(seconds: float) -> float:
     """Return the nearest time constant [s] that a term may have."""
-    about = Described.params()["memory"]
+    about = SymbolicTerm.params()["memory"]
     return min(max(seconds, about.low), about.high)
 
 
@@ -271,8 +271,8 @@ def _time_range(recordings: Recordings) -> tuple[float, float]:
 
 
 def neighbours(
-    term: Described, recordings: Recordings, step: float, config: DescribeConfig
-) -> list[Described]:
+    term: SymbolicTerm, recordings: Recordings, step: float, config: DescribeConfig
+) -> list[SymbolicTerm]:
     """Return the terms that differ from a term by a small change of its times or lengths.
 
     Args:
@@ -282,7 +282,7 @@ def neighbours(
         config: Settings of the symbolic regression.
     """
     whole = longest_duration([r for r in recordings if term.run in ("", r.name)])
-    found: list[Described] = []
+    found: list[SymbolicTerm] = []
     if term.acts == "within":
         found += _moved_interval(term, step * whole / config.recording_parts)
     if term.acts in ("rising", "fading"):
@@ -297,12 +297,12 @@ def neighbours(
         if set(term.of) & set(BEYOND):
             found.append(replace(term, beyond=term.beyond * factor))
     for factor in (1.0 + step, 1.0 / (1.0 + step)):
-        if term.looks_back:
+        if term.uses_history:
             found.append(replace(term, memory=_allowed_memory(term.memory * factor)))
     return found
 
 
-def _moved_interval(term: Described, seconds: float) -> list[Described]:
+def _moved_interval(term: SymbolicTerm, seconds: float) -> list[SymbolicTerm]:
     """Return the term with begin and end moved by this time [s] in all combinations."""
     found = []
     for a, b in product((-1, 0, 1), repeat=2):
@@ -314,7 +314,7 @@ def _moved_interval(term: Described, seconds: float) -> list[Described]:
     return found
 
 
-def _moved_oscillation(term: Described, step: float, whole: float) -> list[Described]:
+def _moved_oscillation(term: SymbolicTerm, step: float, whole: float) -> list[SymbolicTerm]:
     """Return the term with period and phase changed in all combinations."""
     found, period = [], term.end - term.begin
     ratio = 1.0 + step * OSCILLATION_STEP * period / whole
@@ -326,7 +326,7 @@ def _moved_oscillation(term: Described, step: float, whole: float) -> list[Descr
     return found
 
 
-def _moved_ripple(term: Described, step: float) -> list[Described]:
+def _moved_ripple(term: SymbolicTerm, step: float) -> list[SymbolicTerm]:
     """Return the term with wavelength and crest changed in all combinations."""
     found, ratio = [], 1.0 + RIPPLE_STEP * step
     for factor in (ratio, 1.0, 1.0 / ratio):

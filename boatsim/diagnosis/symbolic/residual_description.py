@@ -49,7 +49,7 @@ def describe(
         fit = general.fit if carries else found.fit
         value, sd = fit.value(slot, "coefficient")
         drawn = curve(recordings, term, *found.fit.value(slot, "coefficient"))
-        described = term.having({"name": slot, "coefficient": value})
+        described = term.with_values({"name": slot, "coefficient": value})
         written.append(FittedTerm(described, sd, gains[slot], carries, drawn))
     return Description(tuple(written), general.fit, unexplained_evidence(problem, found.fit))
 

@@ -5,14 +5,14 @@ from collections.abc import Mapping, Sequence
 from boatsim.diagnosis.filter import MappedRecording
 from boatsim.diagnosis.problem import Problem
 from boatsim.physics.base import Array
-from boatsim.physics.described_laws import Described
+from boatsim.physics.described_laws import SymbolicTerm
 from boatsim.physics.terms import COURSES
 
 # parameters of a slot that never acts: used where a term is an event of another recording
 NEVER = {"course": float(COURSES.index("within")), "begin": 0.0, "end": 0.0}
 
 
-def free_slot(problem: Problem, kind: type[Described], used: Sequence[str]) -> str:
+def free_slot(problem: Problem, kind: type[SymbolicTerm], used: Sequence[str]) -> str:
     """Return the name of a slot that has no term yet.
 
     Args:
@@ -30,7 +30,7 @@ def free_slot(problem: Problem, kind: type[Described], used: Sequence[str]) -> s
 
 
 def write_term(
-    problem: Problem, slot: str, term: Described, recordings: Sequence[MappedRecording]
+    problem: Problem, slot: str, term: SymbolicTerm, recordings: Sequence[MappedRecording]
 ) -> None:
     """Write the parameters of a term into a slot.
 
@@ -40,7 +40,7 @@ def write_term(
         term: The term.
         recordings: Recordings whose parameter values are changed.
     """
-    parameters = term.completed(problem.program.vessel).by_name()
+    parameters = term.with_all_parameters(problem.program.vessel).law_parameters()
     for recording in recordings:
         _set(problem, slot, parameters, recording.values)
         if term.run not in ("", recording.name):
@@ -49,4 +49,4 @@ def write_term(
 
 def _set(problem: Problem, slot: str, parameters: Mapping[str, float], values: Array) -> None:
     for name, value in parameters.items():
-        values[problem.program.index(slot, name)] = value
+        values[problem.program.parameter_index(slot, name)] = value

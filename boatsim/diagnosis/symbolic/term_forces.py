@@ -11,7 +11,7 @@ from boatsim.diagnosis.locate import nominal_forces
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.physics import terms
 from boatsim.physics.base import Array, Motion
-from boatsim.physics.described_laws import Described
+from boatsim.physics.described_laws import SymbolicTerm
 from boatsim.physics.effects.described_force import DescribedForce
 from boatsim.physics.effects.described_thrust import DescribedThrust
 from boatsim.physics.signals import AXES
@@ -79,7 +79,7 @@ class FittedRecording:
         c, s = np.cos(fields["psi"]), np.sin(fields["psi"])
         north, east = (0.0, 0.0)
         if "surge" in axes:
-            north, east = program.module.flow(self.values, self.on)
+            north, east = program.module.water_velocity(self.values, self.on)
         fields |= {"cos_psi": c, "sin_psi": s, "wr": fields["w"]}
         fields["ur"] = fields["u"] - c * north - s * east
         fields["vr"] = fields["v"] - c * east + s * north
@@ -112,7 +112,7 @@ class FittedRecording:
     def _lagged(self) -> dict[float, Array]:
         return {}
 
-    def force(self, term: Described) -> Array:
+    def force(self, term: SymbolicTerm) -> Array:
         """Return the force of a term with a coefficient of 1.
 
         Args:
@@ -139,7 +139,7 @@ class FittedRecording:
         out[:, axes.index("sway")] = size * abeam
         return out
 
-    def size(self, term: Described) -> Array:
+    def size(self, term: SymbolicTerm) -> Array:
         """Return the product (N,) of the factors of a term and of its course over time.
 
         Args:
@@ -147,16 +147,18 @@ class FittedRecording:
         """
         vessel = self.problem.program.vessel
         acts = float(terms.COURSES.index(term.acts))
-        size = np.asarray(terms.course.py_func(self.recording.times, acts, term.begin, term.end))
+        size = np.asarray(
+            terms.time_profile.py_func(self.recording.times, acts, term.begin, term.end)
+        )
         little = 1.0
         if set(term.of) & set(terms.SENSES):
-            little = term.completed(vessel).little
+            little = term.with_all_parameters(vessel).little
         detail = (term.wavelength, term.crest, little, term.beyond)
         average = NO_AVERAGE
-        if term.looks_back:
+        if term.uses_history:
             looks_at, deviation = terms.history_codes(term.name, term.of, vessel.described_signals)
             average = (looks_at, deviation, term.memory)
-        codes = terms.codes(term.name, term.of, vessel.described_signals)
+        codes = terms.factor_codes(term.name, term.of, vessel.described_signals)
         for code in codes[: len(term.of)]:
             size = size * self.factor(code, detail, average)
         return size
@@ -165,7 +167,7 @@ class FittedRecording:
         """Return one factor (N,).
 
         Args:
-            code: Code of the factor, by `terms.codes`.
+            code: Code of the factor, by `terms.factor_codes`.
             detail: Wavelength, crest, smallest speed and threshold of the term.
             average: Average over the past to which the factor refers.
         """
@@ -174,7 +176,7 @@ class FittedRecording:
             held = self.held
             if average[0] and terms.RECALLED <= code < terms.FIRST_HELD:
                 held = self.averaged(*average)[None]
-            found = terms.factor.py_func(self.motion, held, 0, 0, code, detail)
+            found = terms.factor_value.py_func(self.motion, held, 0, 0, code, detail)
             self._factors[key] = np.asarray(found, dtype=float)
         return self._factors[key]
 
@@ -213,10 +215,12 @@ class FittedRecording:
             program = self.problem.program
             slot = next(e.name for e in program.candidates if isinstance(e, DescribedThrust))
             values = self.values.copy()
-            term = DescribedThrust(name=slot, side=side, sense=sense).completed(program.vessel)
-            for name, x in term.by_name().items():
-                values[program.index(slot, name)] = x
-            values[program.index(slot, "coefficient")] = 1.0
+            term = DescribedThrust(name=slot, side=side, sense=sense).with_all_parameters(
+                program.vessel
+            )
+            for name, x in term.law_parameters().items():
+                values[program.parameter_index(slot, name)] = x
+            values[program.parameter_index(slot, "coefficient")] = 1.0
             states, held = np.ascontiguousarray(self.states), np.ascontiguousarray(self.held.T)
             without = nominal_forces.body_forces(self.recording, states, held, values, ())
             doubled = nominal_forces.body_forces(self.recording, states, held, values, (slot,))

@@ -15,7 +15,7 @@ from boatsim.diagnosis.locate.smoothing import LatentForce, separate_information
 from boatsim.diagnosis.problem import froude_scale
 from boatsim.diagnosis.symbolic.term_forces import FittedRecording
 from boatsim.physics.base import AXES, Array
-from boatsim.physics.described_laws import Described
+from boatsim.physics.described_laws import SymbolicTerm
 from boatsim.physics.effects.described_thrust import DescribedThrust
 from boatsim.physics.effects.push import SteadyForce
 from boatsim.physics.terms import SPEEDS
@@ -40,14 +40,14 @@ class ScoredTerm:
         spread: Prior standard deviation of the coefficient.
     """
 
-    term: Described
+    term: SymbolicTerm
     gain: float
     coefficient: float
     spread: float
 
 
 def score_terms(
-    recordings: Sequence[FittedRecording], terms: Sequence[Described]
+    recordings: Sequence[FittedRecording], terms: Sequence[SymbolicTerm]
 ) -> list[ScoredTerm]:
     """Return the approximate evidence of each term alone in addition to a fit.
 
@@ -65,7 +65,7 @@ def score_terms(
 
 
 def _score_batch(
-    recordings: Sequence[FittedRecording], terms: Sequence[Described]
+    recordings: Sequence[FittedRecording], terms: Sequence[SymbolicTerm]
 ) -> list[ScoredTerm]:
     information, score = np.zeros(len(terms)), np.zeros(len(terms))
     squares, rows = np.zeros(len(terms)), np.zeros(len(terms))
@@ -100,14 +100,14 @@ def _score_batch(
     return scored
 
 
-def _size(fitted: FittedRecording, term: Described) -> Array:
+def _size(fitted: FittedRecording, term: SymbolicTerm) -> Array:
     """Return the size (N,) of a term; zero for an event of another recording."""
     if term.run in ("", fitted.recording.name):
         return fitted.size(term)
     return 0.0 * fitted.recording.times
 
 
-def strength(vessel: Vessel, term: Described) -> float:
+def strength(vessel: Vessel, term: SymbolicTerm) -> float:
     """Return the prior standard deviation of a term where it acts.
 
     Args:
@@ -144,7 +144,7 @@ def varying_signals(
             speeds[name] = values
     held = np.concatenate([fitted.held for fitted in recordings], axis=1)
     commands = []
-    for name in (*vessel.actuators, *vessel.sums):
+    for name in (*vessel.actuators, *vessel.signal_sums):
         if np.ptp(held[vessel.described_signals.index(name)]) > 0.0:
             commands.append(name)
     return speeds, commands

@@ -17,7 +17,7 @@ from boatsim.diagnosis.symbolic.grammar import neighbours, terms
 from boatsim.diagnosis.symbolic.slots import free_slot, write_term
 from boatsim.diagnosis.symbolic.term_forces import FittedRecording, fitted_recordings
 from boatsim.diagnosis.symbolic.term_scores import ScoredTerm, score_terms, varying_signals
-from boatsim.physics.described_laws import Described
+from boatsim.physics.described_laws import SymbolicTerm
 from boatsim.progress import Report, silent
 
 DESCRIBING = "describing the unexplained force"
@@ -35,7 +35,7 @@ class Formula:
     """
 
     fit: Fit
-    terms: dict[str, Described]
+    terms: dict[str, SymbolicTerm]
 
 
 @dataclass(frozen=True)
@@ -122,7 +122,7 @@ def _trials(
     return trials
 
 
-def family(term: Described) -> Family:
+def family(term: SymbolicTerm) -> Family:
     """Return what terms share that differ in their times, wavelength or threshold only.
 
     Args:
@@ -178,7 +178,7 @@ def _with_term(
 
 def _refined(
     problem: Problem, formula: Formula, trial: _Trial, everywhere: Recordings
-) -> tuple[Described, Fit]:
+) -> tuple[SymbolicTerm, Fit]:
     """Refine the times or lengths of the newest term; return the term and the fit with it."""
     config, slot, found = problem.config.describe, trial.slot, trial.fit
     scored = trial.scored
@@ -202,8 +202,8 @@ def _refined(
 
 
 def _refined_by_filter(
-    problem: Problem, slot: str, term: Described, found: Fit, everywhere: Recordings
-) -> tuple[Described, Fit]:
+    problem: Problem, slot: str, term: SymbolicTerm, found: Fit, everywhere: Recordings
+) -> tuple[SymbolicTerm, Fit]:
     """Refine the times or lengths of a term with the filter, whose likelihood is exact.
 
     Moves of the term and fits of all parameters alternate, because they depend on each other: a
@@ -235,12 +235,12 @@ def _refine_all(problem: Problem, formula: Formula, everywhere: Recordings) -> F
 
 
 def _moved(
-    problem: Problem, slot: str, term: Described, found: Fit, everywhere: Recordings
-) -> Described:
+    problem: Problem, slot: str, term: SymbolicTerm, found: Fit, everywhere: Recordings
+) -> SymbolicTerm:
     """Move a term to the maximum of the likelihood with all fitted parameters held."""
     config, on = problem.config.describe, problem.program.switches(found.effects)
 
-    def likelihood(candidate: Described) -> float:
+    def likelihood(candidate: SymbolicTerm) -> float:
         write_term(problem, slot, candidate, everywhere)
         return problem.log_likelihood(found.free, found.theta, on, found.levels)
 

@@ -13,7 +13,7 @@ from boatsim.errors import BadInput
 from boatsim.learn.actions import Use
 from boatsim.learn.hull import Hulls, Motion, Scale
 from boatsim.physics.content import snake_case
-from boatsim.physics.param import Checked
+from boatsim.physics.param import CheckedParameters
 from boatsim.physics.signals import Array
 from boatsim.simulate.world import Tank
 
@@ -36,7 +36,7 @@ class Outcome(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Task(Checked):
+class Task(CheckedParameters):
     """Base class of tasks.
 
     Lengths are in boat lengths `scale.length` and speeds in `scale.speed`, unless a name or unit

@@ -9,21 +9,21 @@ from boatsim.physics import particulars
 from boatsim.physics.base import (
     UNSET,
     Boat,
+    CoefficientRelease,
     Force,
     Inertia,
-    Mass,
-    Release,
+    MassMatrix,
     Wrench,
-    factor,
-    mass,
+    factor_parameter,
+    mass_matrix,
     param,
-    shift,
+    shift_parameter,
     wrench,
 )
 
 
 @njit(inline="always")
-def inertia(q: Any) -> Mass:
+def inertia(q: Any) -> MassMatrix:
     """Return the added mass matrix of the hull.
 
     The sway added mass acts at (sway_at, sway_below) and so couples into roll and yaw.
@@ -35,7 +35,7 @@ def inertia(q: Any) -> Mass:
         Entries of the mass matrix [kg, kg m, kg m^2] about the origin of motion.
     """
     a, z = q.sway_at, q.sway_below
-    return mass(
+    return mass_matrix(
         surge=q.surge,
         sway=q.sway,
         heave=q.heave,
@@ -198,7 +198,7 @@ class AddedMass(Inertia, Force):
         words="roll added inertia over that of the body, for spheroid = 1",
     )
 
-    def rules(self, vessel: Boat) -> dict[str, float]:
+    def derived_parameters(self, vessel: Boat) -> dict[str, float]:
         """Return the added masses [kg, kg m^2] of a spheroid of the vessel's size.
 
         Args:
@@ -209,7 +209,7 @@ class AddedMass(Inertia, Force):
         """
         if not self.spheroid:
             return {}
-        share, body = particulars.spheroid(vessel.length, vessel.draught), vessel.body
+        share, body = particulars.spheroid_added_mass(vessel.length, vessel.draught), vessel.body
         sway = share.sway * body.mass
         roll = self.roll_share * body.roll_inertia - sway * self.sway_below**2
         return {
@@ -221,7 +221,7 @@ class AddedMass(Inertia, Force):
 
 
 @dataclass(frozen=True)
-class AddedMassError(Release):
+class AddedMassError(CoefficientRelease):
     """Added mass that differs from its specified value by one factor in each axis.
 
     Causes are another draught, shallow water or a formula that does not suit the hull.
@@ -234,17 +234,19 @@ class AddedMassError(Release):
     shown_by: ClassVar[str] = AddedMass.shown_by
     source: ClassVar[str] = AddedMass.source
 
-    surge_factor: float = factor(
+    surge_factor: float = factor_parameter(
         "added_mass.surge", words="factor on the surge added mass", axis="surge"
     )
-    sway_factor: float = factor(
+    sway_factor: float = factor_parameter(
         "added_mass.sway", words="factor on the sway added mass", axis="sway"
     )
-    yaw_factor: float = factor("added_mass.yaw", words="factor on the yaw added mass", axis="yaw")
+    yaw_factor: float = factor_parameter(
+        "added_mass.yaw", words="factor on the yaw added mass", axis="yaw"
+    )
 
 
 @dataclass(frozen=True)
-class AddedMassCoriolis(Release):
+class AddedMassCoriolis(CoefficientRelease):
     """Share of the Coriolis force of the added mass that the vessel's model omits.
 
     It adds `fraction` to the `coriolis` factor of the vessel's added mass.
@@ -257,7 +259,7 @@ class AddedMassCoriolis(Release):
     shown_by: ClassVar[str] = "turning while moving ahead and sideways"
     source: ClassVar[str] = AddedMass.source
 
-    fraction: float = shift(
+    fraction: float = shift_parameter(
         "added_mass.coriolis",
         words="share of the Coriolis force that the model omits",
         unit="",
@@ -268,7 +270,7 @@ class AddedMassCoriolis(Release):
 
 
 @dataclass(frozen=True)
-class ShallowWater(Release):
+class ShallowWater(CoefficientRelease):
     """Larger sway and yaw added mass and cross-flow drag in shallow water, by one factor k."""
 
     needs: ClassVar = ("sway", "yaw")
@@ -279,7 +281,7 @@ class ShallowWater(Release):
         "assumption [A] of the checked specification of Bayless 2017, section 2 (factor k)"
     )
 
-    factor: float = factor(
+    factor: float = factor_parameter(
         "added_mass.sway",
         "added_mass.yaw",
         "cross_flow_drag.section_drag_coefficient",

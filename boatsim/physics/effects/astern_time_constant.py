@@ -61,7 +61,7 @@ class AsternTimeConstant(Force):
         words="time constant astern over time constant ahead",
         fit=True,
         spread=0.4,
-        absent=1.0,
+        inactive_value=1.0,
     )
     yaw: float = param(
         UNSET,

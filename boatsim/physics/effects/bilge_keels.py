@@ -99,7 +99,7 @@ class BilgeKeels(Force):
         particulars.SEA_WATER, low=1.0, high=1500.0, unit="kg/m^3", words="density of the water"
     )
 
-    def rules(self, vessel: Boat) -> dict[str, float]:
+    def derived_parameters(self, vessel: Boat) -> dict[str, float]:
         """Return keel length, arm and roll frequency from the data of the vessel.
 
         Args:
@@ -109,10 +109,10 @@ class BilgeKeels(Force):
             `length` [m], `arm` [m] and `frequency` [rad/s].
         """
         arm = 0.8 * hypot(0.5 * vessel.beam, vessel.draught)
-        return {"length": 0.3 * vessel.length, "arm": arm, "frequency": _frequency(vessel)}
+        return {"length": 0.3 * vessel.length, "arm": arm, "frequency": _roll_frequency(vessel)}
 
 
-def _frequency(vessel: Boat) -> float:
+def _roll_frequency(vessel: Boat) -> float:
     """Return the undamped roll frequency [rad/s]; 0 for a vessel without a righting arm."""
     stiffness = getattr(vessel.effect("righting_arm"), "stiffness", 0.0)
     return sqrt(

@@ -5,11 +5,11 @@ from typing import Any, ClassVar
 
 from numba import njit
 
-from boatsim.physics.base import Measurement, Shown, param
+from boatsim.physics.base import MeasuredMotion, Measurement, param
 
 
 @njit(inline="always")
-def shown(m: Shown, q: Any) -> Shown:
+def apply_measurement_error(m: MeasuredMotion, q: Any) -> MeasuredMotion:
     """Return the recorded motion with the scaled position.
 
     Args:
@@ -19,7 +19,7 @@ def shown(m: Shown, q: Any) -> Shown:
     Returns:
         The recorded motion.
     """
-    return Shown(
+    return MeasuredMotion(
         (1.0 + q.x_fraction) * m.x,
         (1.0 + q.y_fraction) * m.y,
         m.z,
@@ -49,7 +49,7 @@ class CameraScale(Measurement):
         "the length scale of the camera is wrong, so recorded positions are stretched (not physics)"
     )
     shown_by: ClassVar[str] = "the same straight run along x and along y"
-    shown: ClassVar = shown
+    apply_measurement_error: ClassVar = apply_measurement_error
 
     x_fraction: float = param(
         0.0, low=-0.4, high=0.4, unit="", words="relative scale error in x", fit=True, spread=0.1

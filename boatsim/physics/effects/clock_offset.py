@@ -9,7 +9,7 @@ from boatsim.physics.base import Measurement, param
 
 
 @njit(inline="always")
-def late(q: Any) -> float:
+def motion_latency(q: Any) -> float:
     """Return the latency: the pose in row t is that of the time t - pose_late.
 
     Args:
@@ -33,7 +33,7 @@ class ClockOffset(Measurement):
         "the clock of the poses differs from the clock of the commands (not physics)"
     )
     shown_by: ClassVar[str] = "fast steps of thrust and steering in open loop"
-    late: ClassVar = late
+    motion_latency: ClassVar = motion_latency
     starts: ClassVar = ({"pose_late": 0.2}, {"pose_late": -0.2}, {"pose_late": -0.5})
 
     pose_late: float = param(

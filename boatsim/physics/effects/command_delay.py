@@ -6,7 +6,7 @@ from typing import Any, ClassVar
 
 from numba import njit
 
-from boatsim.physics.base import Array, Channel, Course, mean_of, param
+from boatsim.physics.base import Array, ChannelEffect, SignalSegment, param, segment_mean
 from boatsim.physics.kinds.channel import DELAYS
 
 SAME = 1e-9  # [s] times closer than this are the same instant
@@ -14,7 +14,7 @@ HISTORY = 80  # stored commands of each actuator: one every 20 ms for a delay of
 
 
 @njit(inline="always")
-def remember(x: float, memory: Array, at: int, dt: float, delay: float) -> int:
+def store_command(x: float, memory: Array, at: int, dt: float, delay: float) -> int:
     """Add a command held for dt to the ring buffer and return the index of the newest entry.
 
     The buffer holds pairs of command and duration. Commands that change too often for the buffer to
@@ -41,13 +41,13 @@ def remember(x: float, memory: Array, at: int, dt: float, delay: float) -> int:
 
 
 @njit
-def channel(
-    x: Course, side: float, source: float, memory: Array, at: int, dt: float, q: Any
-) -> Course:
+def transform_signal(
+    x: SignalSegment, side: float, source: float, memory: Array, at: int, dt: float, q: Any
+) -> SignalSegment:
     """Return the mean command of the time window that lies `delay` before the step.
 
     The result is exact because no step extends beyond a change of the delayed command (see
-    `pause`).
+    `time_to_discontinuity`).
 
     Args:
         x: Signal that enters: its values at the begin, middle and end of the step.
@@ -61,8 +61,8 @@ def channel(
     Returns:
         The signal that leaves the effect, over the same step.
     """
-    given = mean_of(x)
-    i = remember(given, memory, at, dt, q.delay)
+    given = segment_mean(x)
+    i = store_command(given, memory, at, dt, q.delay)
     if q.delay <= 0.0:
         return x
     # age [s] at the end of the step, walking back in time
@@ -75,20 +75,20 @@ def channel(
         older = age + memory[at + 2 + 2 * i]
         part = min(older, q.delay + dt) - max(age, q.delay)
         if part >= dt - SAME:  # one command all the while: passed on to the last bit
-            return Course(held, held, held)
+            return SignalSegment(held, held, held)
         if part > 0.0:
             total += part * held
             left -= part
         age = older
         if age >= q.delay + dt:
-            return Course(total / dt, total / dt, total / dt)
+            return SignalSegment(total / dt, total / dt, total / dt)
         i = i - 1 if i > 0 else HISTORY - 1
     mean = (total + left * held) / dt
-    return Course(mean, mean, mean)
+    return SignalSegment(mean, mean, mean)
 
 
 @njit
-def passes(x: float, memory: Array, at: int, q: Any) -> float:
+def present_output(x: float, memory: Array, at: int, q: Any) -> float:
     """Return the command that reaches the actuator now.
 
     Args:
@@ -112,7 +112,7 @@ def passes(x: float, memory: Array, at: int, q: Any) -> float:
 
 
 @njit
-def pause(x: float, memory: Array, at: int, q: Any) -> float:
+def time_to_discontinuity(x: float, memory: Array, at: int, q: Any) -> float:
     """Return the time until the next stored command reaches the actuator.
 
     A command that is new now needs the whole delay.
@@ -124,7 +124,7 @@ def pause(x: float, memory: Array, at: int, q: Any) -> float:
         q: Parameters of the effect, with the names and units of its class.
 
     Returns:
-        Time [s] during which the three points of a `Course` describe the signal exactly; infinite
+        Time [s] for which three points of a `SignalSegment` describe the signal exactly; infinite
         if it is constant.
     """
     if q.delay <= 0.0:
@@ -141,7 +141,7 @@ def pause(x: float, memory: Array, at: int, q: Any) -> float:
 
 
 @dataclass(frozen=True)
-class CommandDelay(Channel):
+class CommandDelay(ChannelEffect):
     """Dead time between every command and its actuator: y(t) = x(t - delay)."""
 
     words: ClassVar[str] = "commands take effect after a dead time"
@@ -150,9 +150,9 @@ class CommandDelay(Channel):
     acts_on: ClassVar[str] = ""  # every actuator
     slots: ClassVar[int] = 1 + 2 * HISTORY
     stage: ClassVar[int] = DELAYS
-    channel: ClassVar = channel
-    pause: ClassVar = pause
-    passes: ClassVar = passes
+    transform_signal: ClassVar = transform_signal
+    time_to_discontinuity: ClassVar = time_to_discontinuity
+    present_output: ClassVar = present_output
     starts: ClassVar = ({"delay": 0.1},)
 
     delay: float = param(

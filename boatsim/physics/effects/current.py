@@ -5,11 +5,11 @@ from typing import Any, ClassVar
 
 from numba import njit
 
-from boatsim.physics.base import Flow, param
+from boatsim.physics.base import WaterFlow, param
 
 
 @njit(inline="always")
-def flow(q: Any) -> tuple[float, float]:
+def water_velocity(q: Any) -> tuple[float, float]:
     """Return the velocity of the water over the ground.
 
     Args:
@@ -22,14 +22,14 @@ def flow(q: Any) -> tuple[float, float]:
 
 
 @dataclass(frozen=True)
-class Current(Flow):
+class Current(WaterFlow):
     """Uniform, steady current; all hydrodynamic forces act on the velocity relative to it."""
 
     ruled_out_by: ClassVar = {"still_water": (True,)}
     needs: ClassVar = ("surge", "sway")
     words: ClassVar[str] = "the water moves over the ground and carries the boat along"
     shown_by: ClassVar[str] = "drifting, and runs on opposite headings"
-    flow: ClassVar = flow
+    water_velocity: ClassVar = water_velocity
 
     north: float = param(
         0.0,

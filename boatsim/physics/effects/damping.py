@@ -7,14 +7,14 @@ from numba import njit
 
 from boatsim.physics.base import (
     AXES,
+    CoefficientRelease,
     Force,
-    Release,
     Wrench,
-    factor,
-    number,
+    factor_parameter,
     param,
-    preset,
-    shift,
+    preset_effect,
+    replacement_parameter,
+    shift_parameter,
     wrench,
 )
 
@@ -24,7 +24,7 @@ ITTC = "ITTC Recommended Procedure 7.5-02-07-04.5, Estimation of Roll Damping"
 
 
 @njit(inline="always")
-def power(speed: float, exponent: float, equal: float) -> float:
+def speed_power(speed: float, exponent: float, equal: float) -> float:
     """Return speed (|speed| / equal)^(exponent - 1).
 
     Exponents 1, 2 and 3 are evaluated by products.
@@ -56,25 +56,27 @@ def law(m: Any, q: Any) -> Wrench:
     Returns:
         Force [N] and moment [N m] in body axes.
     """
-    Y = -q.sway * power(m.vr + q.sway_at * m.r, q.sway_exponent, q.sway_equal)
+    Y = -q.sway * speed_power(m.vr + q.sway_at * m.r, q.sway_exponent, q.sway_equal)
     return wrench(
-        X=-q.surge * power(m.ur, q.surge_exponent, q.surge_equal),
+        X=-q.surge * speed_power(m.ur, q.surge_exponent, q.surge_equal),
         Y=Y - q.sway_by_yaw * m.r,
-        Z=-q.heave * power(m.wr, q.heave_exponent, q.heave_equal),
-        K=-q.roll * power(m.p, q.roll_exponent, q.roll_equal),
-        M=-q.pitch * power(m.q, q.pitch_exponent, q.pitch_equal),
-        N=-q.yaw * power(m.r, q.yaw_exponent, q.yaw_equal) - q.yaw_by_sway * m.vr + q.sway_at * Y,
+        Z=-q.heave * speed_power(m.wr, q.heave_exponent, q.heave_equal),
+        K=-q.roll * speed_power(m.p, q.roll_exponent, q.roll_equal),
+        M=-q.pitch * speed_power(m.q, q.pitch_exponent, q.pitch_equal),
+        N=-q.yaw * speed_power(m.r, q.yaw_exponent, q.yaw_equal)
+        - q.yaw_by_sway * m.vr
+        + q.sway_at * Y,
     )
 
 
-def exponent(axis: str) -> float:
+def exponent_parameter(axis: str) -> float:
     """Return the parameter of the exponent of the speed in one axis."""
     return param(
         1.0, low=1.0, high=3.0, unit="", words=f"power of the speed in {axis}; 1: linear", axis=axis
     )
 
 
-def equal(axis: str, unit: str) -> float:
+def equal_speed_parameter(axis: str, unit: str) -> float:
     """Return the parameter of the speed at which the power law equals the linear law."""
     return param(
         1.0,
@@ -136,25 +138,25 @@ class LinearDamping(Force):
         unit="m",
         words="place of the sway damping, ahead of the origin",
     )
-    surge_exponent: float = exponent("surge")
-    sway_exponent: float = exponent("sway")
-    yaw_exponent: float = exponent("yaw")
-    roll_exponent: float = exponent("roll")
-    heave_exponent: float = exponent("heave")
-    pitch_exponent: float = exponent("pitch")
-    surge_equal: float = equal("surge", "m/s")
-    sway_equal: float = equal("sway", "m/s")
-    yaw_equal: float = equal("yaw", "rad/s")
-    roll_equal: float = equal("roll", "rad/s")
-    heave_equal: float = equal("heave", "m/s")
-    pitch_equal: float = equal("pitch", "rad/s")
+    surge_exponent: float = exponent_parameter("surge")
+    sway_exponent: float = exponent_parameter("sway")
+    yaw_exponent: float = exponent_parameter("yaw")
+    roll_exponent: float = exponent_parameter("roll")
+    heave_exponent: float = exponent_parameter("heave")
+    pitch_exponent: float = exponent_parameter("pitch")
+    surge_equal: float = equal_speed_parameter("surge", "m/s")
+    sway_equal: float = equal_speed_parameter("sway", "m/s")
+    yaw_equal: float = equal_speed_parameter("yaw", "rad/s")
+    roll_equal: float = equal_speed_parameter("roll", "rad/s")
+    heave_equal: float = equal_speed_parameter("heave", "m/s")
+    pitch_equal: float = equal_speed_parameter("pitch", "rad/s")
 
 
 PLAIN = dict.fromkeys(("sway_by_yaw", "yaw_by_sway", "sway_at"), 0.0) | {
     f"{axis}_equal": 1.0 for axis in AXES
 }
 
-QuadraticDamping = preset(
+QuadraticDamping = preset_effect(
     LinearDamping,
     "QuadraticDamping",
     words="damping grows with the square of the speed",
@@ -171,7 +173,7 @@ QuadraticDamping = preset(
     fixed=PLAIN | {f"{axis}_exponent": 2.0 for axis in AXES},
 )
 
-CubicDamping = preset(
+CubicDamping = preset_effect(
     LinearDamping,
     "CubicDamping",
     words="damping grows with the cube of the speed",
@@ -190,7 +192,7 @@ CubicDamping = preset(
 
 
 @dataclass(frozen=True)
-class DampingError(Release):
+class DampingError(CoefficientRelease):
     """Damping that differs from its specified value by a factor in each axis.
 
     The factor scales the linear damping or, for a hull without one, the equivalent coefficient of
@@ -203,31 +205,31 @@ class DampingError(Release):
     refines: ClassVar[str] = "damping"
     shown_by: ClassVar[str] = "coasting down in each axis"
 
-    surge_factor: float = factor(
+    surge_factor: float = factor_parameter(
         "linear_damping.surge|surge_drag.linear|approach_balance.damping|mmg_hull.R_0"
         "|abkowitz_hull.X_u|mmg_low_speed_hull.X_0F",
         "surge_drag.quadratic",
         words="factor on the surge damping",
         axis="surge",
     )
-    sway_factor: float = factor(
+    sway_factor: float = factor_parameter(
         "linear_damping.sway|linear_hull.sway|mmg_hull.Y_v|abkowitz_hull.Y_v|mmg_low_speed_hull.C_D"
         "|cross_flow_drag.section_drag_coefficient",
         words="factor on the sway damping",
         axis="sway",
     )
-    yaw_factor: float = factor(
+    yaw_factor: float = factor_parameter(
         "linear_damping.yaw|linear_hull.yaw|mmg_hull.N_r|abkowitz_hull.N_r|mmg_low_speed_hull.N_r",
         words="factor on the yaw damping",
         axis="yaw",
     )
-    roll_factor: float = factor(
+    roll_factor: float = factor_parameter(
         "linear_damping.roll|roll_damping.roll", words="factor on the roll damping", axis="roll"
     )
 
 
 @dataclass(frozen=True)
-class LateralCentreShift(Release):
+class LateralCentreShift(CoefficientRelease):
     """Shift of the centre of the linear sway damping, by skeg, trim or load."""
 
     needs: ClassVar = ("sway", "yaw")
@@ -238,7 +240,7 @@ class LateralCentreShift(Release):
         "T. I. Fossen, Handbook of Marine Craft Hydrodynamics, 2nd ed. 2021, section 6.4 (Y_r, N_v)"
     )
 
-    shift: float = shift(
+    shift: float = shift_parameter(
         "linear_damping.sway_at",
         words="shift of the centre, positive forward",
         unit="m",
@@ -249,36 +251,36 @@ class LateralCentreShift(Release):
     )
 
 
-def replaced_exponent(axis: str) -> float:
+def replaced_exponent_parameter(axis: str) -> float:
     """Return the parameter of the exponent that replaces the linear law in one axis."""
-    return number(
+    return replacement_parameter(
         f"linear_damping.{axis}_exponent",
         words=f"exponent of the {axis} damping",
         unit="",
         spread=0.5,
         low=1.0,
         high=3.0,
-        absent=1.0,
+        inactive_value=1.0,
         axis=axis,
     )
 
 
-def agreement_speed(axis: str, unit: str) -> float:
+def agreement_speed_parameter(axis: str, unit: str) -> float:
     """Return the parameter of the speed at which the power law and the linear law agree."""
-    return number(
+    return replacement_parameter(
         f"linear_damping.{axis}_equal",
         words="speed at which both laws agree",
         unit=unit,
         spread=0.5,
         low=0.01,
         high=20.0,
-        absent=1.0,
+        inactive_value=1.0,
         axis=axis,
     )
 
 
 @dataclass(frozen=True)
-class DampingExponent(Release):
+class DampingExponent(CoefficientRelease):
     """Power law d |x|^n sign(x) in place of the linear damping of the vessel.
 
     Both laws agree at one speed of each axis (`surge_equal`, `sway_equal`, `yaw_equal`).
@@ -300,9 +302,9 @@ class DampingExponent(Release):
         )
     )
 
-    surge_exponent: float = replaced_exponent("surge")
-    sway_exponent: float = replaced_exponent("sway")
-    yaw_exponent: float = replaced_exponent("yaw")
-    surge_equal: float = agreement_speed("surge", "m/s")
-    sway_equal: float = agreement_speed("sway", "m/s")
-    yaw_equal: float = agreement_speed("yaw", "rad/s")
+    surge_exponent: float = replaced_exponent_parameter("surge")
+    sway_exponent: float = replaced_exponent_parameter("sway")
+    yaw_exponent: float = replaced_exponent_parameter("yaw")
+    surge_equal: float = agreement_speed_parameter("surge", "m/s")
+    sway_equal: float = agreement_speed_parameter("sway", "m/s")
+    yaw_equal: float = agreement_speed_parameter("yaw", "rad/s")

@@ -7,8 +7,8 @@ from numba import njit
 
 from boatsim.physics import terms
 from boatsim.physics.base import Boat, Wrench, param
-from boatsim.physics.described_laws import Described
-from boatsim.physics.param import code
+from boatsim.physics.described_laws import SymbolicTerm
+from boatsim.physics.param import code_parameter
 
 
 @njit(inline="always")
@@ -25,11 +25,11 @@ def law(m: Any, q: Any, act: Any, at: Any, own: Any) -> Wrench:
     Returns:
         Force [N] and moment [N m] in body axes.
     """
-    return terms.along(m, q.direction, q.coefficient * terms.term(m, q, act, at, own))
+    return terms.wrench_along(m, q.direction, q.coefficient * terms.term_value(m, q, act, at, own))
 
 
 @dataclass(frozen=True)
-class DescribedForce(Described):
+class DescribedForce(SymbolicTerm):
     """Term found by symbolic regression: a force or moment along one axis.
 
     F = coefficient f1 f2 f3 g(t)
@@ -51,13 +51,13 @@ class DescribedForce(Described):
         fit=True,
         spread=1.0,
     )
-    direction: float = code("code of the axis")
+    direction: float = code_parameter("code of the axis")
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        terms.code_of(f"{self.name}: axis", self.axis, terms.DIRECTIONS)
+        terms.index_code(f"{self.name}: axis", self.axis, terms.DIRECTIONS)
 
-    def rules(self, vessel: Boat) -> dict[str, float]:
+    def derived_parameters(self, vessel: Boat) -> dict[str, float]:
         """Return the numeric codes of axis and factors for the compiled program.
 
         Args:
@@ -66,10 +66,10 @@ class DescribedForce(Described):
         Raises:
             BadInput: The vessel does not have one of the factors.
         """
-        return super().rules(vessel) | {
-            "direction": terms.code_of(self.name, self.axis, terms.DIRECTIONS)
+        return super().derived_parameters(vessel) | {
+            "direction": terms.index_code(self.name, self.axis, terms.DIRECTIONS)
         }
 
-    def shape(self) -> dict[str, object]:
+    def fixed_settings(self) -> dict[str, object]:
         """Return the settings that no fit changes, without those that have no effect."""
-        return {"axis": self.axis} | super().shape()
+        return {"axis": self.axis} | super().fixed_settings()

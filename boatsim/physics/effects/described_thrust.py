@@ -7,9 +7,9 @@ from numba import njit
 
 from boatsim.physics import terms
 from boatsim.physics.base import Boat, Wrench, param
-from boatsim.physics.described_laws import Described
-from boatsim.physics.effects.thruster import at_mount
-from boatsim.physics.param import code
+from boatsim.physics.described_laws import SymbolicTerm
+from boatsim.physics.effects.thruster import thrust_wrench_at_mount
+from boatsim.physics.param import code_parameter
 
 SIDES = {"all": 0.0, "port": -1.0, "starboard": 1.0}
 SENSES = {"both": 0.0, "ahead": 1.0, "astern": -1.0}
@@ -35,11 +35,13 @@ def law(m: Any, q: Any, s: Any, t: Any, act: Any, at: Any, own: Any) -> Wrench:
     """
     thrust = t.gain * s.thrust
     about = (q.where == 0.0 or q.where * t.y > 0.0) and q.way * thrust >= 0.0
-    return at_mount(q.coefficient * terms.term(m, q, act, at, own) * thrust if about else 0.0, s, t)
+    return thrust_wrench_at_mount(
+        q.coefficient * terms.term_value(m, q, act, at, own) * thrust if about else 0.0, s, t
+    )
 
 
 @dataclass(frozen=True)
-class DescribedThrust(Described):
+class DescribedThrust(SymbolicTerm):
     """Term found by symbolic regression: a share by which the thrust of the drives changes.
 
     dT = coefficient f1 f2 f3 g(t) T
@@ -63,15 +65,15 @@ class DescribedThrust(Described):
         fit=True,
         spread=0.3,
     )
-    where: float = code("code of the side")
-    way: float = code("code of the sense")
+    where: float = code_parameter("code of the side")
+    way: float = code_parameter("code of the sense")
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        terms.code_of(f"{self.name}: side", self.side, tuple(SIDES))
-        terms.code_of(f"{self.name}: sense", self.sense, tuple(SENSES))
+        terms.index_code(f"{self.name}: side", self.side, tuple(SIDES))
+        terms.index_code(f"{self.name}: sense", self.sense, tuple(SENSES))
 
-    def rules(self, vessel: Boat) -> dict[str, float]:
+    def derived_parameters(self, vessel: Boat) -> dict[str, float]:
         """Return the numeric codes of side, sense and factors for the compiled program.
 
         Args:
@@ -80,8 +82,11 @@ class DescribedThrust(Described):
         Raises:
             BadInput: The vessel does not have one of the factors.
         """
-        return super().rules(vessel) | {"where": SIDES[self.side], "way": SENSES[self.sense]}
+        return super().derived_parameters(vessel) | {
+            "where": SIDES[self.side],
+            "way": SENSES[self.sense],
+        }
 
-    def shape(self) -> dict[str, object]:
+    def fixed_settings(self) -> dict[str, object]:
         """Return the settings that no fit changes, without those that have no effect."""
-        return {"side": self.side, "sense": self.sense} | super().shape()
+        return {"side": self.side, "sense": self.sense} | super().fixed_settings()

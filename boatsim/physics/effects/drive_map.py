@@ -6,14 +6,14 @@ from typing import Any, ClassVar
 from numba import njit
 
 from boatsim.errors import BadInput
-from boatsim.physics.base import Array, Channel, Course, param, preset
+from boatsim.physics.base import Array, ChannelEffect, SignalSegment, param, preset_effect
 from boatsim.physics.kinds.channel import MAPS
 
 
 @njit(inline="always")
-def channel(
-    x: Course, side: float, source: float, memory: Array, at: int, dt: float, q: Any
-) -> Course:
+def transform_signal(
+    x: SignalSegment, side: float, source: float, memory: Array, at: int, dt: float, q: Any
+) -> SignalSegment:
     """Return the signal plus the output of the curve at the raw command.
 
     Args:
@@ -35,11 +35,11 @@ def channel(
     # a power takes longer than all the rest
     share = drive if q.exponent == 1.0 else drive**q.exponent
     given = q.at_span * share if off > 0.0 else -q.at_span * share
-    return Course(x.begin + given, x.middle + given, x.end + given)
+    return SignalSegment(x.begin + given, x.middle + given, x.end + given)
 
 
 @dataclass(frozen=True)
-class DriveMap(Channel):
+class DriveMap(ChannelEffect):
     """Static curve of a drive that is fed by a duty cycle, a servo pulse or a shaft rate.
 
     y = sign(s) k ((|s| - dead) / (span - dead))^n,  s = source - neutral,  0 for |s| <= dead
@@ -51,7 +51,7 @@ class DriveMap(Channel):
     shown_by: ClassVar[str] = "a staircase of raw commands"
     acts_on: ClassVar[str] = "thrust"
     stage: ClassVar[int] = MAPS
-    channel: ClassVar = channel
+    transform_signal: ClassVar = transform_signal
 
     at_span: float = param(
         1.0,
@@ -92,7 +92,7 @@ class DriveMap(Channel):
             )
 
 
-PwmThrust = preset(
+PwmThrust = preset_effect(
     DriveMap,
     "PwmThrust",
     words="a curve gives the thrust from the duty cycle of the motor",
@@ -100,7 +100,7 @@ PwmThrust = preset(
     otherwise={"span": 255.0},
 )
 
-PulseThrust = preset(
+PulseThrust = preset_effect(
     DriveMap,
     "PulseThrust",
     words="a curve gives the thrust from the width of the servo pulse",
@@ -109,7 +109,7 @@ PulseThrust = preset(
     otherwise={"span": 400.0, "neutral": 1500.0},  # [us]
 )
 
-ShaftRpm = preset(
+ShaftRpm = preset_effect(
     DriveMap,
     "ShaftRpm",
     words="the shaft rate is given in revolutions per minute",

@@ -7,22 +7,22 @@ from numba import njit
 
 from boatsim.physics.base import (
     Boat,
-    Change,
+    CoefficientChange,
+    CoefficientRelease,
     Force,
     Inertia,
-    Mass,
-    Release,
+    MassMatrix,
     Wrench,
-    mass,
+    mass_matrix,
     param,
-    shift,
+    shift_parameter,
     wrench,
 )
 from boatsim.physics.particulars import GRAVITY
 
 
 @njit(inline="always")
-def inertia(q: Any) -> Mass:
+def inertia(q: Any) -> MassMatrix:
     """Return the inertia of a point mass on the centreline.
 
     Args:
@@ -33,7 +33,7 @@ def inertia(q: Any) -> Mass:
     """
     first = q.mass * q.x
     second = first * q.x
-    return mass(
+    return mass_matrix(
         surge=q.mass,
         sway=q.mass,
         heave=q.mass,
@@ -109,7 +109,7 @@ class ExtraMass(Inertia, Force):
 
 
 @dataclass(frozen=True)
-class Payload(Release):
+class Payload(CoefficientRelease):
     """Additional mass distributed like that of the hull; the radii of gyration do not change.
 
     A larger draught changes the added mass as well, which is a separate effect
@@ -126,7 +126,7 @@ class Payload(Release):
     source: ClassVar[str] = ExtraMass.source
     strength: ClassVar = ("mass",)
 
-    mass: float = shift(
+    mass: float = shift_parameter(
         "body.mass",
         "body.roll_inertia",
         "body.pitch_inertia",
@@ -139,7 +139,7 @@ class Payload(Release):
         within=(-2.3, 4.6),
     )
 
-    def changes(self, vessel: Boat) -> list[Change]:
+    def changes(self, vessel: Boat) -> list[CoefficientChange]:
         """Return the changes of mass and of the inertias that the vessel specifies.
 
         Args:
@@ -147,7 +147,7 @@ class Payload(Release):
         """
         return [c for c in super().changes(vessel) if getattr(vessel.body, c.key) is not None]
 
-    def weights(self, vessel: Boat) -> dict[str, float]:
+    def shift_weights(self, vessel: Boat) -> dict[str, float]:
         """Return the inertia per mass [m^2] of each axis.
 
         The radii of gyration do not change.
@@ -162,7 +162,7 @@ class Payload(Release):
         )
         return {place: inertia / body.mass for place, inertia in inertias if inertia is not None}
 
-    def ratios(self, vessel: Boat) -> dict[str, tuple[float, str]]:
+    def identifiable_ratios(self, vessel: Boat) -> dict[str, tuple[float, str]]:
         """Return the ratio of force to mass, the only quantity that the motion identifies.
 
         Args:

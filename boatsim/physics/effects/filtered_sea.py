@@ -71,7 +71,7 @@ class FilteredSea(Force):
         follows="linear_hull.arm?",
     )
 
-    def seeded(self, seed: int) -> Self:
+    def with_seed(self, seed: int) -> Self:
         """Return the effect with a realisation that depends on the seed.
 
         Args:

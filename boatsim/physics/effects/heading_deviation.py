@@ -6,11 +6,11 @@ from typing import Any, ClassVar
 
 from numba import njit
 
-from boatsim.physics.base import Measurement, Shown, param, preset
+from boatsim.physics.base import MeasuredMotion, Measurement, param, preset_effect
 
 
 @njit(inline="always")
-def shown(m: Shown, q: Any) -> Shown:
+def apply_measurement_error(m: MeasuredMotion, q: Any) -> MeasuredMotion:
     """Return the recorded motion: heading with deviation, velocities along the recorded heading.
 
     Args:
@@ -23,7 +23,7 @@ def shown(m: Shown, q: Any) -> Shown:
     off = q.offset + q.cos * cos(m.psi) + q.sin * sin(m.psi)
     rate = (q.sin * cos(m.psi) - q.cos * sin(m.psi)) * m.r
     c, s = cos(off), sin(off)
-    return Shown(
+    return MeasuredMotion(
         m.x,
         m.y,
         m.z,
@@ -55,7 +55,7 @@ class HeadingDeviation(Measurement):
     source: ClassVar[str] = (
         "coefficients B and C of the classical deviation formula (Archibald Smith)"
     )
-    shown: ClassVar = shown
+    apply_measurement_error: ClassVar = apply_measurement_error
 
     cos: float = param(
         0.0,
@@ -72,7 +72,7 @@ class HeadingDeviation(Measurement):
     offset: float = param(0.0, low=-1.0, high=1.0, unit="rad", words="constant error")
 
 
-HeadingOffset = preset(
+HeadingOffset = preset_effect(
     HeadingDeviation,
     "HeadingOffset",
     words="the recorded heading has a constant error (not physics)",

@@ -78,7 +78,7 @@ class Hydrostatics(Force):
         UNSET, low=0.0, high=1e12, unit="kg", words="mass with which the hull floats at z = 0"
     )
 
-    def rules(self, vessel: Boat) -> dict[str, float]:
+    def derived_parameters(self, vessel: Boat) -> dict[str, float]:
         """Return the displacement: by default the hull floats at z = 0 with the mass of its file.
 
         Args:

@@ -8,14 +8,14 @@ from numba import njit
 
 from boatsim.physics import particulars
 from boatsim.physics.base import UNSET, Boat, Force, Wrench, param, wrench
-from boatsim.physics.noise import seeded_realisation, uniform
+from boatsim.physics.noise import seeded_realisation, uniform_random
 
 LOWEST = 0.45  # lowest frequency over the modal one; less than 1e-13 of the energy lies below
 GRAVITY = particulars.GRAVITY
 
 
 @njit(inline="always")
-def sections(s: float, taper: float) -> tuple[float, float]:
+def wave_slope_integrals(s: float, taper: float) -> tuple[float, float]:
     """Return the integrals of the wave slope over a hull of parabolic section areas.
 
     They are those of (1 - taper x^2) cos(s x) and (1 - taper x^2) x sin(s x) over x in [-1, 1].
@@ -72,18 +72,18 @@ def law(m: Any, q: Any) -> Wrench:
     weight = 0.25 * pi * q.density * GRAVITY * q.draught**2 * q.length
     below = 0.0
     for k in range(count):
-        w = low + width * (k + uniform(q.realisation, 2 * k))
+        w = low + width * (k + uniform_random(q.realisation, 2 * k))
         # share of the energy below the cell's upper end
         above = exp(-1.25 * (modal / (low + width * (k + 1))) ** 4)
         number = w * w / GRAVITY  # deep water
         slope = number * q.significant_height * sqrt((above - below) / 8.0)
-        theta = w * m.t - number * run + 2.0 * pi * uniform(q.realisation, 2 * k + 1)
+        theta = w * m.t - number * run + 2.0 * pi * uniform_random(q.realisation, 2 * k + 1)
         up, turn = slope * sin(theta), slope * cos(theta)
         K += up
         if q.flat != 0.0:
             Y += up
         else:
-            together, apart = sections(number * ahead * half, q.taper)
+            together, apart = wave_slope_integrals(number * ahead * half, q.taper)
             deep = exp(-number * q.centre_depth)
             Y += deep * together * up
             N -= deep * apart * turn
@@ -196,7 +196,7 @@ class IrregularSea(Force):
         follows="linear_hull.arm?",
     )
 
-    def rules(self, vessel: Boat) -> dict[str, float]:
+    def derived_parameters(self, vessel: Boat) -> dict[str, float]:
         """Return the depth of the centre of buoyancy, 0.4 of the draught.
 
         Args:
@@ -204,7 +204,7 @@ class IrregularSea(Force):
         """
         return {"centre_depth": 0.4 * self.draught}
 
-    def seeded(self, seed: int) -> Self:
+    def with_seed(self, seed: int) -> Self:
         """Return the effect with a realisation that depends on the seed.
 
         Args:

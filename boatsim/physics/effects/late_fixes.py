@@ -6,11 +6,11 @@ from typing import Any, ClassVar
 
 from numba import njit
 
-from boatsim.physics.base import Measurement, Shown, param
+from boatsim.physics.base import MeasuredMotion, Measurement, param
 
 
 @njit(inline="always")
-def shown(m: Shown, q: Any) -> Shown:
+def apply_measurement_error(m: MeasuredMotion, q: Any) -> MeasuredMotion:
     """Return the recorded motion with the position `latency` earlier in a steady turn.
 
     The chord of the turn stands for its arc.
@@ -25,7 +25,7 @@ def shown(m: Shown, q: Any) -> Shown:
     middle = m.psi - 0.5 * q.latency * m.r
     c, s = cos(middle), sin(middle)
     x, y = m.x - q.latency * (c * m.u - s * m.v), m.y - q.latency * (s * m.u + c * m.v)
-    return Shown(x, y, m.z, m.phi, m.theta, m.psi, m.u, m.v, m.w, m.p, m.q, m.r)
+    return MeasuredMotion(x, y, m.z, m.phi, m.theta, m.psi, m.u, m.v, m.w, m.p, m.q, m.r)
 
 
 @dataclass(frozen=True)
@@ -47,7 +47,7 @@ class LateFixes(Measurement):
     )
     shown_by: ClassVar[str] = "sharp turns at full speed"
     source: ClassVar[str] = "kinematics: a steady turn over the delay"
-    shown: ClassVar = shown
+    apply_measurement_error: ClassVar = apply_measurement_error
 
     latency: float = param(
         0.0,

@@ -97,7 +97,7 @@ class LinearHull(Force):
         UNSET, low=0.0, high=1e9, unit="kg", words="mass of the vessel", follows="vessel.body.mass"
     )
 
-    def rules(self, vessel: Boat) -> dict[str, float]:
+    def derived_parameters(self, vessel: Boat) -> dict[str, float]:
         """Return the derivatives and levers from the size, speed and added mass of the vessel.
 
         Args:
@@ -112,9 +112,10 @@ class LinearHull(Force):
         """
         L, T = vessel.length, vessel.draught
         m_x, m_y, sway_below = (
-            self.followed(f"added_mass.{key}", vessel) for key in ("surge", "sway", "sway_below")
+            self.followed_value(f"added_mass.{key}", vessel)
+            for key in ("surge", "sway", "sway_below")
         )
-        d = particulars.derivatives(L, vessel.beam, T, self.trim, self.block)
+        d = particulars.linear_derivatives(L, vessel.beam, T, self.trim, self.block)
         # x: midship seen from the mass centre
         q = 0.5 * self.density * L * T * self.speed
         x = -self.ahead

@@ -5,11 +5,20 @@ from typing import Any, ClassVar
 
 from numba import njit
 
-from boatsim.physics.base import UNSET, Force, Inertia, Mass, Wrench, mass, param, wrench
+from boatsim.physics.base import (
+    UNSET,
+    Force,
+    Inertia,
+    MassMatrix,
+    Wrench,
+    mass_matrix,
+    param,
+    wrench,
+)
 
 
 @njit(inline="always")
-def inertia(q: Any) -> Mass:
+def inertia(q: Any) -> MassMatrix:
     """Return the first and second moment of the shifted mass; the mass itself belongs to the hull.
 
     Args:
@@ -19,7 +28,7 @@ def inertia(q: Any) -> Mass:
         Entries of the mass matrix [kg, kg m, kg m^2] about the origin of motion.
     """
     first = q.hull_mass * q.shift
-    return mass(sway_yaw=first, yaw=first * q.shift)
+    return mass_matrix(sway_yaw=first, yaw=first * q.shift)
 
 
 @njit(inline="always")

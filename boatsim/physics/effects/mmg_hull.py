@@ -46,7 +46,7 @@ def law(m: Any, q: Any) -> Wrench:
     return wrench(X=k * X + q.m_y * m.vr * m.r, Y=k * Y - q.m_x * m.ur * m.r, N=k * q.length * N)
 
 
-def derivative(name: str, axis: str) -> float:
+def derivative_parameter(name: str, axis: str) -> float:
     """Return the parameter of a nondimensional derivative from captive tests."""
     return param(
         0.0,
@@ -103,20 +103,20 @@ class MmgHull(Force):
     m_y: float = param(
         UNSET, low=0.0, high=1e9, unit="kg", words="added mass", follows="added_mass.sway"
     )
-    R_0: float = derivative("R_0", "surge")
-    X_vv: float = derivative("X_vv", "surge")
-    X_vr: float = derivative("X_vr", "surge")
-    X_rr: float = derivative("X_rr", "surge")
-    X_vvvv: float = derivative("X_vvvv", "surge")
-    Y_v: float = derivative("Y_v", "sway")
-    Y_r: float = derivative("Y_r", "sway")
-    Y_vvv: float = derivative("Y_vvv", "sway")
-    Y_vvr: float = derivative("Y_vvr", "sway")
-    Y_vrr: float = derivative("Y_vrr", "sway")
-    Y_rrr: float = derivative("Y_rrr", "sway")
-    N_v: float = derivative("N_v", "yaw")
-    N_r: float = derivative("N_r", "yaw")
-    N_vvv: float = derivative("N_vvv", "yaw")
-    N_vvr: float = derivative("N_vvr", "yaw")
-    N_vrr: float = derivative("N_vrr", "yaw")
-    N_rrr: float = derivative("N_rrr", "yaw")
+    R_0: float = derivative_parameter("R_0", "surge")
+    X_vv: float = derivative_parameter("X_vv", "surge")
+    X_vr: float = derivative_parameter("X_vr", "surge")
+    X_rr: float = derivative_parameter("X_rr", "surge")
+    X_vvvv: float = derivative_parameter("X_vvvv", "surge")
+    Y_v: float = derivative_parameter("Y_v", "sway")
+    Y_r: float = derivative_parameter("Y_r", "sway")
+    Y_vvv: float = derivative_parameter("Y_vvv", "sway")
+    Y_vvr: float = derivative_parameter("Y_vvr", "sway")
+    Y_vrr: float = derivative_parameter("Y_vrr", "sway")
+    Y_rrr: float = derivative_parameter("Y_rrr", "sway")
+    N_v: float = derivative_parameter("N_v", "yaw")
+    N_r: float = derivative_parameter("N_r", "yaw")
+    N_vvv: float = derivative_parameter("N_vvv", "yaw")
+    N_vvr: float = derivative_parameter("N_vvr", "yaw")
+    N_vrr: float = derivative_parameter("N_vrr", "yaw")
+    N_rrr: float = derivative_parameter("N_rrr", "yaw")

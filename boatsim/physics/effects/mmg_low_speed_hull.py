@@ -53,7 +53,7 @@ def law(m: Any, q: Any) -> Wrench:
     return wrench(X=k * X + q.m_y * m.vr * m.r, Y=k * Y - q.m_x * m.ur * m.r, N=k * L * N)
 
 
-def coefficient(words: str, axis: str = "") -> float:
+def coefficient_parameter(words: str, axis: str = "") -> float:
     """Return the parameter of a nondimensional coefficient from captive tests."""
     return param(0.0, low=-10.0, high=10.0, unit="", words=words, calibrates="damping", axis=axis)
 
@@ -103,17 +103,17 @@ class MmgLowSpeedHull(Force):
     m_y: float = param(
         UNSET, low=0.0, high=1e9, unit="kg", words="added mass", follows="added_mass.sway"
     )
-    X_0F: float = coefficient("X_0(F)', resistance ahead", "surge")
-    X_0A: float = coefficient("X_0(A)', resistance astern", "surge")
-    X_vr: float = coefficient("X_vr'", "surge")
-    Y_v: float = coefficient("Y_v'", "sway")
-    Y_r: float = coefficient("Y_r'", "sway")
-    N_v: float = coefficient("N_v'", "yaw")
-    N_r: float = coefficient("N_r'", "yaw")
-    C_D: float = coefficient("C_D, cross-flow drag coefficient of a section")
-    C_rY: float = coefficient(
+    X_0F: float = coefficient_parameter("X_0(F)', resistance ahead", "surge")
+    X_0A: float = coefficient_parameter("X_0(A)', resistance astern", "surge")
+    X_vr: float = coefficient_parameter("X_vr'", "surge")
+    Y_v: float = coefficient_parameter("Y_v'", "sway")
+    Y_r: float = coefficient_parameter("Y_r'", "sway")
+    N_v: float = coefficient_parameter("N_v'", "yaw")
+    N_r: float = coefficient_parameter("N_r'", "yaw")
+    C_D: float = coefficient_parameter("C_D, cross-flow drag coefficient of a section")
+    C_rY: float = coefficient_parameter(
         "C_rY, factor on the yaw rate in the cross flow of the sway force", "sway"
     )
-    C_rN: float = coefficient(
+    C_rN: float = coefficient_parameter(
         "C_rN, factor on the yaw rate in the cross flow of the yaw moment", "yaw"
     )

@@ -7,11 +7,11 @@ from typing import Any, ClassVar
 from numba import njit
 
 from boatsim.physics.base import UNSET, Force, Role, Wrench, param, wrench
-from boatsim.physics.effects.mmg_propeller import open_water
+from boatsim.physics.effects.mmg_propeller import open_water_thrust
 
 
 @njit(inline="always")
-def inflow(m: Any, q: Any) -> float:
+def inflow_speed(m: Any, q: Any) -> float:
     """Return the speed of the water through the propeller [m/s].
 
     The wake fraction decreases with the sideways velocity of the stern; going astern there is no
@@ -59,7 +59,7 @@ def propeller_thrust(m: Any, q: Any, shaft: float) -> float:
     """
     if shaft < 0.0:
         return astern_thrust(shaft, m.ur, q)
-    return float((1.0 - q.thrust_deduction) * open_water(shaft, inflow(m, q), q))
+    return float((1.0 - q.thrust_deduction) * open_water_thrust(shaft, inflow_speed(m, q), q))
 
 
 @njit(inline="always")
@@ -106,7 +106,7 @@ def law(m: Any, q: Any, s: Any) -> Wrench:
     return wrench(X=q.gain * X, Y=k * Y, N=k * q.length * N)
 
 
-def coefficient(words: str) -> float:
+def coefficient_parameter(words: str) -> float:
     """Return the parameter of a nondimensional coefficient from captive tests."""
     return param(0.0, low=-10.0, high=10.0, unit="", words=words)
 
@@ -165,44 +165,46 @@ class MmgLowSpeedPropeller(Force):
     wake: float = param(
         0.0, low=0.0, high=1.0, unit="", words="wake fraction on a straight course ahead, w_P0"
     )
-    wake_tau: float = coefficient(
+    wake_tau: float = coefficient_parameter(
         "tau, decrease of the wake with the sideways velocity of the stern"
     )
-    wake_C_P: float = coefficient("C_P, decrease of the wake with its square")
+    wake_C_P: float = coefficient_parameter("C_P, decrease of the wake with its square")
     propeller_at: float = param(
         -0.5, low=-1.0, high=1.0, unit="", words="x_P', propeller ahead of midship, in lengths"
     )
-    k0: float = coefficient("K_T at J = 0, shaft ahead")
-    k1: float = coefficient("coefficient of J in K_T")
-    k2: float = coefficient("coefficient of J^2 in K_T")
-    astern_C1: float = coefficient("thrust astern over rho n^2 D_P^4 at J_s = 0")
-    astern_C2: float = coefficient("coefficient of J_s in the value before")
-    astern_from: float = coefficient("J_s below which the thrust astern is constant")
-    astern_stop: float = coefficient("thrust astern over rho n^2 D_P^4 below that J_s")
-    aside_low: float = coefficient(
+    k0: float = coefficient_parameter("K_T at J = 0, shaft ahead")
+    k1: float = coefficient_parameter("coefficient of J in K_T")
+    k2: float = coefficient_parameter("coefficient of J^2 in K_T")
+    astern_C1: float = coefficient_parameter("thrust astern over rho n^2 D_P^4 at J_s = 0")
+    astern_C2: float = coefficient_parameter("coefficient of J_s in the value before")
+    astern_from: float = coefficient_parameter("J_s below which the thrust astern is constant")
+    astern_stop: float = coefficient_parameter("thrust astern over rho n^2 D_P^4 below that J_s")
+    aside_low: float = coefficient_parameter(
         "J_s below which the side force of a backing shaft has its first form"
     )
-    aside_high: float = coefficient("J_s above which the side force has its last form")
-    Y_low: float = coefficient("side force over 1/2 rho L d (n D_P)^2 in the first form")
-    Y_low_J: float = coefficient("coefficient of J_s in the value before")
-    Y_mid: float = coefficient("the same in the middle form")
-    Y_mid_J: float = coefficient("coefficient of J_s in the value before")
-    Y_high: float = coefficient("the same in the last form")
-    Y_braked: float = coefficient(
+    aside_high: float = coefficient_parameter("J_s above which the side force has its last form")
+    Y_low: float = coefficient_parameter("side force over 1/2 rho L d (n D_P)^2 in the first form")
+    Y_low_J: float = coefficient_parameter("coefficient of J_s in the value before")
+    Y_mid: float = coefficient_parameter("the same in the middle form")
+    Y_mid_J: float = coefficient_parameter("coefficient of J_s in the value before")
+    Y_high: float = coefficient_parameter("the same in the last form")
+    Y_braked: float = coefficient_parameter(
         "side force over 1/2 rho L d (n P)^2, shaft ahead and ship astern"
     )
-    Y_braked_J: float = coefficient("coefficient of J_s in the value before")
-    Y_braked_JJ: float = coefficient("coefficient of J_s^2 in the value before")
-    N_low: float = coefficient("yaw moment over 1/2 rho L^2 d (n D_P)^2 in the first form")
-    N_low_J: float = coefficient("coefficient of J_s in the value before")
-    N_mid: float = coefficient("the same in the middle form")
-    N_mid_J: float = coefficient("coefficient of J_s in the value before")
-    N_high: float = coefficient("the same in the last form")
-    N_braked: float = coefficient(
+    Y_braked_J: float = coefficient_parameter("coefficient of J_s in the value before")
+    Y_braked_JJ: float = coefficient_parameter("coefficient of J_s^2 in the value before")
+    N_low: float = coefficient_parameter(
+        "yaw moment over 1/2 rho L^2 d (n D_P)^2 in the first form"
+    )
+    N_low_J: float = coefficient_parameter("coefficient of J_s in the value before")
+    N_mid: float = coefficient_parameter("the same in the middle form")
+    N_mid_J: float = coefficient_parameter("coefficient of J_s in the value before")
+    N_high: float = coefficient_parameter("the same in the last form")
+    N_braked: float = coefficient_parameter(
         "yaw moment over 1/2 rho L^2 d (n P)^2, shaft ahead and ship astern"
     )
-    N_braked_J: float = coefficient("coefficient of J_s in the value before")
-    N_braked_JJ: float = coefficient("coefficient of J_s^2 in the value before")
+    N_braked_J: float = coefficient_parameter("coefficient of J_s in the value before")
+    N_braked_JJ: float = coefficient_parameter("coefficient of J_s^2 in the value before")
     gain: float = param(
         1.0,
         low=0.1,

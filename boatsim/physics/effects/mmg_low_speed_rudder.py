@@ -7,8 +7,8 @@ from typing import Any, ClassVar
 from numba import njit
 
 from boatsim.physics.base import UNSET, Force, Role, Wrench, param, wrench
-from boatsim.physics.effects.mmg_low_speed_propeller import inflow, propeller_thrust
-from boatsim.physics.effects.mmg_propeller import open_water
+from boatsim.physics.effects.mmg_low_speed_propeller import inflow_speed, propeller_thrust
+from boatsim.physics.effects.mmg_propeller import open_water_thrust
 
 NEVER = pi  # [rad] default: no stall at any angle of attack
 
@@ -26,7 +26,11 @@ def slipstream_speed(m: Any, q: Any, shaft: float) -> float:
         q: Parameters of the effect.
         shaft: Shaft rate, positive ahead [1/s].
     """
-    V, washed, pulls = inflow(m, q), q.diameter / q.span, open_water(shaft, inflow(m, q), q)
+    V, washed, pulls = (
+        inflow_speed(m, q),
+        q.diameter / q.span,
+        open_water_thrust(shaft, inflow_speed(m, q), q),
+    )
     if shaft >= 0.0 and pulls > 0.0:
         behind = V + q.k_x / q.epsilon * (sqrt(V * V + 8.0 / pi * pulls) - V)
         return float(q.epsilon * sqrt(max(washed * behind * behind + (1.0 - washed) * V * V, 0.0)))
@@ -81,7 +85,7 @@ def law(m: Any, q: Any, s: Any) -> Wrench:
     )
 
 
-def propeller_value(name: str) -> float:
+def propeller_parameter(name: str) -> float:
     """Return a parameter that follows the one of the same name of the propeller."""
     return param(
         UNSET,
@@ -136,18 +140,18 @@ class MmgLowSpeedRudder(Force):
         words="propeller diameter, D_P",
         follows="mmg_low_speed_propeller.diameter",
     )
-    thrust_deduction: float = propeller_value("thrust_deduction")
-    wake: float = propeller_value("wake")
-    wake_tau: float = propeller_value("wake_tau")
-    wake_C_P: float = propeller_value("wake_C_P")
-    propeller_at: float = propeller_value("propeller_at")
-    k0: float = propeller_value("k0")
-    k1: float = propeller_value("k1")
-    k2: float = propeller_value("k2")
-    astern_C1: float = propeller_value("astern_C1")
-    astern_C2: float = propeller_value("astern_C2")
-    astern_from: float = propeller_value("astern_from")
-    astern_stop: float = propeller_value("astern_stop")
+    thrust_deduction: float = propeller_parameter("thrust_deduction")
+    wake: float = propeller_parameter("wake")
+    wake_tau: float = propeller_parameter("wake_tau")
+    wake_C_P: float = propeller_parameter("wake_C_P")
+    propeller_at: float = propeller_parameter("propeller_at")
+    k0: float = propeller_parameter("k0")
+    k1: float = propeller_parameter("k1")
+    k2: float = propeller_parameter("k2")
+    astern_C1: float = propeller_parameter("astern_C1")
+    astern_C2: float = propeller_parameter("astern_C2")
+    astern_from: float = propeller_parameter("astern_from")
+    astern_stop: float = propeller_parameter("astern_stop")
     gain: float = param(
         1.0,
         low=0.1,

@@ -20,7 +20,7 @@ def drift_angle(m: Any) -> float:
 
 
 @njit(inline="always")
-def inflow(m: Any, q: Any) -> float:
+def inflow_speed(m: Any, q: Any) -> float:
     """Return the speed of the water through the propeller [m/s].
 
     The wake fraction decreases with the drift angle at the propeller.
@@ -37,7 +37,7 @@ def inflow(m: Any, q: Any) -> float:
 
 
 @njit(inline="always")
-def open_water(shaft: float, V: float, q: Any) -> float:
+def open_water_thrust(shaft: float, V: float, q: Any) -> float:
     """Return K_T n^2 D^2 [m^2/s^2] for K_T = k0 + k1 J + k2 J |J|.
 
     It is evaluated without J = V / (n D), so that the shaft may stand still. Ahead it is the
@@ -64,7 +64,7 @@ def law(m: Any, q: Any, s: Any) -> Wrench:
     Returns:
         Force [N] and moment [N m] in body axes.
     """
-    thrust = q.density * q.diameter * q.diameter * open_water(s.shaft, inflow(m, q), q)
+    thrust = q.density * q.diameter * q.diameter * open_water_thrust(s.shaft, inflow_speed(m, q), q)
     return wrench(X=q.gain * (1.0 - q.thrust_deduction) * thrust)
 
 

@@ -7,7 +7,7 @@ from typing import Any, ClassVar
 from numba import njit
 
 from boatsim.physics.base import UNSET, Force, Role, Wrench, param, wrench
-from boatsim.physics.effects.mmg_propeller import drift_angle, inflow, open_water
+from boatsim.physics.effects.mmg_propeller import drift_angle, inflow_speed, open_water_thrust
 
 NEVER = pi  # [rad] default: no stall at any angle of attack
 
@@ -23,8 +23,8 @@ def slipstream_speed(m: Any, q: Any, shaft: float) -> float:
         q: Parameters of the effect.
         shaft: Shaft rate, positive ahead [1/s].
     """
-    V, washed = inflow(m, q), q.diameter / q.span
-    faster = sqrt(max(V * V + 8.0 / pi * open_water(shaft, V, q), 0.0)) - V
+    V, washed = inflow_speed(m, q), q.diameter / q.span
+    faster = sqrt(max(V * V + 8.0 / pi * open_water_thrust(shaft, V, q), 0.0)) - V
     behind = V + q.kappa * faster
     return float(q.epsilon * sqrt(max(washed * behind * behind + (1.0 - washed) * V * V, 0.0)))
 

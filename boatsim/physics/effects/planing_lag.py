@@ -57,7 +57,14 @@ class PlaningLag(Reaction):
         spread=8.0,
     )
     least: float = param(
-        0.2, low=0.02, high=1.0, unit="", words="smallest kappa", fit=True, spread=0.3, absent=0.2
+        0.2,
+        low=0.02,
+        high=1.0,
+        unit="",
+        words="smallest kappa",
+        fit=True,
+        spread=0.3,
+        inactive_value=0.2,
     )
     hull_mass: float = param(
         UNSET,

@@ -6,11 +6,11 @@ from typing import Any, ClassVar
 
 from numba import njit
 
-from boatsim.physics.base import Measurement, Shown, param
+from boatsim.physics.base import MeasuredMotion, Measurement, param
 
 
 @njit(inline="always")
-def shown(m: Shown, q: Any) -> Shown:
+def apply_measurement_error(m: MeasuredMotion, q: Any) -> MeasuredMotion:
     """Return the recorded motion: position and velocity of a point away from the mass centre.
 
     Args:
@@ -22,7 +22,7 @@ def shown(m: Shown, q: Any) -> Shown:
     """
     c, s = cos(m.psi), sin(m.psi)
     x, y = m.x + c * q.forward - s * q.starboard, m.y + s * q.forward + c * q.starboard
-    return Shown(
+    return MeasuredMotion(
         x,
         y,
         m.z,
@@ -52,7 +52,7 @@ class PositionFrameError(Measurement):
     needs: ClassVar = ("sway", "yaw")
     words: ClassVar[str] = "recorded positions are those of another point of the hull (not physics)"
     shown_by: ClassVar[str] = "turning on the spot"
-    shown: ClassVar = shown
+    apply_measurement_error: ClassVar = apply_measurement_error
 
     forward: float = param(
         0.0,

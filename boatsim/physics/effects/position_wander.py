@@ -5,11 +5,11 @@ from typing import Any, ClassVar
 
 from numba import njit
 
-from boatsim.physics.base import Wander, Wandering, param
+from boatsim.physics.base import DriftingMeasurement, InstrumentDrift, param
 
 
 @njit(inline="always")
-def wander(q: Any) -> Wander:
+def instrument_drift(q: Any) -> InstrumentDrift:
     """Return the noise model; north and east errors are independent and have the same rms.
 
     Args:
@@ -18,11 +18,11 @@ def wander(q: Any) -> Wander:
     Returns:
         Rms of the position [m] and heading [rad] errors and their correlation time [s].
     """
-    return Wander(q.position, q.heading, q.time)
+    return InstrumentDrift(q.position, q.heading, q.time)
 
 
 @dataclass(frozen=True)
-class PositionWander(Wandering):
+class PositionWander(DriftingMeasurement):
     """First-order Gauss-Markov error of position and heading.
 
     e' = -e / time + white noise,  rms of e = `position` [m] or `heading` [rad]
@@ -40,7 +40,7 @@ class PositionWander(Wandering):
         "J. Rankin, An error model for sensor simulation: GPS and differential GPS, IEEE PLANS "
         "1994 (Gauss-Markov)"
     )
-    wander: ClassVar = wander
+    instrument_drift: ClassVar = instrument_drift
     strength: ClassVar = ("position", "heading")
     starts: ClassVar = tuple(
         {"position": sd, "time": t} for sd in (4.0, 20.0) for t in (6.0, 20.0, 60.0)
@@ -61,5 +61,5 @@ class PositionWander(Wandering):
         words="correlation time of the errors",
         fit=True,
         spread=20.0,
-        absent=20.0,
+        inactive_value=20.0,
     )

@@ -6,13 +6,13 @@ from typing import Any, ClassVar
 from numba import njit
 
 from boatsim.physics.base import Force, Role, Wrench, param
-from boatsim.physics.effects.thruster import Thruster, at_mount
+from boatsim.physics.effects.thruster import Thruster, thrust_wrench_at_mount
 
 ThrusterSignals = Thruster.signals_type()
 
 
 @njit(inline="always")
-def thrust(n: float, q: Any) -> float:
+def propeller_thrust(n: float, q: Any) -> float:
     """Return k n |n| [N], with a coefficient for each sense of rotation.
 
     Args:
@@ -34,7 +34,7 @@ def law(m: Any, q: Any, s: Any) -> Wrench:
     Returns:
         Force [N] and moment [N m] in body axes.
     """
-    return at_mount(q.gain * thrust(s.shaft, q), s, q)
+    return thrust_wrench_at_mount(q.gain * propeller_thrust(s.shaft, q), s, q)
 
 
 @njit(inline="always")
@@ -45,7 +45,7 @@ def as_thruster(s: Any, q: Any) -> Any:
         s: Signals of the propeller.
         q: Parameters of the propeller.
     """
-    return ThrusterSignals(thrust(s.shaft, q), s.angle, s.cos_angle, s.sin_angle)
+    return ThrusterSignals(propeller_thrust(s.shaft, q), s.angle, s.cos_angle, s.sin_angle)
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,16 @@ from typing import Any, ClassVar
 
 from numba import njit
 
-from boatsim.physics.base import UNSET, Force, Release, Wrench, param, preset, shift, wrench
+from boatsim.physics.base import (
+    UNSET,
+    CoefficientRelease,
+    Force,
+    Wrench,
+    param,
+    preset_effect,
+    shift_parameter,
+    wrench,
+)
 
 EVER = 1e6  # [s]
 
@@ -89,7 +98,7 @@ class Push(Force):
 
 ALWAYS = {"begin": -EVER, "end": EVER}
 
-SteadyForce = preset(
+SteadyForce = preset_effect(
     Push,
     "SteadyForce",
     words="a constant force or moment acts on the hull, always in the same direction of the hull",
@@ -104,7 +113,7 @@ SteadyForce = preset(
     fixed=ALWAYS | dict.fromkeys(("mean", "amplitude", "arm", "heel_arm"), 0.0),
 )
 
-Gust = preset(
+Gust = preset_effect(
     Push,
     "Gust",
     words="a sinusoidal force acts in one direction",
@@ -115,7 +124,7 @@ Gust = preset(
 
 
 @dataclass(frozen=True)
-class GustOffCentre(Release):
+class GustOffCentre(CoefficientRelease):
     """Yaw moment proportional to the side force of the vessel's own gust."""
 
     words: ClassVar[str] = (
@@ -124,7 +133,7 @@ class GustOffCentre(Release):
     shown_by: ClassVar[str] = "the same manoeuvre with the disturbance from another side"
     source: ClassVar[str] = "Y. Huang and Z. Ji, Autonomous boat dynamics, eq. 7, with a lever"
 
-    arm: float = shift(
+    arm: float = shift_parameter(
         "gust.arm",
         words="lever that the model omits",
         unit="m",

@@ -6,7 +6,15 @@ from typing import Any, ClassVar
 
 from numba import njit
 
-from boatsim.physics.base import Array, Channel, Course, followed, mean_of, param, preset
+from boatsim.physics.base import (
+    Array,
+    ChannelEffect,
+    SignalSegment,
+    longest_lag_step,
+    param,
+    preset_effect,
+    segment_mean,
+)
 from boatsim.physics.effects.servo import NONE, approach_command, ramp_time
 
 SAME = 1e-9  # share of a ramp: a smaller distance to zero counts as zero
@@ -15,9 +23,9 @@ INSTANT = 2.0  # [rad/s] 115 deg/s; a faster steering counts as immediate
 
 
 @njit(inline="always")
-def channel(
-    x: Course, side: float, source: float, memory: Array, at: int, dt: float, q: Any
-) -> Course:
+def transform_signal(
+    x: SignalSegment, side: float, source: float, memory: Array, at: int, dt: float, q: Any
+) -> SignalSegment:
     """Return the ramp to the command, then the lag, then the command itself.
 
     Args:
@@ -35,14 +43,14 @@ def channel(
     if q.rate >= q.instant:
         memory[at] = x.end
         return x
-    return approach_command(mean_of(x), memory, at, dt, q.rate, q.lag)
+    return approach_command(segment_mean(x), memory, at, dt, q.rate, q.lag)
 
 
 @njit(inline="always")
-def pause(x: float, memory: Array, at: int, q: Any) -> float:
+def time_to_discontinuity(x: float, memory: Array, at: int, q: Any) -> float:
     """Return the time until the ramp ends or passes zero, where thrust laws have a kink.
 
-    After the ramp it is the time over which a `Course` follows the lag.
+    After the ramp it is the time over which a `SignalSegment` follows the lag.
 
     Args:
         x: Signal that enters now, assumed constant.
@@ -51,7 +59,7 @@ def pause(x: float, memory: Array, at: int, q: Any) -> float:
         q: Parameters of the effect, with the names and units of its class.
 
     Returns:
-        Time [s] during which the three points of a `Course` describe the signal exactly; infinite
+        Time [s] for which three points of a `SignalSegment` describe the signal exactly; infinite
         if it is constant.
     """
     y = memory[at]
@@ -60,12 +68,12 @@ def pause(x: float, memory: Array, at: int, q: Any) -> float:
         return inf
     left = ramp_time(gap, q.rate, q.lag)
     if left <= 0.0:
-        return followed(q.lag if q.lag >= NONE else 0.0)
+        return longest_lag_step(q.lag if q.lag >= NONE else 0.0)
     return min(left, abs(y) / q.rate) if x * y < 0.0 and abs(y) > SAME * gap else left
 
 
 @dataclass(frozen=True)
-class RateLimit(Channel):
+class RateLimit(ChannelEffect):
     """Rate limit of a throttle handle, a rudder or a thrust.
 
     y' = rate sign(x - y)  while |x - y| > rate lag,  then  y' = (x - y) / lag
@@ -78,8 +86,8 @@ class RateLimit(Channel):
     shown_by: ClassVar[str] = "large steps of the command"
     acts_on: ClassVar[str] = ""
     slots: ClassVar[int] = 1
-    channel: ClassVar = channel
-    pause: ClassVar = pause
+    transform_signal: ClassVar = transform_signal
+    time_to_discontinuity: ClassVar = time_to_discontinuity
 
     rate: float = param(
         NEVER,
@@ -100,7 +108,7 @@ class RateLimit(Channel):
     )
 
 
-SteeringRateLimit = preset(
+SteeringRateLimit = preset_effect(
     RateLimit,
     "SteeringRateLimit",
     words="the rate of the steering machine is limited",
@@ -116,7 +124,7 @@ SteeringRateLimit = preset(
             "unit": "rad/s",
             "words": "largest rate of turn of the steering",
             "spread": 2.0,
-            "absent": INSTANT,
+            "inactive_value": INSTANT,
         },
         "lag": {"spread": 0.3},
     },

@@ -5,7 +5,15 @@ from typing import Any, ClassVar
 
 from numba import njit
 
-from boatsim.physics.base import Force, Release, Role, Wrench, param, shift, wrench
+from boatsim.physics.base import (
+    CoefficientRelease,
+    Force,
+    Role,
+    Wrench,
+    param,
+    shift_parameter,
+    wrench,
+)
 
 
 @njit(inline="always")
@@ -83,7 +91,7 @@ class ReversingJet(Force):
 
 
 @dataclass(frozen=True)
-class JetLeak(Release):
+class JetLeak(CoefficientRelease):
     """Share of the jet that leaks past the bucket.
 
     Thrust and moment then do not vanish at a bucket angle of 45 deg.
@@ -100,6 +108,6 @@ class JetLeak(Release):
     )
     starts: ClassVar = ({"fraction": 0.1},)
 
-    fraction: float = shift(
+    fraction: float = shift_parameter(
         "reversing_jet.leak", words="share of the jet", unit="", spread=0.3, low=-1.0, high=1.0
     )

@@ -6,7 +6,17 @@ from typing import Any, ClassVar
 from numba import njit
 
 from boatsim.physics import particulars
-from boatsim.physics.base import UNSET, Boat, Force, Release, Wrench, factor, param, shift, wrench
+from boatsim.physics.base import (
+    UNSET,
+    Boat,
+    CoefficientRelease,
+    Force,
+    Wrench,
+    factor_parameter,
+    param,
+    shift_parameter,
+    wrench,
+)
 
 
 @njit(inline="always")
@@ -60,7 +70,7 @@ class RightingArm(Force):
         words="metacentric height GM, from which the stiffness follows",
     )
 
-    def rules(self, vessel: Boat) -> dict[str, float]:
+    def derived_parameters(self, vessel: Boat) -> dict[str, float]:
         """Return the stiffness m g GM of the vessel's weight at the given metacentric height.
 
         Args:
@@ -70,7 +80,7 @@ class RightingArm(Force):
 
 
 @dataclass(frozen=True)
-class MetacentricHeightError(Release):
+class MetacentricHeightError(CoefficientRelease):
     """Righting moment that differs from its specified value by a factor."""
 
     words: ClassVar[str] = (
@@ -85,13 +95,13 @@ class MetacentricHeightError(Release):
     # a period off is a separate local maximum of the likelihood
     starts: ClassVar = ({"factor": 0.5}, {"factor": 0.8}, {"factor": 1.25}, {"factor": 2.0})
 
-    factor: float = factor(
+    factor: float = factor_parameter(
         "righting_arm.stiffness", words="metacentric height over its specified value", axis="roll"
     )
 
 
 @dataclass(frozen=True)
-class RightingArmStiffening(Release):
+class RightingArmStiffening(CoefficientRelease):
     """Cubic term of the righting arm, so that the roll period depends on the amplitude."""
 
     words: ClassVar[str] = (
@@ -101,7 +111,7 @@ class RightingArmStiffening(Release):
     refines: ClassVar[str] = "restoring"
     shown_by: ClassVar[str] = "a roll decay from a large heel"
 
-    cubic: float = shift(
+    cubic: float = shift_parameter(
         "righting_arm.cubic",
         words="relative change of the stiffness per heel squared",
         unit="1/rad^2",

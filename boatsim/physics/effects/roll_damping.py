@@ -67,7 +67,7 @@ class RollDamping(Force):
         follows="righting_arm.stiffness",
     )
 
-    def rules(self, vessel: Boat) -> dict[str, float]:
+    def derived_parameters(self, vessel: Boat) -> dict[str, float]:
         """Return the damping coefficient of the vessel's stiffness, inertia, form and speed.
 
         Args:
@@ -76,21 +76,26 @@ class RollDamping(Force):
         Raises:
             BadInput: The vessel lacks an effect on which the rule builds.
         """
-        inertia = vessel.body.roll_inertia + self._water(vessel)
+        inertia = vessel.body.roll_inertia + self._added_roll_inertia(vessel)
         ratio = self.at_rest + (
-            self._with_headway(vessel, self.stiffness) if self.round_bilge else 0.0
+            self._damping_ratio_from_speed(vessel, self.stiffness) if self.round_bilge else 0.0
         )
         return {"roll": 2.0 * ratio * sqrt(self.stiffness * inertia)}
 
-    def _with_headway(self, vessel: Boat, stiffness: float) -> float:
+    def _damping_ratio_from_speed(self, vessel: Boat, stiffness: float) -> float:
         """Return the damping ratio that forward speed adds."""
-        block, speed = (self.followed(f"linear_hull.{key}", vessel) for key in ("block", "speed"))
+        block, speed = (
+            self.followed_value(f"linear_hull.{key}", vessel) for key in ("block", "speed")
+        )
         height = stiffness / (vessel.body.mass * particulars.GRAVITY)
-        return particulars.roll_ratio_by_speed(vessel.length, vessel.beam, block, height, speed)
+        return particulars.roll_damping_ratio_by_speed(
+            vessel.length, vessel.beam, block, height, speed
+        )
 
-    def _water(self, vessel: Boat) -> float:
+    def _added_roll_inertia(self, vessel: Boat) -> float:
         """Return the roll added inertia about the origin [kg m^2]."""
         roll, sway, below = (
-            self.followed(f"added_mass.{key}?", vessel) for key in ("roll", "sway", "sway_below")
+            self.followed_value(f"added_mass.{key}?", vessel)
+            for key in ("roll", "sway", "sway_below")
         )
         return roll + sway * below**2

@@ -5,11 +5,11 @@ from typing import Any, ClassVar
 
 from numba import njit
 
-from boatsim.physics.base import Measurement, Shown, param
+from boatsim.physics.base import MeasuredMotion, Measurement, param
 
 
 @njit(inline="always")
-def shown(m: Shown, q: Any) -> Shown:
+def apply_measurement_error(m: MeasuredMotion, q: Any) -> MeasuredMotion:
     """Return the recorded motion: phi plus the offset.
 
     Args:
@@ -19,7 +19,9 @@ def shown(m: Shown, q: Any) -> Shown:
     Returns:
         The recorded motion.
     """
-    return Shown(m.x, m.y, m.z, m.phi + q.offset, m.theta, m.psi, m.u, m.v, m.w, m.p, m.q, m.r)
+    return MeasuredMotion(
+        m.x, m.y, m.z, m.phi + q.offset, m.theta, m.psi, m.u, m.v, m.w, m.p, m.q, m.r
+    )
 
 
 @dataclass(frozen=True)
@@ -35,7 +37,7 @@ class RollOffset(Measurement):
     words: ClassVar[str] = "the recorded roll has a constant error (not physics)"
     shown_by: ClassVar[str] = "a roll decay from a large heel"
     source: ClassVar[str] = "sensor misaligned, or set to zero on a hull with a list"
-    shown: ClassVar = shown
+    apply_measurement_error: ClassVar = apply_measurement_error
 
     offset: float = param(
         0.0,

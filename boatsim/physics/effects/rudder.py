@@ -7,7 +7,17 @@ from typing import Any, ClassVar
 from numba import njit
 
 from boatsim.physics import particulars
-from boatsim.physics.base import UNSET, Boat, Force, Release, Role, Wrench, number, param, wrench
+from boatsim.physics.base import (
+    UNSET,
+    Boat,
+    CoefficientRelease,
+    Force,
+    Role,
+    Wrench,
+    param,
+    replacement_parameter,
+    wrench,
+)
 
 NEVER = 0.5 * pi  # [rad] larger than any rudder angle: no stall
 
@@ -92,7 +102,7 @@ class Rudder(Force):
         0.0, low=-100.0, high=100.0, unit="m", words="place of the rudder below the mass centre"
     )
 
-    def rules(self, vessel: Boat) -> dict[str, float]:
+    def derived_parameters(self, vessel: Boat) -> dict[str, float]:
         """Return the coefficients of a rudder of the given area; empty if none is given.
 
         Args:
@@ -104,15 +114,15 @@ class Rudder(Force):
         if not self.area:
             return {}
         density, block, arm = (
-            self.followed(f"linear_hull.{key}", vessel) for key in ("density", "block", "arm")
+            self.followed_value(f"linear_hull.{key}", vessel) for key in ("density", "block", "arm")
         )
-        slope = particulars.rudder_slope(self.area, self.aspect, self.inflow, density)
-        sway = -(1.0 + particulars.hull_share(block)) * slope
+        slope = particulars.rudder_force_slope(self.area, self.aspect, self.inflow, density)
+        sway = -(1.0 + particulars.hull_force_ratio(block)) * slope
         return {"sway": sway, "yaw": self.at * sway, "roll": (arm - self.below) * sway}
 
 
 @dataclass(frozen=True)
-class RudderStall(Release):
+class RudderStall(CoefficientRelease):
     """Stall of the rudder: its force is constant beyond an angle."""
 
     words: ClassVar[str] = "the rudder stalls: beyond an angle its force does not increase"
@@ -122,7 +132,7 @@ class RudderStall(Release):
     )
     thresholds: ClassVar = {"angle": (0.3, 0.45, 0.6, 0.75, 0.9)}
 
-    angle: float = number(
+    angle: float = replacement_parameter(
         "rudder.stall",
         "mmg_rudder.stall",
         "mmg_low_speed_rudder.stall",
@@ -131,5 +141,5 @@ class RudderStall(Release):
         spread=1.0,
         low=0.02,
         high=NEVER,
-        absent=NEVER,
+        inactive_value=NEVER,
     )

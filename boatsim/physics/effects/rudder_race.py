@@ -78,7 +78,7 @@ class RudderRace(Force):
         words="side of the force at a positive angle, 1: starboard; default: as the rudder",
     )
 
-    def rules(self, vessel: Boat) -> dict[str, float]:
+    def derived_parameters(self, vessel: Boat) -> dict[str, float]:
         """Return place and sense of the vessel's rudder.
 
         Args:
@@ -87,5 +87,5 @@ class RudderRace(Force):
         Raises:
             BadInput: The vessel has no rudder.
         """
-        sway, yaw = (self.followed(f"rudder.{axis}", vessel) for axis in ("sway", "yaw"))
+        sway, yaw = (self.followed_value(f"rudder.{axis}", vessel) for axis in ("sway", "yaw"))
         return {"at": yaw / sway if sway else -0.5 * vessel.length, "side": copysign(1.0, sway)}

@@ -6,7 +6,15 @@ from typing import Any, ClassVar
 
 from numba import njit
 
-from boatsim.physics.base import Array, Channel, Course, course, followed, mean_of, param
+from boatsim.physics.base import (
+    Array,
+    ChannelEffect,
+    SignalSegment,
+    longest_lag_step,
+    param,
+    segment_mean,
+    segment_with_mean,
+)
 
 NONE = 1e-4  # [s] a shorter lag counts as none
 
@@ -27,7 +35,7 @@ def ramp_time(gap: float, rate: float, lag: float) -> float:
 @njit(inline="always")
 def approach_command(
     goal: float, memory: Array, at: int, dt: float, rate: float, lag: float
-) -> Course:
+) -> SignalSegment:
     """Return the course towards a constant command: at the largest rate, then as a first-order lag.
 
     Args:
@@ -56,13 +64,13 @@ def approach_command(
         # exactly zero, so that rounding does not leave a ramp that needs another step
         rest = 0.0
     memory[at] = goal - rest
-    return course(y, y + area / dt, memory[at])
+    return segment_with_mean(y, y + area / dt, memory[at])
 
 
 @njit(inline="always")
-def channel(
-    x: Course, side: float, source: float, memory: Array, at: int, dt: float, q: Any
-) -> Course:
+def transform_signal(
+    x: SignalSegment, side: float, source: float, memory: Array, at: int, dt: float, q: Any
+) -> SignalSegment:
     """Return the course towards the command limited to the range.
 
     Args:
@@ -77,12 +85,14 @@ def channel(
     Returns:
         The signal that leaves the effect, over the same step.
     """
-    return approach_command(min(max(mean_of(x), -q.range), q.range), memory, at, dt, q.rate, q.lag)
+    return approach_command(
+        min(max(segment_mean(x), -q.range), q.range), memory, at, dt, q.rate, q.lag
+    )
 
 
 @njit(inline="always")
-def pause(x: float, memory: Array, at: int, q: Any) -> float:
-    """Return the time until the ramp ends, and then the time over which a `Course` follows the lag.
+def time_to_discontinuity(x: float, memory: Array, at: int, q: Any) -> float:
+    """Return the time until the ramp ends, then that for which three points describe the lag.
 
     Args:
         x: Signal that enters now, assumed constant.
@@ -91,15 +101,15 @@ def pause(x: float, memory: Array, at: int, q: Any) -> float:
         q: Parameters of the effect, with the names and units of its class.
 
     Returns:
-        Time [s] during which the three points of a `Course` describe the signal exactly; infinite
+        Time [s] for which three points of a `SignalSegment` describe the signal exactly; infinite
         if it is constant.
     """
     left = ramp_time(min(max(x, -q.range), q.range) - memory[at], q.rate, q.lag)
-    return left if left > 0.0 else followed(q.lag if q.lag >= NONE else 0.0)
+    return left if left > 0.0 else longest_lag_step(q.lag if q.lag >= NONE else 0.0)
 
 
 @dataclass(frozen=True)
-class Servo(Channel):
+class Servo(ChannelEffect):
     """Steering angle that follows its command with a range, a rate limit and a first-order lag.
 
     y' = rate sign(x - y)  while |x - y| > rate lag,  then  y' = (x - y) / lag,  |x| <= range
@@ -114,8 +124,8 @@ class Servo(Channel):
     )
     acts_on: ClassVar[str] = "angle"
     slots: ClassVar[int] = 1
-    channel: ClassVar = channel
-    pause: ClassVar = pause
+    transform_signal: ClassVar = transform_signal
+    time_to_discontinuity: ClassVar = time_to_discontinuity
 
     range: float = param(pi / 4, low=0.0, high=pi, unit="rad", words="largest angle to either side")
     rate: float = param(

@@ -5,7 +5,7 @@ from typing import Any, ClassVar
 
 from numba import njit
 
-from boatsim.physics.base import Array, Channel, Course, param
+from boatsim.physics.base import Array, ChannelEffect, SignalSegment, param
 from boatsim.physics.kinds.channel import COMMANDS
 
 LONG = 1e3  # [s] a command held longer than this is the initial condition of a run
@@ -26,9 +26,9 @@ def play_operator(y: float, x: float, half: float) -> float:
 
 
 @njit(inline="always")
-def channel(
-    x: Course, side: float, source: float, memory: Array, at: int, dt: float, q: Any
-) -> Course:
+def transform_signal(
+    x: SignalSegment, side: float, source: float, memory: Array, at: int, dt: float, q: Any
+) -> SignalSegment:
     """Return the angle that the command drags along through the play.
 
     At the start of a run a parameter gives the position within the play.
@@ -49,11 +49,11 @@ def channel(
     begin = play_operator(memory[at], x.begin, half)
     middle = play_operator(begin, x.middle, half)
     memory[at] = play_operator(middle, x.end, half)
-    return Course(begin, middle, memory[at])
+    return SignalSegment(begin, middle, memory[at])
 
 
 @dataclass(frozen=True)
-class SteeringBacklash(Channel):
+class SteeringBacklash(ChannelEffect):
     """Play operator between the steering command and the angle of the thruster or rudder.
 
     y(t) = min(max(y(t-), x(t) - width / 2), x(t) + width / 2)
@@ -73,7 +73,7 @@ class SteeringBacklash(Channel):
     slots: ClassVar[int] = 1
     stage: ClassVar[int] = COMMANDS
     either_side: ClassVar[bool] = True
-    channel: ClassVar = channel
+    transform_signal: ClassVar = transform_signal
     thresholds: ClassVar = {"width": (0.07, 0.3)}
     strength: ClassVar = ("width",)
 

@@ -5,12 +5,12 @@ from typing import Any, ClassVar
 
 from numba import njit
 
-from boatsim.physics.base import Array, Channel, Course, param, preset
+from boatsim.physics.base import Array, ChannelEffect, SignalSegment, param, preset_effect
 from boatsim.physics.kinds.channel import DEEDS
 
 
 @njit(inline="always")
-def with_offset(x: float, side: float, q: Any) -> float:
+def angle_with_offset(x: float, side: float, q: Any) -> float:
     """Return the angle with the offset of its side, and gain |x| added.
 
     Args:
@@ -22,9 +22,9 @@ def with_offset(x: float, side: float, q: Any) -> float:
 
 
 @njit(inline="always")
-def channel(
-    x: Course, side: float, source: float, memory: Array, at: int, dt: float, q: Any
-) -> Course:
+def transform_signal(
+    x: SignalSegment, side: float, source: float, memory: Array, at: int, dt: float, q: Any
+) -> SignalSegment:
     """Return the offset angle at each of the three instants.
 
     Args:
@@ -39,13 +39,15 @@ def channel(
     Returns:
         The signal that leaves the effect, over the same step.
     """
-    return Course(
-        with_offset(x.begin, side, q), with_offset(x.middle, side, q), with_offset(x.end, side, q)
+    return SignalSegment(
+        angle_with_offset(x.begin, side, q),
+        angle_with_offset(x.middle, side, q),
+        angle_with_offset(x.end, side, q),
     )
 
 
 @dataclass(frozen=True)
-class SteeringOffset(Channel):
+class SteeringOffset(ChannelEffect):
     """Constant error of each steering angle, with an optional asymmetry.
 
     y = x + offset(side) + gain |x|
@@ -55,7 +57,7 @@ class SteeringOffset(Channel):
     shown_by: ClassVar[str] = "straight runs ahead and astern"
     acts_on: ClassVar[str] = "angle"
     stage: ClassVar[int] = DEEDS
-    channel: ClassVar = channel
+    transform_signal: ClassVar = transform_signal
 
     port: float = param(
         0.0, low=-0.6, high=0.6, unit="rad", words="added to the port angle", fit=True, spread=0.12
@@ -87,7 +89,7 @@ class SteeringOffset(Channel):
     )
 
 
-SteeringAsymmetry = preset(
+SteeringAsymmetry = preset_effect(
     SteeringOffset,
     "SteeringAsymmetry",
     words="the same angle steers more strongly to one side than to the other",

@@ -5,7 +5,7 @@ from typing import Any, ClassVar
 
 from numba import njit
 
-from boatsim.physics.base import Force, Wrench, param, preset, wrench
+from boatsim.physics.base import Force, Wrench, param, preset_effect, wrench
 
 # [kg] bounds for a boat of 4.6 kg: no added mass exceeds twice the mass of the hull
 TWICE = (-9.2, 9.2)
@@ -56,7 +56,7 @@ class SwayYawCoupling(Force):
     mass: float = param(0.0, low=-1e9, high=1e9, unit="kg", words="X_vr")
 
 
-SpeedLossInTurn = preset(
+SpeedLossInTurn = preset_effect(
     SwayYawCoupling,
     "SpeedLossInTurn",
     words="a hull that drifts while it turns loses speed, in proportion to drift times yaw rate",

@@ -14,7 +14,7 @@ NEAR = 0.05  # [m] regularises the direction of the pull at the anchor
 
 
 @njit(inline="always")
-def elongation(beyond: float) -> float:
+def line_elongation(beyond: float) -> float:
     """Return the elongation of the line [m], smooth where it becomes taut.
 
     Args:
@@ -40,7 +40,7 @@ def law(m: Any, q: Any) -> Wrench:
     north = q.north - m.x - q.at * m.cos_psi  # [m] from the attachment on the boat to the anchor
     east = q.east - m.y - q.at * m.sin_psi
     distance = sqrt(north * north + east * east + NEAR * NEAR)
-    pull = (q.tension + q.stiffness * elongation(distance - q.length)) / distance
+    pull = (q.tension + q.stiffness * line_elongation(distance - q.length)) / distance
     X = pull * (m.cos_psi * north + m.sin_psi * east) - q.drag * m.ur
     Y = pull * (m.cos_psi * east - m.sin_psi * north) - q.drag * (m.vr + q.at * m.r)
     return wrench(X=X, Y=Y, N=q.at * Y)
@@ -107,7 +107,7 @@ class Tether(Force):
         words="attachment ahead of the origin; default: the stern",
     )
 
-    def rules(self, vessel: Boat) -> dict[str, float]:
+    def derived_parameters(self, vessel: Boat) -> dict[str, float]:
         """Return the attachment, by default at the stern, half a length behind.
 
         Args:

@@ -5,7 +5,7 @@ from typing import Any, ClassVar
 
 from numba import njit
 
-from boatsim.physics.base import Array, Channel, Course, param, preset
+from boatsim.physics.base import Array, ChannelEffect, SignalSegment, param, preset_effect
 from boatsim.physics.kinds.channel import COMMANDS
 
 
@@ -21,9 +21,9 @@ def outside_deadband(x: float, q: Any) -> float:
 
 
 @njit(inline="always")
-def channel(
-    x: Course, side: float, source: float, memory: Array, at: int, dt: float, q: Any
-) -> Course:
+def transform_signal(
+    x: SignalSegment, side: float, source: float, memory: Array, at: int, dt: float, q: Any
+) -> SignalSegment:
     """Return the signal beyond the dead band at each of the three instants.
 
     Args:
@@ -38,13 +38,13 @@ def channel(
     Returns:
         The signal that leaves the effect, over the same step.
     """
-    return Course(
+    return SignalSegment(
         outside_deadband(x.begin, q), outside_deadband(x.middle, q), outside_deadband(x.end, q)
     )
 
 
 @dataclass(frozen=True)
-class ThrustDeadband(Channel):
+class ThrustDeadband(ChannelEffect):
     """Dead band by friction of motor and shaft, symmetric ahead and astern.
 
     y = x - min(max(x, -width), width)
@@ -57,7 +57,7 @@ class ThrustDeadband(Channel):
     acts_on: ClassVar[str] = "thrust"
     stage: ClassVar[int] = COMMANDS
     either_side: ClassVar[bool] = True
-    channel: ClassVar = channel
+    transform_signal: ClassVar = transform_signal
     thresholds: ClassVar = {"width": (0.02, 0.1, 0.3)}
 
     width: float = param(
@@ -65,7 +65,7 @@ class ThrustDeadband(Channel):
     )
 
 
-ShaftDeadband = preset(
+ShaftDeadband = preset_effect(
     ThrustDeadband,
     "ShaftDeadband",
     words="small commands do not turn the shaft and all shaft rates are reduced by a constant",

@@ -5,14 +5,14 @@ from typing import Any, ClassVar
 
 from numba import njit
 
-from boatsim.physics.base import Array, Channel, Course, param
+from boatsim.physics.base import Array, ChannelEffect, SignalSegment, param
 from boatsim.physics.kinds.channel import DEEDS
 
 
 @njit(inline="always")
-def channel(
-    x: Course, side: float, source: float, memory: Array, at: int, dt: float, q: Any
-) -> Course:
+def transform_signal(
+    x: SignalSegment, side: float, source: float, memory: Array, at: int, dt: float, q: Any
+) -> SignalSegment:
     """Return the port signal times 1 + f, the starboard signal times 1 - f.
 
     Args:
@@ -28,11 +28,11 @@ def channel(
         The signal that leaves the effect, over the same step.
     """
     share = 1.0 - side * q.fraction
-    return Course(x.begin * share, x.middle * share, x.end * share)
+    return SignalSegment(x.begin * share, x.middle * share, x.end * share)
 
 
 @dataclass(frozen=True)
-class ThrustImbalance(Channel):
+class ThrustImbalance(ChannelEffect):
     """Relative difference between port and starboard thrust, ahead and astern alike.
 
     T_port = (1 + f) T,  T_starboard = (1 - f) T,  f = `fraction`
@@ -42,7 +42,7 @@ class ThrustImbalance(Channel):
     shown_by: ClassVar[str] = "straight runs ahead and astern with equal commands"
     acts_on: ClassVar[str] = "thrust|shaft"
     stage: ClassVar[int] = DEEDS
-    channel: ClassVar = channel
+    transform_signal: ClassVar = transform_signal
 
     fraction: float = param(
         0.0,

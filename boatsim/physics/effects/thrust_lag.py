@@ -6,16 +6,23 @@ from typing import Any, ClassVar
 
 from numba import njit
 
-from boatsim.physics.base import Array, Channel, Course, followed, lagged, param
+from boatsim.physics.base import (
+    Array,
+    ChannelEffect,
+    SignalSegment,
+    first_order_lag,
+    longest_lag_step,
+    param,
+)
 
 NONE = 1e-4  # [s] a shorter lag counts as none
 SAME = 1e-9  # share of a command: a smaller thrust of the other sign counts as zero
 
 
 @njit(inline="always")
-def channel(
-    x: Course, side: float, source: float, memory: Array, at: int, dt: float, q: Any
-) -> Course:
+def transform_signal(
+    x: SignalSegment, side: float, source: float, memory: Array, at: int, dt: float, q: Any
+) -> SignalSegment:
     """Return the lagged signal, exact for a command that is a parabola over the step.
 
     Args:
@@ -33,12 +40,12 @@ def channel(
     if q.time_constant < NONE:
         memory[at] = x.end
         return x
-    return lagged(x, q.time_constant, memory, at, dt)
+    return first_order_lag(x, q.time_constant, memory, at, dt)
 
 
 @njit(inline="always")
-def pause(x: float, memory: Array, at: int, q: Any) -> float:
-    """Return the time over which a `Course` follows the lag, at most until the thrust reverses.
+def time_to_discontinuity(x: float, memory: Array, at: int, q: Any) -> float:
+    """Return the time for which three points describe the lag, at most until thrust reverses.
 
     Thrust laws have a kink at zero thrust.
 
@@ -49,18 +56,18 @@ def pause(x: float, memory: Array, at: int, q: Any) -> float:
         q: Parameters of the effect, with the names and units of its class.
 
     Returns:
-        Time [s] during which the three points of a `Course` describe the signal exactly; infinite
+        Time [s] for which three points of a `SignalSegment` describe the signal exactly; infinite
         if it is constant.
     """
     if q.time_constant < NONE:
         return inf
     y = memory[at]
     reverses = q.time_constant * log((x - y) / x) if x * y < 0.0 and abs(y) > SAME * abs(x) else inf
-    return min(followed(q.time_constant), reverses)
+    return min(longest_lag_step(q.time_constant), reverses)
 
 
 @dataclass(frozen=True)
-class ThrustLag(Channel):
+class ThrustLag(ChannelEffect):
     """First-order lag of the thrust behind its command: time_constant y' = x - y."""
 
     words: ClassVar[str] = "thrust follows its command with a first-order lag"
@@ -68,8 +75,8 @@ class ThrustLag(Channel):
     shown_by: ClassVar[str] = "fast steps of the thrust"
     acts_on: ClassVar[str] = "thrust|shaft"
     slots: ClassVar[int] = 1
-    channel: ClassVar = channel
-    pause: ClassVar = pause
+    transform_signal: ClassVar = transform_signal
+    time_to_discontinuity: ClassVar = time_to_discontinuity
 
     time_constant: float = param(
         0.15,

@@ -6,7 +6,7 @@ from typing import Any, ClassVar
 from numba import njit
 
 from boatsim.physics.base import Force, Wrench, param
-from boatsim.physics.effects.thruster import at_mount
+from boatsim.physics.effects.thruster import thrust_wrench_at_mount
 
 
 @njit(inline="always")
@@ -22,7 +22,9 @@ def law(m: Any, q: Any, s: Any, t: Any) -> Wrench:
     Returns:
         Force [N] and moment [N m] in body axes.
     """
-    return at_mount(-t.gain * (q.loss + q.curve * abs(m.ur)) * m.ur * abs(s.thrust), s, t)
+    return thrust_wrench_at_mount(
+        -t.gain * (q.loss + q.curve * abs(m.ur)) * m.ur * abs(s.thrust), s, t
+    )
 
 
 @dataclass(frozen=True)

@@ -5,11 +5,19 @@ from typing import Any, ClassVar
 
 from numba import njit
 
-from boatsim.physics.base import Force, Release, Role, Wrench, factor, param, wrench
+from boatsim.physics.base import (
+    CoefficientRelease,
+    Force,
+    Role,
+    Wrench,
+    factor_parameter,
+    param,
+    wrench,
+)
 
 
 @njit(inline="always")
-def at_mount(thrust: float, s: Any, q: Any) -> Wrench:
+def thrust_wrench_at_mount(thrust: float, s: Any, q: Any) -> Wrench:
     """Return the wrench of a force along the axis of the thruster, at its mount.
 
     Args:
@@ -33,7 +41,7 @@ def law(m: Any, q: Any, s: Any) -> Wrench:
     Returns:
         Force [N] and moment [N m] in body axes.
     """
-    return at_mount(q.gain * s.thrust, s, q)
+    return thrust_wrench_at_mount(q.gain * s.thrust, s, q)
 
 
 @dataclass(frozen=True)
@@ -69,14 +77,14 @@ class Thruster(Force):
 
 
 @dataclass(frozen=True)
-class ThrustGainError(Release):
+class ThrustGainError(CoefficientRelease):
     """Thrust of all drives that differs by one factor from its specified value."""
 
     words: ClassVar[str] = "all thrust is stronger or weaker than specified by one factor"
     refines: ClassVar[str] = "thrust"
     shown_by: ClassVar[str] = "runs at several thrust levels"
 
-    factor: float = factor(
+    factor: float = factor_parameter(
         "thruster.gain",
         "propeller.gain",
         "mmg_propeller.gain",

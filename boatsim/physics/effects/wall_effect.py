@@ -12,7 +12,7 @@ REACH = 0.5  # [boat lengths] distance over which the effect of a wall falls to 
 
 
 @njit(inline="always")
-def nearness(at: float, low: float, high: float, reach: float) -> tuple[float, float]:
+def wall_proximity(at: float, low: float, high: float, reach: float) -> tuple[float, float]:
     """Return exp(-distance / reach) to the high and to the low wall of a pair.
 
     Args:
@@ -35,8 +35,8 @@ def law(m: Any, q: Any) -> Wrench:
     Returns:
         Force [N] and moment [N m] in body axes.
     """
-    n, s = nearness(m.x, q.x_low, q.x_high, q.reach)
-    e, w = nearness(m.y, q.y_low, q.y_high, q.reach)
+    n, s = wall_proximity(m.x, q.x_low, q.x_high, q.reach)
+    e, w = wall_proximity(m.y, q.y_low, q.y_high, q.reach)
     rise = q.damping_rise * (n + s + e + w)
     north, east = q.pull * (n - s), q.pull * (e - w)  # [N]
     return wrench(
@@ -125,7 +125,7 @@ class WallEffect(Force):
         follows="linear_damping.yaw?",
     )
 
-    def rules(self, vessel: Boat) -> dict[str, float]:
+    def derived_parameters(self, vessel: Boat) -> dict[str, float]:
         """Return the reach, half the length of the boat.
 
         Args:

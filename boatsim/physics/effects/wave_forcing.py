@@ -5,7 +5,7 @@ from typing import Any, ClassVar, Self
 
 from numba import njit
 
-from boatsim.physics.base import Swell, Unsteady, Wrench, param, wrench
+from boatsim.physics.base import OscillatingForce, RandomForce, Wrench, param, wrench
 from boatsim.physics.noise import narrow_band_noise, seeded_realisation
 
 WAVES = 64.0  # components of the realisation in each axis
@@ -18,7 +18,7 @@ YAW = 103.0
 
 @njit
 def law(m: Any, q: Any) -> Wrench:
-    """Return one realisation of the oscillators of `swell`; axes without a force are not computed.
+    """Return one realisation of the oscillating force; axes without a force are not computed.
 
     Args:
         m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].
@@ -43,7 +43,7 @@ def law(m: Any, q: Any) -> Wrench:
 
 
 @njit(inline="always")
-def swell(q: Any) -> Swell:
+def oscillating_force(q: Any) -> OscillatingForce:
     """Return the oscillators that the diagnosis filter tracks; none if all forces are zero.
 
     Args:
@@ -53,11 +53,13 @@ def swell(q: Any) -> Swell:
         Rms force of each axis [N, N m], frequency [rad/s] and damping ratio of the oscillators.
     """
     there = q.surge > 0.0 or q.sway > 0.0 or q.roll > 0.0 or q.yaw > 0.0
-    return Swell(q.surge, q.sway, 0.0, q.roll, 0.0, q.yaw, q.frequency if there else 0.0, q.damping)
+    return OscillatingForce(
+        q.surge, q.sway, 0.0, q.roll, 0.0, q.yaw, q.frequency if there else 0.0, q.damping
+    )
 
 
 @dataclass(frozen=True)
-class WaveForcing(Unsteady):
+class WaveForcing(RandomForce):
     """Narrow-band wave forces in body axes, independent from axis to axis.
 
     F = sigma n(t),  n(t) a process of unit rms shaped by 2 z w0 s / (s^2 + 2 z w0 s + w0^2)
@@ -73,7 +75,7 @@ class WaveForcing(Unsteady):
         "filter"
     )
     law: ClassVar = law
-    swell: ClassVar = swell
+    oscillating_force: ClassVar = oscillating_force
     strength: ClassVar = ("surge", "sway", "yaw", "roll")
     starts: ClassVar = tuple({"frequency": w} for w in (1.5, 2.2, 3.2, 4.5, 6.5))
 
@@ -118,7 +120,7 @@ class WaveForcing(Unsteady):
         words="frequency of encounter",
         fit=True,
         spread=1.5,
-        absent=3.0,
+        inactive_value=3.0,
     )
     damping: float = param(
         0.08,
@@ -128,13 +130,13 @@ class WaveForcing(Unsteady):
         words="damping ratio, the relative width of the spectrum",
         fit=True,
         spread=0.05,
-        absent=0.08,
+        inactive_value=0.08,
     )
     realisation: float = param(
         1.0, low=0.0, high=1e9, unit="", words="number of the realisation; 0: no waves"
     )
 
-    def seeded(self, seed: int) -> Self:
+    def with_seed(self, seed: int) -> Self:
         """Return the effect with a realisation that depends on the seed.
 
         Realisation 0 (no waves) does not change.

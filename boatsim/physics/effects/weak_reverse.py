@@ -5,7 +5,7 @@ from typing import Any, ClassVar
 
 from numba import njit
 
-from boatsim.physics.base import Array, Channel, Course, param
+from boatsim.physics.base import Array, ChannelEffect, SignalSegment, param
 from boatsim.physics.kinds.channel import DEEDS
 
 
@@ -21,9 +21,9 @@ def scaled_astern(x: float, q: Any) -> float:
 
 
 @njit(inline="always")
-def channel(
-    x: Course, side: float, source: float, memory: Array, at: int, dt: float, q: Any
-) -> Course:
+def transform_signal(
+    x: SignalSegment, side: float, source: float, memory: Array, at: int, dt: float, q: Any
+) -> SignalSegment:
     """Return the signal with the factor astern at each of the three instants.
 
     Args:
@@ -38,11 +38,13 @@ def channel(
     Returns:
         The signal that leaves the effect, over the same step.
     """
-    return Course(scaled_astern(x.begin, q), scaled_astern(x.middle, q), scaled_astern(x.end, q))
+    return SignalSegment(
+        scaled_astern(x.begin, q), scaled_astern(x.middle, q), scaled_astern(x.end, q)
+    )
 
 
 @dataclass(frozen=True)
-class WeakReverse(Channel):
+class WeakReverse(ChannelEffect):
     """Thrust astern as a fraction of the commanded thrust.
 
     T = astern_factor T_command  for T_command < 0
@@ -55,7 +57,7 @@ class WeakReverse(Channel):
     acts_on: ClassVar[str] = "thrust|shaft"
     stage: ClassVar[int] = DEEDS
     either_side: ClassVar[bool] = True
-    channel: ClassVar = channel
+    transform_signal: ClassVar = transform_signal
 
     astern_factor: float = param(
         1.0,
@@ -65,5 +67,5 @@ class WeakReverse(Channel):
         words="astern thrust over commanded thrust",
         fit=True,
         spread=0.3,
-        absent=1.0,
+        inactive_value=1.0,
     )

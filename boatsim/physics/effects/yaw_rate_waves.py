@@ -6,8 +6,8 @@ from typing import Any, ClassVar, Self
 
 from numba import njit
 
-from boatsim.physics.base import UNSET, Boat, Swell, Unsteady, Wrench, param, wrench
-from boatsim.physics.noise import seeded_realisation, spectral_line, uniform
+from boatsim.physics.base import UNSET, Boat, OscillatingForce, RandomForce, Wrench, param, wrench
+from boatsim.physics.noise import random_spectral_line, seeded_realisation, uniform_random
 
 WAVES = 64  # components of the realisation
 # index of the first random number, beyond those of other effects with the same realisation
@@ -15,7 +15,7 @@ FIRST = 20_000
 
 
 @njit(inline="always")
-def component(k: int, q: Any) -> tuple[float, float, float]:
+def wave_component(k: int, q: Any) -> tuple[float, float, float]:
     """Return frequency [rad/s], amplitude [rad/s] and phase [rad] of one component.
 
     The frequency is the middle of its part of the spectrum. The moment grows with the frequency, so
@@ -26,11 +26,11 @@ def component(k: int, q: Any) -> tuple[float, float, float]:
         k: Number of the component.
         q: Parameters of the effect.
     """
-    w, weight = spectral_line((k + 0.5) / WAVES - 0.5, q.damping)
+    w, weight = random_spectral_line((k + 0.5) / WAVES - 0.5, q.damping)
     return (
         q.frequency * w,
         q.rms * sqrt(2.0 * weight / WAVES),
-        2.0 * pi * uniform(q.realisation, FIRST + k),
+        2.0 * pi * uniform_random(q.realisation, FIRST + k),
     )
 
 
@@ -49,13 +49,13 @@ def law(m: Any, q: Any) -> Wrench:
     if q.realisation == 0.0 or q.rms == 0.0:
         return wrench(N=N)
     for k in range(WAVES):
-        w, size, phase = component(k, q)
+        w, size, phase = wave_component(k, q)
         N += size * (q.drag * cos(w * m.t + phase) - q.inertia * w * sin(w * m.t + phase))
     return wrench(N=N)
 
 
 @njit(inline="always")
-def swell(q: Any) -> Swell:
+def oscillating_force(q: Any) -> OscillatingForce:
     """Return the narrow-band oscillator that the diagnosis filter tracks; none without waves.
 
     Args:
@@ -65,11 +65,13 @@ def swell(q: Any) -> Swell:
         Rms force of each axis [N, N m], frequency [rad/s] and damping ratio of the oscillators.
     """
     moment = q.rms * hypot(q.inertia * q.frequency, q.drag)
-    return Swell(0.0, 0.0, 0.0, 0.0, 0.0, moment, q.frequency if q.rms > 0.0 else 0.0, q.damping)
+    return OscillatingForce(
+        0.0, 0.0, 0.0, 0.0, 0.0, moment, q.frequency if q.rms > 0.0 else 0.0, q.damping
+    )
 
 
 @dataclass(frozen=True)
-class YawRateWaves(Unsteady):
+class YawRateWaves(RandomForce):
     """Wave-induced yaw rate of a second-order filter, as the moment that causes it.
 
     r_w(s) = kappa s / (s^2 + 2 lambda_w omega_w s + omega_w^2) applied to white noise
@@ -82,7 +84,7 @@ class YawRateWaves(Unsteady):
     shown_by: ClassVar[str] = "holding a heading"
     source: ClassVar[str] = "L. R. S. Theisen, R. Galeazzi, M. Blanke, IFAC CAMS 2013, equation 8"
     law: ClassVar = law
-    swell: ClassVar = swell
+    oscillating_force: ClassVar = oscillating_force
     strength: ClassVar = ("rms",)
 
     rms: float = param(0.0, low=0.0, high=10.0, unit="rad/s", words="rms of the wave yaw rate r_w")
@@ -111,18 +113,18 @@ class YawRateWaves(Unsteady):
         1.0, low=0.0, high=1e9, unit="", words="number of the realisation; 0: no waves"
     )
 
-    def rules(self, vessel: Boat) -> dict[str, float]:
+    def derived_parameters(self, vessel: Boat) -> dict[str, float]:
         """Return the yaw inertia of the vessel with its added inertia.
 
         Args:
             vessel: Vessel with a body.
         """
         yaw, sway, at = (
-            self.followed(f"added_mass.{key}?", vessel) for key in ("yaw", "sway", "sway_at")
+            self.followed_value(f"added_mass.{key}?", vessel) for key in ("yaw", "sway", "sway_at")
         )
         return {"inertia": vessel.body.yaw_inertia + (yaw + sway * at**2)}
 
-    def seeded(self, seed: int) -> Self:
+    def with_seed(self, seed: int) -> Self:
         """Return the effect with a realisation that depends on the seed.
 
         Realisation 0 (no waves) does not change.

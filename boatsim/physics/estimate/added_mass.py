@@ -2,13 +2,13 @@
 
 from math import pi
 
-from boatsim.physics.estimate.base import DENSITY, Estimate, Hull
+from boatsim.physics.estimate.base import DENSITY, Estimate, HullParticulars
 
 CLARKE = "D. Clarke, P. Gedling, G. Hine 1983"
 STRIPS = "strips of 0.5 pi rho T^2, J. N. Newman, Marine Hydrodynamics, 1977, section 4.13"
 
 
-def surge(hull: Hull) -> Estimate:
+def surge_added_mass(hull: HullParticulars) -> Estimate:
     """Return the surge added mass [kg] of all hulls.
 
     Args:
@@ -24,20 +24,20 @@ def surge(hull: Hull) -> Estimate:
     return Estimate(value, "2.7 rho V^(5/3) / L^2, H. Soeding 1982 (Fossen 2021, eq. 6.41)")
 
 
-def sway(hull: Hull) -> Estimate:
+def sway_added_mass(hull: HullParticulars) -> Estimate:
     """Return the sway added mass [kg] of all hulls.
 
     Args:
         hull: Hull with its main particulars.
     """
     strips = hull.hulls * 0.5 * pi * DENSITY * hull.draught**2 * hull.length
-    if not hull.slender:
+    if not hull.is_slender:
         return Estimate(strips, STRIPS)
-    b, fullness = hull.breadth, 0.16 * hull.block * hull.breadth / hull.draught
+    b, fullness = hull.breadth, 0.16 * hull.block_coefficient * hull.breadth / hull.draught
     return Estimate(strips * (1.0 + fullness - 5.1 * (b / hull.length) ** 2), CLARKE)
 
 
-def yaw(hull: Hull) -> Estimate:
+def yaw_added_mass(hull: HullParticulars) -> Estimate:
     """Return the yaw added mass [kg m^2] of all hulls about midship.
 
     Of two hulls each adds its surge mass times the square of its distance from the centreline.
@@ -46,10 +46,10 @@ def yaw(hull: Hull) -> Estimate:
         hull: Hull with its main particulars.
     """
     strips = hull.hulls * 0.5 * pi * DENSITY * hull.draught**2 * hull.length**3
-    apart = surge(hull).value * (0.5 * hull.spacing) ** 2
-    if not hull.slender:
+    apart = surge_added_mass(hull).value * (0.5 * hull.hull_spacing) ** 2
+    if not hull.is_slender:
         return Estimate(strips / 12.0 + apart, STRIPS)
-    fullness = 0.017 * hull.block * hull.breadth / hull.draught
+    fullness = 0.017 * hull.block_coefficient * hull.breadth / hull.draught
     return Estimate(
         strips * max(1.0 / 12.0 + fullness - 0.33 * hull.breadth / hull.length, 0.01) + apart,
         CLARKE,

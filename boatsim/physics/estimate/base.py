@@ -14,7 +14,7 @@ class Estimate(NamedTuple):
     rule: str
 
 
-class Hull(NamedTuple):
+class HullParticulars(NamedTuple):
     """Boat with one hull, or with two equal hulls side by side."""
 
     length: float  # [m] of the waterline
@@ -25,16 +25,16 @@ class Hull(NamedTuple):
     breadth: float  # [m] of one hull
 
     @property
-    def block(self) -> float:
+    def block_coefficient(self) -> float:
         """Block coefficient of one hull."""
         return self.mass / (DENSITY * self.hulls * self.length * self.breadth * self.draught)
 
     @property
-    def slender(self) -> bool:
+    def is_slender(self) -> bool:
         """Whether the hull is slender enough for regressions over ships."""
         return self.length >= SLENDER * self.breadth
 
     @property
-    def spacing(self) -> float:
+    def hull_spacing(self) -> float:
         """Distance between the centrelines of two hulls [m]; 0 for one hull."""
         return self.beam - self.breadth if self.hulls == 2 else 0.0

@@ -1,7 +1,7 @@
 """Breadth and draught of a hull of known length, beam and mass."""
 
 from boatsim.errors import BadInput
-from boatsim.physics.estimate.base import DENSITY, Estimate, Hull
+from boatsim.physics.estimate.base import DENSITY, Estimate, HullParticulars
 
 # displaced water per length x beam x draught; C_b of a pontoon of the Otter, MSS otter.m
 BLOCK = 0.4
@@ -9,7 +9,7 @@ PONTOON = 0.25  # beam of one of two hulls per beam overall; Otter 0.25 m of 1.0
 FULLEST = 1.0  # a box
 
 
-def breadth(beam: float, hulls: int) -> Estimate:
+def hull_breadth(beam: float, hulls: int) -> Estimate:
     """Return the breadth of one hull [m].
 
     Args:
@@ -23,7 +23,7 @@ def breadth(beam: float, hulls: int) -> Estimate:
     )
 
 
-def draught(length: float, beam: float, mass: float, hulls: int) -> Estimate:
+def hull_draught(length: float, beam: float, mass: float, hulls: int) -> Estimate:
     """Return the draught [m] that carries the mass at the usual block coefficient of small hulls.
 
     Args:
@@ -32,13 +32,15 @@ def draught(length: float, beam: float, mass: float, hulls: int) -> Estimate:
         mass: Mass [kg].
         hulls: Number of hulls, 1 or 2.
     """
-    value = mass / (DENSITY * BLOCK * hulls * length * breadth(beam, hulls).value)
+    value = mass / (DENSITY * BLOCK * hulls * length * hull_breadth(beam, hulls).value)
     return Estimate(
         value, f"mass / (rho C_b L B), C_b = {BLOCK:g} as a pontoon of the Otter (MSS otter.m)"
     )
 
 
-def hull(length: float, beam: float, mass: float, hulls: int, stated: float | None) -> Hull:
+def hull_particulars(
+    length: float, beam: float, mass: float, hulls: int, stated: float | None
+) -> HullParticulars:
     """Return the hull with its main particulars.
 
     Args:
@@ -51,19 +53,19 @@ def hull(length: float, beam: float, mass: float, hulls: int, stated: float | No
     Raises:
         BadInput: Mass and size do not fit together.
     """
-    found = Hull(
+    found = HullParticulars(
         length,
         beam,
         mass,
-        stated or draught(length, beam, mass, hulls).value,
+        stated or hull_draught(length, beam, mass, hulls).value,
         hulls,
-        breadth(beam, hulls).value,
+        hull_breadth(beam, hulls).value,
     )
-    if found.block > FULLEST + 1e-9:
+    if found.block_coefficient > FULLEST + 1e-9:
         raise BadInput(
             f"draught = {found.draught:g} m; a boat of {mass:g} kg, {length:g} m by {beam:g} "
             "m, lies at least "
-            f"{found.draught * found.block:.3g} m deep"
+            f"{found.draught * found.block_coefficient:.3g} m deep"
         )
     if found.draught >= 0.5 * length:
         raise BadInput(

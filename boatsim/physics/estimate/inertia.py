@@ -1,12 +1,12 @@
 """Moments of inertia of the rigid boat from radii of gyration."""
 
-from boatsim.physics.estimate.base import Estimate, Hull
+from boatsim.physics.estimate.base import Estimate, HullParticulars
 
 YAW = 0.25  # of the length; T. I. Fossen 2021, MSS otter.m; ITTC 7.5-02-07-02.1 has 0.25 L_pp
 ROLL = 0.4  # of the beam; same sources have 0.35 to 0.40
 
 
-def yaw(hull: Hull) -> Estimate:
+def yaw_inertia(hull: HullParticulars) -> Estimate:
     """Return the yaw inertia about the mass centre [kg m^2].
 
     Args:
@@ -16,7 +16,7 @@ def yaw(hull: Hull) -> Estimate:
     return Estimate(value, f"mass x ({YAW:g} L)^2, ITTC 7.5-02-07-02.1")
 
 
-def roll(hull: Hull) -> Estimate:
+def roll_inertia(hull: HullParticulars) -> Estimate:
     """Return the roll inertia about the mass centre [kg m^2].
 
     Args:

@@ -2,7 +2,7 @@
 
 from math import log10, sqrt
 
-from boatsim.physics.estimate.base import DENSITY, VISCOSITY, Estimate, Hull
+from boatsim.physics.estimate.base import DENSITY, VISCOSITY, Estimate, HullParticulars
 from boatsim.physics.estimate.thrust import LEFT
 from boatsim.physics.particulars import GRAVITY
 
@@ -15,7 +15,7 @@ LINEAR = 0.5
 LINEAR_SLENDER = 0.1
 
 
-def service_speed(hull: Hull) -> float:
+def service_speed(hull: HullParticulars) -> float:
     """Return the speed [m/s] at which coefficients that depend on the speed are evaluated.
 
     Args:
@@ -24,7 +24,7 @@ def service_speed(hull: Hull) -> float:
     return SERVICE * sqrt(GRAVITY * hull.length)
 
 
-def wetted(hull: Hull) -> float:
+def wetted_surface(hull: HullParticulars) -> float:
     """Return the wetted surface of all hulls [m^2] by Denny and Mumford, 1.7 L T + V / T.
 
     Args:
@@ -33,7 +33,7 @@ def wetted(hull: Hull) -> float:
     return hull.hulls * 1.7 * hull.length * hull.draught + hull.mass / DENSITY / hull.draught
 
 
-def at_service(hull: Hull) -> Estimate:
+def service_resistance(hull: HullParticulars) -> Estimate:
     """Return the resistance at the service speed [N].
 
     Args:
@@ -43,11 +43,11 @@ def at_service(hull: Hull) -> Estimate:
     friction = 0.075 / (log10(speed * hull.length / VISCOSITY) - 2.0) ** 2
     total = (1.0 + FORM) * friction + WAVES
     rule = f"ITTC 1957 friction x {1.0 + FORM:g} + {WAVES:g} of waves, on 1.7 L T + V / T"
-    return Estimate(0.5 * DENSITY * wetted(hull) * total * speed * speed, rule)
+    return Estimate(0.5 * DENSITY * wetted_surface(hull) * total * speed * speed, rule)
 
 
-def coefficients(
-    hull: Hull, thrust: float | None, top_speed: float | None
+def surge_damping(
+    hull: HullParticulars, thrust: float | None, top_speed: float | None
 ) -> tuple[Estimate, Estimate]:
     """Return linear [N s/m] and quadratic [N s^2/m^2] surge damping, each a part of the resistance.
 
@@ -64,9 +64,9 @@ def coefficients(
         speed = top_speed
         rule = f"{LEFT:g} of full thrust at the top speed stated"
     else:
-        (force, rule), speed = at_service(hull), service_speed(hull)
+        (force, rule), speed = service_resistance(hull), service_speed(hull)
         rule = f"{rule} at {speed:.3g} m/s"
-    part = LINEAR_SLENDER if hull.slender else LINEAR
+    part = LINEAR_SLENDER if hull.is_slender else LINEAR
     return (
         Estimate(part * force / speed, f"{part:g} of {force:.3g} N at {speed:.3g} m/s: {rule}"),
         Estimate((1.0 - part) * force / speed**2, "the rest of it"),

@@ -3,7 +3,7 @@
 from math import pi
 
 from boatsim.physics import particulars
-from boatsim.physics.estimate.base import DENSITY, Estimate, Hull
+from boatsim.physics.estimate.base import DENSITY, Estimate, HullParticulars
 
 ASPECT = 1.5  # span per chord, usual on ships: Mariner 1.6, Esso Osaka 1.5
 # kappa, share of the race's gain in speed that reaches the blade: KVLCC2 by Yasukawa, Yoshimura
@@ -11,7 +11,7 @@ ASPECT = 1.5  # span per chord, usual on ships: Mariner 1.6, Esso Osaka 1.5
 REACHES = 0.5
 
 
-def area(hull: Hull) -> Estimate:
+def rudder_area(hull: HullParticulars) -> Estimate:
     """Return the rudder area [m^2].
 
     Args:
@@ -21,27 +21,27 @@ def area(hull: Hull) -> Estimate:
     return Estimate(value, "L T / 100 x (1 + 25 (B / L)^2), Det Norske Veritas 1975")
 
 
-def slope(blade: float, speed: float) -> Estimate:
+def rudder_force_slope(blade: float, speed: float) -> Estimate:
     """Return the force to starboard per angle [N/rad].
 
     Args:
         blade: Rudder area [m^2].
         speed: Speed of the water at the rudder [m/s].
     """
-    value = particulars.rudder_slope(blade, ASPECT, speed, DENSITY)
+    value = particulars.rudder_force_slope(blade, ASPECT, speed, DENSITY)
     return Estimate(
         value, f"A. Fujii, T. Tsuda 1961, {blade:.3g} m^2 of aspect {ASPECT:g} at {speed:.3g} m/s"
     )
 
 
-def race() -> Estimate:
+def slipstream_rudder_force() -> Estimate:
     """Return the normal force of a rudder over thrust and sine of its angle, at rest.
 
     A rudder as high as the propeller diameter D has the area D^2 / aspect. The slipstream of a
     propeller at rest has V^2 = 8 T / (pi rho D^2) far behind, and `REACHES` of that velocity at the
     rudder.
     """
-    value = particulars.lift_slope(ASPECT) * REACHES**2 * 4.0 / (pi * ASPECT)
+    value = particulars.rudder_lift_slope(ASPECT) * REACHES**2 * 4.0 / (pi * ASPECT)
     return Estimate(
         value,
         "f_alpha kappa^2 4 / (pi aspect), momentum theory of a blade as high as the propeller",

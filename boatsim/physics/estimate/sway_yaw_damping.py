@@ -4,7 +4,7 @@ from math import pi, sqrt
 from typing import NamedTuple
 
 from boatsim.physics.estimate import added_mass, inertia, resistance
-from boatsim.physics.estimate.base import DENSITY, Estimate, Hull
+from boatsim.physics.estimate.base import DENSITY, Estimate, HullParticulars
 
 SECOND = 2.0  # [m] length of the boat whose sway and yaw die out in 1 s, the Otter (MSS otter.m)
 # [lengths] ahead of the middle: that of a slender body is -0.5, at its stern; a real one leaves
@@ -14,7 +14,7 @@ SLOW = 0.1  # of a slender hull's lift at an easy speed, at rest: friction and k
 SECTION = 0.8  # drag coefficient of a section across the flow: Otter 0.85, S. F. Hoerner 1965
 
 
-class Derivatives(NamedTuple):
+class ClarkeDerivatives(NamedTuple):
     """Clarke's derivatives per forward speed, positive for damping, Munk moment included."""
 
     sway: float  # [N s^2/m^2] -Y_uv
@@ -23,7 +23,7 @@ class Derivatives(NamedTuple):
     yaw_by_sway: float  # [N s^2/m] -N_uv
 
 
-class Lift(NamedTuple):
+class LiftDerivatives(NamedTuple):
     """Side force proportional to forward speed and local drift, and the remaining yaw damping."""
 
     sway: Estimate  # [N s^2/m^2]
@@ -31,7 +31,7 @@ class Lift(NamedTuple):
     yaw: Estimate  # [N s^2]
 
 
-def clarke(hull: Hull) -> Derivatives:
+def clarke_derivatives(hull: HullParticulars) -> ClarkeDerivatives:
     """Return the derivatives of all hulls, without the Coriolis force of the rigid body.
 
     Args:
@@ -40,15 +40,15 @@ def clarke(hull: Hull) -> Derivatives:
     L, T = hull.length, hull.draught
     wide, deep = hull.breadth / L, hull.breadth / T
     scale = hull.hulls * pi * (T / L) ** 2 * 0.5 * DENSITY * L**2
-    return Derivatives(
-        scale * (1.0 + 0.4 * hull.block * deep),
+    return ClarkeDerivatives(
+        scale * (1.0 + 0.4 * hull.block_coefficient * deep),
         scale * L * L * max(0.25 + 0.039 * deep - 0.56 * wide, 0.05),
         scale * L * (-0.5 + 2.2 * wide - 0.08 * deep),
         scale * L * (0.5 + 2.4 * T / L),
     )
 
 
-def lift(hull: Hull) -> Lift:
+def lift_derivatives(hull: HullParticulars) -> LiftDerivatives:
     """Return the lift derivatives of the hull.
 
     For a slender hull they are Clarke's less the Munk moment, else those of a low-aspect wing.
@@ -56,17 +56,17 @@ def lift(hull: Hull) -> Lift:
     Args:
         hull: Hull with its main particulars.
     """
-    if not hull.slender:
+    if not hull.is_slender:
         force = hull.hulls * 0.5 * pi * DENSITY * hull.draught**2
-        return Lift(
+        return LiftDerivatives(
             Estimate(force, "0.5 pi rho T^2, R. T. Jones 1946: a wing of low aspect"),
             Estimate(LIFT_AT * hull.length, f"{LIFT_AT:g} lengths; -0.5 of a slender body"),
             Estimate(0.0, "that at its place resists turning"),
         )
-    whole, rule = clarke(hull), added_mass.CLARKE
-    munk = added_mass.sway(hull).value - added_mass.surge(hull).value
+    whole, rule = clarke_derivatives(hull), added_mass.CLARKE
+    munk = added_mass.sway_added_mass(hull).value - added_mass.surge_added_mass(hull).value
     at = (whole.yaw_by_sway - munk) / whole.sway
-    return Lift(
+    return LiftDerivatives(
         Estimate(whole.sway, rule),
         Estimate(at, f"{rule}, less the Munk moment"),
         Estimate(
@@ -76,7 +76,7 @@ def lift(hull: Hull) -> Lift:
     )
 
 
-def at_rest(hull: Hull) -> tuple[Estimate, Estimate]:
+def damping_at_rest(hull: HullParticulars) -> tuple[Estimate, Estimate]:
     """Return the linear damping in sway [N s/m] and yaw [N m s] of a hull without forward speed.
 
     Sway and yaw decay with a time constant of 1 s for a boat of 2 m, scaled by Froude's law; much
@@ -85,8 +85,8 @@ def at_rest(hull: Hull) -> tuple[Estimate, Estimate]:
     Args:
         hull: Hull with its main particulars.
     """
-    if hull.slender:
-        speed, own = resistance.service_speed(hull), lift(hull)
+    if hull.is_slender:
+        speed, own = resistance.service_speed(hull), lift_derivatives(hull)
         turning = own.yaw.value + own.sway.value * own.at.value**2
         rule = f"{SLOW:g} of the lift at an easy {speed:.3g} m/s"
         return Estimate(SLOW * speed * own.sway.value, rule), Estimate(SLOW * speed * turning, rule)
@@ -96,11 +96,13 @@ def at_rest(hull: Hull) -> tuple[Estimate, Estimate]:
         f"which is 1 s on a boat of {SECOND:g} m (MSS otter.m)"
     )
     return (
-        Estimate((hull.mass + added_mass.sway(hull).value) / time, rule),
-        Estimate((inertia.yaw(hull).value + added_mass.yaw(hull).value) / time, rule),
+        Estimate((hull.mass + added_mass.sway_added_mass(hull).value) / time, rule),
+        Estimate(
+            (inertia.yaw_inertia(hull).value + added_mass.yaw_added_mass(hull).value) / time, rule
+        ),
     )
 
 
-def section_drag() -> Estimate:
+def section_drag_coefficient() -> Estimate:
     """Return the drag coefficient of the sections in cross flow."""
     return Estimate(SECTION, "Otter 0.85 (MSS otter.m); S. F. Hoerner, Fluid-Dynamic Drag, 1965")

@@ -2,7 +2,7 @@
 
 from math import sqrt
 
-from boatsim.physics.estimate.base import Estimate, Hull
+from boatsim.physics.estimate.base import Estimate, HullParticulars
 from boatsim.physics.particulars import GRAVITY
 
 # of the thrust at rest, at top speed: K_T of a Wageningen B-screw of P/D 0.7 at J 0.4 by that at J
@@ -12,7 +12,7 @@ FAST = 0.4  # Froude number of the top speed if none is given: the hump of the w
 OF_WEIGHT = 0.4  # Otter: 24.4 kgf of 55 kg, MSS otter.m
 
 
-def full(hull: Hull) -> Estimate:
+def full_thrust(hull: HullParticulars) -> Estimate:
     """Return the thrust of all thrusters together [N].
 
     Args:
@@ -24,7 +24,7 @@ def full(hull: Hull) -> Estimate:
     )
 
 
-def loss(hull: Hull, top_speed: float | None) -> Estimate:
+def thrust_loss_with_speed(hull: HullParticulars, top_speed: float | None) -> Estimate:
     """Return the share of the thrust lost per forward speed [s/m].
 
     Args:

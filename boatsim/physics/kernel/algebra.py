@@ -6,7 +6,7 @@ from operator import mul
 Terms = dict[tuple[str, ...], int]  # names of the factors, in order -> coefficient of the product
 
 
-class Sum:
+class SymbolicSum:
     """A sum of products with integer coefficients; zero has no terms. Immutable."""
 
     __slots__ = ("terms",)
@@ -14,24 +14,24 @@ class Sum:
     def __init__(self, terms: Terms) -> None:
         self.terms = {factors: n for factors, n in terms.items() if n}
 
-    def __add__(self, other: "Sum") -> "Sum":
+    def __add__(self, other: "SymbolicSum") -> "SymbolicSum":
         terms = dict(self.terms)
         for factors, n in other.terms.items():
             terms[factors] = terms.get(factors, 0) + n
-        return Sum(terms)
+        return SymbolicSum(terms)
 
-    def __neg__(self) -> "Sum":
-        return Sum({factors: -n for factors, n in self.terms.items()})
+    def __neg__(self) -> "SymbolicSum":
+        return SymbolicSum({factors: -n for factors, n in self.terms.items()})
 
-    def __sub__(self, other: "Sum") -> "Sum":
+    def __sub__(self, other: "SymbolicSum") -> "SymbolicSum":
         return self + -other
 
-    def __mul__(self, other: "Sum") -> "Sum":
+    def __mul__(self, other: "SymbolicSum") -> "SymbolicSum":
         terms: Terms = {}
         for a, m in self.terms.items():
             for b, n in other.terms.items():
                 terms[a + b] = terms.get(a + b, 0) + m * n
-        return Sum(terms)
+        return SymbolicSum(terms)
 
     def __bool__(self) -> bool:
         return bool(self.terms)
@@ -51,20 +51,20 @@ class Sum:
         return text.removeprefix(" + ")
 
 
-ZERO = Sum({})
-ONE = Sum({(): 1})
+ZERO = SymbolicSum({})
+ONE = SymbolicSum({(): 1})
 
 
-def name(text: str) -> Sum:
+def symbol(text: str) -> SymbolicSum:
     """Return a number as a sum of one term.
 
     Args:
         text: Its name.
     """
-    return Sum({(text,): 1})
+    return SymbolicSum({(text,): 1})
 
 
-def total(parts: Iterable[Sum]) -> Sum:
+def add_sums(parts: Iterable[SymbolicSum]) -> SymbolicSum:
     """Return the sum of sums.
 
     Args:
@@ -76,12 +76,12 @@ def total(parts: Iterable[Sum]) -> Sum:
     return found
 
 
-def dot(a: Iterable[Sum], b: Iterable[Sum]) -> Sum:
+def dot_product(a: Iterable[SymbolicSum], b: Iterable[SymbolicSum]) -> SymbolicSum:
     """Return the scalar product of two vectors."""
-    return total(map(mul, a, b))
+    return add_sums(map(mul, a, b))
 
 
-class Lines:
+class CodeLines:
     """Lines of a function body, with variables for intermediate results."""
 
     def __init__(self) -> None:
@@ -95,7 +95,7 @@ class Lines:
         """
         self.text.append(line)
 
-    def let(self, called: str, value: Sum) -> Sum:
+    def assign(self, called: str, value: SymbolicSum) -> SymbolicSum:
         """Assign a value to a variable and return its name.
 
         Return zero, one or a single name unchanged.
@@ -107,13 +107,13 @@ class Lines:
         if not value or (len(value.terms) == 1 and max(map(len, value.terms)) <= 1):
             return value
         self.add(f"{called} = {value}")
-        return name(called)
+        return symbol(called)
 
-    def let_all(self, prefix: str, values: Iterable[Sum]) -> list[Sum]:
-        """Apply `let` to each value; the variables are numbered.
+    def assign_all(self, prefix: str, values: Iterable[SymbolicSum]) -> list[SymbolicSum]:
+        """Apply `assign` to each value; the variables are numbered.
 
         Args:
             prefix: Name of the variables without the number.
             values: The values.
         """
-        return [self.let(f"{prefix}{i}", value) for i, value in enumerate(values)]
+        return [self.assign(f"{prefix}{i}", value) for i, value in enumerate(values)]

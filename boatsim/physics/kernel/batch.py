@@ -8,38 +8,48 @@ from typing import Any
 
 import numpy as np
 
-from boatsim.physics.kernel.compiling import shared, unlocked
-from boatsim.physics.kernel.records import Fleet
+from boatsim.physics.kernel.compiling import compile_shared_law, unlocked
+from boatsim.physics.kernel.records import FleetArrays
 from boatsim.physics.signals import Array
 
-from .inertia import constants
+from .inertia import compute_mass_constants
 from .laws import HELD
-from .motion import NQ, feels, step_in_place
-from .run import ENOUGH, SHORTEST, actuate_in_place, least_after, settle, until_bend
+from .motion import NQ, instrument_readings, step_in_place
+from .run import (
+    ENOUGH,
+    SHORTEST,
+    advance_actuators,
+    minimum_substep,
+    settle_actuators,
+    substep_length,
+)
 
 # As in `rollout`, but inlined: what the parts of a step have in common is computed once.
-bend_inlined, actuate_inlined = shared(until_bend), shared(actuate_in_place)
-step_inlined = shared(step_in_place)
+substep_length_inlined, advance_actuators_inlined = (
+    compile_shared_law(substep_length),
+    compile_shared_law(advance_actuators),
+)
+step_inlined = compile_shared_law(step_in_place)
 
 
 @unlocked
-def weigh_boats(boats: Any, body: Array, p: Array, on: Any, k: Array) -> None:
+def compute_mass_constants_of_boats(boats: Any, body: Array, p: Array, on: Any, k: Array) -> None:
     """Fill the constants k (B, K) from rigid bodies (B, 6) and parameters (B, P)."""
     for b in boats:
-        constants(body[b], p[b], on, k[b])
+        compute_mass_constants(body[b], p[b], on, k[b])
 
 
 @unlocked
-def settle_boats(boats: Any, fleet: Fleet) -> None:
+def settle_actuators_of_boats(boats: Any, fleet: FleetArrays) -> None:
     """Reset the actuators and let them reach their commands."""
     for b in boats:
         for i in range(fleet.memory.shape[1]):
             fleet.memory[b, i] = 0.0
-        settle(fleet.commands[b], fleet.memory[b], fleet.p[b], fleet.on, fleet.act[b])
+        settle_actuators(fleet.commands[b], fleet.memory[b], fleet.p[b], fleet.on, fleet.act[b])
 
 
 @unlocked
-def advance_boats(boats: Any, fleet: Fleet, dt: float, steps: int) -> None:
+def advance_boats(boats: Any, fleet: FleetArrays, dt: float, steps: int) -> None:
     """Advance vessels by steps of dt [s] with their commands held, in place."""
     t, y, commands, memory, act, p, on, k, force = fleet
     for b in boats:
@@ -47,21 +57,21 @@ def advance_boats(boats: Any, fleet: Fleet, dt: float, steps: int) -> None:
         for j in range(steps):
             now, left, least, before = begin + j * dt, dt, SHORTEST, 0.0
             while left > ENOUGH:
-                part = bend_inlined(commands[b], memory[b], left, least, p[b], on)
-                least, before = least_after(part, before, least), part
-                actuate_inlined(commands[b], memory[b], part, p[b], on, act[b])
+                part = substep_length_inlined(commands[b], memory[b], left, least, p[b], on)
+                least, before = minimum_substep(part, before, least), part
+                advance_actuators_inlined(commands[b], memory[b], part, p[b], on, act[b])
                 step_inlined(now, y[b], part, act[b], p[b], on, k[b], force)
                 now, left = now + part, left - part
         t[b] = begin + steps * dt
 
 
 @unlocked
-def feel_boats(boats: Any, fleet: Fleet, felt: Array) -> None:
-    """Write time and readings of instruments without noise (`feels`) to rows of felt (B, 11)."""
+def read_instruments_of_boats(boats: Any, fleet: FleetArrays, felt: Array) -> None:
+    """Write time and instrument readings without noise to rows of felt (B, 11)."""
     t, y, _, _, act, p, on, k, force = fleet
     last = np.int64(2 * HELD)  # the actuators at the end of the last step
     for b in boats:
         felt[b, 0] = t[b]
-        found = feels(t[b], y[b, : 2 * NQ], act[b], last, p[b], on, k[b], force)
+        found = instrument_readings(t[b], y[b, : 2 * NQ], act[b], last, p[b], on, k[b], force)
         for i in range(len(found)):
             felt[b, 1 + i] = found[i]

@@ -15,28 +15,34 @@ from boatsim.physics.kernel.compiling import inlined, lean
 from boatsim.physics.signals import Array
 
 from .laws import HELD
-from .motion import NQ, K, add_to_mujoco
+from .motion import NQ, K, add_force_and_inertia_to_mujoco
 
 NM = NQ * (NQ + 1) // 2  # stored entries of MuJoCo's joint-space inertia
 factor_mass = types.ExternalFunction("mj_factorM", types.void(types.voidptr, types.voidptr))
 
 
 @inlined
-def passive(t: float, q: Array, qd: Array, user: Array, n: int, f: Array, M: Array) -> None:
+def add_passive_forces(
+    t: float, q: Array, qd: Array, user: Array, n: int, f: Array, M: Array
+) -> None:
     """Add forces and inertia; the time tells which stage of the Runge-Kutta step this is."""
     act = n + K
     share = (t - user[act + 3 * HELD]) * user[act + 3 * HELD + 1]
     at = np.int64(0) if share < 0.25 else np.int64(HELD) if share < 0.75 else np.int64(2 * HELD)
-    add_to_mujoco(t, q, qd, user[act : act + 3 * HELD], at, user[:n], user[n:act], f, M)
+    add_force_and_inertia_to_mujoco(
+        t, q, qd, user[act : act + 3 * HELD], at, user[:n], user[n:act], f, M
+    )
 
 
 @lean
-def passive_in_place(t: float, q: Array, qd: Array, user: Array, f: Array, M: Array) -> None:
+def add_passive_forces_in_place(
+    t: float, q: Array, qd: Array, user: Array, f: Array, M: Array
+) -> None:
     """Add forces and inertia from a callback in Python, as the native callback does."""
-    passive(t, q, qd, user, user.size - 3 * HELD - 2 - K, f, M)
+    add_passive_forces(t, q, qd, user, user.size - 3 * HELD - 2 - K, f, M)
 
 
-def make_native(offsets: dict[str, int], size: int) -> Any:
+def compile_passive_callback(offsets: dict[str, int], size: int) -> Any:
     """Compile the callback to a C function.
 
     Args:
@@ -64,7 +70,7 @@ def make_native(offsets: dict[str, int], size: int) -> Any:
         qd = carray(pointer_from_integer(w[of_qd]), (NQ,), np.float64)
         f = carray(pointer_from_integer(w[of_f]), (NQ,), np.float64)
         M = carray(pointer_from_integer(w[of_M]), (NM,), np.float64)
-        passive(t, q, qd, user, n, f, M)
+        add_passive_forces(t, q, qd, user, n, f, M)
         factor_mass(model, data)
 
     return compile_callback(called)

@@ -14,7 +14,7 @@ from boatsim.physics.compiler_internals import WITHOUT_REFERENCE_COUNTS, keep_on
 from boatsim.physics.debugging import DEBUG, python_function
 
 
-def kept(**options: Any) -> Callable[[Any], Any]:
+def cached_njit(**options: Any) -> Callable[[Any], Any]:
     """Return a decorator like `njit` that keeps the compiled code on disk.
 
     Args:
@@ -29,11 +29,11 @@ def kept(**options: Any) -> Callable[[Any], Any]:
 
 
 # Called from Python or from several functions; kept on disk.
-compiled = kept()
+compiled = cached_njit()
 # The same for functions that allocate no arrays and call only laws that allocate none.
-lean = kept(**WITHOUT_REFERENCE_COUNTS)
+lean = cached_njit(**WITHOUT_REFERENCE_COUNTS)
 # The same, for functions that other threads may run at the same time.
-unlocked = kept(nogil=True, **WITHOUT_REFERENCE_COUNTS)
+unlocked = cached_njit(nogil=True, **WITHOUT_REFERENCE_COUNTS)
 # A part that few vessels call: never inlined, so that it does not lengthen the programs around it.
 apart: Any = njit(error_model="numpy", **WITHOUT_REFERENCE_COUNTS)
 # A small part of one or two other functions: numba analyses it again in each of them.
@@ -44,6 +44,6 @@ merged = njit(error_model="numpy", forceinline=True, **WITHOUT_REFERENCE_COUNTS)
 
 
 @cache
-def shared(law: Any) -> Any:
+def compile_shared_law(law: Any) -> Any:
     """Return an effect's law for programs to call, analysed once in a process."""
     return merged(python_function(law))

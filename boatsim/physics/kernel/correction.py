@@ -6,7 +6,7 @@ Compiled once for all vessels, which differ in the size of the state.
 from math import log, sqrt
 
 from boatsim.physics.kernel.compiling import lean
-from boatsim.physics.kernel.records import Channel, Estimate, Measurement
+from boatsim.physics.kernel.records import Measurement, MeasurementResults, StateEstimate
 from boatsim.physics.signals import Array
 
 # [sd] A measurement with a larger prediction error is an outlier. Its weight falls with the error
@@ -19,7 +19,7 @@ IN_A_ROW = 2
 
 
 @lean
-def weigh(one: Measurement, estimate: Estimate, gain: Array, Ph: Array) -> float:
+def kalman_gain(one: Measurement, estimate: StateEstimate, gain: Array, Ph: Array) -> float:
     """Compute gain (n,) and P row' (n,) of one measurement, in place.
 
     Return the inverse sd of its prediction error.
@@ -44,7 +44,9 @@ def weigh(one: Measurement, estimate: Estimate, gain: Array, Ph: Array) -> float
 
 
 @lean
-def update(one: Measurement, estimate: Estimate, gains: bool, channel: Channel, Ph: Array) -> float:
+def update_by_measurement(
+    one: Measurement, estimate: StateEstimate, gains: bool, channel: MeasurementResults, Ph: Array
+) -> float:
     """Correct the mean by one measurement, and the covariance if `gains`.
 
     Return its log likelihood.
@@ -53,7 +55,7 @@ def update(one: Measurement, estimate: Estimate, gains: bool, channel: Channel, 
     gain, scale, white, outliers = channel.gain, channel.scale, channel.white, channel.outliers
     likelihood = 0.0
     if gains:
-        scale[0] = weigh(one, estimate, gain, Ph)
+        scale[0] = kalman_gain(one, estimate, gain, Ph)
         likelihood += log(scale[0])
         far = abs(error) * scale[0] > GATE and outliers[0] < IN_A_ROW
         outliers[0] = outliers[0] + 1.0 if far else 0.0

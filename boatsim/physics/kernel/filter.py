@@ -12,49 +12,68 @@ from typing import Any
 import numpy as np
 
 from boatsim.physics.kernel.compiling import compiled, lean
-from boatsim.physics.kernel.correction import update
-from boatsim.physics.kernel.matrices import carry, copy, copy_square, exponential, multiply, solve
+from boatsim.physics.kernel.correction import update_by_measurement
+from boatsim.physics.kernel.matrices import (
+    cholesky_solve,
+    copy_square_matrix,
+    copy_vector,
+    matrix_exponential,
+    multiply_matrices,
+    propagate_covariance,
+)
 from boatsim.physics.kernel.records import (
-    Channel,
-    Estimate,
+    FilterHistory,
+    FilterPass,
     FilterStart,
-    History,
+    FilterWorkspace,
     Inputs,
     LatentForce,
-    Laws,
+    LawArguments,
     Measurement,
+    MeasurementResults,
     Measurements,
-    Model,
-    Pass,
     PassArrays,
     PassOptions,
-    Plant,
     ProcessNoise,
-    Work,
+    StateEstimate,
+    VesselNumbers,
+    VesselState,
 )
-from boatsim.physics.signals import Array, Swell, Wander
+from boatsim.physics.signals import Array, InstrumentDrift, OscillatingForce
 
-from .inertia import constants
-from .laws import HAS_SWELL, HAS_WANDER, HELD, MEMORY, distorted, late, shown, swell, wander
+from .inertia import compute_mass_constants
+from .laws import (
+    HAS_INSTRUMENT_DRIFT,
+    HAS_OSCILLATING_FORCE,
+    HELD,
+    MEMORY,
+    apply_measurement_errors,
+    has_measurement_errors,
+    instrument_drift,
+    motion_latency,
+    oscillating_force,
+)
 from .motion import (
     DIFFERENCE,
     FREE,
+    HULL_FIXED_AXES,
     NQ,
     SHOWS,
-    TILTS,
     K,
-    force_slopes,
-    moved,
-    observe_level,
-    slopes,
+    acceleration_jacobian,
+    acceleration_per_force,
+    expected_measurement_level,
+    pose_and_velocities,
     step_in_place,
 )
-from .run import SHORTEST, actuate_in_place, least_after, settle, until_bend
+from .run import SHORTEST, advance_actuators, minimum_substep, settle_actuators, substep_length
 
 # As 64-bit integers: numba takes plain integers for types and would compile a function for each of
 # their values.
 NY, LASTING = np.int64(2 * NQ), np.int64(3 * NQ)
-NZ = np.int64(LASTING + (2 * NQ if HAS_SWELL else 0) + (NQ if HAS_WANDER else 0))
+NZ = np.int64(
+    LASTING + (2 * NQ if HAS_OSCILLATING_FORCE else 0) + (NQ if HAS_INSTRUMENT_DRIFT else 0)
+)
 # Integration step in time constants of the quickest motion: half of Runge-Kutta's limit of
 # stability
 STEADY = 1.4
@@ -70,8 +89,14 @@ INVERT = 10
 
 
 @lean
-def predict(
-    inputs: Inputs, i: int, delay: float, row: int, max_step: float, laws: Laws, plant: Plant
+def predict_motion(
+    inputs: Inputs,
+    i: int,
+    delay: float,
+    row: int,
+    max_step: float,
+    laws: LawArguments,
+    plant: VesselState,
 ) -> int:
     """Integrate the motion `plant.y` from row i - 1 to row i in place.
 
@@ -88,18 +113,20 @@ def predict(
         while row + 1 < len(given) and given[row + 1] <= begin + done + 1e-9:
             row += 1
         left = min(longest, h - done)
-        dt = until_bend(commands[row], memory, left, least, p, on)
-        least, before = least_after(dt, before, least), dt
+        dt = substep_length(commands[row], memory, left, least, p, on)
+        least, before = minimum_substep(dt, before, least), dt
         if row + 1 < len(given):
             dt = min(dt, given[row + 1] - begin - done)
-        actuate_in_place(commands[row], memory, dt, p, on, act)
+        advance_actuators(commands[row], memory, dt, p, on, act)
         step_in_place(begin + done, y, dt, act, p, on, k, force)
         done += dt
     return row
 
 
 @lean
-def linearise(t: float, h: float, z: Array, laws: Laws, plant: Plant, work: Work) -> float:
+def state_transition(
+    t: float, h: float, z: Array, laws: LawArguments, plant: VesselState, work: FilterWorkspace
+) -> float:
     """Fill F with the transition of motion and latent forces over h.
 
     Returns the decay rate of the quickest motion there [1/s].
@@ -110,19 +137,21 @@ def linearise(t: float, h: float, z: Array, laws: Laws, plant: Plant, work: Work
             A[i, j] = 0.0
     for i in range(NQ):
         A[i, NQ + i] = 1.0
-    slopes(t, z, plant.act, laws.p, laws.on, laws.k, plant.force, A[NQ:NY])
-    force_slopes(z, laws.k, A, np.int64(NQ), NY)
+    acceleration_jacobian(t, z, plant.act, laws.p, laws.on, laws.k, plant.force, A[NQ:NY])
+    acceleration_per_force(z, laws.k, A, np.int64(NQ), NY)
     rate, level = 0.0, 0.0
     for i in range(NQ):
         if FREE[i] < 2:  # both axes of a turned hull share the damping: their sum does not change
             level += abs(A[NQ + i, NQ + i])
         rate = max(rate, level, abs(A[NQ + i, NQ + i]))
-    exponential(A, h, work.F, work.B, LASTING)
+    matrix_exponential(A, h, work.F, work.B, LASTING)
     return rate
 
 
 @lean
-def oscillator(h: float, s: Swell) -> tuple[float, float, float, float, float, float]:
+def oscillator_transition(
+    h: float, s: OscillatingForce
+) -> tuple[float, float, float, float, float, float]:
     """Transition of the oscillator over h, and its mean force per state and rate at the start.
 
     The force is the rate divided by the frequency, w s / (s^2 + 2 damping w s + w^2): waves have no
@@ -137,9 +166,9 @@ def oscillator(h: float, s: Swell) -> tuple[float, float, float, float, float, f
 
 
 @lean
-def add_oscillators(h: float, s: Swell, F: Array) -> None:
+def add_oscillators(h: float, s: OscillatingForce, F: Array) -> None:
     """Add the rows of the oscillators, and their effect on the motion, to the transition F."""
-    f11, f12, f21, f22, mean1, mean2 = oscillator(h, s)
+    f11, f12, f21, f22, mean1, mean2 = oscillator_transition(h, s)
     for i in range(NZ):
         for j in range(LASTING, NZ):
             F[i, j] = F[j, i] = 0.0
@@ -151,16 +180,16 @@ def add_oscillators(h: float, s: Swell, F: Array) -> None:
 
 
 @lean
-def state_sizes(s: Swell, w: Wander) -> tuple[Any, Any]:
+def state_sizes(s: OscillatingForce, w: InstrumentDrift) -> tuple[Any, Any]:
     """Entries of a state that are motion and forces, and all with the errors of instruments."""
-    m = NZ if not HAS_WANDER else NZ - NQ
+    m = NZ if not HAS_INSTRUMENT_DRIFT else NZ - NQ
     if s.frequency == 0.0:
         m = LASTING
     return m, m + NQ if w.position > 0.0 or w.heading > 0.0 else m
 
 
 @lean
-def instrument_error(w: Wander, j: int) -> float:
+def instrument_drift_rms(w: InstrumentDrift, j: int) -> float:
     """Rms of the slowly varying error of position j of a state."""
     if FREE[j] < 2:
         return float(w.position)
@@ -170,15 +199,15 @@ def instrument_error(w: Wander, j: int) -> float:
 @lean
 def add_process_noise(h: float, noise: ProcessNoise, P: Array) -> None:
     """Add the covariance that latent forces, oscillators and instrument errors gain over h."""
-    s, w, m = noise.swell, noise.wander, noise.m
+    s, w, m = noise.oscillating_force, noise.instrument_drift, noise.m
     decay = exp(-h / noise.force.time_constant)
     for j in range(NQ):
         P[NY + j, NY + j] += noise.force.variances[j] * (1.0 - decay * decay)
     for j in range(noise.n - m):
         kept = exp(-h / w.time)
-        P[m + j, m + j] += instrument_error(w, j) ** 2 * (1.0 - kept * kept)
+        P[m + j, m + j] += instrument_drift_rms(w, j) ** 2 * (1.0 - kept * kept)
     if m > LASTING:
-        f11, f12, f21, f22, _, _ = oscillator(h, s)
+        f11, f12, f21, f22, _, _ = oscillator_transition(h, s)
         w2 = s.frequency * s.frequency
         for j in range(NQ):
             v, a = s[FREE[j]] ** 2, LASTING + 2 * j
@@ -190,14 +219,14 @@ def add_process_noise(h: float, noise: ProcessNoise, P: Array) -> None:
 
 
 @lean
-def split(z: Array, h: float, noise: ProcessNoise, plant: Plant) -> None:
+def set_plant_from_state(z: Array, h: float, noise: ProcessNoise, plant: VesselState) -> None:
     """Set the motion of `plant`, and its force to the mean latent force over h seconds."""
     force = plant.force
-    copy(z, plant.y)
+    copy_vector(z, plant.y)
     for a in range(NQ):
         force[a] = z[NY + a]
     if noise.m > LASTING:
-        _, _, _, _, mean1, mean2 = oscillator(h, noise.swell)
+        _, _, _, _, mean1, mean2 = oscillator_transition(h, noise.oscillating_force)
         for a in range(NQ):
             force[a] += mean1 * z[LASTING + 2 * a] + mean2 * z[LASTING + 2 * a + 1]
 
@@ -209,12 +238,12 @@ def predict_covariance(h: float, noise: ProcessNoise, P: Array, F: Array, work: 
     for a in range(NY, LASTING):
         F[a, a] = exp(-h / noise.force.time_constant)
     if m > LASTING:
-        add_oscillators(h, noise.swell, F)
+        add_oscillators(h, noise.oscillating_force, F)
     for j in range(m, n):
         for i in range(n):
             F[i, j] = F[j, i] = 0.0
-        F[j, j] = exp(-h / noise.wander.time)
-    carry(F, P, work, n)
+        F[j, j] = exp(-h / noise.instrument_drift.time)
+    propagate_covariance(F, P, work, n)
     add_process_noise(h, noise, P)
 
 
@@ -227,9 +256,9 @@ def predict_mean(h: float, noise: ProcessNoise, y: Array, z: Array) -> None:
     for a in range(NY, LASTING):
         z[a] *= exp(-h / noise.force.time_constant)
     for a in range(m, noise.n):
-        z[a] *= exp(-h / noise.wander.time)
+        z[a] *= exp(-h / noise.instrument_drift.time)
     if m > LASTING:
-        f11, f12, f21, f22, _, _ = oscillator(h, noise.swell)
+        f11, f12, f21, f22, _, _ = oscillator_transition(h, noise.oscillating_force)
         for a in range(LASTING, m, 2):
             z[a], z[a + 1] = f11 * z[a] + f12 * z[a + 1], f21 * z[a] + f22 * z[a + 1]
 
@@ -243,10 +272,10 @@ def add_deviation(F: Array, z: Array, about: Array, y: Array) -> None:
 
 
 @lean
-def predict_and_linearise(
-    f: Pass, i: int, row: int, z: Array, max_step: float, steps: Array
+def predict_motion_and_transition(
+    f: FilterPass, i: int, row: int, z: Array, max_step: float, steps: Array
 ) -> int:
-    """Apply `predict` and compute the transition F about the state z at the begin.
+    """Apply `predict_motion` and compute the transition F about the state z at the begin.
 
     The steps follow the quickest motion: those that suited the row before may be too long. Fills
     steps[i] and a first guess for the next row.
@@ -255,15 +284,15 @@ def predict_and_linearise(
     h = times[i] - times[i - 1]
     if i == 1:
         steps[i] = max_step
-    copy(plant.memory, f.work.memory)
-    last = predict(inputs, i, f.delay, row, steps[i], f.laws, plant)
-    rate = linearise(times[i - 1] - f.delay, h, z, f.laws, plant, f.work)
+    copy_vector(plant.memory, f.work.memory)
+    last = predict_motion(inputs, i, f.delay, row, steps[i], f.laws, plant)
+    rate = state_transition(times[i - 1] - f.delay, h, z, f.laws, plant, f.work)
     longest = max(min(max_step, STEADY / max(rate, 1e-9)), LEAST * h)
     if longest < 0.5 * steps[i]:
         steps[i] = longest
-        split(z, h, f.noise, plant)
-        copy(f.work.memory, plant.memory)
-        last = predict(inputs, i, f.delay, row, longest, f.laws, plant)
+        set_plant_from_state(z, h, f.noise, plant)
+        copy_vector(f.work.memory, plant.memory)
+        last = predict_motion(inputs, i, f.delay, row, longest, f.laws, plant)
     if i + 1 < len(times):
         steps[i + 1] = longest
     return last
@@ -274,59 +303,64 @@ def predict_and_linearise(
 
 
 @lean
-def recorded(y: Array, code: int, p: Array, on: Any) -> float:
+def recorded_channel_value(y: Array, code: int, p: Array, on: Any) -> float:
     """Value of one channel that a recording shows of a motion y (2 NQ,)."""
-    return float(shown(moved(y), p, on)[SHOWS[code]])
+    return float(apply_measurement_errors(pose_and_velocities(y), p, on)[SHOWS[code]])
 
 
 @lean
 def differentiate_channels(z: Array, codes: Any, H: Array, p: Array, on: Any) -> None:
     """Fill H (C, 2 NQ) with the derivatives of the channels by z that need differences."""
-    if not TILTS and not distorted(on):
+    if not HULL_FIXED_AXES and not has_measurement_errors(on):
         return
-    seen = shown(moved(z), p, on)
+    seen = apply_measurement_errors(pose_and_velocities(z), p, on)
     for c in range(len(codes)):
         H[c, 0] = seen[SHOWS[codes[c]]]
     # The first column is written last: until then it holds the values at z itself.
     for j in range(NY - 1, -1, -1):
         here = z[j]
         z[j] = here + DIFFERENCE
-        displaced = shown(moved(z), p, on)
+        displaced = apply_measurement_errors(pose_and_velocities(z), p, on)
         for c in range(len(codes)):
             H[c, j] = (displaced[SHOWS[codes[c]]] - H[c, 0]) / DIFFERENCE
         z[j] = here
 
 
 @lean
-def expect(z: Array, code: int, slope: Array, row: Array, p: Array, on: Any) -> float:
+def expected_measurement(z: Array, code: int, slope: Array, row: Array, p: Array, on: Any) -> float:
     """Return the expected value of one channel; fill its row (n,) of the measurement matrix.
 
     `slope` is its row by `differentiate_channels`, where that filled it.
     """
-    if not TILTS and not distorted(on):
+    if not HULL_FIXED_AXES and not has_measurement_errors(on):
         for j in range(NZ):
             row[j] = 0.0
-        return observe_level(z, code, row)
-    copy(slope, row[:NY])
-    return recorded(z, code, p, on)
+        return expected_measurement_level(z, code, row)
+    copy_vector(slope, row[:NY])
+    return recorded_channel_value(z, code, p, on)
 
 
 @compiled
-def undistorted(z: Array, p: Array, on: Any) -> None:
+def remove_position_errors(z: Array, p: Array, on: Any) -> None:
     """Replace recorded positions by those of the vessel, in place."""
-    if distorted(on):
+    if has_measurement_errors(on):
         positions, y = np.zeros(NQ), np.zeros(NY)
-        copy(z, positions)
-        copy(z, y)
+        copy_vector(z, positions)
+        copy_vector(z, y)
         for _ in range(INVERT):
             for j in range(NQ):
-                z[j] += positions[j] - recorded(y, j, p, on)
-            copy(z, y)
+                z[j] += positions[j] - recorded_channel_value(y, j, p, on)
+            copy_vector(z, y)
 
 
 @lean
 def update_row(
-    f: Pass, estimate: Estimate, measured: Measurements, i: int, gains: bool, out: PassArrays
+    f: FilterPass,
+    estimate: StateEstimate,
+    measured: Measurements,
+    i: int,
+    gains: bool,
+    out: PassArrays,
 ) -> float:
     """Correct the mean by row i of a recording, and the covariance if `gains`.
 
@@ -341,14 +375,14 @@ def update_row(
         if np.isnan(values[c]):
             scale[c] = white[c] = 0.0
             continue
-        error = values[c] - expect(z, codes[c], work.H[c], work.row, p, on)
+        error = values[c] - expected_measurement(z, codes[c], work.H[c], work.row, p, on)
         own = np.int64(-1)
         if estimate.n > m and codes[c] < NQ:
             own = m + codes[c]
             error -= z[own]
         one = Measurement(error, work.row, measured.variances[c], NY, own)
-        channel = Channel(work.outliers[c:], out.gains[i, c], scale[c:], white[c:])
-        likelihood += update(one, estimate, gains, channel, work.Ph)
+        channel = MeasurementResults(work.outliers[c:], out.gains[i, c], scale[c:], white[c:])
+        likelihood += update_by_measurement(one, estimate, gains, channel, work.Ph)
     return likelihood
 
 
@@ -357,16 +391,16 @@ def update_row(
 
 
 @lean
-def initialise(start: FilterStart, noise: ProcessNoise, estimate: Estimate) -> None:
+def initialise_filter(start: FilterStart, noise: ProcessNoise, estimate: StateEstimate) -> None:
     """Set mean and covariance of the first row, with the oscillators at any phase."""
-    s, w, m, z, P = noise.swell, noise.wander, noise.m, estimate.z, estimate.P
+    s, w, m, z, P = noise.oscillating_force, noise.instrument_drift, noise.m, estimate.z, estimate.P
     for a in range(LASTING):
         z[a] = start.mean[a]
-    copy_square(start.covariance, P, LASTING)
+    copy_square_matrix(start.covariance, P, LASTING)
     # The first position has an error of the instrument: the vessel is off by as much in the other
     # direction.
     for j in range(noise.n - m):
-        variance = instrument_error(w, j) ** 2
+        variance = instrument_drift_rms(w, j) ** 2
         P[m + j, m + j] = variance
         P[j, j] += variance
         P[j, m + j] = P[m + j, j] = -variance
@@ -377,15 +411,15 @@ def initialise(start: FilterStart, noise: ProcessNoise, estimate: Estimate) -> N
 
 
 @compiled
-def kalman(
+def kalman_filter(
     inputs: Inputs,
     measured: Measurements,
-    model: Model,
+    model: VesselNumbers,
     force: LatentForce,
     start: FilterStart,
     options: PassOptions,
     out: PassArrays,
-    history: History,
+    history: FilterHistory,
 ) -> float:
     """Run one pass of the filter over a recording; fill `out` and, on demand, `history`.
 
@@ -393,14 +427,17 @@ def kalman(
     """
     body, p, on = model
     k, act, memory = np.zeros(K), np.zeros(3 * HELD), np.zeros(MEMORY)
-    constants(body, p, on, k)
-    settle(inputs.commands[0], memory, p, on, act)
-    s, w, delay = swell(p, on), wander(p, on), late(p, on)
+    compute_mass_constants(body, p, on, k)
+    settle_actuators(inputs.commands[0], memory, p, on, act)
+    s, w, delay = oscillating_force(p, on), instrument_drift(p, on), motion_latency(p, on)
     m, n = state_sizes(s, w)
-    noise, estimate = ProcessNoise(force, s, w, m, n), Estimate(np.zeros(NZ), np.zeros((NZ, NZ)), n)
-    plant = Plant(np.zeros(NY), memory, act, np.zeros(NQ))
+    noise, estimate = (
+        ProcessNoise(force, s, w, m, n),
+        StateEstimate(np.zeros(NZ), np.zeros((NZ, NZ)), n),
+    )
+    plant = VesselState(np.zeros(NY), memory, act, np.zeros(NQ))
     square, channels = (NZ, NZ), len(measured.codes)
-    work = Work(
+    work = FilterWorkspace(
         np.zeros(square),
         np.zeros(square),
         np.zeros(square),
@@ -410,75 +447,75 @@ def kalman(
         np.zeros(channels),
         np.zeros(MEMORY),
     )
-    f = Pass(inputs, Laws(p, on, k), delay, noise, plant, work)
+    f = FilterPass(inputs, LawArguments(p, on, k), delay, noise, plant, work)
     z, P, F, y, times = estimate.z, estimate.P, work.F, plant.y, inputs.times
     about = np.zeros(NZ)
-    initialise(start, noise, estimate)
-    undistorted(z, p, on)
-    likelihood, last = 0.0, np.int64(0)  # with a plain 0 `predict` would be compiled twice
+    initialise_filter(start, noise, estimate)
+    remove_position_errors(z, p, on)
+    likelihood, last = 0.0, np.int64(0)  # with a plain 0 `predict_motion` would be compiled twice
     if options.history:
-        copy(z, history.means[0])
-        copy(z, history.predicted[0])
-        copy_square(P, history.covariances[0], NZ)
+        copy_vector(z, history.means[0])
+        copy_vector(z, history.predicted[0])
+        copy_square_matrix(P, history.covariances[0], NZ)
     for i in range(1, len(times)):
         h = times[i] - times[i - 1]
-        copy(z, about)
+        copy_vector(z, about)
         if i == 1:
-            copy(start.rates, about[NQ:NY])
-        split(about, h, noise, plant)
+            copy_vector(start.rates, about[NQ:NY])
+        set_plant_from_state(about, h, noise, plant)
         if options.gains and options.linearise:
-            last = predict_and_linearise(f, i, last, about, options.max_step, out.steps)
-            copy_square(F, out.transitions[i], LASTING)
+            last = predict_motion_and_transition(f, i, last, about, options.max_step, out.steps)
+            copy_square_matrix(F, out.transitions[i], LASTING)
         else:
-            last = predict(inputs, i, delay, last, out.steps[i], f.laws, plant)
+            last = predict_motion(inputs, i, delay, last, out.steps[i], f.laws, plant)
             if options.gains or i == 1:
-                copy_square(out.transitions[i], F, LASTING)
+                copy_square_matrix(out.transitions[i], F, LASTING)
         if i == 1:
             add_deviation(F, z, about, y)
         if options.gains:
             predict_covariance(h, noise, P, F, work.B)
         predict_mean(h, noise, y, z)
         if options.history:
-            copy(z, history.predicted[i])
-            copy_square(F, history.transitions[i], NZ)
+            copy_vector(z, history.predicted[i])
+            copy_square_matrix(F, history.transitions[i], NZ)
         likelihood += update_row(f, estimate, measured, i, options.gains, out)
         if options.history:
-            copy(z, history.means[i])
-            copy_square(P, history.covariances[i], NZ)
+            copy_vector(z, history.means[i])
+            copy_square_matrix(P, history.covariances[i], NZ)
     return likelihood
 
 
 @compiled
-def smooth(
-    history: History, gains: Array, times: Array, force: LatentForce, p: Array, on: Any
+def smooth_states(
+    history: FilterHistory, gains: Array, times: Array, force: LatentForce, p: Array, on: Any
 ) -> None:
     """Smooth the means and covariances of a pass in place (Rauch, Tung and Striebel).
 
     Fill the gains (N, NZ, NZ).
     """
     means, covariances, transitions, predicted = history
-    s, w = swell(p, on), wander(p, on)
+    s, w = oscillating_force(p, on), instrument_drift(p, on)
     m, n = state_sizes(s, w)
     noise = ProcessNoise(force, s, w, m, n)
     ahead, cross = np.zeros((NZ, NZ)), np.zeros((NZ, NZ))
     G, work, off = np.zeros((NZ, NZ)), np.zeros((NZ, NZ)), np.zeros(NZ)
     for i in range(len(times) - 2, -1, -1):
-        multiply(transitions[i + 1], covariances[i], cross, n)  # F P
-        copy_square(covariances[i], ahead, n)
-        carry(transitions[i + 1], ahead, work, n)
+        multiply_matrices(transitions[i + 1], covariances[i], cross, n)  # F P
+        copy_square_matrix(covariances[i], ahead, n)
+        propagate_covariance(transitions[i + 1], ahead, work, n)
         add_process_noise(times[i + 1] - times[i], noise, ahead)
         # Positions and rates are driven by the force alone: this keeps the matrix invertible.
         for j in range(n):
             ahead[j, j] *= 1.0 + 1e-9
             ahead[j, j] += 1e-18
-        copy_square(ahead, work, n)
-        solve(work, cross, n)
+        copy_square_matrix(ahead, work, n)
+        cholesky_solve(work, cross, n)
         for j in range(n):
             off[j] = means[i + 1, j] - predicted[i + 1, j]
             for k in range(n):
                 G[j, k] = gains[i, j, k] = cross[k, j]
                 ahead[j, k] = covariances[i + 1, j, k] - ahead[j, k]
-        carry(G, ahead, work, n)
+        propagate_covariance(G, ahead, work, n)
         for j in range(n):
             for k in range(n):
                 means[i, j] += G[j, k] * off[k]
@@ -486,10 +523,10 @@ def smooth(
 
 
 @compiled
-def free_runs(
+def simulate_intervals(
     inputs: Inputs,
     max_step: float,
-    model: Model,
+    model: VesselNumbers,
     starts: Any,
     ends: Any,
     states: Array,
@@ -502,23 +539,23 @@ def free_runs(
     """
     times, (body, p, on) = inputs.times, model
     k, act, memory = np.zeros(K), np.zeros(3 * HELD), np.zeros(MEMORY)
-    constants(body, p, on, k)
-    settle(inputs.commands[0], memory, p, on, act)
-    y, delay, last = np.zeros(NY), late(p, on), np.int64(0)
-    laws, plant = Laws(p, on, k), Plant(y, memory, act, np.zeros(NQ))
+    compute_mass_constants(body, p, on, k)
+    settle_actuators(inputs.commands[0], memory, p, on, act)
+    y, delay, last = np.zeros(NY), motion_latency(p, on), np.int64(0)
+    laws, plant = LawArguments(p, on, k), VesselState(y, memory, act, np.zeros(NQ))
     saved, rows = np.zeros((len(times), MEMORY)), np.zeros(len(times), dtype=np.int64)
     for i in range(1, len(times)):  # only for the actuators
-        copy(memory, saved[i - 1])
+        copy_vector(memory, saved[i - 1])
         rows[i - 1] = last
         for j in range(NY):
             y[j] = 0.0
-        last = predict(inputs, i, delay, last, max_step, laws, plant)
+        last = predict_motion(inputs, i, delay, last, max_step, laws, plant)
     for run in range(len(starts)):
-        copy(states[run], y)
-        copy(saved[starts[run]], memory)
+        copy_vector(states[run], y)
+        copy_vector(saved[starts[run]], memory)
         last = rows[starts[run]]
         for i in range(starts[run], ends[run] + 1):
             if i > starts[run]:
-                last = predict(inputs, i, delay, last, max_step, laws, plant)
+                last = predict_motion(inputs, i, delay, last, max_step, laws, plant)
             for code in range(NY):
-                out[run, i, code] = recorded(y, code, p, on)
+                out[run, i, code] = recorded_channel_value(y, code, p, on)

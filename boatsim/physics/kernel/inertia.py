@@ -5,19 +5,19 @@ from typing import Any
 from boatsim.physics.kernel.compiling import lean
 from boatsim.physics.signals import Array
 
-from .laws import inertias
+from .laws import add_inertias
 from .motion import CLOSED, FREED
 
 # Surge, heave, pitch; sway, roll, yaw: a hull that is symmetric to port and starboard does not
 # couple the two.
 BLOCKS = ((0, 2, 4), (1, 3, 5))
-# Entries of `Mass` in these blocks
+# Entries of `MassMatrix` in these blocks
 DIAGONAL = ((0, 2, 4), (1, 3, 5))
 COUPLINGS = ((6, 7, 8), (9, 10, 11))
 
 
 @lean
-def invert(m: Array) -> None:
+def invert_mass_matrix(m: Array) -> None:
     """Invert a mass matrix by its two blocks, in place.
 
     The row of a held axis is that of the identity.
@@ -39,8 +39,8 @@ def invert(m: Array) -> None:
 
 
 @lean
-def constants(body: Array, p: Array, on: Any, k: Array) -> None:
-    """Fill k (42,): rigid body, then the entries of `Mass` of added mass, ballast and the sum.
+def compute_mass_constants(body: Array, p: Array, on: Any, k: Array) -> None:
+    """Fill k (42,): rigid body, then `MassMatrix` entries of added mass, ballast and the sum.
 
     The sum is inverted where one inverse serves all states (`CLOSED`).
     """
@@ -49,7 +49,7 @@ def constants(body: Array, p: Array, on: Any, k: Array) -> None:
         k[i] = body[i]
     for i in range(6, 42):
         k[i] = 0.0
-    inertias(p, on, k[6:18], k[18:30])
+    add_inertias(p, on, k[6:18], k[18:30])
     whole = k[30:42]
     whole[0] = whole[1] = whole[2] = m
     whole[3] = body[3] + m * z * z
@@ -60,4 +60,4 @@ def constants(body: Array, p: Array, on: Any, k: Array) -> None:
         whole[i] += k[6 + i]
         whole[i] += k[18 + i]
     if CLOSED:
-        invert(whole)
+        invert_mass_matrix(whole)

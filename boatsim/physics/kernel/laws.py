@@ -7,13 +7,22 @@ that are angles, HELD numbers each at the begin, in the middle and at the end of
 
 from typing import Any
 
-from boatsim.physics.signals import Array, Motion, Shown, Swell, Wander, Wrench
+from boatsim.physics.signals import (
+    Array,
+    InstrumentDrift,
+    MeasuredMotion,
+    Motion,
+    OscillatingForce,
+    Wrench,
+)
 
 HELD = 0
 MEMORY = 1  # floats of the state of all channels
-HAS_PAUSE = False  # whether the signal of any channel may jump or bend while its command is held
-HAS_SWELL = False  # whether any effect is a random oscillating force
-HAS_WANDER = False  # whether any instrument has a slowly varying error
+HAS_TIME_TO_DISCONTINUITY = (
+    False  # whether the signal of any channel may jump or bend while its command is held
+)
+HAS_OSCILLATING_FORCE = False  # whether any effect is a random oscillating force
+HAS_INSTRUMENT_DRIFT = False  # whether any instrument has a slowly varying error
 
 
 def wrench(m: Motion, p: Array, on: Any, act: Array, at: int) -> Wrench:
@@ -21,48 +30,48 @@ def wrench(m: Motion, p: Array, on: Any, act: Array, at: int) -> Wrench:
     raise NotImplementedError
 
 
-def flow(p: Array, on: Any) -> tuple[float, float]:
+def water_velocity(p: Array, on: Any) -> tuple[float, float]:
     """Velocity of the water over the ground (north, east) [m/s]."""
     raise NotImplementedError
 
 
-def inertias(p: Array, on: Any, water: Array, hull: Array) -> None:
-    """Add the `Mass` entries (12,) of added mass to `water` and of ballast to `hull`."""
+def add_inertias(p: Array, on: Any, water: Array, hull: Array) -> None:
+    """Add the `MassMatrix` entries (12,) of added mass to `water` and of ballast to `hull`."""
     raise NotImplementedError
 
 
-def actuate(
+def advance_channels(
     commands: Array, memory: Array, dt: float, p: Array, on: Any, act: Array, held: Any
 ) -> None:
     """Advance all channels by one step of dt [s]; fill act (3 held,)."""
     raise NotImplementedError
 
 
-def pause(commands: Array, memory: Array, p: Array, on: Any) -> float:
+def time_to_discontinuity(commands: Array, memory: Array, p: Array, on: Any) -> float:
     """Time until the signal of a channel jumps or bends while its command is held [s]."""
     raise NotImplementedError
 
 
-def shown(m: Shown, p: Array, on: Any) -> Shown:
+def apply_measurement_errors(m: MeasuredMotion, p: Array, on: Any) -> MeasuredMotion:
     """Motion as the recording shows it."""
     raise NotImplementedError
 
 
-def distorted(on: Any) -> bool:
+def has_measurement_errors(on: Any) -> bool:
     """Whether a recording shows anything but the true motion."""
     raise NotImplementedError
 
 
-def late(p: Array, on: Any) -> float:
+def motion_latency(p: Array, on: Any) -> float:
     """Delay of the recorded motion behind the recorded commands [s]."""
     raise NotImplementedError
 
 
-def swell(p: Array, on: Any) -> Swell:
+def oscillating_force(p: Array, on: Any) -> OscillatingForce:
     """Random oscillating force; frequency 0: none."""
     raise NotImplementedError
 
 
-def wander(p: Array, on: Any) -> Wander:
+def instrument_drift(p: Array, on: Any) -> InstrumentDrift:
     """Slowly varying error of the instruments; zeros: none."""
     raise NotImplementedError

@@ -14,7 +14,7 @@ SMALLEST = 2.0**-40
 
 
 @lean
-def copy(source: Array, out: Array) -> None:
+def copy_vector(source: Array, out: Array) -> None:
     """Fill a vector from the begin of another.
 
     An assignment of slices would take numba seconds to compile.
@@ -24,7 +24,7 @@ def copy(source: Array, out: Array) -> None:
 
 
 @lean
-def copy_square(source: Array, out: Array, n: int) -> None:
+def copy_square_matrix(source: Array, out: Array, n: int) -> None:
     """Copy the first n rows and columns of a matrix."""
     for i in range(n):
         for j in range(n):
@@ -32,7 +32,7 @@ def copy_square(source: Array, out: Array, n: int) -> None:
 
 
 @lean
-def multiply(A: Array, B: Array, out: Array, n: int) -> None:
+def multiply_matrices(A: Array, B: Array, out: Array, n: int) -> None:
     """Compute out = A B; A has many zeros, so that this is faster than a library call."""
     for i in range(n):
         for j in range(n):
@@ -45,20 +45,20 @@ def multiply(A: Array, B: Array, out: Array, n: int) -> None:
 
 
 @lean
-def carry(F: Array, P: Array, work: Array, n: int) -> None:
+def propagate_covariance(F: Array, P: Array, work: Array, n: int) -> None:
     """Compute P = F P F', symmetric, in place; the many zeros of F are skipped."""
-    multiply(F, P, work, n)
+    multiply_matrices(F, P, work, n)
     for i in range(n):
         for j in range(i):
             work[i, j], work[j, i] = work[j, i], work[i, j]
-    multiply(F, work, P, n)
+    multiply_matrices(F, work, P, n)
     for i in range(n):
         for j in range(i):
             P[j, i] = P[i, j]
 
 
 @lean
-def exponential(A: Array, h: float, F: Array, B: Array, n: int) -> None:
+def matrix_exponential(A: Array, h: float, F: Array, B: Array, n: int) -> None:
     """Compute F = exp(A h) by scaling and squaring; A and B are overwritten.
 
     The series of third order is taken over a part of h that is small enough for stiff damping.
@@ -71,20 +71,20 @@ def exponential(A: Array, h: float, F: Array, B: Array, n: int) -> None:
     for i in range(n):
         for j in range(n):
             A[i, j] *= part
-    multiply(A, A, B, n)
-    multiply(B, A, F, n)
+    multiply_matrices(A, A, B, n)
+    multiply_matrices(B, A, F, n)
     for i in range(n):
         for j in range(n):
             F[i, j] = A[i, j] + 0.5 * B[i, j] + F[i, j] / 6.0
         F[i, i] += 1.0
     while part < 0.75 * h:
-        multiply(F, F, B, n)
-        copy_square(B, F, n)
+        multiply_matrices(F, F, B, n)
+        copy_square_matrix(B, F, n)
         part *= 2.0
 
 
 @lean
-def solve(A: Array, B: Array, n: int) -> None:
+def cholesky_solve(A: Array, B: Array, n: int) -> None:
     """Compute B = A^-1 B for a symmetric positive definite A, which becomes its Cholesky factor."""
     for j in range(n):
         for k in range(j):

@@ -10,14 +10,14 @@ from typing import Any
 
 import numpy as np
 
-from boatsim.physics.signals import Array, Shown
+from boatsim.physics.signals import Array, MeasuredMotion
 
 NQ = 0  # positions; the state has twice as many
 K = 0  # masses, constant over a run
 FREE: tuple[int, ...] = ()  # places among (surge, sway, heave, roll, pitch, yaw)
 FREED: tuple[float, ...] = ()  # for each of the six: 1 if it is free, else 0
-SHOWS: tuple[int, ...] = ()  # entries of `Shown` in the order of a state
-TILTS = False  # whether the body axes are fixed in the hull; else they are level
+SHOWS: tuple[int, ...] = ()  # entries of `MeasuredMotion` in the order of a state
+HULL_FIXED_AXES = False  # whether the body axes are fixed in the hull; else they are level
 CLOSED = True  # whether one inverse of the mass matrix serves all states
 DIFFERENCE = 1e-6  # [m, rad, m/s, rad/s] step of one-sided finite differences
 
@@ -31,34 +31,36 @@ def step_in_place(
     """
 
 
-def forces(t: float, s: Array, act: Array, at: Any, p: Array, on: Any) -> tuple[float, ...]:
+def total_body_force(
+    t: float, s: Array, act: Array, at: Any, p: Array, on: Any
+) -> tuple[float, ...]:
     """Body force (NQ,) of all laws with the actuators act[at:]."""
     raise NotImplementedError
 
 
-def slopes(
+def acceleration_jacobian(
     t: float, s: Array, act: Array, p: Array, on: Any, k: Array, extra: Array, out: Array
 ) -> None:
     """Write the derivatives of the joint accelerations by the state to out (NQ, 2 NQ)."""
 
 
-def force_slopes(s: Array, k: Array, A: Array, row: np.int64, column: np.int64) -> None:
+def acceleration_per_force(s: Array, k: Array, A: Array, row: np.int64, column: np.int64) -> None:
     """Write the derivatives of the joint accelerations by a body force to A[row:, column:]."""
 
 
-def feels(
+def instrument_readings(
     t: float, s: Any, act: Array, at: Any, p: Array, on: Any, k: Array, extra: Any
 ) -> tuple[float, ...]:
     """Readings of instruments aboard: psi, r, acceleration along x and y, u, v, x, y, phi, p."""
     raise NotImplementedError
 
 
-def moved(s: Any) -> Shown:
+def pose_and_velocities(s: Any) -> MeasuredMotion:
     """True values of all recorded signals in a state."""
     raise NotImplementedError
 
 
-def observe_level(s: Array, code: int, row: Array) -> float:
+def expected_measurement_level(s: Array, code: int, row: Array) -> float:
     """Expected value of one measured channel.
 
     Fills its row of the measurement matrix. For level axes only.
@@ -66,7 +68,7 @@ def observe_level(s: Array, code: int, row: Array) -> float:
     raise NotImplementedError
 
 
-def add_to_mujoco(
+def add_force_and_inertia_to_mujoco(
     t: float, q: Array, qd: Array, act: Array, at: Any, p: Array, k: Array, force: Array, M: Array
 ) -> None:
     """Add the passive force and the lower triangle of J' M J, in MuJoCo's coordinates."""

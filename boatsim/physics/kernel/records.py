@@ -7,10 +7,10 @@ channels; N rows of a recording; M changes of the commands; B boats of a batch.
 
 from typing import Any, NamedTuple
 
-from boatsim.physics.signals import Array, Swell, Wander
+from boatsim.physics.signals import Array, InstrumentDrift, OscillatingForce
 
 
-class Model(NamedTuple):
+class VesselNumbers(NamedTuple):
     """The numbers of a vessel: rigid body, parameters, and which optional effects act."""
 
     body: Array  # (6,) as in `Program.body`
@@ -18,16 +18,16 @@ class Model(NamedTuple):
     on: Any  # (E,) 1 for an effect that acts
 
 
-class Laws(NamedTuple):
+class LawArguments(NamedTuple):
     """Parameters, switches and constants of the equations of motion."""
 
     p: Array  # (P,) parameters of all effects, in SI units
     on: Any  # (E,) 1 for an effect that acts
-    k: Array  # (K,) masses, see `inertia.constants`
+    k: Array  # (K,) masses, see `inertia.compute_mass_constants`
 
 
-class Plant(NamedTuple):
-    """State of one vessel; `step_in_place` and `actuate_in_place` change the arrays."""
+class VesselState(NamedTuple):
+    """State of one vessel; `step_in_place` and `advance_actuators` change the arrays."""
 
     y: Array  # (2 NQ,) joint coordinates and their rates
     memory: Array  # (MEMORY,) state of the actuators
@@ -35,7 +35,7 @@ class Plant(NamedTuple):
     force: Array  # (NQ,) further constant body force [N, N m]
 
 
-class Fleet(NamedTuple):
+class FleetArrays(NamedTuple):
     """States and parameters of many vessels, a row each; `advance_boats` changes the arrays."""
 
     t: Array  # (B,) [s]
@@ -99,7 +99,7 @@ class PassArrays(NamedTuple):
     whitened: Array  # (N, C) prediction errors in standard deviations
 
 
-class History(NamedTuple):
+class FilterHistory(NamedTuple):
     """Results of a pass that the smoother needs; it overwrites the means and covariances."""
 
     means: Array  # (N, NZ)
@@ -116,13 +116,13 @@ class ProcessNoise(NamedTuple):
     """Noise that drives the filter's state, and the sizes of that state."""
 
     force: LatentForce
-    swell: Swell
-    wander: Wander
+    oscillating_force: OscillatingForce
+    instrument_drift: InstrumentDrift
     m: Any  # entries of motion, latent forces and oscillators
     n: Any  # the same with the errors of instruments
 
 
-class Estimate(NamedTuple):
+class StateEstimate(NamedTuple):
     """Mean and covariance of the filter's state, changed in place."""
 
     z: Array  # (NZ,)
@@ -140,7 +140,7 @@ class Measurement(NamedTuple):
     own: Any  # place in the state of its instrument's error; -1: none
 
 
-class Channel(NamedTuple):
+class MeasurementResults(NamedTuple):
     """Where the results of one measurement go.
 
     The first entry of `outliers`, `scale` and `white` belongs to it.
@@ -152,7 +152,7 @@ class Channel(NamedTuple):
     white: Array
 
 
-class Work(NamedTuple):
+class FilterWorkspace(NamedTuple):
     """Arrays of one pass of the filter in which intermediate results lie."""
 
     F: Array  # (NZ, NZ) transition
@@ -165,12 +165,12 @@ class Work(NamedTuple):
     memory: Array  # (MEMORY,) state of the actuators at the begin of an interval
 
 
-class Pass(NamedTuple):
+class FilterPass(NamedTuple):
     """Inputs that are common to all steps of a pass of the filter."""
 
     inputs: Inputs
-    laws: Laws
+    laws: LawArguments
     delay: float  # [s] of the recorded motion behind the recorded commands
     noise: ProcessNoise
-    plant: Plant
-    work: Work
+    plant: VesselState
+    work: FilterWorkspace

@@ -4,11 +4,13 @@ from math import cos, sin
 from typing import Any
 
 from boatsim.physics.kernel.compiling import merged
-from boatsim.physics.signals import Array, Course
+from boatsim.physics.signals import Array, SignalSegment
 
 
 @merged
-def hold_turned(x: Course, act: Array, held: Any, angle: int, cosine: int, sine: int) -> None:
+def write_cosine_and_sine(
+    x: SignalSegment, act: Array, held: Any, angle: int, cosine: int, sine: int
+) -> None:
     """Write cosine and sine of an angle at three times of a step to act (3 held,).
 
     They take longer than the rest of an actuator and are not computed again for an angle that has

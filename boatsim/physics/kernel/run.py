@@ -5,11 +5,11 @@ from typing import Any
 import numpy as np
 
 from boatsim.physics.kernel.compiling import compiled, lean
-from boatsim.physics.kernel.records import Model, Plant
+from boatsim.physics.kernel.records import VesselNumbers, VesselState
 from boatsim.physics.signals import Array
 
-from .inertia import constants
-from .laws import HAS_PAUSE, HELD, actuate, pause
+from .inertia import compute_mass_constants
+from .laws import HAS_TIME_TO_DISCONTINUITY, HELD, advance_channels, time_to_discontinuity
 from .motion import NQ, K, step_in_place
 
 # [s] Shortest part of a step; within one, a signal that jumps is replaced by its mean.
@@ -22,46 +22,52 @@ ENOUGH = 1e-9  # [s] a remainder of a step that is neglected
 
 
 @lean
-def actuate_in_place(
+def advance_actuators(
     commands: Array, memory: Array, dt: float, p: Array, on: Any, act: Array
 ) -> None:
     """Advance all channels by one step.
 
     Fill act with the actuators at its begin, in its middle and at its end.
     """
-    actuate(commands, memory, dt, p, on, act, np.int64(HELD))
+    advance_channels(commands, memory, dt, p, on, act, np.int64(HELD))
 
 
 @compiled
-def settle(commands: Array, memory: Array, p: Array, on: Any, act: Array) -> None:
+def settle_actuators(commands: Array, memory: Array, p: Array, on: Any, act: Array) -> None:
     """Let the actuators reach their commands, in place, by a few very long steps."""
     for i in range(3 * HELD):
         act[i] = 0.0
     for _ in range(3):
-        actuate_in_place(commands, memory, LONG, p, on, act)
+        advance_actuators(commands, memory, LONG, p, on, act)
     for i in range(HELD):
         act[i] = act[HELD + i] = act[2 * HELD + i]
 
 
 @lean
-def until_bend(
+def substep_length(
     commands: Array, memory: Array, left: float, least: float, p: Array, on: Any
 ) -> float:
     """Return the length of the next part of a step: up to a jump or bend, within [least, left]."""
-    if HAS_PAUSE:
-        return min(left, max(pause(commands, memory, p, on), least))
+    if HAS_TIME_TO_DISCONTINUITY:
+        return min(left, max(time_to_discontinuity(commands, memory, p, on), least))
     return left
 
 
 @lean
-def least_after(part: float, before: float, least: float) -> float:
+def minimum_substep(part: float, before: float, least: float) -> float:
     """Return the least length of the next part of a step, after `before` and `part`."""
     return GROWS * least if part <= least or part < before else SHORTEST
 
 
 @compiled
 def rollout(
-    model: Model, plant: Plant, commands: Array, t0: float, dt: float, substeps: int, out: Array
+    model: VesselNumbers,
+    plant: VesselState,
+    commands: Array,
+    t0: float,
+    dt: float,
+    substeps: int,
+    out: Array,
 ) -> None:
     """Simulate a vessel: row i of commands (N, C) is held for `substeps` steps of dt.
 
@@ -74,15 +80,15 @@ def rollout(
     k = np.zeros(K)
     for i in range(3 * HELD):
         act[i] = 0.0
-    constants(body, p, on, k)
+    compute_mass_constants(body, p, on, k)
     out[0] = y
     for i in range(commands.shape[0]):
         for j in range(substeps):
             t, left, least, before = t0 + (i * substeps + j) * dt, dt, SHORTEST, 0.0
             while left > ENOUGH:
-                part = until_bend(commands[i], memory, left, least, p, on)
-                least, before = least_after(part, before, least), part
-                actuate_in_place(commands[i], memory, part, p, on, act)
+                part = substep_length(commands[i], memory, left, least, p, on)
+                least, before = minimum_substep(part, before, least), part
+                advance_actuators(commands[i], memory, part, p, on, act)
                 step_in_place(t, y, part, act, p, on, k, force)
                 t, left = t + part, left - part
         out[i + 1] = y[: 2 * NQ]

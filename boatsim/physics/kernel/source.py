@@ -1,6 +1,6 @@
 """Generates `motion.py` of a program: equations of motion and kinematics."""
 
-from boatsim.physics.kernel.equations import CONSTANTS, Writer
+from boatsim.physics.kernel.equations import CONSTANTS, EquationWriter
 from boatsim.physics.signals import AXES
 
 IMPORTS = """from math import cos, sin
@@ -8,13 +8,13 @@ IMPORTS = """from math import cos, sin
 import numpy as np
 
 from boatsim.physics.kernel.compiling import inlined, lean
-from boatsim.physics.signals import Motion, Shown
+from boatsim.physics.signals import MeasuredMotion, Motion
 
-from .laws import HELD, flow, wrench
+from .laws import HELD, water_velocity, wrench
 """
 
 
-def function(head: str, about: str, body: list[str], compiled: str) -> str:
+def function_text(head: str, about: str, body: list[str], compiled: str) -> str:
     """Return the text of a compiled function.
 
     Args:
@@ -35,12 +35,12 @@ def function(head: str, about: str, body: list[str], compiled: str) -> str:
     )
 
 
-def entries(array: str, n: int) -> str:
+def array_entries(array: str, n: int) -> str:
     """Return the first n entries of an array, separated by commas."""
     return ", ".join(f"{array}[{i}]" for i in range(n))
 
 
-def step(n: int) -> list[str]:
+def step_code(n: int) -> list[str]:
     """Return the body of one Runge-Kutta step of fourth order over 2 n states."""
     moved = [f"s[{i}] + h * z[{n + i}]" for i in range(n)]
     moved += [f"s[{n + i}] + h * a[{i}]" for i in range(n)]
@@ -49,7 +49,7 @@ def step(n: int) -> list[str]:
     return [
         "# numba takes plain integers for types",
         "begin, middle, end = np.int64(0), np.int64(HELD), np.int64(2 * HELD)",
-        f"z, h, at = ({entries('s', 2 * n)}), 0.0, begin",
+        f"z, h, at = ({array_entries('s', 2 * n)}), 0.0, begin",
         f"{' = '.join(sums)} = 0.0",
         "for stage in range(4):  # in a loop the laws are compiled once",
         "    a = accelerations(t + h, z, act, at, p, on, k, extra)",
@@ -63,30 +63,31 @@ def step(n: int) -> list[str]:
     ]
 
 
-def step_in_place(n: int) -> list[str]:
-    """Return the body of the same step on arrays."""
+def step_in_place_code(n: int) -> list[str]:
+    """Return the body of one Runge-Kutta step on arrays, in place."""
+    state, force = array_entries("y", 2 * n), array_entries("extra", n)
     return [
-        f"z = step(t, ({entries('y', 2 * n)}), dt, act, p, on, k, ({entries('extra', n)},))",
+        f"z = step(t, ({state}), dt, act, p, on, k, ({force},))",
         *(f"y[{i}] = z[{i}]" for i in range(2 * n)),
     ]
 
 
-def steps(n: int) -> list[str]:
-    """Return the body of many steps with the actuators held."""
+def steps_code(n: int) -> list[str]:
+    """Return the body of many Runge-Kutta steps with the actuators held."""
     return [
-        f"z = ({entries('y', 2 * n)})",
+        f"z = ({array_entries('y', 2 * n)})",
         "for i in range(n):",
         f"    z = step(t + i * dt, z, dt, act, p, on, k, ({', '.join(['0.0'] * n)},))",
         *(f"y[{i}] = z[{i}]" for i in range(2 * n)),
     ]
 
 
-def slopes(n: int) -> list[str]:
-    """Return the body of the derivatives of the joint accelerations by the 2 n states."""
+def acceleration_jacobian_code(n: int) -> list[str]:
+    """Return the body of `acceleration_jacobian`, by finite differences over the 2 n states."""
     displaced = ", ".join(f"s[{i}] + DIFFERENCE * (j == {i})" for i in range(2 * n))
     values = list(map("b{}".format, range(n)))
     return [
-        f"force = ({entries('extra', n)},)",
+        f"force = ({array_entries('extra', n)},)",
         f"{' = '.join(values)} = 0.0",
         f"for j in range(-1, {2 * n}):  # in a loop the laws are compiled once",
         f"    a = accelerations(t, ({displaced}), act, np.int64(HELD), p, on, k, force)",
@@ -97,7 +98,7 @@ def slopes(n: int) -> list[str]:
     ]
 
 
-def head(w: Writer) -> list[str]:
+def module_head(w: EquationWriter) -> list[str]:
     """Return imports and constants of the generated file."""
     shows = tuple(w.free + [6 + i for i in w.free])
     axes = ", ".join(AXES[i] for i in w.free)
@@ -110,95 +111,95 @@ def head(w: Writer) -> list[str]:
         f"K = {CONSTANTS}  # masses, constant over a run",
         f"FREE = {tuple(w.free)}  # places among (surge, sway, heave, roll, pitch, yaw)",
         f"FREED = {freed}  # for each of the six: 1 if it is free, else 0",
-        f"SHOWS = {shows}  # entries of `Shown` in the order of a state",
-        f"TILTS = {w.tilts}  # whether the body axes are fixed in the hull; else they are level",
-        f"CLOSED = {w.closed}  # whether one inverse of the mass matrix serves all states",
+        f"SHOWS = {shows}  # entries of `MeasuredMotion` in the order of a state",
+        f"HULL_FIXED_AXES = {w.hull_fixed_axes}  # whether the body axes roll and pitch",
+        f"CLOSED = {w.square_jacobian}  # whether one inverse of the mass matrix serves all states",
         "DIFFERENCE = 1e-6  # [m, rad, m/s, rad/s] step of one-sided finite differences",
         "",
         "",
     ]
 
 
-def written(dof: tuple[str, ...], centred: bool) -> str:
+def motion_module_text(dof: tuple[str, ...], centred: bool) -> str:
     """Return the text of `motion.py`.
 
     Args:
         dof: The degrees of freedom.
         centred: Whether the mass centre is the origin of motion.
     """
-    w = Writer(dof, centred)
+    w = EquationWriter(dof, centred)
     functions = [
-        function(
+        function_text(
             "accelerations(t, s, act, at, p, on, k, extra)",
             "Joint accelerations with the actuators act[at:]; extra: a further body force (NQ,).",
-            w.accelerations(),
+            w.accelerations_code(),
             "inlined",
         ),
-        function(
+        function_text(
             "step(t, s, dt, act, p, on, k, extra)",
             "Advance the state s by one Runge-Kutta step of fourth order; return the new state.",
-            step(w.n),
+            step_code(w.n),
             "inlined",
         ),
-        function(
+        function_text(
             "step_in_place(t, y, dt, act, p, on, k, extra)",
             "`step` of an array, in place.",
-            step_in_place(w.n),
+            step_in_place_code(w.n),
             "lean",
         ),
-        function(
+        function_text(
             "steps(t, y, dt, n, act, p, on, k)",
             "Advance the state y by n steps with the actuators held, in place.",
-            steps(w.n),
+            steps_code(w.n),
             "lean",
         ),
-        function(
-            "forces(t, s, act, at, p, on)",
+        function_text(
+            "total_body_force(t, s, act, at, p, on)",
             "Body force (NQ,) of all laws with the actuators act[at:].",
-            w.forces(),
+            w.total_body_force_code(),
             "lean",
         ),
-        function(
-            "slopes(t, s, act, p, on, k, extra, out)",
+        function_text(
+            "acceleration_jacobian(t, s, act, p, on, k, extra, out)",
             "Write the derivatives of the joint accelerations by the state to out (NQ, 2 NQ).",
-            slopes(w.n),
+            acceleration_jacobian_code(w.n),
             "lean",
         ),
-        function(
-            "force_slopes(s, k, A, row, column)",
+        function_text(
+            "acceleration_per_force(s, k, A, row, column)",
             "Write the derivatives of the joint accelerations by a body force to A[row:, column:].",
-            w.force_slopes(),
-            "inlined" if w.closed else "lean",
+            w.acceleration_per_force_code(),
+            "inlined" if w.square_jacobian else "lean",
         ),
-        function(
-            "moved(s)",
+        function_text(
+            "pose_and_velocities(s)",
             "True values of all recorded signals in a state.",
-            w.moved(),
+            w.pose_and_velocities_code(),
             "inlined",
         ),
-        function(
-            "feels(t, s, act, at, p, on, k, extra)",
+        function_text(
+            "instrument_readings(t, s, act, at, p, on, k, extra)",
             "Readings of instruments: psi, r, acceleration along x and y, u, v, x, y, phi, p.",
-            w.feels(),
+            w.instrument_readings_code(),
             "inlined",
         ),
-        function(
+        function_text(
             "jacobian(s, J)",
             "Write the body rates per joint rate to J (6, NQ), which is zero before.",
-            w.jacobian(),
+            w.jacobian_code(),
             "inlined",
         ),
-        function(
-            "observe_level(s, code, row)",
+        function_text(
+            "expected_measurement_level(s, code, row)",
             "Expected value of one measured channel; fills its row of the measurement matrix.",
-            w.level_rates(),
+            w.expected_measurement_level_code(),
             "inlined",
         ),
-        function(
-            "add_to_mujoco(t, q, qd, act, at, p, k, force, M)",
+        function_text(
+            "add_force_and_inertia_to_mujoco(t, q, qd, act, at, p, k, force, M)",
             "Add the passive force and the lower triangle of J' M J, in MuJoCo's z-up coordinates.",
-            w.add_to_mujoco(),
+            w.mujoco_code(),
             "inlined",
         ),
     ]
-    return "\n".join([*head(w), *functions])
+    return "\n".join([*module_head(w), *functions])

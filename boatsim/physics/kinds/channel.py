@@ -5,14 +5,14 @@ from dataclasses import dataclass, field
 from typing import ClassVar
 
 from boatsim.errors import BadInput
-from boatsim.physics.kinds.effect import Composed, Kind, Part, Station
-from boatsim.physics.signals import Course
+from boatsim.physics.kinds.effect import EffectKind, InsertionPoint, ProgramFunction, ProgramLayout
+from boatsim.physics.signals import SignalSegment
 
-WHOLE = "*"  # the station behind those of all actuators
+WHOLE = "*"  # channel of the insertion point after those of all actuators
 
 
-def actuators(program: Composed) -> Sequence[Station]:
-    """Return the stations of the function `actuate`, one for each signal and one behind all.
+def actuator_stations(program: ProgramLayout) -> Sequence[InsertionPoint]:
+    """Return the insertion points of `advance_channels`: one for each signal, then one for all.
 
     Each signal starts as its command or reading, held over the step, and ends in the rows of `act`.
 
@@ -21,33 +21,35 @@ def actuators(program: Composed) -> Sequence[Station]:
     """
     stations = []
     for name in program.signals:
-        place = program.held.index(name)
+        place = program.law_signals.index(name)
         rows = (("", "begin"), ("held + ", "middle"), ("2 * held + ", "end"))
         end = [f"act[{row}{place}] = x.{when}" for row, when in rows]
         parts = (f"cos_{name}", f"sin_{name}")
-        turned = [program.held.index(part) for part in parts if part in program.held]
+        turned = [program.law_signals.index(part) for part in parts if part in program.law_signals]
         if turned:  # before the others, because it reads the end of the previous step from the rows
             places = ", ".join(f"np.int64({k})" for k in (place, *turned))
-            end.insert(0, f"hold_turned(x, act, held, {places})")
-        begin = (f"c = commands[{program.commands.index(name)}]", "x = Course(c, c, c)")
-        stations.append(Station(begin, tuple(end), name))
-    return [*stations, Station(tuple(sums(program)), (), WHOLE)]
+            end.insert(0, f"write_cosine_and_sine(x, act, held, {places})")
+        begin = (f"c = commands[{program.commands.index(name)}]", "x = SignalSegment(c, c, c)")
+        stations.append(InsertionPoint(begin, tuple(end), name))
+    return [*stations, InsertionPoint(tuple(sum_lines(program)), (), WHOLE)]
 
 
-def sums(program: Composed) -> Iterator[str]:
+def sum_lines(program: ProgramLayout) -> Iterator[str]:
     """Yield the lines that compute sums over several actuators.
 
     Args:
         program: Program that is composed.
     """
-    for name, parts in program.sums.items():
+    for name, parts in program.signal_sums.items():
         for row in ("", "held + ", "2 * held + "):
-            total = " + ".join(f"act[{row}{program.held.index(part)}]" for part in parts)
-            yield f"act[{row}{program.held.index(name)}] = {total}"
+            total = " + ".join(f"act[{row}{program.law_signals.index(part)}]" for part in parts)
+            yield f"act[{row}{program.law_signals.index(name)}] = {total}"
 
 
-def pausing(program: Composed) -> Sequence[Station]:
-    """Return the stations of the function `pause`: each signal starts as its command or reading.
+def discontinuity_stations(program: ProgramLayout) -> Sequence[InsertionPoint]:
+    """Return the insertion points of `time_to_discontinuity`, one for each signal.
+
+    Each signal starts as its command or reading.
 
     Args:
         program: Program that is composed.
@@ -55,8 +57,8 @@ def pausing(program: Composed) -> Sequence[Station]:
     stations = []
     for name in program.signals:
         begin = (f"x = commands[{program.commands.index(name)}]",)
-        stations.append(Station(begin, (), name))
-    return [*stations, Station(channel=WHOLE)]
+        stations.append(InsertionPoint(begin, (), name))
+    return [*stations, InsertionPoint(channel=WHOLE)]
 
 
 # Stages: errors of a command come before the actuator that follows it, errors of its output
@@ -68,37 +70,52 @@ DELAYS = -2
 COMMANDS = -1
 DEEDS = 1  # errors of the output of an actuator: weak astern, imbalance, offset
 INSTANT = "1e-9"  # [s] step with which the present signal is evaluated
-ACTUATE = Part(
-    "actuate", "commands, memory, dt, p, on, act, held", ("pass",), "", stations=actuators
+ADVANCE = ProgramFunction(
+    "advance_channels",
+    "commands, memory, dt, p, on, act, held",
+    ("pass",),
+    "",
+    stations=actuator_stations,
 )
-PAUSE = Part("pause", "commands, memory, p, on", ("left = np.inf",), "left", stations=pausing)
+TIME_TO_DISCONTINUITY = ProgramFunction(
+    "time_to_discontinuity",
+    "commands, memory, p, on",
+    ("left = np.inf",),
+    "left",
+    stations=discontinuity_stations,
+)
 
 
 @dataclass(frozen=True)
-class Channel(Kind):
-    """Effect on each signal in `on`: compiled `channel(x, side, source, memory, at, dt, values)`.
+class ChannelEffect(EffectKind):
+    """Effect on each signal in `on` between command and actuator.
 
-    `channel` returns a `Course`. x is the signal so far over the step dt [s] that begins now; side
-    is -1 port, +1 starboard, 0 on the centreline; source is the raw command of `fed_by` for the
-    signal; memory[at:at + slots] is the memory of this actuator.
+    `transform_signal(x, side, source, memory, at, dt, values)`, compiled, returns a
+    `SignalSegment`. x is the signal so far over the step dt [s] that begins now; side is -1 port,
+    +1 starboard, 0 on the centreline; source is the raw command of `fed_by` for the signal;
+    memory[at:at + slots] is the memory of this actuator.
 
-    `pause(x, memory, at, values)`, if defined, is the time [s] for which the three points of a
-    `Course` describe the signal while the signal x that reaches it now is constant: until it jumps
-    or has a kink (a delayed command arrives, a ramp ends), or over one time constant (`followed`).
-    No step is longer. `passes(x, memory, at, values)` is the present output; without it the law is
-    evaluated and its memory restored.
+    `time_to_discontinuity(x, memory, at, values)`, if defined, is the time [s] for which the three
+    points of a `SignalSegment` describe the signal while the signal x that reaches it now is
+    constant: until it jumps or has a kink (a delayed command arrives, a ramp ends), or over one
+    time constant (`longest_lag_step`). No step is longer. `present_output(x, memory, at, values)`
+    is the present output; without it the law is evaluated and its memory restored.
     """
 
-    parts: ClassVar = (ACTUATE, PAUSE)
-    laws: ClassVar[tuple[str, ...]] = ("channel", "pause", "passes")
+    parts: ClassVar = (ADVANCE, TIME_TO_DISCONTINUITY)
+    laws: ClassVar[tuple[str, ...]] = (
+        "transform_signal",
+        "time_to_discontinuity",
+        "present_output",
+    )
     # roles (a|b) of the signals it acts on where `on` names none; "": all
     acts_on: ClassVar[str] = "thrust"
     slots: ClassVar[int] = 0
     # whether the effect may act on the command or on the output of the actuator
     either_side: ClassVar[bool] = False
-    pause: ClassVar[Callable[..., float] | None] = None
-    passes: ClassVar[Callable[..., float] | None] = None
-    channel: ClassVar[Callable[..., Course]]
+    time_to_discontinuity: ClassVar[Callable[..., float] | None] = None
+    present_output: ClassVar[Callable[..., float] | None] = None
+    channel: ClassVar[Callable[..., SignalSegment]]
 
     # commands that feed the channels in `on`, one for each
     fed_by: Sequence[str] = field(default=(), kw_only=True)
@@ -119,14 +136,16 @@ class Channel(Kind):
             raise BadInput(f"{self.name}: other_side = {self.other_side!r}; allowed is {allowed}")
 
     @property
-    def standing(self) -> int:
+    def program_position(self) -> int:
         """Position in the program relative to the actuator: the stage, or its opposite."""
         if not self.other_side:
             return type(self).stage
         return DEEDS if type(self).stage < 0 else COMMANDS
 
     @classmethod
-    def lines(cls, part: Part, station: Station, number: int, program: Composed) -> Iterator[str]:
+    def program_lines(
+        cls, part: ProgramFunction, station: InsertionPoint, number: int, program: ProgramLayout
+    ) -> Iterator[str]:
         """Yield the lines that pass the signal of an actuator through the effect, if it acts on it.
 
         Args:
@@ -136,35 +155,42 @@ class Channel(Kind):
             program: Program that is composed.
         """
         effect = program.effects[number]
-        if not isinstance(effect, Channel) or station.channel not in program.targets(number):
+        if not isinstance(effect, ChannelEffect) or station.channel not in program.target_actuators(
+            number
+        ):
             return
         # a typed integer, because numba compiles literal integers as types
-        at = f"np.int64({program.memory(number, station.channel)})"
-        site = program.sites(number)[0]
-        source = program.source(number, station.channel)
+        at = f"np.int64({program.memory_offset(number, station.channel)})"
+        site = program.law_calls(number)[0]
+        source = program.command_for_actuator(number, station.channel)
         raw = f"commands[{program.commands.index(source)}]" if source else "0.0"
         side = str(program.side(station.channel))
-        if part is ACTUATE:
-            yield f"x = {site.call('channel', 'x', side, raw, 'memory', at, 'dt')}"
-        if part is PAUSE:
-            if type(effect).pause is not None:
-                yield f"left = min(left, {site.call('pause', 'x', 'memory', at)})"
-            if not any(_asks(program, i, station.channel) for i in program.behind(number)):
+        if part is ADVANCE:
+            yield f"x = {site.text('transform_signal', 'x', side, raw, 'memory', at, 'dt')}"
+        if part is TIME_TO_DISCONTINUITY:
+            if type(effect).time_to_discontinuity is not None:
+                yield f"left = min(left, {site.text('time_to_discontinuity', 'x', 'memory', at)})"
+            if not any(
+                _has_discontinuities(program, i, station.channel)
+                for i in program.later_effects(number)
+            ):
                 return
-            if type(effect).passes is not None:
-                yield f"x = {site.call('passes', 'x', 'memory', at)}"
+            if type(effect).present_output is not None:
+                yield f"x = {site.text('present_output', 'x', 'memory', at)}"
                 return
             for i in range(type(effect).slots):
                 yield f"kept{i} = memory[{at} + {i}]"
-            now = site.call("channel", "Course(x, x, x)", side, raw, "memory", at, INSTANT)
+            now = site.text(
+                "transform_signal", "SignalSegment(x, x, x)", side, raw, "memory", at, INSTANT
+            )
             yield f"x = {now}.begin"
             for i in range(type(effect).slots):
                 yield f"memory[{at} + {i}] = kept{i}"
 
 
-def _asks(program: Composed, number: int, actuator: str) -> bool:
-    """Return whether an effect is a channel with a `pause` on an actuator."""
+def _has_discontinuities(program: ProgramLayout, number: int, actuator: str) -> bool:
+    """Return whether an effect is a channel with a `time_to_discontinuity` on an actuator."""
     effect = program.effects[number]
-    if not isinstance(effect, Channel) or type(effect).pause is None:
+    if not isinstance(effect, ChannelEffect) or type(effect).time_to_discontinuity is None:
         return False
-    return actuator in program.targets(number)
+    return actuator in program.target_actuators(number)

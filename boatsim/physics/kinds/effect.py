@@ -10,14 +10,14 @@ from typing import Any, ClassVar, NamedTuple, Protocol, Self
 
 from boatsim.errors import BadInput
 from boatsim.physics.content import snake_case
-from boatsim.physics.param import UNSET, Checked
+from boatsim.physics.param import UNSET, CheckedParameters
 
 # groups of numbers of a vessel that may be estimates
 REFINED_GROUPS = ("damping", "thrust", "lag", "mass_centre", "inertia", "added_mass", "restoring")
 
 
 @cache
-def _named(fields: tuple[str, ...]) -> Callable[..., tuple[float, ...]]:
+def _named_tuple_type(fields: tuple[str, ...]) -> Callable[..., tuple[float, ...]]:
     """Return the NamedTuple type of these fields; one law has one type, to be compiled once."""
     return namedtuple("Given", fields)
 
@@ -33,7 +33,7 @@ class Role:
 
 
 @dataclass(frozen=True)
-class Effect(Checked):
+class Effect(CheckedParameters):
     """One instance of a physical or measurement effect on a vessel.
 
     Subclasses derive from one or several of the kinds in this folder.
@@ -76,7 +76,7 @@ class Effect(Checked):
     # effect on each of whose instances it acts: its law takes their signals and parameters
     per_instance_of: ClassVar[str] = ""
 
-    filled: frozenset[str] = field(  # parameters set by `completed` instead of by a file
+    filled: frozenset[str] = field(  # parameters set by `with_all_parameters` instead of by a file
         default=frozenset(), kw_only=True, repr=False, compare=False, metadata={"ours": True}
     )
     # name of the instance; by default that of the effect
@@ -87,10 +87,10 @@ class Effect(Checked):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        object.__setattr__(self, "name", self.name or type(self).idea())
-        object.__setattr__(self, "on", self._acting_on())
+        object.__setattr__(self, "name", self.name or type(self).type_name())
+        object.__setattr__(self, "on", self._checked_on())
 
-    def _acting_on(self) -> Mapping[str, str | float] | tuple[str, ...]:
+    def _checked_on(self) -> Mapping[str, str | float] | tuple[str, ...]:
         """Return `on` in the form that the class needs. Raises BadInput."""
         on, wants_table = self.on, bool(type(self).roles)
         allowed = "a name or a list of names"
@@ -110,14 +110,14 @@ class Effect(Checked):
         return tuple(on)
 
     @classmethod
-    def idea(cls) -> str:
+    def type_name(cls) -> str:
         """Return the name of the effect, which is its file name and the word for `use` in files."""
         return snake_case(cls.__name__)
 
     @classmethod
     def values_type(cls) -> Callable[..., tuple[float, ...]]:
         """Return the NamedTuple type of the parameters, as the compiled law takes them."""
-        return _named(tuple(cls.params()))
+        return _named_tuple_type(tuple(cls.params()))
 
     @classmethod
     def signals_type(cls) -> Callable[..., tuple[float, ...]]:
@@ -126,7 +126,7 @@ class Effect(Checked):
         for name, role in cls.roles.items():
             if role.unit == "rad":
                 angles += (f"cos_{name}", f"sin_{name}")
-        return _named((*cls.roles, *angles))
+        return _named_tuple_type((*cls.roles, *angles))
 
     @classmethod
     def signals(cls, **given: float) -> tuple[float, ...]:
@@ -147,11 +147,11 @@ class Effect(Checked):
         """Return the parameters as the second argument of the law; 0 for those without a value."""
         values = [0.0] * len(type(self).params())
         for i, name in enumerate(type(self).params()):
-            if self.stated(name):
+            if self.has_value(name):
                 values[i] = float(getattr(self, name))
         return type(self).values_type()(*values)
 
-    def stated(self, name: str) -> bool:
+    def has_value(self, name: str) -> bool:
         """Return whether a parameter has a value, including zero.
 
         Args:
@@ -159,7 +159,7 @@ class Effect(Checked):
         """
         return getattr(self, name) is not UNSET
 
-    def having(self, values: Mapping[str, Any]) -> Self:
+    def with_values(self, values: Mapping[str, Any]) -> Self:
         """Return the effect with other values of some parameters.
 
         Args:
@@ -167,11 +167,11 @@ class Effect(Checked):
         """
         return replace(self, **values)
 
-    def completed(self, vessel: "Boat") -> Self:
+    def with_all_parameters(self, vessel: "Boat") -> Self:
         """Return the effect with all parameters set; values from a file take precedence.
 
-        A parameter without a value takes that of the vessel it `follows`, else that of `rules`,
-        else 0.
+        A parameter without a value takes that of the vessel it `follows`, else that of
+        `derived_parameters`, else 0.
 
         Args:
             vessel: Vessel on which the effect acts.
@@ -181,23 +181,23 @@ class Effect(Checked):
         """
         own = self
         for name, about in type(self).params().items():
-            if about.follows and not self.stated(name):
-                own = own.having({name: self.followed(about.follows, vessel)})
-        if own._unset_parameters():
-            rules = own.rules(vessel)
-            own = own.having({n: x for n, x in rules.items() if not own.stated(n)})
+            if about.follows and not self.has_value(name):
+                own = own.with_values({name: self.followed_value(about.follows, vessel)})
+        if own._parameters_without_value():
+            rules = own.derived_parameters(vessel)
+            own = own.with_values({n: x for n, x in rules.items() if not own.has_value(n)})
         for fact, names in type(self).facts.items():
-            for missing in (n for n in names if not own.stated(n)):
+            for missing in (n for n in names if not own.has_value(n)):
                 raise BadInput(
                     f"{vessel.name}: {self.name} needs {missing}: state it in its table, or {fact} "
                     "among the facts of a recording or of the vessel's diagnosis"
                 )
         return replace(
-            own.having(dict.fromkeys(own._unset_parameters(), 0.0)),
-            filled=frozenset(self._unset_parameters()) | self.filled,
+            own.with_values(dict.fromkeys(own._parameters_without_value(), 0.0)),
+            filled=frozenset(self._parameters_without_value()) | self.filled,
         )
 
-    def ratios(self, vessel: "Boat") -> dict[str, tuple[float, str]]:
+    def identifiable_ratios(self, vessel: "Boat") -> dict[str, tuple[float, str]]:
         """Return the quantities that recordings identify instead of a parameter.
 
         Args:
@@ -208,11 +208,11 @@ class Effect(Checked):
         """
         return {}
 
-    def shape(self) -> dict[str, object]:
+    def fixed_settings(self) -> dict[str, object]:
         """Return the settings that no fit changes, other than the name and `on`."""
         return {n: getattr(self, n) for names in type(self).facts.values() for n in names}
 
-    def rules(self, vessel: "Boat") -> dict[str, float]:
+    def derived_parameters(self, vessel: "Boat") -> dict[str, float]:
         """Return parameters that follow from the vessel by a rule, for those without a value.
 
         Args:
@@ -223,24 +223,24 @@ class Effect(Checked):
         """
         return {}
 
-    def still_as_on(self, vessel: "Boat") -> bool:
-        """Return whether codes given by `rules` are unchanged for the completed vessel.
+    def keeps_derived_codes(self, vessel: "Boat") -> bool:
+        """Return whether derived code parameters are unchanged for the completed vessel.
 
         Args:
             vessel: Completed vessel.
         """
-        ruled = self.rules(vessel)
+        ruled = self.derived_parameters(vessel)
         return all(
             ruled[f.name] == getattr(self, f.name)
             for f in fields(self)
             if {"param", "ours"} <= set(f.metadata)
         )
 
-    def _unset_parameters(self) -> list[str]:
+    def _parameters_without_value(self) -> list[str]:
         """Return the parameters without a value."""
-        return [n for n in type(self).params() if not self.stated(n)]
+        return [n for n in type(self).params() if not self.has_value(n)]
 
-    def followed(self, source: str, vessel: "Boat") -> float:
+    def followed_value(self, source: str, vessel: "Boat") -> float:
         """Return the value of the vessel, or of one of its effects, that a parameter follows.
 
         Args:
@@ -255,9 +255,9 @@ class Effect(Checked):
             return float(attrgetter(key)(vessel))
         if source.endswith("?") and vessel.effect(owner) is None:
             return 0.0
-        return float(getattr(self.needed(vessel, owner), key))
+        return float(getattr(self.required_effect(vessel, owner), key))
 
-    def needed(self, vessel: "Boat", owner: str) -> "Effect":
+    def required_effect(self, vessel: "Boat", owner: str) -> "Effect":
         """Return the effect of the vessel on which this one builds.
 
         Args:
@@ -273,11 +273,11 @@ class Effect(Checked):
         return own
 
     @property
-    def standing(self) -> int:
+    def program_position(self) -> int:
         """Position in the program: effects with a lower number come first."""
         return type(self).stage
 
-    def seeded(self, seed: int) -> Self:
+    def with_seed(self, seed: int) -> Self:
         """Return the effect with its random realisation set from the seed of a scenario.
 
         Args:
@@ -286,7 +286,7 @@ class Effect(Checked):
         return self
 
 
-class Rigid(Protocol):
+class RigidBody(Protocol):
     """Properties of the rigid body of a vessel that an effect may use."""
 
     mass: float  # [kg]
@@ -314,7 +314,7 @@ class Boat(Protocol):
         """Draught [m]."""
 
     @property
-    def body(self) -> Rigid:
+    def body(self) -> RigidBody:
         """The rigid body."""
 
     @property
@@ -328,7 +328,7 @@ class Boat(Protocol):
         """Return the names of the vessel's effects to which a word refers."""
 
 
-class Site(NamedTuple):
+class LawCall(NamedTuple):
     """Call of the law of an effect: its index in the program and the text of the arguments."""
 
     number: int  # of the effect
@@ -336,7 +336,7 @@ class Site(NamedTuple):
     # further arguments: the bound signals, and the parameters of the instance it acts on
     signals: tuple[str, ...] = ()
 
-    def call(self, law: str, *first: str) -> str:
+    def text(self, law: str, *first: str) -> str:
         """Return the text of a call of one of the compiled functions of the effect.
 
         Args:
@@ -346,7 +346,7 @@ class Site(NamedTuple):
         return f"{law}{self.number}({', '.join((*first, self.values, *self.signals))})"
 
 
-class Station(NamedTuple):
+class InsertionPoint(NamedTuple):
     """Place in a composed function at which effects add lines."""
 
     begin: tuple[str, ...] = ()
@@ -354,49 +354,49 @@ class Station(NamedTuple):
     channel: str = ""  # actuator whose signal this station processes
 
 
-class Composed(Protocol):
+class ProgramLayout(Protocol):
     """Properties of the composed program that a kind may use."""
 
     effects: tuple[Effect, ...]
     signals: tuple[str, ...]  # actuators, and readings of the environment
     commands: tuple[str, ...]  # inputs of the vessel: commands, then measured quantities
     # contents of `act`: signals, cosine and sine of angles; for described laws sums and past values
-    held: Sequence[str]
-    sums: Mapping[str, Sequence[str]]  # sum in `held` -> the actuators that it adds
+    law_signals: Sequence[str]
+    signal_sums: Mapping[str, Sequence[str]]  # sum in `law_signals` -> the actuators that it adds
 
-    def sites(self, number: int) -> Sequence[Site]:
+    def law_calls(self, number: int) -> Sequence[LawCall]:
         """Return the calls of the laws of an effect, one for each instance on which it acts."""
 
-    def targets(self, number: int) -> Sequence[str]:
+    def target_actuators(self, number: int) -> Sequence[str]:
         """Return the actuators on which a channel effect acts."""
 
-    def source(self, number: int, actuator: str) -> str | None:
+    def command_for_actuator(self, number: int, actuator: str) -> str | None:
         """Return the command that feeds an actuator through a channel effect, or None."""
 
     def side(self, actuator: str) -> float:
         """Return the side of an actuator: -1 port, +1 starboard, 0 on the centreline."""
 
-    def memory(self, number: int, actuator: str) -> int:
+    def memory_offset(self, number: int, actuator: str) -> int:
         """Return the index at which the memory of an effect for an actuator begins."""
 
-    def own(self, number: int) -> int:
-        """Return the index in `held` of the past value of an effect; 0 if it has none."""
+    def history_place(self, number: int) -> int:
+        """Return the index in `law_signals` of the past value of an effect; 0 if it has none."""
 
-    def behind(self, number: int) -> Sequence[int]:
+    def later_effects(self, number: int) -> Sequence[int]:
         """Return the effects that come after one in the program."""
 
 
-def once(program: Composed) -> Sequence[Station]:
+def single_insertion_point(program: ProgramLayout) -> Sequence[InsertionPoint]:
     """Return one station: the body of a sum over effects.
 
     Args:
         program: Program that is composed.
     """
-    return (Station(),)
+    return (InsertionPoint(),)
 
 
 @dataclass(frozen=True)
-class Part:
+class ProgramFunction:
     """Function of the composed program to which kinds add lines."""
 
     name: str
@@ -404,18 +404,22 @@ class Part:
     begin: tuple[str, ...]
     result: str
     compiled: str = "inlined"  # decorator of `boatsim.physics.kernel.compiling`
-    stations: Callable[[Composed], Sequence[Station]] = once
+    stations: Callable[[ProgramLayout], Sequence[InsertionPoint]] = single_insertion_point
 
 
-class Kind(Effect):
+class EffectKind(Effect):
     """Base of the kinds: defines what effects of one kind add to the program."""
 
-    parts: ClassVar[tuple[Part, ...]] = ()  # functions that this kind adds to the program
+    parts: ClassVar[
+        tuple[ProgramFunction, ...]
+    ] = ()  # functions that this kind adds to the program
     # its compiled functions; optional ones are None by default
     laws: ClassVar[tuple[str, ...]] = ()
 
     @classmethod
-    def lines(cls, part: Part, station: Station, number: int, program: Composed) -> Iterator[str]:
+    def program_lines(
+        cls, part: ProgramFunction, station: InsertionPoint, number: int, program: ProgramLayout
+    ) -> Iterator[str]:
         """Yield the lines that an effect adds to a part of the program at a station.
 
         Args:

@@ -4,21 +4,23 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import ClassVar
 
-from boatsim.physics.kinds.effect import Composed, Kind, Part, Station
+from boatsim.physics.kinds.effect import EffectKind, InsertionPoint, ProgramFunction, ProgramLayout
 
-FLOW = Part("flow", "p, on", ("north = east = 0.0",), "north, east")
+FLOW = ProgramFunction("water_velocity", "p, on", ("north = east = 0.0",), "north, east")
 
 
 @dataclass(frozen=True)
-class Flow(Kind):
-    """Velocity of the water: compiled `flow(values) -> (north, east)` [m/s]."""
+class WaterFlow(EffectKind):
+    """Velocity of the water: compiled `water_velocity(values) -> (north, east)` [m/s]."""
 
     parts: ClassVar = (FLOW,)
-    laws: ClassVar[tuple[str, ...]] = ("flow",)
-    flow: ClassVar[Callable[..., tuple[float, float]]]
+    laws: ClassVar[tuple[str, ...]] = ("water_velocity",)
+    water_velocity: ClassVar[Callable[..., tuple[float, float]]]
 
     @classmethod
-    def lines(cls, part: Part, station: Station, number: int, program: Composed) -> Iterator[str]:
+    def program_lines(
+        cls, part: ProgramFunction, station: InsertionPoint, number: int, program: ProgramLayout
+    ) -> Iterator[str]:
         """Yield the lines that add the velocity of the water.
 
         Args:
@@ -28,6 +30,6 @@ class Flow(Kind):
             program: Program that is composed.
         """
         if part is FLOW:
-            for site in program.sites(number):
-                yield f"a, b = {site.call('flow')}"
+            for site in program.law_calls(number):
+                yield f"a, b = {site.text('water_velocity')}"
                 yield "north += a; east += b"

@@ -4,12 +4,12 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import ClassVar
 
-from boatsim.physics.kinds.effect import Composed, Kind, Part, Station
+from boatsim.physics.kinds.effect import EffectKind, InsertionPoint, ProgramFunction, ProgramLayout
 from boatsim.physics.signals import Motion, Wrench
 
 COMPONENTS = Wrench._fields
 ADD = "; ".join(f"{c} += f.{c}" for c in COMPONENTS)
-WRENCH = Part(
+WRENCH = ProgramFunction(
     "wrench",
     "m, p, on, act, at",
     (f"{' = '.join(COMPONENTS)} = 0.0",),
@@ -19,7 +19,7 @@ WRENCH = Part(
 
 
 @dataclass(frozen=True)
-class Force(Kind):
+class Force(EffectKind):
     """Memoryless force: compiled `law(motion, values) -> Wrench`.
 
     With `roles` the law takes the bound signals as a third argument. An effect with
@@ -36,7 +36,9 @@ class Force(Kind):
     law: ClassVar[Callable[..., Wrench]]
 
     @classmethod
-    def lines(cls, part: Part, station: Station, number: int, program: Composed) -> Iterator[str]:
+    def program_lines(
+        cls, part: ProgramFunction, station: InsertionPoint, number: int, program: ProgramLayout
+    ) -> Iterator[str]:
         """Yield the lines that add the force of the law to the sum.
 
         Args:
@@ -46,8 +48,8 @@ class Force(Kind):
             program: Program that is composed.
         """
         if part is WRENCH:
-            for site in program.sites(number):
-                yield f"f = {site.call('law', 'm')}"
+            for site in program.law_calls(number):
+                yield f"f = {site.text('law', 'm')}"
                 yield ADD
 
     def wrench(self, m: Motion, *given: tuple[float, ...], **signals: float) -> Wrench:

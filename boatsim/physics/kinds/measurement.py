@@ -4,34 +4,37 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import ClassVar
 
-from boatsim.physics.kinds.effect import Composed, Kind, Part, Station
-from boatsim.physics.signals import Shown
+from boatsim.physics.kinds.effect import EffectKind, InsertionPoint, ProgramFunction, ProgramLayout
+from boatsim.physics.signals import MeasuredMotion
 
-SHOWN = Part("shown", "m, p, on", ("pass",), "m")
-DISTORTED = Part("distorted", "on", ("found = False",), "found")
-LATE = Part("late", "p, on", ("seconds = 0.0",), "seconds")
+APPLY_ERRORS = ProgramFunction("apply_measurement_errors", "m, p, on", ("pass",), "m")
+HAS_ERRORS = ProgramFunction("has_measurement_errors", "on", ("found = False",), "found")
+MOTION_LATENCY = ProgramFunction("motion_latency", "p, on", ("seconds = 0.0",), "seconds")
 
 
 @dataclass(frozen=True)
-class Measurement(Kind):
-    """Error of a recording: compiled `shown(Shown, values) -> Shown`.
+class Measurement(EffectKind):
+    """Error of a recording: a difference between recorded and true motion.
 
-    It acts in the diagnosis filter and in `replay`, not on the simulated boat. `late(values)`, if
-    defined, is the latency [s] of the recorded motion behind the recorded commands (negative:
-    early).
+    `apply_measurement_error(motion, values)`, compiled, takes and returns a `MeasuredMotion`. It
+    acts in the diagnosis filter and in `replay`, not on the simulated boat.
+    `motion_latency(values)`, if defined, is the latency [s] of the recorded motion behind the
+    recorded commands (negative: early).
     """
 
     kind: ClassVar[str] = "measurement"
-    parts: ClassVar[tuple[Part, ...]] = (SHOWN, DISTORTED, LATE)
-    laws: ClassVar[tuple[str, ...]] = ("shown", "late")
+    parts: ClassVar[tuple[ProgramFunction, ...]] = (APPLY_ERRORS, HAS_ERRORS, MOTION_LATENCY)
+    laws: ClassVar[tuple[str, ...]] = ("apply_measurement_error", "motion_latency")
     of_columns: ClassVar[
         tuple[str, ...]
     ] = ()  # recorded columns that it changes; one of them must exist
-    shown: ClassVar[Callable[..., Shown] | None] = None
-    late: ClassVar[Callable[..., float] | None] = None
+    apply_measurement_error: ClassVar[Callable[..., MeasuredMotion] | None] = None
+    motion_latency: ClassVar[Callable[..., float] | None] = None
 
     @classmethod
-    def lines(cls, part: Part, station: Station, number: int, program: Composed) -> Iterator[str]:
+    def program_lines(
+        cls, part: ProgramFunction, station: InsertionPoint, number: int, program: ProgramLayout
+    ) -> Iterator[str]:
         """Yield the lines that change the recorded motion, mark it as changed and add its latency.
 
         Args:
@@ -44,10 +47,10 @@ class Measurement(Kind):
         if not isinstance(effect, Measurement):
             return
         kind = type(effect)
-        for site in program.sites(number):
-            if part is SHOWN and kind.shown is not None:
-                yield f"m = {site.call('shown', 'm')}"
-            if part is DISTORTED and kind.shown is not None:
+        for site in program.law_calls(number):
+            if part is APPLY_ERRORS and kind.apply_measurement_error is not None:
+                yield f"m = {site.text('apply_measurement_error', 'm')}"
+            if part is HAS_ERRORS and kind.apply_measurement_error is not None:
                 yield "found = True"
-            if part is LATE and kind.late is not None:
-                yield f"seconds += {site.call('late')}"
+            if part is MOTION_LATENCY and kind.motion_latency is not None:
+                yield f"seconds += {site.text('motion_latency')}"

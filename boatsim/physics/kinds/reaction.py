@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import ClassVar
 
-from boatsim.physics.kinds.effect import Composed, Kind, Part, Station
+from boatsim.physics.kinds.effect import EffectKind, InsertionPoint, ProgramFunction, ProgramLayout
 from boatsim.physics.kinds.force import ADD, COMPONENTS, WRENCH
 from boatsim.physics.signals import Wrench
 
@@ -12,7 +12,7 @@ SO_FAR = f"Wrench({', '.join(COMPONENTS)})"
 
 
 @dataclass(frozen=True)
-class Reaction(Kind):
+class Reaction(EffectKind):
     """Force as a function of other forces: compiled `reaction(motion, wrench, values) -> Wrench`.
 
     `wrench` is the sum of all laws before it: those of the vessel in the order of its file, then
@@ -23,7 +23,9 @@ class Reaction(Kind):
     reaction: ClassVar[Callable[..., Wrench]]
 
     @classmethod
-    def lines(cls, part: Part, station: Station, number: int, program: Composed) -> Iterator[str]:
+    def program_lines(
+        cls, part: ProgramFunction, station: InsertionPoint, number: int, program: ProgramLayout
+    ) -> Iterator[str]:
         """Yield the lines that add the reaction to the sum so far.
 
         Args:
@@ -33,6 +35,6 @@ class Reaction(Kind):
             program: Program that is composed.
         """
         if part is WRENCH:
-            for site in program.sites(number):
-                yield f"f = {site.call('reaction', 'm', SO_FAR)}"
+            for site in program.law_calls(number):
+                yield f"f = {site.text('reaction', 'm', SO_FAR)}"
                 yield ADD

@@ -1,35 +1,37 @@
-"""Recall effects: laws that use past values of an actuator, which the program stores for them."""
+"""Laws that use past values of an actuator signal, which the program stores for them."""
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import ClassVar
 
-from boatsim.physics.kinds.channel import ACTUATE, PAUSE, WHOLE
-from boatsim.physics.kinds.effect import Composed, Kind, Part, Station
+from boatsim.physics.kinds.channel import ADVANCE, TIME_TO_DISCONTINUITY, WHOLE
+from boatsim.physics.kinds.effect import EffectKind, InsertionPoint, ProgramFunction, ProgramLayout
 
 
 @dataclass(frozen=True)
-class Recall(Kind):
-    """Past values: compiled `recall(act, held, own, memory, at, dt, values)`.
+class SignalHistory(EffectKind):
+    """Effect that uses past values of an actuator signal.
 
-    It is called after the step of the actuators.
-
-    It sets act[own], act[held + own] and act[2 held + own] to the values that the law uses at
-    begin, middle and end of the step dt [s], from the actuators there and from memory[at].
-    `reach(values)` is the time [s] for which three points describe these values.
+    `update_signal_history(act, held, own, memory, at, dt, values)`, compiled, is called after the
+    step of the actuators. It sets act[own], act[held + own] and act[2 held + own] to the values
+    that the law uses at begin, middle and end of the step dt [s], from the actuators there and
+    from memory[at].
+    `longest_history_step(values)` is the time [s] for which three points describe these values.
     """
 
-    laws: ClassVar[tuple[str, ...]] = ("recall", "reach")
-    recall: ClassVar[Callable[..., None]]
-    reach: ClassVar[Callable[..., float]]
+    laws: ClassVar[tuple[str, ...]] = ("update_signal_history", "longest_history_step")
+    update_signal_history: ClassVar[Callable[..., None]]
+    longest_history_step: ClassVar[Callable[..., float]]
 
     @property
-    def looks_back(self) -> bool:
+    def uses_history(self) -> bool:
         """Whether this instance uses past values; otherwise it needs no memory."""
         return True
 
     @classmethod
-    def lines(cls, part: Part, station: Station, number: int, program: Composed) -> Iterator[str]:
+    def program_lines(
+        cls, part: ProgramFunction, station: InsertionPoint, number: int, program: ProgramLayout
+    ) -> Iterator[str]:
         """Yield the lines that track the actuator whose past values the law uses.
 
         Args:
@@ -40,13 +42,14 @@ class Recall(Kind):
         """
         if (
             station.channel != WHOLE
-            or part not in (ACTUATE, PAUSE)
-            or not (own := program.own(number))
+            or part not in (ADVANCE, TIME_TO_DISCONTINUITY)
+            or not (own := program.history_place(number))
         ):
             return
-        values = program.sites(number)[0].values
-        if part is ACTUATE:
-            at = f"np.int64({program.memory(number, WHOLE)})"
-            yield f"recall{number}(act, held, np.int64({own}), memory, {at}, dt, {values})"
+        values = program.law_calls(number)[0].values
+        if part is ADVANCE:
+            at = f"np.int64({program.memory_offset(number, WHOLE)})"
+            places = f"act, held, np.int64({own}), memory, {at}"
+            yield f"update_signal_history{number}({places}, dt, {values})"
         else:
-            yield f"left = min(left, reach{number}({values}))"
+            yield f"left = min(left, longest_history_step{number}({values}))"

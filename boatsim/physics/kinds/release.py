@@ -6,7 +6,7 @@ from typing import NamedTuple, Self
 from boatsim.physics.kinds.effect import Boat, Effect
 
 
-class Change(NamedTuple):
+class CoefficientChange(NamedTuple):
     """Change of one number of a vessel by a parameter of a release."""
 
     parameter: str  # parameter of the release
@@ -15,7 +15,7 @@ class Change(NamedTuple):
     how: str  # "sets", "scales" or "shifts"
     weight: float  # factor of a shift
 
-    def of(self, stated: float, value: float) -> float:
+    def apply_to(self, stated: float, value: float) -> float:
         """Return the number that replaces the specified one.
 
         Args:
@@ -29,7 +29,7 @@ class Change(NamedTuple):
         return value
 
 
-def _there(places: str, vessel: Boat) -> list[str]:
+def _existing_places(places: str, vessel: Boat) -> list[str]:
     """Return the first of the equivalent places `a.key|b.key` that the vessel has."""
     for place in places.split("|"):
         owner = place.partition(".")[0]
@@ -39,7 +39,7 @@ def _there(places: str, vessel: Boat) -> list[str]:
 
 
 @dataclass(frozen=True)
-class Release(Effect):
+class CoefficientRelease(Effect):
     """Hypothesis that numbers of the vessel differ from their specified values.
 
     It has no law; the vessel's own effects use the changed numbers. Each parameter lists in
@@ -48,23 +48,24 @@ class Release(Effect):
     patched file contains the changed values.
     """
 
-    def changes(self, vessel: Boat) -> list[Change]:
+    def changes(self, vessel: Boat) -> list[CoefficientChange]:
         """Return the changes of the numbers that the vessel has.
 
         Args:
             vessel: Vessel on which the effect acts.
         """
-        found, weights = [], self.weights(vessel)
+        found, weights = [], self.shift_weights(vessel)
         for name, about in type(self).params().items():
-            for place in (p for places in about.releases for p in _there(places, vessel)):
+            for place in (p for places in about.releases for p in _existing_places(places, vessel)):
                 owner, _, key = place.partition(".")
                 instances = ["body"] if owner == "body" else vessel.names_of(owner)
                 found += [
-                    Change(name, one, key, about.how, weights.get(place, 1.0)) for one in instances
+                    CoefficientChange(name, one, key, about.how, weights.get(place, 1.0))
+                    for one in instances
                 ]
         return found
 
-    def weights(self, vessel: Boat) -> dict[str, float]:
+    def shift_weights(self, vessel: Boat) -> dict[str, float]:
         """Return the change of a number per unit of a shift; 1 for numbers that are not listed.
 
         Args:
@@ -72,7 +73,7 @@ class Release(Effect):
         """
         return {}
 
-    def completed(self, vessel: Boat) -> Self:
+    def with_all_parameters(self, vessel: Boat) -> Self:
         """Return the effect with all parameters set.
 
         Args:
@@ -83,8 +84,8 @@ class Release(Effect):
         """
         if not self.changes(vessel):
             places = (p for about in type(self).params().values() for p in about.releases)
-            self.needed(
+            self.required_effect(
                 vessel,
                 " or ".join(dict.fromkeys(p.partition(".")[0] for p in next(places).split("|"))),
             )
-        return super().completed(vessel)
+        return super().with_all_parameters(vessel)

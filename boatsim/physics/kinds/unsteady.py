@@ -4,28 +4,34 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import ClassVar
 
-from boatsim.physics.kinds.effect import Composed, Part, Station
+from boatsim.physics.kinds.effect import InsertionPoint, ProgramFunction, ProgramLayout
 from boatsim.physics.kinds.force import Force
-from boatsim.physics.signals import Swell
+from boatsim.physics.signals import OscillatingForce
 
-SWELL = Part("swell", "p, on", (f"s = Swell({'0.0, ' * 7}1.0)",), "s")
+OSCILLATION = ProgramFunction(
+    "oscillating_force", "p, on", (f"s = OscillatingForce({'0.0, ' * 7}1.0)",), "s"
+)
 
 
 @dataclass(frozen=True)
-class Unsteady(Force):
-    """Random force: compiled `swell(values) -> Swell`, and `law` for one realisation.
+class RandomForce(Force):
+    """Random force: compiled `oscillating_force(values) -> OscillatingForce`.
+
+    `law` is the force of one realisation.
 
     The simulator uses the realisation of `law`. The diagnosis filter tracks the oscillators of
-    `swell` instead and disables the law by `realisation` = 0.
+    `oscillating_force` instead and disables the law by `realisation` = 0.
     """
 
     random: ClassVar[bool] = True
-    parts: ClassVar = (SWELL,)
-    laws: ClassVar[tuple[str, ...]] = ("law", "swell")
-    swell: ClassVar[Callable[..., Swell]]
+    parts: ClassVar = (OSCILLATION,)
+    laws: ClassVar[tuple[str, ...]] = ("law", "oscillating_force")
+    oscillating_force: ClassVar[Callable[..., OscillatingForce]]
 
     @classmethod
-    def lines(cls, part: Part, station: Station, number: int, program: Composed) -> Iterator[str]:
+    def program_lines(
+        cls, part: ProgramFunction, station: InsertionPoint, number: int, program: ProgramLayout
+    ) -> Iterator[str]:
         """Yield the line that sets the oscillators; the realisation is an ordinary force.
 
         Args:
@@ -34,6 +40,6 @@ class Unsteady(Force):
             number: Index of the effect.
             program: Program that is composed.
         """
-        if part is SWELL:
-            for site in program.sites(number):
-                yield f"s = {site.call('swell')}"
+        if part is OSCILLATION:
+            for site in program.law_calls(number):
+                yield f"s = {site.text('oscillating_force')}"

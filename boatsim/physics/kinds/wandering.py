@@ -4,27 +4,29 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import ClassVar
 
-from boatsim.physics.kinds.effect import Composed, Part, Station
+from boatsim.physics.kinds.effect import InsertionPoint, ProgramFunction, ProgramLayout
 from boatsim.physics.kinds.measurement import Measurement
-from boatsim.physics.signals import Wander
+from boatsim.physics.signals import InstrumentDrift
 
-WANDER = Part("wander", "p, on", ("w = Wander(0.0, 0.0, 1.0)",), "w")
+DRIFT = ProgramFunction("instrument_drift", "p, on", ("w = InstrumentDrift(0.0, 0.0, 1.0)",), "w")
 
 
 @dataclass(frozen=True)
-class Wandering(Measurement):
-    """Slowly varying error: compiled `wander(values) -> Wander`.
+class DriftingMeasurement(Measurement):
+    """Slowly varying error: compiled `instrument_drift(values) -> InstrumentDrift`.
 
     The diagnosis filter tracks the error; a simulation without data does not contain it.
     """
 
     random: ClassVar[bool] = True
-    parts: ClassVar = (WANDER,)
-    laws: ClassVar = ("wander",)
-    wander: ClassVar[Callable[..., Wander]]
+    parts: ClassVar = (DRIFT,)
+    laws: ClassVar = ("instrument_drift",)
+    instrument_drift: ClassVar[Callable[..., InstrumentDrift]]
 
     @classmethod
-    def lines(cls, part: Part, station: Station, number: int, program: Composed) -> Iterator[str]:
+    def program_lines(
+        cls, part: ProgramFunction, station: InsertionPoint, number: int, program: ProgramLayout
+    ) -> Iterator[str]:
         """Yield the line that sets the noise model of the error.
 
         Args:
@@ -33,6 +35,6 @@ class Wandering(Measurement):
             number: Index of the effect.
             program: Program that is composed.
         """
-        if part is WANDER:
-            for site in program.sites(number):
-                yield f"w = {site.call('wander')}"
+        if part is DRIFT:
+            for site in program.law_calls(number):
+                yield f"w = {site.text('instrument_drift')}"

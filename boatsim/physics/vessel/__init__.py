@@ -3,8 +3,8 @@
 from boatsim.physics.vessel.bindings import check_bindings
 from boatsim.physics.vessel.effect_tables import effect_from_table, effect_name
 from boatsim.physics.vessel.estimated import number_sd, refined_sd
-from boatsim.physics.vessel.loading import load, merged_loads, with_effect_tables
-from boatsim.physics.vessel.loads import overlaid
+from boatsim.physics.vessel.loading import load_vessel, merge_load_conditions, with_effect_tables
+from boatsim.physics.vessel.loads import apply_load_values
 from boatsim.physics.vessel.model import Vessel
 from boatsim.physics.vessel.schema import (
     Body,
@@ -26,10 +26,10 @@ __all__ = [
     "check_bindings",
     "effect_from_table",
     "effect_name",
-    "load",
-    "merged_loads",
+    "load_vessel",
+    "merge_load_conditions",
     "number_sd",
-    "overlaid",
+    "apply_load_values",
     "refined_sd",
     "with_effect_tables",
 ]

@@ -5,13 +5,13 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 from boatsim.errors import BadInput, unknown_name
-from boatsim.physics.kinds.channel import Channel
+from boatsim.physics.kinds.channel import ChannelEffect
 from boatsim.physics.kinds.effect import Effect
 from boatsim.physics.vessel.schema import Body, CommandChannel, MeasuredChannel
 
 
 @dataclass(frozen=True, kw_only=True)
-class Bindings:
+class ChannelBindings:
     """Dimensions, channels and effects of a vessel, with the channels that each effect is bound to.
 
     An *actuator* is a command channel that a law uses; other commands only feed actuators (PWM
@@ -76,33 +76,33 @@ class Bindings:
         return tuple(filter(self._is_angle, self.readings))
 
     @cached_property
-    def held(self) -> tuple[str, ...]:
+    def law_signals(self) -> tuple[str, ...]:
         """Signals of laws: actuators, cosines and sines of angles, then the same of readings."""
         return (
             *self.actuators,
-            *_parts_of(self.angles),
+            *_with_cosine_and_sine(self.angles),
             *self.readings,
-            *_parts_of(self.reading_angles),
+            *_with_cosine_and_sine(self.reading_angles),
         )
 
     @cached_property
-    def sums(self) -> Mapping[str, tuple[str, ...]]:
+    def signal_sums(self) -> Mapping[str, tuple[str, ...]]:
         """Role of several actuators -> their names; their sum is a signal of described laws."""
         sums: dict[str, tuple[str, ...]] = {}
         for role in self.roles.values():
-            names = self._actuators_in((role,))
+            names = self._actuators_of_roles((role,))
             if len(names) > 1 and role not in self.inputs:
                 sums[role] = names
         return sums
 
     @property
     def described_signals(self) -> tuple[str, ...]:
-        """Names of the signals of described laws: those of `held`, then the sums."""
-        return (*self.held, *self.sums)
+        """Names of the signals of described laws: those of `law_signals`, then the sums."""
+        return (*self.law_signals, *self.signal_sums)
 
     def unit(self, channel: str) -> str:
         """Return the unit of an actuator, a reading or a sum; "" where no effect uses it."""
-        first, *_ = self.sums.get(channel, (channel,))
+        first, *_ = self.signal_sums.get(channel, (channel,))
         for effect in self.effects:
             for role, bound in self.specified_bindings(effect).items():
                 if bound == first:
@@ -112,7 +112,7 @@ class Bindings:
     def _is_angle(self, channel: str) -> bool:
         return self.unit(channel) == "rad"
 
-    def _actuators_in(self, roles: Sequence[str]) -> tuple[str, ...]:
+    def _actuators_of_roles(self, roles: Sequence[str]) -> tuple[str, ...]:
         """The actuators that are bound to one of some roles."""
         return tuple(name for name in self.actuators if self.roles[name] in roles)
 
@@ -130,8 +130,8 @@ class Bindings:
                 y = float(getattr(effect, "y", 0.0))
                 return int(y > 0.0) - int(y < 0.0)
         for effect in self.effects:
-            for actuator in self.targets(effect):
-                if self.feeding_command(effect, actuator) == channel:
+            for actuator in self.target_actuators(effect):
+                if self.command_for_actuator(effect, actuator) == channel:
                     return self.side(actuator)
         return 0
 
@@ -153,18 +153,20 @@ class Bindings:
         for effect in self.effects:
             if effect.name == name:
                 return effect
-        same_type = [effect for effect in self.effects if type(effect).idea() == name]
+        same_type = [effect for effect in self.effects if type(effect).type_name() == name]
         if len(same_type) == 1:
             return same_type[0]
         return None
 
     def names_of(self, name: str) -> list[str]:
         """Return the names of all effects that have a name or a type."""
-        return [e.name for e in self.effects if name in (e.name, type(e).idea())]
+        return [e.name for e in self.effects if name in (e.name, type(e).type_name())]
 
     def effects_of(self, idea: str) -> list[Effect]:
         """Return all effects of a type and those with a conversion to it, in their order."""
-        return [e for e in self.effects if type(e).idea() == idea or hasattr(type(e), f"as_{idea}")]
+        return [
+            e for e in self.effects if type(e).type_name() == idea or hasattr(type(e), f"as_{idea}")
+        ]
 
     @staticmethod
     def specified_bindings(effect: Effect) -> Mapping[str, str | float]:
@@ -183,42 +185,42 @@ class Bindings:
         if bound:
             return bound
         for role, about in type(effect).roles.items():
-            candidates = self._actuators_in((role,))
+            candidates = self._actuators_of_roles((role,))
             if about.fixed is None and len(candidates) == 1:
                 bound[role] = candidates[0]
         return bound
 
-    def carriers(self, effect: Effect) -> list[Effect]:
+    def carrier_effects(self, effect: Effect) -> list[Effect]:
         """Return the effects at which an effect acts, such as the thrusters of a prop walk."""
         carriers = self.effects_of(type(effect).per_instance_of)
         return [e for e in carriers if not effect.on or e.name in effect.on]
 
-    def targets(self, effect: Effect) -> tuple[str, ...]:
+    def target_actuators(self, effect: Effect) -> tuple[str, ...]:
         """Return the actuators that a channel effect acts on: named ones, else all in its role."""
-        if not isinstance(effect, Channel):
+        if not isinstance(effect, ChannelEffect):
             return ()
         if effect.on:
             return tuple(filter(effect.on.__contains__, self.actuators))
         roles = type(effect).acts_on.split("|")
         if roles == [""]:
             return self.actuators
-        return self._actuators_in(roles)
+        return self._actuators_of_roles(roles)
 
-    def feeding_command(self, effect: Effect, actuator: str) -> str | None:
+    def command_for_actuator(self, effect: Effect, actuator: str) -> str | None:
         """Return the command that feeds an actuator through a channel effect, None without one."""
-        if not isinstance(effect, Channel) or actuator not in effect.on:
+        if not isinstance(effect, ChannelEffect) or actuator not in effect.on:
             return None
         return dict(zip(effect.on, effect.fed_by, strict=False)).get(actuator)
 
 
-def _parts_of(angles: tuple[str, ...]) -> list[str]:
+def _with_cosine_and_sine(angles: tuple[str, ...]) -> list[str]:
     parts = []
     for angle in angles:
         parts += [f"cos_{angle}", f"sin_{angle}"]
     return parts
 
 
-def check_bindings(vessel: Bindings, label: str) -> None:
+def check_bindings(vessel: ChannelBindings, label: str) -> None:
     """Check that every effect has a unique name and that all channels and effects it names exist.
 
     Args:
@@ -236,18 +238,18 @@ def check_bindings(vessel: Bindings, label: str) -> None:
                 f"{what} occurs {names.count(effect.name)} times; each needs a unique name"
             )
         _check_roles(vessel, effect, what)
-        if type(effect).sees_held and not effect.still_as_on(vessel):
+        if type(effect).sees_held and not effect.keeps_derived_codes(vessel):
             raise BadInput(
                 f"{what} stands before an effect by which a channel acts; move it behind all of "
                 "these"
             )
-        if isinstance(effect, Channel):
+        if isinstance(effect, ChannelEffect):
             _check_channel(vessel, effect, what)
         elif type(effect).per_instance_of:
             _check_carriers(vessel, effect, what)
 
 
-def _check_roles(vessel: Bindings, effect: Effect, what: str) -> None:
+def _check_roles(vessel: ChannelBindings, effect: Effect, what: str) -> None:
     roles = type(effect).roles
     for role, channel in vessel.specified_bindings(effect).items():
         if role not in roles:
@@ -263,7 +265,7 @@ def _check_roles(vessel: Bindings, effect: Effect, what: str) -> None:
             )
 
 
-def _check_channel(vessel: Bindings, effect: Channel, what: str) -> None:
+def _check_channel(vessel: ChannelBindings, effect: ChannelEffect, what: str) -> None:
     for name in (*effect.on, *effect.fed_by):
         if name not in vessel.commands:
             raise BadInput(unknown_name(f"{what}: channel", name, vessel.commands))
@@ -274,7 +276,7 @@ def _check_channel(vessel: Bindings, effect: Channel, what: str) -> None:
         )
 
 
-def _check_carriers(vessel: Bindings, effect: Effect, what: str) -> None:
+def _check_carriers(vessel: ChannelBindings, effect: Effect, what: str) -> None:
     idea = type(effect).per_instance_of
     carriers = [carrier.name for carrier in vessel.effects_of(idea)]
     for name in effect.on:

@@ -5,7 +5,7 @@ from dataclasses import fields
 from pathlib import Path
 
 from boatsim.errors import BadInput
-from boatsim.physics.content import address, load_class
+from boatsim.physics.content import effect_address, load_class
 from boatsim.physics.kinds.effect import Effect
 
 
@@ -37,13 +37,13 @@ def effect_name(table: Mapping[str, object]) -> str:
     return str(table.get("name", table.get("use")))
 
 
-def table_of(effect: Effect) -> dict[str, object]:
+def effect_table(effect: Effect) -> dict[str, object]:
     """Return the [[effect]] table of an effect: its type and all values that are not defaults.
 
     Parameters in `effect.filled` are left out: a rule computes them when the vessel is loaded.
     """
-    table: dict[str, object] = {"use": address(type(effect))}
-    if effect.name != type(effect).idea():
+    table: dict[str, object] = {"use": effect_address(type(effect))}
+    if effect.name != type(effect).type_name():
         table["name"] = effect.name
     for field in fields(effect):
         if "ours" in field.metadata or field.name == "name" or field.name in effect.filled:
@@ -51,7 +51,7 @@ def table_of(effect: Effect) -> dict[str, object]:
         value = getattr(effect, field.name)
         is_default = value == field.default
         if "param" in field.metadata:
-            is_default = is_default or not effect.stated(field.name)
+            is_default = is_default or not effect.has_value(field.name)
         if not is_default:
             table[field.name] = _toml_value(value)
     return table

@@ -7,14 +7,14 @@ number of an effect that the vessel does not have is an estimate, too: its absen
 from collections.abc import Iterable, Mapping
 
 from boatsim.errors import BadInput, unknown_name
-from boatsim.physics.content import load_class, names
+from boatsim.physics.content import library_names, load_class
 from boatsim.physics.kinds.effect import REFINED_GROUPS, Effect
-from boatsim.physics.kinds.release import Release
-from boatsim.physics.vessel.bindings import Bindings
+from boatsim.physics.kinds.release import CoefficientRelease
+from boatsim.physics.vessel.bindings import ChannelBindings
 from boatsim.physics.vessel.schema import Body
 
 
-def check_estimated(estimated: Iterable[str], vessel: Bindings, label: str) -> None:
+def check_estimated(estimated: Iterable[str], vessel: ChannelBindings, label: str) -> None:
     """Check that every key of [estimated] is a group of numbers or one number.
 
     Args:
@@ -31,7 +31,7 @@ def check_estimated(estimated: Iterable[str], vessel: Bindings, label: str) -> N
             continue
         allowed = [*REFINED_GROUPS]
         owners = ["body", *(effect.name for effect in vessel.effects)]
-        if owner in names("effect"):
+        if owner in library_names("effect"):
             owners.append(owner)
         if not number:
             owners = []  # a group was meant
@@ -40,7 +40,7 @@ def check_estimated(estimated: Iterable[str], vessel: Bindings, label: str) -> N
         raise BadInput(unknown_name(f"{label}: key in [estimated]", key, allowed))
 
 
-def _numbers_of(owner: str, vessel: Bindings) -> list[str]:
+def _numbers_of(owner: str, vessel: ChannelBindings) -> list[str]:
     """Numbers of the body, of an effect of the vessel, or of a type of effects."""
     if owner == "body":
         return list(Body.model_fields)
@@ -48,14 +48,16 @@ def _numbers_of(owner: str, vessel: Bindings) -> list[str]:
     kind: type[Effect] | None = None
     if effect is not None:
         kind = type(effect)
-    elif owner in names("effect"):
+    elif owner in library_names("effect"):
         kind = load_class("effect", owner)
     if kind is None:
         return []
     return list(kind.params())
 
 
-def refined_sd(effect: Effect, vessel: Bindings, estimated: Mapping[str, float]) -> float | None:
+def refined_sd(
+    effect: Effect, vessel: ChannelBindings, estimated: Mapping[str, float]
+) -> float | None:
     """Return the relative standard deviation of the estimated numbers that an effect refines.
 
     Args:
@@ -67,21 +69,21 @@ def refined_sd(effect: Effect, vessel: Bindings, estimated: Mapping[str, float])
         The standard deviation; None if the vessel file does not call these numbers estimates, so
         that the effect is missing physics.
     """
-    if isinstance(effect, Release):
+    if isinstance(effect, CoefficientRelease):
         numbers = [number_sd(c.owner, c.key, vessel, estimated) for c in effect.changes(vessel)]
         known = [sd for sd in numbers if sd is not None]
         if known and len(known) == len(numbers):
             return max(known)
     else:
         for name, param in type(effect).params().items():
-            sd = estimated.get(f"{type(effect).idea()}.{name}")
+            sd = estimated.get(f"{type(effect).type_name()}.{name}")
             if param.fit and sd is not None:
                 return sd
     return estimated.get(type(effect).refines)
 
 
 def number_sd(
-    owner: str, key: str, vessel: Bindings, estimated: Mapping[str, float]
+    owner: str, key: str, vessel: ChannelBindings, estimated: Mapping[str, float]
 ) -> float | None:
     """Return the relative standard deviation of one number of a vessel that is an estimate.
 
@@ -96,8 +98,8 @@ def number_sd(
     """
     owners, groups = [owner], [""]
     for effect in vessel.effects:
-        if owner in (effect.name, type(effect).idea()):
-            owners += [effect.name, type(effect).idea()]
+        if owner in (effect.name, type(effect).type_name()):
+            owners += [effect.name, type(effect).type_name()]
             groups.append(type(effect).params()[key].calibrates)
     for one in owners:
         if f"{one}.{key}" in estimated:

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from boatsim.errors import BadInput
 from boatsim.files import checked, read_toml
-from boatsim.physics.content import find
+from boatsim.physics.content import find_content_file
 from boatsim.physics.vessel import loads as load_conditions
 from boatsim.physics.vessel.effect_tables import effect_from_table, effect_name
 from boatsim.physics.vessel.estimated import check_estimated
@@ -14,7 +14,7 @@ from boatsim.physics.vessel.model import FILE_NAME, Vessel
 from boatsim.physics.vessel.schema import VesselFile
 
 
-def load(
+def load_vessel(
     name: str,
     loads: Sequence[str] = (),
     settings: Mapping[str, Mapping[str, object]] | None = None,
@@ -35,18 +35,18 @@ def load(
         BadInput: For names, keys and values that do not exist or are out of bounds: one line with
             file, key, value found, what is allowed and the nearest valid name.
     """
-    path = find("vessel", name, base_folder)
+    path = find_content_file("vessel", name, base_folder)
     vessel_name = path.stem
     if path.name == FILE_NAME:
         vessel_name = path.parent.name
     label = _label(path)
     raw: Mapping[str, object] = read_toml(path)
     conditions = checked(VesselFile, raw, label).loads
-    load_conditions.check_known(loads, conditions, label)
-    load_conditions.check_compatible(loads, conditions, label)
+    load_conditions.check_loads_exist(loads, conditions, label)
+    load_conditions.check_loads_compatible(loads, conditions, label)
     for one in dict.fromkeys(loads):
-        raw = load_conditions.overlaid(raw, conditions[one], label)
-    raw = load_conditions.overlaid(raw, dict(settings or {}), label)
+        raw = load_conditions.apply_load_values(raw, conditions[one], label)
+    raw = load_conditions.apply_load_values(raw, dict(settings or {}), label)
     content = checked(VesselFile, raw, label)
     content.check_channels(label)
     _check_new_names(extra, content, vessel_name)
@@ -60,7 +60,7 @@ def load(
     return vessel
 
 
-def merged_loads(
+def merge_load_conditions(
     name: str, loads: Sequence[str], more: Sequence[str], base_folder: Path | None = None
 ) -> list[str]:
     """Return load conditions with others added.
@@ -76,14 +76,14 @@ def merged_loads(
     Raises:
         BadInput: For a load condition that does not exist.
     """
-    path = find("vessel", name, base_folder)
+    path = find_content_file("vessel", name, base_folder)
     label = _label(path)
     conditions = checked(VesselFile, read_toml(path), label).loads
-    load_conditions.check_known(more, conditions, label)
+    load_conditions.check_loads_exist(more, conditions, label)
     merged: list[str] = []
     for one in loads:
         excluded = one not in conditions or any(
-            load_conditions.conflicts(conditions[one], conditions[new]) for new in more
+            load_conditions.conflicting_values(conditions[one], conditions[new]) for new in more
         )
         if not excluded:
             merged.append(one)
@@ -105,7 +105,7 @@ def with_effect_tables(
         BadInput: For an unknown effect or parameter, or a value out of bounds.
     """
     for table in tables:
-        vessel = vessel.composed_with(effect_from_table(table, label, folder))
+        vessel = vessel.with_completed_effect(effect_from_table(table, label, folder))
     return vessel
 
 
@@ -131,6 +131,6 @@ def _hull_folder(based_on: str, path: Path, label: str) -> Path:
     if not based_on:
         return path.parent
     try:
-        return find("vessel", based_on, path.parent).parent
+        return find_content_file("vessel", based_on, path.parent).parent
     except BadInput as error:
         raise BadInput(f"{label}: based_on: {error}") from None

@@ -13,32 +13,32 @@ NUMBERS = ("length", "beam", "draught")
 Loads = Mapping[str, Mapping[str, object]]
 
 
-def check_known(names: Sequence[str], loads: Loads, label: str) -> None:
+def check_loads_exist(names: Sequence[str], loads: Loads, label: str) -> None:
     """Check that all load conditions exist. Raises BadInput."""
     for name in names:
         if name not in loads:
             raise BadInput(unknown_name(f"{label}: load", name, loads))
 
 
-def check_compatible(names: Sequence[str], loads: Loads, label: str) -> None:
+def check_loads_compatible(names: Sequence[str], loads: Loads, label: str) -> None:
     """Check that no two load conditions set one value differently.
 
     Raises:
         BadInput: With the two load conditions and the value.
     """
     for first, second in combinations(dict.fromkeys(names), 2):
-        for key, (one, other) in conflicts(loads[first], loads[second]).items():
+        for key, (one, other) in conflicting_values(loads[first], loads[second]).items():
             raise BadInput(
                 f"{label}: loads {first} ({key} = {one}) and {second} ({key} = {other}) exclude "
                 "each other"
             )
 
 
-def conflicts(
+def conflicting_values(
     first: Mapping[str, object], second: Mapping[str, object]
 ) -> dict[str, tuple[object, object]]:
     """Return the keys ("body.mass") that two load conditions set differently -> both values."""
-    flat_first, flat_second = _flat(first), _flat(second)
+    flat_first, flat_second = _dotted_keys(first), _dotted_keys(second)
     different: dict[str, tuple[object, object]] = {}
     for key, value in flat_first.items():
         if key in flat_second and value != flat_second[key]:
@@ -46,7 +46,7 @@ def conflicts(
     return different
 
 
-def _flat(table: Mapping[str, object]) -> dict[str, object]:
+def _dotted_keys(table: Mapping[str, object]) -> dict[str, object]:
     """Values of a load condition by dotted key: `length`, `body.mass`."""
     values: dict[str, object] = {}
     inner: dict[str, object] = {}
@@ -59,7 +59,7 @@ def _flat(table: Mapping[str, object]) -> dict[str, object]:
     return values | inner
 
 
-def overlaid(
+def apply_load_values(
     raw: Mapping[str, object], changes: Mapping[str, object], label: str
 ) -> dict[str, object]:
     """Return the content of a vessel file with the values of a load condition or of [set].

@@ -12,14 +12,14 @@ import tomlkit
 from boatsim.errors import BadInput, unknown_name
 from boatsim.files import checked, replacing
 from boatsim.physics.content import vessel_address
-from boatsim.physics.estimate.base import Hull
-from boatsim.physics.kernel.equations import tilts
+from boatsim.physics.estimate.base import HullParticulars
+from boatsim.physics.kernel.equations import has_hull_fixed_axes
 from boatsim.physics.kinds.effect import Effect
-from boatsim.physics.kinds.release import Change, Release
+from boatsim.physics.kinds.release import CoefficientChange, CoefficientRelease
 from boatsim.physics.param import UNSET
-from boatsim.physics.spread import Spread
-from boatsim.physics.vessel.bindings import Bindings, check_bindings
-from boatsim.physics.vessel.effect_tables import effect_from_table, table_of
+from boatsim.physics.spread import FittedUncertainty
+from boatsim.physics.vessel.bindings import ChannelBindings, check_bindings
+from boatsim.physics.vessel.effect_tables import effect_from_table, effect_table
 from boatsim.physics.vessel.estimated import check_estimated
 from boatsim.physics.vessel.plain_hull import hull_xml
 from boatsim.physics.vessel.schema import (
@@ -53,7 +53,7 @@ SAME_IN_FILE = (
 
 
 @dataclass(frozen=True, kw_only=True)
-class Vessel(Bindings):
+class Vessel(ChannelBindings):
     """A vessel in one load condition, with effects that are completed and ready to be compiled.
 
     `load_vessel` reads one from a file, `Vessel.from_effects` builds one in Python. A vessel is
@@ -129,7 +129,7 @@ class Vessel(Bindings):
     manoeuvring: ManoeuvringTable = ManoeuvringTable()
     marks: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     found: tuple[str, ...] = ()
-    spread: Spread | None = field(default=None, compare=False)
+    spread: FittedUncertainty | None = field(default=None, compare=False)
 
     # Construction
     # ----------------------------------------------------------------------------------------------
@@ -153,7 +153,7 @@ class Vessel(Bindings):
             commands=content.channels,
             loads=tuple(content.loads),
             found=tuple(content.found),
-            spread=Spread.read(content.spread),
+            spread=FittedUncertainty.from_table(content.spread),
             **same,
         )
 
@@ -208,11 +208,11 @@ class Vessel(Bindings):
         if content.loads or content.effect:
             raise BadInput(f"{name}: loads and effect are not allowed here; give effects")
         vessel = cls.from_file(content, name, Path(name) / FILE_NAME, Path(name))
-        hull = Hull(length, beam, content.body.mass, draught, hulls=1, breadth=beam)
+        hull = HullParticulars(length, beam, content.body.mass, draught, hulls=1, breadth=beam)
         text = hull_xml(
             hull, name, "Drawn by boatsim from the dimensions; forces are in vessel.toml."
         )
-        vessel = dataclasses.replace(vessel, hull_xml=text)._rebuilt(effects)
+        vessel = dataclasses.replace(vessel, hull_xml=text)._with_effects(effects)
         check_estimated(vessel.estimated, vessel, name)
         return vessel
 
@@ -228,7 +228,7 @@ class Vessel(Bindings):
             BadInput: If an effect names a channel that does not exist then.
         """
         changed = dataclasses.replace(self, **changes)
-        return changed._rebuilt(changed.effects)
+        return changed._with_effects(changed.effects)
 
     def with_effect(self, effect: Effect | Mapping[str, object]) -> Self:
         """Return the vessel with one more effect.
@@ -240,7 +240,7 @@ class Vessel(Bindings):
             BadInput: If the name of the effect is taken, or it names a channel or an effect that
                 does not exist.
         """
-        changed = self.composed_with(self._effect(effect))
+        changed = self.with_completed_effect(self._effect_from(effect))
         check_bindings(changed, self.name)
         return changed
 
@@ -253,7 +253,7 @@ class Vessel(Bindings):
         names = self.names_of(name)
         if not names:
             raise BadInput(unknown_name(f"{self.name}: effect", name, self._effect_names()))
-        return self._rebuilt([e for e in self.effects if e.name not in names])
+        return self._with_effects([e for e in self.effects if e.name not in names])
 
     def with_parameters(self, parameters: Mapping[str, Mapping[str, object]]) -> Self:
         """Return the vessel with other values of parameters, as [set] of a scenario does.
@@ -278,7 +278,7 @@ class Vessel(Bindings):
             if effect.name in values:
                 effect = self._with_values(effect, values[effect.name])
             effects.append(effect)
-        return changed._rebuilt(effects)
+        return changed._with_effects(effects)
 
     def with_measured(self, values: Mapping[str, float]) -> Self:
         """Return the vessel with other neutral values of measured channels.
@@ -293,41 +293,41 @@ class Vessel(Bindings):
             measured[name] = measured[name].model_copy(update={"neutral": value})
         return dataclasses.replace(self, measured=measured)
 
-    def composed_with(self, effect: Effect) -> Self:
+    def with_completed_effect(self, effect: Effect) -> Self:
         """Return the vessel with one more effect, completed, without a check of its bindings.
 
-        A `Release` is not added: it changes the numbers that it names.
+        A `CoefficientRelease` is not added: it changes the numbers that it names.
 
         Raises:
             BadInput: If a parameter can not be computed from the vessel's numbers.
         """
         try:
-            effect = effect.completed(self)
+            effect = effect.with_all_parameters(self)
         except (ArithmeticError, ValueError) as error:
             # A rule that divides by zero, or takes the root of a negative number
             raise BadInput(
                 f"{self.name}: {effect.name}: a parameter can not be computed from the vessel "
                 f"({error})"
             ) from None
-        if not isinstance(effect, Release):
+        if not isinstance(effect, CoefficientRelease):
             return dataclasses.replace(self, effects=(*self.effects, effect))
         changed = self
         for change in effect.changes(self):
             changed = changed._with_change(change, getattr(effect, change.parameter))
         return changed
 
-    def _with_change(self, change: Change, value: float) -> Self:
+    def _with_change(self, change: CoefficientChange, value: float) -> Self:
         """Return the vessel with one number changed, and all filled-in numbers that follow it."""
         changed = self
         if change.owner == "body":
-            new = change.of(getattr(self.body, change.key), value)
+            new = change.apply_to(getattr(self.body, change.key), value)
             if new <= 0.0:
                 raise BadInput(f"{self.name}: body.{change.key} = {new:g}; allowed is more than 0")
             body = self.body.model_copy(update={change.key: new})
             changed = dataclasses.replace(self, body=body)
             source = f"vessel.body.{change.key}"
         else:
-            new = change.of(getattr(self.effect(change.owner), change.key), value)
+            new = change.apply_to(getattr(self.effect(change.owner), change.key), value)
             source = f"{change.owner}.{change.key}"
         effects: list[Effect] = []
         for effect in self.effects:
@@ -335,7 +335,7 @@ class Vessel(Bindings):
             keys = [n for n in effect.filled if params[n].follows.removesuffix("?") == source]
             if effect.name == change.owner:
                 keys.append(change.key)
-            effects.append(effect.having(dict.fromkeys(keys, new)))
+            effects.append(effect.with_values(dict.fromkeys(keys, new)))
         return dataclasses.replace(changed, effects=tuple(effects))
 
     def _with_values(self, effect: Effect, values: Mapping[str, object]) -> Effect:
@@ -343,20 +343,20 @@ class Vessel(Bindings):
         for key in values:
             if key not in params:
                 raise BadInput(unknown_name(f"{self.name}: {effect.name}", key, params))
-        return effect.having({**values, "filled": effect.filled - set(values)})
+        return effect.with_values({**values, "filled": effect.filled - set(values)})
 
-    def _rebuilt(self, effects: Sequence[Effect | Mapping[str, object]]) -> Self:
+    def _with_effects(self, effects: Sequence[Effect | Mapping[str, object]]) -> Self:
         """Return the vessel with these effects, each completed by those before it, and check it."""
         vessel = dataclasses.replace(self, effects=())
-        for effect in map(self._effect, effects):
+        for effect in map(self._effect_from, effects):
             if effect.filled:
                 unset = dict.fromkeys(effect.filled, UNSET)
-                effect = effect.having({**unset, "filled": frozenset()})
-            vessel = vessel.composed_with(effect)
+                effect = effect.with_values({**unset, "filled": frozenset()})
+            vessel = vessel.with_completed_effect(effect)
         vessel.check(self.name)
         return vessel
 
-    def _effect(self, effect: Effect | Mapping[str, object]) -> Effect:
+    def _effect_from(self, effect: Effect | Mapping[str, object]) -> Effect:
         if isinstance(effect, Effect):
             return effect
         return effect_from_table(effect, self.name, self.path)
@@ -376,7 +376,11 @@ class Vessel(Bindings):
         check_bindings(self, label)
         if "pitch" in self.dof and self.body.pitch_inertia is None:
             raise BadInput(f"{label}: body.pitch_inertia is missing; {self.name} is free in pitch")
-        if self.body.centre[1] and "roll" in self.dof and not tilts(frozenset(self.dof)):
+        if (
+            self.body.centre[1]
+            and "roll" in self.dof
+            and not has_hull_fixed_axes(frozenset(self.dof))
+        ):
             raise BadInput(
                 f"{label}: body.centre = {self.body.centre}; allowed is a height of 0 where "
                 "pitch is held"
@@ -439,7 +443,7 @@ class Vessel(Bindings):
         if self.found:
             table["found"] = list(self.found)
         if self.spread is not None:
-            table["spread"] = self.spread.table()
+            table["spread"] = self.spread.to_table()
         # Tables come last in TOML
         plain = {key: value for key, value in table.items() if not isinstance(value, dict)}
         return plain | table | {"effect": self._effect_tables()}
@@ -449,8 +453,8 @@ class Vessel(Bindings):
         tables = []
         vessel = dataclasses.replace(self, effects=())
         for effect in self.effects:
-            table = table_of(effect)
-            computed = effect_from_table(table, self.name, self.path).completed(vessel)
+            table = effect_table(effect)
+            computed = effect_from_table(table, self.name, self.path).with_all_parameters(vessel)
             for name in effect.filled:
                 value = getattr(effect, name)
                 if value != getattr(computed, name):

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator
 from xml.sax.saxutils import quoteattr
 
 from boatsim.physics.estimate import inertia
-from boatsim.physics.estimate.base import Hull
+from boatsim.physics.estimate.base import HullParticulars
 
 HEAD = """\
   <asset>
@@ -25,7 +25,7 @@ HEAD = """\
   </default>"""
 
 
-def hull_xml(hull: Hull, name: str, comment: str, fittings: Iterable[str] = ()) -> str:
+def hull_xml(hull: HullParticulars, name: str, comment: str, fittings: Iterable[str] = ()) -> str:
     """Return the MJCF of a hull.
 
     Args:
@@ -51,37 +51,37 @@ def hull_xml(hull: Hull, name: str, comment: str, fittings: Iterable[str] = ()) 
     return "\n".join(lines)
 
 
-def deck_height(hull: Hull) -> float:
+def deck_height(hull: HullParticulars) -> float:
     """Return the height of the deck above the water [m], chosen for the looks."""
     return max(hull.draught, 0.08 * hull.length)
 
 
-def _hull_parts(hull: Hull) -> Iterator[str]:
+def _hull_parts(hull: HullParticulars) -> Iterator[str]:
     """Inertia, the box that touches walls, and what is drawn."""
     length, high = hull.length, deck_height(hull)
     middle = 0.5 * (high - hull.draught)
     half_height = 0.5 * (high + hull.draught)
-    yaw_inertia = inertia.yaw(hull).value
-    diagonal = numbers(yaw_inertia, yaw_inertia, yaw_inertia)
+    yaw_inertia = inertia.yaw_inertia(hull).value
+    diagonal = format_numbers(yaw_inertia, yaw_inertia, yaw_inertia)
     yield (
-        f'<inertial pos="{numbers(0.5 * length, 0, 0)}" mass="{hull.mass:g}" '
+        f'<inertial pos="{format_numbers(0.5 * length, 0, 0)}" mass="{hull.mass:g}" '
         f'diaginertia="{diagonal}"/>'
     )
     size = (0.5 * length, 0.5 * hull.beam, half_height)
-    yield geom("collision", "box", (0.5 * length, 0, middle), size, "touch")
+    yield geom_element("collision", "box", (0.5 * length, 0, middle), size, "touch")
     if hull.hulls == 1:
         yield from _one_hull(hull, "", 0.0)
         return
-    yield from _one_hull(hull, "_port", 0.5 * hull.spacing)
-    yield from _one_hull(hull, "_starboard", -0.5 * hull.spacing)
+    yield from _one_hull(hull, "_port", 0.5 * hull.hull_spacing)
+    yield from _one_hull(hull, "_starboard", -0.5 * hull.hull_spacing)
     for name, x in (("fore", 0.65), ("aft", 0.35)):
-        size = (0.02 * length, 0.5 * hull.spacing, 0.012 * length)
-        yield geom(f"beam_{name}", "box", (x * length, 0, 1.1 * high), size, "seen", "deck")
+        size = (0.02 * length, 0.5 * hull.hull_spacing, 0.012 * length)
+        yield geom_element(f"beam_{name}", "box", (x * length, 0, 1.1 * high), size, "seen", "deck")
     size = (0.18 * length, 0.2 * hull.beam, 0.01 * length)
-    yield geom("tray", "box", (0.5 * length, 0, 1.2 * high), size, "seen", "dark")
+    yield geom_element("tray", "box", (0.5 * length, 0, 1.2 * high), size, "seen", "dark")
 
 
-def _one_hull(hull: Hull, side: str, y: float) -> Iterator[str]:
+def _one_hull(hull: HullParticulars, side: str, y: float) -> Iterator[str]:
     """A box aft that ends in an ellipsoid, the bow, and a deck on both."""
     high = deck_height(hull)
     middle = 0.5 * (high - hull.draught)
@@ -89,18 +89,18 @@ def _one_hull(hull: Hull, side: str, y: float) -> Iterator[str]:
     half_beam = 0.5 * hull.breadth
     aft, bow = 0.55 * hull.length, 0.45 * hull.length
     size = (0.5 * aft, half_beam, half_height)
-    yield geom(f"aft{side}", "box", (0.5 * aft, y, middle), size, "seen", "hull")
+    yield geom_element(f"aft{side}", "box", (0.5 * aft, y, middle), size, "seen", "hull")
     size = (bow, half_beam, half_height)
-    yield geom(f"bow{side}", "ellipsoid", (aft, y, middle), size, "seen", "hull")
+    yield geom_element(f"bow{side}", "ellipsoid", (aft, y, middle), size, "seen", "hull")
     size = (0.46 * aft, 0.85 * half_beam, 0.03 * half_height)
-    yield geom(f"deck{side}", "box", (0.5 * aft, y, high), size, "seen", "deck")
+    yield geom_element(f"deck{side}", "box", (0.5 * aft, y, high), size, "seen", "deck")
     if hull.hulls == 1:
         size = (0.06 * hull.length, 0.4 * half_beam, 0.5 * high)
         at = (0.42 * hull.length, y, 1.5 * high)
-        yield geom("console", "box", at, size, "seen", "deck")
+        yield geom_element("console", "box", at, size, "seen", "deck")
 
 
-def geom(
+def geom_element(
     name: str,
     kind: str,
     pos: tuple[float, float, float],
@@ -123,10 +123,10 @@ def geom(
         of_material = f' material="{material}"'
     return (
         f'<geom name={quoteattr(name)} class="{default_class}" type="{kind}"{of_material} '
-        f'pos="{numbers(*pos)}" size="{numbers(*size)}"/>'
+        f'pos="{format_numbers(*pos)}" size="{format_numbers(*size)}"/>'
     )
 
 
-def numbers(*values: float) -> str:
+def format_numbers(*values: float) -> str:
     """Return numbers with four digits, as MJCF attributes have them."""
     return " ".join(f"{value:.4g}" for value in values)

@@ -11,7 +11,7 @@ import numpy as np
 
 from boatsim.errors import BadInput
 from boatsim.physics.base import Array
-from boatsim.physics.content import module_of, names
+from boatsim.physics.content import import_library_module, library_names
 from boatsim.recordings.raw_table import file_error
 
 MAX_BYTES = 2_000_000_000  # of a file
@@ -159,15 +159,15 @@ def reader_for(path: Path) -> Callable[[Path], Log]:
         raise file_error(
             path, f"has {path.stat().st_size:,} bytes; at most {MAX_BYTES:,} are read: cut the log"
         )
-    read: Callable[[Path], Log] = module_of("log", suffixes[suffix]).read
+    read: Callable[[Path], Log] = import_library_module("log", suffixes[suffix]).read
     return read
 
 
 def known_suffixes() -> dict[str, str]:
     """Return the suffix -> name of the module of each format; the suffix of a folder is "/"."""
     found: dict[str, str] = {}
-    for name in names("log"):
-        found |= dict.fromkeys(module_of("log", name).SUFFIXES, name)
+    for name in library_names("log"):
+        found |= dict.fromkeys(import_library_module("log", name).SUFFIXES, name)
     return found
 
 

@@ -116,9 +116,9 @@ def _end(worker: Worker) -> None:
     worker.process.close()
 
 
-def _serve(pipe: Connection, work: Work, trusted: trust.Trust) -> None:
+def _serve(pipe: Connection, work: Work, trusted: trust.TrustedFolders) -> None:
     """Main function of a process: perform tasks until the other end of the pipe is closed."""
-    trust.adopt(trusted)
+    trust.adopt_trust(trusted)
     with suppress(EOFError, OSError):
         while True:
             pipe.send(work(pipe.recv()))

@@ -78,9 +78,9 @@ def _perform(
                 yield number, None
 
 
-def _work(work: Work, argument: Any, trusted: trust.Trust) -> Entry:
+def _work(work: Work, argument: Any, trusted: trust.TrustedFolders) -> Entry:
     """Perform one task on a node."""
-    trust.adopt(trusted)
+    trust.adopt_trust(trusted)
     return work(argument)
 
 

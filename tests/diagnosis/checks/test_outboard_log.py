@@ -35,7 +35,7 @@ def rib(tmp_path_factory: pytest.TempPathFactory) -> Vessel:
     size = ["--length", "5.57", "--beam", "2.29", "--mass", "956", "--hulls", "1", "--speed", "3.6"]
     made = CliRunner().invoke(app, ["new", str(home), *size, f"--steered=-2.45,0.00,{FULL:g},830"])
     assert made.exit_code == 0, made.output
-    return vessels.load(str(home))
+    return vessels.load_vessel(str(home))
 
 
 def sailed(boat: Vessel, share: float = 1.0, current: complex = 0.0) -> Columns:

@@ -33,7 +33,7 @@ def astray(run: Recording, off: float, rows: slice = BURST) -> Recording:
     "rows", [slice(100, 101), slice(100, 103), BURST], ids=lambda s: f"{s.stop - s.start} rows"
 )
 def test_a_burst_of_any_length_is_found_and_nothing_else(rows: slice) -> None:
-    run, boat = recorded(Real(), 1), vessel.load("trial_boat")
+    run, boat = recorded(Real(), 1), vessel.load_vessel("trial_boat")
     assert (
         not drop_position_outliers(run, boat).remarks
         and not drop_position_outliers(recorded(Real(), 2), boat).remarks
@@ -67,7 +67,7 @@ def test_a_diagnosis_is_not_misled_by_bursts(tmp_path: Path) -> None:
 def test_a_recording_that_begins_with_a_fix_astray_begins_a_row_later(tmp_path: Path) -> None:
     """The filter starts from the first fix: one that is off gave the hull other damping (Eastward
     Ho, 36 noise sds)."""
-    runs, boat = [recorded(Real(), s) for s in (1, 2, 3)], vessel.load("trial_boat")
+    runs, boat = [recorded(Real(), s) for s in (1, 2, 3)], vessel.load_vessel("trial_boat")
     assert [outlier_rows_at_start(r, boat) for r in runs] == [0, 0, 0]
     first = [astray(runs[0], 0.2, slice(0, 1)), astray(runs[1], -0.2, slice(0, 2)), runs[2]]
     assert [outlier_rows_at_start(r, boat) for r in first] == [1, 2, 0]

@@ -28,7 +28,7 @@ from boatsim.recordings.table import Recording, read, write_csv
 from validation.log_faults import FAULTS, Columns, simulate_log, write
 
 TRIALS = Path(__file__).parents[2] / "data" / "trials"
-BOAT = vessel.load("trial_boat")
+BOAT = vessel.load_vessel("trial_boat")
 QUICK = (
     "y to port, heading too",
     "heading in degrees",
@@ -190,7 +190,7 @@ def test_the_command_leaves_with_its_codes_and_one_line(tmp_path: Path) -> None:
 def test_nothing_is_advised_that_the_boat_can_not_do(tmp_path: Path) -> None:
     """Thrusters that can not be turned are not told to turn, and one that can only push is not told
     to go astern."""
-    boat = vessel.load("blueboat")
+    boat = vessel.load_vessel("blueboat")
     log = simulate_log(boat, 1)
     for name in boat.commands:
         log[name] = np.abs(log[name])

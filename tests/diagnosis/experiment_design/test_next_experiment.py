@@ -23,7 +23,7 @@ from boatsim.diagnosis.search.screening import screen
 from boatsim.physics import vessel
 from boatsim.physics.base import Array
 from boatsim.physics.content import load_class
-from boatsim.physics.kernel.records import Model
+from boatsim.physics.kernel.records import VesselNumbers
 from boatsim.physics.program import Program
 from boatsim.recordings.table import Recording, write_csv
 from boatsim.simulate import scenario
@@ -54,7 +54,7 @@ CONFUSABLE = {  # truth with its values, rival, first recording in which the two
 
 @cache
 def program() -> Program:
-    boat = vessel.load("trial_boat")
+    boat = vessel.load_vessel("trial_boat")
     return Program(boat, library_for(boat).compiled)
 
 
@@ -66,14 +66,14 @@ def recorded(
     rng = np.random.default_rng(4)
     code, values, on = program().module, program().values(), program().switches([name])
     for key, value in settings.items():
-        values[program().index(name, key)] = value
+        values[program().parameter_index(name, key)] = value
     rows = np.concatenate([np.tile(step[1:], (round(step[0] * RATE), 1)) for step in script])
     memory, act = np.zeros(program().memory_size), np.zeros(program().held_size)
-    code.settle(rows[0], memory, values, on, act)
+    code.settle_actuators(rows[0], memory, values, on, act)
     out = np.zeros((len(rows) + 1, 6))
     code.rollout(
-        Model(program().body, values, on),
-        program().plant(np.zeros(6), memory),
+        VesselNumbers(program().body, values, on),
+        program().vessel_state(np.zeros(6), memory),
         rows,
         0.0,
         1 / RATE / 8,
@@ -165,7 +165,7 @@ def test_the_worst_rival_counts():
 
 def test_expected_gain_is_the_divergence_of_the_dense_predictions_of_a_linear_model():
     """Both models written out: mean and covariance of all samples, parameters' spread included."""
-    boat = vessel.load("kvlcc2_roll")
+    boat = vessel.load_vessel("kvlcc2_roll")
     t = 0.2 * np.arange(150)
     first = Recording("first", t, {"phi_rad": 0.1 * np.cos(2.46 * t)})
     levels = NoiseLevels(np.array([2.0]), 0.5, {"roll_sd_rad": 1e-3})
@@ -296,7 +296,7 @@ def test_diagnose_leaves_the_scenario_beside_its_answer_and_takes_an_old_one_awa
 
 def test_manoeuvres_keep_commands_inside_limits_and_times_to_froude_scale():
     for name in ("trial_boat", "joystick_boat"):
-        boat = vessel.load(name)
+        boat = vessel.load_vessel(name)
         large = replace(boat, length=4.0 * boat.length)
         for small, big in zip(
             available_manoeuvres(boat, {}, 0.0, True),
@@ -313,7 +313,7 @@ def test_manoeuvres_keep_commands_inside_limits_and_times_to_froude_scale():
 
 
 def test_pwm_takes_the_place_of_the_thrust_it_feeds():
-    boat = vessel.load("joystick_boat")
+    boat = vessel.load_vessel("joystick_boat")
     assert set(manoeuvres.driven_commands(boat)) == {
         "pwm_port",
         "pwm_starboard",
@@ -324,9 +324,10 @@ def test_pwm_takes_the_place_of_the_thrust_it_feeds():
 
 @pytest.mark.slow
 def test_hull_without_commands_is_released_at_another_angle(tmp_path):
-    boat = vessel.load(str(written(tmp_path, "test_roller", ROLL)))
+    boat = vessel.load_vessel(str(written(tmp_path, "test_roller", ROLL)))
     suspects = tuple(
-        effect_at_zero(k).completed(boat) for k in kinds("righting_arm_stiffening", "cubic_damping")
+        effect_at_zero(k).with_all_parameters(boat)
+        for k in kinds("righting_arm_stiffening", "cubic_damping")
     )
     t = 0.2 * np.arange(150)
     first = Recording(
@@ -355,7 +356,7 @@ def kinds(*names: str) -> list:
 @pytest.mark.slow
 def test_zig_zag_of_a_ship_changes_over_where_its_heading_is_expected_to_be(tmp_path):
     text = PLANAR.replace("low = -100.0", "low = 0.0").replace("x = 0.0\nhalf", "x = -0.5\nhalf")
-    boat = vessel.load(str(written(tmp_path, "test_ship", text)))
+    boat = vessel.load_vessel(str(written(tmp_path, "test_ship", text)))
     code = Program(boat)
     steady = {"thrust_port_N": 5.0, "thrust_starboard_N": 5.0}
     rows = np.tile(code.command_array(steady), (240, 1))

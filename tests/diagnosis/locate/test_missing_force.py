@@ -333,7 +333,7 @@ def test_walls_stated_in_a_recording_are_those_of_the_library_entry_too() -> Non
         map_recording(replace(stated, notes=Notes()), program),
         map_recording(stated, program),
     )
-    at = [program.index("wall_effect", n) for n in ("x_low", "x_high", "y_low", "y_high")]
+    at = [program.parameter_index("wall_effect", n) for n in ("x_low", "x_high", "y_low", "y_high")]
     assert other.values[at] == pytest.approx([-1.0, 2.0, -3.0, 5.0]) == tank_walls(other)
     assert own.values[at] == pytest.approx([-4.0, 4.0, -3.0, 3.0]) == tank_walls(own)
 
@@ -350,7 +350,7 @@ def test_walls_stated_in_a_recording_are_those_of_the_library_entry_too() -> Non
     ],
 )
 def test_roll_that_stiffens_or_drags_is_told_from_a_linear_one(name: str, more: Any) -> None:
-    ship = vessel.load("kvlcc2_roll")
+    ship = vessel.load_vessel("kvlcc2_roll")
     inertia, damping, stiffness = 115.6 + 19.8, 6.7, 822.3  # kg m^2, N m s, N m
     rng = np.random.default_rng(11)
     t = np.arange(0.0, 60.0, 0.2)

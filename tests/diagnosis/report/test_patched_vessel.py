@@ -9,8 +9,8 @@ import pytest
 from boatsim.diagnosis.candidates import diagnosis_program
 from boatsim.diagnosis.config import DEFAULT
 from boatsim.physics import content, vessel
-from boatsim.physics.base import Array, Release
-from boatsim.physics.kernel.records import Inputs, Model
+from boatsim.physics.base import Array, CoefficientRelease
+from boatsim.physics.kernel.records import Inputs, VesselNumbers
 from boatsim.simulate.engine import Engine
 
 WALLS = {"x_low": -4.0, "x_high": 4.0, "y_low": -3.0, "y_high": 3.0}
@@ -74,7 +74,7 @@ def commanded(names: list[str]) -> Array:
 def test_engine_and_filter_agree_over_six_seconds(
     extra: list[dict[str, Any]], within: float
 ) -> None:
-    boat = vessel.load("trial_boat", extra=extra)
+    boat = vessel.load_vessel("trial_boat", extra=extra)
     commands = commanded(list(boat.commands))
     engine = Engine(boat, step=STEP)
     engine.reset(commands=dict(zip(boat.commands, commands[0].tolist(), strict=True)))
@@ -84,15 +84,17 @@ def test_engine_and_filter_agree_over_six_seconds(
         engine.command(dict(zip(boat.commands, row.tolist(), strict=True)))
         engine.advance(round(ROW / STEP))
     laws = {
-        e["use"] for e in extra if not issubclass(content.load_class("effect", e["use"]), Release)
+        e["use"]
+        for e in extra
+        if not issubclass(content.load_class("effect", e["use"]), CoefficientRelease)
     }
     program, acting = diagnosis_program(replace(boat, found=tuple(laws)))
     assert set(acting) == laws  # a release is its coefficient's new value, in both
     times, out = ROW * np.arange(ROWS), np.full((1, ROWS, 6), np.nan)
-    program.module.free_runs(
+    program.module.simulate_intervals(
         Inputs(times, times, commands),
         DEFAULT.filter.free_run_step,
-        Model(program.body, program.values(), program.switches(acting)),
+        VesselNumbers(program.body, program.values(), program.switches(acting)),
         np.array([0]),
         np.array([ROWS - 1]),
         np.zeros((1, 6)),

@@ -14,7 +14,7 @@ from boatsim.errors import BadInput
 from boatsim.physics import vessel
 from boatsim.physics.effects.thrust_deadband import ThrustDeadband
 from boatsim.physics.effects.thrust_imbalance import ThrustImbalance
-from boatsim.physics.kernel.records import Model
+from boatsim.physics.kernel.records import VesselNumbers
 from boatsim.physics.program import Program
 from boatsim.physics.vessel import Vessel
 from boatsim.recordings import table
@@ -29,12 +29,12 @@ def lagging(folder: Path) -> Vessel:
     """The trial boat with a propeller that takes its time."""
     place = folder / "slow"
     place.mkdir(exist_ok=True)
-    whole = vessel.load("trial_boat").file
+    whole = vessel.load_vessel("trial_boat").file
     lag = f'\n[[effect]]\nuse = "thrust_lag"\ntime_constant = {LAG}\n'
     head, tables = whole.read_text().split("\n[[effect]]", 1)
     (place / "vessel.toml").write_text(f"{head}{lag}\n[[effect]]{tables}")
     (place / "hull.xml").write_text((whole.parent / "hull.xml").read_text())
-    return vessel.load(str(place))
+    return vessel.load_vessel(str(place))
 
 
 def sent(rows: int, seed: int) -> dict[str, NDArray[np.float64]]:
@@ -60,10 +60,10 @@ def sailed(boat: Vessel, fault: ThrustDeadband, seed: int) -> Recording:
         np.zeros(program.memory_size),
     )
     path = np.zeros((rows + 1, 2 * code.NQ))
-    code.settle(commands[0], memory, values, on, np.zeros(program.held_size))
+    code.settle_actuators(commands[0], memory, values, on, np.zeros(program.held_size))
     code.rollout(
-        Model(np.array(program.body), values, on),
-        program.plant(np.zeros(2 * code.NQ), memory),
+        VesselNumbers(np.array(program.body), values, on),
+        program.vessel_state(np.zeros(2 * code.NQ), memory),
         commands,
         0.0,
         STEP / STEPS_A_ROW,
@@ -91,12 +91,14 @@ def test_each_order_is_the_composition_that_it_says(tmp_path: Path) -> None:
             np.zeros(program.held_size),
             program.switches([name]),
         )
-        program.module.settle(np.zeros(len(boat.commands)), memory, program.values(), on, act)
+        program.module.settle_actuators(
+            np.zeros(len(boat.commands)), memory, program.values(), on, act
+        )
         command = np.array([0.3 if c in DRIVES else 0.0 for c in boat.commands])
         shown = []
         for _ in range(6):
-            program.module.actuate_in_place(command, memory, STEP, program.values(), on, act)
-            shown.append(act.reshape(3, -1)[2, program.composition.held.index(DRIVES[0])])
+            program.module.advance_actuators(command, memory, STEP, program.values(), on, act)
+            shown.append(act.reshape(3, -1)[2, program.composition.law_signals.index(DRIVES[0])])
         ends[name] = np.array(shown)
     built_up = 1.0 - np.exp(-STEP * np.arange(1, 7) / LAG)
     assert ends["thrust_deadband"] == pytest.approx((0.3 - WIDTH) * built_up)
@@ -109,7 +111,9 @@ def test_both_orders_are_tried_where_a_lag_lies_between_them_and_nowhere_else(
     twice = [n for n in library_for(lagging(tmp_path)).tested if n.startswith("reordered_")]
     assert sorted(map(base_name, twice)) == ["thrust_deadband", "weak_reverse"]
     assert not [
-        n for n in library_for(vessel.load("trial_boat")).tested if n.startswith("reordered_")
+        n
+        for n in library_for(vessel.load_vessel("trial_boat")).tested
+        if n.startswith("reordered_")
     ]
 
 

@@ -60,7 +60,7 @@ CLOSED: Mapping[str, tuple[dict[str, Any], Callable[[Motion], float]]] = {
 
 def force(effect: DescribedForce) -> Wrench:
     """At one motion, with the trial boat's actuators."""
-    return effect.completed(BOAT).wrench(AT, ACTS, 0, 0)
+    return effect.with_all_parameters(BOAT).wrench(AT, ACTS, 0, 0)
 
 
 @pytest.mark.parametrize("name", CLOSED)
@@ -93,7 +93,7 @@ def test_a_force_towards_a_bearing_of_the_earth_turns_against_the_hull() -> None
 def test_a_change_of_thrust_is_a_share_of_what_the_drive_gives(
     table: dict[str, Any], share: float
 ) -> None:
-    law = DescribedThrust.from_settings({"coefficient": 0.2, **table}).completed(BOAT)
+    law = DescribedThrust.from_settings({"coefficient": 0.2, **table}).with_all_parameters(BOAT)
     drive = Thruster(x=-0.6, y=-0.19, gain=1.1)
     on, found = Thruster.signals(thrust=0.8, angle=0.3), drive.wrench(AT, thrust=0.8, angle=0.3)
     more = law.wrench(AT, on, drive.values(), ACTS, 0, 0)
@@ -113,12 +113,12 @@ def test_a_change_of_thrust_is_a_share_of_what_the_drive_gives(
 )
 def test_words_that_do_not_exist_are_named(table: dict[str, Any], line: str) -> None:
     with pytest.raises(BadInput, match=line):
-        DescribedForce.from_settings(table).completed(BOAT)
+        DescribedForce.from_settings(table).with_all_parameters(BOAT)
 
 
 def test_a_described_law_in_a_vessel_file_acts_on_engine_and_twin_alike(tmp_path: Path) -> None:
     law = '[[effect]]\nuse = "described_force"\naxis = "yaw"\nof = ["surge_speed", "abs_yaw_rate"]\ncoefficient = -0.4\n'
-    boat = vessel.load(str(boats.written(tmp_path, "odd", boats.PLANAR + law)))
+    boat = vessel.load_vessel(str(boats.written(tmp_path, "odd", boats.PLANAR + law)))
     (own,) = (e for e in boat.effects if isinstance(e, DescribedForce))
     assert own.shape() == {"axis": "yaw", "of": ["surge_speed", "abs_yaw_rate"], "acts": "always"}
     assert own.wrench(motion(u=2.0, r=-0.5), np.zeros(9), 0, 0).N == pytest.approx(-0.4)
@@ -176,12 +176,12 @@ def replays(found: Diagnosis, held_out: Recording, folder: Path) -> None:
         folder / "patched.toml",
         found.ranking.described_terms,
     )
-    program, on = diagnosis_program(vessel.load(str(folder / "patched.toml")))
+    program, on = diagnosis_program(vessel.load_vessel(str(folder / "patched.toml")))
     fit, levels = found.ranking.best, found.ranking.best.levels
     laid = map_recording(held_out, found.problem.program)
     for slot, term in found.ranking.described_terms.items():
-        for key, x in term.completed(BOAT).by_name().items():
-            laid.values[found.problem.program.index(slot, key)] = x
+        for key, x in term.with_all_parameters(BOAT).law_parameters().items():
+            laid.values[found.problem.program.parameter_index(slot, key)] = x
     here = found.problem.values(laid, fit.free, fit.theta)
     again = map_recording(held_out, program)
     ours = laid.free_runs(

@@ -26,7 +26,7 @@ from boatsim.errors import BadInput
 from boatsim.physics import vessel
 from boatsim.physics.base import Array
 from boatsim.physics.effects.described_force import DescribedForce
-from boatsim.physics.kernel.records import Inputs, Model
+from boatsim.physics.kernel.records import Inputs, VesselNumbers
 from boatsim.physics.program import Program
 from boatsim.simulate.batch import Batch
 from boatsim.simulate.engine import Engine
@@ -79,14 +79,18 @@ def commanded(rows: int, seed: int = 5) -> Array:
 @pytest.mark.parametrize("factor", SIGNALS)
 def test_what_is_recalled_is_a_first_order_lag_to_the_last_digits(factor: str) -> None:
     law = {"use": "described_force", "of": [factor], "memory": MEMORY, "coefficient": 1.0}
-    program, (of, beyond) = Program(vessel.load("trial_boat", extra=[law])), SIGNALS[factor]
-    on, p, own = program.switches(), program.values(), program.composition.own(len(BOAT.effects))
+    program, (of, beyond) = Program(vessel.load_vessel("trial_boat", extra=[law])), SIGNALS[factor]
+    on, p, own = (
+        program.switches(),
+        program.values(),
+        program.composition.history_place(len(BOAT.effects)),
+    )
     memory, act = np.zeros(program.memory_size), np.zeros(program.held_size)
     commands, steps = commanded(9), [0.02, 0.5, 3.0, 0.02, 0.17, 1.0, 0.3, 0.04, 0.6]
-    program.module.settle(commands[0], memory, p, on, act)
+    program.module.settle_actuators(commands[0], memory, p, on, act)
     y = of(commands[0])
     for command, dt in zip(commands, steps, strict=True):
-        program.module.actuate_in_place(command, memory, dt, p, on, act)
+        program.module.advance_actuators(command, memory, dt, p, on, act)
         begin, middle, end = act.reshape(3, -1)[:, own]
         x = of(command)
         path = solve_ivp(
@@ -99,7 +103,7 @@ def test_what_is_recalled_is_a_first_order_lag_to_the_last_digits(factor: str) -
 
 
 def test_a_law_that_looks_back_keeps_the_fourth_order() -> None:
-    compiled, found = Batch(vessel.load("trial_boat", extra=LAWS)), {}
+    compiled, found = Batch(vessel.load_vessel("trial_boat", extra=LAWS)), {}
     for step in (0.04, 0.02, 0.0025):
         compiled.step = step
         found[step] = compiled.rollout(np.zeros(6), commanded(20), 0.4)
@@ -108,7 +112,7 @@ def test_a_law_that_looks_back_keeps_the_fourth_order() -> None:
 
 
 def test_engine_twin_and_filter_agree_on_laws_that_look_back() -> None:
-    boat = vessel.load("trial_boat", extra=LAWS)
+    boat = vessel.load_vessel("trial_boat", extra=LAWS)
     commands, row = np.repeat(commanded(13), 5, axis=0)[:61], 0.1  # 6 s
     compiled = Batch(boat, step=DEFAULT.filter.free_run_step).rollout(
         np.zeros(6), commands[:-1], row
@@ -123,10 +127,10 @@ def test_engine_twin_and_filter_agree_on_laws_that_look_back() -> None:
         replace(boat, found=tuple(law.get("name", law["use"]) for law in LAWS))
     )
     times, out = row * np.arange(61), np.full((1, 61, 6), np.nan)
-    program.module.free_runs(
+    program.module.simulate_intervals(
         Inputs(times, times, commands),
         DEFAULT.filter.free_run_step,
-        Model(program.body, program.values(), program.switches(on)),
+        VesselNumbers(program.body, program.values(), program.switches(on)),
         np.array([0]),
         np.array([60]),
         np.zeros((1, 6)),
@@ -135,7 +139,7 @@ def test_engine_twin_and_filter_agree_on_laws_that_look_back() -> None:
     np.testing.assert_allclose(compiled[:, :3], seen, atol=1e-9)
     np.testing.assert_allclose(out[0, :, :3], seen, atol=1e-6)
     without = Batch(
-        vessel.load("trial_boat", extra=LAWS[-1:]), step=DEFAULT.filter.free_run_step
+        vessel.load_vessel("trial_boat", extra=LAWS[-1:]), step=DEFAULT.filter.free_run_step
     ).rollout(np.zeros(6), commands[:-1], row)
     assert np.abs(without - compiled)[:, :3].max() > 0.02
 
@@ -147,12 +151,16 @@ def test_a_vessel_whose_laws_do_not_look_back_remembers_nothing_more(tmp_path: P
         (boats.PLANAR + law).replace("surge_speed", "recent_thrust_port_N"),
     )
     short, long = (
-        Program(vessel.load(str(boats.written(tmp_path, name, text + more)))).composition
+        Program(vessel.load_vessel(str(boats.written(tmp_path, name, text + more)))).composition
         for name, text, more in (("short", plain, ""), ("long", also, "memory = 2.0\n"))
     )
-    assert (short.memory_size, long.memory_size) == (0, 1) and len(long.held) == len(short.held) + 1
-    assert "recall" not in short.source_text()
-    assert not set(Program(vessel.load("trial_boat")).composition.held) - set(BOAT.held)
+    assert (short.memory_size, long.memory_size) == (0, 1) and len(long.law_signals) == len(
+        short.law_signals
+    ) + 1
+    assert "update_signal_history" not in short.source_text()
+    assert not set(Program(vessel.load_vessel("trial_boat")).composition.law_signals) - set(
+        BOAT.law_signals
+    )
 
 
 @pytest.mark.parametrize(
@@ -173,7 +181,7 @@ def test_a_vessel_whose_laws_do_not_look_back_remembers_nothing_more(tmp_path: P
 )
 def test_words_of_the_past_that_do_not_exist_are_named(table: dict[str, Any], line: str) -> None:
     with pytest.raises(BadInput, match=line):
-        DescribedForce.from_settings(table).completed(BOAT)
+        DescribedForce.from_settings(table).with_all_parameters(BOAT)
 
 
 def test_a_law_stands_behind_the_drives_by_which_signals_have_their_places(tmp_path: Path) -> None:
@@ -182,7 +190,7 @@ def test_a_law_stands_behind_the_drives_by_which_signals_have_their_places(tmp_p
     with pytest.raises(
         BadInput, match="described_force stands before an effect by which a channel acts"
     ):
-        vessel.load(
+        vessel.load_vessel(
             str(boats.written(tmp_path, "early", boats.PLANAR[:last] + law + boats.PLANAR[last:]))
         )
 
@@ -222,7 +230,7 @@ def test_the_quick_weighing_recalls_what_the_filter_does() -> None:
     number = next(i for i, e in enumerate(program.effects) if e.name == "described_1")
     acting = actuator_states(problem.recordings[0], ("described_1",), problem.recordings[0].values)
     np.testing.assert_allclose(
-        way.size(term), acting[:, program.composition.own(number)], atol=1e-9
+        way.size(term), acting[:, program.composition.history_place(number)], atol=1e-9
     )
     assert {
         t.memory for t in neighbours(term, problem.recordings, 0.5, problem.config.describe)

@@ -18,21 +18,21 @@ from boatsim.physics import content, vessel
 from boatsim.physics.base import (
     AXES,
     Array,
-    Channel,
-    Course,
+    ChannelEffect,
+    CoefficientRelease,
     Effect,
-    Flow,
     Force,
     Inertia,
     Motion,
+    RandomForce,
     Reaction,
-    Release,
-    Unsteady,
+    SignalSegment,
+    WaterFlow,
     Wrench,
-    mean_of,
     motion,
+    segment_mean,
 )
-from boatsim.physics.compose import kinds
+from boatsim.physics.compose import effect_kinds
 from boatsim.physics.effects.added_mass import AddedMass, ShallowWater
 from boatsim.physics.effects.cross_flow_drag import CrossFlowDrag
 from boatsim.physics.effects.current import Current
@@ -57,7 +57,7 @@ from boatsim.physics.effects.wind import Wind
 from boatsim.physics.program import Program
 
 SHELF: dict[str, type[Effect]] = {
-    name: content.load_class("effect", name) for name in content.names("effect")
+    name: content.load_class("effect", name) for name in content.library_names("effect")
 }
 DESCRIBED = {
     n for n, e in SHELF.items() if e.described
@@ -68,10 +68,10 @@ RANDOM = {
 FORCES = [
     n
     for n, e in SHELF.items()
-    if issubclass(e, Force) and not issubclass(e, Unsteady) and n not in RANDOM
+    if issubclass(e, Force) and not issubclass(e, RandomForce) and n not in RANDOM
 ]
-CHANNELS = [n for n, e in SHELF.items() if issubclass(e, Channel)]
-FLOWS = [n for n, e in SHELF.items() if issubclass(e, Flow)]
+CHANNELS = [n for n, e in SHELF.items() if issubclass(e, ChannelEffect)]
+FLOWS = [n for n, e in SHELF.items() if issubclass(e, WaterFlow)]
 REACTIONS = [n for n, e in SHELF.items() if issubclass(e, Reaction)]
 INERTIAS = [n for n, e in SHELF.items() if issubclass(e, Inertia)]
 SUSPECTS = [
@@ -203,7 +203,9 @@ def mirrored(effect: Any) -> Any:
     for name in kind.params():
         steers = swapped(name) != name and getattr(kind, "acts_on", "") == "angle"
         turns = (
-            steers or name in WALLS or not TO_STARBOARD.isdisjoint({name, f"{kind.idea()}.{name}"})
+            steers
+            or name in WALLS
+            or not TO_STARBOARD.isdisjoint({name, f"{kind.type_name()}.{name}"})
         )
         image[swapped(name)] = (-1.0 if turns else 1.0) * getattr(effect, name)
     return replace(effect, **image)
@@ -211,9 +213,9 @@ def mirrored(effect: Any) -> Any:
 
 def on_a_vessel(effect: Effect) -> Any:
     """The effect on the first vessel that can take it."""
-    for name in content.names("vessel"):
+    for name in content.library_names("vessel"):
         try:
-            return effect.completed(vessel.load(name))
+            return effect.with_all_parameters(vessel.load_vessel(name))
         except BadInput:
             continue
     raise AssertionError(f"no vessel can take {effect.name}")
@@ -221,11 +223,15 @@ def on_a_vessel(effect: Effect) -> Any:
 
 def courses(
     effect: Any, commands: list[float], dt: float, side: float = 0.0, source: float = 0.0
-) -> list[Course]:
+) -> list[SignalSegment]:
     """What a channel makes of commands held for dt [s] each, from a memory at zero."""
     memory, values = np.zeros(max(type(effect).slots, 1)), effect.values()
     return [
-        Course(*type(effect).channel(Course(x, x, x), side, source, memory, 0, dt, values))
+        SignalSegment(
+            *type(effect).transform_signal(
+                SignalSegment(x, x, x), side, source, memory, 0, dt, values
+            )
+        )
         for x in commands
     ]
 
@@ -234,7 +240,7 @@ def stepped(
     effect: Any, commands: list[float], dt: float, side: float = 0.0, source: float = 0.0
 ) -> list[float]:
     """The same as means over each step."""
-    return [mean_of(x) for x in courses(effect, commands, dt, side, source)]
+    return [segment_mean(x) for x in courses(effect, commands, dt, side, source)]
 
 
 # Laws of the whole shelf
@@ -335,8 +341,8 @@ def test_mirror_image_of_a_command_gives_the_mirror_image_of_the_signal(
 @pytest.mark.parametrize("name", FLOWS)
 def test_mirror_image_of_a_flow(name: str) -> None:
     effect = drawn(SHELF[name], 0)
-    north, east = type(effect).flow(effect.values())
-    assert type(effect).flow(mirrored(effect).values()) == pytest.approx((north, -east))
+    north, east = type(effect).water_velocity(effect.values())
+    assert type(effect).water_velocity(mirrored(effect).values()) == pytest.approx((north, -east))
 
 
 @pytest.mark.parametrize("name", INERTIAS)
@@ -368,43 +374,45 @@ def test_coriolis_force_of_an_inertia_does_no_work(name: str, seed: int) -> None
 def test_a_suspect_whose_fitted_parameters_are_absent_is_not_there(name: str, seed: int) -> None:
     kind = SHELF[name]
     effect = on_a_vessel(effect_at_zero(kind, {"walls_m": [-4.0, 4.0, -3.0, 3.0]}))
-    if isinstance(effect, Release):
-        boat = next(b for b in map(vessel.load, content.names("vessel")) if effect.changes(b))
-        assert boat.composed_with(effect) == boat
+    if isinstance(effect, CoefficientRelease):
+        boat = next(
+            b for b in map(vessel.load_vessel, content.library_names("vessel")) if effect.changes(b)
+        )
+        assert boat.with_completed_effect(effect) == boat
     moving = motion(current=(0.0, 0.0), **drawn_motion(seed))
     if isinstance(effect, Force):
         assert effect.wrench(moving, *arguments(kind, seed)) == pytest.approx(Wrench(), abs=1e-15)
     if isinstance(effect, Reaction):
         assert type(effect).reaction(moving, OTHERS, effect.values()) == Wrench()
-    if isinstance(effect, Flow):
-        assert type(effect).flow(effect.values()) == (0.0, 0.0)
+    if isinstance(effect, WaterFlow):
+        assert type(effect).water_velocity(effect.values()) == (0.0, 0.0)
     if isinstance(effect, Inertia):
         assert not effect.matrix().any()
-    if isinstance(effect, Channel):
+    if isinstance(effect, ChannelEffect):
         commands = np.random.default_rng(seed).uniform(-1.0, 1.0, 8).tolist()
-        assert courses(effect, commands, 0.05, 1.0) == [Course(x, x, x) for x in commands]
+        assert courses(effect, commands, 0.05, 1.0) == [SignalSegment(x, x, x) for x in commands]
 
 
 @pytest.mark.parametrize("name", SHELF)
 def test_an_effect_says_what_it_is(name: str) -> None:
     kind = SHELF[name]
-    assert kind.idea() == name
+    assert kind.type_name() == name
     assert kind.words and kind.shown_by and not kind.words.endswith(".")
     assert kind.kind in ("physics", "measurement")
     assert inspect.getdoc(sys.modules[kind.__module__]) and "__doc__" in vars(kind) and kind.__doc__
-    assert issubclass(kind, (*kinds(), Release))
+    assert issubclass(kind, (*effect_kinds(), CoefficientRelease))
 
 
 @pytest.mark.parametrize("name", SHELF)
 def test_parameters_lie_inside_their_bounds_and_say_what_they_are(name: str) -> None:
     kind = SHELF[name]
     for key, about in kind.params().items():
-        assert not kind().stated(key) or about.low <= getattr(kind(), key) <= about.high, key
+        assert not kind().has_value(key) or about.low <= getattr(kind(), key) <= about.high, key
         assert about.words, key
         assert set(re.findall("[A-Za-z]+", about.unit)) <= SI, key
         assert about.axis in ("", *AXES), key
         if about.fit:
-            assert about.spread > 0 and about.low <= about.absent <= about.high, key
+            assert about.spread > 0 and about.low <= about.inactive_value <= about.high, key
     for start in kind.starts:
         kind(**start)
 
@@ -482,10 +490,10 @@ def test_surge_drag() -> None:
 
 
 def test_damping_error_multiplies_the_vessels_own_damping() -> None:
-    boat = vessel.load("trial_boat")
+    boat = vessel.load_vessel("trial_boat")
     own, m = boat.effect("linear_damping"), motion(u=0.3, v=-0.2, r=0.5)
     assert isinstance(own, LinearDamping)
-    off = boat.composed_with(
+    off = boat.with_completed_effect(
         DampingError(surge_factor=1.4, sway_factor=0.7, yaw_factor=2.0)
     ).effect("linear_damping")
     assert isinstance(off, LinearDamping)
@@ -501,8 +509,8 @@ def test_righting_arm_rests_at_its_list() -> None:
 
 
 def test_righting_arm_stiffening_bends_the_vessels_own_curve() -> None:
-    boat = vessel.load("kvlcc2_roll")
-    bent = boat.composed_with(RightingArmStiffening(cubic=-2.0)).effect("righting_arm")
+    boat = vessel.load_vessel("kvlcc2_roll")
+    bent = boat.with_completed_effect(RightingArmStiffening(cubic=-2.0)).effect("righting_arm")
     assert isinstance(bent, RightingArm)
     assert bent.wrench(motion(phi=0.3)).K == pytest.approx(-822.3 * (0.3 - 2.0 * 0.3**3))
 
@@ -518,8 +526,8 @@ def test_righting_arm_stiffening_bends_the_vessels_own_curve() -> None:
 def test_an_effect_that_changes_another_says_which_one_is_missing(
     kind: type[Effect], boat: str
 ) -> None:
-    with pytest.raises(BadInput, match=f"{boat}: {kind.idea()} needs a vessel with"):
-        kind().completed(vessel.load(boat))
+    with pytest.raises(BadInput, match=f"{boat}: {kind.type_name()} needs a vessel with"):
+        kind().with_all_parameters(vessel.load_vessel(boat))
 
 
 # Water
@@ -550,7 +558,7 @@ def test_coriolis_force_is_the_published_matrix() -> None:
 
 
 def test_a_current_moves_the_water_and_pushes_a_boat_only_through_it() -> None:
-    assert Current.flow(Current(north=0.3, east=-0.1).values()) == (0.3, -0.1)
+    assert Current.water_velocity(Current(north=0.3, east=-0.1).values()) == (0.3, -0.1)
     drifting = motion(
         current=(0.3, -0.1),
         psi=0.7,
@@ -562,10 +570,10 @@ def test_a_current_moves_the_water_and_pushes_a_boat_only_through_it() -> None:
 
 @pytest.mark.parametrize("factor", [1.0, 1.5, 3.0])
 def test_shallow_water_multiplies_sway_and_yaw(factor: float) -> None:
-    boat, m = vessel.load("joystick_boat"), motion(u=0.3, v=-0.2, r=0.5)
+    boat, m = vessel.load_vessel("joystick_boat"), motion(u=0.3, v=-0.2, r=0.5)
     mass, drag = boat.effect("added_mass"), boat.effect("cross_flow_drag")
     assert isinstance(mass, AddedMass) and isinstance(drag, CrossFlowDrag)
-    shallow = boat.composed_with(ShallowWater(factor=factor))
+    shallow = boat.with_completed_effect(ShallowWater(factor=factor))
     deeper, more = shallow.effect("added_mass"), shallow.effect("cross_flow_drag")
     assert isinstance(deeper, AddedMass) and isinstance(more, CrossFlowDrag)
     assert deeper.matrix()[1:, 1:] == pytest.approx(factor * mass.matrix()[1:, 1:])
@@ -575,7 +583,7 @@ def test_shallow_water_multiplies_sway_and_yaw(factor: float) -> None:
 
 
 def test_cross_flow_drag_takes_length_and_draught_of_its_vessel() -> None:
-    boat = vessel.load("joystick_boat", ["heavy"])
+    boat = vessel.load_vessel("joystick_boat", ["heavy"])
     assert (own := boat.effect("cross_flow_drag")) is not None
     assert own.values().length == 1.25 and own.values().draught == 0.065
 
@@ -654,7 +662,7 @@ def test_imbalance_and_gain_error() -> None:
     assert [stepped(uneven, [2.0], 0.02, side)[0] for side in (-1.0, 1.0)] == pytest.approx(
         [2.2, 1.8]
     )
-    gained = vessel.load("trial_boat").composed_with(ThrustGainError(factor=1.3))
+    gained = vessel.load_vessel("trial_boat").with_completed_effect(ThrustGainError(factor=1.3))
     assert [e.gain for e in gained.effects_of("thruster")] == [1.3, 1.3]  # type: ignore[attr-defined]
 
 
@@ -721,11 +729,11 @@ def test_servo_lag_alone_is_the_first_order_response() -> None:
 )
 def test_what_has_reached_its_command_asks_for_no_shorter_step(limit: Any) -> None:
     for x in np.random.default_rng(0).uniform(-0.8, 0.8, 1000).tolist():
-        assert mean_of(Course(x, x, x)) == x
+        assert segment_mean(SignalSegment(x, x, x)) == x
         memory, values = np.zeros(1), limit.values()
         for _ in range(2):  # the ramp in one step, then a rest
-            type(limit).channel(Course(x, x, x), 0.0, 0.0, memory, 0, 10.0, values)
-        assert type(limit).pause(x, memory, 0, values) == np.inf
+            type(limit).transform_signal(SignalSegment(x, x, x), 0.0, 0.0, memory, 0, 10.0, values)
+        assert type(limit).time_to_discontinuity(x, memory, 0, values) == np.inf
 
 
 def actuated(boat: vessel.Vessel, commands: dict[str, float]) -> dict[str, float]:
@@ -734,7 +742,7 @@ def actuated(boat: vessel.Vessel, commands: dict[str, float]) -> dict[str, float
     act, memory = np.zeros(program.held_size), np.zeros(program.memory_size)
     values, on = program.values(), program.switches()
     for _ in range(3):
-        program.module.actuate_in_place(
+        program.module.advance_actuators(
             program.command_array(commands), memory, 1e4, values, on, act
         )
     return dict(zip(boat.actuators, act.tolist(), strict=False))
@@ -750,7 +758,7 @@ def test_maps_from_raw_commands_act_first_wherever_they_stand(tmp_path: Any, fir
     }
     pwm = "[channels]\npwm_port = { low = -255.0, high = 255.0 }"
     folder = boats.written(tmp_path, "ordered", boats.PLANAR.replace("[channels]", pwm))
-    boat = vessel.load(str(folder), extra=[{"use": name} | values[name] for name in order])
+    boat = vessel.load_vessel(str(folder), extra=[{"use": name} | values[name] for name in order])
     settled = actuated(
         boat, {"thrust_port_N": -1.0, "pwm_port": -150.0, "thrust_starboard_N": -1.0}
     )

@@ -48,7 +48,9 @@ swing = -0.1
 
 
 def with_anemometer(folder: Path, more: str = "") -> Vessel:
-    return vessel.load(str(boats.written(folder, "blown", boats.PLANAR + KNOWN + BLOWN + more)))
+    return vessel.load_vessel(
+        str(boats.written(folder, "blown", boats.PLANAR + KNOWN + BLOWN + more))
+    )
 
 
 def by_hand(speed: float, comes_from: float, psi: float, u: float, v: float) -> Array:
@@ -122,7 +124,7 @@ def test_nothing_that_acts_on_commands_acts_on_what_is_measured(boat: Vessel) ->
         *boat.angles,
     }
     everything = (*boat.effects, *library_for(boat).compiled)
-    assert not measured & {n for e in everything for n in boat.targets(e)}
+    assert not measured & {n for e in everything for n in boat.target_actuators(e)}
     assert not measured & {*driven_commands(boat), *handled(boat).steer, *handled(boat).ahead}
     assert not measured & {
         n for m in available_manoeuvres(boat, {}, 0.0, False) for level in m.levels for n in level
@@ -133,11 +135,11 @@ def test_a_reading_is_in_force_at_once_where_commands_are_late(boat: Vessel) -> 
     program = Program(boat)
     act, memory = np.zeros(program.held_size), np.zeros(program.memory_size)
     values, on = program.values(), program.switches()
-    program.module.settle(program.command_array({}), memory, values, on, act)
+    program.module.settle_actuators(program.command_array({}), memory, values, on, act)
     sent = program.command_array({"thrust_port_N": 50.0})
     sent[-2:] = 7.0, 2.0
-    program.module.actuate_in_place(sent, memory, 0.02, values, on, act)
-    held = dict(zip(boat.held, act.reshape(3, -1).T.tolist(), strict=True))
+    program.module.advance_actuators(sent, memory, 0.02, values, on, act)
+    held = dict(zip(boat.law_signals, act.reshape(3, -1).T.tolist(), strict=True))
     assert held["thrust_port_N"] == [0.0, 0.0, 0.0]
     assert held["wind_mps"] == [7.0] * 3 and held["wind_from_rad"] == [2.0] * 3
     assert held["cos_wind_from_rad"] == pytest.approx([cos(2.0)] * 3)
@@ -167,7 +169,7 @@ def test_a_wrong_binding_is_one_line(tmp_path: Path, more: str, line: str) -> No
 def test_a_channel_is_either_sent_or_measured(tmp_path: Path) -> None:
     text = boats.PLANAR + "\n[measured]\nthrust_port_N = {}\n"
     with pytest.raises(BadInput, match=r"thrust_port_N is in both \[channels\] and \[measured\]"):
-        vessel.load(str(boats.written(tmp_path, "twice", text)))
+        vessel.load_vessel(str(boats.written(tmp_path, "twice", text)))
 
 
 # ---- in a simulation
@@ -222,7 +224,8 @@ def test_an_environment_has_no_action_on_the_weather(tmp_path: Path) -> None:
 def read_back(folder: Path, columns: dict[str, Array]) -> tuple[Recording, Vessel]:
     t = 0.1 * np.arange(60)
     still = {
-        n: 0.0 * t for n in ("x_m", "y_m", "psi_rad", *vessel.load(str(folder / "blown/")).commands)
+        n: 0.0 * t
+        for n in ("x_m", "y_m", "psi_rad", *vessel.load_vessel(str(folder / "blown/")).commands)
     }
     file = folder / "log.csv"
     write_csv(Recording("log", t, still | columns), file)
@@ -276,7 +279,7 @@ def sailed(name: str, seed: int) -> Recording:
         poses.append(y[:3])
         y = solve_ivp(rates, (now, now + every), y, rtol=1e-8, atol=1e-10, args=(command,)).y[:, -1]
     seen = np.array(poses) + rng.normal(0.0, [0.003, 0.003, 0.01], (rows, 3))
-    names = ("x_m", "y_m", "psi_rad", *vessel.load("trial_boat").commands)
+    names = ("x_m", "y_m", "psi_rad", *vessel.load_vessel("trial_boat").commands)
     wind = np.array(
         [weather(start + now + 0.5 * every) for now in t]
     )  # a reading holds until the next
@@ -288,7 +291,7 @@ def sailed(name: str, seed: int) -> Recording:
 
 def trial_boat(folder: Path, known: bool) -> str:
     """The nominal boat of those runs, with its anemometer or without."""
-    text = (vessel.load("trial_boat").file).read_text(encoding="utf-8")
+    text = (vessel.load_vessel("trial_boat").file).read_text(encoding="utf-8")
     text = text.replace("walls_m = [-4.0, 4.0, -3.0, 3.0], ", "").split("  # the tank")[0]
     areas = BLOWN.replace("0.3", "0.03").replace("0.8", "0.08")
     return str(boats.written(folder, "blown", text + "\n" + (KNOWN + areas if known else "")))

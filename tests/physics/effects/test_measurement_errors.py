@@ -14,7 +14,7 @@ from scipy import signal
 from scipy.interpolate import CubicSpline
 
 from boatsim.diagnosis import pipeline
-from boatsim.physics.base import Shown, motion
+from boatsim.physics.base import MeasuredMotion, motion
 from boatsim.physics.effects.camera_scale import CameraScale
 from boatsim.physics.effects.heading_deviation import HeadingDeviation, HeadingOffset
 from boatsim.physics.effects.late_fixes import LateFixes
@@ -22,16 +22,16 @@ from boatsim.physics.effects.position_frame_error import PositionFrameError
 from boatsim.physics.effects.wave_forcing import WaveForcing, law
 from boatsim.recordings import table as recording
 
-TRUE = Shown(
+TRUE = MeasuredMotion(
     x=1.2, y=-0.7, z=0.0, phi=0.1, theta=0.0, psi=0.8, u=0.5, v=-0.2, w=0.0, p=0.0, q=0.0, r=0.3
 )
 
 
-def shown(effect: Any, m: Shown) -> Shown:
-    return Shown(*type(effect).shown(m, effect.values()))
+def shown(effect: Any, m: MeasuredMotion) -> MeasuredMotion:
+    return MeasuredMotion(*type(effect).apply_measurement_error(m, effect.values()))
 
 
-def north_east(m: Shown) -> tuple[float, float]:
+def north_east(m: MeasuredMotion) -> tuple[float, float]:
     """Velocity over ground that the shown heading and body speeds stand for."""
     return m.u * cos(m.psi) - m.v * sin(m.psi), m.u * sin(m.psi) + m.v * cos(m.psi)
 
@@ -47,7 +47,7 @@ def test_a_wrong_heading_leaves_the_velocity_over_ground_as_it_is(effect: Any) -
     "effect", [HeadingDeviation(cos=0.1, sin=-0.2), PositionFrameError(forward=0.3, starboard=0.1)]
 )
 def test_shown_rates_are_the_derivatives_of_the_shown_pose(effect: Any) -> None:
-    def after(dt: float) -> Shown:
+    def after(dt: float) -> MeasuredMotion:
         """The pose a moment later on a circle."""
         psi = TRUE.psi + TRUE.r * dt
         rate = north_east(TRUE._replace(psi=0.5 * (psi + TRUE.psi)))

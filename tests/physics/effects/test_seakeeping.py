@@ -16,7 +16,7 @@ from boatsim.physics import vessel
 from boatsim.physics.base import AXES, Array, Wrench, motion
 from boatsim.physics.effects.bilge_keels import BilgeKeels
 from boatsim.physics.effects.filtered_sea import FilteredSea
-from boatsim.physics.effects.irregular_sea import IrregularSea, sections
+from boatsim.physics.effects.irregular_sea import IrregularSea, wave_slope_integrals
 from boatsim.physics.effects.linear_hull import LinearHull
 from boatsim.physics.effects.push import Push
 from boatsim.physics.effects.roll_damping import RollDamping
@@ -24,7 +24,7 @@ from boatsim.physics.effects.rudder import Rudder, RudderStall
 from boatsim.physics.effects.speed_hold import SpeedHold
 from boatsim.physics.effects.wave_forcing import WaveForcing
 from boatsim.physics.effects.yaw_rate_waves import YawRateWaves
-from boatsim.physics.particulars import spheroid
+from boatsim.physics.particulars import spheroid_added_mass
 from boatsim.recordings.table import Recording
 
 G, RHO = 9.81, 1025.0
@@ -34,15 +34,15 @@ SEEDS = 4000  # the error of an rms over them is 1.1 %
 
 def sea(**more: float) -> IrregularSea:
     """A sea on Eastward Ho, condition 1."""
-    return IrregularSea(significant_height=1.0, **more).completed(
-        vessel.load("eastward_ho", ["condition_1"])
+    return IrregularSea(significant_height=1.0, **more).with_all_parameters(
+        vessel.load_vessel("eastward_ho", ["condition_1"])
     )
 
 
 def ensemble(effect: Any, t: float = 0.0) -> Array:
     """(SEEDS, 6) wrenches at one time, over `AXES`."""
     law, m = type(effect).law, motion(t=t)
-    return np.array([law(m, effect.seeded(seed).values()) for seed in range(SEEDS)])
+    return np.array([law(m, effect.with_seed(seed).values()) for seed in range(SEEDS)])
 
 
 # ---- waves
@@ -53,7 +53,7 @@ def ensemble(effect: Any, t: float = 0.0) -> Array:
 def test_section_integrals(s: float, taper: float) -> None:
     even = quad(lambda x: (1 - taper * x * x) * cos(s * x), -1, 1)[0]
     odd = quad(lambda x: (1 - taper * x * x) * x * sin(s * x), -1, 1)[0]
-    assert sections(s, taper) == pytest.approx((even, odd), rel=1e-8, abs=1e-12)
+    assert wave_slope_integrals(s, taper) == pytest.approx((even, odd), rel=1e-8, abs=1e-12)
 
 
 @pytest.mark.parametrize(("height", "period", "wanted"), [(0.88, 7.5, 2.09), (1.88, 8.8, 3.48)])
@@ -92,7 +92,7 @@ def test_accelerations_that_the_thesis_seas_give(
 ) -> None:
     """Rms of yaw, sway and direct roll [deg/s^2]; in the beam sea the height is a hundredth of the
     resonant length."""
-    boat = vessel.load(name, [f"condition_{condition}"])
+    boat = vessel.load_vessel(name, [f"condition_{condition}"])
     beam = encounter == 90
     own = IrregularSea(
         significant_height=height or 0.01 * G * period**2 / (2 * pi),
@@ -100,7 +100,7 @@ def test_accelerations_that_the_thesis_seas_give(
         toward=radians(encounter),
         flat=float(beam),
         course_kept=1.0,
-    ).completed(boat)
+    ).with_all_parameters(boat)
     w, water, body = ensemble(own), boat.effect("added_mass"), boat.body
     direct = w[:, ROLL] - own.arm * w[:, SWAY]
     mass = (body.yaw_inertia + water.yaw, body.mass + water.sway, body.roll_inertia + water.roll)  # type: ignore[union-attr]
@@ -160,16 +160,16 @@ def test_one_wave_has_the_frequency_of_encounter_and_the_force_of_the_published_
 def test_a_calm_sea_is_nothing_and_a_seed_is_another_course_of_the_same_sea() -> None:
     m, waves = motion(t=3.0), sea(toward=1.0)
     assert replace(waves, significant_height=0.0).wrench(m) == Wrench()
-    assert waves.seeded(0) == waves
-    assert waves.seeded(1).wrench(m) != pytest.approx(waves.wrench(m))
-    assert waves.seeded(1).wrench(m) == replace(waves, realisation=2.0).wrench(m)
+    assert waves.with_seed(0) == waves
+    assert waves.with_seed(1).wrench(m) != pytest.approx(waves.wrench(m))
+    assert waves.with_seed(1).wrench(m) == replace(waves, realisation=2.0).wrench(m)
 
 
 def test_sea_needs_no_particular_vessel() -> None:
-    boat = vessel.load("joystick_boat")
-    small = IrregularSea(significant_height=0.02, modal_period=1.0, toward=1.0, cut=12.0).completed(
-        boat
-    )
+    boat = vessel.load_vessel("joystick_boat")
+    small = IrregularSea(
+        significant_height=0.02, modal_period=1.0, toward=1.0, cut=12.0
+    ).with_all_parameters(boat)
     assert small.wrench(motion(t=1.0)).K == 0.0 and small.wrench(motion(t=1.0)).Y != 0.0
 
 
@@ -207,14 +207,14 @@ def test_other_seeds_are_other_courses_of_the_noise_and_still_water_stays_still(
 
     def course(seed: int) -> Array:
         """Yaw moment in time."""
-        law, values = type(noise).law, noise.seeded(seed).values()
+        law, values = type(noise).law, noise.with_seed(seed).values()
         return np.array([law(motion(t=float(x)), values).N for x in t])
 
     first, second = course(1), course(2)
     assert (first == course(1)).all()
     assert abs(np.corrcoef(first, second)[0, 1]) < 0.1  # the error over 4000 s is 0.04
-    assert noise.seeded(10**12).realisation <= 1e9  # any seed will do
-    assert replace(noise, realisation=0.0).seeded(3).wrench(motion(t=3.0)) == Wrench()
+    assert noise.with_seed(10**12).realisation <= 1e9  # any seed will do
+    assert replace(noise, realisation=0.0).with_seed(3).wrench(motion(t=3.0)) == Wrench()
 
 
 # ---- roll damping
@@ -237,20 +237,20 @@ def test_bilge_keels_take_the_energy_of_the_published_equivalent_damping() -> No
 
 
 def test_bilge_keels_take_size_and_frequency_of_their_vessel() -> None:
-    fitted = BilgeKeels(breadth=0.02).completed(vessel.load("martin_tank_model"))
+    fitted = BilgeKeels(breadth=0.02).with_all_parameters(vessel.load_vessel("martin_tank_model"))
     assert (fitted.length, fitted.arm) == pytest.approx((0.3 * 1.805, 0.8 * hypot(0.27, 0.22)))
     assert fitted.frequency == pytest.approx(2 * pi / 1.49, rel=1e-3)
 
 
 def test_roll_damping_is_a_share_of_the_critical_one() -> None:
-    boat = vessel.load("martin_tank_model")
+    boat = vessel.load_vessel("martin_tank_model")
     critical = 2 * sqrt(118.56 * (5.556 + 1.1112))
-    share = RollDamping(at_rest=0.03).completed(boat)
+    share = RollDamping(at_rest=0.03).with_all_parameters(boat)
     assert share.wrench(motion(p=0.4)).K == pytest.approx(-0.03 * critical * 0.4)
 
 
 def test_the_tank_model_has_the_printed_period_and_the_computed_damping() -> None:
-    boat = vessel.load("martin_tank_model")
+    boat = vessel.load_vessel("martin_tank_model")
     arm, water, drag = (boat.effect(n) for n in ("righting_arm", "added_mass", "linear_damping"))
     inertia = boat.body.roll_inertia + water.roll  # type: ignore[union-attr]
     assert 2 * pi * sqrt(inertia / arm.stiffness) == pytest.approx(1.49, abs=1e-3)  # type: ignore[union-attr]
@@ -262,15 +262,15 @@ def test_the_tank_model_has_the_printed_period_and_the_computed_damping() -> Non
 
 
 def test_a_blade_pushes_at_its_place_and_a_little_more_than_alone() -> None:
-    boat = vessel.load("eastward_ho", ["condition_3"])
-    blade = Rudder(area=2.0, aspect=1.5, inflow=4.0, at=-10.0, below=2.0).completed(boat)
+    boat = vessel.load_vessel("eastward_ho", ["condition_3"])
+    blade = Rudder(area=2.0, aspect=1.5, inflow=4.0, at=-10.0, below=2.0).with_all_parameters(boat)
     alone = 0.5 * RHO * 6.13 * 1.5 / 3.75 * 2.0 * 16.0
     force, arm = blade.wrench(motion(), angle=0.1), boat.effect("linear_hull").arm  # type: ignore[union-attr]
     assert -force.Y == pytest.approx(0.1 * alone * (1 + 0.627 * 0.514 - 0.153))
     assert force.N == pytest.approx(-10.0 * force.Y) and force.K == pytest.approx(
         (arm - 2.0) * force.Y
     )
-    given = Rudder(sway=3.0, yaw=-4.0, roll=5.0).completed(boat)
+    given = Rudder(sway=3.0, yaw=-4.0, roll=5.0).with_all_parameters(boat)
     assert given.wrench(motion(), angle=0.5) == Wrench(Y=1.5, K=2.5, N=-2.0)
 
 
@@ -280,19 +280,19 @@ def test_a_blade_pushes_at_its_place_and_a_little_more_than_alone() -> None:
 )
 def test_what_a_vessel_lacks_for_an_effect_is_said(effect: Any, missing: str) -> None:
     with pytest.raises(BadInput, match=f"kvlcc2: {effect.name} needs a vessel with {missing}"):
-        effect.completed(vessel.load("kvlcc2"))
+        effect.with_all_parameters(vessel.load_vessel("kvlcc2"))
 
 
 def test_a_hull_too_short_for_a_spheroid_is_refused() -> None:
     with pytest.raises(BadInput, match="length = 2 m; allowed is more than twice the draught, 3 m"):
-        spheroid(2.0, 1.5)
+        spheroid_added_mass(2.0, 1.5)
 
 
 @pytest.mark.parametrize("delta", [-0.6, -0.2, 0.3, 0.6])
 def test_a_stalled_rudder_gives_what_it_gave_at_the_angle_of_stall(delta: float) -> None:
-    boat = vessel.load("eastward_ho")
+    boat = vessel.load_vessel("eastward_ho")
     own, stalling = (
-        b.effect("rudder") for b in (boat, boat.composed_with(RudderStall(angle=0.35)))
+        b.effect("rudder") for b in (boat, boat.with_completed_effect(RudderStall(angle=0.35)))
     )
     assert isinstance(own, Rudder) and isinstance(stalling, Rudder)
     stalled = min(max(delta, -0.35), 0.35)

@@ -17,7 +17,7 @@ from boatsim.diagnosis import loading, pipeline
 from boatsim.diagnosis.command_range import command_channels
 from boatsim.errors import BadInput
 from boatsim.physics import particulars, vessel
-from boatsim.physics.base import Array, Course, Effect, Wrench, mean_of, motion
+from boatsim.physics.base import Array, Effect, SignalSegment, Wrench, motion, segment_mean
 from boatsim.physics.effects.added_mass import AddedMass
 from boatsim.physics.effects.approach_balance import ApproachBalance
 from boatsim.physics.effects.damping import LinearDamping
@@ -36,13 +36,13 @@ from boatsim.physics.effects.thruster import Thruster
 from boatsim.recordings import table as recording
 from boatsim.recordings.table import Notes, Recording
 
-SHIP = vessel.load("kvlcc2")
+SHIP = vessel.load_vessel("kvlcc2")
 TURN, HELM = {"u": 0.8, "v": 0.15, "r": -0.06}, 0.4  # of the 7 m model, to port
 
 
 def test_a_stall_is_sought_among_rudder_angles_and_not_among_shaft_rates() -> None:
     """An MMG rudder is told angle and shaft; the threshold is an angle."""
-    assert command_channels(vessel.load("kvlcc2_mmg"), RudderStall()) == ("delta_rad",)
+    assert command_channels(vessel.load_vessel("kvlcc2_mmg"), RudderStall()) == ("delta_rad",)
 
 
 def signals(kind: type[Effect], **given: float) -> Any:
@@ -77,9 +77,9 @@ def test_speed_scaled_hull_and_rudder_are_the_nondimensional_form() -> None:
         SHIP.effect("rudder"),
     )
     assert isinstance(rudder, Rudder)
-    whole = SpeedScaledSteering(hull_sway=1, hull_yaw=1, rudder_sway=1, rudder_yaw=1).completed(
-        SHIP
-    )
+    whole = SpeedScaledSteering(
+        hull_sway=1, hull_yaw=1, rudder_sway=1, rudder_yaw=1
+    ).with_all_parameters(SHIP)
     m, helm = motion(**TURN), signals(Rudder, angle=HELM)
     ratio = m.u / 1.179
     of_hull, of_rudder = np.array(hull.wrench(m)), np.array(rudder.wrench(m, helm))
@@ -88,17 +88,17 @@ def test_speed_scaled_hull_and_rudder_are_the_nondimensional_form() -> None:
 
 
 def test_speed_scaling_vanishes_at_the_approach_speed_whatever_its_shares() -> None:
-    shares = SpeedScaledSteering(hull_sway=2, hull_yaw=-1, rudder_sway=0.5, rudder_yaw=3).completed(
-        SHIP
-    )
+    shares = SpeedScaledSteering(
+        hull_sway=2, hull_yaw=-1, rudder_sway=0.5, rudder_yaw=3
+    ).with_all_parameters(SHIP)
     at_it = shares.wrench(motion(**{**TURN, "u": 1.179}), signals(SpeedScaledSteering, angle=HELM))
     assert at_it == pytest.approx(Wrench(), abs=1e-12)
 
 
 def test_astern_the_water_meets_the_rudder_from_behind_and_the_hull_still_damps() -> None:
-    scaled = SpeedScaledSteering(hull_sway=1, hull_yaw=1, rudder_sway=1, rudder_yaw=1).completed(
-        SHIP
-    )
+    scaled = SpeedScaledSteering(
+        hull_sway=1, hull_yaw=1, rudder_sway=1, rudder_yaw=1
+    ).with_all_parameters(SHIP)
     hull, rudder = SHIP.effect("linear_damping"), SHIP.effect("rudder")
     assert isinstance(hull, LinearDamping) and isinstance(rudder, Rudder)
 
@@ -121,7 +121,7 @@ def test_a_race_adds_to_a_blade_what_momentum_theory_adds_to_the_square_of_its_i
     for u in (0.0, 0.7):
         faster = 8.0 * thrust / (pi * density * diameter**2)  # V_R^2 - u^2 [m^2/s^2] far behind
         slope = [
-            particulars.rudder_slope(area, aspect, sqrt(u * u + more), density)
+            particulars.rudder_force_slope(area, aspect, sqrt(u * u + more), density)
             for more in (0.0, faster)
         ]
         normal = (slope[1] - slope[0]) * sin(delta)
@@ -135,7 +135,7 @@ def test_a_race_adds_to_a_blade_what_momentum_theory_adds_to_the_square_of_its_i
 def test_a_propeller_that_backs_washes_no_rudder_and_a_race_takes_its_place_from_the_rudder() -> (
     None
 ):
-    race = RudderRace(normal_force_per_thrust=0.5).completed(SHIP)
+    race = RudderRace(normal_force_per_thrust=0.5).with_all_parameters(SHIP)
     rudder = SHIP.effect("rudder")
     assert isinstance(rudder, Rudder)
     assert not any(race.wrench(motion(u=0.5), signals(RudderRace, angle=0.4, thrust=-20.0)))
@@ -191,8 +191,10 @@ def test_rate_limit_takes_the_time_of_a_ramp_and_its_mean_is_exact() -> None:
     memory, fine = np.zeros(1), 2000
     angle = 0.0
     for x in commands:
-        mean = mean_of(
-            SteeringRateLimit.channel(Course(x, x, x), 0.0, 0.0, memory, 0, dt, limit.values())
+        mean = segment_mean(
+            SteeringRateLimit.transform_signal(
+                SignalSegment(x, x, x), 0.0, 0.0, memory, 0, dt, limit.values()
+            )
         )
         path = angle + np.sign(x - angle) * np.minimum(
             limit.rate * dt * np.arange(fine + 1) / fine, abs(x - angle)
@@ -205,7 +207,7 @@ def test_rate_limit_takes_the_time_of_a_ramp_and_its_mean_is_exact() -> None:
 
 def test_metacentric_height_changes_the_period_by_the_inverse_root() -> None:
     own = RightingArm(stiffness=822.3, list=0.01)
-    boat = replace(SHIP, effects=(own,)).composed_with(MetacentricHeightError(factor=0.64))
+    boat = replace(SHIP, effects=(own,)).with_completed_effect(MetacentricHeightError(factor=0.64))
     inertia, m = 135.4, motion(phi=0.11)
     period = [2 * pi * sqrt(inertia * 0.1 / -arm.wrench(m).K) for arm in (own, boat.effects[0])]
     assert period[1] / period[0] == pytest.approx(1.25)
@@ -233,8 +235,8 @@ def test_planing_lag_is_the_kappa_form(u: float, kappa: float) -> None:
 
 
 def test_revolutions_a_minute_add_to_those_a_second() -> None:
-    turning = ShaftRpm.channel(
-        Course(0.5, 0.5, 0.5), 0.0, 90.0, np.zeros(1), 0, 0.1, ShaftRpm().values()
+    turning = ShaftRpm.transform_signal(
+        SignalSegment(0.5, 0.5, 0.5), 0.0, 90.0, np.zeros(1), 0, 0.1, ShaftRpm().values()
     )
     assert turning == pytest.approx([2.0, 2.0, 2.0])
 
@@ -273,7 +275,7 @@ def test_kvlcc2_has_the_published_derivatives() -> None:
 
 
 def test_full_scale_kvlcc2_is_the_model_by_froudes_law() -> None:
-    full = vessel.load("kvlcc2_full_scale")
+    full = vessel.load_vessel("kvlcc2_full_scale")
     ratio = full.length / SHIP.length
     powers = {"N": (3, 1, -2), "kg": (3, 0, 0), "m": (0, 1, 0), "s": (0, 0, 1), "rad": (0, 0, 0)}
 

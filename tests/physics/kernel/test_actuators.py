@@ -9,13 +9,13 @@ import pytest
 
 from boatsim.errors import BadInput
 from boatsim.physics import vessel
-from boatsim.physics.base import Channel, Course, course, mean_of
+from boatsim.physics.base import ChannelEffect, SignalSegment, segment_mean, segment_with_mean
 from boatsim.physics.effects.command_delay import CommandDelay
 from boatsim.physics.effects.drive_map import DriveMap
 from boatsim.physics.effects.rate_limit import RateLimit
 from boatsim.physics.effects.servo import Servo
 from boatsim.physics.effects.steering_backlash import SteeringBacklash
-from boatsim.physics.kernel.records import Model
+from boatsim.physics.kernel.records import VesselNumbers
 from boatsim.physics.program import Program
 from boatsim.simulate.engine import Engine
 
@@ -35,10 +35,12 @@ def parts(effect: Any, command: float, memory: Any, seconds: float) -> list[floa
     for _ in range(round(seconds / STEP)):
         left = STEP
         while left > 1e-9:
-            dt = min(left, max(type(effect).pause.py_func(command, memory, 0, q), 1e-6))
+            dt = min(
+                left, max(type(effect).time_to_discontinuity.py_func(command, memory, 0, q), 1e-6)
+            )
             lengths.append(dt)
-            type(effect).channel.py_func(
-                Course(command, command, command), 0.0, 0.0, memory, 0, dt, q
+            type(effect).transform_signal.py_func(
+                SignalSegment(command, command, command), 0.0, 0.0, memory, 0, dt, q
             )
             left -= dt
             assert len(lengths) < 100, f"{effect.name} halts at {memory[:4]} under {command!r}"
@@ -46,7 +48,7 @@ def parts(effect: Any, command: float, memory: Any, seconds: float) -> list[floa
 
 
 @pytest.mark.parametrize("effect", EFFECTS, ids=lambda e: f"{e.name}_{getattr(e, 'lag', '')}")
-def test_an_actuator_that_has_arrived_asks_for_no_shorter_step(effect: Channel) -> None:
+def test_an_actuator_that_has_arrived_asks_for_no_shorter_step(effect: ChannelEffect) -> None:
     """Whatever the command: a last bit by which it were short of it would be a ramp for ever.
 
     A lag is followed.
@@ -62,36 +64,40 @@ def test_an_actuator_that_has_arrived_asks_for_no_shorter_step(effect: Channel) 
 
 
 @pytest.mark.parametrize("effect", EFFECTS[:2], ids=lambda e: e.name)
-def test_a_ramp_ends_on_its_command_to_the_last_bit(effect: Channel) -> None:
+def test_a_ramp_ends_on_its_command_to_the_last_bit(effect: ChannelEffect) -> None:
     memory = np.zeros(type(effect).slots)
     for command in np.random.default_rng(2).uniform(-0.785, 0.785, 300).tolist():
         parts(effect, command, memory, SETTLED)
         assert memory[0] == command
-        assert type(effect).pause.py_func(command, memory, 0, effect.values()) == inf  # type: ignore[attr-defined]
+        assert (
+            type(effect).time_to_discontinuity.py_func(command, memory, 0, effect.values()) == inf
+        )  # type: ignore[attr-defined]
 
 
 def test_a_signal_that_stands_still_is_its_own_mean_to_the_last_bit() -> None:
     for x in [0.174533, *np.random.default_rng(3).uniform(-300.0, 300.0, 1000).tolist()]:
-        assert mean_of.py_func(Course(x, x, x)) == x
-        assert course.py_func(x, x, x) == (x, x, x)
+        assert segment_mean.py_func(SignalSegment(x, x, x)) == x
+        assert segment_with_mean.py_func(x, x, x) == (x, x, x)
 
 
 def test_the_mean_of_a_course_is_the_one_it_was_made_with() -> None:
     for begin, mean, end in np.random.default_rng(4).uniform(-3.0, 3.0, (100, 3)).tolist():
-        assert mean_of.py_func(course.py_func(begin, mean, end)) == pytest.approx(mean, abs=1e-14)
+        assert segment_mean.py_func(segment_with_mean.py_func(begin, mean, end)) == pytest.approx(
+            mean, abs=1e-14
+        )
 
 
 def test_a_rate_limit_behind_a_lag_does_not_halt_the_run(monkeypatch: pytest.MonkeyPatch) -> None:
     """It ends no ramp while what it follows still moves: parts of a step that only ever halve would
     be thousands."""
-    boat = vessel.load("joystick_boat", extra=[{"use": "steering_rate_limit", "rate": 0.5}])
-    engine, parts, until_bend = Engine(boat, step=0.02), [], Engine(boat).code.until_bend
+    boat = vessel.load_vessel("joystick_boat", extra=[{"use": "steering_rate_limit", "rate": 0.5}])
+    engine, parts, substep_length = Engine(boat, step=0.02), [], Engine(boat).code.substep_length
 
     def counted(*given: Any) -> float:
-        parts.append(until_bend(*given))
+        parts.append(substep_length(*given))
         return float(parts[-1])
 
-    monkeypatch.setattr(engine.code, "until_bend", counted)
+    monkeypatch.setattr(engine.code, "substep_length", counted)
     engine.command({"steer_port_rad": 0.2})
     engine.advance(100)
     assert len(parts) <= 8 * 100
@@ -102,9 +108,9 @@ def test_a_rate_limit_behind_a_lag_does_not_halt_the_run(monkeypatch: pytest.Mon
 def test_a_delayed_command_acts_when_it_arrives_however_long_the_steps(delay: float) -> None:
     """A ramp and a delay in one channel, three channels that change at different times: no arrival
     is stepped over."""
-    program = Program(vessel.load("jet_ski", ["low_speed"]), candidates=(CommandDelay(),))
+    program = Program(vessel.load_vessel("jet_ski", ["low_speed"]), candidates=(CommandDelay(),))
     values, on = program.values(), program.switches(["command_delay"])
-    values[program.index("command_delay", "delay")] = delay
+    values[program.parameter_index("command_delay", "delay")] = delay
     rng, rows = np.random.default_rng(5), 100
     held = {"throttle": np.ones(rows), "jet_rad": np.repeat(rng.uniform(-0.2, 0.2, rows // 5), 5)}
     held["elevator_rad"] = np.repeat(rng.uniform(0.0, 0.9, rows // 4), 4)
@@ -112,10 +118,10 @@ def test_a_delayed_command_acts_when_it_arrives_however_long_the_steps(delay: fl
     code = program.module
     for substeps in (1, 20):
         memory, path = np.zeros(program.memory_size), np.zeros((rows + 1, 2 * code.NQ))
-        code.settle(commands[0], memory, values, on, np.zeros(3 * program.held_size))
+        code.settle_actuators(commands[0], memory, values, on, np.zeros(3 * program.held_size))
         code.rollout(
-            Model(np.array(program.body), values, on),
-            program.plant(np.zeros(2 * code.NQ), memory),
+            VesselNumbers(np.array(program.body), values, on),
+            program.vessel_state(np.zeros(2 * code.NQ), memory),
             commands,
             0.0,
             STEP / substeps,
@@ -139,8 +145,8 @@ def test_a_delay_of_a_ship_outlasts_commands_that_change_at_every_step() -> None
     )
     times = step * np.arange(1500)
     for given in np.sin(0.5 * times):
-        passed = CommandDelay.channel.py_func(
-            Course(given, given, given), 0.0, 0.0, memory, 0, step, late
+        passed = CommandDelay.transform_signal.py_func(
+            SignalSegment(given, given, given), 0.0, 0.0, memory, 0, step, late
         )
         shown.append(passed.middle)
     after = times > 6.5
@@ -166,8 +172,8 @@ def test_play_begins_where_it_is_said_to_hang_and_is_whole_from_then_on(
 
     def angle(command: float, seconds: float) -> float:
         return float(
-            SteeringBacklash.channel.py_func(
-                Course(*[command] * 3), 0.0, 0.0, memory, 0, seconds, q
+            SteeringBacklash.transform_signal.py_func(
+                SignalSegment(*[command] * 3), 0.0, 0.0, memory, 0, seconds, q
             ).end
         )
 

@@ -21,7 +21,7 @@ from pyarrow import parquet
 
 from boatsim.cli.importing import import_log
 from boatsim.errors import BadInput
-from boatsim.physics.vessel import load
+from boatsim.physics.vessel import load_vessel
 from boatsim.recordings.importing.convert import convert
 from boatsim.recordings.importing.log import known_suffixes, open_log
 from boatsim.recordings.importing.mapping import parse_map, read_map
@@ -204,7 +204,7 @@ def test_a_log_becomes_a_recording_that_can_be_read_and_knows_its_vessel(tmp_pat
     assert "RCOU.C1" in out and list(tmp_path.iterdir()) == [map]
     out, said = ran(log, run, map, None, None)
     assert "901 rows" in out and "refuse" not in said
-    found = read(run, load("otter").limits())
+    found = read(run, load_vessel("otter").limits())
     assert found.notes.vessel == "otter" and found.notes.facts["position_fix"] == "gnss"
     assert np.isnan(found["x_m"]).any() and np.isfinite(found["n_port_radps"]).all()
     again = tmp_path / "runs" / "again.csv"

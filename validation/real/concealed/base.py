@@ -10,9 +10,9 @@ from boatsim.diagnosis import pipeline
 from boatsim.diagnosis.candidates import base_name
 from boatsim.diagnosis.pipeline import Diagnosis
 from boatsim.diagnosis.report import patched_vessel
-from boatsim.physics.base import Release
+from boatsim.physics.base import CoefficientRelease
 from boatsim.physics.content import load_class
-from boatsim.physics.vessel import Vessel, load
+from boatsim.physics.vessel import Vessel, load_vessel
 from validation.real.common import by_name, effects_of, names_of, values_of
 from validation.real.concealed.alterations import Alteration, unaltered
 from validation.real.concealed.cases import Case, Study, removal_cases
@@ -60,7 +60,7 @@ class PatchedVesselStudy:
     @cached_property
     def vessel(self) -> Vessel:
         """The vessel of the cases."""
-        return load(str(self.file))
+        return load_vessel(str(self.file))
 
     @property
     def found(self) -> list[Cause]:
@@ -116,7 +116,7 @@ class PatchedVesselStudy:
             if f.effect == name and not f.relative:
                 settings[f.name] = fit.value(name, f.name)[0]
         effect = release.from_settings(settings)
-        assert isinstance(effect, Release)
+        assert isinstance(effect, CoefficientRelease)
         names = names_of(self.vessel.effects)
         for change in effect.changes(self.vessel):
             if change.how == "sets":

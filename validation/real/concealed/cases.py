@@ -264,7 +264,7 @@ def release_cases(vessel: Vessel) -> list[Case]:
     slow = Cause("metacentric_height_error", {"factor": slower**-2})
     moment = 0.0
     for effect in vessel.effects:
-        if type(effect).idea() == "steady_force":
+        if type(effect).type_name() == "steady_force":
             moment += effect_parameter(effect, "roll")
     reversed_roll: tuple[Cause, ...] = ()
     if moment:

@@ -267,7 +267,7 @@ def _parameters(fit: Fit, effect: Effect) -> dict[str, tuple[float, float, float
     for f in fit.free:
         if f.effect == effect.name and not f.relative:
             key = parameter_key(f.name, params[f.name].unit)
-            found[key] = (*fit.value(effect.name, f.name), params[f.name].absent)
+            found[key] = (*fit.value(effect.name, f.name), params[f.name].inactive_value)
     return found
 
 
