@@ -62,7 +62,7 @@ class SparseRegression:
         self.question, self.problem = question, question.problem
         late = []
         for n, e in question.entries.items():
-            if isinstance(e, Measurement) and type(e).late is not None:
+            if isinstance(e, Measurement) and type(e).motion_latency is not None:
                 late.append(n)
         self.entries = {n: e for n, e in question.entries.items() if n not in late}
         self.judge = Judge(plain, len(self.entries))
