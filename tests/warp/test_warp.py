@@ -40,7 +40,7 @@ def check(
     pauses: wp.array(dtype=T), force: wp.array2d(dtype=T),
 ):
     i = wp.tid()
-    X, Y, N = motion_forces(t[i], s[i], act[i], 0, p[i], on[i])
+    X, Y, N = motion_total_body_force(t[i], s[i], act[i], 0, p[i], on[i])
     force[i, 0] = X
     force[i, 1] = Y
     force[i, 2] = N
