@@ -57,7 +57,10 @@ def scaling_with_length() -> str:
     return scaling_column(
         "minutes",
         MINUTES,
-        [median_time(lambda n=n: compiled_engine.coast([0.0] * 6, COMMANDS, n)) for n in steps],
+        [
+            median_time(lambda n=n: compiled_engine.hold_commands([0.0] * 6, COMMANDS, n))
+            for n in steps
+        ],
         steps,
     )
 
@@ -83,7 +86,7 @@ def scaling_with_effects() -> str:
         sizes.append(own + extra)
         seconds.append(
             median_time(
-                lambda compiled_engine=compiled_engine: compiled_engine.coast(
+                lambda compiled_engine=compiled_engine: compiled_engine.hold_commands(
                     [0.0] * 6, COMMANDS, STEPS["entries"]
                 )
             )

@@ -86,7 +86,7 @@ def mujoco_stepper(made: Vessel, step: float) -> Advance:
     engine.reset(State(x=x, y=y, psi=psi, u=u, v=v, r=r), {})
 
     def advance(steps: int) -> Array:
-        engine.coast(steps)
+        engine.advance_without_actuators(steps)
         s = engine.state
         return np.array([s.x, s.y, s.psi, s.u, s.v, s.r])
 
@@ -99,7 +99,7 @@ def compiled_stepper(made: Vessel, step: float) -> Advance:
 
     def advance(steps: int) -> Array:
         nonlocal state
-        state = compiled_engine.coast(state.tolist(), {}, steps)
+        state = compiled_engine.hold_commands(state.tolist(), {}, steps)
         return state
 
     return advance

@@ -110,16 +110,16 @@ def measure_stepping() -> list[Figure]:
 
     def coast(name: str, steps: int) -> None:
         engines[name].reset(START, COMMANDS)
-        engines[name].coast(steps)
+        engines[name].advance_without_actuators(steps)
 
     variants = {
         "native": Variant("native", 40_000, lambda: coast("native", 40_000)),
         "floor": Variant("floor", 40_000, lambda: coast("floor", 40_000)),
         "python": Variant("python", 5_000, lambda: coast("python", 5_000)),
         "twin": Variant(
-            "twin", 1_000_000, lambda: compiled_engine.coast(start, COMMANDS, 1_000_000)
+            "twin", 1_000_000, lambda: compiled_engine.hold_commands(start, COMMANDS, 1_000_000)
         ),
-        "six": Variant("six", 300_000, lambda: six.coast([0.0] * 12, SHAFTS, 300_000)),
+        "six": Variant("six", 300_000, lambda: six.hold_commands([0.0] * 12, SHAFTS, 300_000)),
     }
     for variant in variants.values():
         variant.advance()  # the first call compiles
@@ -204,7 +204,7 @@ def write_hour_scenario(folder: Path) -> Path:
 def print_scenario_speeds(console: Console) -> None:
     """Print the real-time factor of each scenario, the better of two runs, slowest first."""
     found = []
-    for name in cases.matching("*"):
+    for name in cases.find_scenarios("*"):
         took = []
         for _ in range(2):  # the first compiles
             whole = scenario.load(name)

@@ -15,11 +15,11 @@ from typing import Any
 
 import numpy as np
 
-from boatsim.files import replacing
+from boatsim.files import replace_file
 from boatsim.physics.content import library_names
 from boatsim.physics.signals import STATE
 from boatsim.simulate import scenario
-from boatsim.simulate.baselines import TOLERANCE, digits, same
+from boatsim.simulate.baselines import TOLERANCE, round_to_nine_digits, values_agree
 from boatsim.simulate.evaluation import Metric, requested_metrics
 from boatsim.simulate.run import run
 
@@ -85,8 +85,8 @@ def values_to_store(
     kept = {}
     for name, n in found.items():
         kept[name] = {
-            "today": digits(n.value),
-            "at_reported": digits(n.at_reported),
+            "today": round_to_nine_digits(n.value),
+            "at_reported": round_to_nine_digits(n.at_reported),
             "published": n.published,
             "verdict": n.verdict,
             "unit": n.unit,
@@ -96,7 +96,7 @@ def values_to_store(
             default=0.0,
         )
         if n.value and moves > TOLERANCE * abs(n.value):
-            kept[name]["moves"] = digits(moves)
+            kept[name]["moves"] = round_to_nine_digits(moves)
     return kept
 
 
@@ -176,13 +176,13 @@ def _change_of_metric(
         return
     reach = REACH * max(old.get("moves", 0.0), new.get("moves", 0.0))
     for field in FIELDS:
-        if not same(old[field], new[field], reach):
+        if not values_agree(old[field], new[field], reach):
             change = f"{old[field]} -> {new[field]} {new['unit']}"
             yield f"{name} {norm}{FIELDS[field]}: {change} (paper: {new['published']})"
 
 
 def _write(path: Path, text: str) -> None:
-    with replacing(path) as temporary:
+    with replace_file(path) as temporary:
         temporary.write_text(text, encoding="utf-8")
 
 

@@ -25,7 +25,7 @@ from boatsim.physics.base import Array
 from boatsim.physics.vessel import Vessel
 from boatsim.simulate.batch import Batch as CoreBatch
 from boatsim.warp import Batch
-from boatsim.warp.runtime import device as known
+from boatsim.warp.runtime import find_device
 
 STEP, SECOND = 0.02, 50  # [s], steps in a second
 ROUNDS = 3
@@ -116,7 +116,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     )
     given = parser.parse_args(arguments)
     try:
-        found = known(given.device)
+        found = find_device(given.device)
         print(
             f"{found} ({found.name}), steps of {STEP:g} s"
             + ("" if given.agreement else f", {given.vessel}")

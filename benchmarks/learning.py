@@ -13,7 +13,7 @@ import numpy as np
 from dm_control.rl.control import Environment
 
 from boatsim.learn import registration
-from boatsim.learn.environment_options import play
+from boatsim.learn.environment_options import make_simulation
 from boatsim.simulate import env
 
 BEST_OF = 25
@@ -60,8 +60,8 @@ def error_of_coarse_step(name: str, step: float) -> float:
     """Return the largest distance [m] between 200 boats with a coarse and a fine integration step."""
     places = []
     for one in (0.005, step):
-        game = play(n=200, **{**registration.options_of(name), "step": one})
-        game.begin(np.arange(200, dtype=np.uint64), np.arange(200))
+        game = make_simulation(n=200, **{**registration.environment_arguments(name), "step": one})
+        game.begin_episodes(np.arange(200, dtype=np.uint64), np.arange(200))
         random = np.random.default_rng(1)  # equal actions for both steps
         for k in range(100):
             if k % 10 == 0:  # a new action every 2 s
@@ -90,20 +90,20 @@ def main() -> None:
     print(
         "| environment | control step, integration step | one boat | many together |\n| --- | --- | --- | --- |"
     )
-    for name in registration.ids():
+    for name in registration.environment_ids():
         print(
             f"| {name} | 0.2 s, 0.1 s | {steps_per_second_alone(name, 0.2, 0.1):,.0f} | {steps_per_second_of_batch(name, 0.2, 0.1):,.0f} |",
             flush=True,
         )
-    name = registration.ids()[0]
+    name = registration.environment_ids()[0]
     print(
         f"| {name} | 0.08 s, 0.02 s | {steps_per_second_alone(name, 0.08, 0.02):,.0f} | {steps_per_second_of_batch(name, 0.08, 0.02):,.0f} |"
     )
-    boat = registration.options_of(name)["vessel"]
+    boat = registration.environment_arguments(name)["vessel"]
     print(
         f"| dm_env, {boat} on MuJoCo | 0.08 s, 0.02 s | {steps_per_second_of_dm_env(env.load(f'{boat}/berth')):,.0f} | |"
     )
-    off = 1e3 * max(error_of_coarse_step(name, 0.1) for name in registration.ids())
+    off = 1e3 * max(error_of_coarse_step(name, 0.1) for name in registration.environment_ids())
     print(
         f"\nsteps of 0.1 s put a boat at most {off:.1f} mm elsewhere after 20 s of random actions than steps of 5 ms"
     )

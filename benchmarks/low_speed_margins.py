@@ -39,7 +39,7 @@ def margins(
 ) -> LoopMargins:
     """Return the margins for a craft with another input gain or time constant [s] than assumed."""
     craft = replace(of, damping=1.0 / time_constant) if time_constant else of
-    return loop_margins(craft.loop(gain), high=craft.highest)
+    return loop_margins(craft.open_loop_response(gain), high=craft.highest_frequency)
 
 
 def main() -> None:

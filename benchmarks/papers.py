@@ -29,7 +29,7 @@ from benchmarks import golden
 from boatsim.errors import BadInput
 from boatsim.files import read_toml
 from boatsim.simulate import scenario
-from boatsim.simulate.evaluation import MISSED, NO_TOLERANCE, REPRODUCED, within
+from boatsim.simulate.evaluation import MISSED, NO_TOLERANCE, REPRODUCED, within_tolerance
 
 HOME = Path(__file__).parents[1]
 OUT = HOME / "docs" / "papers.md"
@@ -154,7 +154,7 @@ def verdict_on(
         return MISSED
     if tolerance is None:
         return NO_TOLERANCE
-    if ours is not None and within(ours, published, tolerance):
+    if ours is not None and within_tolerance(ours, published, tolerance):
         return REPRODUCED
     return MISSED
 

@@ -192,9 +192,9 @@ def boatsim_runs(
 
     def on_mujoco() -> None:
         engine.reset(moving, commands)
-        engine.coast(steps)
+        engine.advance_without_actuators(steps)
 
-    return {"twin": lambda: compiled.coast(start, commands, steps), "engine": on_mujoco}
+    return {"twin": lambda: compiled.hold_commands(start, commands, steps), "engine": on_mujoco}
 
 
 PEERS: dict[str, Callable[[], Pair]] = {

@@ -18,7 +18,7 @@ from pathlib import Path
 
 from rerun.experimental import ViewerClient
 
-from boatsim.files import replacing
+from boatsim.files import replace_file
 from boatsim.recordings.readers.rrd import TIMELINE, last_time
 
 SOFTWARE = "/usr/share/vulkan/icd.d/lvp_icd*.json"  # Mesa's lavapipe
@@ -44,7 +44,7 @@ def screenshot(rrd: Path, png: Path, at: float | None = None, settle: float = 4.
             TIMELINE, duration=last_time(rrd) if at is None else at, play_state="paused"
         )
         time.sleep(settle)
-        with replacing(png) as temporary:
+        with replace_file(png) as temporary:
             temporary.write_bytes(viewer.take_screenshot())
 
 

@@ -21,12 +21,12 @@ from boatsim.physics import vessel as vessels
 from boatsim.physics.vessel import Body as Body
 from boatsim.physics.vessel import CommandChannel as CommandChannel
 from boatsim.physics.vessel import Vessel as Vessel
-from boatsim.progress import Report, silent
+from boatsim.progress import Report, ignore_progress
 from boatsim.recordings import table
 from boatsim.recordings.notes import notes_for
 from boatsim.recordings.table import Recording as Recording
 from boatsim.simulate.batch import Batch as Batch
-from boatsim.simulate.controllers import steered
+from boatsim.simulate.controllers import load_with_controller
 from boatsim.simulate.evaluation import Metric, all_metrics
 from boatsim.simulate.fleet import Fleet as Fleet
 from boatsim.simulate.run import run as simulate
@@ -36,12 +36,12 @@ from boatsim.simulate.scenario import Scenario as Scenario
 from boatsim.sweeps.axes import make_axis
 from boatsim.sweeps.designs import Design
 from boatsim.sweeps.execute import run_plan
-from boatsim.sweeps.indices import Index, indices
+from boatsim.sweeps.indices import Index, sensitivity_indices
 from boatsim.sweeps.keys import Value
 from boatsim.sweeps.plan import make_plan
 from boatsim.sweeps.results import Results
 from boatsim.sweeps.sampled_keys import make_sampled_key
-from boatsim.sweeps.summary import Pair, Spread, pairs, spreads
+from boatsim.sweeps.summary import Pair, Spread, compare_controllers, metric_spreads
 
 # Name of shipped content, or path of a file or folder
 Name = str | Path
@@ -182,22 +182,22 @@ class Sweep:
     @property
     def spreads(self) -> list[Spread]:
         """Mean and quantiles of each metric at each point of the grid."""
-        return spreads(self.results)
+        return metric_spreads(self.results)
 
     @property
     def pairs(self) -> list[Pair]:
         """Comparison of controllers on the same samples, where `controller.use` was varied."""
-        return pairs(self.results)
+        return compare_controllers(self.results)
 
     @property
     def indices(self) -> list[Index]:
         """Sobol indices, where the design was "sobol"."""
-        return indices(self.results)
+        return sensitivity_indices(self.results)
 
     @property
     def failures(self) -> dict[str, int]:
         """Reasons of failed runs -> number of runs."""
-        return self.results.reasons
+        return self.results.failure_counts
 
 
 def load_vessel(name: Name, load: Names = ()) -> Vessel:
@@ -215,7 +215,7 @@ def load_vessel(name: Name, load: Names = ()) -> Vessel:
     >>> vessel.dof, vessel.length
     (('surge', 'sway', 'yaw'), 1.25)
     """
-    return vessels.load_vessel(str(name), _names(load))
+    return vessels.load_vessel(str(name), _name_list(load))
 
 
 def load_scenario(
@@ -241,7 +241,7 @@ def load_scenario(
     >>> scenario.vessel.body.mass, len(boatsim.run(scenario).recording.t)
     (6.0, 251)
     """
-    return steered(str(name), _text(controller), vessel, changes)
+    return load_with_controller(str(name), _optional_text(controller), vessel, changes)
 
 
 def run(
@@ -275,9 +275,9 @@ def run(
     >>> float(done.recording["y_m"][-1]) > 0.9  # [m] to starboard
     True
     """
-    if out is not None and vessel is not None and not _equals_its_file(vessel):
+    if out is not None and vessel is not None and not _matches_its_file(vessel):
         vessel = vessel.save(f"{out}_vessel")
-    loaded = _scenario(scenario, controller, vessel)
+    loaded = _resolve_scenario(scenario, controller, vessel)
     folder = None
     if out is None:
         done = simulate(loaded, seed)
@@ -294,17 +294,19 @@ def run(
     return Run(loaded.name, done.seed, done.complete, done.recording, camera, metrics, folder)
 
 
-def _equals_its_file(vessel: Vessel) -> bool:
+def _matches_its_file(vessel: Vessel) -> bool:
     """Whether loading the vessel's file again gives the same vessel."""
     if not vessel.file.is_file():
         return False
     return vessels.load_vessel(str(vessel.file), vessel.load) == vessel
 
 
-def _scenario(given: Name | Scenario, controller: Name | None, vessel: Vessel | None) -> Scenario:
+def _resolve_scenario(
+    given: Name | Scenario, controller: Name | None, vessel: Vessel | None
+) -> Scenario:
     """The scenario of a name with another controller or vessel, or the given `Scenario`."""
     if not isinstance(given, Scenario):
-        return steered(str(given), _text(controller), vessel)
+        return load_with_controller(str(given), _optional_text(controller), vessel)
     if controller is not None or vessel is not None:
         raise BadInput(
             f"{given.name}: controller and vessel are allowed with the name of a scenario only; "
@@ -333,7 +335,7 @@ def read(path: Name, vessel: Name | None = None, load: Names = ()) -> Recording:
     file = Path(path)
     if vessel is None and not notes_for(file).notes.vessel:
         return table.read(file)
-    recording, _ = open_recording(file, _text(vessel), _names(load))
+    recording, _ = open_recording(file, _optional_text(vessel), _name_list(load))
     return recording
 
 
@@ -380,12 +382,12 @@ def diagnose(
     """
     return Diagnosis(
         pipeline.diagnose(
-            runs=_paths(runs),
-            hold_out=_paths(hold_out),
-            vessel=_text(vessel),
-            load=_names(load),
-            library=_names(library),
-            without=_names(without),
+            runs=_path_list(runs),
+            hold_out=_path_list(hold_out),
+            vessel=_optional_text(vessel),
+            load=_name_list(load),
+            library=_name_list(library),
+            without=_name_list(without),
             horizon=horizon,
             config=from_settings(settings or {}),
         )
@@ -417,7 +419,9 @@ def replay(
     >>> sorted(simulated.signals)
     ['psi_rad', 'segment', 'x_m', 'y_m']
     """
-    opened, replayed_vessel = open_recording(Path(recording), _text(vessel), _names(load))
+    opened, replayed_vessel = open_recording(
+        Path(recording), _optional_text(vessel), _name_list(load)
+    )
     return join_free_runs(replay_recording(opened, replayed_vessel, horizon))
 
 
@@ -432,7 +436,7 @@ def sweep(
     jobs: int | None = None,
     ray: str | None = None,
     norms: Names = (),
-    report: Report = silent,
+    report: Report = ignore_progress,
 ) -> Sweep:
     """Run scenarios at every point of a grid, with the same random samples at each point.
 
@@ -473,21 +477,21 @@ def sweep(
             values = list(values)
         axes.append(make_axis(key, values))
     sampled = [make_sampled_key(key, law) for key, law in (draw or {}).items()]
-    plan = make_plan(_names(scenarios), axes, sampled, runs, seed, design)
-    return Sweep(*run_plan(plan, Path(out), jobs, ray, _names(norms), report), Path(out))
+    plan = make_plan(_name_list(scenarios), axes, sampled, runs, seed, design)
+    return Sweep(*run_plan(plan, Path(out), jobs, ray, _name_list(norms), report), Path(out))
 
 
-def _paths(names: Names) -> list[Path]:
-    return list(map(Path, _names(names)))
+def _path_list(names: Names) -> list[Path]:
+    return list(map(Path, _name_list(names)))
 
 
-def _text(name: Name | None) -> str | None:
+def _optional_text(name: Name | None) -> str | None:
     if name is None:
         return None
     return str(name)
 
 
-def _names(names: Names) -> list[str]:
+def _name_list(names: Names) -> list[str]:
     if isinstance(names, str | Path):
         return [str(names)]
     return list(map(str, names))

@@ -42,7 +42,7 @@ def atomic_folder(folder: Path, keep: str | None = None) -> Iterator[Path]:
     try:
         with deferred_signals():  # signals must not strike in a folder just made or half moved
             yield new
-            _move(new, folder)
+            _move_files(new, folder)
     except OSError as error:
         kept = keep is not None and (new / keep).is_file() and (new / keep).stat().st_size > 0
         if not kept:
@@ -54,7 +54,7 @@ def atomic_folder(folder: Path, keep: str | None = None) -> Iterator[Path]:
             shutil.rmtree(new, ignore_errors=True)
 
 
-def _move(new: Path, folder: Path) -> None:
+def _move_files(new: Path, folder: Path) -> None:
     """Move all files of one folder to another, in one step if that does not exist yet."""
     if not folder.exists():
         new.chmod(0o777 & ~_umask())  # temporary folders are private

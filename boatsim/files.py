@@ -89,7 +89,7 @@ def _check_sizes(content: Mapping[str, Value]) -> None:
             )
 
 
-def checked(model: type[T], data: Mapping[str, object], file: str) -> T:
+def validate_table(model: type[T], data: Mapping[str, object], file: str) -> T:
     """Return the table of a file as its model.
 
     Args:
@@ -103,17 +103,17 @@ def checked(model: type[T], data: Mapping[str, object], file: str) -> T:
     try:
         return model.model_validate(data)
     except ValidationError as error:
-        raise BadInput(f"{file}: {_line(model, error)}") from None
+        raise BadInput(f"{file}: {_first_mistake(model, error)}") from None
 
 
-def tables(value: object) -> list[dict[str, Value]]:
+def array_of_tables(value: object) -> list[dict[str, Value]]:
     """Return the tables of an array of tables such as [[effect]]; none if the value is no array."""
     if not isinstance(value, list):
         return []
     return [table for table in value if isinstance(table, dict)]
 
 
-def _line(model: type[BaseModel], error: ValidationError) -> str:
+def _first_mistake(model: type[BaseModel], error: ValidationError) -> str:
     """Message of the first mistake of a validation."""
     # A misspelt key is also a missing one
     first = min(error.errors(), key=lambda e: e["type"] != "extra_forbidden")
@@ -123,7 +123,7 @@ def _line(model: type[BaseModel], error: ValidationError) -> str:
         what = "key"
         if table:
             what = f"key in [{table}]"
-        return unknown_name(what, str(first["loc"][-1]), _keys(model, first["loc"]))
+        return unknown_name(what, str(first["loc"][-1]), _allowed_keys(model, first["loc"]))
     if first["type"] == "missing":
         return f"{place} is missing"
     message = first["msg"].removeprefix("Value error, ").lower()
@@ -132,7 +132,7 @@ def _line(model: type[BaseModel], error: ValidationError) -> str:
     return f"{place} = {first['input']!r}; {message}"
 
 
-def _keys(model: type[BaseModel], place: tuple[int | str, ...]) -> list[str]:
+def _allowed_keys(model: type[BaseModel], place: tuple[int | str, ...]) -> list[str]:
     """Allowed keys of the table that has a wrong key."""
     for key in place[:-1]:
         if not isinstance(key, str) or key not in model.model_fields:
@@ -216,7 +216,7 @@ def toml_key(name: str) -> str:
 
 
 @contextmanager
-def replacing(path: Path | str) -> Iterator[Path]:
+def replace_file(path: Path | str) -> Iterator[Path]:
     """Replace a file when the block has written its new content, unless the block raises.
 
     A process that is killed may leave a temporary file such as `run.part-1234.csv`.

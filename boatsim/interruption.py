@@ -65,7 +65,7 @@ def deferred_signals() -> Iterator[Stop]:
         return
     _block = Stop()
     try:
-        with _handled(_block.record):
+        with _install_handler(_block.record):
             yield _block
     finally:
         _block = None
@@ -74,12 +74,12 @@ def deferred_signals() -> Iterator[Stop]:
 @contextmanager
 def ignored_signals() -> Iterator[None]:
     """Ignore signals within the block; processes started there inherit that."""
-    with _handled(signal.SIG_IGN):
+    with _install_handler(signal.SIG_IGN):
         yield
 
 
 @contextmanager
-def _handled(handler: Handler) -> Iterator[None]:
+def _install_handler(handler: Handler) -> Iterator[None]:
     before = {}
     if current_thread() is main_thread():
         for number in SIGNALS:
@@ -100,7 +100,7 @@ def raise_on_signals() -> None:
     _received = False
     for number in SIGNALS:
         if signal.getsignal(number) != signal.SIG_IGN:
-            signal.signal(number, _interrupt)
+            signal.signal(number, _raise_interrupt)
     sys.unraisablehook = _raise_lost_interrupt
 
 
@@ -109,7 +109,7 @@ def signal_received() -> bool:
     return _received
 
 
-def _interrupt(number: int, frame: FrameType | None) -> None:
+def _raise_interrupt(number: int, frame: FrameType | None) -> None:
     global _received
     _received = True
     if _block is not None:
@@ -123,7 +123,7 @@ def _raise_lost_interrupt(unraisable: "sys.UnraisableHookArgs") -> None:
     if not _received or not issubclass(unraisable.exc_type, KeyboardInterrupt):
         sys.__unraisablehook__(unraisable)
     elif hasattr(signal, "setitimer"):
-        signal.signal(signal.SIGALRM, _interrupt)
+        signal.signal(signal.SIGALRM, _raise_interrupt)
         signal.setitimer(signal.ITIMER_REAL, RETRY_DELAY)
 
 

@@ -19,11 +19,11 @@ class Report(Protocol):
         """
 
 
-def silent(stage: str, share: float = 0.0, detail: str = "") -> None:
+def ignore_progress(stage: str, share: float = 0.0, detail: str = "") -> None:
     """Ignore the progress."""
 
 
-def part(report: Report, begin: float, end: float) -> Report:
+def report_part_of(report: Report, begin: float, end: float) -> Report:
     """Return the report of a part of the work.
 
     Args:

@@ -31,13 +31,13 @@ class CrashStop(Steered):
         self._stopped = self._stopped or sense.u <= 0.0
         return 0.0
 
-    def commanded(self, helm: float) -> dict[str, float]:
+    def commands_at_helm(self, helm: float) -> dict[str, float]:
         """Return the commands of the approach, or astern once the manoeuvre has begun.
 
         Args:
             helm: Helm angle [rad].
         """
-        return {**super().commanded(helm), **(self.astern if self._begun else {})}
+        return {**super().commands_at_helm(helm), **(self.astern if self._begun else {})}
 
     @property
     def done(self) -> bool:

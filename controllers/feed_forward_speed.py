@@ -8,8 +8,8 @@ from math import exp, nan
 from typing import Any, ClassVar
 
 from boatsim.control.base import Estimate
-from boatsim.control.compiled import CompiledController, record, unlocked
-from boatsim.control.jet import JET_Q2, throttle_of
+from boatsim.control.compiled import CompiledController, record_type, unlocked
+from boatsim.control.jet import JET_Q2, throttle_for_power
 from boatsim.physics.base import param
 
 
@@ -33,7 +33,7 @@ def law(boats: Any, settings: Any, memory: Any, sense: Any, goal: Any, sent: Any
             m.model += (1.0 - exp(-q.gain * q.period)) * (m.goal - m.model)
         m.goal = wanted
         thrust = (q.linear + q.quadratic * abs(wanted)) * wanted + q.gain * (wanted - s.u)
-        sent[b].throttle = throttle_of(thrust * max(s.u, 0.5), JET_Q2)
+        sent[b].throttle = throttle_for_power(thrust * max(s.u, 0.5), JET_Q2)
         sent[b].jet_rad = goal[b].jet_rad
 
 
@@ -49,7 +49,7 @@ class FeedForwardSpeed(CompiledController):
     goals: ClassVar[tuple[str, ...]] = ("u_mps", "jet_rad")
     default_goals: ClassVar = {"jet_rad": 0.0}
     law: ClassVar = law
-    memory_type: ClassVar = record("started", "goal", "model")
+    memory_type: ClassVar = record_type("started", "goal", "model")
 
     period: float = param(
         0.002, low=0.0001, high=1.0, unit="s", words="time between two control steps"
@@ -63,6 +63,6 @@ class FeedForwardSpeed(CompiledController):
     def estimates(self) -> dict[str, Estimate]:
         """Return the set point and the reference speed."""
         return {
-            "reference_goal_mps": Estimate(float(self.remembered["goal"]), nan, nan),
-            "reference_u_mps": Estimate(float(self.remembered["model"]), nan, nan),
+            "reference_goal_mps": Estimate(float(self.memory_record["goal"]), nan, nan),
+            "reference_u_mps": Estimate(float(self.memory_record["model"]), nan, nan),
         }

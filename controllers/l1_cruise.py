@@ -7,12 +7,24 @@ from dataclasses import dataclass
 from math import exp, nan
 from typing import Any, ClassVar
 
-from boatsim.control.adaptive import LinearSystem, l1_norm, unfiltered
-from boatsim.control.adaptive_loop import act_loop, begin_loop, designed, loop_memory, observe_loop
-from boatsim.control.allocation import within
+from boatsim.control.adaptive import LinearSystem, l1_norm, unfiltered_system
+from boatsim.control.adaptive_loop import (
+    adapt_loop,
+    compute_loop_input,
+    initialise_loop,
+    loop_memory_type,
+    make_loop_design,
+)
+from boatsim.control.allocation import limit
 from boatsim.control.base import Estimate
-from boatsim.control.compiled import CompiledController, Records, record, unlocked, with_parts
-from boatsim.control.jet import power_of, throttle_of
+from boatsim.control.compiled import (
+    CompiledController,
+    Records,
+    add_nested_records,
+    record_type,
+    unlocked,
+)
+from boatsim.control.jet import power_at_throttle, throttle_for_power
 from boatsim.physics.base import param
 
 THETA, SIGMA, OMEGA = (0.2025, 1.7716), (-23.17, 23.17), (0.1, 2.0)  # section 4.1; 1/s, m/s^2, 1
@@ -40,19 +52,19 @@ def law(boats: Any, settings: Any, memory: Any, sense: Any, goal: Any, sent: Any
         q, m, s, wanted = settings[b], memory[b], sense[b], goal[b].u_mps
         u = max(s.u, SLOWEST)
         # [m/s^2] thrust per mass at this speed
-        low = power_of(IDLE, q.q2) / u
-        high = power_of(FULL, q.q2) / u
+        low = power_at_throttle(IDLE, q.q2) / u
+        high = power_at_throttle(FULL, q.q2) / u
         m.loop.after[0] = s.u
         if m.started == 0.0:
             m.model, m.throttle, m.started = s.u, IDLE, 1.0
-            begin_loop(m.loop, q.loop, within((LINEAR + QUADRATIC * u) * u, low, high))
+            initialise_loop(m.loop, q.loop, limit((LINEAR + QUADRATIC * u) * u, low, high))
         else:
             mean = max(0.5 * (m.speed + s.u), SLOWEST)
-            observe_loop(m.loop, q.loop, power_of(m.throttle, q.q2) / mean)
+            adapt_loop(m.loop, q.loop, power_at_throttle(m.throttle, q.q2) / mean)
             m.model += (1.0 - exp(-q.pole * q.period)) * (m.goal - m.model)
         gain = 1.0 / q.pole if q.gain_as_published != 0.0 else q.pole
-        thrust = act_loop(m.loop, q.loop, gain * wanted, low, high, NO_LIMIT)
-        m.speed, m.goal, m.throttle = s.u, wanted, throttle_of(thrust * u, q.q2)
+        thrust = compute_loop_input(m.loop, q.loop, gain * wanted, low, high, NO_LIMIT)
+        m.speed, m.goal, m.throttle = s.u, wanted, throttle_for_power(thrust * u, q.q2)
         sent[b].throttle, sent[b].jet_rad = m.throttle, goal[b].jet_rad
 
 
@@ -71,8 +83,8 @@ class L1Cruise(CompiledController):
     goals: ClassVar[tuple[str, ...]] = ("u_mps", "jet_rad")
     default_goals: ClassVar = {"jet_rad": 0.0}
     law: ClassVar = law
-    memory_type: ClassVar = record(
-        "started", "goal", "model", "speed", "throttle", loop=loop_memory(1)
+    memory_type: ClassVar = record_type(
+        "started", "goal", "model", "speed", "throttle", loop=loop_memory_type(1)
     )
 
     period: float = param(
@@ -106,7 +118,7 @@ class L1Cruise(CompiledController):
             count: Number of equal controllers.
         """
         low, high = zip(THETA, SIGMA, OMEGA, strict=True)
-        loop = designed(
+        loop = make_loop_design(
             [[-self.pole]],
             low,
             high,
@@ -116,11 +128,11 @@ class L1Cruise(CompiledController):
             period=self.period,
             step=self.substep,
         )
-        return with_parts(super().settings(count), loop=loop)
+        return add_nested_records(super().settings(count), loop=loop)
 
     def estimates(self) -> dict[str, Estimate]:
         """Return theta, sigma and omega with their bounds, and the reference speed."""
-        m = self.remembered
+        m = self.memory_record
         theta, sigma, omega = m["loop"]["estimates"].tolist()
         return {
             "theta_1ps": Estimate(theta, *THETA),
@@ -137,7 +149,7 @@ class L1Cruise(CompiledController):
 
         Its L1 norm is that of the published design.
         """
-        return unfiltered([[-self.pole]], [1.0], OMEGA[0] * self.bandwidth)
+        return unfiltered_system([[-self.pole]], [1.0], OMEGA[0] * self.bandwidth)
 
     def l1_condition(self) -> float:
         """Return the L1 norm times the largest slope of the uncertainty.

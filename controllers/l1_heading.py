@@ -8,22 +8,22 @@ from math import nan, radians
 from typing import Any, ClassVar
 
 from boatsim.control.adaptive_loop import (
-    act_loop,
-    begin_loop,
-    designed,
-    loop_memory,
-    observe_loop,
-    shift_loop,
+    adapt_loop,
+    compute_loop_input,
+    initialise_loop,
+    loop_memory_type,
+    make_loop_design,
+    shift_loop_reference,
 )
 from boatsim.control.base import Estimate, wrap
 from boatsim.control.compiled import (
     CompiledController,
     Records,
+    add_nested_records,
     lean,
     merged,
-    record,
+    record_type,
     unlocked,
-    with_parts,
 )
 from boatsim.physics.base import param
 
@@ -38,7 +38,7 @@ wrapped = lean(wrap)
 
 
 @merged
-def observe(q: Any, m: Any, s: Any, change: float) -> None:
+def adapt_over_period(q: Any, m: Any, s: Any, change: float) -> None:
     """Adapt over the last period, in which the reference changed steadily or jumps at its end.
 
     The reference model is advanced by the midpoint rule.
@@ -54,14 +54,14 @@ def observe(q: Any, m: Any, s: Any, change: float) -> None:
     m.loop.drift[0] = rate * q.knows_rate
     m.loop.after[0] = wrapped(m.goal + change - jump - s.psi)
     m.loop.after[1] = s.r
-    observe_loop(m.loop, q.loop, m.jet)
+    adapt_loop(m.loop, q.loop, m.jet)
     half = 0.5 * q.period  # the motion asked for, by the midpoint rule
     error = m.error + half * (rate - m.rate)
     turning = m.rate + half * (STIFFNESS * m.error - q.damping * m.rate)
     m.error += q.period * (rate - turning) + jump
     m.rate += q.period * (STIFFNESS * error - q.damping * turning)
     if jump != 0.0:
-        shift_loop(m.loop, jump, q.jumps_shift)
+        shift_loop_reference(m.loop, jump, q.jumps_shift)
 
 
 @unlocked
@@ -81,11 +81,11 @@ def law(boats: Any, settings: Any, memory: Any, sense: Any, goal: Any, sent: Any
         if m.started == 0.0:
             m.error, m.rate, m.started = wrapped(g.psi_rad - s.psi), s.r, 1.0
             m.loop.after[0], m.loop.after[1] = m.error, m.rate
-            begin_loop(m.loop, q.loop, 0.0)
+            initialise_loop(m.loop, q.loop, 0.0)
         else:
-            observe(q, m, s, wrapped(g.psi_rad - m.goal))
+            adapt_over_period(q, m, s, wrapped(g.psi_rad - m.goal))
         m.goal = g.psi_rad
-        m.jet = act_loop(m.loop, q.loop, 0.0, -q.largest, q.largest, q.rate)
+        m.jet = compute_loop_input(m.loop, q.loop, 0.0, -q.largest, q.largest, q.rate)
         sent[b].jet_rad, sent[b].throttle = m.jet, g.throttle
 
 
@@ -105,7 +105,9 @@ class L1Heading(CompiledController):
     goals: ClassVar[tuple[str, ...]] = ("psi_rad", "throttle")
     default_goals: ClassVar = {"throttle": 1.0}
     law: ClassVar = law
-    memory_type: ClassVar = record("started", "goal", "jet", "error", "rate", loop=loop_memory(2))
+    memory_type: ClassVar = record_type(
+        "started", "goal", "jet", "error", "rate", loop=loop_memory_type(2)
+    )
 
     period: float = param(
         0.002, low=0.0001, high=0.1, unit="s", words="time between two control steps"
@@ -155,7 +157,7 @@ class L1Heading(CompiledController):
         """
         am = [[0.0, -1.0], [STIFFNESS, -self.damping]]
         low, high = zip(THETA_1, THETA_2, SIGMA, OMEGA, strict=True)
-        loop = designed(
+        loop = make_loop_design(
             am,
             low,
             high,
@@ -167,11 +169,11 @@ class L1Heading(CompiledController):
         )
         if self.regressor_as_published:
             loop["by"][:, 2] = 3
-        return with_parts(super().settings(count), loop=loop)
+        return add_nested_records(super().settings(count), loop=loop)
 
     def estimates(self) -> dict[str, Estimate]:
         """Return theta, sigma, omega with bounds, the set point and the reference heading."""
-        m = self.remembered
+        m = self.memory_record
         theta_1, theta_2, sigma, omega = m["loop"]["estimates"].tolist()
         return {
             "theta_1": Estimate(theta_1, *THETA_1),

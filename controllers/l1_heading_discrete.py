@@ -10,7 +10,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from boatsim.control.adaptive import Complex, DiscreteFilter, SampledChannel, held
+from boatsim.control.adaptive import Complex, DiscreteFilter, SampledChannel, zero_order_hold
 from boatsim.control.base import Controller, Estimate, Sense, clip, wrap
 from boatsim.physics.base import param
 
@@ -85,7 +85,7 @@ class L1HeadingDiscrete(Controller):
 
     def reset(self) -> None:
         """Reset filters and estimates."""
-        self._filter, self._low_pass = self.filter(), self.low_pass()
+        self._filter, self._low_pass = self.make_wave_filter(), self.make_low_pass()
         self._decay = exp(-self.period / self.time_constant)  # f22
         self._gain = self.time_constant * (1.0 - self._decay)  # g2
         self._predicted: float | None = None
@@ -95,7 +95,7 @@ class L1HeadingDiscrete(Controller):
         """Return idle throttle and a straight nozzle."""
         return {"throttle": IDLE, "jet_rad": 0.0, "elevator_rad": self.elevator_start}
 
-    def filter(self) -> DiscreteFilter:
+    def make_wave_filter(self) -> DiscreteFilter:
         """Return the wave filter H_f: notch at omega_1, roll-off at omega_2, static gain 1."""
         w1, w2 = self.omega_1, self.omega_2
         notch = [1.0, 2.0 * self.zeta * w1, w1 * w1]
@@ -103,9 +103,9 @@ class L1HeadingDiscrete(Controller):
         if self.filter_as_published:
             at = np.exp(np.roots(poles).real * self.period)
             return DiscreteFilter([PRINTED_LEAD * b for b in notch], np.poly(at).tolist())
-        return held([w2 * b for b in notch], poles.tolist(), self.period)
+        return zero_order_hold([w2 * b for b in notch], poles.tolist(), self.period)
 
-    def low_pass(self) -> DiscreteFilter:
+    def make_low_pass(self) -> DiscreteFilter:
         """Return C = k D / (1 + k D), D = k_1 (z + z_1) / ((z - 1)(z - p_1)); eqs 22 to 24."""
         g = self.k * self.k_1
         return DiscreteFilter([g, g * self.z_1], [1.0, g - self.p_1 - 1.0, self.p_1 + g * self.z_1])
@@ -122,9 +122,9 @@ class L1HeadingDiscrete(Controller):
         wanted, reach = goal.get("elevator_rad", 0.0), self.elevator_rate * self.period
         before = self._elevator
         self._elevator = clip(wanted, self._elevator - reach, self._elevator + reach)
-        adding = self._disturbance(sense.r) if self.adaptive else 0.0
-        u = self._baseline(wrap(goal.get("psi_rad", 0.0) - sense.psi), sense.r) + adding
-        per_angle = self._per_angle(before)
+        adding = self._cancelling_acceleration(sense.r) if self.adaptive else 0.0
+        u = self._pd_acceleration(wrap(goal.get("psi_rad", 0.0) - sense.psi), sense.r) + adding
+        per_angle = self._nozzle_effectiveness(before)
         jet = clip(u / per_angle, -self.jet_range, self.jet_range) if per_angle else 0.0
         self._predicted = self._decay * (self._predicted or 0.0) + self._gain * (
             per_angle * jet + self._sigma
@@ -138,35 +138,39 @@ class L1HeadingDiscrete(Controller):
     def loop_channels(self) -> tuple[SampledChannel, ...]:
         """Return the feedback loop, broken at the yaw acceleration."""
         pole = 1.0 / self.time_constant
-        return (SampledChannel("yaw", self._law, pole, self.period, (0.5, 1.0, 2.0), pole),)
+        return (
+            SampledChannel(
+                "yaw", self._controller_response, pole, self.period, (0.5, 1.0, 2.0), pole
+            ),
+        )
 
-    def _baseline(self, error: float, r: float) -> float:
+    def _pd_acceleration(self, error: float, r: float) -> float:
         """Return the yaw acceleration of the PD [rad/s^2]."""
         sign = -1.0 if self.pd_as_published else 1.0
         u = sign * self.k_p * error - self.k_d * r
         return self._filter.step(u) if self.wave_filter else u
 
-    def _disturbance(self, r: float) -> float:
+    def _cancelling_acceleration(self, r: float) -> float:
         """Return the yaw acceleration that cancels the disturbance [rad/s^2]."""
         if self._predicted is None:
             self._predicted = r
         self._sigma = -self._decay / self._gain * (self._predicted - r)
         return -self._low_pass.step(self._sigma)
 
-    def _per_angle(self, before: float) -> float:
+    def _nozzle_effectiveness(self, before: float) -> float:
         """Return the yaw acceleration per nozzle angle [1/s^2]; 0 if it passes zero."""
         share = [
             cos(2.0 * beta) for beta in (before, 0.5 * (before + self._elevator), self._elevator)
         ]
         return self.jet_gain * share[1] if min(map(abs, share)) >= self.least_share else 0.0
 
-    def _law(self, z: Complex) -> tuple[Complex, Complex]:
+    def _controller_response(self, z: Complex) -> tuple[Complex, Complex]:
         """Return the response to heading and yaw rate.
 
         By equations 18 and 19 r_hat = (f22 r + g2 u) / z.
         """
-        h = self.filter().at(z) if self.wave_filter else 1.0
-        c = self.low_pass().at(z) if self.adaptive else 0.0
+        h = self.make_wave_filter().evaluate(z) if self.wave_filter else 1.0
+        c = self.make_low_pass().evaluate(z) if self.adaptive else 0.0
         inner = 1.0 - c * self._decay / z
         to_rate = h * self.k_d - c * self._decay / self._gain * (self._decay / z - 1.0)
         return h * self.k_p / inner, to_rate / inner

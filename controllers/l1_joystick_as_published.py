@@ -37,7 +37,7 @@ PARKED = 30.0  # [deg] inward: servo positions 116 and 62, reference angles 86 a
 LONG_PERIOD = 0.1  # [s] our estimate: 70 ms of serial text at 9600 baud, five readings of 5 to 6 ms
 
 
-def push(history: list[float], value: float) -> None:
+def push_sample(history: list[float], value: float) -> None:
     """Shift a history [now, one ago, two ago] by one sample.
 
     Args:
@@ -47,7 +47,7 @@ def push(history: list[float], value: float) -> None:
     history[2], history[1], history[0] = history[1], history[0], value
 
 
-def filtered(u: list[float], r: list[float], pole: float) -> float:
+def filter_output(u: list[float], r: list[float], pole: float) -> float:
     """Return the output of the sampled control law D(s) of the listing.
 
     D(s) = 1.07 (s + 17.7) / (s (s + 50)).
@@ -142,7 +142,7 @@ class L1JoystickAsPublished(Controller):
             sense: Sensor readings.
             goal: Not used.
         """
-        self._read(sense)
+        self._average_readings(sense)
         self._predict()
         self._adapt()
         self._control()
@@ -154,7 +154,7 @@ class L1JoystickAsPublished(Controller):
         model = {"m_surge": self._m_surge[0], "m_sway": self._m_sway[0], "m_yaw": self._m_yaw[0]}
         return logged | {name: Estimate(state, nan, nan) for name, state in model.items()}
 
-    def _read(self, sense: Sense) -> None:
+    def _average_readings(self, sense: Sense) -> None:
         """Average the five readings and compute surge, sway and yaw as the listing does."""
         scale = 5.0 / 4.0 if self.divide_by_four else 1.0
         bearing = self.h0 + sense.psi
@@ -188,17 +188,17 @@ class L1JoystickAsPublished(Controller):
             add = (0.0,) * 5
         sway_3 = 0.9324 if self.sway_coefficient else 0.001193
         m1, m2, m3 = self._m_surge, self._m_sway, self._m_yaw
-        push(m1, 0.9048 * m1[0] - 0.04758 * u1[1] * omega_1 + add[0])
+        push_sample(m1, 0.9048 * m1[0] - 0.04758 * u1[1] * omega_1 + add[0])
         into_sway = (
             0.04998 * u2[1] - 0.0466 * u2[2] - 0.001221 * u3[1] - sway_3 * u3[2]
         ) * omega_23
-        push(m2, 1.93 * m2[0] - 0.9324 * m2[1] + add[1] + into_sway + add[2])
+        push_sample(m2, 1.93 * m2[0] - 0.9324 * m2[1] + add[1] + into_sway + add[2])
         into_yaw = (
             (0.04827 * u3[1] - 0.04827 * u3[2] + 0.001221 * u2[1] + 0.001193 * u2[2])
             * 0.2118
             * omega_23
         )
-        push(m3, 1.93 * m3[0] - 0.9324 * m3[1] + add[3] + into_yaw + add[4] - 0.3529)
+        push_sample(m3, 1.93 * m3[0] - 0.9324 * m3[1] + add[3] + into_yaw + add[4] - 0.3529)
 
     def _adapt(self) -> None:
         """Advance the seven adaptation laws by one Euler step, then apply `constrain`."""
@@ -207,15 +207,15 @@ class L1JoystickAsPublished(Controller):
         sway_e = self._m_sway[0] - sway
         yaw_e = self._m_yaw[0] - yaw
         sign = 1.0 if self.sigma_sign else -1.0
-        self._move("theta_1", -1.0 * surge_e * surge)
-        self._move("theta_23", self._product(yaw, sway, sway_e, yaw_e))
-        self._move("omega_1", 2.0 * surge_e * u1)
-        self._move("omega_23", self._product(u3, u2, sway_e, yaw_e))
-        self._move("sigma_1", sign * surge_e)
-        self._move("sigma_2", sign * sway_e)
-        self._move("sigma_3", sign * yaw_e)
+        self._step_estimate("theta_1", -1.0 * surge_e * surge)
+        self._step_estimate("theta_23", self._cross_term_gradient(yaw, sway, sway_e, yaw_e))
+        self._step_estimate("omega_1", 2.0 * surge_e * u1)
+        self._step_estimate("omega_23", self._cross_term_gradient(u3, u2, sway_e, yaw_e))
+        self._step_estimate("sigma_1", sign * surge_e)
+        self._step_estimate("sigma_2", sign * sway_e)
+        self._step_estimate("sigma_3", sign * yaw_e)
 
-    def _product(self, yaw: float, sway: float, sway_e: float, yaw_e: float) -> float:
+    def _cross_term_gradient(self, yaw: float, sway: float, sway_e: float, yaw_e: float) -> float:
         """Return the gradient of theta_23 or omega_23.
 
         It should be -(xt' P b) x with P of xt' P xt.
@@ -228,27 +228,33 @@ class L1JoystickAsPublished(Controller):
             return -1.0 * yaw * (by_yaw - sway * by_sway)
         return yaw * by_yaw - sway * by_sway
 
-    def _move(self, name: str, slope: float) -> None:
+    def _step_estimate(self, name: str, slope: float) -> None:
         self.estimate[name] = clip(self.estimate[name] + T_S * (GAMMA * slope), *BOUNDS[name])
 
     def _control(self) -> None:
         """Apply the control law: subtract the estimated dynamics, then filter."""
         e, u = self.estimate, self._u
-        push(self._eta[0], e["omega_1"] * u[0][0] + e["theta_1"] * self._surge + e["sigma_1"])
-        push(self._eta[1], e["omega_23"] * u[1][0] + e["theta_23"] * self._sway + e["sigma_2"])
-        push(self._eta[2], e["omega_23"] * u[2][0] + e["theta_23"] * self._yaw + e["sigma_3"])
+        push_sample(
+            self._eta[0], e["omega_1"] * u[0][0] + e["theta_1"] * self._surge + e["sigma_1"]
+        )
+        push_sample(
+            self._eta[1], e["omega_23"] * u[1][0] + e["theta_23"] * self._sway + e["sigma_2"]
+        )
+        push_sample(
+            self._eta[2], e["omega_23"] * u[2][0] + e["theta_23"] * self._yaw + e["sigma_3"]
+        )
         kg = (0.8 if self.surge_feed_forward else 2.0, 0.7143, 1.0)
         for r, wanted, gain, eta in zip(
             self._r, (self.r_1, self.r_2, self.r_3), kg, self._eta, strict=True
         ):
-            push(r, wanted * gain - eta[0])
+            push_sample(r, wanted * gain - eta[0])
         for channel, pole in enumerate((1.062, 1.082, 1.082)):
             if channel == 0 and self.surge_history:
                 u[0][0] = u[0][1]
                 u[0][1] = u[0][0]
             else:
-                push(u[channel], u[channel][0])
-            u[channel][0] = filtered(u[channel], self._r[channel], pole)
+                push_sample(u[channel], u[channel][0])
+            u[channel][0] = filter_output(u[channel], self._r[channel], pole)
 
     def _actuate(self) -> dict[str, float]:
         """Return servo positions and PWM values, truncated as by `write` and `analogWrite`."""

@@ -77,7 +77,7 @@ class L1JoystickBlind(AdaptiveJoystick):
     def reset(self) -> None:
         """Reset to rest; the motors are to be checked unless they are known."""
         super().reset()
-        self._check = None if self.known_astern else self._new_check()
+        self._check = None if self.known_astern else self._make_motor_check()
         self._astern = self.known_astern or 1.0
         self._angle = self.known_angle
         self._scale = self.known_scale
@@ -98,9 +98,9 @@ class L1JoystickBlind(AdaptiveJoystick):
             self._start = sense.psi if self._start != self._start else self._start
             pulse = self._check.step(sense.r, sense.ax)
             if not self._check.done:
-                return self._pulsed(self._check, pulse)
-            self._take_over(self._check, sense.psi)
-        return self._answered(sense, goal)
+                return self._pulse_commands(self._check, pulse)
+            self._store_check_result(self._check, sense.psi)
+        return self._corrected_commands(sense, goal)
 
     def estimates(self) -> dict[str, Estimate]:
         """Return the base estimates, the result of the check and the reckoned motion."""
@@ -117,7 +117,7 @@ class L1JoystickBlind(AdaptiveJoystick):
         }
 
     @property
-    def found(self) -> tuple[float, float, float] | None:
+    def check_result(self) -> tuple[float, float, float] | None:
         """Result for `known_astern`, `known_angle` and `known_scale`; None during the check."""
         return None if self._check else (self._astern, self._angle, self._scale)
 
@@ -125,7 +125,7 @@ class L1JoystickBlind(AdaptiveJoystick):
         """Return the yaw loop only, because no measurement closes the surge loop."""
         return tuple(channel for channel in super().loop_channels() if channel.name == "yaw")
 
-    def _new_check(self) -> MotorCheck:
+    def _make_motor_check(self) -> MotorCheck:
         return MotorCheck(
             period=self.period,
             rest=self.check_rest,
@@ -140,9 +140,9 @@ class L1JoystickBlind(AdaptiveJoystick):
             straight=2.0 / (1.0 + cos(ANGLE_MAX)),
         )
 
-    def _pulsed(self, check: MotorCheck, pulse: Pulse) -> dict[str, float]:
+    def _pulse_commands(self, check: MotorCheck, pulse: Pulse) -> dict[str, float]:
         """Return the commands of a pulse: both motors ahead, astern or off, one turned inward."""
-        astern = max(check.astern * self.pwm(-self.thrust(self.check_pwm)), -PWM_MAX)
+        astern = max(check.astern * self.pwm_for_thrust(-self.thrust(self.check_pwm)), -PWM_MAX)
         pwm = float(round({1: self.check_pwm, -1: astern, 0: 0.0}[pulse.sense]))
         return {
             "pwm_port": pwm,
@@ -151,20 +151,22 @@ class L1JoystickBlind(AdaptiveJoystick):
             "steer_starboard_rad": -ANGLE_MAX if pulse.inward == STARBOARD else 0.0,
         }
 
-    def _take_over(self, check: MotorCheck, compass: float) -> None:
+    def _store_check_result(self, check: MotorCheck, compass: float) -> None:
         """Store the result of the check and the motion that it left."""
         d = ANGLE_MAX
         # a pulse of thrust F turns by F (lever(d) - B), of which an angle e more takes F e (B sin d
         # + L cos d + L)
         reach = self.half_spacing * sin(d) + self.arm * (cos(d) + 1.0)
         self._astern = check.astern
-        self._angle = check.unevenness * (self.half_spacing - self.lever(d)) / reach
-        self._scale = check.push * self.mass / (self.thrust(self.check_pwm) * (1.0 + cos(d)))
+        self._angle = check.yaw_asymmetry * (self.half_spacing - self.moment_arm(d)) / reach
+        self._scale = (
+            check.ahead_acceleration * self.mass / (self.thrust(self.check_pwm) * (1.0 + cos(d)))
+        )
         self._u = check.speed
         self._psi, self._left = compass, wrap(self._start - compass)
         self._check = None
 
-    def _answered(self, sense: Sense, goal: Mapping[str, float]) -> dict[str, float]:
+    def _corrected_commands(self, sense: Sense, goal: Mapping[str, float]) -> dict[str, float]:
         """Return the base commands for the reckoned speed, corrected for the motors."""
         stick = goal.get("surge_mps", 0.0)
         turn = clip(self._left, -TURN_BACK * self.period, TURN_BACK * self.period)
@@ -175,17 +177,17 @@ class L1JoystickBlind(AdaptiveJoystick):
             "yaw_radps": goal.get("yaw_radps", 0.0) + turn / self.period,
         }
         commands = super().step(replace(sense, u=self._u, psi=sense.psi - self._psi), asked)
-        self._reckon(commands, stick)
-        return {name: self._trim(name, value) for name, value in commands.items()}
+        self._dead_reckon(commands, stick)
+        return {name: self._correct_command(name, value) for name, value in commands.items()}
 
-    def _reckon(self, commands: Mapping[str, float], stick: float) -> None:
+    def _dead_reckon(self, commands: Mapping[str, float], stick: float) -> None:
         """Advance reckoned speed and distance by one period."""
         pwm = int(commands["pwm_port"]), int(commands["pwm_starboard"])
-        push = self.applied(Setting(*pwm, round(degrees(commands["steer_port_rad"]))))
+        push = self.wrench_of_setting(Setting(*pwm, round(degrees(commands["steer_port_rad"]))))
         self._u += self.period * self._scale * push.X / self.mass
         self._x += self.period * (self._u - stick)
 
-    def _trim(self, name: str, value: float) -> float:
+    def _correct_command(self, name: str, value: float) -> float:
         """Return the command that makes the motors respond as the base class assumes."""
         if name.startswith("steer"):
             return value - self._angle

@@ -6,16 +6,16 @@ from math import atan2, copysign, isnan, nan, sin
 from typing import Any, ClassVar
 
 from boatsim.control.adaptive import LoopChannel
-from boatsim.control.allocation import HEADING, set_outboards, sway_difference, within
+from boatsim.control.allocation import HEADING, command_outboards, limit, sway_difference
 from boatsim.control.axis import AXIS, filtered_disturbance
 from boatsim.control.base import Estimate
-from boatsim.control.compiled import merged, record, unlocked
+from boatsim.control.compiled import merged, record_type, unlocked
 from boatsim.control.joystick import SERVO_LAG, AdaptiveJoystick, surge_force, yaw_moment
 from boatsim.physics.base import param
 
 
 @merged
-def sway_spread(q: Any, m: Any, s: Any, wanted: float) -> float:
+def sway_thrust_difference(q: Any, m: Any, s: Any, wanted: float) -> float:
     """Return the thrust difference [N] for a demanded sway speed.
 
     Without a sensor it is that of the open loop.
@@ -46,7 +46,7 @@ def sway_spread(q: Any, m: Any, s: Any, wanted: float) -> float:
         return 0.0
     spread = (q.sway_mass * q.sway_pole * wanted - felt) / sin(atan2(q.half_spacing, q.arm))
     side = copysign(1.0, wanted)
-    return side * within(side * spread, q.least_difference, q.largest_difference)
+    return side * limit(side * spread, q.least_difference, q.largest_difference)
 
 
 @unlocked
@@ -65,9 +65,9 @@ def law(boats: Any, settings: Any, memory: Any, sense: Any, goal: Any, sent: Any
         q, m, s, g = settings[b], memory[b], sense[b], goal[b]
         moment = yaw_moment(q, m, s, g.yaw_radps)
         surge = surge_force(q, m, s, g.surge_mps)
-        spread = sway_spread(q, m, s, g.sway_mps)
+        spread = sway_thrust_difference(q, m, s, g.sway_mps)
         room = q.pole * q.mass * abs(g.surge_mps)
-        m.X, m.Y, m.N = set_outboards(q, surge, spread, moment, room, sent[b])
+        m.X, m.Y, m.N = command_outboards(q, surge, spread, moment, room, sent[b])
         m.acted = 1.0
 
 
@@ -84,7 +84,7 @@ class L1JoystickSway(AdaptiveJoystick):
         "L1 adaptive joystick with surge, sway and yaw closed, for a measured sway velocity"
     )
     law: ClassVar = law
-    memory_type: ClassVar = record(
+    memory_type: ClassVar = record_type(
         "acted", "X", "Y", "N", yaw=AXIS, surge=AXIS, sway=AXIS, heading=HEADING
     )
 
@@ -103,7 +103,7 @@ class L1JoystickSway(AdaptiveJoystick):
 
     def estimates(self) -> dict[str, Estimate]:
         """Return the estimates of the base class and those of sway."""
-        sway = self.remembered["sway"]
+        sway = self.memory_record["sway"]
         return {
             **super().estimates(),
             "sigma_sway_N": Estimate(float(sway["sigma"]), nan, nan),

@@ -7,27 +7,27 @@ from dataclasses import dataclass
 from math import nan, pi, radians, sin
 from typing import Any, ClassVar
 
-from boatsim.control.adaptive import lyapunov
-from boatsim.control.adaptive_loop import projected
-from boatsim.control.allocation import within
+from boatsim.control.adaptive import solve_lyapunov
+from boatsim.control.adaptive_loop import project_rate
+from boatsim.control.allocation import limit
 from boatsim.control.base import Estimate
-from boatsim.control.compiled import CompiledController, merged, record, unlocked
+from boatsim.control.compiled import CompiledController, merged, record_type, unlocked
 from boatsim.physics.base import param
 
 MODEL = ((0.0, -1.0), (1.0, -1.4))  # [1/s] A_m of sway velocity and yaw rate, T8; b = I
-((P_VV, P_VR), (_, P_RR)) = lyapunov(MODEL).tolist()
+((P_VV, P_VR), (_, P_RR)) = solve_lyapunov(MODEL).tolist()
 ROOM = pi / 4  # [rad] both motors turn inward as far as this, T9
 MODULATED_AT = radians(23.6)  # steering angle at which modulated power is the nominal one, Fig 24
 FILTER_ZERO, FILTER_POLE = 17.7, 50.0  # [rad/s] of the low-pass, AppH
 # Bounds are assumptions, wide enough for the plants of T10 to T14 and the disturbance of T12.
 OMEGA, OTHERS = (0.5, 2.0), (-2.0, 2.0)
 # What is unknown of one state, xh' = A_m xh + omega input + theta'x + sigma, and the input in force
-ROW = record("omega", "theta_v", "theta_r", "sigma", "given")
+ROW = record_type("omega", "theta_v", "theta_r", "sigma", "given")
 BOUNDS = {"omega": OMEGA, "theta_v": OTHERS, "theta_r": OTHERS, "sigma": OTHERS}
 
 
 @merged
-def known(row: Any, v: float, r: float) -> float:
+def estimated_acceleration(row: Any, v: float, r: float) -> float:
     """Return the acceleration that the estimates assign to input and states.
 
     Args:
@@ -39,7 +39,7 @@ def known(row: Any, v: float, r: float) -> float:
 
 
 @merged
-def stepped(
+def step_estimate(
     value: float, regressor: float, error: float, low: float, high: float, gain: float, dt: float
 ) -> float:
     """Return an estimate after one Euler step of the projected gradient law.
@@ -53,12 +53,14 @@ def stepped(
         gain: Adaptation gain.
         dt: Length of the step [s].
     """
-    rate = gain * projected(value, -regressor * error, low, high)
-    return within(value + dt * rate, low, high)
+    rate = gain * project_rate(value, -regressor * error, low, high)
+    return limit(value + dt * rate, low, high)
 
 
 @merged
-def adapt(row: Any, error: float, v: float, r: float, gain: float, dt: float) -> None:
+def adapt_state_estimates(
+    row: Any, error: float, v: float, r: float, gain: float, dt: float
+) -> None:
     """Adapt the estimates of one state, equations E34 to E36.
 
     Args:
@@ -69,14 +71,14 @@ def adapt(row: Any, error: float, v: float, r: float, gain: float, dt: float) ->
         gain: Adaptation gain.
         dt: Length of the step [s].
     """
-    row.omega = stepped(row.omega, row.given, error, OMEGA[0], OMEGA[1], gain, dt)
-    row.theta_v = stepped(row.theta_v, v, error, OTHERS[0], OTHERS[1], gain, dt)
-    row.theta_r = stepped(row.theta_r, r, error, OTHERS[0], OTHERS[1], gain, dt)
-    row.sigma = stepped(row.sigma, 1.0, error, OTHERS[0], OTHERS[1], gain, dt)
+    row.omega = step_estimate(row.omega, row.given, error, OMEGA[0], OMEGA[1], gain, dt)
+    row.theta_v = step_estimate(row.theta_v, v, error, OTHERS[0], OTHERS[1], gain, dt)
+    row.theta_r = step_estimate(row.theta_r, r, error, OTHERS[0], OTHERS[1], gain, dt)
+    row.sigma = step_estimate(row.sigma, 1.0, error, OTHERS[0], OTHERS[1], gain, dt)
 
 
 @merged
-def steer(q: Any, m: Any, v: float, r: float) -> float:
+def set_steering_angle(q: Any, m: Any, v: float, r: float) -> float:
     """Set the steering angle by the filtered law and return the power for it [N].
 
     Args:
@@ -86,11 +88,11 @@ def steer(q: Any, m: Any, v: float, r: float) -> float:
         r: Yaw rate [rad/s].
     """
     wanted = 0.0 if q.feed_forward_as_published != 0.0 else -MODEL[1][0] * v
-    drive = -1.07 * q.filter_gain * (known(m.yaw, v, r) - wanted) * q.period
+    drive = -1.07 * q.filter_gain * (estimated_acceleration(m.yaw, v, r) - wanted) * q.period
     m.slow += FILTER_ZERO / FILTER_POLE * drive
     m.fast += (FILTER_POLE - FILTER_ZERO) / FILTER_POLE * drive - FILTER_POLE * q.period * m.fast
     per_angle = q.slope * q.power / q.inertia  # [1/s^2]
-    m.angle = within(q.neutral - (m.slow + m.fast) / per_angle, 0.0, ROOM)
+    m.angle = limit(q.neutral - (m.slow + m.fast) / per_angle, 0.0, ROOM)
     m.reached += (m.angle - m.reached) * q.period / max(q.servo_lag, q.period)
     thrust = q.power * (sin(m.reached) / sin(MODULATED_AT) if q.modulated != 0.0 else 1.0)
     m.sway.given, m.yaw.given = thrust * sin(m.angle) / q.mass, per_angle * (q.neutral - m.angle)
@@ -114,11 +116,19 @@ def law(boats: Any, settings: Any, memory: Any, sense: Any, goal: Any, sent: Any
         if m.started == 0.0:
             m.started = m.sway.omega = m.yaw.omega = 1.0
         vh, rh = m.vh, m.rh
-        adapt(m.sway, P_VV * (vh - v) + P_VR * (rh - r), v, r, q.adaptation, q.period)
-        adapt(m.yaw, P_VR * (vh - v) + P_RR * (rh - r), v, r, q.adaptation, q.period)
-        thrust = steer(q, m, v, r)
-        m.vh += q.period * (MODEL[0][0] * vh + MODEL[0][1] * rh + known(m.sway, v, r))  # E37
-        m.rh += q.period * (MODEL[1][0] * vh + MODEL[1][1] * rh + known(m.yaw, v, r))
+        adapt_state_estimates(
+            m.sway, P_VV * (vh - v) + P_VR * (rh - r), v, r, q.adaptation, q.period
+        )
+        adapt_state_estimates(
+            m.yaw, P_VR * (vh - v) + P_RR * (rh - r), v, r, q.adaptation, q.period
+        )
+        thrust = set_steering_angle(q, m, v, r)
+        m.vh += q.period * (
+            MODEL[0][0] * vh + MODEL[0][1] * rh + estimated_acceleration(m.sway, v, r)
+        )  # E37
+        m.rh += q.period * (
+            MODEL[1][0] * vh + MODEL[1][1] * rh + estimated_acceleration(m.yaw, v, r)
+        )
         sent[b].thrust_port_N, sent[b].thrust_starboard_N = 0.5 * thrust, -0.5 * thrust
         sent[b].steer_port_rad, sent[b].steer_starboard_rad = m.angle, -m.angle
 
@@ -144,7 +154,7 @@ class L1Thesis(CompiledController):
     law: ClassVar = law
     # predicted states; both poles of the low-pass [rad/s^2]; angle commanded, and where the servo
     # is taken to be
-    memory_type: ClassVar = record(
+    memory_type: ClassVar = record_type(
         "started", "vh", "rh", "slow", "fast", "angle", "reached", sway=ROW, yaw=ROW
     )
 
@@ -171,7 +181,7 @@ class L1Thesis(CompiledController):
 
     def estimates(self) -> dict[str, Estimate]:
         """Return all estimates with their bounds, and the predicted states."""
-        _, vh, rh, *_, sway, yaw = self.remembered.item()
+        _, vh, rh, *_, sway, yaw = self.memory_record.item()
         found = {
             f"{name}_{axis}": Estimate(value, *bounds)
             for axis, row in (("sway", sway), ("yaw", yaw))

@@ -40,10 +40,10 @@ class MinimumVariance(LearningHelm):
     rudder_weight: float = param(5e-5, low=0.0, high=10.0, unit="", words="rho")
     weighs_angle: bool = False  # rho weighs the rudder angle instead of its swing
 
-    def demand(self) -> float:
+    def rudder_demand(self) -> float:
         """Return the angle after the rudder movement with the lowest cost."""
-        yaw, roll = self._coasting()
-        b_yaw, b_roll = self.ship.yaw[1], self.ship.roll[2]
+        yaw, roll = self._predict_with_stopped_rudder()
+        b_yaw, b_roll = self.ship.yaw_coefficients[1], self.ship.roll_coefficients[2]
         weight = self.roll_weight if self.roll_reduction else 0.0
 
         def cost(u: float) -> float:
@@ -51,12 +51,12 @@ class MinimumVariance(LearningHelm):
             effort = self.rudder_weight * (u if self.weighs_angle else du) ** 2
             return (yaw + b_yaw * du) ** 2 + weight * (roll + b_roll * du) ** 2 + effort
 
-        return min(self.choices(), key=cost)
+        return min(self.possible_rudder_angles(), key=cost)
 
-    def _coasting(self) -> tuple[float, float]:
+    def _predict_with_stopped_rudder(self) -> tuple[float, float]:
         """Return yaw and roll [rad] after a period with stopped rudder, less their reference."""
         (s0, s1, s2), (f0, f1, f2) = self.psi, self.phi
-        (a2y, _, b2y), (a1r, a2r, _, b2r) = self.ship.yaw, self.ship.roll
+        (a2y, _, b2y), (a1r, a2r, _, b2r) = self.ship.yaw_coefficients, self.ship.roll_coefficients
         psi = (2.0 + a2y) * s0 - (1.0 + 2.0 * a2y) * s1 + a2y * s2 + b2y * (f0 - f1)
         phi = (1.0 - a1r) * f0 + (a1r - a2r) * f1 + a2r * f2 + b2r * (s0 - 2.0 * s1 + s2)
         return (

@@ -7,16 +7,16 @@ from dataclasses import dataclass
 from math import nan, radians
 from typing import Any, ClassVar
 
-from boatsim.control.allocation import within
+from boatsim.control.allocation import limit
 from boatsim.control.base import Estimate, wrap
-from boatsim.control.compiled import CompiledController, lean, merged, record, unlocked
+from boatsim.control.compiled import CompiledController, lean, merged, record_type, unlocked
 from boatsim.physics.base import param
 
 wrapped = lean(wrap)
 
 
 @merged
-def follow(q: Any, m: Any, s: Any, wanted: float) -> None:
+def advance_reference_model(q: Any, m: Any, s: Any, wanted: float) -> None:
     """Advance the reference model by one period with the midpoint rule.
 
     It starts at the present state.
@@ -52,10 +52,10 @@ def law(boats: Any, settings: Any, memory: Any, sense: Any, goal: Any, sent: Any
     """
     for b in boats:
         q, s, g = settings[b], sense[b], goal[b]
-        follow(q, memory[b], s, g.psi_rad)
+        advance_reference_model(q, memory[b], s, g.psi_rad)
         # [rad/s^2]
         turn = q.stiffness * wrapped(g.psi_rad - s.psi) - (q.damping - 1.0 / q.time_constant) * s.r
-        sent[b].jet_rad = within(turn * q.time_constant / q.gain, -q.largest, q.largest)
+        sent[b].jet_rad = limit(turn * q.time_constant / q.gain, -q.largest, q.largest)
         sent[b].throttle = g.throttle
 
 
@@ -73,7 +73,7 @@ class PdHeading(CompiledController):
     goals: ClassVar[tuple[str, ...]] = ("psi_rad", "throttle")
     default_goals: ClassVar = {"throttle": 1.0}
     law: ClassVar = law
-    memory_type: ClassVar = record("started", "goal", "error", "rate")
+    memory_type: ClassVar = record_type("started", "goal", "error", "rate")
 
     period: float = param(
         0.002, low=0.0001, high=1.0, unit="s", words="time between two control steps"
@@ -92,7 +92,7 @@ class PdHeading(CompiledController):
 
     def estimates(self) -> dict[str, Estimate]:
         """Return the set point and the reference heading."""
-        goal, error = float(self.remembered["goal"]), float(self.remembered["error"])
+        goal, error = float(self.memory_record["goal"]), float(self.memory_record["error"])
         return {
             "reference_goal_rad": Estimate(goal, nan, nan),
             "reference_psi_rad": Estimate(goal - error, nan, nan),

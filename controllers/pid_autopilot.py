@@ -11,25 +11,25 @@ from boatsim.control.allocation import (
     STICK,
     Outboards,
     allocate,
-    keep_heading,
-    push,
-    send_outboards,
+    integrate_heading,
+    limit,
+    nominal_wrench,
     sway_difference,
-    within,
+    write_outboard_commands,
 )
-from boatsim.control.compiled import CompiledController, merged, record, unlocked
+from boatsim.control.compiled import CompiledController, merged, record_type, unlocked
 from boatsim.physics.base import param
 
 ROUNDING = 1e-9  # [N m], [N] a smaller difference is rounding and must not stop an integrator
 SERVO_LAG = 0.06  # [s] "about one time step" in the thesis; used for the printed margins only
 # Integral parts [N m], [N]; asked for minus applied in the last step [N m], [N].
-REMEMBERS = record(
+REMEMBERS = record_type(
     "acted", "moment_held", "surge_held", "moment_missed", "surge_missed", heading=HEADING
 )
 
 
 @merged
-def missed(wanted: float, given: float) -> float:
+def unmet_demand(wanted: float, given: float) -> float:
     """Return the difference between demand and output of saturated outboards.
 
     Args:
@@ -50,8 +50,8 @@ def yaw_moment(q: Any, m: Any, s: Any, wanted: float) -> float:
         wanted: Demanded yaw rate [rad/s].
     """
     if m.acted != 0.0:
-        keep_heading(m.heading, s.r, s.psi, wanted, q.period, q.compass_trust)
-    error = within(m.heading.wanted - m.heading.own, -q.largest_error, q.largest_error)
+        integrate_heading(m.heading, s.r, s.psi, wanted, q.period, q.compass_trust)
+    error = limit(m.heading.wanted - m.heading.own, -q.largest_error, q.largest_error)
     if m.moment_missed * error <= 0.0:
         m.moment_held += q.period * q.inertia * q.ki * error
     return q.inertia * (q.kp * error + q.kd * (wanted - s.r)) + m.moment_held
@@ -93,9 +93,13 @@ def law(boats: Any, settings: Any, memory: Any, sense: Any, goal: Any, sent: Any
         surge = surge_force(q, m, s, g.surge_mps)
         room = q.surge_kp * q.mass * abs(g.surge_mps) + abs(q.blind_surge * g.surge_mps)
         port, starboard, angle = allocate(q, surge, sway_difference(q, g.sway_mps), moment, room)
-        send_outboards(q, port, starboard, angle, sent[b])
-        X, _, N = push(q, port, starboard, angle)
-        m.surge_missed, m.moment_missed, m.acted = missed(surge, X), missed(moment, N), 1.0
+        write_outboard_commands(q, port, starboard, angle, sent[b])
+        X, _, N = nominal_wrench(q, port, starboard, angle)
+        m.surge_missed, m.moment_missed, m.acted = (
+            unmet_demand(surge, X),
+            unmet_demand(moment, N),
+            1.0,
+        )
 
 
 @dataclass

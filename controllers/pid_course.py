@@ -32,7 +32,7 @@ class PidCourse(Helm):
         # [rad] wish; heading errors one period ago and two
         self._wish = self._once = self._twice = 0.0
 
-    def demand(self) -> float:
+    def rudder_demand(self) -> float:
         """Return the previous demand plus its increment."""
         lead, y = self.derivative / self.period, self.psi[0]
         change = (

@@ -9,7 +9,7 @@ from boatsim.control.helm import LearningHelm
 from boatsim.physics.base import Array, param
 
 
-def ackermann(a: Array, b: Array, wanted: Array) -> Array | None:
+def ackermann_gains(a: Array, b: Array, wanted: Array) -> Array | None:
     """Return the gains (n,) of Ackermann's formula, or None if (A, B) is not controllable.
 
     Args:
@@ -56,10 +56,10 @@ class PolePlacement(LearningHelm):
             roll = [1.0, -2.0 * self.roll_real, self.roll_real**2 + self.roll_imaginary**2]
             self._wanted = np.convolve(self._wanted, roll)
 
-    def demand(self) -> float:
+    def rudder_demand(self) -> float:
         """Return the feedback; gains are kept while the identified rudder has no effect."""
         n = len(self._gains)
         a, b = self.ship.matrices()
-        found = ackermann(a[:n, :n], b[:n], self._wanted)
+        found = ackermann_gains(a[:n, :n], b[:n], self._wanted)
         self._gains = self._gains if found is None else found
         return -float(self._gains @ np.array([*self.psi[:2], *self.phi[:2]])[:n])

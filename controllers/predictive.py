@@ -9,11 +9,13 @@ from typing import ClassVar
 import numpy as np
 
 from boatsim.control.helm import LearningHelm
-from boatsim.control.identification import with_rudder
+from boatsim.control.identification import append_rudder_state
 from boatsim.physics.base import Array, param
 
 
-def predictions(a: Array, b: Array, periods: int, outputs: list[int]) -> tuple[Array, Array]:
+def prediction_matrices(
+    a: Array, b: Array, periods: int, outputs: list[int]
+) -> tuple[Array, Array]:
     """Return forced response H (rows,) and matrix of the free response (rows, n), period by period.
 
     Args:
@@ -46,17 +48,19 @@ class Predictive(LearningHelm):
     )
     sign_as_published: bool = False  # the thesis prints du = +(H'H)^-1 H' Psi0
 
-    def demand(self) -> float:
+    def rudder_demand(self) -> float:
         """Return the rudder angle after the best movement."""
         periods = round(self.horizon) or (10 if self.roll_reduction else 11)
-        forced, free = predictions(
-            *with_rudder(*self.ship.matrices()), periods, [0, 2] if self.roll_reduction else [0]
+        forced, free = prediction_matrices(
+            *append_rudder_state(*self.ship.matrices()),
+            periods,
+            [0, 2] if self.roll_reduction else [0],
         )
         drift = free @ np.array([*self.psi[:2], *self.phi[:2], self.rudder])
         along, size = float(forced @ drift), float(forced @ forced)
         if self.bang_bang:  # |H du + Psi0|^2, less what all swings share
             return min(
-                self.choices(),
+                self.possible_rudder_angles(),
                 key=lambda u: (u - self.rudder) * (size * (u - self.rudder) + 2.0 * along),
             )
         best = along / size if size > 0.0 else 0.0

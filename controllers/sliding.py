@@ -7,7 +7,7 @@ from typing import ClassVar
 import numpy as np
 
 from boatsim.control.helm import Helm
-from boatsim.control.identification import state_space, with_rudder
+from boatsim.control.identification import append_rudder_state, state_space
 from boatsim.errors import BadInput
 from boatsim.physics.base import Array, param
 
@@ -25,7 +25,7 @@ WEIGHTS = {  # diagonal of Q, not printed: found so that the iteration gives the
 }
 
 
-def surface(a: Array, b: Array, weights: Array, swing: float) -> Array:
+def switching_surface(a: Array, b: Array, weights: Array, swing: float) -> Array:
     """Return G = B'P of P = Q + (A - B F)' P (A - B F), F = swing B'P, by iteration (appendix III).
 
     Args:
@@ -51,14 +51,14 @@ def surface(a: Array, b: Array, weights: Array, swing: float) -> Array:
     )
 
 
-def nominal(roll_reduction: bool) -> tuple[Array, Array]:
+def nominal_ship(roll_reduction: bool) -> tuple[Array, Array]:
     """Return A and B of the nominal ship of the switching functions.
 
     Args:
         roll_reduction: State (psi, psi-1, phi, phi-1, u-1) if true, else (psi-2, psi-1, psi).
     """
     if roll_reduction:
-        return with_rudder(*state_space(YAW, ROLL))
+        return append_rudder_state(*state_space(YAW, ROLL))
     return np.array([[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.8, -2.6, 2.8]]), np.array(
         [0.0, 0.0, 0.017]
     )
@@ -88,23 +88,25 @@ class Sliding(Helm):
     def reset(self) -> None:
         """Reset the histories and set the switching function."""
         super().reset()
-        self._surface = self.surface()
+        self._surface = self.switching_gains()
 
     def needs_roll(self) -> bool:
         """Return whether roll reduction is on."""
         return bool(self.roll_reduction)
 
-    def surface(self) -> tuple[float, ...]:
+    def switching_gains(self) -> tuple[float, ...]:
         """Return G for the state (psi, psi-1, phi, phi-1, u-1) or (psi-2, psi-1, psi)."""
         key = (bool(self.roll_reduction), self.roll_reduction and self.design_rate > FAST)
         if self.printed:
             return PRINTED[key]
-        found = surface(
-            *nominal(self.roll_reduction), np.array(WEIGHTS[key]), self.design_rate * self.period
+        found = switching_surface(
+            *nominal_ship(self.roll_reduction),
+            np.array(WEIGHTS[key]),
+            self.design_rate * self.period,
         )
         return tuple(found.tolist())
 
-    def side(self) -> float:
+    def switching_function(self) -> float:
         """Return the switching function S = G x."""
         x = (
             (*self.psi[:2], *self.phi[:2], self.rudder)
@@ -116,9 +118,13 @@ class Sliding(Helm):
             for g, s in zip(self._surface, x, strict=True)
         )
 
-    def demand(self) -> float:
+    def rudder_demand(self) -> float:
         """Return the angle after a rudder movement against the sign of S, or the present angle."""
-        side = self.side()
+        side = self.switching_function()
         if abs(side) < self.boundary:
             return self.rudder
-        return self.rudder - self.swing if side > 0.0 else self.rudder + self.swing
+        return (
+            self.rudder - self.largest_rudder_step
+            if side > 0.0
+            else self.rudder + self.largest_rudder_step
+        )

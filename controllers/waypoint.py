@@ -65,8 +65,10 @@ class Waypoint(Controller):
             sense: Sensor readings.
             goal: `x_m` and `y_m` of a point.
         """
-        self._believed = self._replayed(sense) if self.position_replay else (sense.x, sense.y)
-        self._add(goal)
+        self._believed = (
+            self._position_as_published(sense) if self.position_replay else (sense.x, sense.y)
+        )
+        self._append_goal(goal)
         x, y = self._believed
         while (
             len(self._ahead) > 1
@@ -76,14 +78,14 @@ class Waypoint(Controller):
         if not self._ahead:
             return {"thrust_N": 0.0, "azimuth_rad": 0.0}
         north, east = self._ahead[0][0] - x, self._ahead[0][1] - y
-        return self._towards(hypot(north, east), wrap(atan2(east, north) - sense.psi))
+        return self._commands_towards(hypot(north, east), wrap(atan2(east, north) - sense.psi))
 
     def estimates(self) -> dict[str, Estimate]:
         """Return the position that the navigation uses."""
         x, y = self._believed
         return {"x_m": Estimate(x, nan, nan), "y_m": Estimate(y, nan, nan)}
 
-    def _towards(self, distance: float, off: float) -> dict[str, float]:
+    def _commands_towards(self, distance: float, off: float) -> dict[str, float]:
         """Return the commands for a point at this distance [m] and bearing off the bow [rad]."""
         if distance <= self.radius:
             return {"thrust_N": 0.0, "azimuth_rad": 0.0}
@@ -92,14 +94,14 @@ class Waypoint(Controller):
         slow = distance / self.near / 3 if distance <= self.near else 0.5
         return {"thrust_N": self.full * slow, "azimuth_rad": self.swing * copysign(1.0, off)}
 
-    def _add(self, goal: Mapping[str, float]) -> None:
+    def _append_goal(self, goal: Mapping[str, float]) -> None:
         """Append a new goal to the list of points."""
         place = (goal["x_m"], goal.get("y_m", 0.0)) if "x_m" in goal else None
         if place is not None and place != self._given:
             self._ahead.append(place)
         self._given = place
 
-    def _replayed(self, sense: Sense) -> Place:
+    def _position_as_published(self, sense: Sense) -> Place:
         """Return the position of eq. 1: X = x cos psi - y sin psi, Y = x sin psi + y cos psi."""
         if self._before is not None:
             half = 0.5 * (sense.t - self._before.t)

@@ -38,20 +38,20 @@ class Zigzag(Steered):
         Args:
             sense: Sensor readings.
         """
-        if self._left(sense) <= REACHED:
+        if self._angle_to_reversal(sense) <= REACHED:
             self._side, self._reversed = -self._side, self._reversed + 1
         return self._side * abs(self.angle)
 
-    def early(self, sense: Sense) -> float:
+    def time_to_extra_step(self, sense: Sense) -> float:
         """Return the predicted time [s] until the heading is reached; repeated calls refine it.
 
         Args:
             sense: Sensor readings.
         """
-        left, rate = self._left(sense), self._side * sense.r
+        left, rate = self._angle_to_reversal(sense), self._side * sense.r
         return left / rate if self._helm and rate > 0.0 and left > REACHED else inf
 
-    def _left(self, sense: Sense) -> float:
+    def _angle_to_reversal(self, sense: Sense) -> float:
         """Return the angle [rad] to turn before the helm is reversed."""
         return self.heading - self._side * (sense.psi - self._course)
 

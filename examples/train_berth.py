@@ -19,9 +19,9 @@ from stable_baselines3.common.callbacks import BaseCallback
 from boatsim.control.approach import Approach
 from boatsim.control.base import Sense
 from boatsim.learn import episode_random, registration
-from boatsim.learn.environment_options import play
+from boatsim.learn.environment_options import make_simulation
 from boatsim.learn.pilot import run_episodes
-from boatsim.learn.play import Play
+from boatsim.learn.play import TaskSimulation
 from boatsim.learn.sb3 import BoatVecEnv
 from boatsim.physics.content import load_class
 
@@ -84,9 +84,9 @@ def trained(steps: int, boats: int) -> tuple[PPO, Curve]:
     return model, curve
 
 
-def of_policy(model: PPO, game: Play, seeds: episode_random.Seeds) -> Norms:
+def of_policy(model: PPO, game: TaskSimulation, seeds: episode_random.Seeds) -> Norms:
     """How an episode of each boat went."""
-    game.begin(seeds, np.arange(game.n))
+    game.begin_episodes(seeds, np.arange(game.n))
     found: Norms = {}
     waiting = np.ones(game.n, dtype=bool)
     while waiting.any():
@@ -164,14 +164,14 @@ def main() -> None:
     model.save(told.out / "policy.zip")
     if curve.rows:
         drawn(curve, told.out / "curve.svg")
-    says = registration.options_of(ID)
-    seeds = episode_random.episode(
+    says = registration.environment_arguments(ID)
+    seeds = episode_random.episode_seeds(
         np.arange(UNSEEN, UNSEEN + told.draws, dtype=np.uint64), np.zeros(told.draws, np.uint64)
     )
     found = {
-        "policy": of_policy(model, play(n=told.draws, **says), seeds),
+        "policy": of_policy(model, make_simulation(n=told.draws, **says), seeds),
         "L1 joystick": run_episodes(
-            play(n=told.draws, **{**says, "period": 0.08, "step": 0.08}), seeds, Berthing
+            make_simulation(n=told.draws, **{**says, "period": 0.08, "step": 0.08}), seeds, Berthing
         ),
     }
     print(f"\n{told.draws} boats, none of which was trained on\n")

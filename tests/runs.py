@@ -7,7 +7,7 @@ from typing import Any
 
 from boatsim.physics.content import library_names
 from boatsim.simulate import scenario
-from boatsim.simulate.cases import content
+from boatsim.simulate.cases import read_scenario
 from boatsim.simulate.evaluation import Metric, requested_metrics
 from boatsim.simulate.run import run
 
@@ -26,7 +26,7 @@ TESTS = (
 
 def raw(name: str) -> dict[str, Any]:
     """Content of a shipped scenario."""
-    return content(name)[0]
+    return read_scenario(name)[0]
 
 
 @cache

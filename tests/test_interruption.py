@@ -20,7 +20,7 @@ import pytest
 
 from boatsim import interruption
 from boatsim.atomic_folder import atomic_folder
-from boatsim.files import AppendedFile, replacing
+from boatsim.files import AppendedFile, replace_file
 from boatsim.interruption import deferred_signals
 from boatsim.physics.content import library_names, load_class
 from boatsim.physics.signals import STATE as OF_HULLS
@@ -353,7 +353,7 @@ def test_of_a_piece_that_does_not_fit_nothing_stays(tmp_path: Path) -> None:
 
 
 def test_a_temporary_name_is_visible_says_what_it_is_and_goes(tmp_path: Path) -> None:
-    with pytest.raises(ZeroDivisionError), replacing(tmp_path / "run.csv") as temporary:
+    with pytest.raises(ZeroDivisionError), replace_file(tmp_path / "run.csv") as temporary:
         temporary.write_text("half")
         assert temporary.name == f"run.part-{os.getpid()}.csv"
         raise ZeroDivisionError
@@ -385,7 +385,7 @@ def test_a_log_in_a_file_is_the_one_in_memory(count: int, tmp_path: Path) -> Non
         for log in logs:
             if i % 7 == 3:  # the last row so far changes, before and after a look at all of it
                 log.rows(0, log.count)
-                log.amend(2, np.array([-1.0]))
+                log.replace_last_values(2, np.array([-1.0]))
             log.add(row)
     for start, stop in (
         (0, count),
@@ -429,7 +429,7 @@ def test_a_measure_of_a_short_log_has_numbers_or_says_that_it_is_too_short(
             warnings.simplefilter("error")
             if isinstance(made, CameraMetricSet):
                 place = np.zeros((rows, 2))
-                found = made.from_frames(
+                found = made.values_from_frames(
                     CameraFrames(t, slope * t, {"bow": place}, place, slope * t)
                 )
                 assert found == {}

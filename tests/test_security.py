@@ -27,7 +27,7 @@ from boatsim.cli.exits import LONGEST, one_line, print_error
 from boatsim.cli.run_many import plan_runs
 from boatsim.diagnosis.candidates import library_for
 from boatsim.diagnosis.loading import vessel_for
-from boatsim.drive.driver_input import PATIENCE, Hands, Sticks
+from boatsim.drive.driver_input import PATIENCE, DriverInput, Sticks
 from boatsim.drive.server import LARGEST as MESSAGE
 from boatsim.drive.server import STRANGE, TAKEN, Server
 from boatsim.errors import BadInput, BoatsimError, printable
@@ -428,7 +428,7 @@ def test_16_a_run_is_served_to_this_machine_alone(monkeypatch: pytest.MonkeyPatc
     asked: list[str] = []
     ended = subprocess.Popen([sys.executable, "-c", ""], start_new_session=True)
     ended.wait()
-    monkeypatch.setattr(viewer, "_rerun", lambda *options: asked.extend(options) or ended)
+    monkeypatch.setattr(viewer, "_start_rerun", lambda *options: asked.extend(options) or ended)
     with pytest.raises(BoatsimError, match="does not start"), viewer.viewer_for(serve=True):
         pass
     assert asked[asked.index("--bind") + 1] == "127.0.0.1"
@@ -438,8 +438,8 @@ def test_16_a_window_listens_to_this_machine_alone(monkeypatch: pytest.MonkeyPat
     asked: list[str] = []
     ended = subprocess.Popen([sys.executable, "-c", ""], start_new_session=True)
     ended.wait()
-    monkeypatch.setattr(viewer, "_rerun", lambda *options: asked.extend(options) or ended)
-    monkeypatch.setattr(viewer, "_listening", lambda port: False)
+    monkeypatch.setattr(viewer, "_start_rerun", lambda *options: asked.extend(options) or ended)
+    monkeypatch.setattr(viewer, "_is_listening", lambda port: False)
     monkeypatch.setenv("DISPLAY", ":99")
     with viewer.viewer_for(serve=False) as shown:
         assert shown is None
@@ -536,7 +536,7 @@ def test_19_what_does_not_fit_the_memory_is_refused(
 @pytest.fixture
 def server() -> Iterator[Server]:
     pytest.importorskip("websockets")
-    with Server(Hands()) as made:
+    with Server(DriverInput()) as made:
         yield made
 
 
@@ -601,10 +601,10 @@ def test_21_one_drives_and_a_second_page_is_told_so(server: Server) -> None:
             second.recv(5)
         first.send(json.dumps({"sticks": [0.5, 0, 0], "moved": 2.0}))
         until(lambda: server.hands.sticks() not in (None, Sticks()))
-    until(lambda: server.hands.away == "page closed")
+    until(lambda: server.hands.release_reason == "page closed")
     with dialled(server) as third:
         third.send(json.dumps({"sticks": [0, 0, 0], "moved": 3.0}))
-        until(lambda: not server.hands.away)
+        until(lambda: not server.hands.release_reason)
 
 
 @pytest.mark.parametrize(

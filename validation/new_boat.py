@@ -14,9 +14,9 @@ from pathlib import Path
 
 import numpy as np
 
-from boatsim.newboat.from_log import Fitted, fitted
-from boatsim.newboat.particulars import Particulars, particulars
-from boatsim.newboat.write import VESSEL, files
+from boatsim.newboat.from_log import FittedBoat, fit_boat
+from boatsim.newboat.particulars import Particulars, parse_particulars
+from boatsim.newboat.write import VESSEL, boat_files
 from boatsim.physics.base import Array
 from boatsim.physics.content import find_content_file
 from tests import pushed_three_metre
@@ -53,7 +53,7 @@ def three_metre_case(folder: Path) -> Case:
     for seed in (1, 2, 3):
         pushed_three_metre.write(folder / f"run_{seed}.csv", seed)
         logs[f"run_{seed}"] = dict(read_columns(folder / f"run_{seed}.csv"))
-    boat = particulars("three_metre", 3.0, 1.6, 90.0, ["-1.2,-0.6,60", "-1.2,0.6,60"], [])
+    boat = parse_particulars("three_metre", 3.0, 1.6, 90.0, ["-1.2,-0.6,60", "-1.2,0.6,60"], [])
 
     def hand_made(where: Path) -> Path:
         where.mkdir(exist_ok=True)
@@ -68,7 +68,7 @@ def blueboat_case(_: Path) -> Case:
 
     Sizes are from the maker's page, thrusters from its source.
     """
-    boat = particulars(
+    boat = parse_particulars(
         "blueboat_new",
         1.2,
         0.77,
@@ -101,7 +101,7 @@ def esso_osaka_case(_: Path) -> Case:
     ahead, propeller, rudder = data["x_G_m"], data["propeller"], data["rudder"]
     per = THRUST_COEFFICIENT * data["density_water_kgm3"] * propeller["D_m"] ** 4  # [N s^2]
     at = propeller["x_over_Lpp"] * data["Lpp_m"] - ahead
-    boat = particulars(
+    boat = parse_particulars(
         "esso_osaka_new",
         data["Lpp_m"],
         data["beam_m"],
@@ -162,11 +162,11 @@ def read_columns(path: Path) -> dict[str, Array]:
     return {name: read[name] for name in read.dtype.names or ()}
 
 
-def judge_case(case: Case, folder: Path) -> Iterator[tuple[str, Fitted]]:
+def judge_case(case: Case, folder: Path) -> Iterator[tuple[str, FittedBoat]]:
     """Return the errors of the new boat, then of the hand-made one."""
     own = folder / case.boat.name
     own.mkdir()
-    for name, text in files(case.boat).items():
+    for name, text in boat_files(case.boat).items():
         (own / name).write_text(text, encoding="utf-8")
     yield "new", _fit_vessel(own / VESSEL, case, folder / "new_logs", dict)
     yield (
@@ -180,12 +180,12 @@ def _fit_vessel(
     case: Case,
     folder: Path,
     taken: Callable[[Mapping[str, Array]], Mapping[str, Array]],
-) -> Fitted:
+) -> FittedBoat:
     folder.mkdir()
     for name, log in case.logs.items():
         _write(folder / f"{name}.csv", taken(log))
     fit = [folder / f"{n}.csv" for n in case.logs if n not in case.held_out]
-    return fitted(file, fit, [folder / f"{n}.csv" for n in case.held_out])
+    return fit_boat(file, fit, [folder / f"{n}.csv" for n in case.held_out])
 
 
 def _write(file: Path, log: Mapping[str, Array]) -> None:

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from boatsim.cli.entry import CLASSES, class_entry
 from boatsim.errors import BadInput, unknown_name
-from boatsim.files import read_toml, tables
+from boatsim.files import array_of_tables, read_toml
 from boatsim.physics import content, vessel
 from boatsim.physics.base import Effect
 from boatsim.physics.vessel import CommandChannel, Vessel
@@ -41,7 +41,7 @@ def list_content(kind: str | None, like: str | None = None) -> list[str]:
         names = content.all_names(one)
         every_name += names
         if like is not None:
-            names = list(filter(partial(_is_like, like=like), names))
+            names = list(filter(partial(_is_similar, like=like), names))
             if not names:
                 continue
         if lines:
@@ -49,22 +49,22 @@ def list_content(kind: str | None, like: str | None = None) -> list[str]:
         lines.append(f"{plural}:")
         width = max(map(len, names), default=0)
         for name in names:
-            lines.append(f"  {name:{width}}  {_summary(one, name)}")
+            lines.append(f"  {name:{width}}  {_summarise_item(one, name)}")
     if like is not None and not lines:
         raise BadInput(unknown_name(what, like, every_name))
     return lines
 
 
-def _is_like(name: str, like: str) -> bool:
+def _is_similar(name: str, like: str) -> bool:
     if not set("*?[").isdisjoint(like):
         return fnmatchcase(name, like)
     return like in name
 
 
-def _summary(kind: str, name: str) -> str:
+def _summarise_item(kind: str, name: str) -> str:
     """One line about an item."""
     if kind == "scenario":
-        return str(cases.content(name)[0].get("about", ""))
+        return str(cases.read_scenario(name)[0].get("about", ""))
     if kind == "vessel":
         return str(read_toml(content.find_content_file(kind, name)).get("about", ""))
     return str(content.load_class(kind, name).words)
@@ -113,7 +113,7 @@ def _class_lines(kind: str, name: str) -> list[str]:
     lines = [f"{item.name}: {kind}", f"  {item.words}"]
     lines += map(str.rstrip, map("  {}".format, item.doc))
     lines += starmap("  {}: {}".format, item.facts)
-    lines += _align(item.parameters, "  ")
+    lines += _align_columns(item.parameters, "  ")
     return [*lines, "example:", *map("  {}".format, item.example)]
 
 
@@ -133,10 +133,12 @@ def _vessel_lines(name: str) -> list[str]:
     ]
     if boat.commands:
         lines.append("  channels:")
-        lines += _align([_channel_row(boat, n, c) for n, c in boat.commands.items()], "    ")
+        lines += _align_columns(
+            [_channel_row(boat, n, c) for n, c in boat.commands.items()], "    "
+        )
     if boat.measured:
         lines.append("  measured:")
-        lines += _align([(n, "", m.about) for n, m in boat.measured.items()], "    ")
+        lines += _align_columns([(n, "", m.about) for n, m in boat.measured.items()], "    ")
     lines.append("  effects:")
     lines += map(_effect_line, boat.effects)
     if boat.loads:
@@ -163,7 +165,7 @@ def _channel_row(boat: Vessel, name: str, channel: CommandChannel) -> tuple[str,
     return name, span, channel.about
 
 
-def _align(rows: Sequence[Sequence[str]], indent: str) -> list[str]:
+def _align_columns(rows: Sequence[Sequence[str]], indent: str) -> list[str]:
     """Lines of a table whose columns are as wide as their longest cell."""
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     lines = []
@@ -190,9 +192,9 @@ def _effect_line(effect: Effect) -> str:
 
 def _scenario_lines(name: str) -> list[str]:
     """Description of a scenario, with the values of the files it builds on."""
-    if name.endswith(".toml") and cases.cases(content.find_content_file("scenario", name)):
-        return [f"{Path(name).name}: scenarios", *map("  {}".format, cases.matching(name))]
-    table, place = cases.content(name)
+    if name.endswith(".toml") and cases.case_names(content.find_content_file("scenario", name)):
+        return [f"{Path(name).name}: scenarios", *map("  {}".format, cases.find_scenarios(name))]
+    table, place = cases.read_scenario(name)
     lines = [
         f"{place.name}: scenario",
         f"  {table.get('about', '')}".rstrip(),
@@ -213,7 +215,7 @@ def _scenario_lines(name: str) -> list[str]:
             if values:
                 line += f" ({values})"
             lines.append(line)
-    if effects := [str(effect.get("use")) for effect in tables(table.get("effect"))]:
+    if effects := [str(effect.get("use")) for effect in array_of_tables(table.get("effect"))]:
         lines.append(f"  effects: {', '.join(effects)}")
     metrics = table.get("norms")
     if isinstance(metrics, dict) and metrics:

@@ -486,10 +486,10 @@ def manoeuvre(
 ) -> int:
     """Run a standard manoeuvre; compare its figures with the limits of IMO MSC.137(76)."""
     from boatsim.cli.run_many import run_manoeuvre
-    from boatsim.simulate.manoeuvre import scenario_of
+    from boatsim.simulate.manoeuvre import manoeuvre_scenario
 
     with trusted_content(content, trust, [vessel]):
-        scenario = scenario_of(name, vessel, _split_loads(load), angle, speed, heading)
+        scenario = manoeuvre_scenario(name, vessel, _split_loads(load), angle, speed, heading)
         return run_manoeuvre(scenario, out or Path("out") / f"{scenario.vessel.name}_{name}")
 
 
@@ -547,7 +547,7 @@ def margins(
 
     with trusted_content(content):
         made = load_class("controller", controller, named=True)()
-        print(control_margins.text(control_margins.table(made)))
+        print(control_margins.format_margins(control_margins.margin_rows(made)))
 
 
 @app.command()
@@ -790,9 +790,9 @@ def new(
     The folder gets vessel.toml with the rule behind every number, a hull drawing and a scenario.
     """
     from boatsim.cli.newboat import create_boat
-    from boatsim.newboat.particulars import particulars
+    from boatsim.newboat.particulars import parse_particulars
 
-    main_particulars = particulars(
+    main_particulars = parse_particulars(
         folder.resolve().name,
         length,
         beam,

@@ -9,9 +9,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from boatsim.cli.exits import print_lines
-from boatsim.cli.metric_table import format_value, print_table, reasons
+from boatsim.cli.metric_table import explain_missing_values, format_value, print_table
 from boatsim.errors import printable
-from boatsim.files import replacing
+from boatsim.files import replace_file
 
 if TYPE_CHECKING:
     from boatsim.simulate.evaluation import MetricEntry, RunEntry
@@ -45,19 +45,19 @@ def compare_runs(runs: Sequence[FinishedRun]) -> None:
     """
     if not runs:
         return
-    heads = _heads(runs)
-    rows = _rows(runs)
-    _print(heads, runs, rows)
+    heads = _run_headings(runs)
+    rows = _metric_rows(runs)
+    _print_comparison(heads, runs, rows)
     folder = Path(os.path.commonpath([run.folder.absolute() for run in runs]))
     if len(runs) == 1:
         folder = folder.parent
     path = Path(os.path.relpath(folder)) / "compare.rrd"
-    _write_log(path, heads, runs, rows)
+    _write_compare_rrd(path, heads, runs, rows)
     print_lines(printable(f"written to {run.folder}") for run in runs)
     print_lines([printable(f"all boats: {path}")])
 
 
-def _heads(runs: Sequence[FinishedRun]) -> list[tuple[str, ...]]:
+def _run_headings(runs: Sequence[FinishedRun]) -> list[tuple[str, ...]]:
     """Heading of each run: scenario, controller or both, those that differ between runs."""
     scenarios = [run.content["scenario"] for run in runs]
     short = [name.rpartition("/")[2] for name in scenarios]
@@ -72,7 +72,7 @@ def _heads(runs: Sequence[FinishedRun]) -> list[tuple[str, ...]]:
     return list(zip(*columns, strict=True))
 
 
-def _rows(runs: Sequence[FinishedRun]) -> list[list[str]]:
+def _metric_rows(runs: Sequence[FinishedRun]) -> list[list[str]]:
     """Metric with unit, its kind, and a cell for each run; the lowest value is marked."""
     metrics: dict[tuple[str, str], None] = {}
     for run in runs:
@@ -89,15 +89,17 @@ def _rows(runs: Sequence[FinishedRun]) -> list[list[str]]:
                 kind = kind or entry["kind"]
             else:
                 entries.append(None)
-        best = _best(scenarios, entries)
-        cells = [_cell(entry, index in best) for index, entry in enumerate(entries)]
+        best = _lowest_value_indices(scenarios, entries)
+        cells = [_format_cell(entry, index in best) for index, entry in enumerate(entries)]
         if unit:
             name = f"{name} [{unit}]"
         rows.append([name, kind, *cells])
     return rows
 
 
-def _best(scenarios: Sequence[str], entries: Sequence["MetricEntry | None"]) -> set[int]:
+def _lowest_value_indices(
+    scenarios: Sequence[str], entries: Sequence["MetricEntry | None"]
+) -> set[int]:
     """Indices of the runs with the lowest value, per scenario if one scenario was run repeatedly.
 
     Lower is better only for the size of an error, not for a mean, a time or a position.
@@ -120,7 +122,7 @@ def _best(scenarios: Sequence[str], entries: Sequence["MetricEntry | None"]) -> 
     return best
 
 
-def _cell(entry: "MetricEntry | None", best: bool) -> str:
+def _format_cell(entry: "MetricEntry | None", best: bool) -> str:
     if entry is None:
         return ""
     plain = format_value({**entry, "unit": ""})
@@ -129,14 +131,14 @@ def _cell(entry: "MetricEntry | None", best: bool) -> str:
     return f"{plain} {best_mark}{missed_mark}"
 
 
-def _print(
+def _print_comparison(
     heads: Sequence[tuple[str, ...]], runs: Sequence[FinishedRun], rows: Sequence[Sequence[str]]
 ) -> None:
     from rich.console import Console
     from rich.table import Table
     from rich.text import Text
 
-    table = Table(title=Text(printable(_title(runs))), pad_edge=False)
+    table = Table(title=Text(printable(_table_title(runs))), pad_edge=False)
     for heading in ("metric", "kind"):
         table.add_column(heading, no_wrap=True)
     for head in heads:
@@ -156,11 +158,11 @@ def _print(
         for name, entry in run.content["norms"].items():
             entries[f"{'/'.join(head)}: {name}"] = entry
     console = Console()
-    for line in filter(None, [legend, *reasons(entries)]):
+    for line in filter(None, [legend, *explain_missing_values(entries)]):
         console.print(Text(printable(line)), soft_wrap=True)
 
 
-def _title(runs: Sequence[FinishedRun]) -> str:
+def _table_title(runs: Sequence[FinishedRun]) -> str:
     """Scenario, controller and seed that all runs share."""
     shared = []
     for key, prefix in (("scenario", ""), ("controller", ""), ("seed", "seed ")):
@@ -170,7 +172,7 @@ def _title(runs: Sequence[FinishedRun]) -> str:
     return ", ".join(shared) or "side by side"
 
 
-def _write_log(
+def _write_compare_rrd(
     path: Path,
     heads: Sequence[tuple[str, ...]],
     runs: Sequence[FinishedRun],
@@ -184,8 +186,10 @@ def _write_log(
     markdown = f"| metric | kind | {' | '.join(names)} |\n|:---|:---|" + "---:|" * len(names) + "\n"
     for row in rows:
         markdown += f"| {' | '.join(map(str.strip, row))} |\n"
-    with replacing(path) as temporary:
-        log_side_by_side(temporary, dict(zip(names, _boats(runs), strict=True)), markdown)
+    with replace_file(path) as temporary:
+        log_side_by_side(
+            temporary, dict(zip(names, _load_recorded_boats(runs), strict=True)), markdown
+        )
 
 
 def _make_unique(names: Sequence[str]) -> list[str]:
@@ -201,11 +205,11 @@ def _make_unique(names: Sequence[str]) -> list[str]:
     return unique
 
 
-def _boats(runs: Sequence[FinishedRun]) -> "list[Boat]":
+def _load_recorded_boats(runs: Sequence[FinishedRun]) -> "list[Boat]":
     """Recording and scene of each run; the goals of a scenario belong to its first run."""
     from boatsim.recordings.table import read
     from boatsim.simulate import world
-    from boatsim.simulate.controllers import steered
+    from boatsim.simulate.controllers import load_with_controller
     from boatsim.view import water
     from boatsim.view.rerun_log import Boat
     from boatsim.view.scene import scene_from
@@ -214,13 +218,13 @@ def _boats(runs: Sequence[FinishedRun]) -> "list[Boat]":
     names = [run.content["scenario"] for run in runs]
     boats: list[Boat] = []
     for index, (run, log) in enumerate(zip(runs, logs, strict=True)):
-        scenario = steered(run.scenario, run.controller)
+        scenario = load_with_controller(run.scenario, run.controller)
         vessel = scenario.vessel
         if scenario.file.tank:
             tank = world.Tank(**scenario.file.tank.model_dump())
-            scene = scene_from(world.build(vessel, tank), vessel, tank)
+            scene = scene_from(world.build_model(vessel, tank), vessel, tank)
         else:
-            scene = water.around(vessel, {"all": logs})
+            scene = water.open_water_scene(vessel, {"all": logs})
         goals = ""
         if names.index(names[index]) == index:
             goals = "goal"

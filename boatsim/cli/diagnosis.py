@@ -21,7 +21,7 @@ from boatsim.diagnosis.report.answer import NEXT_SCENARIO
 from boatsim.diagnosis.report.output_files import write_diagnosis
 from boatsim.diagnosis.report.sentences import console_lines
 from boatsim.errors import BadInput
-from boatsim.files import replacing
+from boatsim.files import replace_file
 from boatsim.physics.signals import STATE, Array
 from boatsim.physics.vessel import Vessel
 from boatsim.recordings.table import Notes, Recording, write_csv
@@ -124,7 +124,7 @@ def _write_replay(stretches: Sequence[FreeRun], path: Path) -> None:
     table = free_run_columns(stretches)
     formats = ["%.10g", *["%.9g"] * (len(table) - 1)]  # times as in the recording
     rows = np.column_stack(list(table.values()))
-    with replacing(path) as temporary, temporary.open("w", encoding="utf-8", newline="") as file:
+    with replace_file(path) as temporary, temporary.open("w", encoding="utf-8", newline="") as file:
         np.savetxt(file, rows, formats, ",", header=",".join(table), comments="")
 
 
@@ -152,7 +152,7 @@ def compare(run: Path, vessel: str | None, load: list[str], scenario: str | None
         report("reading the recording")
         recording, boat = open_recording(run, vessel, load)
         if vessel is None and not load and not scenario:
-            boat = _with_scenario_effects(recording, boat)
+            boat = _add_scenario_effects(recording, boat)
         if scenario:
             report(f"running {scenario}", RUNNING)
             simulated = _simulate_scenario(recording, scenario)
@@ -181,7 +181,7 @@ def compare(run: Path, vessel: str | None, load: list[str], scenario: str | None
     return 0
 
 
-def _with_scenario_effects(recording: Recording, boat: Vessel) -> Vessel:
+def _add_scenario_effects(recording: Recording, boat: Vessel) -> Vessel:
     """The vessel with the effects of the recording's scenario, if that scenario can be used."""
     name = recording.notes.facts.get("scenario")
     if not isinstance(name, str):
@@ -235,5 +235,5 @@ def _write_compare_rrd(
         "recording": [Recording("recording", recording.t, measured)],
         "simulated": [Recording("simulated", recording.t, dict(simulated))],
     }
-    with replacing(path) as temporary:
-        rerun_log.log_overlay(temporary, boats, None, [], water.around(boat, boats))
+    with replace_file(path) as temporary:
+        rerun_log.log_overlay(temporary, boats, None, [], water.open_water_scene(boat, boats))

@@ -9,7 +9,7 @@ from statistics import median_high
 from boatsim.cli.exits import Exit, print_error, print_note
 from boatsim.cli.metric_table import print_metrics
 from boatsim.cli.run_many import ViewerOptions, open_viewer, report_saturation
-from boatsim.drive.driver_input import Hands
+from boatsim.drive.driver_input import DriverInput
 from boatsim.drive.server import Server
 from boatsim.drive.session import Session, folder_name
 from boatsim.drive.task import FILE, Task
@@ -36,7 +36,7 @@ def drive_vessel(
     """
     folder = out or folder_name(task.vessel.name, time.time())
     with ExitStack() as stack:
-        server = stack.enter_context(Server(Hands(), port))
+        server = stack.enter_context(Server(DriverInput(), port))
         address = None
         if viewer:
             address = stack.enter_context(open_viewer(viewer.serve))
@@ -45,10 +45,10 @@ def drive_vessel(
         if browser or (browser is None and has_display()):
             webbrowser.open(server.address)
         observers = rerun_observers(address)
-        scenario = task.in_folder(folder)
+        scenario = task.scenario_in_folder(folder)
         done = run_into_folder(folder, scenario, observers=observers, steering=session)
         content = done.to_json()
-        server.farewell({"folder": str(folder)})
+        server.send_result({"folder": str(folder)})
     return _print_result(content, folder, session)
 
 

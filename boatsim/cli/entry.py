@@ -69,13 +69,13 @@ def class_entry(kind: str, name: str) -> Entry:
         own_name,
         cls.words,
         tuple(doc),
-        tuple(_facts(cls)),
+        tuple(_class_facts(cls)),
         tuple(_parameter_rows(cls, params, defaults)),
-        tuple(_example(TABLES[kind], own_name, cls, params, defaults)),
+        tuple(_example_lines(TABLES[kind], own_name, cls, params, defaults)),
     )
 
 
-def _facts(cls: type[Any]) -> Iterator[tuple[str, str]]:
+def _class_facts(cls: type[Any]) -> Iterator[tuple[str, str]]:
     """Label and text of the facts that a class declares."""
     if text := getattr(cls, "source", ""):
         yield "source", text
@@ -108,7 +108,7 @@ def _effect_facts(cls: type[Effect]) -> Iterator[tuple[str, str]]:
     if cls.ruled_out_by:
         excluding: list[str] = []
         for fact, values in cls.ruled_out_by.items():
-            excluding += map(f"{fact} = {{}}".format, map(_toml, values))
+            excluding += map(f"{fact} = {{}}".format, map(_format_toml_value, values))
         yield "ruled out by", " or ".join(excluding)
     if cls.facts:
         yield "needs the facts", ", ".join(cls.facts)
@@ -119,7 +119,7 @@ def _effect_facts(cls: type[Effect]) -> Iterator[tuple[str, str]]:
         )
 
 
-def _toml(value: object) -> str:
+def _format_toml_value(value: object) -> str:
     if isinstance(value, bool):
         return str(value).lower()
     return f'"{value}"'
@@ -138,12 +138,12 @@ def _parameter_rows(
         fitted = ("fitted",) if fits else ()
         yield "parameter", "default", "allowed", *fitted, "what"
     for name, param in numbers.items():
-        default = f"{_default(defaults[name], param)} {param.unit}".rstrip()
-        fitted = (_fitted(param),) if fits else ()
+        default = f"{_format_default(defaults[name], param)} {param.unit}".rstrip()
+        fitted = (_describe_fitting(param),) if fits else ()
         yield name, default, f"{param.low:g} to {param.high:g}", *fitted, param.words
 
 
-def _fitted(param: Param) -> str:
+def _describe_fitting(param: Param) -> str:
     """Whether a diagnosis fits a parameter: of a candidate effect, or of the nominal model."""
     if param.fit:
         return "yes"
@@ -156,7 +156,7 @@ def _is_number(value: Any) -> bool:
     return isinstance(value, int | float) and not isnan(value)
 
 
-def _default(value: Any, param: Param) -> str:
+def _format_default(value: Any, param: Param) -> str:
     if _is_number(value):
         return f"{value:g}"
     if param.follows:
@@ -164,7 +164,7 @@ def _default(value: Any, param: Param) -> str:
     return "by rule or 0"
 
 
-def _example(
+def _example_lines(
     table: str, name: str, cls: type[Any], params: dict[str, Param], defaults: dict[str, Any]
 ) -> Iterator[str]:
     """Lines of its table in a file."""

@@ -6,7 +6,7 @@ from pathlib import Path
 from boatsim.cli.exits import print_lines, print_note, print_notes
 from boatsim.cli.progress import report_stages
 from boatsim.errors import BadInput, printable
-from boatsim.files import replacing
+from boatsim.files import replace_file
 from boatsim.physics import vessel as vessels
 from boatsim.physics.content import vessel_address
 from boatsim.physics.vessel import Vessel
@@ -56,7 +56,7 @@ def import_log(
         raise BadInput(f"--out {out}: recordings are written as CSV; use a name ending in .csv")
     if out.resolve() in (log.resolve(), map.resolve()):
         raise BadInput(f"--out {out} would overwrite the input; give another name")
-    return _convert(log, out, map, vessel, load)
+    return _convert_log(log, out, map, vessel, load)
 
 
 def _propose_map(
@@ -76,7 +76,7 @@ def _propose_map(
         introduction = "Proposed map (--propose map.toml writes it; --map map.toml converts):"
         print_lines(["", introduction, "", text.rstrip()])
         return 0
-    with replacing(propose) as temporary:
+    with replace_file(propose) as temporary:
         temporary.write_text(text, encoding="utf-8")
     command = f"boatsim import {log.path} --map {propose} --out {out or 'run.csv'}"
     print_lines(["", printable(f"written to {propose}: check every line, then: {command}")])
@@ -92,7 +92,7 @@ def _turn_direction(boat: Vessel, channel: str) -> int:
     return (steer > 0.0) - (steer < 0.0)
 
 
-def _convert(path: Path, out: Path, map: Path, vessel: str | None, load: Sequence[str]) -> int:
+def _convert_log(path: Path, out: Path, map: Path, vessel: str | None, load: Sequence[str]) -> int:
     mapping = read_map(map)
     name = vessel or mapping.vessel
     boat = vessels.load_vessel(name, load) if name else None
@@ -124,6 +124,6 @@ def _write_vessel(out: Path, boat: Vessel, fix: str | None) -> None:
         lines = " / ".join(text.splitlines())
         print_note(f"{file} exists and is kept; for this recording it should contain: {lines}")
         return
-    with replacing(file) as temporary:
+    with replace_file(file) as temporary:
         temporary.write_text(text, encoding="utf-8")
     print_lines([printable(f"written to {file}: {boat.name}")])

@@ -31,18 +31,22 @@ def print_metrics(run: "RunEntry", folder: Path) -> None:
     title = Text(printable(words))
     metrics = run["norms"]
     table = Table(title=title, pad_edge=False)
-    for heading, justify in _columns(metrics.values()).items():
+    for heading, justify in _column_alignments(metrics.values()).items():
         table.add_column(heading, justify=justify, no_wrap=True)
     for name, metric in metrics.items():
-        cells = {"metric": printable(name), **_cells(metric)}
+        cells = {"metric": printable(name), **_format_cells(metric)}
         table.add_row(*(cells[str(column.header)] for column in table.columns))
     console = Console()
     console.print(table if metrics else title)
-    for line in [*meanings(metrics), *reasons(metrics), f"written to {folder}"]:
+    for line in [
+        *explain_name_endings(metrics),
+        *explain_missing_values(metrics),
+        f"written to {folder}",
+    ]:
         console.print(Text(printable(line)), soft_wrap=True)
 
 
-def _columns(metrics: Iterable["MetricEntry"]) -> dict[str, Literal["left", "right"]]:
+def _column_alignments(metrics: Iterable["MetricEntry"]) -> dict[str, Literal["left", "right"]]:
     """Headings with their alignment; a column of bands only if one of the metrics has one."""
     columns: dict[str, Literal["left", "right"]] = {"metric": "left", "value": "right"}
     metrics = list(metrics)
@@ -53,7 +57,7 @@ def _columns(metrics: Iterable["MetricEntry"]) -> dict[str, Literal["left", "rig
     return columns
 
 
-def _cells(metric: "MetricEntry") -> dict[str, str]:
+def _format_cells(metric: "MetricEntry") -> dict[str, str]:
     """Text of each cell of a metric's row, by heading."""
     from boatsim.simulate.evaluation import MISSED, NO_TOLERANCE, REPRODUCED
 
@@ -84,7 +88,7 @@ def format_value(metric: "MetricEntry") -> str:
     return f"{value:.4g} {metric['unit']}".rstrip()
 
 
-def meanings(metrics: Mapping[str, "MetricEntry"]) -> list[str]:
+def explain_name_endings(metrics: Mapping[str, "MetricEntry"]) -> list[str]:
     """Return a line that explains the endings of metric names that do not explain themselves.
 
     Args:
@@ -103,7 +107,7 @@ def meanings(metrics: Mapping[str, "MetricEntry"]) -> list[str]:
     return ["; ".join(f"{ending}: {kind}" for kind, ending in kinds.items())]
 
 
-def reasons(metrics: Mapping[str, "MetricEntry"]) -> list[str]:
+def explain_missing_values(metrics: Mapping[str, "MetricEntry"]) -> list[str]:
     """Return a line for each reason why metrics have no value.
 
     Args:

@@ -7,7 +7,7 @@ from boatsim.cli.exits import print_lines
 from boatsim.cli.progress import report_stages
 from boatsim.errors import BadInput
 from boatsim.newboat.particulars import Particulars
-from boatsim.newboat.write import VESSEL, files
+from boatsim.newboat.write import VESSEL, boat_files
 
 
 def create_boat(folder: Path, boat: Particulars, logs: list[Path], force: bool) -> int:
@@ -27,7 +27,7 @@ def create_boat(folder: Path, boat: Particulars, logs: list[Path], force: bool) 
     """
     if folder.exists() and not force:
         raise BadInput(f"{folder} exists already; --force overwrites it")
-    texts = files(boat)
+    texts = boat_files(boat)
     lines: list[str] = []
     with atomic_folder(folder) as new:
         for name, text in texts.items():
@@ -50,10 +50,10 @@ def _fit_coefficients(vessel: Path, logs: list[Path]) -> list[str]:
     from boatsim.newboat import from_log
 
     with report_stages() as report:
-        found = from_log.fitted(vessel, logs, report=report)
-    lines = from_log.in_words(found)
-    if found.better:
-        vessel.write_text(from_log.text(found, logs), encoding="utf-8")
+        found = from_log.fit_boat(vessel, logs, report=report)
+    lines = from_log.fit_report_lines(found)
+    if found.reduces_error:
+        vessel.write_text(from_log.fitted_vessel_text(found, logs), encoding="utf-8")
     else:
         lines.append(
             "the fitted coefficients predict held-out data worse than the estimates: "

@@ -29,7 +29,7 @@ def report_stages() -> Iterator[Report]:
         Function to call with the stage, the share of the work done, and a detail.
     """
     if sys.stderr.isatty():
-        with _bar() as report:
+        with _show_bar() as report:
             yield report
     else:
         yield _report_lines()
@@ -62,7 +62,7 @@ def report_campaign() -> Iterator[Report]:
         Function to call with the stage, the share of the tasks done, and a detail.
     """
     if sys.stderr.isatty():
-        with _bar() as bar:
+        with _show_bar() as bar:
             yield bar
         return
     start = monotonic()
@@ -92,7 +92,7 @@ def print_progress(line: str) -> None:
 
 
 @contextmanager
-def _bar() -> Iterator[Report]:
+def _show_bar() -> Iterator[Report]:
     """Progress bar with the present stage, the elapsed time and the time left."""
     from rich.console import Console
     from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
@@ -179,7 +179,7 @@ def report_runs(tasks: Sequence[tuple[str, float]], several: bool = True) -> Ite
     """
     if not sys.stderr.isatty():
         silent = several and len(tasks) == 1
-        yield _ignore if silent else _report_starts(tasks)
+        yield _ignore_progress if silent else _report_starts(tasks)
         return
     from rich.console import Console
     from rich.progress import (
@@ -219,7 +219,7 @@ def report_runs(tasks: Sequence[tuple[str, float]], several: bool = True) -> Ite
         yield report
 
 
-def _ignore(index: int, t: float) -> None:
+def _ignore_progress(index: int, t: float) -> None:
     """Report nothing."""
 
 

@@ -22,8 +22,8 @@ from boatsim.cli.metric_table import print_metrics
 from boatsim.errors import BadInput
 from boatsim.interruption import ignored_signals, signal_received
 from boatsim.physics import trust
-from boatsim.simulate.cases import matching
-from boatsim.simulate.controllers import steered
+from boatsim.simulate.cases import find_scenarios
+from boatsim.simulate.controllers import load_with_controller
 from boatsim.simulate.evaluation import RunEntry
 from boatsim.simulate.real_time_pace import Pace
 from boatsim.simulate.run_options import LIVE_REFRESH, RunOptions
@@ -147,7 +147,7 @@ def run_all(
             speed = 0.0
             if viewer and address:
                 speed = viewer.speed
-            outcomes = _run_in_turn(planned, report, address, speed)
+            outcomes = _run_sequentially(planned, report, address, speed)
     _print_outcomes(outcomes, side_by_side)
     return max(outcome.code for outcome in outcomes)
 
@@ -254,14 +254,14 @@ def plan_runs(
     Raises:
         BadInput: A scenario or controller is wrong, or two runs would share an output folder.
     """
-    if repeated := _first_repeated([Path(controller).stem for controller in controllers]):
+    if repeated := _first_duplicate([Path(controller).stem for controller in controllers]):
         raise BadInput(f"--controller {repeated} is given twice; both would write to one folder")
-    addresses = list(chain.from_iterable(map(matching, names)))
+    addresses = list(chain.from_iterable(map(find_scenarios, names)))
     choices: Sequence[str | None] = controllers or [None]
     loaded: list[list[Scenario]] = []
     for address in addresses:
-        loaded.append([steered(address, choice) for choice in choices])
-    folders = _folders([variants[0].name for variants in loaded], out)
+        loaded.append([load_with_controller(address, choice) for choice in choices])
+    folders = _output_folders([variants[0].name for variants in loaded], out)
     planned = []
     for address, variants, folder in zip(addresses, loaded, folders, strict=True):
         for scenario, choice in zip(variants, choices, strict=True):
@@ -274,7 +274,7 @@ def plan_runs(
     return planned
 
 
-def _first_repeated(names: Sequence[str]) -> str | None:
+def _first_duplicate(names: Sequence[str]) -> str | None:
     """The first name that occurs more than once."""
     for name, count in Counter(names).items():
         if count > 1:
@@ -282,11 +282,11 @@ def _first_repeated(names: Sequence[str]) -> str | None:
     return None
 
 
-def _folders(names: Sequence[str], out: Path | None) -> list[Path]:
+def _output_folders(names: Sequence[str], out: Path | None) -> list[Path]:
     """DIR for one scenario, DIR/vessel/case for each of several; DIR is out/ by default."""
     if out and len(names) == 1:
         return [out]
-    if repeated := _first_repeated(names):
+    if repeated := _first_duplicate(names):
         raise BadInput(f"scenario {repeated!r} is named twice; both would write to one folder")
     parent = out or Path("out")
     return [parent / name for name in names]
@@ -318,7 +318,7 @@ def run_task(
         options = RunOptions(seed=task.seed, progress=report)
         if speed > 0.0:
             options = replace(options, pace=Pace(speed), refresh=LIVE_REFRESH)
-        scenario = scenario or steered(task.address, task.controller)
+        scenario = scenario or load_with_controller(task.address, task.controller)
         done = run_into_folder(task.folder, scenario, options, rerun_observers(viewer))
         return Outcome(task, done.to_json())
     except FAULTS as error:
@@ -327,7 +327,7 @@ def run_task(
         return Outcome(task)
 
 
-def _run_in_turn(
+def _run_sequentially(
     planned: Sequence[PlannedRun], report: progress.RunReport, viewer: str | None, speed: float
 ) -> list[Outcome]:
     outcomes: list[Outcome] = []
@@ -360,13 +360,13 @@ def _run_parallel(tasks: Sequence[Task], jobs: int, report: progress.RunReport) 
             futures = [pool.submit(_run_in_worker, i, task) for i, task in enumerate(tasks)]
         while True:
             try:
-                _wait(futures, tasks, reached, report)
-                return list(map(_result, tasks, futures))
+                _wait_for_runs(futures, tasks, reached, report)
+                return list(map(_outcome_of_future, tasks, futures))
             except KeyboardInterrupt:
                 stop.set()
 
 
-def _wait(
+def _wait_for_runs(
     futures: Sequence[Future[Outcome]],
     tasks: Sequence[Task],
     reached: "SynchronizedArray[float]",
@@ -381,7 +381,7 @@ def _wait(
             report(index, t)
 
 
-def _result(task: Task, future: Future[Outcome]) -> Outcome:
+def _outcome_of_future(task: Task, future: Future[Outcome]) -> Outcome:
     try:
         return future.result()
     except BrokenProcessPool:
@@ -395,10 +395,10 @@ def _start_worker(
     global _stop, _reached
     trust.adopt_trust(trusted)
     _stop, _reached = stop, reached
-    Thread(target=_end_with_parent, daemon=True).start()
+    Thread(target=_exit_with_parent, daemon=True).start()
 
 
-def _end_with_parent() -> None:
+def _exit_with_parent() -> None:
     """End this process when its parent has ended, after the present run has been saved."""
     if parent := parent_process():
         parent.join()

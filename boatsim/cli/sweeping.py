@@ -17,7 +17,7 @@ from boatsim.sweeps.journal import Entry
 from boatsim.sweeps.plan import make_plan
 from boatsim.sweeps.results import Results
 from boatsim.sweeps.sampled_keys import parse_sampled_key
-from boatsim.sweeps.text_tables import blank_repeats, tables
+from boatsim.sweeps.text_tables import blank_repeats, result_tables
 
 MOST_ROWS = 60  # of a table on a terminal; report.html has all rows
 MOST_REASONS = 5  # of failed runs that are printed, the most frequent first
@@ -75,18 +75,18 @@ def run_sweep(
     if complete:
         return Exit.MET
     done = len(results.numbers)
-    print_error(f"interrupted after {done} of {plan.count} runs; the same command continues")
+    print_error(f"interrupted after {done} of {plan.run_count} runs; the same command continues")
     return Exit.INTERRUPTED
 
 
 def _print_results(results: Results, out: Path) -> None:
-    for table in tables(results):
+    for table in result_tables(results):
         print_rows(table.title, table.head, blank_repeats(table)[:MOST_ROWS], table.left)
         if len(table.rows) > MOST_ROWS:
             print_lines([f"{len(table.rows) - MOST_ROWS} more rows are in report.html"])
-    if failed := int(results.failed.sum()):
+    if failed := int(results.is_failed.sum()):
         print_lines([f"{failed} of {len(results.numbers)} runs failed:"])
-        for reason, count in islice(results.reasons.items(), MOST_REASONS):
+        for reason, count in islice(results.failure_counts.items(), MOST_REASONS):
             print_lines([f"  {count} times: {reason}"])
     print_lines([f"written to {out}: sweep.parquet, report.html"])
 

@@ -12,10 +12,10 @@ from boatsim.cli import progress
 from boatsim.cli.exits import FAULTS, Exit, one_line, print_error
 from boatsim.cli.metric_table import format_value
 from boatsim.errors import BadInput, printable
-from boatsim.files import replacing
+from boatsim.files import replace_file
 from boatsim.simulate import baselines
 from boatsim.simulate.baselines import Baseline, BaselinesFile
-from boatsim.simulate.cases import files_of, matching
+from boatsim.simulate.cases import find_scenarios, scenario_files
 from boatsim.simulate.evaluation import Metric, all_metrics
 from boatsim.simulate.run import run
 from boatsim.simulate.scenario import Scenario, load
@@ -47,7 +47,7 @@ class Case:
         return self.runs[0]
 
     @property
-    def faults(self) -> list[str]:
+    def failures(self) -> list[str]:
         """A line for each metric that misses its band or differs from its baseline."""
         if self.error:
             return []
@@ -58,14 +58,14 @@ class Case:
                 lines.append(f"{name} is {value}, outside its regression band")
         if self.baseline is None:
             return [*lines, "has no baseline"]
-        return [*lines, *baselines.differences(self.baseline, self.metrics)]
+        return [*lines, *baselines.compare_with_baselines(self.baseline, self.metrics)]
 
     @property
     def code(self) -> Exit:
         """Exit code."""
         if self.error:
             return Exit.BAD_INPUT
-        if self.faults:
+        if self.failures:
             return Exit.MISSED
         return Exit.MET
 
@@ -88,22 +88,22 @@ def run_regression(folder: Path, pin: bool, seeds: int, junit: Path | None, as_j
     """
     if not folder.is_dir():
         raise BadInput(f"{folder} is not a folder; give a folder with scenarios (*.toml)")
-    stored = baselines.read(folder)
+    stored = baselines.read_baselines(folder)
     known = stored.scenario if stored else {}
     cases = _run_all(folder, known, seeds if pin else 1)
     if pin:
         cases = _write_baselines(folder, known, cases, seeds)
     else:
-        present = {case.name for case in cases} | _unreadable(cases, known)
+        present = {case.name for case in cases} | _unreadable_scenarios(cases, known)
         for name, own in known.items():
             if name not in present:
                 cases.append(Case(name, baseline=own))
     if junit:
         _write_junit(folder, cases, junit)
     if as_json:
-        print(json.dumps(_as_json(folder, cases), indent=1, allow_nan=False))
+        print(json.dumps(_cases_to_json(folder, cases), indent=1, allow_nan=False))
     else:
-        _print(folder, cases)
+        _print_cases(folder, cases)
     for case in cases:
         if case.error:
             message = case.error
@@ -117,9 +117,9 @@ def _run_all(folder: Path, known: Mapping[str, Mapping[str, Baseline]], seeds: i
     """Run all cases of all files; files that cannot be read are cases with an error."""
     cases: list[Case] = []
     ready: list[tuple[str, Scenario]] = []
-    for path in files_of(folder):
+    for path in scenario_files(folder):
         try:
-            for address in matching(str(path)):
+            for address in find_scenarios(str(path)):
                 ready.append((address.removeprefix(f"{path.parent}/"), load(address)))
         except FAULTS as error:
             cases.append(Case(path.name, error=one_line(error)))
@@ -137,7 +137,7 @@ def _run_case(name: str, scenario: Scenario, seeds: int, report: Callable[[float
     runs = []
     try:
         for k in range(seeds):
-            offset = partial(_report_later, report, k * scenario.file.duration)
+            offset = partial(_report_with_offset, report, k * scenario.file.duration)
             done = run(scenario, scenario.file.seed + k, progress=offset)
             if not done.complete:
                 raise KeyboardInterrupt
@@ -147,7 +147,9 @@ def _run_case(name: str, scenario: Scenario, seeds: int, report: Callable[[float
     return Case(name, runs, seconds=monotonic() - start)
 
 
-def _unreadable(cases: Sequence[Case], known: Mapping[str, Mapping[str, Baseline]]) -> set[str]:
+def _unreadable_scenarios(
+    cases: Sequence[Case], known: Mapping[str, Mapping[str, Baseline]]
+) -> set[str]:
     """Scenarios with baselines whose file cannot be read; their baselines stay."""
     prefixes = tuple(f"{case.name}:" for case in cases if case.error)
     return {name for name in known if name.startswith(prefixes)}
@@ -157,18 +159,18 @@ def _write_baselines(
     folder: Path, known: Mapping[str, Mapping[str, Baseline]], cases: Sequence[Case], seeds: int
 ) -> list[Case]:
     """Write new baselines; those of scenarios that cannot be run stay. Return the new cases."""
-    kept = {case.name for case in cases if case.error} | _unreadable(cases, known)
+    kept = {case.name for case in cases if case.error} | _unreadable_scenarios(cases, known)
     new = {name: dict(metrics) for name, metrics in known.items() if name in kept}
     for case in cases:
         if not case.error:
-            new[case.name] = baselines.baselines_of(case.runs)
+            new[case.name] = baselines.make_baselines(case.runs)
     text = baselines.to_toml(BaselinesFile(seeds=seeds, scenario=new))
-    with replacing(folder / baselines.FILE) as temporary:
+    with replace_file(folder / baselines.FILE) as temporary:
         temporary.write_text(text, encoding="utf-8")
     return [replace(case, baseline=new.get(case.name)) for case in cases]
 
 
-def _print(folder: Path, cases: Sequence[Case]) -> None:
+def _print_cases(folder: Path, cases: Sequence[Case]) -> None:
     """Print a row for each scenario, then a line for each fault."""
     from rich.console import Console
     from rich.table import Table
@@ -185,16 +187,16 @@ def _print(folder: Path, cases: Sequence[Case]) -> None:
         Exit.BAD_INPUT: "[bold red]CANNOT RUN[/]",
     }
     for case in cases:
-        counts = str(len(case.metrics)), str(len(case.faults))
+        counts = str(len(case.metrics)), str(len(case.failures))
         table.add_row(Text(printable(case.name)), *counts, states[case.code])
     console = Console()
     console.print(table)
     for case in cases:
-        for line in case.faults:
+        for line in case.failures:
             console.print(Text(printable(f"{case.name}: {line}")), soft_wrap=True)
 
 
-def _as_json(folder: Path, cases: Sequence[Case]) -> dict[str, object]:
+def _cases_to_json(folder: Path, cases: Sequence[Case]) -> dict[str, object]:
     """Content that --json prints; it is the same for the same scenarios."""
     scenarios = []
     for case in cases:
@@ -207,7 +209,7 @@ def _as_json(folder: Path, cases: Sequence[Case]) -> dict[str, object]:
                 "scenario": case.name,
                 "exit": case.code,
                 "error": case.error or None,
-                "faults": case.faults,
+                "faults": case.failures,
                 "norms": metrics,
             }
         )
@@ -237,15 +239,15 @@ def _write_junit(folder: Path, cases: Sequence[Case], path: Path) -> None:
         if case.error:
             message = printable(case.error)
             xml.SubElement(entry, "error", message=message, type="BadInput").text = message
-        elif case.faults:
-            lines = list(map(printable, case.faults))
+        elif case.failures:
+            lines = list(map(printable, case.failures))
             failure = xml.SubElement(entry, "failure", message=lines[0], type="Norm")
             failure.text = "\n".join(lines)
     xml.indent(top)
-    with replacing(path) as temporary:
+    with replace_file(path) as temporary:
         xml.ElementTree(top).write(temporary, encoding="utf-8", xml_declaration=True)
 
 
-def _report_later(report: Callable[[float], None], offset: float, t: float) -> None:
+def _report_with_offset(report: Callable[[float], None], offset: float, t: float) -> None:
     """Report the simulated time `t` [s] of one of several runs, after those before it."""
     report(offset + t)

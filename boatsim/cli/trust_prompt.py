@@ -33,13 +33,13 @@ def trusted_content(
     allowed: list[Path] = []
     if trust:
         for argument in filter(None, map(str, filter(None, arguments))):
-            allowed += _folder_of(argument)
-    ask = _ask if _is_interactive() else None
+            allowed += _folders_of_argument(argument)
+    ask = _ask_to_trust if _is_interactive() else None
     with trust_folders(*(content or ()), allowed=allowed, ask=ask):
         yield
 
 
-def _folder_of(argument: str) -> list[Path]:
+def _folders_of_argument(argument: str) -> list[Path]:
     """The folder of a file or the folder itself; nothing for the name of an item."""
     file = argument
     if ".toml:" in argument:
@@ -57,7 +57,7 @@ def _is_interactive() -> bool:
     return bool(sys.stdin and sys.stderr and sys.stdin.isatty() and sys.stderr.isatty())
 
 
-def _ask(folder: Path) -> bool:
+def _ask_to_trust(folder: Path) -> bool:
     question = f"boatsim: a file names Python files in {printable(str(folder))}. Run them? [y/N] "
     with pause_progress():
         print(question, end="", file=sys.stderr, flush=True)

@@ -21,7 +21,7 @@ Law = Callable[[Complex], tuple[Complex, Complex]]
 HIGHEST = 1e3  # [rad/s] highest crossover of a continuous loop
 
 
-def ball_share(square: float, along: float, radius: float, tolerance: float) -> float:
+def projection_share(square: float, along: float, radius: float, tolerance: float) -> float:
     """Return the share of theta that the projection operator subtracts from its rate y.
 
     The convex function is f = ((1 + tolerance) theta'theta - radius^2) / (tolerance radius^2): 0 on
@@ -51,7 +51,7 @@ def project_interval(value: float, rate: float, low: float, high: float, toleran
         tolerance: Projection tolerance.
     """
     off = value - 0.5 * (low + high)
-    return rate - ball_share(off * off, off * rate, 0.5 * (high - low), tolerance) * off
+    return rate - projection_share(off * off, off * rate, 0.5 * (high - low), tolerance) * off
 
 
 @dataclass
@@ -61,7 +61,7 @@ class Gradient:
     value' = gain Proj(value, -regressor error)
 
     The regressor is the state for theta, the input for omega and 1 for sigma; the error is (xh -
-    x)' P b with P from `lyapunov`. The law is discretised by the explicit Euler method.
+    x)' P b with P from `solve_lyapunov`. The law is discretised by the explicit Euler method.
     """
 
     value: float
@@ -70,7 +70,7 @@ class Gradient:
     gain: float
     tolerance: float = 0.1
 
-    def rate(self, regressor: float, error: float) -> float:
+    def projected_rate(self, regressor: float, error: float) -> float:
         """Return the time derivative of the estimate [1/s].
 
         Args:
@@ -89,7 +89,9 @@ class Gradient:
             error: (xh - x)' P b.
             dt: Length of the step [s].
         """
-        self.value = min(max(self.value + dt * self.rate(regressor, error), self.low), self.high)
+        self.value = min(
+            max(self.value + dt * self.projected_rate(regressor, error), self.low), self.high
+        )
         return self.value
 
 
@@ -179,7 +181,7 @@ class DiscreteFilter:
             x[i] = b[i + 1] * value - a[i + 1] * out + (x[i + 1] if i + 1 < len(x) else 0.0)
         return out
 
-    def at(self, z: Complex) -> Complex:
+    def evaluate(self, z: Complex) -> Complex:
         """Return the value of the transfer function for complex z; z = 1 gives the static gain.
 
         Args:
@@ -188,7 +190,9 @@ class DiscreteFilter:
         return np.asarray(np.polyval(self.numerator, z) / np.polyval(self.denominator, z))
 
 
-def held(numerator: Sequence[float], denominator: Sequence[float], period: float) -> DiscreteFilter:
+def zero_order_hold(
+    numerator: Sequence[float], denominator: Sequence[float], period: float
+) -> DiscreteFilter:
     """Return the exact zero-order-hold equivalent of a strictly proper transfer function.
 
     Args:
@@ -206,7 +210,7 @@ def held(numerator: Sequence[float], denominator: Sequence[float], period: float
     return DiscreteFilter(zeros[1:].tolist(), poles.tolist())
 
 
-def lyapunov(am: ArrayLike, q: ArrayLike | None = None) -> Array:
+def solve_lyapunov(am: ArrayLike, q: ArrayLike | None = None) -> Array:
     """Return P (n, n) of Am'P + P Am = -Q.
 
     Args:
@@ -240,7 +244,7 @@ class LinearSystem:
     c: Array
 
 
-def unfiltered(am: ArrayLike, b: ArrayLike, bandwidth: float) -> LinearSystem:
+def unfiltered_system(am: ArrayLike, b: ArrayLike, bandwidth: float) -> LinearSystem:
     """Return (sI - Am)^-1 b (1 - C(s)) with the low-pass filter C = bandwidth / (s + bandwidth).
 
     It is the response to the part of an uncertainty that the filter does not cancel; its L1 norm
@@ -271,11 +275,11 @@ def step_response(system: LinearSystem, dt: float, steps: int) -> Array:
     """
     n = len(system.a)
     with_input = np.block([[system.a, system.b[:, :1]], [np.zeros((1, n + 1))]])
-    states = _free_motion(matrix_exp(with_input * dt), np.eye(n + 1)[n], steps)
+    states = _free_response(matrix_exp(with_input * dt), np.eye(n + 1)[n], steps)
     return np.asarray(states[:, :n] @ system.c.T)
 
 
-def l1_rows(system: LinearSystem) -> Array:
+def l1_norm_of_outputs(system: LinearSystem) -> Array:
     """Return the L1 norm of each row of the transfer matrix, (outputs,).
 
     It is the sum over the inputs of the integrals of |h(t)|.
@@ -298,7 +302,7 @@ def l1_norm(system: LinearSystem) -> float:
     Args:
         system: Stable linear system.
     """
-    return float(np.max(l1_rows(system)))
+    return float(np.max(l1_norm_of_outputs(system)))
 
 
 def l1_condition(norm: float, slope: float) -> float:
@@ -319,12 +323,12 @@ def _absolute_integral(a: Array, b: Array, c: Array) -> float:
     """
     primitive = np.linalg.solve(a.T, c)
     total, start = 0.0, b
-    for dt, steps in _grid(a):
-        x = _free_motion(matrix_exp(a * dt), start, steps)
+    for dt, steps in _integration_steps(a):
+        x = _free_response(matrix_exp(a * dt), start, steps)
         h, halves = x @ c, [matrix_exp(a * dt * 0.5**k) for k in range(1, 40)]
         total += float(np.sum(np.abs(np.diff(x @ primitive))))
         for i in np.nonzero(h[:-1] * h[1:] < 0.0)[0]:
-            at = _zero(halves, x[i], c)
+            at = _bisect_zero_crossing(halves, x[i], c)
             total += (
                 abs(primitive @ (at - x[i]))
                 + abs(primitive @ (x[i + 1] - at))
@@ -334,7 +338,7 @@ def _absolute_integral(a: Array, b: Array, c: Array) -> float:
     return total
 
 
-def _grid(a: Array) -> list[tuple[float, int]]:
+def _integration_steps(a: Array) -> list[tuple[float, int]]:
     """Return steps [s] and their numbers: twenty per radian of the fastest mode above 1e-13."""
     modes = sorted(
         ((30.0 / -pole.real, abs(pole)) for pole in np.linalg.eigvals(a)), key=lambda mode: mode[0]
@@ -352,7 +356,7 @@ def _grid(a: Array) -> list[tuple[float, int]]:
     return parts
 
 
-def _free_motion(once: Array, start: Array, steps: int) -> Array:
+def _free_response(once: Array, start: Array, steps: int) -> Array:
     """Return the states (steps + 1, n) of x(k+1) = once x(k), computed by repeated doubling."""
     x, power = start[None, :], once
     while len(x) <= steps:
@@ -360,7 +364,7 @@ def _free_motion(once: Array, start: Array, steps: int) -> Array:
     return np.asarray(x[: steps + 1])
 
 
-def _zero(halves: list[Array], x: Array, c: Array) -> Array:
+def _bisect_zero_crossing(halves: list[Array], x: Array, c: Array) -> Array:
     """Return the state where c x first changes its sign, by bisection with steps dt / 2^(k+1)."""
     for half in halves:
         later = half @ x
@@ -402,7 +406,7 @@ def loop_margins(
     found = [
         _crossover(loop, omega[i], omega[i + 1]) for i in np.nonzero(above[:-1] != above[1:])[0]
     ]
-    stable = _stable(omega, response)
+    stable = _is_stable(omega, response)
     if not found:
         return LoopMargins(0.0, inf, inf, stable)
     lag = {w: float(np.angle(-loop(np.array([1j * w]))[0])) for w in found}
@@ -423,7 +427,7 @@ def _crossover(loop: Loop, low: float, high: float) -> float:
     return 0.5 * (low + high)
 
 
-def _stable(omega: Array, response: Complex) -> bool:
+def _is_stable(omega: Array, response: Complex) -> bool:
     """Apply Nyquist's criterion: without unstable poles 1 + L turns 90 deg per integrator."""
     integrators = round(
         -float(np.diff(np.log(np.abs(response[:2])))[0] / np.diff(np.log(omega[:2]))[0])
@@ -455,11 +459,11 @@ class LoopChannel:
     damping: float = 0.0  # [1/s] linear damping of the boat
 
     @property
-    def highest(self) -> float:
+    def highest_frequency(self) -> float:
         """Highest frequency of the analysis [rad/s]."""
         return HIGHEST
 
-    def loop(self, gain: float) -> Loop:
+    def open_loop_response(self, gain: float) -> Loop:
         """Return L(s), broken at the plant input.
 
         Args:
@@ -473,11 +477,11 @@ class LoopChannel:
                 else 1.0
             )
             actuator = gain * held / (1.0 + self.servo_lag_s * s)
-            return np.asarray(self._law(s) * actuator / (s * (s + self.damping)))
+            return np.asarray(self._controller_response(s) * actuator / (s * (s + self.damping)))
 
         return response
 
-    def _law(self, s: Complex) -> Complex:
+    def _controller_response(self, s: Complex) -> Complex:
         """Return -tau / (I0 position) with the filter loop of the controller closed."""
         if self.pid is not None:
             kp, ki, kd = self.pid
@@ -487,7 +491,7 @@ class LoopChannel:
             self.pole * self.heading_gain * unfiltered_again + self.bandwidth * (s + self.pole)
         )
 
-    def norm(self, gain: float) -> float | None:
+    def l1_norm(self, gain: float) -> float | None:
         """Return the L1 norm [s] of (1 - C) / (s + pole); None for a PID.
 
         Args:
@@ -495,7 +499,7 @@ class LoopChannel:
         """
         if self.pid is not None:
             return None
-        return l1_norm(unfiltered([[-self.pole]], [1.0], gain * self.bandwidth))
+        return l1_norm(unfiltered_system([[-self.pole]], [1.0], gain * self.bandwidth))
 
 
 @dataclass(frozen=True)
@@ -516,11 +520,11 @@ class SampledChannel:
     pole: float = 0.0  # [1/s] of the predictor
 
     @property
-    def highest(self) -> float:
+    def highest_frequency(self) -> float:
         """Highest frequency of the analysis [rad/s]: half the sampling rate."""
         return pi / self.period
 
-    def loop(self, gain: float) -> Loop:
+    def open_loop_response(self, gain: float) -> Loop:
         """Return L(s) with z = e^(sT), broken at the plant input.
 
         Args:
@@ -540,7 +544,7 @@ class SampledChannel:
 
         return response
 
-    def norm(self, gain: float) -> float | None:
+    def l1_norm(self, gain: float) -> float | None:
         """Return None, because the L1-norm condition applies to continuous loops.
 
         Args:

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from boatsim.control.adaptive import lyapunov
+from boatsim.control.adaptive import solve_lyapunov
 from boatsim.control.compiled import Records, lean, merged
 from boatsim.physics.base import Array
 
@@ -19,7 +19,7 @@ TOLERANCE = 0.1
 
 
 @lean
-def projected(value: float, rate: float, low: float, high: float) -> float:
+def project_rate(value: float, rate: float, low: float, high: float) -> float:
     """Return the projected rate of an estimate in [low, high]; `project_interval`, compiled.
 
     Args:
@@ -36,7 +36,7 @@ def projected(value: float, rate: float, low: float, high: float) -> float:
 
 
 @lean
-def adapt(
+def adapt_estimates(
     predicted: Array,
     estimates: Array,
     low: Array,
@@ -96,12 +96,12 @@ def adapt(
             regressors[j] = before[j] + (after[j] - before[j]) * (i + 1) / steps
             error += (predicted[j] - regressors[j]) * pb[j]
         for j in range(n + 2):
-            rate = gain * projected(estimates[j], -regressors[by[j]] * error, low[j], high[j])
+            rate = gain * project_rate(estimates[j], -regressors[by[j]] * error, low[j], high[j])
             estimates[j] = min(max(estimates[j] + dt * rate, low[j]), high[j])
 
 
 @lean
-def filtered(
+def filter_input(
     value: float,
     known: float,
     gain: float,
@@ -136,7 +136,7 @@ def filtered(
     return total / steps, value
 
 
-def loop_memory(n: int) -> np.dtype[np.void]:
+def loop_memory_type(n: int) -> np.dtype[np.void]:
     """Return the record type of the memory of a loop with n states.
 
     Args:
@@ -157,7 +157,7 @@ def loop_memory(n: int) -> np.dtype[np.void]:
     )
 
 
-def loop_design(n: int) -> np.dtype[np.void]:
+def loop_design_type(n: int) -> np.dtype[np.void]:
     """Return the record type of the design of a loop with n states.
 
     Args:
@@ -180,7 +180,7 @@ def loop_design(n: int) -> np.dtype[np.void]:
     )
 
 
-def designed(
+def make_loop_design(
     am: ArrayLike,
     low: ArrayLike,
     high: ArrayLike,
@@ -191,7 +191,7 @@ def designed(
     period: float,
     step: float,
 ) -> Records:
-    """Return a `loop_design` (1,) in which each estimate is driven by its own regressor.
+    """Return a loop design (1,) in which each estimate is driven by its own regressor.
 
     Args:
         am: A_m of the predictor (n, n) [1/s].
@@ -204,15 +204,21 @@ def designed(
         step: Length of a sub-step [s].
     """
     a = np.asarray(am, dtype=float)
-    d = np.zeros(1, loop_design(len(a)))
-    d["am"], d["pb"], d["low"], d["high"], d["first"] = a, lyapunov(a)[:, -1], low, high, first
+    d = np.zeros(1, loop_design_type(len(a)))
+    d["am"], d["pb"], d["low"], d["high"], d["first"] = (
+        a,
+        solve_lyapunov(a)[:, -1],
+        low,
+        high,
+        first,
+    )
     d["by"], d["gain"], d["bandwidth"] = np.arange(len(a) + 2), gain, bandwidth
     d["period"], d["steps"] = period, max(1, round(period / step))
     return d
 
 
 @merged
-def begin_loop(a: Any, d: Any, value: float) -> None:
+def initialise_loop(a: Any, d: Any, value: float) -> None:
     """Initialise the loop at the state in `a.after` with a settled input.
 
     Args:
@@ -228,7 +234,7 @@ def begin_loop(a: Any, d: Any, value: float) -> None:
 
 
 @merged
-def observe_loop(a: Any, d: Any, applied: float) -> None:
+def adapt_loop(a: Any, d: Any, applied: float) -> None:
     """Adapt over the period that ends with the state in `a.after`.
 
     Args:
@@ -236,7 +242,7 @@ def observe_loop(a: Any, d: Any, applied: float) -> None:
         d: Design of the loop.
         applied: Input applied over the period.
     """
-    adapt(
+    adapt_estimates(
         a.predicted,
         a.estimates,
         d.low,
@@ -259,7 +265,7 @@ def observe_loop(a: Any, d: Any, applied: float) -> None:
 
 
 @merged
-def shift_loop(a: Any, jump: float, known: float) -> None:
+def shift_loop_reference(a: Any, jump: float, known: float) -> None:
     """Shift the first state, and the known share of the prediction, by a jump of the reference.
 
     Args:
@@ -272,7 +278,9 @@ def shift_loop(a: Any, jump: float, known: float) -> None:
 
 
 @merged
-def act_loop(a: Any, d: Any, wanted: float, low: float, high: float, rate: float) -> float:
+def compute_loop_input(
+    a: Any, d: Any, wanted: float, low: float, high: float, rate: float
+) -> float:
     """Return the mean input of the next period.
 
     Args:
@@ -287,7 +295,7 @@ def act_loop(a: Any, d: Any, wanted: float, low: float, high: float, rate: float
     known = a.estimates[n] - wanted
     for i in range(n):
         known += a.estimates[i] * a.before[i]
-    mean, a.value = filtered(
+    mean, a.value = filter_input(
         a.value, known, a.estimates[n + 1], d.bandwidth, low, high, rate, d.period, d.steps
     )
     return mean

@@ -17,7 +17,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from boatsim.control.compiled import record
+from boatsim.control.compiled import record_type
 from boatsim.physics.base import CheckedParameters, param
 from boatsim.physics.kernel.compiling import lean, merged
 
@@ -38,7 +38,7 @@ class Stick(NamedTuple):
     yaw: float  # [rad/s] clockwise
 
     @classmethod
-    def read(cls, goal: Mapping[str, float]) -> "Stick":
+    def from_goal(cls, goal: Mapping[str, float]) -> "Stick":
         """Return the demands of a goal; missing ones are zero.
 
         Args:
@@ -51,11 +51,11 @@ STICK = ("surge_mps", "sway_mps", "yaw_radps")
 
 
 # [rad] integrated gyro, integrated stick, both from the start heading
-HEADING = record("own", "wanted")
+HEADING = record_type("own", "wanted")
 
 
 @merged
-def keep_heading(
+def integrate_heading(
     h: Any, rate: float, compass: float, stick: float, dt: float, trust: float
 ) -> None:
     """Integrate the gyro and the yaw demand over one period, with full turns counted.
@@ -125,7 +125,7 @@ class Nominal(NamedTuple):
 
 
 @merged
-def within(value: float, low: float, high: float) -> float:
+def limit(value: float, low: float, high: float) -> float:
     """Return the value limited to [low, high].
 
     Args:
@@ -150,11 +150,11 @@ def sway_difference(q: Any, sway: float) -> float:
     """
     if abs(sway) < q.sway_dead_zone:
         return 0.0
-    return within(q.sway_thrust * sway / q.rated_sway, -q.largest_difference, q.largest_difference)
+    return limit(q.sway_thrust * sway / q.rated_sway, -q.largest_difference, q.largest_difference)
 
 
 @lean
-def lever(q: Any, angle: float) -> float:
+def moment_arm(q: Any, angle: float) -> float:
     """Return the moment over thrust difference [m], B cos d - L sin d.
 
     Args:
@@ -178,7 +178,7 @@ def thrust_at(q: Any, pwm: float) -> float:
 
 
 @lean
-def pwm(q: Any, thrust: float) -> float:
+def pwm_for_thrust(q: Any, thrust: float) -> float:
     """Return the signed integer PWM value with the nominal thrust nearest to the given one.
 
     Args:
@@ -214,15 +214,15 @@ def allocate(
     if difference == 0.0:
         d, spread, share = 0.0, moment / q.half_spacing, TURN_SHARE
     else:
-        d, spread = steered(q, difference, moment)
+        d, spread = steering_for_sway(q, difference, moment)
         share = HOLD_SHARE
-    spread = within(spread, -q.largest_difference, q.largest_difference)
-    port, starboard = powered(q, surge / cos(d), spread, share * abs(spread) + room)
+    spread = limit(spread, -q.largest_difference, q.largest_difference)
+    port, starboard = split_thrust(q, surge / cos(d), spread, share * abs(spread) + room)
     return port, starboard, d
 
 
 @lean
-def steered(q: Any, difference: float, moment: float) -> tuple[float, float]:
+def steering_for_sway(q: Any, difference: float, moment: float) -> tuple[float, float]:
     """Return angle [rad] and D [N] for sway; D is increased if no angle gives the moment otherwise.
 
     Args:
@@ -231,16 +231,16 @@ def steered(q: Any, difference: float, moment: float) -> tuple[float, float]:
         moment: Yaw moment [N m].
     """
     helps = moment * difference > 0.0
-    needed = moment / lever(q, 0.0 if helps else ANGLE_MAX)
+    needed = moment / moment_arm(q, 0.0 if helps else ANGLE_MAX)
     spread = copysign(max(abs(difference), abs(needed)), difference)
     sine = moment / (spread * hypot(q.half_spacing, q.arm))
-    return within(
-        atan2(q.half_spacing, q.arm) - asin(within(sine, -1.0, 1.0)), 0.0, ANGLE_MAX
+    return limit(
+        atan2(q.half_spacing, q.arm) - asin(limit(sine, -1.0, 1.0)), 0.0, ANGLE_MAX
     ), spread
 
 
 @lean
-def powered(q: Any, total: float, spread: float, bound: float) -> tuple[float, float]:
+def split_thrust(q: Any, total: float, spread: float, bound: float) -> tuple[float, float]:
     """Return both thrusts [N] from S and D, within the limits of the motors.
 
     If a motor would exceed its limit, S is reduced to its reserve first, then D.
@@ -252,15 +252,15 @@ def powered(q: Any, total: float, spread: float, bound: float) -> tuple[float, f
         bound: Limit of |S| [N].
     """
     ahead, astern = thrust_at(q, PWM_MAX), -thrust_at(q, -PWM_MAX)
-    total = within(total, -bound, bound)
-    kept = within(total, -SURGE_RESERVE * abs(spread), SURGE_RESERVE * abs(spread))
+    total = limit(total, -bound, bound)
+    kept = limit(total, -SURGE_RESERVE * abs(spread), SURGE_RESERVE * abs(spread))
     spread = copysign(min(abs(spread), 2.0 * astern + kept, 2.0 * ahead - kept), spread)
-    total = within(total, abs(spread) - 2.0 * astern, 2.0 * ahead - abs(spread))
+    total = limit(total, abs(spread) - 2.0 * astern, 2.0 * ahead - abs(spread))
     return 0.5 * (total + spread), 0.5 * (total - spread)
 
 
 @lean
-def set_outboards(
+def command_outboards(
     q: Any, surge: float, difference: float, moment: float, room: float, sent: Any
 ) -> tuple[float, float, float]:
     """Allocate, send the commands and return the nominal X, Y [N] and N [N m] of the commands sent.
@@ -276,14 +276,14 @@ def set_outboards(
         sent: Record of commands to fill in.
     """
     port, starboard, angle = allocate(q, surge, difference, moment, room)
-    send_outboards(q, port, starboard, angle, sent)
-    return push(
+    write_outboard_commands(q, port, starboard, angle, sent)
+    return nominal_wrench(
         q, thrust_at(q, sent.pwm_port), thrust_at(q, sent.pwm_starboard), sent.steer_port_rad
     )
 
 
 @lean
-def send_outboards(q: Any, port: float, starboard: float, angle: float, sent: Any) -> None:
+def write_outboard_commands(q: Any, port: float, starboard: float, angle: float, sent: Any) -> None:
     """Write a drive, rounded to integer PWM and degrees, to a record of commands.
 
     Its fields are `pwm_port`, `pwm_starboard`, `steer_port_rad` and, mirrored,
@@ -296,13 +296,15 @@ def send_outboards(q: Any, port: float, starboard: float, angle: float, sent: An
         angle: Inward angle [rad].
         sent: Record of commands to fill in.
     """
-    sent.pwm_port, sent.pwm_starboard = pwm(q, port), pwm(q, starboard)
+    sent.pwm_port, sent.pwm_starboard = pwm_for_thrust(q, port), pwm_for_thrust(q, starboard)
     turned = radians(np.rint(degrees(angle)))
     sent.steer_port_rad, sent.steer_starboard_rad = turned, -turned
 
 
 @lean
-def push(q: Any, port: float, starboard: float, angle: float) -> tuple[float, float, float]:
+def nominal_wrench(
+    q: Any, port: float, starboard: float, angle: float
+) -> tuple[float, float, float]:
     """Return the nominal force X, Y [N] and moment N [N m].
 
     Args:
@@ -312,7 +314,7 @@ def push(q: Any, port: float, starboard: float, angle: float) -> tuple[float, fl
         angle: Inward angle [rad].
     """
     spread, total = port - starboard, port + starboard
-    return total * cos(angle), spread * sin(angle), spread * lever(q, angle)
+    return total * cos(angle), spread * sin(angle), spread * moment_arm(q, angle)
 
 
 @dataclass
@@ -370,13 +372,13 @@ class Outboards(CheckedParameters):
         """Return the sway demand [m/s] that needs the largest thrust difference."""
         return {"sway_mps": self.rated_sway * self.largest_difference / self.sway_thrust}
 
-    def lever(self, angle: float) -> float:
+    def moment_arm(self, angle: float) -> float:
         """Return the moment over thrust difference [m].
 
         Args:
             angle: Inward angle of both motors [rad].
         """
-        return lever(self.nominal, angle)
+        return moment_arm(self.nominal, angle)
 
     def neutral_angle(self) -> float:
         """Return the inward angle [rad] at which the motors give sway without a moment."""
@@ -393,13 +395,13 @@ class Outboards(CheckedParameters):
         """
         return Drive(*allocate(self.nominal, surge, difference, moment, room))
 
-    def pwm(self, thrust: float) -> int:
+    def pwm_for_thrust(self, thrust: float) -> int:
         """Return the signed integer PWM value with the nominal thrust nearest to the given one.
 
         Args:
             thrust: Thrust [N].
         """
-        return round(pwm(self.nominal, thrust))
+        return round(pwm_for_thrust(self.nominal, thrust))
 
     def thrust(self, pwm: float) -> float:
         """Return the nominal thrust [N].
@@ -409,29 +411,33 @@ class Outboards(CheckedParameters):
         """
         return thrust_at(self.nominal, pwm)
 
-    def setting(self, drive: Drive) -> Setting:
+    def to_setting(self, drive: Drive) -> Setting:
         """Return the drive rounded and limited to what motors and servos accept.
 
         Args:
             drive: Thrusts and angle.
         """
-        return Setting(self.pwm(drive.port), self.pwm(drive.starboard), round(degrees(drive.angle)))
+        return Setting(
+            self.pwm_for_thrust(drive.port),
+            self.pwm_for_thrust(drive.starboard),
+            round(degrees(drive.angle)),
+        )
 
-    def push(self, drive: Drive) -> Push:
+    def nominal_wrench(self, drive: Drive) -> Push:
         """Return the nominal force and moment of a drive.
 
         Args:
             drive: Thrusts and angle.
         """
-        return Push(*push(self.nominal, drive.port, drive.starboard, drive.angle))
+        return Push(*nominal_wrench(self.nominal, drive.port, drive.starboard, drive.angle))
 
-    def applied(self, setting: Setting) -> Push:
+    def wrench_of_setting(self, setting: Setting) -> Push:
         """Return the nominal force and moment of a setting, the input of a predictor.
 
         Args:
             setting: Setting of the motors and servos.
         """
         angle = radians(setting.degrees)
-        return self.push(
+        return self.nominal_wrench(
             Drive(self.thrust(setting.pwm_port), self.thrust(setting.pwm_starboard), angle)
         )

@@ -71,26 +71,30 @@ class Approach(CheckedParameters):
         self._there = self._there or hypot(north, east) < self.within
         if self._there:
             self._straight = self._straight or abs(wrap(psi)) < self.straight
-            return self._onto(*_turned(-x, -y if self._straight else east, psi), wrap(-psi), v, dt)
+            return self._approach_sideways(
+                *_rotate_to_body_axes(-x, -y if self._straight else east, psi), wrap(-psi), v, dt
+            )
         off = wrap(atan2(east, north) - psi)
         ahead = clip(1.0 - 2.0 * abs(off), 0.0, 1.0) * min(
             self.cruise, self.surge_gain * hypot(north, east)
         )
-        return Stick(ahead, 0.0, self._turn(off))
+        return Stick(ahead, 0.0, self._yaw_demand(off))
 
-    def _onto(self, ahead: float, starboard: float, off: float, v: float, dt: float) -> Stick:
+    def _approach_sideways(
+        self, ahead: float, starboard: float, off: float, v: float, dt: float
+    ) -> Stick:
         """Return the demands of the sideways approach."""
         sway = self.sway_gain * starboard + self._lasting - self.sway_damping * v
         if abs(sway) < self.sway_most and abs(starboard) < self.within:
             self._lasting += self.sway_integral * starboard * dt
         surge = clip(self.surge_gain * ahead, -self.creep, self.creep)
-        return Stick(surge, clip(sway, -self.sway_most, self.sway_most), self._turn(off))
+        return Stick(surge, clip(sway, -self.sway_most, self.sway_most), self._yaw_demand(off))
 
-    def _turn(self, off: float) -> float:
+    def _yaw_demand(self, off: float) -> float:
         return clip(self.turn_gain * off, -self.turn_most, self.turn_most)
 
 
-def _turned(north: float, east: float, psi: float) -> tuple[float, float]:
+def _rotate_to_body_axes(north: float, east: float, psi: float) -> tuple[float, float]:
     """Return a displacement in body axes."""
     c, s = cos(psi), sin(psi)
     return c * north + s * east, c * east - s * north

@@ -7,10 +7,10 @@ After Hovakimyan and Cao, L1 Adaptive Control Theory (SIAM 2010), section 3.3, f
 from math import exp
 from typing import Any
 
-from boatsim.control.compiled import record
+from boatsim.control.compiled import record_type
 from boatsim.physics.kernel.compiling import merged
 
-AXIS = record("predicted", "sigma", "filtered", "model")
+AXIS = record_type("predicted", "sigma", "filtered", "model")
 
 
 @merged

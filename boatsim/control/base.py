@@ -69,7 +69,7 @@ class Controller(CheckedParameters):
         """
         raise NotImplementedError
 
-    def early(self, sense: Sense) -> float:
+    def time_to_extra_step(self, sense: Sense) -> float:
         """Return the time [s] until an extra step within the period; infinite for none.
 
         Args:
@@ -114,7 +114,7 @@ class Steered(Controller):
 
     def initial_commands(self) -> dict[str, float]:
         """Return the commands of the approach."""
-        return self.commanded(0.0)
+        return self.commands_at_helm(0.0)
 
     def step(self, sense: Sense, goal: Mapping[str, float]) -> dict[str, float]:
         """Return the commands of the approach until `execute`, then those of the manoeuvre.
@@ -128,7 +128,7 @@ class Steered(Controller):
         self._helm = 0.0
         if sense.t >= self.execute - 1e-9:
             self._helm = self.helm(sense)
-        return self.commanded(self._helm)
+        return self.commands_at_helm(self._helm)
 
     def helm(self, sense: Sense) -> float:
         """Return the present helm angle of the manoeuvre [rad].
@@ -138,7 +138,7 @@ class Steered(Controller):
         """
         raise NotImplementedError
 
-    def commanded(self, helm: float) -> dict[str, float]:
+    def commands_at_helm(self, helm: float) -> dict[str, float]:
         """Return the commands for going ahead at a helm angle.
 
         Args:

@@ -22,13 +22,13 @@ __all__ = [
     "SENSE",
     "CompiledController",
     "Records",
+    "add_nested_records",
     "as_table",
-    "columns",
+    "indices_of_names",
     "lean",
     "merged",
-    "record",
+    "record_type",
     "unlocked",
-    "with_parts",
 ]
 
 # numba treats the settings of a derived controller as a subtype of those of its base, with the
@@ -41,7 +41,7 @@ Records = NDArray[np.void]
 ONE = np.zeros(1, dtype=np.int64)  # row of the boat in a single run
 
 
-def record(*names: str, **parts: np.dtype[np.void]) -> np.dtype[np.void]:
+def record_type(*names: str, **parts: np.dtype[np.void]) -> np.dtype[np.void]:
     """Return a record type of numbers and of nested records.
 
     Args:
@@ -51,7 +51,7 @@ def record(*names: str, **parts: np.dtype[np.void]) -> np.dtype[np.void]:
     return np.dtype([*((n, np.float64) for n in names), *parts.items()])
 
 
-def with_parts(records: Records, **parts: Records) -> Records:
+def add_nested_records(records: Records, **parts: Records) -> Records:
     """Return records with further nested records, one for each or one for all.
 
     Args:
@@ -68,7 +68,7 @@ def with_parts(records: Records, **parts: Records) -> Records:
     return whole
 
 
-SENSE = record(*SENSE_FIELDS)
+SENSE = record_type(*SENSE_FIELDS)
 
 
 class CompiledController(Controller):
@@ -104,12 +104,12 @@ class CompiledController(Controller):
         """
         names = [f.name for f in fields(self) if "param" in f.metadata or f.type in (bool, "bool")]
         row = tuple(float(getattr(self, n)) for n in names)
-        return np.full(count, np.array([row], record(*names)))
+        return np.full(count, np.array([row], record_type(*names)))
 
     @classmethod
     def record_types(cls) -> tuple[np.dtype[np.void], np.dtype[np.void]]:
         """Return the record types of goals and commands."""
-        return record(*cls.goals), record(*cls.commands)
+        return record_type(*cls.goals), record_type(*cls.commands)
 
     @classmethod
     def goal_values(cls, goal: Mapping[str, float]) -> tuple[float, ...]:
@@ -146,7 +146,7 @@ class CompiledController(Controller):
         return type(self).step is CompiledController.step
 
     @property
-    def remembered(self) -> Any:
+    def memory_record(self) -> Any:
         """State of the controller as one record."""
         return self._memory[0]
 
@@ -164,7 +164,7 @@ def as_table(records: Records) -> Array:
     )
 
 
-def columns(names: Sequence[str], among: Sequence[str]) -> NDArray[np.int64]:
+def indices_of_names(names: Sequence[str], among: Sequence[str]) -> NDArray[np.int64]:
     """Return the indices of names in a sequence.
 
     Args:

@@ -11,7 +11,7 @@ from boatsim.errors import BadInput
 from boatsim.physics.base import param
 
 
-def push(history: list[float], value: float) -> None:
+def push_sample(history: list[float], value: float) -> None:
     """Shift a history [now, one period ago, ...] by one sample.
 
     Args:
@@ -24,7 +24,7 @@ def push(history: list[float], value: float) -> None:
 
 @dataclass
 class Helm(Controller):
-    """Base of autopilots; a subclass returns the wanted rudder angle in `demand`.
+    """Base of autopilots; a subclass returns the wanted rudder angle in `rudder_demand`.
 
     The steering machine has a rate limit and a range. The command is the angle that it reaches
     after a period, as in Martin's simulation. Positive rudder turns the bow to starboard. Goal:
@@ -63,11 +63,11 @@ class Helm(Controller):
             sense: Sensor readings.
             goal: `psi_rad`, the course [rad].
         """
-        self.see(sense.psi - goal.get("psi_rad", 0.0), sense.phi)
-        self.rudder = self.reached(self.demand())
+        self.add_sample(sense.psi - goal.get("psi_rad", 0.0), sense.phi)
+        self.rudder = self.rudder_after_period(self.rudder_demand())
         return {"rudder_rad": self.rudder}
 
-    def see(self, psi: float, phi: float) -> None:
+    def add_sample(self, psi: float, phi: float) -> None:
         """Append heading relative to the course, and roll, to the histories.
 
         Before the first sample the values are assumed constant; full turns are counted. Without a
@@ -88,34 +88,36 @@ class Helm(Controller):
             phi = 0.0
         if not self.psi:
             self.psi, self.phi = [wrap(psi)] * 3, [phi] * 3
-        push(self.psi, self.psi[0] + wrap(psi - self.psi[0]))
-        push(self.phi, phi)
+        push_sample(self.psi, self.psi[0] + wrap(psi - self.psi[0]))
+        push_sample(self.phi, phi)
 
     def needs_roll(self) -> bool:
         """Return whether the controller needs the roll angle."""
         return False
 
-    def demand(self) -> float:
+    def rudder_demand(self) -> float:
         """Return the wanted rudder angle [rad]."""
         raise NotImplementedError
 
     @property
-    def swing(self) -> float:
+    def largest_rudder_step(self) -> float:
         """Angle [rad] that the rudder can turn in one period."""
         return self.rudder_rate * self.period
 
-    def reached(self, demand: float) -> float:
+    def rudder_after_period(self, demand: float) -> float:
         """Return the angle [rad] of the steering machine after a period.
 
         Args:
             demand: Wanted angle [rad].
         """
-        near = clip(demand, self.rudder - self.swing, self.rudder + self.swing)
+        near = clip(
+            demand, self.rudder - self.largest_rudder_step, self.rudder + self.largest_rudder_step
+        )
         return clip(near, -self.rudder_limit, self.rudder_limit)
 
-    def choices(self) -> list[float]:
+    def possible_rudder_angles(self) -> list[float]:
         """Return the rudder angles [rad] of a three-way steering machine: stop, port, starboard."""
-        swung = (self.rudder - self.swing, self.rudder + self.swing)
+        swung = (self.rudder - self.largest_rudder_step, self.rudder + self.largest_rudder_step)
         return [self.rudder, *(u for u in swung if abs(u) <= self.rudder_limit + 1e-9)]
 
 
@@ -137,16 +139,18 @@ class LearningHelm(Forgetting, Helm):
         """Return whether roll reduction is on."""
         return bool(self.roll_reduction)
 
-    def see(self, psi: float, phi: float) -> None:
+    def add_sample(self, psi: float, phi: float) -> None:
         """Append a sample to the histories and update the identification.
 
         Args:
             psi: Heading relative to the course [rad].
             phi: Roll [rad].
         """
-        super().see(psi, phi)
-        self.ship.learn(self.psi, self.phi, self.rudder)
+        super().add_sample(psi, phi)
+        self.ship.update(self.psi, self.phi, self.rudder)
 
     def estimates(self) -> dict[str, Estimate]:
         """Return the identified coefficients."""
-        return {name: Estimate(value, nan, nan) for name, value in self.ship.named().items()}
+        return {
+            name: Estimate(value, nan, nan) for name, value in self.ship.named_estimates().items()
+        }

@@ -51,7 +51,7 @@ class Estimator:
     def __post_init__(self) -> None:
         self.p = self.law.covariance * np.eye(len(self.theta))
 
-    def learn(self, x: Array, y: float) -> float:
+    def update(self, x: Array, y: float) -> float:
         """Update the estimate by one sample and return the residual of the new estimate.
 
         Args:
@@ -93,16 +93,16 @@ class Ship:
         self._left = [0.0, 0.0]  # [deg] errors of roll that were left, one period ago and two
 
     @property
-    def yaw(self) -> tuple[float, ...]:
+    def yaw_coefficients(self) -> tuple[float, ...]:
         """a2y, b1y, b2y."""
         return tuple(self._yaw.theta.tolist())
 
     @property
-    def roll(self) -> tuple[float, ...]:
+    def roll_coefficients(self) -> tuple[float, ...]:
         """a1r, a2r, b1r, b2r."""
         return tuple(self._roll.theta[:4].tolist())
 
-    def learn(self, psi: Sequence[float], phi: Sequence[float], rudder: float) -> None:
+    def update(self, psi: Sequence[float], phi: Sequence[float], rudder: float) -> None:
         """Update the identification by one period.
 
         Args:
@@ -111,21 +111,23 @@ class Ship:
             rudder: Rudder angle [rad] in the last period.
         """
         (s0, s1, s2), (f0, f1, f2), u = map(degrees, psi), map(degrees, phi), degrees(rudder)
-        self._yaw.learn(np.array([s1 - s2, u, f1]), s0 - s1)
-        left = self._roll.learn(np.array([-f1, -f2, u, s1 - s2, *self._left]), f0)
+        self._yaw.update(np.array([s1 - s2, u, f1]), s0 - s1)
+        left = self._roll.update(np.array([-f1, -f2, u, s1 - s2, *self._left]), f0)
         self._left = [left, self._left[0]]
 
-    def named(self) -> dict[str, float]:
+    def named_estimates(self) -> dict[str, float]:
         """Return the estimates by name, for a log."""
         return dict(
             zip(
-                ("a2y", "b1y", "b2y", "a1r", "a2r", "b1r", "b2r"), self.yaw + self.roll, strict=True
+                ("a2y", "b1y", "b2y", "a1r", "a2r", "b1r", "b2r"),
+                self.yaw_coefficients + self.roll_coefficients,
+                strict=True,
             )
         )
 
     def matrices(self) -> tuple[Array, Array]:
         """Return A (4, 4) and B (4,) of the state (psi, psi one ago, phi, phi one ago)."""
-        return state_space(self.yaw, self.roll)
+        return state_space(self.yaw_coefficients, self.roll_coefficients)
 
 
 def state_space(yaw: Sequence[float], roll: Sequence[float]) -> tuple[Array, Array]:
@@ -147,7 +149,7 @@ def state_space(yaw: Sequence[float], roll: Sequence[float]) -> tuple[Array, Arr
     return a, np.array([b1y, 0.0, b1r, 0.0])
 
 
-def with_rudder(a: Array, b: Array) -> tuple[Array, Array]:
+def append_rudder_state(a: Array, b: Array) -> tuple[Array, Array]:
     """Return A (n + 1, n + 1) and B (n + 1,) with the rudder angle as last state.
 
     The input is the change of the rudder angle.

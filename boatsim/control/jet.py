@@ -2,14 +2,14 @@
 
 from math import sqrt
 
-from boatsim.control.allocation import within
+from boatsim.control.allocation import limit
 from boatsim.physics.kernel.compiling import lean
 
 JET_Q2 = 154.9  # [m^2/s^3] printed 164.5, with which the power jumps at throttle 4
 
 
 @lean
-def power_of(throttle: float, q2: float) -> float:
+def power_at_throttle(throttle: float, q2: float) -> float:
     """Return the shaft power per mass [m^2/s^3]; the thrust per mass is power / speed.
 
     Svendsen et al., IFAC MCMC 2012, equation 10 and Table 2, with the printed s_i as coefficients
@@ -27,7 +27,7 @@ def power_of(throttle: float, q2: float) -> float:
 
 
 @lean
-def throttle_of(power: float, q2: float) -> float:
+def throttle_for_power(power: float, q2: float) -> float:
     """Return the throttle for a power, limited to idle and full.
 
     Args:
@@ -38,4 +38,4 @@ def throttle_of(power: float, q2: float) -> float:
         return max((power + 11.30) / 12.10, 1.0)
     if power < 194.9:  # at 4
         return (20.0 + sqrt(400.0 + 74.0 * (power + 21.1))) / 37.0
-    return within(0.1 * (power - q2), 4.0, 7.0)
+    return limit(0.1 * (power - q2), 4.0, 7.0)

@@ -11,19 +11,19 @@ from boatsim.control.allocation import (
     HEADING,
     STICK,
     Outboards,
-    keep_heading,
-    set_outboards,
+    command_outboards,
+    integrate_heading,
+    limit,
     sway_difference,
-    within,
 )
 from boatsim.control.axis import AXIS, filtered_disturbance
 from boatsim.control.base import Estimate
-from boatsim.control.compiled import CompiledController, merged, record, unlocked
+from boatsim.control.compiled import CompiledController, merged, record_type, unlocked
 from boatsim.physics.base import param
 
 SERVO_LAG = 0.06  # [s] lag of steering servos, used only for the margins
 # X [N], N [N m]: values applied in the last period
-REMEMBERS = record("acted", "X", "N", yaw=AXIS, surge=AXIS, heading=HEADING)
+REMEMBERS = record_type("acted", "X", "N", yaw=AXIS, surge=AXIS, heading=HEADING)
 
 
 @merged
@@ -39,9 +39,9 @@ def yaw_moment(q: Any, m: Any, s: Any, wanted: float) -> float:
         wanted: Demanded yaw rate [rad/s].
     """
     if m.acted != 0.0:
-        keep_heading(m.heading, s.r, s.psi, wanted, q.period, q.compass_trust)
+        integrate_heading(m.heading, s.r, s.psi, wanted, q.period, q.compass_trust)
     bound = q.hold_rate + (q.turn_rate - q.hold_rate) * abs(wanted) / q.rated_yaw
-    reference = within(wanted + q.heading_gain * (m.heading.wanted - m.heading.own), -bound, bound)
+    reference = limit(wanted + q.heading_gain * (m.heading.wanted - m.heading.own), -bound, bound)
     acted = m.acted != 0.0
     felt = filtered_disturbance(
         m.yaw, s.r, m.N, acted, reference, q.pole, q.inertia, q.yaw_bandwidth, q.period
@@ -85,7 +85,9 @@ def law(boats: Any, settings: Any, memory: Any, sense: Any, goal: Any, sent: Any
         moment = yaw_moment(q, m, s, g.yaw_radps)
         surge = surge_force(q, m, s, g.surge_mps)
         room = q.pole * q.mass * abs(g.surge_mps)
-        m.X, _, m.N = set_outboards(q, surge, sway_difference(q, g.sway_mps), moment, room, sent[b])
+        m.X, _, m.N = command_outboards(
+            q, surge, sway_difference(q, g.sway_mps), moment, room, sent[b]
+        )
         m.acted = 1.0
 
 
@@ -139,7 +141,7 @@ class AdaptiveJoystick(Outboards, CompiledController):
 
     def estimates(self) -> dict[str, Estimate]:
         """Return the estimated disturbance of each channel, and the reference motion."""
-        yaw, surge = self.remembered["yaw"], self.remembered["surge"]
+        yaw, surge = self.memory_record["yaw"], self.memory_record["surge"]
         return {
             "sigma_yaw_Nm": Estimate(float(yaw["sigma"]), nan, nan),
             "sigma_surge_N": Estimate(float(surge["sigma"]), nan, nan),

@@ -36,7 +36,7 @@ class Row:
     stable: bool
 
 
-def table(controller: object) -> list[Row]:
+def margin_rows(controller: object) -> list[Row]:
     """Return the rows of a controller, one for each input gain of each channel.
 
     Args:
@@ -59,12 +59,15 @@ def table(controller: object) -> list[Row]:
         )
     rows = []
     for channel in describe():
-        rows += [_row(channel, gain) for gain in channel.input_gain]
+        rows += [_margin_row(channel, gain) for gain in channel.input_gain]
     return rows
 
 
-def _row(channel: LoopChannel | SampledChannel, gain: float) -> Row:
-    norm, found = channel.norm(gain), loop_margins(channel.loop(gain), high=channel.highest)
+def _margin_row(channel: LoopChannel | SampledChannel, gain: float) -> Row:
+    norm, found = (
+        channel.l1_norm(gain),
+        loop_margins(channel.open_loop_response(gain), high=channel.highest_frequency),
+    )
     return Row(
         channel=channel.name,
         input_gain=gain,
@@ -78,18 +81,18 @@ def _row(channel: LoopChannel | SampledChannel, gain: float) -> Row:
     )
 
 
-def text(rows: list[Row]) -> str:
+def format_margins(rows: list[Row]) -> str:
     """Return the table for a terminal, with the L1-norm condition of each L1 channel.
 
     Args:
-        rows: Rows of `table`.
+        rows: Rows of `margin_rows`.
     """
     lines = ["  ".join((f"{HEADINGS[0]:10}", *HEADINGS[1:]))]
-    lines += ["  ".join(_cells(row)).rstrip() for row in rows]
-    return "\n".join(lines + [_condition(name, rows) for name in _l1_channels(rows)])
+    lines += ["  ".join(_format_row(row)).rstrip() for row in rows]
+    return "\n".join(lines + [_format_l1_condition(name, rows) for name in _l1_channels(rows)])
 
 
-def _cells(row: Row) -> list[str]:
+def _format_row(row: Row) -> list[str]:
     """Return one line of the table, each number under its heading."""
     values = [
         f"{row.input_gain:.2f}",
@@ -109,7 +112,7 @@ def _l1_channels(rows: list[Row]) -> list[str]:
     return list(dict.fromkeys(row.channel for row in rows if row.norm is not None))
 
 
-def _condition(name: str, rows: list[Row]) -> str:
+def _format_l1_condition(name: str, rows: list[Row]) -> str:
     """Return the L1-norm condition of one channel at its worst input gain, in words."""
     norm, needed = max(
         (row.norm, row.needed) for row in rows if row.channel == name and row.norm and row.needed

@@ -72,7 +72,7 @@ class Train:
         for sense in (1, -1, -1, 1):
             self.senses += [sense] * self.pulse + still
 
-    def feel(self, rate: float, felt: float) -> None:
+    def add_reading(self, rate: float, felt: float) -> None:
         """Append the readings at the begin of a period, and at the end of the last one.
 
         Args:
@@ -82,7 +82,7 @@ class Train:
         self.rates.append(rate)
         self.felt.append(felt)
 
-    def found(self, period: float, lag: float, drift: Drift, aside: int) -> Found:
+    def evaluate(self, period: float, lag: float, drift: Drift, aside: int) -> Found:
         """Return the least-squares result of the train.
 
         Args:
@@ -94,11 +94,15 @@ class Train:
         Raises:
             BadInput: The boat did not move.
         """
-        on = np.column_stack([_lagged(self.senses, sense, period, lag) for sense in (1, -1)])
+        on = np.column_stack(
+            [_delayed_thrust(self.senses, sense, period, lag) for sense in (1, -1)]
+        )
         gained = np.vstack([np.zeros(2), period * np.cumsum(0.5 * (on[1:] + on[:-1]), axis=0)])
         square = np.cumsum(np.square(self.rates)) * period
-        turns, spread = _fitted(gained, np.array(self.rates) - aside * drift.yaw * square)
-        pushes, _ = _fitted(on, np.array(self.felt))
+        turns, spread = _fit_least_squares(
+            gained, np.array(self.rates) - aside * drift.yaw * square
+        )
+        pushes, _ = _fit_least_squares(on, np.array(self.felt))
         if pushes[0] <= 0.0 or turns[0] == 0.0:
             raise BadInput(
                 f"the motors were tried and pushed the boat ahead by {pushes[0]:.3g} m/s^2; is "
@@ -111,13 +115,13 @@ class Train:
         )
 
 
-def _lagged(senses: list[int], sense: int, period: float, lag: float) -> Array:
+def _delayed_thrust(senses: list[int], sense: int, period: float, lag: float) -> Array:
     """Return the share of thrust in one sense (N + 1,) at each reading, with the lag [s]."""
     low_pass = LowPass(1.0 / lag)
     return np.array([0.0, *(low_pass.step(float(s == sense), period) for s in senses)])
 
 
-def _fitted(columns: Array, values: Array) -> tuple[Array, Array]:
+def _fit_least_squares(columns: Array, values: Array) -> tuple[Array, Array]:
     """Return the factors of the columns in a fit with a constant, and their variances."""
     a = np.column_stack([columns, np.ones(len(values))])
     inverse = np.linalg.inv(a.T @ a)
@@ -157,12 +161,12 @@ class MotorCheck:
         self._program: Iterator[Pulse] | None = None
 
     @property
-    def push(self) -> float:
+    def ahead_acceleration(self) -> float:
         """Acceleration [m/s^2] of both motors ahead, one of them turned inward."""
         return float(np.mean([f.push for f in self._found]))
 
     @property
-    def unevenness(self) -> float:
+    def yaw_asymmetry(self) -> float:
         """Yaw accelerations (a - b) / (a + b), with port (a) and starboard (b) motor inward."""
         a, b = (
             abs(float(np.mean([f.turn for f in self._found[side::2]])))
@@ -180,41 +184,48 @@ class MotorCheck:
             felt: Acceleration ahead [m/s^2].
         """
         self._reading = rate, felt
-        self._program = self._program or self._play()
+        self._program = self._program or self._pulse_sequence()
         pulse = next(self._program, None)
         self.done = pulse is None
         return pulse or Pulse(0, NEITHER)
 
-    def _play(self) -> Iterator[Pulse]:
+    def _pulse_sequence(self) -> Iterator[Pulse]:
         """Yield the pulses of all pairs; a reading is taken at the begin of the next pulse."""
         length = self.shortest
         for pair in range(self.most):
             for side in (PORT, STARBOARD):
                 train = Train(round(length / self.period), round(self.rest / self.period))
                 for sense in train.senses:
-                    train.feel(*self._reading)
+                    train.add_reading(*self._reading)
                     yield Pulse(sense, side)
-                train.feel(*self._reading)
+                train.add_reading(*self._reading)
                 self._found.append(
-                    train.found(self.period, self.lag, self.drift, 1 if side == STARBOARD else -1)
+                    train.evaluate(
+                        self.period, self.lag, self.drift, 1 if side == STARBOARD else -1
+                    )
                 )
-            self._learn(train.senses)
-            for sense in self._amends():
+            self._update_from_pair(train.senses)
+            for sense in self._braking_pulses():
                 yield Pulse(sense, NEITHER)
-            if pair and self._spread() < self.enough:
+            if pair and self._standard_error() < self.enough:
                 return
-            length = clip(self.reach / self.push, self.shortest, self.longest)
+            length = clip(self.reach / self.ahead_acceleration, self.shortest, self.longest)
 
-    def _learn(self, senses: list[int]) -> None:
+    def _update_from_pair(self, senses: list[int]) -> None:
         """Update the remaining speed by the last pair, and correct the astern setting."""
         pair = self._found[-2:]
         reverse = (pair[PORT].reverse * pair[STARBOARD].reverse) ** 0.5
-        self.speed += 2.0 * self.push * self.period * (senses.count(1) - reverse * senses.count(-1))
+        self.speed += (
+            2.0
+            * self.ahead_acceleration
+            * self.period
+            * (senses.count(1) - reverse * senses.count(-1))
+        )
         self.speed -= sum(found.slowed for found in pair)
         self._read.append((log(self.astern), log(reverse)))
-        self.astern = exp(self._balanced())
+        self.astern = exp(self._balanced_astern_setting())
 
-    def _balanced(self) -> float:
+    def _balanced_astern_setting(self) -> float:
         """Return the logarithm of the balanced astern setting, a mean without the first pair."""
         power = self.power
         if len(self._read) > 1:
@@ -222,14 +233,17 @@ class MotorCheck:
             power = clip((r1 - r0) / (s1 - s0), *POWERS) if abs(s1 - s0) > FAR else power
         return float(np.mean([s - r / power for s, r in self._read[1:] or self._read]))
 
-    def _amends(self) -> list[int]:
+    def _braking_pulses(self) -> list[int]:
         """Return the pulses that remove the remaining speed."""
-        sense, gain = -1 if self.speed > 0.0 else 1, self.push * self.straight * self.period
+        sense, gain = (
+            -1 if self.speed > 0.0 else 1,
+            self.ahead_acceleration * self.straight * self.period,
+        )
         count = round(abs(self.speed) / gain)
         self.speed += sense * count * gain
         return [sense] * count + [0] * round(self.rest / self.period) if count else []
 
-    def _spread(self) -> float:
+    def _standard_error(self) -> float:
         """Return the standard deviation of the mean of all pairs but the first."""
         later = self._found[2:]
         return float(np.sqrt(sum(f.variance for f in later))) / len(later)

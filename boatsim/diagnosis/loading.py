@@ -14,7 +14,7 @@ from boatsim.errors import BadInput
 from boatsim.files import Value
 from boatsim.physics import vessel as vessels
 from boatsim.physics.vessel import Vessel
-from boatsim.progress import Report, silent
+from boatsim.progress import Report, ignore_progress
 from boatsim.recordings.notes import notes_for
 from boatsim.recordings.table import Recording, read
 
@@ -56,7 +56,9 @@ class Loaded:
         return self.vessels[self.fitted[0].path]
 
 
-def load(request: Request, report: Report = silent, config: DiagnosisConfig = DEFAULT) -> Loaded:
+def load(
+    request: Request, report: Report = ignore_progress, config: DiagnosisConfig = DEFAULT
+) -> Loaded:
     """Read, check and clean the recordings of a request, and hold some of them out.
 
     Args:

@@ -35,7 +35,7 @@ from boatsim.diagnosis.symbolic.slots import write_term
 from boatsim.errors import BadInput
 from boatsim.files import Value
 from boatsim.physics.vessel import Vessel
-from boatsim.progress import Report, part, silent
+from boatsim.progress import Report, ignore_progress, report_part_of
 from boatsim.recordings.table import Recording
 
 # shares of the work, by experience, at the begin and the end of stages
@@ -91,7 +91,7 @@ def diagnose(
     horizon: float | None = None,
     *,
     facts: Mapping[str, Value] | None = None,
-    report: Report = silent,
+    report: Report = ignore_progress,
     config: DiagnosisConfig = DEFAULT,
 ) -> Diagnosis:
     """Find the effects that a vessel's model lacks, and estimate their parameters.
@@ -112,12 +112,12 @@ def diagnose(
         BadInput: A file, a name or a value cannot be used.
     """
     request = Request(runs, hold_out, vessel, load, library, without, horizon, facts or {})
-    loaded = loading.load(request, part(report, 0.0, LOADED), config)
-    return diagnose_loaded(loaded, part(report, LOADED, 1.0), config)
+    loaded = loading.load(request, report_part_of(report, 0.0, LOADED), config)
+    return diagnose_loaded(loaded, report_part_of(report, LOADED, 1.0), config)
 
 
 def diagnose_loaded(
-    loaded: Loaded, report: Report = silent, config: DiagnosisConfig = DEFAULT
+    loaded: Loaded, report: Report = ignore_progress, config: DiagnosisConfig = DEFAULT
 ) -> Diagnosis:
     """Diagnose recordings that are loaded.
 
@@ -137,8 +137,8 @@ def diagnose_loaded(
         report("comparing what the columns may mean", SELECTING[0] / 2)
         findings = check(loaded, question)
         base = fit(question)
-        selection = select(question, base, loaded, part(report, *SELECTING))
-        ranking = describe(question, selection, part(report, *DESCRIBING))
+        selection = select(question, base, loaded, report_part_of(report, *SELECTING))
+        ranking = describe(question, selection, report_part_of(report, *DESCRIBING))
         report("planning what to record next", DESCRIBING[1])
         next_plan = plan(selection, ranking)
         report("free runs", EVALUATING)
@@ -178,7 +178,7 @@ def fit(question: Question) -> Baseline:
 
 
 def select(
-    question: Question, base: Baseline, loaded: Loaded, report: Report = silent
+    question: Question, base: Baseline, loaded: Loaded, report: Report = ignore_progress
 ) -> Selection:
     """Select the effects that the recordings require.
 
@@ -203,7 +203,7 @@ def select(
     return Selection(again, rank(again, candidates, held_out, ranking.best))
 
 
-def describe(question: Question, selection: Selection, report: Report = silent) -> Ranking:
+def describe(question: Question, selection: Selection, report: Report = ignore_progress) -> Ranking:
     """Return the ranking with a symbolic description of a force that no candidate explains.
 
     Effects that the description replaces are removed.

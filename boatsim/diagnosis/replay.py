@@ -14,12 +14,12 @@ from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.errors import BadInput
 from boatsim.physics.base import Array
 from boatsim.physics.vessel import Vessel
-from boatsim.progress import Report, silent
+from boatsim.progress import Report, ignore_progress
 from boatsim.recordings.table import Recording
 
 
 def replay_recording(
-    recording: Recording, vessel: Vessel, horizon: float, report: Report = silent
+    recording: Recording, vessel: Vessel, horizon: float, report: Report = ignore_progress
 ) -> list[FreeRun]:
     """Return free runs with the models "simulated" and "recorded".
 
@@ -77,7 +77,7 @@ def join_free_runs(runs: Sequence[FreeRun]) -> Recording:
 
 
 def fit_noise_only(
-    recording: Recording, vessel: Vessel, report: Report = silent
+    recording: Recording, vessel: Vessel, report: Report = ignore_progress
 ) -> tuple[Problem, Fit]:
     """Fit only the noise levels of a vessel file to a recording.
 

@@ -29,8 +29,8 @@ def background_listener(listen: Listener, interval: float) -> Iterator[Listener]
     def run() -> None:
         try:
             while not finished.wait(interval):
-                _hand_over(rows, listen)
-            _hand_over(rows, listen)
+                _pass_waiting_rows(rows, listen)
+            _pass_waiting_rows(rows, listen)
         except BaseException as error:
             errors.append(error)
 
@@ -50,7 +50,7 @@ def background_listener(listen: Listener, interval: float) -> Iterator[Listener]
         raise errors.pop()
 
 
-def _hand_over(rows: SimpleQueue[Recording], listen: Listener) -> None:
+def _pass_waiting_rows(rows: SimpleQueue[Recording], listen: Listener) -> None:
     """Pass all waiting rows to the listener as one recording."""
     pieces: list[Recording] = []
     try:

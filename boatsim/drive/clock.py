@@ -35,7 +35,7 @@ class Clock(Pace):
         self.began: float | None = None
         self._due = period  # The first control step comes before the clock starts.
 
-    def wait(self, t: float, stop: Callable[[], bool] = bool) -> None:
+    def wait_until(self, t: float, stop: Callable[[], bool] = bool) -> None:
         """Wait until a simulated time is due, and measure the delay of a control step due then.
 
         Args:
@@ -44,12 +44,12 @@ class Clock(Pace):
         """
         if self.began is None:
             self.began = time.time() - t
-        before = self.behind(t)  # before `wait` resets a clock that is far behind
-        super().wait(t, stop)
+        before = self.delay(t)  # before `wait_until` resets a clock that is far behind
+        super().wait_until(t, stop)
         if t < self._due - 1e-9:
             return
         self._due += self.period
-        delay = max(before, self.behind(t))
+        delay = max(before, self.delay(t))
         self.periods += 1
         self.late += delay > LATE * self.period
         self.worst = max(self.worst, delay)

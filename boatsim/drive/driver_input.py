@@ -34,7 +34,7 @@ class _Message(NamedTuple):
     received: float = 0.0  # time of arrival, clock of this object [s]
 
 
-class Hands:
+class DriverInput:
     """The latest stick positions, written by the thread of the server and read by the simulation.
 
     Sticks that were released count again only after they have been in the middle, so that no boat
@@ -51,7 +51,7 @@ class Hands:
         self._message = _Message()
         self._away = "no driver has taken the sticks"
 
-    def move(self, sticks: Sticks, moved: float) -> None:
+    def store_sticks(self, sticks: Sticks, moved: float) -> None:
         """Store a message of the page.
 
         Args:
@@ -62,7 +62,7 @@ class Hands:
         if max(map(abs, sticks)) <= DEAD:
             self._away = ""
 
-    def let_go(self, why: str) -> None:
+    def release(self, why: str) -> None:
         """Note that the driver has released the sticks.
 
         Args:
@@ -71,20 +71,20 @@ class Hands:
         self._away = self._away or why
 
     @property
-    def away(self) -> str:
+    def release_reason(self) -> str:
         """Why no driver holds the sticks; "" while one does."""
         if not self._away and self._clock() - self._message.received > PATIENCE:
-            self.let_go(f"no message for {PATIENCE:g} s")
+            self.release(f"no message for {PATIENCE:g} s")
         return self._away
 
     @property
-    def moved(self) -> float:
+    def last_moved_time(self) -> float:
         """Time at which the sticks were last moved, by the clock of the page [s since 1970]."""
         return self._message.moved
 
     def sticks(self) -> Sticks | None:
         """Return the deflections beyond the dead zone; None while no driver holds the sticks."""
-        if self.away:
+        if self.release_reason:
             return None
         return Sticks(*map(beyond_dead_zone, self._message.sticks))
 

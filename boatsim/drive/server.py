@@ -16,7 +16,7 @@ from math import isfinite
 from re import DOTALL, search
 from typing import Any
 
-from boatsim.drive.driver_input import Hands, Sticks
+from boatsim.drive.driver_input import DriverInput, Sticks
 from boatsim.errors import BoatsimError
 
 HERE = "127.0.0.1"
@@ -36,7 +36,7 @@ class Server:
         port: Port of the page, within the block.
     """
 
-    def __init__(self, hands: Hands, port: int = 0) -> None:
+    def __init__(self, hands: DriverInput, port: int = 0) -> None:
         """Create a server; its block raises BoatsimError if the port cannot be used.
 
         Args:
@@ -58,7 +58,7 @@ class Server:
         self._driver: Any = None
         self._up: Future[int] = Future()
         self._loop = asyncio.new_event_loop()
-        self._thread = threading.Thread(target=self._work, name="page", daemon=True)
+        self._thread = threading.Thread(target=self._run_event_loop, name="page", daemon=True)
 
     def __enter__(self) -> "Server":
         self._thread.start()
@@ -75,7 +75,7 @@ class Server:
             message = "the terminal shows the error"
             if isinstance(error, BoatsimError):
                 message = str(error)
-            self.farewell({"wrong": message})
+            self.send_result({"wrong": message})
         self._loop.call_soon_threadsafe(self._over.set)
         self._thread.join(FAREWELL + 1.0)
 
@@ -84,53 +84,53 @@ class Server:
         """Address of the page."""
         return f"http://{HERE}:{self.port}/{self._token}/"
 
-    def greet(self, hello: Mapping[str, object]) -> None:
+    def send_initial_data(self, hello: Mapping[str, object]) -> None:
         """Send what does not change during the run.
 
         Args:
             hello: Vessel, basin and dials.
         """
         self._hello = json.dumps({"hello": hello})
-        self._wake()
+        self._notify_sender()
 
-    def show(self, frame: Mapping[str, object]) -> None:
+    def send_frame(self, frame: Mapping[str, object]) -> None:
         """Send the latest state; a slow page receives only some of the states.
 
         Args:
             frame: The state.
         """
         self._frame = json.dumps({"frame": frame})
-        self._wake()
+        self._notify_sender()
 
-    def farewell(self, last: Mapping[str, object]) -> None:
+    def send_result(self, last: Mapping[str, object]) -> None:
         """Send the result of the run.
 
         Args:
             last: Output folder, or the error.
         """
         self._last = json.dumps({"over": last})
-        self._wake()
+        self._notify_sender()
 
     # Methods below run in the thread of the server.
 
-    def _wake(self) -> None:
+    def _notify_sender(self) -> None:
         with suppress(RuntimeError):  # The loop is closed.
             self._loop.call_soon_threadsafe(lambda: self._news.set())
 
-    def _work(self) -> None:
+    def _run_event_loop(self) -> None:
         asyncio.set_event_loop(self._loop)
         try:
-            self._loop.run_until_complete(self._serve())
+            self._loop.run_until_complete(self._serve_until_closed())
         except BaseException as error:
             if not self._up.done():
                 self._up.set_exception(error)
         finally:
             self._loop.close()
 
-    async def _serve(self) -> None:
+    async def _serve_until_closed(self) -> None:
         self._over, self._news = asyncio.Event(), asyncio.Event()
         async with self._sockets.serve(
-            self._drive,
+            self._serve_page,
             HERE,
             self._wanted,
             process_request=self._respond,
@@ -168,7 +168,7 @@ class Server:
 
     def _page_response(self, answer: Any, own: str) -> Any:
         """The page with a policy that allows its own script, style and socket only."""
-        script, style = _hash(self._page, "script"), _hash(self._page, "style")
+        script, style = _policy_hash(self._page, "script"), _policy_hash(self._page, "style")
         policy = f"default-src 'none'; script-src {script}; style-src {style}"
         policy += f"; connect-src ws://{own}; img-src data:; base-uri 'none'; form-action 'none'"
         del answer.headers["Content-Type"]
@@ -183,44 +183,44 @@ class Server:
             answer.headers[name] = value
         return answer
 
-    async def _drive(self, socket: Any) -> None:
+    async def _serve_page(self, socket: Any) -> None:
         """Serve one page from its opening to its closing."""
         if self._driver is not None:
             await socket.close(TAKEN, "another page drives this boat already")
             return
         self._driver = socket
-        sending = asyncio.ensure_future(self._send(socket))
+        sending = asyncio.ensure_future(self._send_updates(socket))
         try:
             async for message in socket:
-                if not self._receive(message):
+                if not self._process_message(message):
                     await socket.close(STRANGE, "not a message of this page")
         except Exception as error:  # A lost connection raises one of several errors.
             if type(error).__module__.partition(".")[0] != "websockets":
                 raise
         finally:
-            self.hands.let_go("page closed")
+            self.hands.release("page closed")
             self._driver = None
             sending.cancel()
 
-    def _receive(self, message: str | bytes) -> bool:
+    def _process_message(self, message: str | bytes) -> bool:
         """Process a message; return whether it has the form of the page's messages."""
         try:
             data = json.loads(message)
             if data == {"end": True}:
                 self.ended = True
             elif data == {"hidden": True}:
-                self.hands.let_go("page hidden")
+                self.hands.release("page hidden")
             else:
                 surge, sway, yaw = map(float, data["sticks"])
                 sticks, moved = Sticks(surge, sway, yaw), float(data["moved"])
                 if not all(isfinite(x) and abs(x) <= 1.0 for x in sticks) or not isfinite(moved):
                     return False
-                self.hands.move(sticks, moved)
+                self.hands.store_sticks(sticks, moved)
         except (ValueError, TypeError, KeyError, RecursionError):
             return False
         return True
 
-    async def _send(self, socket: Any) -> None:
+    async def _send_updates(self, socket: Any) -> None:
         """Send the greeting, then the latest frame whenever it has changed."""
         greeted = sent = ""
         while not self._last:
@@ -236,7 +236,7 @@ class Server:
         await socket.close()
 
 
-def _hash(page: str, part: str) -> str:
+def _policy_hash(page: str, part: str) -> str:
     """Hash by which the policy allows the script or style of the page."""
     found = search(rf"<{part}>(.*?)</{part}>", page, DOTALL)
     assert found, part

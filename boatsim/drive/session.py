@@ -9,13 +9,13 @@ from boatsim.drive.background_tasks import background_listener
 from boatsim.drive.clock import Clock
 from boatsim.drive.server import Server
 from boatsim.drive.task import FILE, Task
-from boatsim.drive.telemetry import Painter
+from boatsim.drive.telemetry import PageData
 from boatsim.recordings.table import Recording
 from boatsim.simulate.engine import Engine
 from boatsim.simulate.open_water import OpenWater
 from boatsim.simulate.run_options import LIVE_REFRESH, REFRESH, Listener
 from boatsim.simulate.scenario import OFF
-from boatsim.simulate.tracking_errors import Tally
+from boatsim.simulate.tracking_errors import TrackingErrorSums
 
 FRAME = 0.04  # [s] between two frames of the page: 25 a second look smooth
 WAIT = 0.05  # [s] between two checks whether a driver has taken the sticks
@@ -50,7 +50,7 @@ class Session:
         self.refresh = FRAME
         self._notify = notify
         self._interval = LIVE_REFRESH if watched else REFRESH
-        self._tally = Tally()
+        self._tally = TrackingErrorSums()
         self._goals: list[tuple[float, Mapping[str, float] | None]] = []
         self._goal: Mapping[str, float] = NO_DRIVER
         self._at = -1.0
@@ -71,14 +71,14 @@ class Session:
         Raises:
             KeyboardInterrupt: The run is interrupted.
         """
-        self._painter = Painter(engine, self.task.dials, self.task.scenario)
-        self.server.greet(self._painter.hello())
-        while self.hands.away and not self.server.ended and not stop():
+        self._painter = PageData(engine, self.task.dials, self.task.scenario)
+        self.server.send_initial_data(self._painter.initial_data())
+        while self.hands.release_reason and not self.server.ended and not stop():
             time.sleep(WAIT)
         if stop():  # The run has not started.
             raise KeyboardInterrupt
 
-    def finished(self) -> bool:
+    def is_finished(self) -> bool:
         """Return whether the driver has ended the run."""
         return self.server.ended
 
@@ -94,7 +94,7 @@ class Session:
         return self._goal
 
     @contextmanager
-    def listening(self, listen: Listener) -> Iterator[Listener]:
+    def wrap_listener(self, listen: Listener) -> Iterator[Listener]:
         """Show log rows on the page and pass them to a slow listener in a thread.
 
         Args:
@@ -110,13 +110,15 @@ class Session:
                 self._heading = float(rows["psi_rad"][-1])
                 self._end = float(rows.t[-1])
                 metrics = self._tally.metrics()
-                frame = self._painter.frame(rows, metrics, self.clock, self.hands, self.latency)
-                self.server.show(frame)
+                frame = self._painter.frame_data(
+                    rows, metrics, self.clock, self.hands, self.latency
+                )
+                self.server.send_frame(frame)
                 files(rows)
 
             yield show
 
-    def facts(self) -> Mapping[str, object]:
+    def recording_facts(self) -> Mapping[str, object]:
         """Return facts for recording.toml that the log does not hold."""
         return {
             "driven": True,
@@ -128,12 +130,12 @@ class Session:
             "began_unix_s": self.clock.began or 0.0,
         }
 
-    def files(self) -> Mapping[str, str]:
+    def extra_files(self) -> Mapping[str, str]:
         """Return the files that repeat the run so far without a driver: name -> text."""
         end = self._end or self.task.scenario.file.duration
-        whole = self.task.toml(self._goals, end)
+        whole = self.task.scenario_toml(self._goals, end)
         self.replayable = whole is not None
-        return {FILE: whole or self.task.toml([], end) or ""}
+        return {FILE: whole or self.task.scenario_toml([], end) or ""}
 
     @property
     def latency(self) -> float | None:
@@ -143,20 +145,20 @@ class Session:
         return self.latencies[-1]
 
     def _update_goal(self, t: float, dt: float) -> None:
-        sticks, moved = self.hands.sticks(), self.hands.moved
+        sticks, moved = self.hands.sticks(), self.hands.last_moved_time
         goal = NO_DRIVER
         if sticks is None:
-            self.task.dials.let_go()
+            self.task.dials.reset_heading()
         else:
-            goal = self.task.dials.goal(sticks, dt, self._heading)
+            goal = self.task.dials.goal_from_sticks(sticks, dt, self._heading)
         if goal != self._goal or not self._goals:
-            self._change_goal(t, goal, moved)
+            self._store_goal(t, goal, moved)
 
-    def _change_goal(self, t: float, goal: Mapping[str, float], moved: float) -> None:
+    def _store_goal(self, t: float, goal: Mapping[str, float], moved: float) -> None:
         """Store a new goal for the log and for the scenario file."""
         if goal is NO_DRIVER:
-            self._away.append(f"{t:.2f} s: {self.hands.away}")
-            self._notify(f"t = {t:.2f} s: {self.hands.away}; commands are neutral")
+            self._away.append(f"{t:.2f} s: {self.hands.release_reason}")
+            self._notify(f"t = {t:.2f} s: {self.hands.release_reason}; commands are neutral")
         elif self._goal is NO_DRIVER and self._away:
             self._notify(f"t = {t:.2f} s: a driver has taken the sticks again")
         if moved > self._moved and NO_DRIVER not in (goal, self._goal):

@@ -10,7 +10,11 @@ from boatsim.drive.driver_input import Sticks
 from boatsim.errors import BadInput
 from boatsim.physics.signals import STATE, measured_column_for_goal
 from boatsim.physics.vessel import ManoeuvringTable, Vessel
-from boatsim.simulate.manoeuvre import approach, handled, transverse_thrusters
+from boatsim.simulate.manoeuvre import (
+    approach_speed,
+    complete_manoeuvring_table,
+    transverse_thrusters,
+)
 
 # Defaults for a vessel whose files and controller specify no largest goals.
 FROUDE = 0.15  # Froude number of the largest speed: well below hull speed
@@ -22,7 +26,7 @@ DIGITS = 6  # decimals of a goal, so that a scenario file of many goals stays sm
 HEADING = "psi_rad"
 
 
-class Dial(NamedTuple):
+class StickMapping(NamedTuple):
     """Effect of one stick on one goal or channel.
 
     Attributes:
@@ -37,7 +41,7 @@ class Dial(NamedTuple):
     low: float
     high: float
 
-    def at(self, sticks: Sticks) -> float:
+    def contribution(self, sticks: Sticks) -> float:
         """Return the value added to the neutral value.
 
         Args:
@@ -50,7 +54,7 @@ class Dial(NamedTuple):
 
 
 @dataclass
-class Dials:
+class StickMappings:
     """All goals and channels that the sticks set.
 
     The dial of a heading sets its rate of change [rad/s].
@@ -61,7 +65,7 @@ class Dials:
         limits: Range of every channel.
     """
 
-    dials: tuple[Dial, ...]
+    dials: tuple[StickMapping, ...]
     neutral: Mapping[str, float]
     limits: Mapping[str, tuple[float, float]]
     _heading: float | None = field(default=None, init=False)  # [rad] present heading goal
@@ -71,7 +75,7 @@ class Dials:
         """Names of the goals and channels."""
         return list(self.neutral)
 
-    def goal(self, sticks: Sticks, dt: float, heading: float) -> dict[str, float]:
+    def goal_from_sticks(self, sticks: Sticks, dt: float, heading: float) -> dict[str, float]:
         """Return the goals of stick deflections.
 
         Args:
@@ -81,7 +85,7 @@ class Dials:
         """
         found = dict(self.neutral)
         for dial in self.dials:
-            found[dial.key] += dial.at(sticks)
+            found[dial.key] += dial.contribution(sticks)
         if HEADING in found:
             if self._heading is None:
                 self._heading = heading
@@ -91,12 +95,12 @@ class Dials:
             found[key] = round(clip(value, low, high), DIGITS)
         return found
 
-    def let_go(self) -> None:
+    def reset_heading(self) -> None:
         """Start the next heading goal from the heading of the vessel at that time."""
         self._heading = None
 
 
-def dials_of(vessel: Vessel, controller: Controller, name: str) -> Dials:
+def stick_mappings_for(vessel: Vessel, controller: Controller, name: str) -> StickMappings:
     """Return the dials of a vessel under a controller.
 
     Args:
@@ -113,19 +117,21 @@ def dials_of(vessel: Vessel, controller: Controller, name: str) -> Dials:
     if not vessel.commands:
         raise BadInput(f"{vessel.name} has no command channels; it cannot be driven")
     if not goals:
-        return _with_channels(vessel, _channel_dials(vessel, handled(vessel)))
+        return _add_channel_ranges(
+            vessel, _channel_mappings(vessel, complete_manoeuvring_table(vessel))
+        )
     table = _manoeuvring_table(vessel)
-    held = [d for d in _channel_dials(vessel, table) if d.key in goals]
-    found = [*_motion_dials(vessel, table, controller.largest_goals(), goals), *held]
+    held = [d for d in _channel_mappings(vessel, table) if d.key in goals]
+    found = [*_motion_mappings(vessel, table, controller.largest_goals(), goals), *held]
     if not found:
         raise BadInput(
             f"controller {name} takes the goals {', '.join(goals)}; the sticks set speeds, turning "
             "heading or commands"
         )
-    return _with_channels(vessel, found)
+    return _add_channel_ranges(vessel, found)
 
 
-def _with_channels(vessel: Vessel, dials: Sequence[Dial]) -> Dials:
+def _add_channel_ranges(vessel: Vessel, dials: Sequence[StickMapping]) -> StickMappings:
     """Dials with the neutral values and the ranges of channels."""
     neutral = {}
     limits = {}
@@ -135,27 +141,27 @@ def _with_channels(vessel: Vessel, dials: Sequence[Dial]) -> Dials:
         if channel:
             neutral[dial.key] = channel.neutral
             limits[dial.key] = (channel.low, channel.high)
-    return Dials(tuple(dials), neutral, limits)
+    return StickMappings(tuple(dials), neutral, limits)
 
 
 def _manoeuvring_table(vessel: Vessel) -> ManoeuvringTable:
     """Channels that drive and steer the vessel; incomplete if not all are known."""
     try:
-        return handled(vessel)
+        return complete_manoeuvring_table(vessel)
     except BadInput:
         return vessel.manoeuvring
 
 
-def _motion_dials(
+def _motion_mappings(
     vessel: Vessel, table: ManoeuvringTable, specified: Mapping[str, float], goals: Sequence[str]
-) -> list[Dial]:
+) -> list[StickMapping]:
     """Dials of goals that are speeds, turning rates or a heading."""
     axes = {
         s.column: s.axis
         for s in STATE
         if s.axis in Sticks._fields and (s.rate or s.column == HEADING)
     }
-    found: list[Dial] = []
+    found: list[StickMapping] = []
     for key in goals:
         axis = axes.get(measured_column_for_goal(key) or "")
         if axis is None or axis not in vessel.dof:
@@ -167,14 +173,14 @@ def _motion_dials(
             full = _default_goals(replace(vessel, manoeuvring=table))[axis]
             forward_only = axis == "surge" and not table.astern
             low = 0.0 if forward_only else -full
-        found.append(Dial(key, axis, low, full))
+        found.append(StickMapping(key, axis, low, full))
     return found
 
 
 def _default_goals(vessel: Vessel) -> dict[str, float]:
     """Largest goals [m/s, rad/s] from the top speed, for a controller that specifies none."""
     try:
-        speed = approach(vessel)
+        speed = approach_speed(vessel)
     except BadInput:
         speed = FROUDE * sqrt(GRAVITY * vessel.length)
     return {
@@ -184,28 +190,33 @@ def _default_goals(vessel: Vessel) -> dict[str, float]:
     }
 
 
-def _channel_dials(vessel: Vessel, table: ManoeuvringTable) -> list[Dial]:
+def _channel_mappings(vessel: Vessel, table: ManoeuvringTable) -> list[StickMapping]:
     """Dials of the channels for surge, yaw and sway; a full stick gives the end of a range."""
     channels = vessel.commands
-    found: list[Dial] = []
+    found: list[StickMapping] = []
     for name, ahead in table.ahead.items():
-        room, back = _room(vessel, name, ahead), table.astern.get(name, channels[name].neutral)
-        found.append(Dial(name, "surge", _room(vessel, name, back), room))
+        room, back = (
+            _range_towards(vessel, name, ahead),
+            table.astern.get(name, channels[name].neutral),
+        )
+        found.append(StickMapping(name, "surge", _range_towards(vessel, name, back), room))
     for name, per_rad in table.steer.items():
-        found.append(Dial(name, "yaw", *_both_ends(vessel, name, per_rad)))
+        found.append(StickMapping(name, "yaw", *_ranges_to_both_sides(vessel, name, per_rad)))
     for name, share in transverse_thrusters(vessel).items():
         if name in channels and name not in table.steer:
-            found.append(Dial(name, "sway", *_both_ends(vessel, name, share)))
+            found.append(StickMapping(name, "sway", *_ranges_to_both_sides(vessel, name, share)))
     return found
 
 
-def _both_ends(vessel: Vessel, channel: str, share: float) -> tuple[float, float]:
+def _ranges_to_both_sides(vessel: Vessel, channel: str, share: float) -> tuple[float, float]:
     """Distances from neutral to the ends of a channel for a full stick to port and to starboard."""
     neutral = vessel.commands[channel].neutral
-    return _room(vessel, channel, neutral - share), _room(vessel, channel, neutral + share)
+    return _range_towards(vessel, channel, neutral - share), _range_towards(
+        vessel, channel, neutral + share
+    )
 
 
-def _room(vessel: Vessel, channel: str, towards: float) -> float:
+def _range_towards(vessel: Vessel, channel: str, towards: float) -> float:
     """Distance from the neutral value of a channel to its end in the direction of another value."""
     c = vessel.commands[channel]
     if towards == c.neutral:

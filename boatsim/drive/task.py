@@ -7,11 +7,11 @@ from pathlib import Path
 
 import tomlkit
 
-from boatsim.drive.stick_mapping import Dials, dials_of
+from boatsim.drive.stick_mapping import StickMappings, stick_mappings_for
 from boatsim.errors import BadInput
 from boatsim.files import MAX_TOML_BYTES, Value
 from boatsim.physics.content import find_content_file, library_names
-from boatsim.simulate.cases import Place, content, matching
+from boatsim.simulate.cases import ScenarioLocation, find_scenarios, read_scenario
 from boatsim.simulate.controllers import controller_table
 from boatsim.simulate.scenario import OFF, Scenario, from_table
 
@@ -64,13 +64,15 @@ class Task:
         Raises:
             BadInput: A name is wrong, or the sticks cannot steer the controller.
         """
-        table, place = _environment(vessel, scenario, load)
+        table, place = _environment_table(vessel, scenario, load)
         table["controller"] = _controller_table(table.get("controller"), controller)
         table["duration"] = seconds
         loaded = from_table({"step": SHORTEST, **table}, place)
         self.vessel = loaded.vessel
         use = str(loaded.file.controller["use"])
-        self.dials: Dials = dials_of(self.vessel, loaded.controller, Path(use).stem)
+        self.dials: StickMappings = stick_mappings_for(
+            self.vessel, loaded.controller, Path(use).stem
+        )
         self._table = {"step": min(STEP, loaded.controller.period), **table}
         water = ""
         if scenario:
@@ -82,7 +84,7 @@ class Task:
             address="",
         )
 
-    def in_folder(self, folder: Path) -> Scenario:
+    def scenario_in_folder(self, folder: Path) -> Scenario:
         """Return the scenario with the address of its file in an output folder.
 
         Args:
@@ -90,7 +92,7 @@ class Task:
         """
         return replace(self.scenario, address=str(folder.resolve() / FILE))
 
-    def toml(self, goals: Goals, duration: float) -> str | None:
+    def scenario_toml(self, goals: Goals, duration: float) -> str | None:
         """Return the text of a scenario file that repeats a run.
 
         Args:
@@ -102,7 +104,7 @@ class Task:
         """
         table = {key: value for key, value in self._table.items() if key != "goal"}
         head = tomlkit.dumps({**table, "duration": duration})
-        rows = "".join(map("  {},\n".format, starmap(_row, goals)))
+        rows = "".join(map("  {},\n".format, starmap(_goal_row, goals)))
         # The goals are a top-level array, which must precede the first table.
         top, _, tables = head.partition("\n[")
         text = f"{top.rstrip()}\ngoal = [\n{rows}]\n"
@@ -113,26 +115,26 @@ class Task:
         return text
 
 
-def _row(t: float, goal: Mapping[str, float] | None) -> str:
+def _goal_row(t: float, goal: Mapping[str, float] | None) -> str:
     values = f"{OFF} = true"
     if goal is not None:
         values = ", ".join(f"{key} = {value!r}" for key, value in goal.items())
     return f"{{ from = {round(t, 9)!r}, {values} }}"
 
 
-def _environment(
+def _environment_table(
     vessel: str, scenario: str | None, load: Sequence[str]
-) -> tuple[dict[str, Value], Place]:
+) -> tuple[dict[str, Value], ScenarioLocation]:
     """Table of vessel, water and wind: those of a scenario without its own task, or open water."""
     path = find_content_file("vessel", vessel)
     if scenario is None:
         table: dict[str, Value] = {
-            "vessel": _vessel(vessel, path),
+            "vessel": _vessel_reference(vessel, path),
             "load": list(load),
             "sensors": {"ideal": True},
         }
-        return table, Place(Path("drive"))
-    own, place = content(_find_scenario(vessel, scenario))
+        return table, ScenarioLocation(Path("drive"))
+    own, place = read_scenario(_scenario_address(vessel, scenario))
     name = own.get("vessel")
     if (
         not isinstance(name, str)
@@ -145,19 +147,19 @@ def _environment(
     return table, place
 
 
-def _vessel(name: str, path: Path) -> str:
+def _vessel_reference(name: str, path: Path) -> str:
     """Name of a vessel of the library, or its absolute path."""
     if name in library_names("vessel"):
         return name
     return str(path.resolve())
 
 
-def _find_scenario(vessel: str, scenario: str) -> str:
+def _scenario_address(vessel: str, scenario: str) -> str:
     """Address of a scenario given by name, by its name for this vessel, or by file."""
     own = f"{vessel}/{scenario}"
     if own in library_names("scenario"):
         return own
-    found = matching(scenario)
+    found = find_scenarios(scenario)
     if len(found) > 1:
         raise BadInput(
             f"--scenario {scenario} matches {len(found)}: {', '.join(found[:3])} ...; name one"

@@ -5,24 +5,26 @@ from math import isfinite
 
 from boatsim.control.base import wrap
 from boatsim.drive.clock import Clock
-from boatsim.drive.driver_input import Hands
-from boatsim.drive.stick_mapping import HEADING, Dials
+from boatsim.drive.driver_input import DriverInput
+from boatsim.drive.stick_mapping import HEADING, StickMappings
 from boatsim.physics.signals import measured_column_for_goal
 from boatsim.recordings.notes import unit_of
 from boatsim.recordings.table import Recording
 from boatsim.simulate.engine import Engine
 from boatsim.simulate.open_water import OpenWater
 from boatsim.simulate.scenario import Scenario
-from boatsim.simulate.tracking_errors import units
+from boatsim.simulate.tracking_errors import error_units
 from boatsim.view.scene import scene_from
 
 MOTION = ("x_m", "y_m", "psi_rad", "u_mps", "v_mps", "r_radps")
 
 
-class Painter:
+class PageData:
     """Converts rows of the log of a run into the data of its page."""
 
-    def __init__(self, engine: Engine | OpenWater, dials: Dials, scenario: Scenario) -> None:
+    def __init__(
+        self, engine: Engine | OpenWater, dials: StickMappings, scenario: Scenario
+    ) -> None:
         """Create a painter.
 
         Args:
@@ -33,7 +35,7 @@ class Painter:
         self._scene = scene_from(engine.model, scenario.vessel, engine.tank)
         self._dials, self._scenario = dials, scenario
 
-    def hello(self) -> dict[str, object]:
+    def initial_data(self) -> dict[str, object]:
         """Return what does not change during the run."""
         scene, file = self._scene, self._scenario.file
         return {
@@ -47,11 +49,11 @@ class Painter:
             "start": [file.start.x, file.start.y, file.start.psi],
             "thrusters": [{"name": t.name, "x": t.x, "y": t.y} for t in scene.thrusters],
             "period": self._scenario.controller.period,
-            "dials": [self._dial(key) for key in self._dials.keys],
-            "units": units(self._dials.keys),
+            "dials": [self._dial_entry(key) for key in self._dials.keys],
+            "units": error_units(self._dials.keys),
         }
 
-    def _dial(self, key: str) -> dict[str, object]:
+    def _dial_entry(self, key: str) -> dict[str, object]:
         """A goal or channel with its range, its unit and the sticks that set it."""
         own = [d for d in self._dials.dials if d.key == key]
         ends = [self._dials.neutral[key] + x for d in own for x in (d.low, d.high)]
@@ -68,12 +70,12 @@ class Painter:
             "sticks": sorted({d.stick for d in own}),
         }
 
-    def frame(
+    def frame_data(
         self,
         rows: Recording,
         norms: Mapping[str, float],
         clock: Clock,
-        hands: Hands,
+        hands: DriverInput,
         latency: float | None,
     ) -> dict[str, object]:
         """Return the state at the end of rows of the log.
@@ -89,7 +91,7 @@ class Painter:
         return {
             "t": round(float(rows.t[-1]), 3),
             **{name.partition("_")[0]: now.get(name, 0.0) for name in MOTION},
-            "goals": [self._goal(key, now) for key in self._dials.keys],
+            "goals": [self._goal_entry(key, now) for key in self._dials.keys],
             "thrusts": [
                 [now.get(t.thrust, 0.0), now.get(t.steer, 0.0)] for t in self._scene.thrusters
             ],
@@ -99,11 +101,11 @@ class Painter:
             "late": clock.late,
             "worst": round(1e3 * clock.worst, 1),  # [ms]
             "latency": None if latency is None else round(1e3 * latency, 1),  # [ms]
-            "away": hands.away,
-            "moved": hands.moved,
+            "away": hands.release_reason,
+            "moved": hands.last_moved_time,
         }
 
-    def _goal(self, key: str, now: Mapping[str, float]) -> list[float | None]:
+    def _goal_entry(self, key: str, now: Mapping[str, float]) -> list[float | None]:
         """Goal and value reached; of a channel the command sent and the command that acts."""
         if key in self._scenario.vessel.commands:
             wanted, reached = now.get(f"sent_{key}"), now.get(key)

@@ -1,14 +1,14 @@
 """Prints actions and observations of the registered environments: python -m boatsim.learn."""
 
 from boatsim.learn import registration
-from boatsim.learn.environment_options import TASKS, play
+from boatsim.learn.environment_options import TASKS, make_simulation
 
 
 def main() -> None:
     """Print the actions and observations of each environment."""
-    for name in registration.ids():
-        options = registration.options_of(name)
-        game = play(n=1, **options)
+    for name in registration.environment_ids():
+        options = registration.environment_arguments(name)
+        game = make_simulation(n=1, **options)
         print(f"{name}: {TASKS[options['task']].words}, with {options['vessel']}")
         for action, words in zip(game.controls.names, game.controls.words, strict=True):
             print(f"  action {action:21s} -1 to 1    {words}")

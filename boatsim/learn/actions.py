@@ -68,7 +68,7 @@ class Controls:
         return np.asarray(self.neutral + ahead * self.up + (share - ahead) * self.down, dtype=float)
 
 
-def controls(vessel: Vessel, use: Use) -> Controls:
+def make_controls(vessel: Vessel, use: Use) -> Controls:
     """Return the actions of a vessel.
 
     A mirrored pair of thrusters has an action `thrust` for both. It also has `turn`, port against
@@ -99,7 +99,7 @@ def controls(vessel: Vessel, use: Use) -> Controls:
     for index, action in enumerate(actions):
         if names.count(action.name) > 1:
             actions[index] = action._replace(name=next(iter(action.shares)))
-    return _make_controls(vessel, actions)
+    return _controls_of_actions(vessel, actions)
 
 
 def drive_channels(vessel: Vessel) -> list[DriveChannel]:
@@ -173,12 +173,12 @@ def _single_action(drive: DriveChannel) -> Action:
     return Action(drive.role, drive.channel, shares)
 
 
-def _is_ahead(name: str, words: str, shares: dict[str, float]) -> bool:
+def _drives_ahead(name: str, words: str, shares: dict[str, float]) -> bool:
     """Whether an action is part of full thrust straight ahead."""
     return name not in DIFFERENTIAL and not words.endswith(STARBOARD)
 
 
-def _make_controls(vessel: Vessel, actions: Sequence[Action]) -> Controls:
+def _controls_of_actions(vessel: Vessel, actions: Sequence[Action]) -> Controls:
     channels = list(vessel.commands)
     pattern = np.zeros((len(actions), len(channels)))
     for row, action in zip(pattern, actions, strict=True):
@@ -187,5 +187,5 @@ def _make_controls(vessel: Vessel, actions: Sequence[Action]) -> Controls:
     ranges = [(c.low, c.neutral, c.high) for c in vessel.commands.values()]
     low, neutral, high = np.array(ranges, dtype=float).T
     names, words, _ = zip(*actions, strict=True)
-    ahead = np.array(list(starmap(_is_ahead, actions)), dtype=float)
+    ahead = np.array(list(starmap(_drives_ahead, actions)), dtype=float)
     return Controls(names, words, pattern, neutral, high - neutral, neutral - low, ahead)

@@ -4,13 +4,13 @@ from collections.abc import Mapping, Sequence
 from typing import TypedDict, Unpack
 
 from boatsim.errors import BadInput, unknown_name
-from boatsim.learn.play import MakeWorld, Play, open_water
+from boatsim.learn.play import MakeWorld, TaskSimulation, make_batch_world
 from boatsim.learn.tasks.base import Task
 from boatsim.learn.tasks.berth import Berth
 from boatsim.learn.tasks.follow_path import FollowPath
 from boatsim.learn.tasks.hold_station import HoldStation
 from boatsim.learn.tasks.joystick import Joystick
-from boatsim.learn.variation import Variation, Vary, variation
+from boatsim.learn.variation import Variation, Vary, make_variation
 from boatsim.simulate import scenario as scenarios
 from boatsim.simulate.world import Tank
 
@@ -35,9 +35,9 @@ class EnvironmentOptions(TypedDict, total=False):
     duration: float  # [s] of an episode
 
 
-def play(
+def make_simulation(
     task: str, n: int, world: MakeWorld | None = None, **options: Unpack[EnvironmentOptions]
-) -> Play:
+) -> TaskSimulation:
     """Return a simulation of n boats at a task.
 
     Args:
@@ -57,22 +57,22 @@ def play(
             raise BadInput(unknown_name(f"{task}: argument", key, list(known)))
     try:
         rules = TASKS[task].from_settings(options.get("settings", {}))
-        varied, tank = _variation_and_tank(options)
-        return Play(
+        varied, tank = _make_variation_and_tank(options)
+        return TaskSimulation(
             rules,
             varied,
             n,
             period=options.get("period", 0.2),
             step=options.get("step", 0.1),
             duration=options.get("duration", 60.0),
-            world=world or open_water(),
+            world=world or make_batch_world(),
             tank=tank,
         )
     except BadInput as error:
         raise BadInput(f"{task}: {error}") from None
 
 
-def _variation_and_tank(options: EnvironmentOptions) -> tuple[Variation, Tank | None]:
+def _make_variation_and_tank(options: EnvironmentOptions) -> tuple[Variation, Tank | None]:
     """Variation of the given vessel, or variation and tank of the given scenario."""
     vary = options.get("vary")
     if "scenario" in options:
@@ -80,11 +80,11 @@ def _variation_and_tank(options: EnvironmentOptions) -> tuple[Variation, Tank | 
             if key in options:
                 raise BadInput(f"scenario and {key} are both given; a scenario has its own")
         file = scenarios.load(options["scenario"]).file
-        varied = variation(file.vessel, file.load, file.effect, vary, file.set)
+        varied = make_variation(file.vessel, file.load, file.effect, vary, file.set)
         if file.tank is None:
             return varied, None
         return varied, Tank(**file.tank.model_dump())
     if "vessel" not in options:
         raise BadInput("give a boat: vessel = its name, or scenario")
     load = options.get("load", ())
-    return variation(options["vessel"], load, options.get("effects", ()), vary), None
+    return make_variation(options["vessel"], load, options.get("effects", ()), vary), None

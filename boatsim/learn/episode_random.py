@@ -16,21 +16,21 @@ FIRST = np.uint64(0xBF58476D1CE4E5B9)
 SECOND = np.uint64(0x94D049BB133111EB)
 
 
-def _mix(z: Seeds) -> Seeds:
+def _splitmix64(z: Seeds) -> Seeds:
     """Mixing function of SplitMix64."""
     z = (z ^ (z >> np.uint64(30))) * FIRST
     z = (z ^ (z >> np.uint64(27))) * SECOND
     return z ^ (z >> np.uint64(31))
 
 
-def episode(seeds: Seeds, number: Seeds) -> Seeds:
+def episode_seeds(seeds: Seeds, number: Seeds) -> Seeds:
     """Return the seeds (k,) of episodes after a reset.
 
     Args:
         seeds: Seeds (k,) of the reset.
         number: Numbers (k,) of the episodes since the reset.
     """
-    return _mix(_mix(seeds * STRIDE + STEP) + number * STEP)
+    return _splitmix64(_splitmix64(seeds * STRIDE + STEP) + number * STEP)
 
 
 def uniform_numbers(seeds: Seeds, count: int) -> Array:
@@ -40,5 +40,5 @@ def uniform_numbers(seeds: Seeds, count: int) -> Array:
         seeds: Seeds (k,).
         count: Numbers for each seed.
     """
-    z = _mix(seeds[:, None] * STRIDE + np.arange(1, count + 1, dtype=np.uint64) * STEP)
+    z = _splitmix64(seeds[:, None] * STRIDE + np.arange(1, count + 1, dtype=np.uint64) * STEP)
     return ((z >> np.uint64(11)).astype(float) + 0.5) / 9007199254740992.0  # 2^53

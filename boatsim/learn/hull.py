@@ -40,7 +40,7 @@ class Hulls(NamedTuple):
     middle: Array  # distance of mid-length ahead of the origin of motion
 
     @classmethod
-    def of(cls, vessels: list[Vessel]) -> "Hulls":
+    def from_vessels(cls, vessels: list[Vessel]) -> "Hulls":
         """Return the rectangles of vessels.
 
         Args:
@@ -56,7 +56,7 @@ class Hulls(NamedTuple):
         half_lengths = 0.5 * np.array(lengths)
         return cls(half_lengths, 0.5 * np.array(beams), half_lengths - np.array(to_transom))
 
-    def at(self, index: Array) -> "Hulls":
+    def select(self, index: Array) -> "Hulls":
         """Return the rectangles of boats.
 
         Args:
@@ -90,7 +90,7 @@ def scale_of(vessel: Vessel, full_ahead: Array) -> Scale:
     at_rest = [0.0] * (2 * len(vessel.dof))
     commands = np.tile(full_ahead, (MOST_ROWS, 1))
     states = Batch(vessel, step=interval / 10.0).rollout(at_rest, commands, interval)
-    x, y, _, u, v, _ = states[:, columns(vessel)].T
+    x, y, _, u, v, _ = states[:, planar_state_indices(vessel)].T
     beyond = np.flatnonzero(np.hypot(x, y) >= vessel.length)
     if not len(beyond):
         raise BadInput(f"{vessel.name} does not get a length ahead under full thrust")
@@ -98,7 +98,7 @@ def scale_of(vessel: Vessel, full_ahead: Array) -> Scale:
     return Scale(vessel.length, vessel.beam, float(np.hypot(u[first], v[first])))
 
 
-def columns(vessel: Vessel) -> list[int]:
+def planar_state_indices(vessel: Vessel) -> list[int]:
     """Return the indices of x, y, psi, u, v, r in a state of a vessel.
 
     Args:

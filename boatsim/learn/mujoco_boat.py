@@ -117,7 +117,7 @@ class TankWorld:
         self._engine = None
 
 
-def in_tank(vessels: Sequence[Vessel], n: int, step: float, tank: Tank) -> TankWorld:
+def make_tank_world(vessels: Sequence[Vessel], n: int, step: float, tank: Tank) -> TankWorld:
     """Return a simulator of one boat on MuJoCo.
 
     Args:

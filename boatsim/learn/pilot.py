@@ -9,7 +9,7 @@ import numpy as np
 from boatsim.control.base import Sense
 from boatsim.errors import BadInput
 from boatsim.learn.episode_random import Seeds
-from boatsim.learn.play import Play
+from boatsim.learn.play import TaskSimulation
 from boatsim.physics.signals import Array
 
 
@@ -24,7 +24,9 @@ class Pilot(Protocol):
         """
 
 
-def run_episodes(play: Play, seeds: Seeds, make_pilot: Callable[[], Pilot]) -> dict[str, Array]:
+def run_episodes(
+    play: TaskSimulation, seeds: Seeds, make_pilot: Callable[[], Pilot]
+) -> dict[str, Array]:
     """Run one episode of each boat with controllers.
 
     Args:
@@ -38,7 +40,7 @@ def run_episodes(play: Play, seeds: Seeds, make_pilot: Callable[[], Pilot]) -> d
     Raises:
         BadInput: A controller sends a command that the vessel does not have.
     """
-    play.begin(seeds, np.arange(play.n))
+    play.begin_episodes(seeds, np.arange(play.n))
     pilots = [make_pilot() for _ in range(play.n)]
     commands = play.commands.copy()
     metrics: dict[str, Array] = {}
@@ -63,7 +65,7 @@ def _sense(t: float, motion: Sequence[float]) -> Sense:
     return Sense(t, psi, r, nan, nan, u, v, x, y)
 
 
-def _command_row(sent: Mapping[str, float], play: Play) -> list[float]:
+def _command_row(sent: Mapping[str, float], play: TaskSimulation) -> list[float]:
     """Value of each channel; neutral if it was not sent."""
     channels = play.vessel.commands
     for name in sent:

@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 
 from boatsim.errors import BadInput
 from boatsim.learn import episode_random
-from boatsim.learn.actions import Controls, controls
+from boatsim.learn.actions import Controls, make_controls
 from boatsim.learn.backends import Boats, World
-from boatsim.learn.hull import Hulls, Motion, columns, scale_of
+from boatsim.learn.hull import Hulls, Motion, planar_state_indices, scale_of
 from boatsim.learn.tasks.base import Signal, Task
 from boatsim.learn.variation import Variation
 from boatsim.physics.signals import Array
@@ -29,7 +29,7 @@ ALL_BOATS = slice(None)
 MakeWorld = Callable[[Sequence[Vessel], int, float, Tank], World]
 
 
-def open_water(threads: int | None = None) -> MakeWorld:
+def make_batch_world(threads: int | None = None) -> MakeWorld:
     """Return a function that creates compiled batches in open water.
 
     Args:
@@ -48,7 +48,7 @@ class Step(NamedTuple):
     metrics: dict[str, Array]  # (k,) each, of these episodes
 
 
-class Play:
+class TaskSimulation:
     """Simulation of n boats at one task; each is in its own episode."""
 
     def __init__(
@@ -89,15 +89,15 @@ class Play:
         if not period <= duration < inf:
             raise BadInput(f"duration = {duration:g} s; allowed is at least a period, {period:g} s")
         self.vessel = variation.boats[0]
-        self.controls: Controls = controls(self.vessel, type(task).use)
-        task.check(self.vessel.name, self.controls.names)
+        self.controls: Controls = make_controls(self.vessel, type(task).use)
+        task.check_actions(self.vessel.name, self.controls.names)
         self.scale = scale_of(self.vessel, self.controls.commands(self.controls.ahead))
         self.tank = tank or task.basin(self.scale)
         self.world = world(variation.boats, n, step, self.tank)
         self.commands = np.tile(self.controls.neutral, (n, 1))  # present commands
-        self._columns = columns(self.vessel)
-        self._vessel_hulls = Hulls.of(variation.boats)
-        self._hulls = self._vessel_hulls.at(np.zeros(n, dtype=np.int64))
+        self._columns = planar_state_indices(self.vessel)
+        self._vessel_hulls = Hulls.from_vessels(variation.boats)
+        self._hulls = self._vessel_hulls.select(np.zeros(n, dtype=np.int64))
         self._last_step = round(duration / period)
         self._steps = np.zeros(n, dtype=np.int64)
         self._goal = np.zeros((n, type(task).goals))
@@ -116,7 +116,7 @@ class Play:
             signals.append(Signal(f"last_{name}", 1.0, f"action before: {words}"))
         return signals
 
-    def begin(self, seeds: episode_random.Seeds, boats: Boats) -> None:
+    def begin_episodes(self, seeds: episode_random.Seeds, boats: Boats) -> None:
         """Begin episodes.
 
         Args:
@@ -124,14 +124,14 @@ class Play:
             boats: Numbers (k,) of the boats.
         """
         task = self.task
-        size = self.variation.random_numbers
+        size = self.variation.random_number_count
         uniforms = episode_random.uniform_numbers(seeds, size + type(task).random_numbers)
-        which = self.variation.begin(self.world, uniforms[:, :size], boats)
-        starts, goals = task.begin(uniforms[:, size:], self.scale)
+        which = self.variation.assign_samples(self.world, uniforms[:, :size], boats)
+        starts, goals = task.sample_episodes(uniforms[:, size:], self.scale)
         states = np.zeros((len(boats), 2 * len(self.vessel.dof)))
         states[:, self._columns] = starts
         self.world.reset(states, None, boats)
-        hulls = self._vessel_hulls.at(which)
+        hulls = self._vessel_hulls.select(which)
         for present, new in zip(self._hulls, hulls, strict=True):
             present[boats] = new
         self._steps[boats] = 0
@@ -139,7 +139,7 @@ class Play:
         self._actions[boats] = 0.0
         self.commands[boats] = self.controls.neutral
         observed = task.observe(Motion(*starts.T), np.zeros(len(boats)), goals, hulls, self.scale)
-        self._memory[boats] = task.start(observed, self.scale)
+        self._memory[boats] = task.initial_memory(observed, self.scale)
         if not self._observed:  # the first call
             self._observe()
         for present, new in zip(self._observed, observed, strict=True):

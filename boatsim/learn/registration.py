@@ -12,33 +12,33 @@ IDS = Path(__file__).with_name("ids.toml")
 VARY = "vary"  # table of ids.toml that applies to all ids
 
 
-def _tables() -> dict[str, Mapping[str, Any]]:
+def _read_id_tables() -> dict[str, Mapping[str, Any]]:
     """Tables of ids.toml."""
     return {k: v for k, v in read_toml(IDS).items() if isinstance(v, Mapping)}
 
 
-def ids() -> list[str]:
+def environment_ids() -> list[str]:
     """Return the ids of all environments."""
     return [name for name in read_toml(IDS) if name != VARY]
 
 
-def options_of(name: str) -> dict[str, Any]:
+def environment_arguments(name: str) -> dict[str, Any]:
     """Return the arguments of an environment.
 
     Args:
         name: Its id.
     """
-    tables = _tables()
+    tables = _read_id_tables()
     return {VARY: dict(tables[VARY]), **tables[name]}
 
 
 def register() -> None:
     """Register the ids of ids.toml that are not registered yet."""
-    for name in ids():
+    for name in environment_ids():
         if name not in gymnasium.registry:
             gymnasium.register(
                 name,
                 entry_point="boatsim.learn.single:BoatEnv",
                 vector_entry_point="boatsim.learn.vector:BoatVectorEnv",
-                kwargs=options_of(name),
+                kwargs=environment_arguments(name),
             )

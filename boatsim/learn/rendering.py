@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from boatsim.learn.play import Play
+from boatsim.learn.play import TaskSimulation
 from boatsim.simulate.engine import Engine, State
 
 HEIGHT, WIDTH = 480, 640
@@ -12,7 +12,7 @@ HEIGHT, WIDTH = 480, 640
 class Camera:
     """A camera over the first boat of a simulation, in the basin of its task."""
 
-    def __init__(self, play: Play) -> None:
+    def __init__(self, play: TaskSimulation) -> None:
         """Create a camera.
 
         Args:
@@ -23,7 +23,7 @@ class Camera:
         self.play = play
         self.physics = BoatPhysics(Engine(play.vessel, play.tank, play.period))
 
-    def picture(self) -> NDArray[np.uint8]:
+    def render(self) -> NDArray[np.uint8]:
         """Return the present picture (480, 640, 3)."""
         motion = [float(values[0]) for values in self.play.motion]
         state = State(**dict(zip(self.play.motion._fields, motion, strict=True)))

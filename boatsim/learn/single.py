@@ -8,11 +8,11 @@ from numpy.typing import NDArray
 
 from boatsim.errors import BadInput
 from boatsim.learn import episode_random
-from boatsim.learn.environment_options import EnvironmentOptions, play
-from boatsim.learn.mujoco_boat import in_tank
-from boatsim.learn.play import Observations, open_water
+from boatsim.learn.environment_options import EnvironmentOptions, make_simulation
+from boatsim.learn.mujoco_boat import make_tank_world
+from boatsim.learn.play import Observations, make_batch_world
 from boatsim.learn.rendering import Camera
-from boatsim.learn.spaces import boxes
+from boatsim.learn.spaces import make_spaces
 
 ONLY_BOAT = np.zeros(1, dtype=np.int64)
 WALL_STEP = 0.02  # [s] contact with a wall needs shorter integration steps than open water
@@ -57,16 +57,16 @@ class BoatEnv(gymnasium.Env[Observations, NDArray[np.float32]]):
             raise BadInput(f"simulator = {simulator!r}; allowed is {' or '.join(SIMULATORS)}")
         if render_mode not in (None, *self.metadata["render_modes"]):
             raise BadInput(f"render_mode = {render_mode!r}; allowed is rgb_array or none")
-        world = open_water(threads=1)
+        world = make_batch_world(threads=1)
         if simulator == "mujoco":
-            world = in_tank
+            world = make_tank_world
             options.setdefault("step", WALL_STEP)
-        self.play = play(task, 1, world, **options)
+        self.play = make_simulation(task, 1, world, **options)
         self.signals = self.play.signals
         self.controls = self.play.controls
         self.render_mode = render_mode
         self.normalised = normalised
-        self.observation_space, self.action_space = boxes(self.play, normalised)
+        self.observation_space, self.action_space = make_spaces(self.play, normalised)
         self.metadata = {**type(self).metadata, "render_fps": round(1.0 / self.play.period)}
         self._seed = np.zeros(1, dtype=np.uint64)
         self._number = np.zeros(1, dtype=np.uint64)
@@ -90,7 +90,7 @@ class BoatEnv(gymnasium.Env[Observations, NDArray[np.float32]]):
             self._seed[0] = self.np_random.integers(2**63) if seed is None else seed
             self._number[0] = 0
             self._seeded = True
-        self.play.begin(episode_random.episode(self._seed, self._number), ONLY_BOAT)
+        self.play.begin_episodes(episode_random.episode_seeds(self._seed, self._number), ONLY_BOAT)
         self._number += np.uint64(1)
         return self.play.observations(self.normalised)[0], {}
 
@@ -118,7 +118,7 @@ class BoatEnv(gymnasium.Env[Observations, NDArray[np.float32]]):
             return None
         if self._camera is None:
             self._camera = Camera(self.play)
-        return self._camera.picture()
+        return self._camera.render()
 
     def close(self) -> None:
         """Free the renderer."""

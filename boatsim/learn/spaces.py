@@ -3,10 +3,10 @@
 import numpy as np
 from gymnasium.spaces import Box
 
-from boatsim.learn.play import Play
+from boatsim.learn.play import TaskSimulation
 
 
-def boxes(play: Play, normalised: bool) -> tuple[Box[np.float32], Box[np.float32]]:
+def make_spaces(play: TaskSimulation, normalised: bool) -> tuple[Box[np.float32], Box[np.float32]]:
     """Return the spaces of the observation and of the action of one boat.
 
     Args:

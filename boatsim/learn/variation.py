@@ -41,22 +41,22 @@ class Variation:
         self.spread = spread
         self._definitions: dict[str, Param] = {}
         for parameter in self.sampled:
-            self._definitions[parameter.key] = _definition(self.boats[0], parameter.key)
+            self._definitions[parameter.key] = _parameter_definition(self.boats[0], parameter.key)
 
     @property
-    def random_numbers(self) -> int:
+    def random_number_count(self) -> int:
         """Number of uniform random numbers that an episode needs."""
         count = 1 + len(self.sampled)
         if self.spread:
             count += len(self.spread.sd)
         return count
 
-    def begin(self, world: World, uniforms: Array, boats: Boats) -> Array:
+    def assign_samples(self, world: World, uniforms: Array, boats: Boats) -> Array:
         """Assign vessels and sampled parameters to boats.
 
         Args:
             world: Simulator of the boats.
-            uniforms: Uniform random numbers (k, `random_numbers`) between 0 and 1.
+            uniforms: Uniform random numbers (k, `random_number_count`) between 0 and 1.
             boats: Numbers (k,) of the boats.
 
         Returns:
@@ -68,7 +68,7 @@ class Variation:
         if self.spread is not None:
             changes = self.spread.sample_changes(uniforms[:, 1 + len(self.sampled) :])
             for name, change in changes.items():
-                param = _definition(self.boats[0], name)
+                param = _parameter_definition(self.boats[0], name)
                 value = world.get(name)[boats] * change.factor + change.shift
                 world.set(name, np.clip(value, param.low, param.high), boats)
         for column, sampled in enumerate(self.sampled, 1):
@@ -78,7 +78,7 @@ class Variation:
         return which
 
 
-def variation(
+def make_variation(
     vessel: str,
     load: Sequence[str] = (),
     effects: Sequence[Mapping[str, object]] = (),
@@ -119,7 +119,7 @@ def variation(
     boats = []
     for conditions in loads or [", ".join(load)]:
         boat = vessels.load_vessel(vessel, _split_load(conditions), settings, extra)
-        boats.append(_with_values(boat, fixed))
+        boats.append(_replace_parameters(boat, fixed))
     sampled = []
     for key, text in varied.items():
         if key not in fixed:
@@ -150,7 +150,7 @@ def _missing_effects(
     return list(missing)
 
 
-def _with_values(boat: Vessel, values: Mapping[str, float]) -> Vessel:
+def _replace_parameters(boat: Vessel, values: Mapping[str, float]) -> Vessel:
     """The vessel with other parameter values."""
     for key, value in values.items():
         if key in BODY:
@@ -183,7 +183,7 @@ def _effect_and_parameter(boat: Vessel, key: str) -> tuple[Effect, str]:
     return effect, name
 
 
-def _definition(boat: Vessel, key: str) -> Param:
+def _parameter_definition(boat: Vessel, key: str) -> Param:
     """Unit and bounds of a parameter."""
     if key in BODY:
         return BODY[key][1]

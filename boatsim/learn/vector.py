@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 from boatsim.errors import BadInput
 from boatsim.learn import episode_random
 from boatsim.learn.backends import Boats
-from boatsim.learn.environment_options import EnvironmentOptions, play
-from boatsim.learn.play import Flags, Observations, Step, open_water
-from boatsim.learn.spaces import boxes
+from boatsim.learn.environment_options import EnvironmentOptions, make_simulation
+from boatsim.learn.play import Flags, Observations, Step, make_batch_world
+from boatsim.learn.spaces import make_spaces
 from boatsim.physics.signals import Array
 
 
@@ -60,12 +60,12 @@ class BoatVectorEnv(VectorEnv[Observations, NDArray[np.float32], Array]):
             raise BadInput("many boats draw no pictures; allowed is render_mode = None")
         self.mode = AutoresetMode(autoreset_mode)
         self.metadata = {**type(self).metadata, "autoreset_mode": self.mode}
-        self.play = play(task, num_envs, open_water(threads), **options)
+        self.play = make_simulation(task, num_envs, make_batch_world(threads), **options)
         self.num_envs = num_envs
         self.normalised = normalised
         self.signals = self.play.signals
         self.controls = self.play.controls
-        self.single_observation_space, self.single_action_space = boxes(self.play, normalised)
+        self.single_observation_space, self.single_action_space = make_spaces(self.play, normalised)
         self.observation_space = batch_space(self.single_observation_space, num_envs)
         self.action_space = batch_space(self.single_action_space, num_envs)
         self._seeds = np.zeros(num_envs, dtype=np.uint64)
@@ -99,7 +99,7 @@ class BoatVectorEnv(VectorEnv[Observations, NDArray[np.float32], Array]):
         elif not self._seeded:
             seeds = self.np_random.integers(2**63, size=self.num_envs).astype(np.uint64)
             self._set_seeds(all_boats, seeds)
-        self._begin(boats)
+        self._begin_episodes(boats)
         self._over[boats] = False
         return self.play.observations(self.normalised), {}
 
@@ -118,10 +118,10 @@ class BoatVectorEnv(VectorEnv[Observations, NDArray[np.float32], Array]):
         done = self.play.step(np.asarray(actions, dtype=float))
         info: dict[str, Any] = {}
         if self.mode is AutoresetMode.NEXT_STEP and len(waiting):
-            done = self._restart(done, waiting)
+            done = self._restart_ended_boats(done, waiting)
         observations = self.play.observations(self.normalised)
         if len(done.finished):
-            info = self._info(done)
+            info = self._episode_metrics(done)
         self._over = done.terminated | done.truncated
         if self.mode is AutoresetMode.SAME_STEP and len(done.finished):
             info = {
@@ -130,22 +130,22 @@ class BoatVectorEnv(VectorEnv[Observations, NDArray[np.float32], Array]):
                 "final_info": info,
                 "_final_info": self._over,
             }
-            self._begin(done.finished)
+            self._begin_episodes(done.finished)
             observations = observations.copy()
             observations[done.finished] = self.play.observations(self.normalised, done.finished)
             self._over = np.zeros(self.num_envs, dtype=bool)
         return observations, done.reward, done.terminated, done.truncated, info
 
-    def _restart(self, done: Step, waiting: Boats) -> Step:
+    def _restart_ended_boats(self, done: Step, waiting: Boats) -> Step:
         """Restart boats whose episodes had ended; their step has no reward and no end."""
-        self._begin(waiting)
+        self._begin_episodes(waiting)
         for row in (done.reward, done.terminated, done.truncated):
             row[waiting] = 0
         kept = ~np.isin(done.finished, waiting)
         metrics = {name: values[kept] for name, values in done.metrics.items()}
         return done._replace(finished=done.finished[kept], metrics=metrics)
 
-    def _info(self, done: Step) -> dict[str, Any]:
+    def _episode_metrics(self, done: Step) -> dict[str, Any]:
         """Metrics of finished episodes, each with its mask."""
         info: dict[str, Any] = {}
         for name, values in done.metrics.items():
@@ -159,6 +159,8 @@ class BoatVectorEnv(VectorEnv[Observations, NDArray[np.float32], Array]):
         self._numbers[boats] = 0
         self._seeded = True
 
-    def _begin(self, boats: Boats) -> None:
-        self.play.begin(episode_random.episode(self._seeds[boats], self._numbers[boats]), boats)
+    def _begin_episodes(self, boats: Boats) -> None:
+        self.play.begin_episodes(
+            episode_random.episode_seeds(self._seeds[boats], self._numbers[boats]), boats
+        )
         self._numbers[boats] += np.uint64(1)

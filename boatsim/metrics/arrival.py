@@ -32,7 +32,7 @@ class Arrival(MetricSet):
     x_signal: str = "x_m"
     y_signal: str = "y_m"
 
-    def why(self, metric: str, log: Recording) -> str:
+    def explain_missing_value(self, metric: str, log: Recording) -> str:
         """Return the closest approach, in words."""
         away = np.hypot(self.x - log[self.x_signal], self.y - log[self.y_signal])
         closest = "its position was not recorded"
@@ -55,9 +55,11 @@ class Arrival(MetricSet):
         time = first_crossing(log.t, self.radius - away)
         if time is None:
             return found
-        return found | {"time": time} | self._distances(log, x, y, time)
+        return found | {"time": time} | self._travelled_distances(log, x, y, time)
 
-    def _distances(self, log: Recording, x: Array, y: Array, time: float) -> dict[str, float]:
+    def _travelled_distances(
+        self, log: Recording, x: Array, y: Array, time: float
+    ) -> dict[str, float]:
         line = np.hypot(x - x[0], y - y[0])
         return {
             "distance": float(np.interp(time, log.t, surge_distance(log))),

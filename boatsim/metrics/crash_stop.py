@@ -25,7 +25,7 @@ class CrashStop(MetricSet):
     execute: float = param(0.0, low=0.0, high=1e6, unit="s", words="time of the order full astern")
     length: float = param(1.0, low=0.001, high=1e3, unit="m", words="length of the ship")
 
-    def why(self, metric: str, log: Recording) -> str:
+    def explain_missing_value(self, metric: str, log: Recording) -> str:
         """Return the lowest speed that was reached, in words."""
         u = log["u_mps"]
         slowest = u[log.t > self.execute].min(initial=u[-1])

@@ -8,7 +8,7 @@ import numpy as np
 from boatsim.physics.base import param
 from boatsim.recordings.notes import unit_of
 from boatsim.recordings.table import Recording
-from boatsim.simulate.metric import MetricSet, why_not_reached
+from boatsim.simulate.metric import MetricSet, describe_closest_value
 
 
 @dataclass(frozen=True)
@@ -24,9 +24,9 @@ class Crossing(MetricSet):
         0.0, low=0.0, high=1e6, unit="s", words="start of the search, from which the time counts"
     )
 
-    def why(self, metric: str, log: Recording) -> str:
+    def explain_missing_value(self, metric: str, log: Recording) -> str:
         """Return how close the signal came to the level, in words."""
-        return why_not_reached(
+        return describe_closest_value(
             log[self.signal][log.t >= self.since - 1e-9], self.level, unit_of(self.signal)
         )
 

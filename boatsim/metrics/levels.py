@@ -25,7 +25,7 @@ class Levels(MetricSet):
         """Return the unit of the signal."""
         return unit_of(self.signal)
 
-    def why(self, metric: str, log: Recording) -> str:
+    def explain_missing_value(self, metric: str, log: Recording) -> str:
         """Return the number of complete intervals, in words."""
         complete = int((log.t[-1] + 1e-6) / self.every)
         return f"the run ends at {log.t[-1]:.4g} s, after {complete} intervals"

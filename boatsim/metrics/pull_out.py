@@ -24,7 +24,7 @@ class PullOut(MetricSet):
         "residual_difference": "deg/s",
     }
 
-    def why(self, metric: str, log: Recording) -> str:
+    def explain_missing_value(self, metric: str, log: Recording) -> str:
         """Return the number of helm changes, in words."""
         helm = log["reference_helm_rad"]
         changes = int(np.count_nonzero(np.diff(helm)))

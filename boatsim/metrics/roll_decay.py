@@ -27,7 +27,7 @@ class RollDecay(MetricSet):
     )
     units: ClassVar = {"period": "s", "damping_first": "", "damping_mean": "", "damping_last": ""}
 
-    def why(self, metric: str, log: Recording) -> str:
+    def explain_missing_value(self, metric: str, log: Recording) -> str:
         """Return what prevents the evaluation, in words."""
         if not log["phi_rad"][0]:
             return "it was not heeled at the start"
@@ -45,7 +45,7 @@ class RollDecay(MetricSet):
         if len(rows) < 2 or not phi[0]:
             return {}
         times, peaks = zip(
-            *(_vertex(t[i - 1 : i + 2], phi[i - 1 : i + 2]) for i in rows), strict=True
+            *(_parabola_vertex(t[i - 1 : i + 2], phi[i - 1 : i + 2]) for i in rows), strict=True
         )
         heights = [abs(phi[0]), *map(abs, peaks)]
         zeta = [_damping_ratio(ln(a / b)) for a, b in pairwise(heights)]
@@ -62,7 +62,7 @@ def _damping_ratio(decrement: float) -> float:
     return decrement / sqrt(pi**2 + decrement**2)
 
 
-def _vertex(t: np.ndarray, x: np.ndarray) -> tuple[float, float]:
+def _parabola_vertex(t: np.ndarray, x: np.ndarray) -> tuple[float, float]:
     """Time and value of the extremum of the parabola through three points."""
     a, b, c = np.polyfit(t - t[1], x, 2)
     return float(t[1] - b / (2.0 * a)), float(c - b * b / (4.0 * a))

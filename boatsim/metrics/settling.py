@@ -10,7 +10,7 @@ from boatsim.errors import BadInput, unknown_name
 from boatsim.physics.base import param
 from boatsim.recordings.notes import unit_of
 from boatsim.recordings.table import Recording
-from boatsim.simulate.metric import MetricSet, rows_between, why_not_reached
+from boatsim.simulate.metric import MetricSet, describe_closest_value, rows_between
 
 
 @dataclass(frozen=True)
@@ -37,12 +37,12 @@ class Settling(MetricSet):
     )
     late: float = param(300.0, low=0.0, high=86400.0, unit="s", words="start of the final interval")
 
-    def why(self, metric: str, log: Recording) -> str:
+    def explain_missing_value(self, metric: str, log: Recording) -> str:
         """Return where the run ends, or how close the angle came to the target, in words."""
         if log.t[-1] - log.t[0] < self.late:
             end = log.t[-1] - log.t[0]
             return f"the run ends at {end:.4g} s, before the final interval from {self.late:g} s"
-        return why_not_reached(log[self.signal], self.target, unit_of(self.signal))
+        return describe_closest_value(log[self.signal], self.target, unit_of(self.signal))
 
     def values(self, log: Recording) -> dict[str, float]:
         """Return first crossing, last time outside the band, final angle, and extremes about it."""

@@ -9,10 +9,10 @@ from boatsim.physics.base import param
 from boatsim.recordings.table import Recording
 from boatsim.simulate.metric import (
     MetricSet,
+    describe_closest_value,
     first_crossing,
     rows_between,
     surge_distance,
-    why_not_reached,
 )
 
 
@@ -25,9 +25,9 @@ class SpeedReached(MetricSet):
 
     speed: float = param(1.0, low=0.0, high=100.0, unit="m/s", words="target surge speed")
 
-    def why(self, metric: str, log: Recording) -> str:
+    def explain_missing_value(self, metric: str, log: Recording) -> str:
         """Return the largest speed, in words."""
-        return why_not_reached(log["u_mps"], self.speed, "m/s")
+        return describe_closest_value(log["u_mps"], self.speed, "m/s")
 
     def values(self, log: Recording) -> dict[str, float]:
         """Return time, integral of the surge speed, straight-line distance, and top speed."""

@@ -28,7 +28,7 @@ class Spiral(MetricSet):
         "rate_midships": "deg/s",
     }
 
-    def why(self, metric: str, log: Recording) -> str:
+    def explain_missing_value(self, metric: str, log: Recording) -> str:
         """Return the last helm angle, in words."""
         last = np.degrees(log["reference_helm_rad"][-1])
         return f"the helm did not come back to its first angle: it ends at {last:.3g} deg"

@@ -45,7 +45,7 @@ class Staircase(MetricSet):
         """Return s for times, the unit of the signal for errors."""
         return self.units[metric] or unit_of(self.signal)
 
-    def why(self, metric: str, log: Recording) -> str:
+    def explain_missing_value(self, metric: str, log: Recording) -> str:
         """Return whether the run contains the step and which share of it was reached, in words."""
         number = int(metric.rpartition("_")[2]) if metric[-1].isdigit() else 1
         begin = self.since + (number - 1) * self.every

@@ -44,7 +44,7 @@ class StepResponse(MetricSet):
         """Return the unit of a metric; the final value has that of the signal."""
         return unit_of(self.signal) if metric == "end" else self.units[metric]
 
-    def why(self, metric: str, log: Recording) -> str:
+    def explain_missing_value(self, metric: str, log: Recording) -> str:
         """Return which share of the step was reached, in words."""
         y = log[self.signal][rows_between(log, self.since, self.until or inf, least=2)]
         if y[0] == self.target:

@@ -8,8 +8,13 @@ import numpy as np
 from boatsim.physics.base import Array, param
 from boatsim.recordings.table import Recording
 from boatsim.simulate.camera import Camera
-from boatsim.simulate.camera_metric import CameraFrames, CameraMetricSet, first_frame, mark_noise
-from boatsim.simulate.metric import why_not_reached
+from boatsim.simulate.camera_metric import (
+    CameraFrames,
+    CameraMetricSet,
+    first_frame_where,
+    sample_mark_noise,
+)
+from boatsim.simulate.metric import describe_closest_value
 
 FEWEST_AVERAGES = 3  # moving averages without which no rms is meaningful
 
@@ -38,32 +43,32 @@ class Sway(CameraMetricSet):
         10.0, low=1.0, high=1000.0, unit="", words="yaw rates in the moving average"
     )
 
-    def why(self, metric: str, log: Recording) -> str:
+    def explain_missing_value(self, metric: str, log: Recording) -> str:
         """Return the distance to starboard that was reached, in words."""
         psi, dx, dy = log["psi_rad"][0], log["x_m"] - log["x_m"][0], log["y_m"] - log["y_m"][0]
         aside = np.cos(psi) * dy - np.sin(psi) * dx
-        return f"{why_not_reached(aside, self.distance, 'm')} to starboard"
+        return f"{describe_closest_value(aside, self.distance, 'm')} to starboard"
 
-    def from_frames(self, frames: CameraFrames) -> dict[str, float]:
+    def values_from_frames(self, frames: CameraFrames) -> dict[str, float]:
         """Return yaw rates and heading from the camera, other metrics from the simulation.
 
         Args:
             frames: Frames of the camera with the true motion.
         """
-        frame = first_frame(
+        frame = first_frame_where(
             frames.place[:, 1] >= self.distance, least=round(self.averaged) + FEWEST_AVERAGES
         )
         if frame is None:
             return {}
         part = frames.until(frame)
-        found = self.yaw_rates(np.unwrap(part.heading), part.t[1] - part.t[0])
+        found = self.yaw_rate_metrics(np.unwrap(part.heading), part.t[1] - part.t[0])
         return {name: float(value) for name, value in found.items()} | {
             "surge_offset": float(part.place[-1, 0] - part.place[0, 0]),  # x_i - x_0
             "time_to_end": float(part.t[-1]),
             "frames": float(len(part.t)),
         }
 
-    def from_noise(self, frames: int, camera: Camera) -> dict[str, Array]:
+    def values_from_noise(self, frames: int, camera: Camera) -> dict[str, Array]:
         """Return the metrics of a constant heading with camera noise.
 
         Args:
@@ -71,11 +76,14 @@ class Sway(CameraMetricSet):
             camera: The camera.
         """
         still = np.zeros(frames)
-        return self.yaw_rates(
-            camera.pose(camera.seen(still, still, mark_noise(frames, camera)))[1], 1.0 / self.scored
+        return self.yaw_rate_metrics(
+            camera.fit_pose(camera.measure_marks(still, still, sample_mark_noise(frames, camera)))[
+                1
+            ],
+            1.0 / self.scored,
         )
 
-    def yaw_rates(self, psi: Array, dt: float) -> dict[str, Array]:
+    def yaw_rate_metrics(self, psi: Array, dt: float) -> dict[str, Array]:
         """Return the metrics of the smoothed yaw rate e.
 
         Args:

@@ -32,7 +32,7 @@ class Tracking(MetricSet):
         """Return the unit of the signal, with degrees for angles."""
         return unit_of(self.signal).replace("rad", "deg")
 
-    def why(self, metric: str, log: Recording) -> str:
+    def explain_missing_value(self, metric: str, log: Recording) -> str:
         """Return why there are no errors against a goal."""
         return "" if self.goal else "the measure names no goal"
 

@@ -44,7 +44,7 @@ class TurningCircle(MetricSet):
     )
     length: float = param(1.0, low=0.001, high=1e3, unit="m", words="length of the ship")
 
-    def why(self, metric: str, log: Recording) -> str:
+    def explain_missing_value(self, metric: str, log: Recording) -> str:
         """Return the largest heading change, in words."""
         needed = 90 if metric in ("advance", "transfer", "time_to_90") else 180
         line = self.execute if self.course < 0.0 else self.course
@@ -68,15 +68,17 @@ class TurningCircle(MetricSet):
         found = {}
         if turned.max() >= pi / 2:
             found = {
-                "advance": _value_at(pi / 2, turned, ahead) / self.length,
-                "transfer": side * _value_at(pi / 2, turned, aside) / self.length,
-                "time_to_90": _value_at(pi / 2, turned, log.t) - self.execute,
+                "advance": _value_at_heading_change(pi / 2, turned, ahead) / self.length,
+                "transfer": side * _value_at_heading_change(pi / 2, turned, aside) / self.length,
+                "time_to_90": _value_at_heading_change(pi / 2, turned, log.t) - self.execute,
             }
         if turned.max() >= pi:
             u, v, r = (float(log[n][-1]) for n in ("u_mps", "v_mps", "r_radps"))
             speed = float(np.hypot(u, v))
             found |= {
-                "tactical_diameter": side * _value_at(pi, turned, aside) / self.length,
+                "tactical_diameter": side
+                * _value_at_heading_change(pi, turned, aside)
+                / self.length,
                 "steady_radius": speed / abs(r) / self.length,
                 "steady_speed": speed,
                 "steady_rate": abs(float(np.degrees(r))),
@@ -85,7 +87,7 @@ class TurningCircle(MetricSet):
         return found
 
 
-def _value_at(angle: float, turned: np.ndarray, values: np.ndarray) -> float:
+def _value_at_heading_change(angle: float, turned: np.ndarray, values: np.ndarray) -> float:
     """Value of a signal when the heading change first reaches an angle, interpolated."""
     i = int(np.argmax(turned >= angle))
     share = (angle - turned[i - 1]) / (turned[i] - turned[i - 1])

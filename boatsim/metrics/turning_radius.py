@@ -18,7 +18,7 @@ class TurningRadius(MetricSet):
 
     while_on: str = "thrust_N"  # signal that is not zero during the turn
 
-    def why(self, metric: str, log: Recording) -> str:
+    def explain_missing_value(self, metric: str, log: Recording) -> str:
         """Return why there is no turn, in words."""
         return f"{self.while_on} is always zero, or the boat does not turn"
 

@@ -10,7 +10,12 @@ from boatsim.errors import BadInput, unknown_name
 from boatsim.physics.base import Array, param
 from boatsim.recordings.table import Recording
 from boatsim.simulate.camera import Camera
-from boatsim.simulate.camera_metric import CameraFrames, CameraMetricSet, first_frame, mark_noise
+from boatsim.simulate.camera_metric import (
+    CameraFrames,
+    CameraMetricSet,
+    first_frame_where,
+    sample_mark_noise,
+)
 
 
 @dataclass(frozen=True)
@@ -34,7 +39,7 @@ class Yaw(CameraMetricSet):
         1.0, low=0.0, high=1e4, unit="m", words="radius of the ideal circle of the mark"
     )
 
-    def check(self, camera: Camera) -> None:
+    def check_camera(self, camera: Camera) -> None:
         """Check the camera and that it follows the mark.
 
         Args:
@@ -43,16 +48,16 @@ class Yaw(CameraMetricSet):
         Raises:
             BadInput: The camera does not follow the mark.
         """
-        super().check(camera)
+        super().check_camera(camera)
         if self.mark not in camera.marks:
             raise BadInput(unknown_name("yaw: mark", self.mark, camera.marks))
 
-    def why(self, metric: str, log: Recording) -> str:
+    def explain_missing_value(self, metric: str, log: Recording) -> str:
         """Return the largest heading change, in words."""
         turned = np.degrees(np.abs(log["psi_rad"] - log["psi_rad"][0]).max())
         return f"never turned 360 deg: at most {turned:.3g}"
 
-    def from_frames(self, frames: CameraFrames) -> dict[str, float]:
+    def values_from_frames(self, frames: CameraFrames) -> dict[str, float]:
         """Return deviations of the mark from the camera, other metrics from the simulation.
 
         Args:
@@ -60,20 +65,20 @@ class Yaw(CameraMetricSet):
         """
         if not len(frames.t):
             return {}
-        frame = first_frame(np.abs(frames.psi - frames.psi[0]) >= 2.0 * pi)
+        frame = first_frame_where(np.abs(frames.psi - frames.psi[0]) >= 2.0 * pi)
         if frame is None:
             return {}
         part = frames.until(frame)
         turn = np.sign(part.psi[-1] - part.psi[0])
         away = np.hypot(*(part.place - part.place[0]).T)
-        found = self.distances(part.marks[self.mark], float(turn))
+        found = self.deviation_metrics(part.marks[self.mark], float(turn))
         return {name: float(value) for name, value in found.items()} | {
             "turn_time": float(part.t[-1] - part.t[0]),  # T
             "excursion": float(away.max()),  # largest distance of the CG from its start
             "frames": float(len(part.t)),
         }
 
-    def from_noise(self, frames: int, camera: Camera) -> dict[str, Array]:
+    def values_from_noise(self, frames: int, camera: Camera) -> dict[str, Array]:
         """Return the metrics of an ideal turn with camera noise.
 
         Args:
@@ -81,12 +86,12 @@ class Yaw(CameraMetricSet):
             camera: The camera.
         """
         angle, at = np.linspace(0.0, 2.0 * pi, frames), 2 * list(camera.marks).index(self.mark)
-        shaken = camera.mark_sd * mark_noise(frames, camera)[..., at : at + 2]
-        return self.distances(
+        shaken = camera.mark_sd * sample_mark_noise(frames, camera)[..., at : at + 2]
+        return self.deviation_metrics(
             self.radius * np.stack([np.cos(angle), np.sin(angle)], axis=-1) + shaken, 1.0
         )
 
-    def distances(self, mark: Array, turn: float) -> dict[str, Array]:
+    def deviation_metrics(self, mark: Array, turn: float) -> dict[str, Array]:
         """Return the metrics of the distance e of a mark to one on the ideal circle.
 
         The first position of the mark lies straight ahead of the centre of the circle. The ideal

@@ -32,7 +32,7 @@ class Zigzag(MetricSet):
     )
     length: float = param(1.0, low=0.001, high=1e3, unit="m", words="length of the ship")
 
-    def why(self, metric: str, log: Recording) -> str:
+    def explain_missing_value(self, metric: str, log: Recording) -> str:
         """Return the number of reversals and the largest heading change, in words."""
         count = int((np.diff(np.sign(log["reference_helm_rad"])) != 0.0).sum()) - 1
         turned = np.degrees(np.abs(log["psi_rad"] - log["psi_rad"][0]).max())

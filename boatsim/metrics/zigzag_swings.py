@@ -33,7 +33,7 @@ class ZigzagSwings(MetricSet):
     signal: str = "jet_rad"
     since: float = param(0.0, low=0.0, high=1e6, unit="s", words="start of the evaluated interval")
 
-    def why(self, metric: str, log: Recording) -> str:
+    def explain_missing_value(self, metric: str, log: Recording) -> str:
         """Return the number of reversals, in words."""
         if metric in ("roll", "heading", "yaw_rate"):
             return "this craft has no such motion"

@@ -29,7 +29,7 @@ from boatsim.diagnosis.report import patched_vessel
 from boatsim.diagnosis.search.ranking import fit_baseline
 from boatsim.errors import BadInput
 from boatsim.physics.vessel import Vessel
-from boatsim.progress import Report, part, silent
+from boatsim.progress import Report, ignore_progress, report_part_of
 from boatsim.recordings.table import Recording
 
 # Candidate effects that belong to the boat
@@ -52,7 +52,7 @@ LONG_NUMBER = re.compile(
 
 
 @dataclass(frozen=True)
-class Fitted:
+class FittedBoat:
     """A boat fitted to logs, with its errors on held-out data.
 
     Attributes:
@@ -72,7 +72,7 @@ class Fitted:
     after: Mapping[str, float]
 
     @property
-    def better(self) -> bool:
+    def reduces_error(self) -> bool:
         """Whether the fit reduces the error on held-out data.
 
         A log with a fault gives wrong numbers.
@@ -80,9 +80,12 @@ class Fitted:
         return all(self.after[family] <= before for family, before in self.before.items())
 
 
-def fitted(
-    vessel_file: Path, logs: Sequence[Path], held_out: Sequence[Path] = (), report: Report = silent
-) -> Fitted:
+def fit_boat(
+    vessel_file: Path,
+    logs: Sequence[Path],
+    held_out: Sequence[Path] = (),
+    report: Report = ignore_progress,
+) -> FittedBoat:
     """Return the vessel of a file with its coefficients fitted to logs.
 
     Args:
@@ -102,24 +105,26 @@ def fitted(
     if held_out:
         first, last = cleaned[: len(logs)], cleaned[len(logs) :]
     else:
-        first, last = map(list, zip(*map(_parted, cleaned), strict=True))
+        first, last = map(list, zip(*map(_split_recording, cleaned), strict=True))
     report("compiling, or loading what was compiled before", 0.05)
-    problem, judge = _problems(boat, first, last)
+    problem, judge = _make_problems(boat, first, last)
     try:
         with threadpool_limits(1, "blas"):
             report("fitting the coefficients", 0.1)
             nominal, best = fit_baseline(problem)
-            best = _with_more(problem, best, part(report, 0.3, 0.9))
+            best = _add_candidates(problem, best, report_part_of(report, 0.3, 0.9))
             report("validating on held-out data", 0.9)
-            before, after = _errors(judge, nominal, _without(best, OF_DAY) if held_out else best)
+            before, after = _held_out_errors(
+                judge, nominal, _remove_effects(best, OF_DAY) if held_out else best
+            )
     except (np.linalg.LinAlgError, FloatingPointError) as error:
         raise BadInput(
             f"{logs[0]}: {boat.name} can not follow this recording ({error}); are its units right?"
         ) from None
-    return Fitted(boat, problem, best, judge, before, after)
+    return FittedBoat(boat, problem, best, judge, before, after)
 
 
-def in_words(found: Fitted) -> list[str]:
+def fit_report_lines(found: FittedBoat) -> list[str]:
     """Return lines that report the fitted effects and the errors on held-out data.
 
     Args:
@@ -128,25 +133,27 @@ def in_words(found: Fitted) -> list[str]:
     return [*_fit_lines(found.best), *_error_lines(found)]
 
 
-def text(found: Fitted, logs: Sequence[Path]) -> str:
+def fitted_vessel_text(found: FittedBoat, logs: Sequence[Path]) -> str:
     """Return the text of the vessel file with the fitted numbers of the boat.
 
     Args:
         found: The fit.
         logs: Files of the recordings, for comments.
     """
-    own = _without(found.best, OF_DAY)
-    return _written(found.problem, found.boat, own, ", ".join(path.name for path in logs))
+    own = _remove_effects(found.best, OF_DAY)
+    return _fitted_vessel_file(
+        found.problem, found.boat, own, ", ".join(path.name for path in logs)
+    )
 
 
-def _parted(whole: Recording) -> tuple[Recording, Recording]:
+def _split_recording(whole: Recording) -> tuple[Recording, Recording]:
     """The first two thirds and the last third of a recording."""
     at = float(whole.t[0] + FITTED_PART * (whole.t[-1] - whole.t[0]))
     step = float(np.median(np.diff(whole.t)))
     return whole.between(float(whole.t[0]), at), whole.between(at + 0.5 * step, float(whole.t[-1]))
 
 
-def _problems(
+def _make_problems(
     boat: Vessel, first: Sequence[Recording], last: Sequence[Recording]
 ) -> tuple[Problem, Problem]:
     """The estimation problems of the fitted and the held-out parts."""
@@ -157,7 +164,7 @@ def _problems(
     return problem, problem.on([map_recording(r, program) for r in last])
 
 
-def _with_more(problem: Problem, best: Fit, report: Report) -> Fit:
+def _add_candidates(problem: Problem, best: Fit, report: Report) -> Fit:
     """Add the candidate effects that increase the evidence enough, the best first."""
     candidates = [n for n in (*OF_BOAT, *OF_DAY) if n in problem.program.candidate_names]
     while candidates:
@@ -165,7 +172,7 @@ def _with_more(problem: Problem, best: Fit, report: Report) -> Fit:
         for i, candidate in enumerate(candidates):
             share = (len(best.effects) + i / len(candidates)) / (len(best.effects) + 2)
             report("testing candidate effects", share, candidate.replace("_", " "))
-            fits[candidate] = converge(problem, _start(problem, best, candidate))
+            fits[candidate] = converge(problem, _initial_fit(problem, best, candidate))
         name = max(fits, key=lambda n: fits[n].evidence)
         if not fits[name].evidence > best.evidence + MIN_GAIN:
             break
@@ -174,14 +181,14 @@ def _with_more(problem: Problem, best: Fit, report: Report) -> Fit:
     return best
 
 
-def _start(problem: Problem, best: Fit, name: str) -> Fit:
+def _initial_fit(problem: Problem, best: Fit, name: str) -> Fit:
     """The initial values of a fit with one more effect."""
     effects = (*best.effects, name)
     free = problem.parameters(effects)
     return unfitted_hypothesis(effects, free, theta_of(free, best.values()), best.levels)
 
 
-def _without(best: Fit, names: Sequence[str]) -> Fit:
+def _remove_effects(best: Fit, names: Sequence[str]) -> Fit:
     """The fit without some effects."""
     keep = []
     free = []
@@ -199,7 +206,9 @@ def _without(best: Fit, names: Sequence[str]) -> Fit:
     )
 
 
-def _errors(judge: Problem, nominal: Fit, best: Fit) -> tuple[dict[str, float], dict[str, float]]:
+def _held_out_errors(
+    judge: Problem, nominal: Fit, best: Fit
+) -> tuple[dict[str, float], dict[str, float]]:
     """Errors of free runs on held-out data before and after the fit.
 
     Raises BadInput if the data are too short.
@@ -217,11 +226,11 @@ def _errors(judge: Problem, nominal: Fit, best: Fit) -> tuple[dict[str, float], 
     return before, after
 
 
-def _written(problem: Problem, boat: Vessel, own: Fit, logs: str) -> str:
+def _fitted_vessel_file(problem: Problem, boat: Vessel, own: Fit, logs: str) -> str:
     """The text of the vessel file with the fitted numbers and their uncertainty."""
     document = tomlkit.parse(
         LONG_NUMBER.sub(
-            _shortened, patched_vessel.patched_vessel_text(problem, boat, own, boat.file)
+            _shorten_number, patched_vessel.patched_vessel_text(problem, boat, own, boat.file)
         )
     )
     for key in ("based_on", "found"):  # the file is no patch of another vessel
@@ -241,7 +250,7 @@ def _written(problem: Problem, boat: Vessel, own: Fit, logs: str) -> str:
             kind = type(effect).params()[f.name].calibrates
             sd[kind] = max(sd[kind], float(f"{spread:.2g}"))
             table[f.name].comment(
-                f"{_before(table, f.name)}, x {x:.3g} +- {100 * spread:.2g} % by {logs}"
+                f"{_original_comment(table, f.name)}, x {x:.3g} +- {100 * spread:.2g} % by {logs}"
             )
     diagnosis = document["diagnosis"]
     diagnosis["coefficient_uncertainty"] = tomlkit.inline_table()
@@ -259,12 +268,12 @@ def _written(problem: Problem, boat: Vessel, own: Fit, logs: str) -> str:
     return str(tomlkit.dumps(document)).replace("# found by the diagnosis", f"# fitted to {logs}")
 
 
-def _shortened(found: re.Match[str]) -> str:
+def _shorten_number(found: re.Match[str]) -> str:
     """A fitted number with five digits."""
     return str(float(f"{float(found[0]):.5g}"))
 
 
-def _before(table: Mapping[str, Any], key: str) -> str:
+def _original_comment(table: Mapping[str, Any], key: str) -> str:
     """The comment of a key without the part that a patched file adds."""
     if key not in table:
         return "no value before"
@@ -288,7 +297,7 @@ def _fit_lines(best: Fit) -> list[str]:
     return [f"fitted {sum(f.relative for f in best.free)} coefficients", *lines]
 
 
-def _error_lines(found: Fitted) -> list[str]:
+def _error_lines(found: FittedBoat) -> list[str]:
     """Lines that report the errors on held-out data before and after the fit."""
     horizon = f"{found.judge.horizon:g} s"
     lines = [f"free runs of {horizon} on the last third of each log, which were held out:"]

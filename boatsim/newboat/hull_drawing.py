@@ -17,20 +17,20 @@ def hull_xml(boat: Particulars) -> str:
     Args:
         boat: Particulars of the boat.
     """
-    return plain_hull.hull_xml(boat.hull, boat.name, COMMENT, _fittings(boat))
+    return plain_hull.hull_xml(boat.hull, boat.name, COMMENT, _fitting_lines(boat))
 
 
-def _fittings(boat: Particulars) -> Iterator[str]:
+def _fitting_lines(boat: Particulars) -> Iterator[str]:
     hull = boat.hull
-    for name, mount in boat.named():
-        yield from _outboard(boat, name, mount)
+    for name, mount in boat.named_thrusters():
+        yield from _outboard_lines(boat, name, mount)
     if boat.rudder is not None:
         at = (0.5 * hull.length + boat.rudder.x, 0, -0.5 * hull.draught)
         size = (0.02 * hull.length, 0.003 * hull.length, 0.5 * hull.draught)
         yield geom_element("rudder", "box", at, size, "seen", "dark")
 
 
-def _outboard(boat: Particulars, name: str, mount: Mount) -> Iterator[str]:
+def _outboard_lines(boat: Particulars, name: str, mount: Mount) -> Iterator[str]:
     """Leg and propeller of a thruster, with a cowl where it turns."""
     hull = boat.hull
     high = plain_hull.deck_height(hull)

@@ -41,7 +41,7 @@ class Mount:
 
 
 @dataclass(frozen=True)
-class Blade:
+class Rudder:
     """A rudder.
 
     Attributes:
@@ -71,14 +71,14 @@ class Particulars:
     draught_given: bool
     speed: float | None
     thrusters: tuple[Mount, ...]
-    rudder: Blade | None = None
+    rudder: Rudder | None = None
 
-    def named(self) -> list[tuple[str, Mount]]:
+    def named_thrusters(self) -> list[tuple[str, Mount]]:
         """Return the thrusters with names by side, numbered if a side has several.
 
         A single one is `motor`.
         """
-        sides = list(map(_side, self.thrusters))
+        sides = list(map(_side_name, self.thrusters))
         if len(sides) == 1:
             return [("motor", self.thrusters[0])]
         seen = dict.fromkeys(sides, 0)
@@ -92,13 +92,13 @@ class Particulars:
         return found
 
 
-def _side(mount: Mount) -> str:
+def _side_name(mount: Mount) -> str:
     if mount.y == 0:
         return "middle"
     return "starboard" if mount.y > 0 else "port"
 
 
-def particulars(
+def parse_particulars(
     name: str,
     length: float,
     beam: float,
@@ -140,13 +140,13 @@ def particulars(
             raise BadInput(f"--{key} {value:g}; allowed is more than 0 to {most:g}")
     if beam >= length:
         raise BadInput(f"--beam {beam:g}; allowed is less than the length, {length:g}")
-    mounts = [_mount("--thruster", text, thrust, length, False) for text in thrusters]
-    mounts += [_mount("--steered", text, thrust, length, True) for text in steered]
+    mounts = [_parse_thruster("--thruster", text, thrust, length, False) for text in thrusters]
+    mounts += [_parse_thruster("--steered", text, thrust, length, True) for text in steered]
     if not mounts:
         raise BadInput("no --thruster X,Y and no --steered X,Y; a boat needs at least one thruster")
     blade = None
     if rudder is not None:
-        blade = _blade(rudder, length)
+        blade = _parse_rudder(rudder, length)
     return Particulars(
         name,
         hull_particulars(length, beam, mass, hulls, draught),
@@ -157,7 +157,7 @@ def particulars(
     )
 
 
-def _numbers(option: str, text: str, least: int, most: int) -> list[float]:
+def _parse_numbers(option: str, text: str, least: int, most: int) -> list[float]:
     try:
         values = list(map(float, text.split(",")))
     except ValueError:
@@ -172,9 +172,11 @@ def _numbers(option: str, text: str, least: int, most: int) -> list[float]:
     return values
 
 
-def _mount(option: str, text: str, thrust: float | None, length: float, turns: bool) -> Mount:
+def _parse_thruster(
+    option: str, text: str, thrust: float | None, length: float, turns: bool
+) -> Mount:
     """A thruster from X,Y[,MAX_N[,ASTERN_N]]."""
-    x, y, *most = _numbers(option, text, 2, 4)
+    x, y, *most = _parse_numbers(option, text, 2, 4)
     if max(abs(x), abs(y)) > length:
         raise BadInput(
             f"{option} {text}; allowed are places within the length, {length:g} m, of the mass "
@@ -191,9 +193,9 @@ def _mount(option: str, text: str, thrust: float | None, length: float, turns: b
     return Mount(x, y, ahead, astern, turns)
 
 
-def _blade(text: str, length: float) -> Blade:
+def _parse_rudder(text: str, length: float) -> Rudder:
     """A rudder from X[,AREA]."""
-    x, *area = _numbers("--rudder", text, 1, 2)
+    x, *area = _parse_numbers("--rudder", text, 1, 2)
     if not 0.0 < abs(x) <= length:
         raise BadInput(
             f"--rudder {text}; allowed is a place within the length, {length:g} m, of the mass "
@@ -202,5 +204,5 @@ def _blade(text: str, length: float) -> Blade:
     if area and not 0.0 < area[0] <= 500.0:
         raise BadInput(f"--rudder {text}; allowed is an area of more than 0 to 500 m^2")
     if not area:
-        return Blade(x, None)
-    return Blade(x, area[0])
+        return Rudder(x, None)
+    return Rudder(x, area[0])

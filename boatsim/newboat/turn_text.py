@@ -6,10 +6,10 @@ from collections.abc import Iterator
 from boatsim.newboat.particulars import Particulars
 from boatsim.newboat.vessel_text import (
     MAX_ANGLE,
-    approach,
+    approach_thrust_share,
+    format_number,
     full_thrust,
-    number,
-    steering,
+    steering_commands,
     thrust_channel,
 )
 
@@ -24,29 +24,29 @@ def turn_text(boat: Particulars) -> str:
     Args:
         boat: Particulars of the boat.
     """
-    return "\n".join([*_lines(boat), ""])
+    return "\n".join([*_scenario_lines(boat), ""])
 
 
-def _lines(boat: Particulars) -> Iterator[str]:
+def _scenario_lines(boat: Particulars) -> Iterator[str]:
     stage = round(STAGE_DURATION * math.sqrt(boat.hull.length / REFERENCE_LENGTH), 1)
-    parts = _stages(boat)
+    parts = _stage_commands(boat)
     yield "#!/usr/bin/env -S boatsim run"
     yield 'about = "Ahead, a turn to starboard and one to port, faster, and astern."'
     yield 'vessel = "vessel.toml"'
-    yield f"duration = {number(stage * len(parts))}  # [s]"
+    yield f"duration = {format_number(stage * len(parts))}  # [s]"
     yield from ("", "[controller]", 'use = "open_loop"')
     for i, commands in enumerate(parts):
-        yield from ("", "[[goal]]", f"from = {number(i * stage)}")
+        yield from ("", "[[goal]]", f"from = {format_number(i * stage)}")
         for channel, value in commands.items():
-            yield f"{channel} = {number(value)}"
+            yield f"{channel} = {format_number(value)}"
 
 
-def _stages(boat: Particulars) -> list[dict[str, float]]:
+def _stage_commands(boat: Particulars) -> list[dict[str, float]]:
     """Commands of each stage, within the ranges of the channels."""
     full, _ = full_thrust(boat)
-    pairs = list(zip(boat.named(), full, strict=True))
-    steer = steering(boat)
-    part = approach(boat)
+    pairs = list(zip(boat.named_thrusters(), full, strict=True))
+    steer = steering_commands(boat)
+    part = approach_thrust_share(boat)
 
     def at(share: float, helm: float) -> dict[str, float]:
         found = {thrust_channel(n): share * most for (n, _), most in pairs}

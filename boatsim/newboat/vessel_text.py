@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterator
 
 from boatsim.files import toml_value
-from boatsim.newboat.particulars import Blade, Mount, Particulars
+from boatsim.newboat.particulars import Mount, Particulars, Rudder
 from boatsim.physics.estimate import (
     added_mass,
     displacement,
@@ -40,19 +40,19 @@ def vessel_text(boat: Particulars) -> str:
     """
     return "\n".join(
         [
-            *_head(boat),
-            *_body(boat),
-            *_channels(boat),
-            *_effects(boat),
-            *_manoeuvring(boat),
-            *_diagnosis(boat),
-            *_estimated(boat),
+            *_head_lines(boat),
+            *_body_lines(boat),
+            *_channel_lines(boat),
+            *_effect_lines(boat),
+            *_manoeuvring_lines(boat),
+            *_diagnosis_lines(boat),
+            *_estimated_lines(boat),
             "",
         ]
     )
 
 
-def number(value: float) -> str:
+def format_number(value: float) -> str:
     """Return a number with four digits as a TOML float.
 
     Args:
@@ -64,7 +64,7 @@ def number(value: float) -> str:
     return f"{text}.0"
 
 
-def line(key: str, value: float, unit: str, rule: str) -> str:
+def toml_line(key: str, value: float, unit: str, rule: str) -> str:
     """Return the line `key = value  # [unit] rule`.
 
     Args:
@@ -73,15 +73,15 @@ def line(key: str, value: float, unit: str, rule: str) -> str:
         unit: Its unit; "" for none.
         rule: The rule that the value follows.
     """
-    entry = f"{key} = {number(value)}"
+    entry = f"{key} = {format_number(value)}"
     comment = rule
     if unit:
         comment = f"[{unit}] {rule}"
     return f"{entry:{COMMENT_COLUMN - 1}} # {comment}"
 
 
-def _of(key: str, found: Estimate, unit: str) -> str:
-    return line(key, found.value, unit, found.rule)
+def _estimate_line(key: str, found: Estimate, unit: str) -> str:
+    return toml_line(key, found.value, unit, found.rule)
 
 
 def full_thrust(boat: Particulars) -> tuple[list[float], bool]:
@@ -120,7 +120,7 @@ def steer_channel(name: str) -> str:
     return f"steer_{name}_rad"
 
 
-def _head(boat: Particulars) -> Iterator[str]:
+def _head_lines(boat: Particulars) -> Iterator[str]:
     hull = boat.hull
     kind = "one hull" if hull.hulls == 1 else "two hulls"
     size = f"{hull.length:g} m, {hull.mass:g} kg"
@@ -132,30 +132,32 @@ def _head(boat: Particulars) -> Iterator[str]:
     )
     yield 'hull = "hull.xml"'
     yield 'freedoms = ["surge", "sway", "yaw"]'
-    yield line("length", hull.length, "m", OWNER)
-    yield line("beam", hull.beam, "m", OWNER)
+    yield toml_line("length", hull.length, "m", OWNER)
+    yield toml_line("beam", hull.beam, "m", OWNER)
     rule = OWNER
     if not boat.draught_given:
         rule = displacement.hull_draught(hull.length, hull.beam, hull.mass, hull.hulls).rule
-    yield line("draught", hull.draught, "m", rule)
+    yield toml_line("draught", hull.draught, "m", rule)
 
 
-def _body(boat: Particulars) -> Iterator[str]:
+def _body_lines(boat: Particulars) -> Iterator[str]:
     hull = boat.hull
-    yield from ("", "[body]", line("mass", hull.mass, "kg", OWNER))
-    yield _of("roll_inertia", inertia.roll_inertia(hull), "kg m^2")
-    yield _of("yaw_inertia", inertia.yaw_inertia(hull), "kg m^2")
+    yield from ("", "[body]", toml_line("mass", hull.mass, "kg", OWNER))
+    yield _estimate_line("roll_inertia", inertia.roll_inertia(hull), "kg m^2")
+    yield _estimate_line("yaw_inertia", inertia.yaw_inertia(hull), "kg m^2")
     yield from ("", "[geometry]")
-    yield line(
+    yield toml_line(
         "cg_from_transom", 0.5 * hull.length, "m", "for the drawing: mass centre at mid-length"
     )
-    yield line("cg_above_keel", hull.draught, "m", "for the drawing: mass centre in the waterline")
+    yield toml_line(
+        "cg_above_keel", hull.draught, "m", "for the drawing: mass centre in the waterline"
+    )
 
 
-def _channels(boat: Particulars) -> Iterator[str]:
+def _channel_lines(boat: Particulars) -> Iterator[str]:
     full, _ = full_thrust(boat)
     yield from ("", "[channels]")
-    for (name, mount), most in zip(boat.named(), full, strict=True):
+    for (name, mount), most in zip(boat.named_thrusters(), full, strict=True):
         least = mount.largest_astern(most)
         rule = OWNER
         if mount.ahead is None:
@@ -164,8 +166,8 @@ def _channels(boat: Particulars) -> Iterator[str]:
             rule = f"{rule}; the same astern"
         low = "0.0"
         if least != 0.0:
-            low = f"-{number(least)}"
-        limits = f'low = {low}, high = {number(most)}, about = "ahead positive"'
+            low = f"-{format_number(least)}"
+        limits = f'low = {low}, high = {format_number(most)}, about = "ahead positive"'
         yield f"{thrust_channel(name)} = {{ {limits} }}  # [N] {rule}"
         if mount.turns:
             about = "positive pushes to starboard"
@@ -179,40 +181,47 @@ def _channels(boat: Particulars) -> Iterator[str]:
         yield f"rudder_rad = {{ low = -{MAX_ANGLE}, high = {MAX_ANGLE}, {turns} }}  # [rad] 40 deg"
 
 
-def _effects(boat: Particulars) -> Iterator[str]:
-    hull, speed = boat.hull, service(boat)
+def _effect_lines(boat: Particulars) -> Iterator[str]:
+    hull, speed = boat.hull, rudder_design_speed(boat)
     sway, yaw = sway_yaw_damping.damping_at_rest(hull)
     yield from ("", "[[effect]]", 'use = "added_mass"')
-    yield _of("surge", added_mass.surge_added_mass(hull), "kg")
-    yield _of("sway", added_mass.sway_added_mass(hull), "kg")
-    yield _of("yaw", added_mass.yaw_added_mass(hull), "kg m^2")
+    yield _estimate_line("surge", added_mass.surge_added_mass(hull), "kg")
+    yield _estimate_line("sway", added_mass.sway_added_mass(hull), "kg")
+    yield _estimate_line("yaw", added_mass.yaw_added_mass(hull), "kg m^2")
     linear, quadratic = resistance.surge_damping(hull, given_thrust(boat), boat.speed)
     yield from ("", "[[effect]]", 'use = "linear_damping"')
-    yield _of("surge", linear, "N s/m")
-    yield _of("sway", sway, "N s/m")
-    yield _of("yaw", yaw, "N m s")
-    yield from ("", "[[effect]]", 'use = "surge_drag"', _of("quadratic", quadratic, "N s^2/m^2"))
+    yield _estimate_line("surge", linear, "N s/m")
+    yield _estimate_line("sway", sway, "N s/m")
+    yield _estimate_line("yaw", yaw, "N m s")
+    yield from (
+        "",
+        "[[effect]]",
+        'use = "surge_drag"',
+        _estimate_line("quadratic", quadratic, "N s^2/m^2"),
+    )
     yield from ("", "[[effect]]", 'use = "cross_flow_drag"')
-    yield _of("section_drag_coefficient", sway_yaw_damping.section_drag_coefficient(), "")
-    yield line("density", DENSITY, "kg/m^3", "fresh water")
+    yield _estimate_line(
+        "section_drag_coefficient", sway_yaw_damping.section_drag_coefficient(), ""
+    )
+    yield toml_line("density", DENSITY, "kg/m^3", "fresh water")
     lift = sway_yaw_damping.lift_derivatives(hull)
     yield from ("", "[[effect]]", 'use = "forward_speed_damping"')
-    yield _of("sway", lift.sway, "N s^2/m^2")
-    yield _of("at", lift.at, "m")
-    yield _of("yaw", lift.yaw, "N s^2")
-    for name, mount in boat.named():
-        yield from _thruster(name, mount)
+    yield _estimate_line("sway", lift.sway, "N s^2/m^2")
+    yield _estimate_line("at", lift.at, "m")
+    yield _estimate_line("yaw", lift.yaw, "N s^2")
+    for name, mount in boat.named_thrusters():
+        yield from _thruster_lines(name, mount)
     yield from (
         "",
         "[[effect]]",
         'use = "thrust_loss_with_speed"',
-        _of("loss", thrust.thrust_loss_with_speed(hull, boat.speed), "s/m"),
+        _estimate_line("loss", thrust.thrust_loss_with_speed(hull, boat.speed), "s/m"),
     )
     if boat.rudder is not None:
-        yield from _rudder(boat, speed)
+        yield from _rudder_lines(boat, speed)
 
 
-def service(boat: Particulars) -> float:
+def rudder_design_speed(boat: Particulars) -> float:
     """Return the speed of the rudder coefficients [m/s]: service speed, at most top speed.
 
     Args:
@@ -236,17 +245,17 @@ def given_thrust(boat: Particulars) -> float | None:
     return math.fsum(full)
 
 
-def _thruster(name: str, mount: Mount) -> Iterator[str]:
+def _thruster_lines(name: str, mount: Mount) -> Iterator[str]:
     yield from ("", "[[effect]]", 'use = "thruster"', f"name = {toml_value(name)}")
     steer = ""
     if mount.turns:
         steer = f', angle = "{steer_channel(name)}"'
     yield f'on = {{ thrust = "{thrust_channel(name)}"{steer} }}'
-    yield line("x", mount.x, "m", f"{OWNER}, ahead of the mass centre")
-    yield line("y", mount.y, "m", f"{OWNER}, to starboard")
+    yield toml_line("x", mount.x, "m", f"{OWNER}, ahead of the mass centre")
+    yield toml_line("y", mount.y, "m", f"{OWNER}, to starboard")
 
 
-def _rudder(boat: Particulars, speed: float) -> Iterator[str]:
+def _rudder_lines(boat: Particulars, speed: float) -> Iterator[str]:
     blade, by_rule = boat.rudder, rudders.rudder_area(boat.hull)
     assert blade is not None
     area = by_rule
@@ -255,38 +264,45 @@ def _rudder(boat: Particulars, speed: float) -> Iterator[str]:
     slope = rudders.rudder_force_slope(area.value, speed)
     # A positive angle pushes a blade aft to port, which turns the bow to starboard
     sign = 1.0 if blade.x < 0 else -1.0
-    yield from ("", "[[effect]]", 'use = "rudder"', f"# area {number(area.value)} m^2: {area.rule}")
+    yield from (
+        "",
+        "[[effect]]",
+        'use = "rudder"',
+        f"# area {format_number(area.value)} m^2: {area.rule}",
+    )
     yield 'on = { angle = "rudder_rad" }'
-    yield line("sway", -sign * slope.value, "N/rad", slope.rule)
-    yield line(
+    yield toml_line("sway", -sign * slope.value, "N/rad", slope.rule)
+    yield toml_line(
         "yaw",
         -sign * slope.value * blade.x,
         "N m/rad",
-        f"at {number(blade.x)} m from the mass centre",
+        f"at {format_number(blade.x)} m from the mass centre",
     )
     yield from ("", "[[effect]]", 'use = "speed_scaled_steering"', 'on = { angle = "rudder_rad" }')
-    yield line("speed", speed, "m/s", "to which the coefficients above belong")
-    yield line("rudder_sway", 1.0, "", "the force grows with the square of the speed")
-    yield line("rudder_yaw", 1.0, "", "same")
-    if washed := _washing(boat, blade):
+    yield toml_line("speed", speed, "m/s", "to which the coefficients above belong")
+    yield toml_line("rudder_sway", 1.0, "", "the force grows with the square of the speed")
+    yield toml_line("rudder_yaw", 1.0, "", "same")
+    if washed := _thruster_ahead_of_rudder(boat, blade):
         found = rudders.slipstream_rudder_force()
         yield from ("", "[[effect]]", 'use = "rudder_race"')
         yield f'on = {{ angle = "rudder_rad", thrust = "{thrust_channel(washed)}" }}'
-        yield line("normal_force_per_thrust", found.value, "", found.rule)
+        yield toml_line("normal_force_per_thrust", found.value, "", found.rule)
 
 
-def _washing(boat: Particulars, blade: Blade) -> str:
+def _thruster_ahead_of_rudder(boat: Particulars, blade: Rudder) -> str:
     """Name of the only fixed thruster on the centre line ahead of the rudder.
 
     "" if there is none or several.
     """
-    ahead = [name for name, m in boat.named() if m.y == 0.0 and not m.turns and m.x > blade.x]
+    ahead = [
+        name for name, m in boat.named_thrusters() if m.y == 0.0 and not m.turns and m.x > blade.x
+    ]
     if len(ahead) != 1:
         return ""
     return ahead[0]
 
 
-def approach(boat: Particulars) -> float:
+def approach_thrust_share(boat: Particulars) -> float:
     """Return the part of full thrust at the approach of manoeuvres.
 
     Args:
@@ -299,28 +315,28 @@ def approach(boat: Particulars) -> float:
     )
 
 
-def _manoeuvring(boat: Particulars) -> Iterator[str]:
+def _manoeuvring_lines(boat: Particulars) -> Iterator[str]:
     full, _ = full_thrust(boat)
-    part, named = approach(boat), boat.named()
+    part, named = approach_thrust_share(boat), boat.named_thrusters()
     ahead: list[str] = []
     astern: list[str] = []
     for (name, mount), most in zip(named, full, strict=True):
         channel = thrust_channel(name)
-        ahead.append(f"{channel} = {number(part * most)}")
+        ahead.append(f"{channel} = {format_number(part * most)}")
         if (least := mount.largest_astern(most)) > 0.0 or mount.astern is None:
-            astern.append(f"{channel} = -{number(part * least)}")
+            astern.append(f"{channel} = -{format_number(part * least)}")
     rule = "half thrust"
     if part < APPROACH_PART:
         rule = "twice the resistance at an easy speed"
     yield from ("", "[manoeuvring]", f"ahead = {{ {', '.join(ahead)} }}  # [N] {rule}")
     if astern:
         yield f"astern = {{ {', '.join(astern)} }}  # [N]"
-    if steer := steering(boat):
-        gains = ", ".join(f"{channel} = {number(gain)}" for channel, gain in steer.items())
+    if steer := steering_commands(boat):
+        gains = ", ".join(f"{channel} = {format_number(gain)}" for channel, gain in steer.items())
         yield f"steer = {{ {gains} }}  # per rad of helm, positive to starboard"
 
 
-def steering(boat: Particulars) -> dict[str, float]:
+def steering_commands(boat: Particulars) -> dict[str, float]:
     """Return the commands per rad of helm: of rudder, turned thrusters or differential thrust.
 
     Args:
@@ -329,15 +345,15 @@ def steering(boat: Particulars) -> dict[str, float]:
     if boat.rudder is not None:
         return {"rudder_rad": 1.0}
     turning: dict[str, float] = {}
-    for name, mount in boat.named():
+    for name, mount in boat.named_thrusters():
         if mount.turns:
             turning[steer_channel(name)] = -1.0 if mount.x <= 0 else 1.0
     if turning:
         return turning
     full, _ = full_thrust(boat)
-    part = approach(boat)
+    part = approach_thrust_share(boat)
     gains: dict[str, float] = {}
-    for (name, mount), most in zip(boat.named(), full, strict=True):
+    for (name, mount), most in zip(boat.named_thrusters(), full, strict=True):
         if mount.y != 0.0:
             gains[thrust_channel(name)] = -math.copysign(part * most / MAX_ANGLE, mount.y)
     return gains
@@ -351,7 +367,7 @@ def _thrust_uncertainty(boat: Particulars) -> tuple[float, str]:
     return ESTIMATED_THRUST_SD, "no thrust was given"
 
 
-def _diagnosis(boat: Particulars) -> Iterator[str]:
+def _diagnosis_lines(boat: Particulars) -> Iterator[str]:
     thrust_sd, thrust_reason = _thrust_uncertainty(boat)
     yield from ("", "[diagnosis]")
     sds = f"damping = {DAMPING_SD}, thrust = {thrust_sd}, added_mass = {ADDED_MASS_SD}"
@@ -360,13 +376,13 @@ def _diagnosis(boat: Particulars) -> Iterator[str]:
     yield f'reasons.coefficient_uncertainty = "{reason}"'
 
 
-def _estimated(boat: Particulars) -> Iterator[str]:
+def _estimated_lines(boat: Particulars) -> Iterator[str]:
     thrust_sd, thrust_reason = _thrust_uncertainty(boat)
     yield from ("", "[estimated]  # relative sd of the numbers that nobody measured or published")
-    yield line("damping", DAMPING_SD, "", "rules of thumb")
-    yield line("thrust", thrust_sd, "", thrust_reason)
-    yield line("added_mass", ADDED_MASS_SD, "", "strip theory or regression")
-    yield line('"body.roll_inertia"', INERTIA_SD, "", "usual radius of gyration")
-    yield line('"body.yaw_inertia"', INERTIA_SD, "", "usual radius of gyration")
-    yield line("mass_centre", UNKNOWN_SD, "", "assumed at mid-length")
-    yield line("lag", UNKNOWN_SD, "", "lags of motors and steering are assumed to be zero")
+    yield toml_line("damping", DAMPING_SD, "", "rules of thumb")
+    yield toml_line("thrust", thrust_sd, "", thrust_reason)
+    yield toml_line("added_mass", ADDED_MASS_SD, "", "strip theory or regression")
+    yield toml_line('"body.roll_inertia"', INERTIA_SD, "", "usual radius of gyration")
+    yield toml_line('"body.yaw_inertia"', INERTIA_SD, "", "usual radius of gyration")
+    yield toml_line("mass_centre", UNKNOWN_SD, "", "assumed at mid-length")
+    yield toml_line("lag", UNKNOWN_SD, "", "lags of motors and steering are assumed to be zero")

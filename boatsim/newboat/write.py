@@ -8,7 +8,7 @@ from boatsim.newboat.vessel_text import vessel_text
 VESSEL = "vessel.toml"
 
 
-def files(boat: Particulars) -> dict[str, str]:
+def boat_files(boat: Particulars) -> dict[str, str]:
     """Return the texts of the files of a boat's folder by file name.
 
     Args:

@@ -17,7 +17,7 @@ from types import ModuleType
 from typing import Any
 
 from boatsim.errors import BadInput, unknown_name
-from boatsim.files import read_toml, tables
+from boatsim.files import array_of_tables, read_toml
 from boatsim.physics import trust
 
 # Kinds of content that are modules of this package, one per file
@@ -209,7 +209,7 @@ def _scenarios(home: Path) -> dict[str, Path]:
 @cache
 def _cases(path: Path, _modified_ns: int) -> tuple[str, ...]:
     """Names of the cases of a scenario file in one state of the file."""
-    return tuple(str(case.get("name")) for case in tables(read_toml(path).get("case")))
+    return tuple(str(case.get("name")) for case in array_of_tables(read_toml(path).get("case")))
 
 
 def import_module_file(path: Path, name: str) -> ModuleType:

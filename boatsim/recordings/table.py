@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 
 from boatsim.errors import BadInput, unknown_name
-from boatsim.files import replacing
+from boatsim.files import replace_file
 from boatsim.physics.content import import_library_module, library_names
 from boatsim.physics.signals import POSE, RATES, Array
 from boatsim.recordings import limits, units
@@ -273,7 +273,7 @@ def write_csv(recording: Recording, path: Path | str) -> None:
 
     Raises OSError.
     """
-    with replacing(path) as temporary, temporary.open("w", encoding="utf-8", newline="") as file:
+    with replace_file(path) as temporary, temporary.open("w", encoding="utf-8", newline="") as file:
         file.write(csv_header(recording))
         for start in range(0, len(recording), 10_000):  # limits the memory of the text
             file.write(csv_rows(recording, start, start + 10_000))

@@ -11,7 +11,7 @@ from pathlib import Path
 
 from pydantic import Field
 
-from boatsim.files import Table, checked, read_toml
+from boatsim.files import Table, read_toml, validate_table
 from boatsim.simulate.evaluation import Metric
 
 FILE = "pins.toml"
@@ -37,7 +37,7 @@ class BaselinesFile(Table):
     scenario: dict[str, dict[str, Baseline]] = {}  # by file, or file:case
 
 
-def same(old: float | str | None, new: float | str | None, tolerance: float) -> bool:
+def values_agree(old: float | str | None, new: float | str | None, tolerance: float) -> bool:
     """Return whether two values agree.
 
     Args:
@@ -53,12 +53,12 @@ def same(old: float | str | None, new: float | str | None, tolerance: float) -> 
     return abs(new - old) <= max(TOLERANCE * abs(old), NOTHING, tolerance)
 
 
-def digits(value: float | None) -> float | None:
+def round_to_nine_digits(value: float | None) -> float | None:
     """Round a value to nine digits, which is finer than the tolerance."""
     return None if value is None else float(f"{value:.9g}")
 
 
-def read(folder: Path) -> BaselinesFile | None:
+def read_baselines(folder: Path) -> BaselinesFile | None:
     """Read the baselines of a folder.
 
     Args:
@@ -71,10 +71,10 @@ def read(folder: Path) -> BaselinesFile | None:
         BadInput: If the file is not valid.
     """
     path = folder / FILE
-    return checked(BaselinesFile, read_toml(path), str(path)) if path.exists() else None
+    return validate_table(BaselinesFile, read_toml(path), str(path)) if path.exists() else None
 
 
-def baselines_of(runs: Sequence[Mapping[str, Metric]]) -> dict[str, Baseline]:
+def make_baselines(runs: Sequence[Mapping[str, Metric]]) -> dict[str, Baseline]:
     """Return the baselines of one scenario.
 
     Args:
@@ -91,11 +91,15 @@ def baselines_of(runs: Sequence[Mapping[str, Metric]]) -> dict[str, Baseline]:
             numbers = [value for value in values if value is not None]
             tolerance = max(max(numbers) - min(numbers), tolerance)
         rounded = float(f"{tolerance:.3g}")
-        found[name] = Baseline(value=digits(metric.value), unit=metric.unit, tolerance=rounded)
+        found[name] = Baseline(
+            value=round_to_nine_digits(metric.value), unit=metric.unit, tolerance=rounded
+        )
     return found
 
 
-def differences(baselines: Mapping[str, Baseline], metrics: Mapping[str, Metric]) -> list[str]:
+def compare_with_baselines(
+    baselines: Mapping[str, Baseline], metrics: Mapping[str, Metric]
+) -> list[str]:
     """Compare the metrics of a run with their baselines.
 
     Args:
@@ -115,9 +119,9 @@ def differences(baselines: Mapping[str, Baseline], metrics: Mapping[str, Metric]
             continue
         old = baselines[name]
         new = metrics[name]
-        if not same(old.value, new.value, old.tolerance):
-            before = _text(old.value, new.lacking)
-            after = _text(new.value, new.lacking)
+        if not values_agree(old.value, new.value, old.tolerance):
+            before = _format_value(old.value, new.lacking)
+            after = _format_value(new.value, new.lacking)
             changed = f"{name}: {before} -> {after} {new.unit}".rstrip()
             lines.append(f"{changed} (+- {old.tolerance:.3g})")
         elif old.unit != new.unit:
@@ -125,7 +129,7 @@ def differences(baselines: Mapping[str, Baseline], metrics: Mapping[str, Metric]
     return lines
 
 
-def _text(value: float | None, lacking: str | None) -> str:
+def _format_value(value: float | None, lacking: str | None) -> str:
     if value is None:
         return lacking or "not reached"
     return f"{value:.6g}"

@@ -84,7 +84,7 @@ class Batch:
         self.programs = [Program(v) for v in self.vessels]
         self.program = self.programs[0]
         self.code = self.program.module
-        self._check_alike()
+        self._check_same_program()
         self._values = [p.values() for p in self.programs]
         self._on, self._none = self.program.switches(), np.zeros(self.code.NQ)
         self._seeds = np.zeros(self.n, dtype=int)
@@ -173,13 +173,15 @@ class Batch:
         Raises:
             BadInput: If a shape, name or value is not valid.
         """
-        chosen = self._chosen(boats)
+        chosen = self._boat_numbers(boats)
         self._y[chosen] = (
-            0.0 if states is None else self.program.joint_rates(self._rows(states, chosen))
+            0.0 if states is None else self.program.joint_rates(self._state_rows(states, chosen))
         )
         self._commands[chosen] = self._clip({} if commands is None else commands, chosen)
         self.t[chosen] = 0.0
-        self.shared(lambda some: self.code.settle_actuators_of_boats(some, self.fleet), chosen)
+        self.run_on_threads(
+            lambda some: self.code.settle_actuators_of_boats(some, self.fleet), chosen
+        )
 
     def advance(
         self, commands: ArrayLike | Mapping[str, float] | None = None, steps: int = 1
@@ -197,7 +199,7 @@ class Batch:
         everyone = np.arange(self.n)
         if commands is not None:
             self._commands[:] = self._clip(commands, everyone)
-        self.shared(lambda some: self._stepped(some, steps))
+        self.run_on_threads(lambda some: self._step_boats(some, steps))
 
     def set(self, parameter: str, values: ArrayLike, boats: ArrayLike | None = None) -> None:
         """Change a parameter of vessels, but no parameters that a vessel file derives from it.
@@ -210,14 +212,14 @@ class Batch:
         Raises:
             BadInput: If the name is unknown or a value out of bounds.
         """
-        chosen, (rows, place, about) = self._chosen(boats), self._known(parameter)
-        given = self._each(parameter, np.asarray(values, dtype=float), chosen)
+        chosen, (rows, place, about) = self._boat_numbers(boats), self._find_parameter(parameter)
+        given = self._value_per_boat(parameter, np.asarray(values, dtype=float), chosen)
         if not ((given >= about.low) & (given <= about.high)).all():
             wrong = given[~((given >= about.low) & (given <= about.high))][0]
             allowed = f"{about.low:g} to {about.high:g} {about.unit}".rstrip()
             raise BadInput(f"{parameter} = {wrong:g}; allowed {allowed}")
         rows[chosen, place] = given
-        self._weigh(chosen)
+        self._update_masses(chosen)
 
     def get(self, parameter: str) -> Array:
         """Return the values (n,) of "effect.parameter".
@@ -225,7 +227,7 @@ class Batch:
         Raises:
             BadInput: If the name is unknown.
         """
-        rows, place, _ = self._known(parameter)
+        rows, place, _ = self._find_parameter(parameter)
         return rows[:, place].copy()
 
     def assign(self, vessel: ArrayLike, boats: ArrayLike | None = None) -> None:
@@ -238,8 +240,8 @@ class Batch:
         Raises:
             BadInput: If a number does not exist.
         """
-        chosen = self._chosen(boats)
-        numbers = self._each("vessel", np.asarray(vessel, dtype=int), chosen)
+        chosen = self._boat_numbers(boats)
+        numbers = self._value_per_boat("vessel", np.asarray(vessel, dtype=int), chosen)
         for number in np.unique(numbers):
             if not 0 <= number < len(self.vessels):
                 raise BadInput(f"vessel {number}; allowed 0 to {len(self.vessels) - 1}")
@@ -247,7 +249,7 @@ class Batch:
             program, some = self.programs[number], chosen[numbers == number]
             self._p[some], self._body[some] = self._values[number], program.body
             self._sample(program, some)
-        self._weigh(chosen)
+        self._update_masses(chosen)
 
     def rollout(
         self,
@@ -287,7 +289,9 @@ class Batch:
         self.code.rollout(model, plant, commands, t0, self.step, substeps, out)
         return self.program.body_rates(out)
 
-    def coast(self, start: Sequence[float], commands: Mapping[str, float], steps: int) -> Array:
+    def hold_commands(
+        self, start: Sequence[float], commands: Mapping[str, float], steps: int
+    ) -> Array:
         """Compute the state of the first vessel after steps with constant commands.
 
         Args:
@@ -320,13 +324,13 @@ class Batch:
                     values = effect.with_seed(int(self._seeds[b])).values()
                     self._p[b, first : first + len(values)] = values
 
-    def _stepped(self, boats: Boats, steps: int) -> None:
+    def _step_boats(self, boats: Boats, steps: int) -> None:
         self.code.advance_boats(boats, self.fleet, self.step, steps)
 
-    def _weigh(self, boats: Boats) -> None:
+    def _update_masses(self, boats: Boats) -> None:
         self.code.compute_mass_constants_of_boats(boats, self._body, self._p, self._on, self._k)
 
-    def shared(self, work: Callable[[Boats], None], boats: Boats | None = None) -> None:
+    def run_on_threads(self, work: Callable[[Boats], None], boats: Boats | None = None) -> None:
         """Work on vessels on all threads.
 
         Args:
@@ -339,7 +343,7 @@ class Batch:
             for some in turns:
                 work(some)
             return
-        for _ in pool(self.threads, os.getpid()).map(work, turns):
+        for _ in shared_thread_pool(self.threads, os.getpid()).map(work, turns):
             pass
 
     def sense(self, felt: Array) -> None:
@@ -348,9 +352,11 @@ class Batch:
         Args:
             felt: Rows (n, 11) in the order of `control.compiled.SENSE_FIELDS`; they are changed.
         """
-        self.shared(lambda some: self.code.read_instruments_of_boats(some, self.fleet, felt))
+        self.run_on_threads(
+            lambda some: self.code.read_instruments_of_boats(some, self.fleet, felt)
+        )
 
-    def _chosen(self, boats: ArrayLike | None) -> Boats:
+    def _boat_numbers(self, boats: ArrayLike | None) -> Boats:
         """Numbers of vessels, from numbers or a mask. Raises BadInput."""
         if boats is None:
             return np.arange(self.n)
@@ -365,7 +371,7 @@ class Batch:
         return chosen
 
     @staticmethod
-    def _each(what: str, given: NDArray[Any], boats: Boats) -> NDArray[Any]:
+    def _value_per_boat(what: str, given: NDArray[Any], boats: Boats) -> NDArray[Any]:
         """One value per vessel. Raises BadInput."""
         if given.shape not in ((), (1,), boats.shape):
             raise BadInput(
@@ -374,7 +380,7 @@ class Batch:
             )
         return np.broadcast_to(given, boats.shape)
 
-    def _rows(self, states: ArrayLike, boats: Boats) -> Array:
+    def _state_rows(self, states: ArrayLike, boats: Boats) -> Array:
         """One state per vessel. Raises BadInput."""
         given = np.asarray(states, dtype=float)
         if (
@@ -412,7 +418,7 @@ class Batch:
                 found[f"{effect.name}.{name}"] = (place, about)
         return found
 
-    def _known(self, parameter: str) -> tuple[Array, int, Param]:
+    def _find_parameter(self, parameter: str) -> tuple[Array, int, Param]:
         """Array of a parameter, its column there, and its description. Raises BadInput."""
         if parameter in BODY:
             return (self._body, *BODY[parameter])
@@ -421,7 +427,7 @@ class Batch:
             raise BadInput(unknown_name(f"{self.vessels[0].name}: parameter", parameter, names))
         return (self._p, *self._parameters[parameter])
 
-    def _check_alike(self) -> None:
+    def _check_same_program(self) -> None:
         """Raises BadInput if the vessels need different programs."""
         first = self.vessels[0]
         for i, (vessel, program) in enumerate(zip(self.vessels, self.programs, strict=True)):
@@ -433,7 +439,7 @@ class Batch:
 
 
 @cache
-def pool(threads: int, process: int) -> ThreadPoolExecutor:
+def shared_thread_pool(threads: int, process: int) -> ThreadPoolExecutor:
     """Return the threads that all batches of a process share.
 
     Args:

@@ -55,18 +55,18 @@ class Camera(CheckedParameters):
             )
 
     @cached_property
-    def places(self) -> Array:
+    def mark_positions(self) -> Array:
         """Complex positions (M,) of the marks on the hull [m]."""
         return np.array([complex(*place) for place in self.marks.values()])
 
     @cached_property
     def _weights(self) -> tuple[Array, Array]:
         """Weights (M,) of the marks in the position of the CG, and in the direction of the bow."""
-        off = self.places - self.places.mean()
+        off = self.mark_positions - self.mark_positions.mean()
         turn = off.conj() / (np.abs(off) ** 2).sum()
-        return 1.0 / len(off) - self.places.mean() * turn, turn
+        return 1.0 / len(off) - self.mark_positions.mean() * turn, turn
 
-    def seen(self, place: Array, psi: Array, noise: Array) -> Array:
+    def measure_marks(self, place: Array, psi: Array, noise: Array) -> Array:
         """Return the measured positions of the marks.
 
         Args:
@@ -80,11 +80,11 @@ class Camera(CheckedParameters):
         shaken = self.mark_sd * (noise[..., 0::2] + 1j * noise[..., 1::2])
         return np.asarray(
             np.asarray(place)[..., None]
-            + np.exp(1j * np.asarray(psi))[..., None] * self.places
+            + np.exp(1j * np.asarray(psi))[..., None] * self.mark_positions
             + shaken
         )
 
-    def pose(self, seen: Array) -> tuple[Array, Array]:
+    def fit_pose(self, seen: Array) -> tuple[Array, Array]:
         """Return the pose that fits measured marks.
 
         Args:
@@ -96,12 +96,12 @@ class Camera(CheckedParameters):
         centre, turn = self._weights
         return seen @ centre, np.angle(seen @ turn)
 
-    def noise(self) -> dict[str, float]:
+    def pose_noise(self) -> dict[str, float]:
         """Return the standard deviations of the pose, by their key in a recording's notes."""
         centre, turn = (float(np.sqrt((np.abs(w) ** 2).sum())) for w in self._weights)
         return {"position_sd_m": self.mark_sd * centre, "heading_sd_rad": self.mark_sd * turn}
 
-    def shoot(self, t: float, pose: Pose, noise: Array) -> Frame:
+    def take_frame(self, t: float, pose: Pose, noise: Array) -> Frame:
         """Take one frame.
 
         Args:
@@ -109,17 +109,19 @@ class Camera(CheckedParameters):
             pose: True pose.
             noise: Standard normal numbers (2 M,).
         """
-        marks = self.seen(np.asarray(complex(pose[0], pose[1])), np.asarray(pose[2]), noise)
-        place, psi = self.pose(marks)
+        marks = self.measure_marks(
+            np.asarray(complex(pose[0], pose[1])), np.asarray(pose[2]), noise
+        )
+        place, psi = self.fit_pose(marks)
         return Frame(
             t, place.real.item(), place.imag.item(), psi.item(), tuple(marks.view(float).tolist())
         )
 
-    def due(self, number: int, t: float) -> bool:
+    def is_frame_due(self, number: int, t: float) -> bool:
         """Return whether frame `number` is due by the time t [s]."""
         return number / self.rate <= t + 1e-9
 
-    def frames_between(
+    def take_frames_between(
         self, t0: float, before: Pose, t1: float, after: Pose, first: int, rng: np.random.Generator
     ) -> Iterator[Frame]:
         """Take the frames that fall into a step, with the pose interpolated between its ends.
@@ -133,16 +135,16 @@ class Camera(CheckedParameters):
             rng: Random generator of the marking noise.
         """
         number = first
-        while self.due(number, t1):
+        while self.is_frame_due(number, t1):
             w = 1.0 if t1 == t0 else min(max((number / self.rate - t0) / (t1 - t0), 0.0), 1.0)
             x, y, psi = (a + w * (b - a) for a, b in zip(before, after, strict=True))
-            yield self.shoot(
+            yield self.take_frame(
                 number / self.rate, (x, y, psi), rng.standard_normal(2 * len(self.marks))
             )
             number += 1
 
 
-def camera_over(vessel: Vessel, settings: Mapping[str, object]) -> Camera:
+def make_camera(vessel: Vessel, settings: Mapping[str, object]) -> Camera:
     """Return the camera of a scenario.
 
     Args:

@@ -41,7 +41,7 @@ class CameraLog:
         self.table: GrowingTable = make_table(columns, scenario.file.duration * self._camera.rate)
 
     @property
-    def due(self) -> float:
+    def next_frame_time(self) -> float:
         """Time of the next frame [s]."""
         return self._number / self._camera.rate
 
@@ -63,26 +63,26 @@ class CameraLog:
         Raises:
             OSError: If the disk is full.
         """
-        if not self._camera.due(self._number, after.t):
+        if not self._camera.is_frame_due(self._number, after.t):
             return []
         pose_before = (before.x, before.y, before.psi)
         pose_after = (after.x, after.y, after.psi)
         frames = list(
-            self._camera.frames_between(
+            self._camera.take_frames_between(
                 before.t, pose_before, after.t, pose_after, self._number, self._generator
             )
         )
         for frame in frames:
-            self._complete_last()
+            self._set_mean_commands()
             self.table.add([*frame[:4], *frame.marks, *commands])
         self._number += len(frames)
         return frames
 
-    def _complete_last(self) -> None:
+    def _set_mean_commands(self) -> None:
         """Give the last frame the mean of the commands since it was taken."""
         if self.table.count and self._intervals:
             commands, seconds = zip(*self._intervals, strict=True)
-            self.table.amend(self._first_command, np.average(commands, 0, seconds))
+            self.table.replace_last_values(self._first_command, np.average(commands, 0, seconds))
         self._intervals.clear()
 
     def recording(self, notes: Notes, start: int = 0, end: int | None = None) -> Recording:

@@ -55,7 +55,7 @@ class CameraMetricSet(MetricSet):
     )
     begin: float = param(0.0, low=0.0, high=1e6, unit="s", words="when what is measured begins")
 
-    def check(self, camera: Camera) -> None:
+    def check_camera(self, camera: Camera) -> None:
         """Check that the camera can deliver the frames.
 
         Args:
@@ -72,7 +72,7 @@ class CameraMetricSet(MetricSet):
                     f"allowed with this measure is a multiple of {rate:g} Hz"
                 )
 
-    def from_frames(self, frames: CameraFrames) -> dict[str, float]:
+    def values_from_frames(self, frames: CameraFrames) -> dict[str, float]:
         """Compute the metrics of camera frames.
 
         Args:
@@ -84,7 +84,7 @@ class CameraMetricSet(MetricSet):
         """
         raise NotImplementedError
 
-    def from_noise(self, frames: int, camera: Camera) -> dict[str, Array]:
+    def values_from_noise(self, frames: int, camera: Camera) -> dict[str, Array]:
         """Compute the metrics of error-free motion under a camera with noisy marks.
 
         Args:
@@ -113,12 +113,12 @@ class CameraMetricSet(MetricSet):
             camera: The camera.
         """
         found: dict[str, float] = {}
-        for name, samples in self.from_noise(frames, camera).items():
+        for name, samples in self.values_from_noise(frames, camera).items():
             found[name] = float(np.abs(samples).mean())
         return found
 
 
-def camera_frames(
+def select_camera_frames(
     camera: Recording, truth: Recording, start: Pose, every: int, begin: float = 0.0
 ) -> CameraFrames:
     """Select camera frames and the true pose at their times.
@@ -164,7 +164,7 @@ def camera_frames(
     )
 
 
-def mark_noise(frames: int, camera: Camera) -> Array:
+def sample_mark_noise(frames: int, camera: Camera) -> Array:
     """Return standard normal samples for all coordinates of the marks.
 
     The samples are the same for every seed, so that a noise floor depends on the frames alone.
@@ -180,7 +180,7 @@ def mark_noise(frames: int, camera: Camera) -> Array:
     return np.random.default_rng(0).standard_normal(shape)
 
 
-def first_frame(reached: NDArray[np.bool_], least: int = 0) -> int | None:
+def first_frame_where(reached: NDArray[np.bool_], least: int = 0) -> int | None:
     """Return the number of the first frame at which a condition holds.
 
     Args:

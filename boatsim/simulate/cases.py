@@ -18,7 +18,7 @@ from itertools import chain
 from pathlib import Path
 
 from boatsim.errors import BadInput, unknown_name
-from boatsim.files import Value, read_toml, tables
+from boatsim.files import Value, array_of_tables, read_toml
 from boatsim.physics import trust
 from boatsim.physics.content import all_names, content_root, find_content_file, full_scenario_name
 
@@ -28,7 +28,7 @@ OTHERS = ("vessel.toml", "patched.toml", "recording.toml", "pins.toml")
 
 
 @dataclass(frozen=True)
-class Place:
+class ScenarioLocation:
     """A scenario file and one of its cases.
 
     Attributes:
@@ -62,11 +62,11 @@ class Place:
         return f"{path}:{self.case}" if self.case else path
 
 
-def content(given: str) -> tuple[dict[str, Value], Place]:
+def read_scenario(given: str) -> tuple[dict[str, Value], ScenarioLocation]:
     """Read a scenario.
 
     Args:
-        given: Name or path, as for `located`.
+        given: Name or path, as for `find_scenario`.
 
     Returns:
         The merged content, and where it comes from.
@@ -74,11 +74,11 @@ def content(given: str) -> tuple[dict[str, Value], Place]:
     Raises:
         BadInput: If the scenario or its base does not exist or a file is not valid.
     """
-    place = located(given)
-    return _merged_with_bases(place, ()), place
+    place = find_scenario(given)
+    return _merge_with_bases(place, ()), place
 
 
-def matching(given: str) -> list[str]:
+def find_scenarios(given: str) -> list[str]:
     """Return the scenarios that an argument of the command line stands for.
 
     Args:
@@ -101,7 +101,9 @@ def matching(given: str) -> list[str]:
     if inside:
         return inside
     if Path(given).is_dir():
-        return list(chain.from_iterable(matching(str(path)) for path in files_of(Path(given))))
+        return list(
+            chain.from_iterable(find_scenarios(str(path)) for path in scenario_files(Path(given)))
+        )
     if any(sign in given for sign in "*?[") and not Path(given).is_file():
         found = [name for name in shipped if fnmatchcase(name, given)]
         if not found:
@@ -109,12 +111,12 @@ def matching(given: str) -> list[str]:
             raise BadInput(f"no scenario is like {given!r} (they are in {', '.join(folders)})")
         return found
     if given.endswith(".toml"):
-        names = cases(find_content_file("scenario", given))
+        names = case_names(find_content_file("scenario", given))
         return [f"{given}:{case}" for case in names] or [given]
     return [full_scenario_name("scenario", given)]
 
 
-def files_of(folder: Path) -> list[Path]:
+def scenario_files(folder: Path) -> list[Path]:
     """Return the scenario files in a folder, sorted by name.
 
     Raises:
@@ -126,14 +128,14 @@ def files_of(folder: Path) -> list[Path]:
     return files
 
 
-def cases(path: Path) -> list[str]:
+def case_names(path: Path) -> list[str]:
     """Return the names of a file's cases; none if it is one scenario.
 
     Raises:
         BadInput: If the file is not valid, a case has no name or two have the same.
     """
     given = read_toml(path).get("case", [])
-    case_tables = tables(given)
+    case_tables = array_of_tables(given)
     if not isinstance(given, list) or len(case_tables) < len(given):
         raise BadInput(f"{path.name}: case = {given!r}; allowed are [[case]] tables")
     found: list[str] = []
@@ -150,7 +152,7 @@ def cases(path: Path) -> list[str]:
     return found
 
 
-def located(given: str, base_folder: Path | None = None) -> Place:
+def find_scenario(given: str, base_folder: Path | None = None) -> ScenarioLocation:
     """Find a scenario.
 
     Args:
@@ -163,21 +165,21 @@ def located(given: str, base_folder: Path | None = None) -> Place:
     file, _, case = given.rpartition(":")
     named = file.endswith(".toml")
     path = find_content_file("scenario", file if named else given, base_folder)
-    names = cases(path)
+    names = case_names(path)
     if named:
         if case not in names:
             raise BadInput(unknown_name(f"{path.name}: case", case, names))
-        return Place(path, case)
+        return ScenarioLocation(path, case)
     if not names:
-        return Place(path)
+        return ScenarioLocation(path)
     own = given.rpartition("/")[2]
     if given.endswith(".toml") or own not in names:
         choices = ", ".join(f"{path.name}:{name}" for name in names)
         raise BadInput(f"{path.name} holds several cases; name one: {choices}")
-    return Place(path, own)
+    return ScenarioLocation(path, own)
 
 
-def merged(base: Mapping[str, Value], over: Mapping[str, Value]) -> dict[str, Value]:
+def merge_tables(base: Mapping[str, Value], over: Mapping[str, Value]) -> dict[str, Value]:
     """Merge a table into a base table; see the module for the rule.
 
     Args:
@@ -188,54 +190,56 @@ def merged(base: Mapping[str, Value], over: Mapping[str, Value]) -> dict[str, Va
     for key, value in over.items():
         mine = out.get(key)
         if isinstance(mine, dict) and isinstance(value, dict) and "use" not in value:
-            value = merged(mine, value)
+            value = merge_tables(mine, value)
         out[key] = value
     return out
 
 
-def _merged_with_bases(place: Place, above: Sequence[Place]) -> dict[str, Value]:
+def _merge_with_bases(
+    place: ScenarioLocation, above: Sequence[ScenarioLocation]
+) -> dict[str, Value]:
     """Content merged into that of its bases; `above` are the scenarios based on this one."""
     if place in above:
         loop = [p.case or p.path.name for p in [*above[above.index(place) :], place]]
         raise BadInput(f"{above[0].label}: base leads back to itself: {' -> '.join(loop)}")
     file: dict[str, Value] = {}
     for key, value in read_toml(place.path).items():
-        file[key] = _with_absolute_paths(value, place.path.parent, key)
+        file[key] = _make_paths_absolute(value, place.path.parent, key)
     own: dict[str, Value] = {}
-    for case in tables(file.pop("case", [])):
+    for case in array_of_tables(file.pop("case", [])):
         if case["name"] == place.case:
             own = case
     layers = [own] if "base" in own else [file, own]
     found: dict[str, Value] = {}
     base = layers[0].get("base")
     if base is not None:
-        found = _merged_with_bases(_base(base, place), [*above, place])
+        found = _merge_with_bases(_find_base(base, place), [*above, place])
     for layer in layers:
-        found = merged(found, {k: v for k, v in layer.items() if k not in ("base", "name")})
+        found = merge_tables(found, {k: v for k, v in layer.items() if k not in ("base", "name")})
     return found
 
 
-def _base(given: Value, place: Place) -> Place:
+def _find_base(given: Value, place: ScenarioLocation) -> ScenarioLocation:
     """The base that a scenario names: a case of the same file, or a scenario of another one."""
     try:
         if not isinstance(given, str):
             raise BadInput(f"{given!r}; allowed is the name of a scenario")
-        names = cases(place.path)
+        names = case_names(place.path)
         if given in names:
-            return Place(place.path, given)
+            return ScenarioLocation(place.path, given)
         if "/" not in given and ".toml" not in given:
             raise BadInput(unknown_name("scenario", given, [*names, *all_names("scenario")]))
-        return located(given, place.path.parent)
+        return find_scenario(given, place.path.parent)
     except BadInput as error:
         raise BadInput(f"{place.label}: base: {error}") from None
 
 
-def _with_absolute_paths(value: Value, folder: Path, key: str = "") -> Value:
+def _make_paths_absolute(value: Value, folder: Path, key: str = "") -> Value:
     """Content of a file with absolute paths in the keys `vessel` and `use`."""
     if isinstance(value, dict):
-        return {k: _with_absolute_paths(v, folder, k) for k, v in value.items()}
+        return {k: _make_paths_absolute(v, folder, k) for k, v in value.items()}
     if isinstance(value, list):
-        return [_with_absolute_paths(v, folder) for v in value]
+        return [_make_paths_absolute(v, folder) for v in value]
     if key in ("vessel", "use") and isinstance(value, str) and ("/" in value or "." in value):
         if (folder / value).exists():
             return str((folder / value).resolve())

@@ -15,7 +15,7 @@ from boatsim.physics.debugging import DEBUG
 from boatsim.physics.kernel.compiling import merged, unlocked
 from boatsim.physics.kernel.records import FleetArrays
 from boatsim.physics.signals import Array
-from boatsim.simulate.sensing import disturb
+from boatsim.simulate.sensing import add_sensor_errors
 
 
 class Periods(NamedTuple):
@@ -41,7 +41,7 @@ class Sensing(NamedTuple):
     """Readings of the instruments."""
 
     felt: Array  # (n, 11) numbers of the records `sense`
-    sensors: Array  # `Sensors.numbers`
+    sensors: Array  # `Sensors.error_parameters`
     noise: Array  # (boats, periods, 7) standard normal numbers
 
 
@@ -82,14 +82,16 @@ PERIODS = types.NamedTuple([types.boolean, types.int64, types.int64, types.float
 
 
 @unlocked
-def disturb_boats(boats: Any, felt: Array, sensors: Array, noise: Array, i: int) -> None:
+def add_sensor_errors_to_boats(
+    boats: Any, felt: Array, sensors: Array, noise: Array, i: int
+) -> None:
     """Add the errors of the sensors to true readings; noise (boats, periods, 7) of period i."""
     for j in range(len(boats)):
-        disturb(felt[boats[j]], sensors, noise[j, i])
+        add_sensor_errors(felt[boats[j]], sensors, noise[j, i])
 
 
 @merged
-def count_orders(boats: Any, commands: Array, orders: Orders, steps: int, dt: float) -> None:
+def accumulate_commands(boats: Any, commands: Array, orders: Orders, steps: int, dt: float) -> None:
     """Add up the commands in force over some steps, and the steps in which more was ordered."""
     low, high = orders.low, orders.high
     for b in boats:
@@ -119,10 +121,10 @@ def run_periods(
     places, low, high = orders.places, orders.low, orders.high
     for i in range(periods.number):
         if not periods.law_first:
-            count_orders(boats, commands, orders, steps, dt)
+            accumulate_commands(boats, commands, orders, steps, dt)
             advance(boats, fleet, dt, steps)
         feel(boats, fleet, sensing.felt)
-        disturb_boats(boats, sensing.felt, sensing.sensors, sensing.noise, i)
+        add_sensor_errors_to_boats(boats, sensing.felt, sensing.sensors, sensing.noise, i)
         for b in boats:
             for j in range(goals.values.shape[1]):
                 goals.wanted[b, j] = goals.values[i, j]
@@ -132,11 +134,13 @@ def run_periods(
                 order = orders.values[b, j]
                 commands[b, places[j]] = min(max(order, low[places[j]]), high[places[j]])
         if periods.law_first:
-            count_orders(boats, commands, orders, steps, dt)
+            accumulate_commands(boats, commands, orders, steps, dt)
             advance(boats, fleet, dt, steps)
 
 
-def pointers(law: Any, feel: Any, advance: Any, records: tuple[Any, ...]) -> tuple[Any, ...]:
+def function_pointers(
+    law: Any, feel: Any, advance: Any, records: tuple[Any, ...]
+) -> tuple[Any, ...]:
     """Return the first three arguments of `run_periods`.
 
     Args:

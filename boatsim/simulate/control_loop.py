@@ -16,7 +16,7 @@ from boatsim.simulate.multi_period_step import MultiPeriodStep
 from boatsim.simulate.open_water import OpenWater
 from boatsim.simulate.run_options import GoalSource
 from boatsim.simulate.scenario import OFF, Scenario
-from boatsim.simulate.sensing import sensed
+from boatsim.simulate.sensing import add_further_readings
 
 SHORTEST_PART = 1e-6  # [s] of a step that the controller cuts
 TIME_TOLERANCE = 1e-9  # [s] by which rounding may shift the time at which something is due
@@ -72,17 +72,17 @@ class ControlLoop:
         self._due = 0.0  # [s] when the next control period begins
         self._early = inf  # [s] when the controller acts within its period
         start = scenario.file.start
-        self.state = State(**start.motion())
-        with self.controller_at_work() as controller:
+        self.state = State(**start.state_values())
+        with self.name_controller_in_errors() as controller:
             controller.reset()
             engine.reset(self.state, {**controller.initial_commands(), **start.commands})
-            self._note_sent()
+            self._store_sent_commands()
         self._many_periods = MultiPeriodStep.if_possible(scenario, engine, self._imu)
         self._due += scenario.controller.period
         self._sense_and_control()
 
     @contextmanager
-    def controller_at_work(self) -> Iterator[Controller]:
+    def name_controller_in_errors(self) -> Iterator[Controller]:
         """Yield the controller; an error in the block names it and the time.
 
         Raises:
@@ -113,17 +113,17 @@ class ControlLoop:
         self.steps += 1
         self.saturated.update(self._beyond)
         while self._early < end - SHORTEST_PART:
-            self._move(max(self._early - self.state.t, SHORTEST_PART))
+            self._advance_physics(max(self._early - self.state.t, SHORTEST_PART))
             held = self.sent
             self._sense_and_control()
             if self.sent != held:
                 on_early_command()
         if self.state.t > begin:
-            self._move(end - self.state.t)
+            self._advance_physics(end - self.state.t)
         else:
-            self._move(self.engine.step)
+            self._advance_physics(self.engine.step)
 
-    def control(self) -> None:
+    def control_if_due(self) -> None:
         """Sense and control if a control period begins now.
 
         Raises:
@@ -145,25 +145,25 @@ class ControlLoop:
         many, t = self._many_periods, self.state.t
         if many is None:
             return
-        periods = many.periods(t, until)
+        periods = many.complete_periods(t, until)
         if not periods or abs(self._due - t - many.period) > TIME_TOLERANCE:
             return
-        with self.controller_at_work():
+        with self.name_controller_in_errors():
             done = many.advance(t, periods, self.goal_at)
         self.steps += done.steps
         self.saturated.update(done.saturated)
         self._on_interval([done.mean[name] for name in self.channels], done.seconds)
         self.state = self.engine.state
         self._due += done.seconds
-        self._note_sent()
+        self._store_sent_commands()
 
-    def in_force(self) -> list[float]:
+    def commands_in_force(self) -> list[float]:
         """Return the commands that act, in the order of `channels`."""
-        commands = self.engine.in_force()
+        commands = self.engine.commands_in_force()
         return [commands[place] for place in self._places]
 
-    def _move(self, seconds: float) -> None:
-        self._on_interval(self.in_force(), seconds)
+    def _advance_physics(self, seconds: float) -> None:
+        self._on_interval(self.commands_in_force(), seconds)
         self.engine.advance(length=seconds)
         self.state = self.engine.state
 
@@ -177,26 +177,26 @@ class ControlLoop:
             self._imu,
             (state.phi, state.p),
         )
-        self.sense: Sense = sensed(
+        self.sense: Sense = add_further_readings(
             usual, self.scenario.additional_sensors, self.engine, self._sensor_generators
         )
         goal = self.goal_at(state.t)
-        with self.controller_at_work() as controller:
+        with self.name_controller_in_errors() as controller:
             if goal.get(OFF):
                 controller.reset()
-                self._send({})
+                self._send_commands({})
                 self._early = inf
                 return
-            self._send(controller.step(self.sense, goal))
-            self._early = state.t + controller.early(self.sense)
+            self._send_commands(controller.step(self.sense, goal))
+            self._early = state.t + controller.time_to_extra_step(self.sense)
 
-    def _send(self, commands: dict[str, float]) -> None:
+    def _send_commands(self, commands: dict[str, float]) -> None:
         self.engine.command(commands)
-        self._note_sent()
+        self._store_sent_commands()
 
-    def _note_sent(self) -> None:
+    def _store_sent_commands(self) -> None:
         self.sent = dict(zip(self.scenario.vessel.commands, self.engine.sent, strict=False))
-        self._beyond = self.engine.beyond
+        self._beyond = self.engine.channels_beyond_range
 
 
 def controller_error(error: Exception, controller: Controller) -> str:

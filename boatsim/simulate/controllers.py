@@ -7,12 +7,12 @@ from boatsim.control.base import Sense
 from boatsim.errors import BadInput
 from boatsim.physics.content import find_content_file, library_names, load_class
 from boatsim.physics.vessel import Vessel
-from boatsim.simulate.cases import content
+from boatsim.simulate.cases import read_scenario
 from boatsim.simulate.control_loop import controller_error
 from boatsim.simulate.scenario import Scenario, from_table, load
 
 
-def steered(
+def load_with_controller(
     given: str,
     controller: str | None = None,
     vessel: Vessel | None = None,
@@ -32,7 +32,7 @@ def steered(
     """
     if controller is None:
         return load(given, changes, vessel)
-    said, place = content(given)
+    said, place = read_scenario(given)
     table: dict[str, object] = {**said, **(changes or {})}
     own = table.get("controller")
     wanted = controller_table(controller, own)
@@ -40,7 +40,7 @@ def steered(
         return from_table(table, place, vessel)
     try:
         found = from_table({**table, "controller": wanted}, place, vessel)
-        _rehearse(found)
+        _try_each_goal(found)
     except BadInput as error:
         raise BadInput(f"controller {controller} does not fit {place.name}: {error}") from None
     return found
@@ -68,7 +68,7 @@ def controller_table(controller: str, own: object) -> Mapping[str, Any]:
     return {"use": use}
 
 
-def _rehearse(scenario: Scenario) -> None:
+def _try_each_goal(scenario: Scenario) -> None:
     """Let the controller act once under each goal, for a vessel at rest, to find missing goals."""
     readings = {n: 0.0 for sensor in scenario.additional_sensors for n in type(sensor).columns}
     at_rest = dict.fromkeys(("psi", "r", "ax", "ay", "u", "v", "x", "y", "phi", "p"), 0.0)

@@ -26,7 +26,7 @@ SAME = 1e-12
 
 
 class ModelOptions(TypedDict, total=False):
-    """Options of `world.build`."""
+    """Options of `world.build_model`."""
 
     show: bool
     wall_solref: tuple[float, float] | None
@@ -60,7 +60,7 @@ class Engine(Stepper):
             step: Integration step [s].
             callback: "native", which falls back to "python" with a warning where the two differ,
                 or "python".
-            **options: Options of `world.build`.
+            **options: Options of `world.build_model`.
 
         Raises:
             BadInput: If the hull can not be read.
@@ -72,7 +72,7 @@ class Engine(Stepper):
         self.code.compute_mass_constants(self.program.body, self._values, self._on, self._k)
         size = len(self._values) + self.code.K + self.program.held_size + 2
         with no_callback():
-            self.model = world.build(vessel, self.tank, step, size, **options)
+            self.model = world.build_model(vessel, self.tank, step, size, **options)
             self.data = mujoco.MjData(self.model)
         joints = [self.model.joint(i).name for i in range(self.model.njnt)]
         coordinates = [COORDINATES[i] for i in self.code.FREE]
@@ -81,7 +81,7 @@ class Engine(Stepper):
         # SNAME = sign * z-up, for coordinates and rates
         self._sign = np.array([float(SIGN[name]) for name in coordinates])
         self._held = self.data.userdata[-self.program.held_size - 2 :]
-        self.callback = self._choose(callback, size)
+        self.callback = self._choose_callback(callback, size)
         self.reset()
 
     @property
@@ -89,7 +89,7 @@ class Engine(Stepper):
         """Time [s]."""
         return float(self.data.time)
 
-    def _put(self, t: float, state: Array) -> None:
+    def _set_joint_state(self, t: float, state: Array) -> None:
         mujoco.mj_resetData(self.model, self.data)
         self.data.time = t
         self.data.qpos[self._place] = self._sign * state[: self.code.NQ]
@@ -110,7 +110,7 @@ class Engine(Stepper):
         Raises:
             BadPhysics: If the motion diverges.
         """
-        with installed(self.callback):
+        with installed_callback(self.callback):
             super().advance(steps, length)
         self.model.opt.timestep = self.step  # a step may have been cut
 
@@ -120,9 +120,9 @@ class Engine(Stepper):
         self._held[-2:] = self.data.time, 1.0 / dt
         mujoco.mj_step(self.model, self.data)
 
-    def coast(self, steps: int) -> None:
+    def advance_without_actuators(self, steps: int) -> None:
         """Take steps in MuJoCo's own loop with fixed actuators, for benchmarks."""
-        with installed(self.callback):
+        with installed_callback(self.callback):
             mujoco.mj_step(self.model, self.data, nstep=steps)
 
     def _joint_state(self) -> Array:
@@ -146,7 +146,7 @@ class Engine(Stepper):
             [self._values, self._k, self._act, [self.data.time, 1.0 / self.step]]
         )
 
-    def _choose(self, wanted: str, size: int) -> object:
+    def _choose_callback(self, wanted: str, size: int) -> object:
         """The native callback if it agrees with the one in Python, which always works."""
         plain = python_callback(self.code, size)
         if wanted == "python" or DEBUG:
@@ -156,19 +156,19 @@ class Engine(Stepper):
         except BadPhysics as error:
             native_callback.warn_of_slow_callback(str(error))
             return plain
-        if not self._agree(fast, plain):
+        if not self._callbacks_agree(fast, plain):
             native_callback.warn_of_slow_callback("its accelerations differ from those in Python")
             return plain
         return fast
 
-    def _agree(self, fast: object, plain: object) -> bool:
+    def _callbacks_agree(self, fast: object, plain: object) -> bool:
         """Whether both callbacks give the same acceleration at a state in which all terms count."""
         self._act[:] = np.linspace(0.3, 0.7, len(self._act))
         self._write_userdata()
         found = []
         for callback in (fast, plain):
             self.data.qpos[:], self.data.qvel[:] = 0.3, np.linspace(0.2, 0.4, self.model.nv)
-            with installed(callback):
+            with installed_callback(callback):
                 mujoco.mj_forward(self.model, self.data)
             found.append(self.data.qacc.copy())
         return bool(np.allclose(found[0], found[1], rtol=SAME, atol=SAME * np.abs(found[1]).max()))
@@ -194,7 +194,7 @@ def python_callback(
     return passive
 
 
-class installed:  # noqa: N801
+class installed_callback:  # noqa: N801
     """Install a passive-force callback for a block; MuJoCo's callbacks are global to the process.
 
     MuJoCo's warnings are dropped in the block; it would write them to a file in the working folder,
@@ -212,7 +212,7 @@ class installed:  # noqa: N801
 
     def __enter__(self) -> None:
         self._warning = mujoco.get_mju_user_warning()
-        mujoco.set_mju_user_warning(_silent)
+        mujoco.set_mju_user_warning(_ignore_warning)
         mujoco.set_mjcb_passive(self.callback)
 
     def __exit__(self, *_: object) -> None:
@@ -220,7 +220,7 @@ class installed:  # noqa: N801
         mujoco.set_mju_user_warning(self._warning)
 
 
-def _silent(_: str) -> None:
+def _ignore_warning(_: str) -> None:
     """Drop a warning of MuJoCo."""
 
 
@@ -235,4 +235,4 @@ def no_callback() -> Iterator[None]:
         mujoco.set_mjcb_passive(saved)
 
 
-__all__ = ["Engine", "State", "installed", "no_callback", "python_callback"]
+__all__ = ["Engine", "State", "installed_callback", "no_callback", "python_callback"]

@@ -21,7 +21,7 @@ from boatsim.physics.base import Array
 from boatsim.physics.signals import signals_of
 from boatsim.physics.vessel import Vessel
 from boatsim.simulate import scenario as scenarios
-from boatsim.simulate.engine import Engine, State, installed
+from boatsim.simulate.engine import Engine, State, installed_callback
 from boatsim.simulate.scenario import Scenario
 from boatsim.simulate.world import Tank
 
@@ -95,14 +95,14 @@ class BoatPhysics(Physics):
             self.engine.advance(nstep)
             self._turn_outboards()
             if self.legacy_step:  # contacts of the new state, for cameras and observations
-                with installed(self.engine.callback):
+                with installed_callback(self.engine.callback):
                     mujoco.mj_step1(self.engine.model, self.engine.data)
 
     def forward(self) -> None:
         """Recompute all quantities that follow from the state, including forces."""
         self.engine._write_userdata()
         self._turn_outboards()
-        with installed(self.engine.callback):
+        with installed_callback(self.engine.callback):
             super().forward()
 
     def reset(self, keyframe_id: int | None = None) -> None:
@@ -148,7 +148,13 @@ class BoatPhysics(Physics):
     def __reduce__(self) -> tuple[Callable[..., "BoatPhysics"], tuple[object, ...]]:
         """Pickle vessel, tank and state, because compiled callbacks can not be pickled."""
         e = self.engine
-        return _restored, (e.vessel, e.tank, e.step, self.get_state(WHOLE_STATE), self.get_state())
+        return _restore_physics, (
+            e.vessel,
+            e.tank,
+            e.step,
+            self.get_state(WHOLE_STATE),
+            self.get_state(),
+        )
 
     def _reload_from_model(self, model: object) -> None:
         raise BadPhysics("another model needs another engine: load the environment again")
@@ -170,7 +176,9 @@ class BoatPhysics(Physics):
 WHOLE_STATE = int(mujoco.mjtState.mjSTATE_INTEGRATION)
 
 
-def _restored(vessel: Vessel, tank: Tank, step: float, whole: Array, state: Array) -> BoatPhysics:
+def _restore_physics(
+    vessel: Vessel, tank: Tank, step: float, whole: Array, state: Array
+) -> BoatPhysics:
     """The physics of a copy or a pickle."""
     physics = BoatPhysics(Engine(vessel, tank, step))
     physics.set_state(whole, WHOLE_STATE)
@@ -212,7 +220,7 @@ class BoatTask(control.Task):
         start, length = self.scenario.file.start, self.scenario.vessel.length
         x, y, psi = self._random.uniform(-self.scatter, self.scatter, 3) * (length, length, 1.0)
         scattered = {"x": start.x + x, "y": start.y + y, "psi": start.psi + psi}
-        state = State(**{**start.motion(), **scattered})
+        state = State(**{**start.state_values(), **scattered})
         physics.engine.reset(
             state, {**self.scenario.controller.initial_commands(), **start.commands}
         )

@@ -12,7 +12,7 @@ from boatsim.errors import BadInput, unknown_name
 from boatsim.physics.base import Array
 from boatsim.recordings.table import Recording
 from boatsim.simulate import tracking_errors
-from boatsim.simulate.camera_metric import CameraMetricSet, camera_frames
+from boatsim.simulate.camera_metric import CameraMetricSet, select_camera_frames
 from boatsim.simulate.metric import KINDS, MetricSet, TooShort
 from boatsim.simulate.run import Run
 from boatsim.simulate.scenario import CheckTable, MetricTable, Scenario
@@ -90,7 +90,7 @@ class Metric:
             return None
         if self.tolerance is None:
             return NO_TOLERANCE
-        if self.value is not None and within(self.value, self.published, self.tolerance):
+        if self.value is not None and within_tolerance(self.value, self.published, self.tolerance):
             return REPRODUCED
         return MISSED
 
@@ -114,7 +114,7 @@ class Metric:
         }
 
 
-def within(value: float, published: float, tolerance: float) -> bool:
+def within_tolerance(value: float, published: float, tolerance: float) -> bool:
     """Return whether a value differs from a published one by at most the tolerance."""
     return abs(value - published) <= tolerance * (1 + 1e-9)
 
@@ -135,18 +135,18 @@ def requested_metrics(run: Run) -> dict[str, Metric]:
     found: dict[str, Metric] = {}
     try:
         if metric_set:
-            found = _of_set(run, metric_set)
+            found = _metrics_of_set(run, metric_set)
     except TooShort:
-        found = _without_values(run, metric_set)
+        found = _metrics_without_values(run, metric_set)
     except BadInput:
         raise
     except Exception:
         if run.complete:
             raise
         # a metric set may fail on the log of an interrupted run, which is kept all the same
-        found = _without_values(run, metric_set)
+        found = _metrics_without_values(run, metric_set)
     for check in run.scenario.file.check:
-        found[f"{check.signal}_{check.norm}"] = _checked(run.recording, check)
+        found[f"{check.signal}_{check.norm}"] = _check_metric(run.recording, check)
     return found
 
 
@@ -163,32 +163,32 @@ def all_metrics(run: Run) -> dict[str, Metric]:
         BadInput: If a signal is missing.
     """
     found = requested_metrics(run)
-    errors = tracking_errors.errors(run.recording)
-    for name, unit in tracking_errors.units(run.scenario.goal_keys).items():
+    errors = tracking_errors.compute_errors(run.recording)
+    for name, unit in tracking_errors.error_units(run.scenario.goal_keys).items():
         # a band on a tracking error that never occurred is not met
         if name not in found and (name in errors or name in run.scenario.file.norms):
             kind = KINDS[name.rpartition("_")[2]]
-            found[name] = replace(_evaluated(run, name, errors.get(name), unit), kind=kind)
+            found[name] = replace(_make_metric(run, name, errors.get(name), unit), kind=kind)
     return found
 
 
 def metric_names(scenario: Scenario) -> set[str]:
     """Return the names of all metrics that a run of a scenario can have."""
-    found = set(tracking_errors.units(scenario.goal_keys))
+    found = set(tracking_errors.error_units(scenario.goal_keys))
     found |= {f"{check.signal}_{check.norm}" for check in scenario.file.check}
     if scenario.measure:
         found |= type(scenario.measure).units.keys()
     return found
 
 
-def _of_set(run: Run, metric_set: MetricSet) -> dict[str, Metric]:
+def _metrics_of_set(run: Run, metric_set: MetricSet) -> dict[str, Metric]:
     """Metrics of a metric set, computed from the log or from the camera frames."""
     found: dict[str, Metric] = {}
     if not isinstance(metric_set, CameraMetricSet):
         values = metric_set.values(run.recording)
         for name in type(metric_set).units:
-            metric = _evaluated(run, name, values.get(name), metric_set.unit(name))
-            found[name] = _explained(metric_set, run, metric, name)
+            metric = _make_metric(run, name, values.get(name), metric_set.unit(name))
+            found[name] = _add_kind_and_reason(metric_set, run, metric, name)
         return found
     values = camera_metrics(run, metric_set, metric_set.scored)
     reported = camera_metrics(run, metric_set, metric_set.reported)
@@ -196,28 +196,30 @@ def _of_set(run: Run, metric_set: MetricSet) -> dict[str, Metric]:
     if values:
         floor = metric_set.noise_floor(round(values["frames"]), run.scenario.camera)
     for name, unit in type(metric_set).units.items():
-        metric = _evaluated(run, name, values.get(name), unit, reported.get(name), floor.get(name))
-        found[name] = _explained(metric_set, run, metric, name)
+        metric = _make_metric(
+            run, name, values.get(name), unit, reported.get(name), floor.get(name)
+        )
+        found[name] = _add_kind_and_reason(metric_set, run, metric, name)
     return found
 
 
-def _explained(metric_set: MetricSet, run: Run, metric: Metric, name: str) -> Metric:
+def _add_kind_and_reason(metric_set: MetricSet, run: Run, metric: Metric, name: str) -> Metric:
     """Add the kind of a metric and, where it has no value, the reason."""
     reason = ""
     if metric.lacking == NOT_REACHED:
         # an explanation that fails must not cost the run
         with suppress(ArithmeticError, LookupError, ValueError):
-            reason = metric_set.why(name, run.recording)
+            reason = metric_set.explain_missing_value(name, run.recording)
     lacking = f"{NOT_REACHED}: {reason}" if reason else metric.lacking
     return replace(metric, kind=metric_set.kind(name), lacking=lacking)
 
 
-def _without_values(run: Run, metric_set: MetricSet | None) -> dict[str, Metric]:
+def _metrics_without_values(run: Run, metric_set: MetricSet | None) -> dict[str, Metric]:
     """Metrics of a metric set whose log is too short."""
     found: dict[str, Metric] = {}
     if metric_set is not None:
         for name in type(metric_set).units:
-            metric = _evaluated(run, name, None, metric_set.unit(name))
+            metric = _make_metric(run, name, None, metric_set.unit(name))
             found[name] = replace(metric, lacking=SHORT)
     return found
 
@@ -254,8 +256,8 @@ def camera_metrics(run: Run, metric_set: CameraMetricSet, rate: float) -> dict[s
     start = run.scenario.file.start
     every = round(run.scenario.camera.rate / rate)
     pose = (start.x, start.y, start.psi)
-    return metric_set.from_frames(
-        camera_frames(run.camera, run.recording, pose, every, metric_set.begin)
+    return metric_set.values_from_frames(
+        select_camera_frames(run.camera, run.recording, pose, every, metric_set.begin)
     )
 
 
@@ -289,7 +291,7 @@ def signal_norm(t: Array, x: Array, kind: str) -> float:
     }[kind]
 
 
-def _checked(log: Recording, check: CheckTable) -> Metric:
+def _check_metric(log: Recording, check: CheckTable) -> Metric:
     if check.signal not in log.signals:
         raise BadInput(unknown_name("[[check]] signal", check.signal, log.signals))
     value = signal_norm(log.t, log[check.signal], check.norm)
@@ -297,12 +299,12 @@ def _checked(log: Recording, check: CheckTable) -> Metric:
     if check.norm == "l2":
         unit = f"{unit} s^0.5".strip()
     elif check.norm == "l1":
-        unit = tracking_errors.times_second(unit)
+        unit = tracking_errors.time_integral_unit(unit)
     ok = value < check.below
     return Metric(value, unit, band=(0.0, check.below), ok=ok, kind=KINDS[check.norm])
 
 
-def _evaluated(
+def _make_metric(
     run: Run,
     name: str,
     value: float | None,

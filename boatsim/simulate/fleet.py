@@ -18,14 +18,20 @@ from boatsim.physics.commands import command_row
 from boatsim.physics.signals import Array, signals_of
 from boatsim.physics.vessel import Vessel
 from boatsim.simulate.batch import Batch
-from boatsim.simulate.fleet_control import Aboard, ByFunction, ByLaw, PassedOn, Vectorised
+from boatsim.simulate.fleet_control import (
+    CompiledControl,
+    FleetControl,
+    FunctionControl,
+    GoalsAsCommands,
+    Vectorised,
+)
 from boatsim.simulate.scenario import Scenario
 
 AHEAD = 64  # [periods] for which noise is sampled at a time
 
 
 @dataclass(frozen=True)
-class Voyages:
+class FleetLog:
     """States and commands of all vessels at N times.
 
     Attributes:
@@ -112,8 +118,8 @@ class Fleet:
                 f"allowed are whole numbers of steps of {file.step:g} s"
             )
         saturated = np.zeros((count, len(self.batch.vessels[0].inputs)))
-        self._aboard = Aboard(self.batch, scenario.sensors, self._steps, saturated)
-        self._controlled = self._control()
+        self._aboard = FleetControl(self.batch, scenario.sensors, self._steps, saturated)
+        self._controlled = self._make_control()
         self.reset()
 
     def reset(self, starts: ArrayLike | None = None) -> None:
@@ -128,7 +134,7 @@ class Fleet:
             commands.update(self._each[0].initial_commands())
         commands.update(start.commands)
         if starts is None:
-            motion = start.motion()
+            motion = start.state_values()
             starts = [motion[signal.symbol] for signal in signals_of(vessel.dof)]
         self.batch.reset(starts, command_row(vessel, commands))
         self._aboard.saturated[:] = 0.0
@@ -141,7 +147,7 @@ class Fleet:
         """Steps (n, inputs) in which a command exceeded its range."""
         return self._aboard.saturated.copy()
 
-    def run(self, seconds: float | None = None, log: float = inf) -> Voyages:
+    def run(self, seconds: float | None = None, log: float = inf) -> FleetLog:
         """Continue the run.
 
         Args:
@@ -167,7 +173,7 @@ class Fleet:
             states[i] = self.batch.states
             commands[i] = self.batch.commands
         columns = tuple(signal.column for signal in signals_of(vessel.dof))
-        return Voyages(t, columns, states, vessel.inputs, commands)
+        return FleetLog(t, columns, states, vessel.inputs, commands)
 
     def _advance(self, periods: int) -> None:
         """Advance by control periods, some at a time."""
@@ -180,20 +186,20 @@ class Fleet:
             self._periods += part
             periods -= part
 
-    def _control(self) -> PassedOn | ByFunction | ByLaw:
+    def _make_control(self) -> GoalsAsCommands | FunctionControl | CompiledControl:
         """How the vessels are controlled. Raises BadInput."""
         first = self._each[0]
         if not isinstance(first, Controller):
-            return ByFunction(self._aboard, first)
+            return FunctionControl(self._aboard, first)
         laws = [c for c in self._each if isinstance(c, CompiledController) and c.only_evaluates_law]
         if len(laws) == len(self._each):
-            return ByLaw(self._aboard, laws)
+            return CompiledControl(self._aboard, laws)
         if len(self._each) > 1 or not type(first).passes_on:
             raise BadInput(
                 f"controller {type(first).__name__} is not compiled; allowed are compiled ones, "
                 "one that passes its goals on, and functions over all boats"
             )
-        return PassedOn(self._aboard)
+        return GoalsAsCommands(self._aboard)
 
 
 def _sensor_generator(seed: int) -> np.random.Generator:

@@ -9,7 +9,7 @@ import numba
 import numpy as np
 from numpy.typing import ArrayLike
 
-from boatsim.control.compiled import SENSE, CompiledController, Records, as_table, columns
+from boatsim.control.compiled import SENSE, CompiledController, Records, as_table, indices_of_names
 from boatsim.errors import BadInput
 from boatsim.physics.commands import SLACK, command_row
 from boatsim.physics.debugging import DEBUG
@@ -22,7 +22,7 @@ Vectorised: TypeAlias = Callable[[Records, Mapping[str, float]], Mapping[str, Ar
 
 
 @dataclass
-class Aboard:
+class FleetControl:
     """Base class of all kinds of control.
 
     Attributes:
@@ -52,7 +52,7 @@ class Aboard:
         )
         return np.ascontiguousarray(low), np.ascontiguousarray(high)
 
-    def noise(self, boats: Boats, periods: int) -> Array:
+    def next_noise(self, boats: Boats, periods: int) -> Array:
         """Return the next numbers (boats, periods, 7) of the noise of each vessel."""
         samples = np.zeros((len(boats), periods, NOISES))
         if not self.sensors.ideal:
@@ -60,7 +60,7 @@ class Aboard:
                 self.random[b].standard_normal(out=row)
         return samples
 
-    def send(self, orders: Array, steps: int) -> None:
+    def send_commands(self, orders: Array, steps: int) -> None:
         """Advance all vessels under orders and count the steps with commands beyond their range.
 
         Args:
@@ -72,10 +72,10 @@ class Aboard:
         self.saturated += steps * (np.abs(orders - self.batch.commands) > SLACK * (high - low))
 
 
-class PassedOn:
+class GoalsAsCommands:
     """Sends the goals as commands of their channels."""
 
-    def __init__(self, aboard: Aboard) -> None:
+    def __init__(self, aboard: FleetControl) -> None:
         self.aboard = aboard
 
     def reset(self) -> None:
@@ -85,13 +85,13 @@ class PassedOn:
         """Advance by one control period per goal."""
         for goal, same in groupby(goals):
             steps = len(list(same)) * self.aboard.steps
-            self.aboard.send(command_row(self.aboard.batch.vessels[0], goal), steps)
+            self.aboard.send_commands(command_row(self.aboard.batch.vessels[0], goal), steps)
 
 
-class ByFunction:
+class FunctionControl:
     """Sends the commands that a function computes from the sensors of all vessels and the goals."""
 
-    def __init__(self, aboard: Aboard, function: Vectorised) -> None:
+    def __init__(self, aboard: FleetControl, function: Vectorised) -> None:
         self.aboard, self.function = aboard, function
         self._sense = np.zeros(len(aboard.batch), SENSE)
 
@@ -104,26 +104,28 @@ class ByFunction:
         Raises:
             BadInput: If the function returns a channel that does not exist.
         """
-        batch, numbers = self.aboard.batch, self.aboard.sensors.numbers
+        batch, numbers = self.aboard.batch, self.aboard.sensors.error_parameters
         everyone, boat = np.arange(len(batch)), batch.vessels[0]
-        noise = self.aboard.noise(everyone, len(goals))
+        noise = self.aboard.next_noise(everyone, len(goals))
         for i, goal in enumerate(goals):
             batch.sense(as_table(self._sense))
-            compiled_loop.disturb_boats(everyone, as_table(self._sense), numbers, noise, i)
+            compiled_loop.add_sensor_errors_to_boats(
+                everyone, as_table(self._sense), numbers, noise, i
+            )
             orders = np.tile(command_row(boat, {}), (len(batch), 1))
             for name, values in self.function(self._sense, goal).items():
                 if name not in boat.commands:
                     raise BadInput(boat.unknown_command(name))
                 orders[:, boat.inputs.index(name)] = values
-            self.aboard.send(orders, self.aboard.steps)
+            self.aboard.send_commands(orders, self.aboard.steps)
 
 
-class ByLaw:
+class CompiledControl:
     """Compiled controllers of one kind; each vessel has its own settings and memory."""
 
     def __init__(
         self,
-        aboard: Aboard,
+        aboard: FleetControl,
         controllers: Sequence[CompiledController],
         memory: Records | None = None,
     ) -> None:
@@ -152,7 +154,7 @@ class ByLaw:
         self._felt, self._wanted, self.orders = (
             as_table(r) for r in (self._sense, self._goal, self._sent)
         )
-        self.places = columns(kind.commands, boat.inputs)
+        self.places = indices_of_names(kind.commands, boat.inputs)
         self._low, self._high = aboard.limits
         self._compile()
 
@@ -168,22 +170,22 @@ class ByLaw:
             begins: Whether a period begins with the controller; otherwise it ends with it.
         """
         table = np.array([self.kind.goal_values(goal) for goal in goals], dtype=float)
-        self.aboard.batch.shared(lambda boats: self._advance(boats, table, begins))
+        self.aboard.batch.run_on_threads(lambda boats: self._advance(boats, table, begins))
 
     def _advance(self, boats: Boats, goals: Array, begins: bool) -> None:
         aboard, batch, count = self.aboard, self.aboard.batch, len(goals)
         periods = compiled_loop.Periods(begins, count, aboard.steps, batch.step)
-        loop = self._loop(goals, aboard.noise(boats, count))
+        loop = self._make_loop(goals, aboard.next_noise(boats, count))
         self._run(*self._pointers, boats, periods, batch.fleet, loop)
 
-    def _loop(self, goals: Array, noise: Array) -> compiled_loop.Loop:
+    def _make_loop(self, goals: Array, noise: Array) -> compiled_loop.Loop:
         """Records and arrays of the controllers for the compiled loop."""
         aboard = self.aboard
         return compiled_loop.Loop(
             compiled_loop.Control(
                 self._settings, self._memory, self._sense, self._goal, self._sent
             ),
-            compiled_loop.Sensing(self._felt, aboard.sensors.numbers, noise),
+            compiled_loop.Sensing(self._felt, aboard.sensors.error_parameters, noise),
             compiled_loop.Goals(self._wanted, goals),
             compiled_loop.Orders(
                 self.orders, self.places, self._low, self._high, aboard.saturated, aboard.total
@@ -195,10 +197,10 @@ class ByLaw:
     def _compile(self) -> None:
         """Compile the loop; it takes pointers to functions, so that one serves all vessels."""
         code = self.aboard.batch.code
-        loop = self._loop(np.zeros((1, len(self.kind.goals))), np.zeros((1, 1, NOISES)))
+        loop = self._make_loop(np.zeros((1, len(self.kind.goals))), np.zeros((1, 1, NOISES)))
         records = tuple(map(numba.typeof, loop.control))
         law = self.kind.law
-        self._pointers = compiled_loop.pointers(
+        self._pointers = compiled_loop.function_pointers(
             law, code.read_instruments_of_boats, code.advance_boats, records
         )
         if DEBUG:

@@ -35,7 +35,7 @@ class GrowingTable:
         self._columns[:, self.count] = row
         self.count += 1
 
-    def amend(self, first: int, values: Array) -> None:
+    def replace_last_values(self, first: int, values: Array) -> None:
         """Replace the values of the last row from column number `first` on."""
         self._columns[first:, self.count - 1] = values
 
@@ -86,7 +86,7 @@ class FileTable(GrowingTable):
         self._columns[:, at] = row
         self.count += 1
 
-    def amend(self, first: int, values: Array) -> None:
+    def replace_last_values(self, first: int, values: Array) -> None:
         """Replace the values of the last row, which is always in memory, from `first` on."""
         self._columns[first:, self.count - self._written - 1] = values
 

@@ -22,7 +22,7 @@ NAN = re.compile(r"""["'\s]nan["'\s]""", re.IGNORECASE)
 LARGEST = 1 << 24  # [bytes] of a file; meshes are separate files
 
 
-def check_text(path: Path) -> None:
+def check_hull_file(path: Path) -> None:
     """Check a hull and the files that it includes.
 
     Args:

@@ -24,7 +24,7 @@ class OvershootLimit(NamedTuple):
     offset: float  # [deg]
     slope: float  # [deg/s]
 
-    def at(self, length: float, speed: float) -> float:
+    def limit_angle(self, length: float, speed: float) -> float:
         """Return the limit [deg] of a ship of `length` [m] at `speed` [m/s]."""
         ratio = length / speed
         if ratio < 10.0:
@@ -38,7 +38,7 @@ FIRST_OVERSHOOT_10 = OvershootLimit(10.0, 20.0, 5.0, 0.5)  # of the 10/10 zig-za
 SECOND_OVERSHOOT_10 = OvershootLimit(25.0, 40.0, 17.5, 0.75)
 
 
-def limits(manoeuvre: str, angle: float, length: float, speed: float) -> dict[str, float]:
+def imo_limits(manoeuvre: str, angle: float, length: float, speed: float) -> dict[str, float]:
     """Return the limits of a manoeuvre.
 
     Args:
@@ -55,8 +55,8 @@ def limits(manoeuvre: str, angle: float, length: float, speed: float) -> dict[st
     if manoeuvre == "zigzag" and abs(angle) == 10.0:
         return {
             "track_to_reversal": TRACK_TO_10,
-            "first_overshoot": FIRST_OVERSHOOT_10.at(length, speed),
-            "second_overshoot": SECOND_OVERSHOOT_10.at(length, speed),
+            "first_overshoot": FIRST_OVERSHOOT_10.limit_angle(length, speed),
+            "second_overshoot": SECOND_OVERSHOOT_10.limit_angle(length, speed),
         }
     if manoeuvre == "zigzag" and abs(angle) == 20.0:
         return {"first_overshoot": OVERSHOOT_20}

@@ -20,7 +20,7 @@ from boatsim.physics.signals import Array, signals_of
 from boatsim.physics.vessel import ManoeuvringTable, Vessel
 from boatsim.simulate import imo, scenario
 from boatsim.simulate.batch import Batch
-from boatsim.simulate.cases import Place
+from boatsim.simulate.cases import ScenarioLocation
 from boatsim.simulate.scenario import Scenario
 
 ANGLES = {  # manoeuvre -> its usual angle [deg]
@@ -44,7 +44,7 @@ AHEAD = 0.5  # cosine of the angle from which on a thruster counts as a transver
 ROLLS = 12  # estimated roll periods of a roll decay
 
 
-def scenario_of(
+def manoeuvre_scenario(
     manoeuvre: str,
     name: str,
     loads: Sequence[str] = (),
@@ -82,25 +82,25 @@ def scenario_of(
         "sensors": {"ideal": True},
     }
     if manoeuvre == "roll_decay":
-        place = Place(Path(f"{manoeuvre}.toml"))
-        return scenario.from_table(raw | _released(vessel, usual), place, vessel)
+        place = ScenarioLocation(Path(f"{manoeuvre}.toml"))
+        return scenario.from_table(raw | _roll_decay_tables(vessel, usual), place, vessel)
     if "yaw" not in vessel.dof:
         raise BadInput(
             f"{vessel.name} is not free to turn; of the manoeuvres it can only do roll_decay"
         )
     loaded = vessel
-    vessel = replace(loaded, manoeuvring=handled(loaded))
-    angle = min(usual, helm_of(vessel)) if angle is None else angle
+    vessel = replace(loaded, manoeuvring=complete_manoeuvring_table(loaded))
+    angle = min(usual, largest_helm(vessel)) if angle is None else angle
     _check_commands(vessel, 0.0 if manoeuvre == "crash_stop" else angle)
     if manoeuvre == "crash_stop" and not vessel.manoeuvring.astern:
         raise BadInput(
             f"{vessel.name}: no thrust astern; "
             "specify it by [manoeuvring] astern = { CHANNEL = value }"
         )
-    at = approach(vessel, speed)
+    at = approach_speed(vessel, speed)
     reverses = abs(angle) if heading is None else heading
-    place = Place(Path(f"{manoeuvre}.toml"))
-    table = raw | _under_way(manoeuvre, vessel, angle, at, reverses)
+    place = ScenarioLocation(Path(f"{manoeuvre}.toml"))
+    table = raw | _manoeuvre_tables(manoeuvre, vessel, angle, at, reverses)
     return scenario.from_table(table, place, loaded)
 
 
@@ -117,7 +117,7 @@ def _check_heading(manoeuvre: str, heading: float | None) -> None:
         raise BadInput(f"heading = {heading:g} deg; allowed 0.1 to 170 deg")
 
 
-def handled(vessel: Vessel) -> ManoeuvringTable:
+def complete_manoeuvring_table(vessel: Vessel) -> ManoeuvringTable:
     """Return the vessel's [manoeuvring] table, completed from its channels.
 
     Args:
@@ -156,7 +156,7 @@ def handled(vessel: Vessel) -> ManoeuvringTable:
     table = given.model_copy(update={"ahead": ahead, "astern": astern, "steer": steer})
     if given.steer:
         return table
-    return _to_starboard(replace(vessel, manoeuvring=table))
+    return _orient_helm_to_starboard(replace(vessel, manoeuvring=table))
 
 
 def transverse_thrusters(vessel: Vessel) -> dict[str, float]:
@@ -178,7 +178,7 @@ def transverse_thrusters(vessel: Vessel) -> dict[str, float]:
     return found
 
 
-def helm_of(vessel: Vessel) -> float:
+def largest_helm(vessel: Vessel) -> float:
     """Return the largest helm [deg] to both sides within the ranges of all channels."""
     table = vessel.manoeuvring
     largest: list[float] = []  # [rad]
@@ -193,7 +193,7 @@ def _check_commands(vessel: Vessel, angle: float) -> None:
     table = vessel.manoeuvring
     cases = {"going ahead": table.ahead, "going astern": table.astern}
     for side in (angle, -angle):
-        cases[f"{side:g} deg of helm"] = _steered(table, radians(side))
+        cases[f"{side:g} deg of helm"] = _steering_commands(table, radians(side))
     for case, commands in cases.items():
         for name, value in commands.items():
             channel = vessel.commands[name]
@@ -205,7 +205,7 @@ def _check_commands(vessel: Vessel, angle: float) -> None:
                 )
 
 
-def _steered(table: ManoeuvringTable, helm: float) -> dict[str, float]:
+def _steering_commands(table: ManoeuvringTable, helm: float) -> dict[str, float]:
     """Commands of the steering channels ahead at a helm [rad]."""
     commands: dict[str, float] = {}
     for name, per_rad in table.steer.items():
@@ -213,18 +213,18 @@ def _steered(table: ManoeuvringTable, helm: float) -> dict[str, float]:
     return commands
 
 
-def _to_starboard(vessel: Vessel) -> ManoeuvringTable:
+def _orient_helm_to_starboard(vessel: Vessel) -> ManoeuvringTable:
     """The table with the sign of the helm for which a short run turns to starboard."""
     table = vessel.manoeuvring
-    commands = {**table.ahead, **_steered(table, 0.2)}
-    heading = _state(vessel, _usual_speed(vessel), commands, 3.0)[2]
+    commands = {**table.ahead, **_steering_commands(table, 0.2)}
+    heading = _simulate_from_ahead(vessel, _default_speed(vessel), commands, 3.0)[2]
     if heading > 0.0:
         return table
     steer = {name: -per_rad for name, per_rad in table.steer.items()}
     return table.model_copy(update={"steer": steer})
 
 
-def approach(vessel: Vessel, speed: float | None = None) -> float:
+def approach_speed(vessel: Vessel, speed: float | None = None) -> float:
     """Return the speed [m/s] at which the vessel goes straight ahead under its approach commands.
 
     Args:
@@ -240,7 +240,9 @@ def approach(vessel: Vessel, speed: float | None = None) -> float:
         return speed
     table = vessel.manoeuvring
     u = table.speed or float(
-        _state(vessel, _usual_speed(vessel), table.ahead, HULL_LENGTHS)[-_half(vessel)]
+        _simulate_from_ahead(vessel, _default_speed(vessel), table.ahead, HULL_LENGTHS)[
+            -_dof_count(vessel)
+        ]
     )
     if not u > 0.0:
         raise BadInput(
@@ -250,21 +252,23 @@ def approach(vessel: Vessel, speed: float | None = None) -> float:
     return u
 
 
-def _usual_speed(vessel: Vessel) -> float:
+def _default_speed(vessel: Vessel) -> float:
     """The table's speed [m/s], by default that of Froude number 0.15, a slow speed."""
     return vessel.manoeuvring.speed or 0.15 * float(np.sqrt(9.81 * vessel.length))
 
 
-def _half(vessel: Vessel) -> int:
+def _dof_count(vessel: Vessel) -> int:
     return len(vessel.dof)
 
 
-def _state(vessel: Vessel, speed: float, commands: Mapping[str, float], lengths: float) -> Array:
+def _simulate_from_ahead(
+    vessel: Vessel, speed: float, commands: Mapping[str, float], lengths: float
+) -> Array:
     """State after the time of so many lengths at a speed, from straight ahead."""
-    step = _step(vessel, speed)
+    step = _integration_step(vessel, speed)
     compiled = Batch(vessel, step=step)
-    start = [0.0] * (2 * _half(vessel))
-    start[_half(vessel)] = speed
+    start = [0.0] * (2 * _dof_count(vessel))
+    start[_dof_count(vessel)] = speed
     rows = np.tile(
         compiled.program.command_array(commands), (round(lengths * vessel.length / speed / step), 1)
     )
@@ -272,12 +276,12 @@ def _state(vessel: Vessel, speed: float, commands: Mapping[str, float], lengths:
     return last
 
 
-def _step(vessel: Vessel, speed: float) -> float:
+def _integration_step(vessel: Vessel, speed: float) -> float:
     """Integration step [s], a round number."""
-    return _rounded(min(max(vessel.length / speed / STEPS, 0.002), 0.5))
+    return _round_down(min(max(vessel.length / speed / STEPS, 0.002), 0.5))
 
 
-def _rounded(seconds: float) -> float:
+def _round_down(seconds: float) -> float:
     """Largest 1, 2 or 5 times a power of ten that is not above."""
     power = 10.0 ** np.floor(log10(seconds))
     best = 1.0
@@ -287,11 +291,11 @@ def _rounded(seconds: float) -> float:
     return float(best * power)
 
 
-def _under_way(
+def _manoeuvre_tables(
     manoeuvre: str, vessel: Vessel, angle: float, speed: float, reverses: float
 ) -> dict[str, Value]:
     """Tables of a manoeuvre after an approach at a speed; a zig-zag reverses at a heading [deg]."""
-    table, unit, step = vessel.manoeuvring, vessel.length / speed, _step(vessel, speed)
+    table, unit, step = vessel.manoeuvring, vessel.length / speed, _integration_step(vessel, speed)
     execute, hold = (step * round(lengths * unit / step) for lengths in (BEFORE, HOLD))
     helm, heading = {"angle": radians(angle)}, {"heading": radians(reverses)}
     place = {"execute": execute, "length": vessel.length}
@@ -312,29 +316,29 @@ def _under_way(
     }
     bands: dict[str, Value] = {}
     if manoeuvre != "zigzag" or reverses == abs(angle):  # the limits are for 10/10 and 20/20
-        for name, high in imo.limits(manoeuvre, angle, vessel.length, speed).items():
+        for name, high in imo.imo_limits(manoeuvre, angle, vessel.length, speed).items():
             bands[name] = {"guard": [0.0, high]}
     return {
         "duration": min(duration, 86400.0),
         "step": step,
-        "log": _rounded(unit / ROWS),
+        "log": _round_down(unit / ROWS),
         "start": {"u": speed},
         "controller": {"use": manoeuvre, **handling, **controller},
-        "camera": {"rate": min(max(1.0 / _rounded(unit / ROWS), 0.1), 6.0)},
+        "camera": {"rate": min(max(1.0 / _round_down(unit / ROWS), 0.1), 6.0)},
         "measure": {"use": manoeuvre, **measure},
         "norms": bands,
         "until": {"turned": ROUND} if manoeuvre == "turning_circle" else {},
     }
 
 
-def _released(vessel: Vessel, angle: float) -> dict[str, Value]:
+def _roll_decay_tables(vessel: Vessel, angle: float) -> dict[str, Value]:
     """Tables of a roll decay from a heel [deg]."""
     if "roll" not in vessel.dof:
         raise BadInput(
             f"{vessel.name} does not roll; its degrees of freedom are {', '.join(vessel.dof)}"
         )
     period = _roll_period(vessel)
-    step = _rounded(period / 200)
+    step = _round_down(period / 200)
     return {
         "duration": ROLLS * period,
         "step": step,
@@ -349,7 +353,7 @@ def _roll_period(vessel: Vessel) -> float:
     # [s] of a ship of usual stability, with GM a twentieth of the beam
     guess = 2.0 * float(np.sqrt(vessel.beam))
     compiled = Batch(vessel, step=guess / 400)
-    start = [0.0] * (2 * _half(vessel))
+    start = [0.0] * (2 * _dof_count(vessel))
     roll = [signal.symbol for signal in signals_of(vessel.dof)].index("phi")
     start[roll] = radians(1.0)
     rows = np.tile(compiled.program.command_array({}), (8000, 1))

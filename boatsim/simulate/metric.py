@@ -57,7 +57,7 @@ class MetricSet(CheckedParameters):
         """
         return KINDS.get(metric.rpartition("_")[2], "")
 
-    def why(self, metric: str, log: Recording) -> str:
+    def explain_missing_value(self, metric: str, log: Recording) -> str:
         """Explain in a few words why a run has no value of a metric; "" if unknown.
 
         Args:
@@ -105,7 +105,7 @@ def rows_between(
     return np.asarray(found)
 
 
-def why_not_reached(x: Array, level: float, unit: str = "") -> str:
+def describe_closest_value(x: Array, level: float, unit: str = "") -> str:
     """Describe how close a signal came to a level that it did not cross.
 
     Args:

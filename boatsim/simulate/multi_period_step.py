@@ -7,7 +7,7 @@ import numpy as np
 
 from boatsim.control.base import Controller
 from boatsim.control.compiled import CompiledController
-from boatsim.simulate.fleet_control import Aboard, ByLaw
+from boatsim.simulate.fleet_control import CompiledControl, FleetControl
 from boatsim.simulate.open_water import OpenWater
 from boatsim.simulate.scenario import Scenario, UntilTable
 from boatsim.simulate.stepper import Stepper
@@ -58,8 +58,8 @@ class MultiPeriodStep:
         self._scenario, self._engine = scenario, engine
         self._steps = round(law.period / engine.step)  # of a period
         saturated = np.zeros((1, len(engine.sent)))
-        self._aboard = Aboard(engine.batch, scenario.sensors, self._steps, saturated, [imu])
-        self._law = ByLaw(self._aboard, [law], law.memory)
+        self._aboard = FleetControl(engine.batch, scenario.sensors, self._steps, saturated, [imu])
+        self._law = CompiledControl(self._aboard, [law], law.memory)
 
     @classmethod
     def if_possible(
@@ -81,12 +81,15 @@ class MultiPeriodStep:
         if scenario.additional_sensors or scenario.has_off_goal or not law.only_evaluates_law:
             return None
         kind, steps = type(law), law.period / engine.step
-        acts_between = kind.early is not Controller.early or kind.done is not Controller.done
+        acts_between = (
+            kind.time_to_extra_step is not Controller.time_to_extra_step
+            or kind.done is not Controller.done
+        )
         if acts_between or scenario.file.until != UntilTable() or abs(steps - round(steps)) > 1e-9:
             return None
         return cls(scenario, engine, law, imu)
 
-    def periods(self, t: float, until: float) -> int:
+    def complete_periods(self, t: float, until: float) -> int:
         """Return how many periods from time t [s] end at least a step before `until` [s].
 
         Returns:

@@ -44,14 +44,14 @@ class OpenWater(Stepper):
     @cached_property
     def model(self) -> Model:
         """The model of MuJoCo, for pictures."""
-        return world.build(self.vessel, self.tank, self.step)
+        return world.build_model(self.vessel, self.tank, self.step)
 
     @property
     def t(self) -> float:
         """Time [s]."""
         return float(self.batch.t[0])
 
-    def _put(self, t: float, state: Array) -> None:
+    def _set_joint_state(self, t: float, state: Array) -> None:
         self.batch.t[0] = t
         self._y[:] = state
 

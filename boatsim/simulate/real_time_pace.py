@@ -31,13 +31,13 @@ class Pace:
         self.speed, self._clock, self._sleep = speed, clock, sleep
         self._begin: float | None = None  # real time [s] of the simulated time 0
 
-    def behind(self, t: float) -> float:
+    def delay(self, t: float) -> float:
         """Return how long ago the simulated time `t` [s] was due [s]; 0 before the first wait."""
         if self._begin is None:
             return 0.0
         return self._clock() - self._begin - t / self.speed
 
-    def wait(self, t: float, stop: Callable[[], bool] = bool) -> None:
+    def wait_until(self, t: float, stop: Callable[[], bool] = bool) -> None:
         """Wait until a simulated time is due.
 
         Args:
@@ -45,7 +45,7 @@ class Pace:
             stop: Ends the wait when it returns True.
         """
         due = t / self.speed
-        if self._begin is None or self.behind(t) > BEHIND:
+        if self._begin is None or self.delay(t) > BEHIND:
             self._begin = self._clock() - due
         while (ahead := self._begin + due - self._clock()) > 0.0 and not stop():
             self._sleep(min(ahead, NAP))

@@ -66,7 +66,7 @@ class Simulation:
         Args:
             scenario: The scenario.
             options: How it is run.
-            engine: Result of `engine_for` with the same scenario and seed; default: a new one.
+            engine: Result of `build_engine` with the same scenario and seed; default: a new one.
 
         Raises:
             BadInput: If the controller fails or the log lacks a signal that will be evaluated.
@@ -74,20 +74,20 @@ class Simulation:
         """
         self._scenario = scenario
         self._options = options or RunOptions()
-        self._seed = seed_of(scenario, self._options.seed)
-        self.engine = engine or engine_for(scenario, self._seed)
+        self._seed = seed_or_default(scenario, self._options.seed)
+        self.engine = engine or build_engine(scenario, self._seed)
         seeds = np.random.SeedSequence(self._seed).spawn(2 + len(scenario.additional_sensors))
         imu, marking, *others = map(np.random.default_rng, seeds)
         channels = list(type(scenario.controller).commands or scenario.vessel.commands)
-        self._camera = CameraLog(scenario, channels, marking, self._table)
+        self._camera = CameraLog(scenario, channels, marking, self._make_table)
         goal_at = self._options.goal_source or scenario.goal_at
         self._loop = ControlLoop(
             scenario, self.engine, goal_at, (imu, *others), self._camera.add_interval
         )
-        self._log = RunLog(self._loop, self._table)
+        self._log = RunLog(self._loop, self._make_table)
         state = self._loop.state
         self._frames: list[Frame] = []  # since the last row of the log
-        self._frames += self._camera.take_frames(state, state, self._loop.in_force())
+        self._frames += self._camera.take_frames(state, state, self._loop.commands_in_force())
         self._delivered = 0  # rows of the log that the listener has
         self._frames_delivered = 0
         self._last_delivery = monotonic()
@@ -112,30 +112,32 @@ class Simulation:
         """
         options, complete, reported = self._options, False, 0
         try:
-            self._deliver()
-            while not (complete := self._finished()) and not options.stop():
+            self._deliver_rows()
+            while not (complete := self._is_finished()) and not options.stop():
                 if options.pace:
                     # before the step, so that sensors and goals at its end are those of that time
-                    options.pace.wait(self.time + self.engine.step, options.stop)
+                    options.pace.wait_until(self.time + self.engine.step, options.stop)
                 else:
                     end = self._scenario.file.duration
-                    self._loop.advance_periods(min(self._log.due, self._camera.due, end))
+                    self._loop.advance_periods(
+                        min(self._log.due, self._camera.next_frame_time, end)
+                    )
                 self._advance()
                 if options.progress and self._loop.steps >= reported + PROGRESS:
                     options.progress(self.time)
                     reported = self._loop.steps
         except KeyboardInterrupt:
             pass
-        self._deliver(over=True)
-        return self.so_far(complete)
+        self._deliver_rows(over=True)
+        return self.partial_result(complete)
 
-    def so_far(self, complete: bool = False) -> Run:
+    def partial_result(self, complete: bool = False) -> Run:
         """Return the run up to the present; a listener may call this.
 
         Args:
             complete: Whether the run has reached its end.
         """
-        notes = notes_of(self._scenario)
+        notes = recording_notes(self._scenario)
         return Run(
             self._scenario,
             self._seed,
@@ -146,7 +148,7 @@ class Simulation:
             dict(self._loop.saturated),
         )
 
-    def _table(self, names: list[str], rows: float) -> GrowingTable:
+    def _make_table(self, names: list[str], rows: float) -> GrowingTable:
         if self._options.folder:
             return FileTable(names, self._options.folder)
         return GrowingTable(names, round(rows) + 3)
@@ -155,18 +157,20 @@ class Simulation:
         """One step of physics, then control at its end, and a row if one is due."""
         before = self._loop.state
         self._loop.advance(self._write_row)
-        self._frames += self._camera.take_frames(before, self._loop.state, self._loop.in_force())
-        self._loop.control()
-        if self._log.is_due() or self._finished():
+        self._frames += self._camera.take_frames(
+            before, self._loop.state, self._loop.commands_in_force()
+        )
+        self._loop.control_if_due()
+        if self._log.is_due() or self._is_finished():
             self._write_row()
-        self._deliver()
+        self._deliver_rows()
 
     def _write_row(self) -> None:
         frames = self._frames
         self._frames = []
         self._log.add_row(frames)
 
-    def _deliver(self, over: bool = False) -> None:
+    def _deliver_rows(self, over: bool = False) -> None:
         """Hand new rows to the listeners, if there are enough of them or enough time has passed."""
         options, rows, now = self._options, self._log.table.count, monotonic()
         waited = now - self._last_delivery >= options.refresh
@@ -186,7 +190,7 @@ class Simulation:
             options.camera_listener(new)
         self._delivered, self._frames_delivered = rows, frames
 
-    def _finished(self) -> bool:
+    def _is_finished(self) -> bool:
         file, state = self._scenario.file, self._loop.state
         if state.t >= file.duration - TIME_TOLERANCE:
             return True
@@ -225,12 +229,12 @@ class Simulation:
             return
 
 
-def seed_of(scenario: Scenario, seed: int | None) -> int:
+def seed_or_default(scenario: Scenario, seed: int | None) -> int:
     """Return the given seed, or the scenario's if there is none."""
     return scenario.file.seed if seed is None else seed
 
 
-def engine_for(scenario: Scenario, seed: int | None = None) -> Engine | OpenWater:
+def build_engine(scenario: Scenario, seed: int | None = None) -> Engine | OpenWater:
     """Build the engine that a scenario names, with its vessel's parameters sampled by a seed.
 
     Args:
@@ -244,7 +248,7 @@ def engine_for(scenario: Scenario, seed: int | None = None) -> Engine | OpenWate
         BadInput: If the hull can not be read.
         BadPhysics: If the model can not be stepped.
     """
-    file, number = scenario.file, seed_of(scenario, seed)
+    file, number = scenario.file, seed_or_default(scenario, seed)
     effects = tuple(effect.with_seed(number) for effect in scenario.vessel.effects)
     vessel = replace(scenario.vessel, effects=effects)
     if file.is_compiled:
@@ -253,14 +257,14 @@ def engine_for(scenario: Scenario, seed: int | None = None) -> Engine | OpenWate
     return Engine(vessel, tank, file.step)
 
 
-def notes_of(scenario: Scenario) -> Notes:
+def recording_notes(scenario: Scenario) -> Notes:
     """Return what a diagnosis of a run may know: vessel, load, settings, noise of the camera."""
     file = scenario.file
     return Notes(
         vessel=file.vessel,
         load=tuple(file.load),
         settings=dict(file.set),
-        noise=scenario.camera.noise(),
+        noise=scenario.camera.pose_noise(),
     )
 
 

@@ -17,7 +17,7 @@ import numpy as np
 
 from boatsim.atomic_folder import atomic_folder
 from boatsim.errors import BadInput
-from boatsim.files import AppendedFile, replacing, toml_key, toml_value
+from boatsim.files import AppendedFile, replace_file, toml_key, toml_value
 from boatsim.interruption import deferred_signals
 from boatsim.physics.content import vessel_address
 from boatsim.recordings.table import Recording, csv_header, csv_rows
@@ -26,7 +26,7 @@ from boatsim.simulate.engine import Engine
 from boatsim.simulate.evaluation import Metric, MetricEntry, RunEntry
 from boatsim.simulate.open_water import OpenWater
 from boatsim.simulate.real_time_pace import Pace
-from boatsim.simulate.run import Run, Simulation, engine_for, notes_of, seed_of
+from boatsim.simulate.run import Run, Simulation, build_engine, recording_notes, seed_or_default
 from boatsim.simulate.run_options import Listener, RunOptions
 from boatsim.simulate.scenario import Scenario
 
@@ -64,7 +64,7 @@ class Steering(Protocol):
     def goal_at(self, t: float, /) -> Mapping[str, float]:
         """Return the goals at a time [s]."""
 
-    def finished(self) -> bool:
+    def is_finished(self) -> bool:
         """Return whether the run shall end."""
 
     def start(self, engine: Engine | OpenWater, stop: Callable[[], bool]) -> None:
@@ -74,13 +74,13 @@ class Steering(Protocol):
             KeyboardInterrupt: If `stop` returns True before the run begins.
         """
 
-    def listening(self, listener: Listener) -> AbstractContextManager[Listener]:
+    def wrap_listener(self, listener: Listener) -> AbstractContextManager[Listener]:
         """Yield a listener for the time of the run that passes the rows on to another one."""
 
-    def facts(self) -> Mapping[str, object]:
+    def recording_facts(self) -> Mapping[str, object]:
         """Return entries for the table [facts] of recording.toml."""
 
-    def files(self) -> Mapping[str, str]:
+    def extra_files(self) -> Mapping[str, str]:
         """Return further files of the run up to the present, text by name."""
 
 
@@ -129,13 +129,13 @@ def run_into_folder(
         OSError: If a file can not be written.
     """
     options = options or RunOptions()
-    seed = seed_of(scenario, options.seed)
-    engine = engine_for(scenario, seed)
+    seed = seed_or_default(scenario, options.seed)
+    engine = build_engine(scenario, seed)
     with deferred_signals() as stop, atomic_folder(folder, keep="recording.csv") as new:
-        _describe(new, scenario, seed, False, steering)
+        _write_description(new, scenario, seed, False, steering)
         options = replace(options, folder=None if in_memory else new, stop=stop)
         if steering:
-            options = _steered(options, steering, engine)
+            options = _apply_steering(options, steering, engine)
         with ExitStack() as open_files:
             started = [open_files.enter_context(start(new, engine)) for start in observers]
             table = open_files.enter_context(CsvFile(new / "recording.csv"))
@@ -149,9 +149,9 @@ def run_into_folder(
                 for observer in started:
                     observer.add_rows(rows)
                 if so_far:
-                    so_far.update(simulation.so_far)
+                    so_far.update(simulation.partial_result)
 
-            with steering.listening(listen) if steering else nullcontext(listen) as listener:
+            with steering.wrap_listener(listen) if steering else nullcontext(listen) as listener:
                 simulation = Simulation(scenario, replace(options, listener=listener), engine)
                 run = simulation.run()
             stop.finishing = True  # signals must not cost the files now
@@ -159,32 +159,34 @@ def run_into_folder(
             content = result.to_json()
             for observer in started:
                 observer.finish(content["norms"])
-        _describe(new, scenario, seed, run.complete, steering)
+        _write_description(new, scenario, seed, run.complete, steering)
         write_metrics(new / METRICS, content)
     return result
 
 
-def _steered(options: RunOptions, steering: Steering, engine: Engine | OpenWater) -> RunOptions:
+def _apply_steering(
+    options: RunOptions, steering: Steering, engine: Engine | OpenWater
+) -> RunOptions:
     """Options under a driver, who is ready when this returns."""
     steering.start(engine, options.stop)
     return replace(
         options,
         goal_source=steering.goal_at,
-        finish=steering.finished,
+        finish=steering.is_finished,
         pace=steering.pace,
         refresh=steering.refresh,
     )
 
 
-def _describe(
+def _write_description(
     folder: Path, scenario: Scenario, seed: int, complete: bool, steering: Steering | None
 ) -> None:
     """Write recording.toml and the further files of a driver."""
     facts: Mapping[str, object] = {}
     files: dict[str, str] = {}
     if steering:
-        facts = steering.facts()
-        files.update(steering.files())
+        facts = steering.recording_facts()
+        files.update(steering.extra_files())
     texts = {"recording.toml": notes_toml(scenario, seed, complete, facts), **files}
     for name, text in texts.items():
         (folder / name).write_text(text, "utf-8")
@@ -200,7 +202,7 @@ def write_metrics(path: Path, content: RunEntry) -> None:
     Raises:
         OSError: If it can not be written.
     """
-    with replacing(path) as temporary:
+    with replace_file(path) as temporary:
         temporary.write_text(json.dumps(content, indent=1) + "\n", encoding="utf-8")
 
 
@@ -285,19 +287,19 @@ def notes_toml(scenario: Scenario, seed: int, complete: bool, facts: Mapping[str
         complete: Whether the run reached its end.
         facts: Further entries for the table [facts].
     """
-    notes = notes_of(scenario)
+    notes = recording_notes(scenario)
     address = vessel_address(scenario.vessel.file)
     lines = [f"vessel = {toml_value(address)}", f"load = {toml_value(list(notes.load))}"]
     for effect, values in notes.settings.items():
-        lines += _table(f"set.{toml_key(effect)}", values)
+        lines += _toml_table(f"set.{toml_key(effect)}", values)
     # recording.csv has no noise: it holds the true motion
-    lines += _table(f"runs.{CAMERA}.noise", notes.noise)
+    lines += _toml_table(f"runs.{CAMERA}.noise", notes.noise)
     place = scenario.address or scenario.name
-    lines += _table("facts", {"scenario": place, "seed": seed, "complete": complete, **facts})
+    lines += _toml_table("facts", {"scenario": place, "seed": seed, "complete": complete, **facts})
     return "\n".join(lines) + "\n"
 
 
-def _table(name: str, values: Mapping[str, object]) -> list[str]:
+def _toml_table(name: str, values: Mapping[str, object]) -> list[str]:
     lines = ["", f"[{name}]"]
     for key, value in values.items():
         lines.append(f"{toml_key(key)} = {toml_value(value)}")

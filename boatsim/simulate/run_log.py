@@ -47,7 +47,7 @@ class RunLog:
         self._loop = loop
         self.scenario = loop.scenario
         vessel = loop.engine.vessel
-        with loop.controller_at_work() as controller:
+        with loop.name_controller_in_errors() as controller:
             estimates = list(controller.estimates())
         self._references = [name for name in estimates if name.startswith(REFERENCE)]
         self._estimates = [name for name in estimates if not name.startswith(REFERENCE)]
@@ -64,9 +64,9 @@ class RunLog:
         self.due = 0.0
         file = self.scenario.file
         rows = file.duration / max(file.log, file.step)
-        self.table: GrowingTable = make_table(self._columns(), rows)
+        self.table: GrowingTable = make_table(self._column_names(), rows)
 
-    def _columns(self) -> list[str]:
+    def _column_names(self) -> list[str]:
         components = [COMPONENTS[AXES[i]] for i in self._axes]
         columns = ["t_s", *(signal.column for signal in self._signals_text), *self._loop.channels]
         columns += self._measured
@@ -103,10 +103,15 @@ class RunLog:
         state, engine, sense = loop.state, loop.engine, loop.sense
         if self.is_due():
             self.due += self.scenario.file.log
-        with loop.controller_at_work() as controller:
+        with loop.name_controller_in_errors() as controller:
             estimates = controller.estimates()
         goal = loop.goal_at(state.t)
-        row = [state.t, *self._motion_of(state), *loop.in_force(), *self._measured.values()]
+        row = [
+            state.t,
+            *self._motion_of(state),
+            *loop.commands_in_force(),
+            *self._measured.values(),
+        ]
         row += map(loop.sent.__getitem__, loop.channels)
         row += engine.actuators.values()
         row += SENSE_VALUES(sense)
@@ -118,7 +123,7 @@ class RunLog:
         wrench = engine.wrench()
         row += map(wrench.__getitem__, self._axes)
         if self._winds:
-            row += map(self._wind(state).__getitem__, self._axes)
+            row += map(self._wind_wrench(state).__getitem__, self._axes)
         row.append(engine.contacts)
         for name in self._estimates:
             row += estimates[name]
@@ -126,7 +131,7 @@ class RunLog:
         row += [goal.get(name, nan) for name in self._goals]
         self.table.add(row)
 
-    def _wind(self, state: State) -> list[float]:
+    def _wind_wrench(self, state: State) -> list[float]:
         """Force of the air (X, Y, Z, K, M, N) in body axes [N, N m]."""
         total = [0.0] * len(AXES)
         for effect in self._winds:

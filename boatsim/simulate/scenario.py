@@ -13,15 +13,15 @@ from pydantic import Field, model_validator
 
 from boatsim.control.base import Controller
 from boatsim.errors import BadInput, unknown_name
-from boatsim.files import Table, checked
+from boatsim.files import Table, validate_table
 from boatsim.physics import vessel as vessels
 from boatsim.physics.content import load_class
 from boatsim.physics.signals import STATE
 from boatsim.physics.vessel import Vessel
 from boatsim.simulate import tracking_errors
-from boatsim.simulate.camera import Camera, camera_over
+from boatsim.simulate.camera import Camera, make_camera
 from boatsim.simulate.camera_metric import CameraMetricSet
-from boatsim.simulate.cases import Place, content
+from boatsim.simulate.cases import ScenarioLocation, read_scenario
 from boatsim.simulate.metric import MetricSet
 from boatsim.simulate.sensing import Sensor, Sensors
 
@@ -61,7 +61,7 @@ class StartTable(Table):
     # at which the actuators are settled; others are the controller's initial ones, or neutral
     commands: dict[str, float] = {}
 
-    def motion(self) -> dict[str, float]:
+    def state_values(self) -> dict[str, float]:
         """Return pose and velocities by their symbol in the engine's state."""
         return {s.symbol: float(getattr(self, s.symbol)) for s in STATE}
 
@@ -82,7 +82,7 @@ class MetricTable(Table):
     guard: tuple[End, End] | None = None  # regression band: low, high
 
     @model_validator(mode="after")
-    def _in_order(self) -> Self:
+    def _check_order(self) -> Self:
         if self.guard is not None and not self.guard[0] <= self.guard[1]:
             raise ValueError(
                 f"guard = {list(self.guard)}; allowed are its lower end and its upper one"
@@ -112,7 +112,7 @@ class CourseTable(Table):
     amplitude: float = 0.0
     period: float = Field(default=1.0, gt=0)  # [s]
 
-    def at(self, tau: float) -> float:
+    def goal_value(self, tau: float) -> float:
         """Return the goal at the time tau [s]."""
         return self.mean + self.slope * tau + self.amplitude * sin(2.0 * pi * tau / self.period)
 
@@ -180,14 +180,14 @@ class Scenario:
         Raises:
             BadInput: For keys and values that are not allowed.
         """
-        return from_table(settings, Place(Path(f"{name}.toml")), vessel)
+        return from_table(settings, ScenarioLocation(Path(f"{name}.toml")), vessel)
 
     @cached_property
-    def _begins(self) -> list[float]:
-        return [_begin(g) for g in self.file.goal]
+    def _goal_begin_times(self) -> list[float]:
+        return [_goal_begin_time(g) for g in self.file.goal]
 
     @cached_property
-    def _goals(self) -> list[tuple[dict[str, float], dict[str, CourseTable]]]:
+    def _split_goals(self) -> list[tuple[dict[str, float], dict[str, CourseTable]]]:
         """Constant and time-varying values of each [[goal]]."""
         goals: list[tuple[dict[str, float], dict[str, CourseTable]]] = []
         for goal in self.file.goal:
@@ -216,14 +216,14 @@ class Scenario:
 
     def goal_at(self, t: float) -> Mapping[str, float]:
         """Return the goals at time t [s]: those of the last [[goal]] that has begun."""
-        at = bisect_right(self._begins, t + 1e-9) - 1
+        at = bisect_right(self._goal_begin_times, t + 1e-9) - 1
         if at < 0:
             return {}
-        constant, courses = self._goals[at]
+        constant, courses = self._split_goals[at]
         if not courses:
             return constant
-        tau = t - self._begins[at]
-        return {**constant, **{key: course.at(tau) for key, course in courses.items()}}
+        tau = t - self._goal_begin_times[at]
+        return {**constant, **{key: course.goal_value(tau) for key, course in courses.items()}}
 
 
 def load(
@@ -239,11 +239,13 @@ def load(
     Raises:
         BadInput: One line with file, key, value found, what is allowed and the nearest valid name.
     """
-    table, place = content(name)
+    table, place = read_scenario(name)
     return from_table({**table, **(overrides or {})}, place, vessel)
 
 
-def from_table(raw: Mapping[str, object], place: Place, vessel: Vessel | None = None) -> Scenario:
+def from_table(
+    raw: Mapping[str, object], place: ScenarioLocation, vessel: Vessel | None = None
+) -> Scenario:
     """Return the scenario of the content of a scenario file.
 
     Args:
@@ -258,14 +260,14 @@ def from_table(raw: Mapping[str, object], place: Place, vessel: Vessel | None = 
     label, path = place.label, place.path
     if vessel is not None:
         raw = {**raw, "vessel": vessel.name, "load": list(vessel.load)}
-    file = checked(ScenarioFile, raw, label)
+    file = validate_table(ScenarioFile, raw, label)
     try:
-        vessel = _vessel(file, path.parent, vessel)
-        controller = _created(Controller, "controller", file.controller, path.parent)
-        sensors = _settings("sensors", lambda: Sensors.from_settings(file.sensors))
+        vessel = _scenario_vessel(file, path.parent, vessel)
+        controller = _create_content(Controller, "controller", file.controller, path.parent)
+        sensors = _create_with_context("sensors", lambda: Sensors.from_settings(file.sensors))
         aboard = _additional_sensors(file.sensor, path.parent)
-        camera = _settings("camera", lambda: camera_over(vessel, file.camera))
-        measure = _measure(file.measure, path.parent)
+        camera = _create_with_context("camera", lambda: make_camera(vessel, file.camera))
+        measure = _load_metric_set(file.measure, path.parent)
         _check_goals(file, vessel, controller)
         _check_shape(file, controller)
         _check_metrics(file, camera, measure)
@@ -284,7 +286,7 @@ def from_table(raw: Mapping[str, object], place: Place, vessel: Vessel | None = 
     )
 
 
-def _vessel(file: ScenarioFile, folder: Path, vessel: Vessel | None) -> Vessel:
+def _scenario_vessel(file: ScenarioFile, folder: Path, vessel: Vessel | None) -> Vessel:
     """The scenario's vessel, or another one, with the changes that the scenario makes."""
     if vessel is None:
         vessel = vessels.load_vessel(file.vessel, file.load, file.set, file.effect, folder)
@@ -296,7 +298,7 @@ def _vessel(file: ScenarioFile, folder: Path, vessel: Vessel | None) -> Vessel:
     return vessel.with_measured(file.measured)
 
 
-def _created(base: type[M], kind: str, table: Mapping[str, object], folder: Path) -> M:
+def _create_content(base: type[M], kind: str, table: Mapping[str, object], folder: Path) -> M:
     """Create the controller, metric set or sensor that a table asks for."""
     use = table.get("use")
     if not isinstance(use, str):
@@ -309,7 +311,7 @@ def _additional_sensors(tables: Sequence[Mapping[str, object]], folder: Path) ->
     """The sensors of the [[sensor]] tables, which must have different readings."""
     sensors: list[Sensor] = []
     for table in tables:
-        sensor = _created(Sensor, "sensor", table, folder)
+        sensor = _create_content(Sensor, "sensor", table, folder)
         for other in sensors:
             if twice := [name for name in type(other).columns if name in type(sensor).columns]:
                 raise BadInput(
@@ -319,15 +321,15 @@ def _additional_sensors(tables: Sequence[Mapping[str, object]], folder: Path) ->
     return tuple(sensors)
 
 
-def _measure(given: str | Mapping[str, object] | None, folder: Path) -> MetricSet | None:
+def _load_metric_set(given: str | Mapping[str, object] | None, folder: Path) -> MetricSet | None:
     """The metric set of a scenario."""
     if given is None:
         return None
     table = {"use": given} if isinstance(given, str) else given
-    return _created(MetricSet, "measure", table, folder)
+    return _create_content(MetricSet, "measure", table, folder)
 
 
-def _begin(goal: Mapping[str, float | CourseTable]) -> float:
+def _goal_begin_time(goal: Mapping[str, float | CourseTable]) -> float:
     """Time at which a goal begins [s]."""
     begin = goal.get("from", 0.0)
     if isinstance(begin, CourseTable):
@@ -335,7 +337,7 @@ def _begin(goal: Mapping[str, float | CourseTable]) -> float:
     return begin
 
 
-def _settings(key: str, create: Callable[[], T]) -> T:
+def _create_with_context(key: str, create: Callable[[], T]) -> T:
     """Create sensors or camera; an error names the table."""
     try:
         return create()
@@ -355,7 +357,7 @@ def _check_goals(file: ScenarioFile, vessel: Vessel, controller: Controller) -> 
                 raise BadInput(
                     f"[[goal]] {key} = {value:g}; allowed {channel.low:g} to {channel.high:g}"
                 )
-    starts = [_begin(g) for g in file.goal]
+    starts = [_goal_begin_time(g) for g in file.goal]
     if starts != sorted(starts):
         raise BadInput(f"[[goal]] from = {starts}; allowed are times in ascending order")
     if unknown := [c for c in type(controller).commands if c not in vessel.commands]:
@@ -387,13 +389,13 @@ def _check_shape(file: ScenarioFile, controller: Controller) -> None:
 
 def _check_metrics(file: ScenarioFile, camera: Camera, measure: MetricSet | None) -> None:
     """Check that the metrics with bands are computed and that the camera delivers their frames."""
-    tracked = tracking_errors.units(chain.from_iterable(file.goal))
+    tracked = tracking_errors.error_units(chain.from_iterable(file.goal))
     allowed = [*type(measure).units, *tracked] if measure else list(tracked)
     for name in file.norms:
         if name not in allowed:
             raise BadInput(unknown_name("[norms] key", name, allowed))
     if isinstance(measure, CameraMetricSet):
-        measure.check(camera)
+        measure.check_camera(camera)
 
 
 __all__ = [

@@ -20,13 +20,13 @@ NOISES = 7  # standard normal numbers per sample
 
 
 @lean
-def disturb(felt: Array, sensors: Array, noise: Array) -> None:
+def add_sensor_errors(felt: Array, sensors: Array, noise: Array) -> None:
     """Turn true values into measurements, in place.
 
     Args:
         felt: True values (t, psi, r, ax, ay, u, v, x, y, phi, p), which become measurements; nan
             where there is no sensor.
-        sensors: `Sensors.numbers`.
+        sensors: `Sensors.error_parameters`.
         noise: Standard normal numbers (7,).
     """
     if sensors[0] != 0.0:
@@ -111,12 +111,12 @@ class Sensors(CheckedParameters):
         if self.ideal:
             return Sense(*felt)
         row = np.array(felt)
-        disturb(row, self.numbers, rng.standard_normal(NOISES))
+        add_sensor_errors(row, self.error_parameters, rng.standard_normal(NOISES))
         return Sense(*row.tolist())
 
     @cached_property
-    def numbers(self) -> Array:
-        """Parameters of `disturb`: whether the sensors are ideal, then those of this class."""
+    def error_parameters(self) -> Array:
+        """Arguments of `add_sensor_errors`: whether the sensors are ideal, then the parameters."""
         values = [float(getattr(self, name)) for name in type(self).params()]
         return np.array([float(self.ideal), *values])
 
@@ -142,7 +142,7 @@ class Sensor(CheckedParameters):
         raise NotImplementedError
 
 
-def sensed(
+def add_further_readings(
     base: Sense, sensors: Sequence[Sensor], engine: Stepper, rngs: Sequence[np.random.Generator]
 ) -> Sense:
     """Add the readings of further sensors to a sample of the usual ones.

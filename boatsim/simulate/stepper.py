@@ -76,7 +76,7 @@ class Stepper(ABC):
         """Time [s]."""
 
     @abstractmethod
-    def _put(self, t: float, state: Array) -> None:
+    def _set_joint_state(self, t: float, state: Array) -> None:
         """Set time [s] and joint coordinates and rates (2 NQ,)."""
 
     @abstractmethod
@@ -109,7 +109,9 @@ class Stepper(ABC):
             BadInput: If a channel does not exist or a value is not finite.
         """
         state = state or State()
-        self._put(state.t, self.program.joint_rates(np.array(state[1:])[list(self.code.SHOWS)]))
+        self._set_joint_state(
+            state.t, self.program.joint_rates(np.array(state[1:])[list(self.code.SHOWS)])
+        )
         self._memory[:] = 0.0
         self.command(commands or {})
         self.settle_actuators()
@@ -117,7 +119,7 @@ class Stepper(ABC):
     def settle_actuators(self) -> None:
         """Set the actuators to the steady state of their commands."""
         self.code.settle_actuators(self._commands, self._memory, self._values, self._on, self._act)
-        self._mean[:] = self._mean_of_part()
+        self._mean[:] = self._mean_actuators()
 
     def command(self, commands: Mapping[str, float]) -> None:
         """Send commands to the actuators; they act within their ranges until the next ones.
@@ -143,7 +145,7 @@ class Stepper(ABC):
         ]
 
     @property
-    def beyond(self) -> list[str]:
+    def channels_beyond_range(self) -> list[str]:
         """Channels whose command exceeded its range."""
         if self._commands.tolist() == self.sent:
             return []
@@ -155,7 +157,7 @@ class Stepper(ABC):
         # measured inputs come after the commands
         return dict(zip(self.vessel.commands, self._commands.tolist(), strict=False))
 
-    def in_force(self) -> list[float]:
+    def commands_in_force(self) -> list[float]:
         """Return the commands in force, in the order of the vessel's inputs."""
         return self._commands.tolist()
 
@@ -191,10 +193,10 @@ class Stepper(ABC):
                 self._commands, self._memory, dt, self._values, self._on, self._act
             )
             self._step(dt)
-            self._mean += self._mean_of_part() * (dt / whole)
+            self._mean += self._mean_actuators() * (dt / whole)
             left -= dt
 
-    def _mean_of_part(self) -> Array:
+    def _mean_actuators(self) -> Array:
         """Mean (A,) of each actuator over the last part of a step."""
         n, held = len(self._mean), self.code.HELD
         act = self._act

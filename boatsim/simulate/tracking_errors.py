@@ -16,7 +16,7 @@ GOAL = "goal_"  # prefix of a goal's column in the log
 ENDINGS = ("rms", "largest", "integral")  # of a metric's name
 
 
-class Tally:
+class TrackingErrorSums:
     """Tracking errors of a log that arrives in pieces.
 
     With the error e between goal and signal while the goal is in force, rms is sqrt(mean e^2),
@@ -35,18 +35,18 @@ class Tally:
             log = join_recordings([self._last, log])
         goals = [name.removeprefix(GOAL) for name in log.signals if name.startswith(GOAL)]
         durations = np.append(np.diff(log.t), 0.0)
-        for key, signal, _ in _tracked(goals):
+        for key, signal, _ in _tracked_goals(goals):
             if signal in log.signals:
-                error = np.abs(_error(signal, log[f"{GOAL}{key}"], log[signal]))
+                error = np.abs(_tracking_error(signal, log[f"{GOAL}{key}"], log[signal]))
                 sums = self._sums.get(key, ErrorSums())
                 self._sums[key] = sums.with_rows(error, durations)
         last = {name: x[-1:] for name, x in log.signals.items()}
         self._last = replace(log, t=log.t[-1:], signals=last)
 
     def metrics(self) -> dict[str, float]:
-        """Return the metrics by name, in the units of `units`."""
+        """Return the metrics by name, in the units of `error_units`."""
         found: dict[str, float] = {}
-        for key, _, names in _tracked(self._sums):
+        for key, _, names in _tracked_goals(self._sums):
             sums = self._sums[key]
             if sums.time:
                 values = (sqrt(sums.squares / sums.time), sums.largest, sums.integral)
@@ -79,34 +79,34 @@ class ErrorSums(NamedTuple):
         )
 
 
-def errors(log: Recording) -> dict[str, float]:
+def compute_errors(log: Recording) -> dict[str, float]:
     """Return the tracking errors of a complete log, by the metric's name."""
-    tally = Tally()
+    tally = TrackingErrorSums()
     tally.add(log)
     return tally.metrics()
 
 
-def units(goals: Iterable[str]) -> dict[str, str]:
+def error_units(goals: Iterable[str]) -> dict[str, str]:
     """Return the names of the tracking errors of goals, with their units; angles are in degrees.
 
     Args:
         goals: Keys of the goals.
     """
     found: dict[str, str] = {}
-    for _, signal, names in _tracked(goals):
+    for _, signal, names in _tracked_goals(goals):
         unit = unit_of(signal).replace("rad", "deg")
-        found |= zip(names, (unit, unit, times_second(unit)), strict=True)
+        found |= zip(names, (unit, unit, time_integral_unit(unit)), strict=True)
     return found
 
 
-def times_second(unit: str) -> str:
+def time_integral_unit(unit: str) -> str:
     """Return the unit of a time integral: m for m/s, m s for m."""
     if unit.endswith("/s"):
         return unit.removesuffix("/s")
     return f"{unit} s".strip()
 
 
-def _tracked(goals: Iterable[str]) -> list[tuple[str, str, list[str]]]:
+def _tracked_goals(goals: Iterable[str]) -> list[tuple[str, str, list[str]]]:
     """Each goal that is for a motion signal: its key, the signal and the names of its metrics.
 
     The metrics have the key without its unit, unless that is ambiguous: yaw_rad and yaw_radps.
@@ -123,7 +123,7 @@ def _tracked(goals: Iterable[str]) -> list[tuple[str, str, list[str]]]:
     return found
 
 
-def _error(signal: str, goal: Array, reached: Array) -> Array:
+def _tracking_error(signal: str, goal: Array, reached: Array) -> Array:
     """Error (N,), in degrees for angles; that of a heading is at most half a turn."""
     error = reached - goal
     if signal == "psi_rad":

@@ -13,7 +13,7 @@ from boatsim.errors import BadInput, BadPhysics, unknown_name
 from boatsim.physics.content import content_root
 from boatsim.physics.signals import Array
 from boatsim.physics.vessel import Vessel
-from boatsim.simulate.hull_xml_check import check_text
+from boatsim.simulate.hull_xml_check import check_hull_file
 
 Model: TypeAlias = mujoco.MjModel  # for modules that must not import mujoco
 SMALLEST, LARGEST = 1e-3, 1e6  # [m] of a tank
@@ -60,7 +60,7 @@ def open_water(vessel: Vessel) -> Tank:
     return Tank(10.0 * vessel.length, 10.0 * vessel.length, vessel.length, walls=False)
 
 
-def build(
+def build_model(
     vessel: Vessel,
     tank: Tank | None = None,
     step: float = 0.02,
@@ -106,7 +106,7 @@ def build(
     if tank.walls:
         add_contacts(spec, wall_solref or SOFT_WALL, friction)
     if not show:
-        remove_looks(spec)
+        remove_visual_parts(spec)
     try:
         model = spec.compile()
     except ValueError as error:  # sizes, masses and meshes of the hull: the tank is ours
@@ -162,10 +162,10 @@ def aim_cameras(spec: mujoco.MjSpec, tank: Tank, vessel: Vessel) -> None:
     above.pos = target + (0, 0, 1.2 * max(long / 2, wide / 2 * 3 / 4) / half + vessel.draught)
     eye = target + np.array([-0.72, -0.40, 0.62]) * math.hypot(long, wide) * 1.12
     oblique.pos = eye
-    oblique.alt.xyaxes = looking_at(eye, target)
+    oblique.alt.xyaxes = camera_axes(eye, target)
 
 
-def looking_at(eye: Array, target: Array) -> Array:
+def camera_axes(eye: Array, target: Array) -> Array:
     """Return MuJoCo's `xyaxes` (6,) of a camera at `eye` that looks at `target`, horizon level."""
     forward = (target - eye) / np.linalg.norm(target - eye)
     right = np.cross(forward, (0, 0, 1))
@@ -205,7 +205,7 @@ def read_drawing(path: Path, vessel: Vessel) -> tuple[mujoco.MjSpec, tuple[float
         BadInput: If MuJoCo can not read it or it has no hull.
     """
     if not vessel.hull_xml:
-        check_text(path)
+        check_hull_file(path)
     try:
         if vessel.hull_xml:
             drawing = mujoco.MjSpec.from_string(vessel.hull_xml)
@@ -245,7 +245,7 @@ def place_fittings(
         body = drawing.body(name)
         if body is not None and "motor_half_spacing" in at:
             body.pos = (
-                _required(at, "motor_ahead_of_cg"),
+                _required_value(at, "motor_ahead_of_cg"),
                 side * at["motor_half_spacing"],
                 body.pos[2],
             )
@@ -257,12 +257,16 @@ def place_fittings(
         mount.size = (mount.size[0], at.get("motor_half_spacing", mount.size[1]), mount.size[2])
     if (ballast := drawing.geom("ballast")) is not None:
         if at.get("ballast_mass", 0.0) > 0:
-            ballast.pos = (_required(at, "ballast_from_transom") + shift[0], 0, ballast.pos[2])
+            ballast.pos = (
+                _required_value(at, "ballast_from_transom") + shift[0],
+                0,
+                ballast.pos[2],
+            )
         else:
             drawing.delete(ballast)
 
 
-def _required(geometry: Mapping[str, float], key: str) -> float:
+def _required_value(geometry: Mapping[str, float], key: str) -> float:
     if key not in geometry:
         raise BadInput(f"geometry.{key} is missing; the hull that is drawn needs it")
     return geometry[key]
@@ -310,7 +314,7 @@ def add_contacts(spec: mujoco.MjSpec, solref: tuple[float, float], friction: flo
             pair.friction = (friction, friction, 0, 0, 0)
 
 
-def remove_looks(spec: mujoco.MjSpec) -> None:
+def remove_visual_parts(spec: mujoco.MjSpec) -> None:
     """Delete all parts without contacts: drawn geoms, marks, outboards, fan, cameras, lights."""
     in_contact = {name for pair in spec.pairs for name in (pair.geomname1, pair.geomname2)}
     for geom in [g for g in spec.geoms if g.name not in in_contact]:

@@ -7,7 +7,7 @@ from time import monotonic
 from typing import Any
 
 from boatsim.interruption import deferred_signals
-from boatsim.progress import Report, silent
+from boatsim.progress import Report, ignore_progress
 from boatsim.sweeps.journal import Entry, Journal
 from boatsim.sweeps.workers.base import Backend, Task, Work
 
@@ -53,7 +53,7 @@ class Campaign:
     label: str
 
 
-def run_campaign(campaign: Campaign, backend: Backend, report: Report = silent) -> Outcome:
+def run_campaign(campaign: Campaign, backend: Backend, report: Report = ignore_progress) -> Outcome:
     """Perform the tasks of a campaign that are not finished yet.
 
     After an interruption the results of all finished tasks are kept.

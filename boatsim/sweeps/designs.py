@@ -36,10 +36,10 @@ def design_matrix(design: Design, names: Sequence[str], runs: int, seed: int) ->
         return _saltelli(len(names), runs, seed)
     if not names:
         return np.empty((runs, 0))
-    return np.column_stack([_column(design, name, runs, seed) for name in names])
+    return np.column_stack([_probability_column(design, name, runs, seed) for name in names])
 
 
-def _column(design: Design, name: str, runs: int, seed: int) -> Array:
+def _probability_column(design: Design, name: str, runs: int, seed: int) -> Array:
     rng = np.random.default_rng([seed, crc32(name.encode())])
     if design == "random":
         return rng.random(runs)

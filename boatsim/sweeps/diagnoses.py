@@ -14,11 +14,11 @@ from boatsim.diagnosis import pipeline
 from boatsim.diagnosis.config import from_settings
 from boatsim.diagnosis.report import output_files
 from boatsim.errors import BadInput, BoatsimError
-from boatsim.progress import Report, silent
+from boatsim.progress import Report, ignore_progress
 from boatsim.sweeps import table
 from boatsim.sweeps.campaign import Campaign, Outcome, run_campaign
 from boatsim.sweeps.journal import Entry
-from boatsim.sweeps.runs import failure_of
+from boatsim.sweeps.runs import failure_entry
 from boatsim.sweeps.workers.base import Backend
 from boatsim.version import version
 
@@ -94,7 +94,7 @@ def diagnose_all(
     options: DiagnosisOptions,
     folder: Path,
     backend: Backend,
-    report: Report = silent,
+    report: Report = ignore_progress,
 ) -> Outcome:
     """Start or continue the diagnoses of recordings; write diagnoses.parquet.
 
@@ -125,7 +125,7 @@ def diagnose_all(
         for name, (_, unit) in entry.get("values", {}).items():
             units[name] = unit
     columns = table_columns(done, list(map(str, paths)))
-    table.write(columns, units, dumps(about, ensure_ascii=False), folder / NAME)
+    table.write_parquet(columns, units, dumps(about, ensure_ascii=False), folder / NAME)
     return done
 
 
@@ -178,9 +178,9 @@ def diagnose_task(task: DiagnosisTask) -> Entry:
         )
         output_files.write_diagnosis(found, Path(task.folder))
     except BoatsimError as error:
-        return failure_of(str(error))
+        return failure_entry(str(error))
     except Exception as error:
-        return failure_of(f"{type(error).__name__}: {error}")
+        return failure_entry(f"{type(error).__name__}: {error}")
     answer = found.findings.answer
     values: dict[str, list[Any]] = {}
     for effect in answer["effects"]:

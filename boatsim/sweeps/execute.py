@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from boatsim.errors import BadInput, unknown_name
-from boatsim.progress import Report, silent
+from boatsim.progress import Report, ignore_progress
 from boatsim.sweeps import page
 from boatsim.sweeps.campaign import Campaign, run_campaign
 from boatsim.sweeps.plan import Plan
@@ -25,7 +25,7 @@ def run_plan(
     jobs: int | None = None,
     ray: str | None = None,
     metrics: Sequence[str] = (),
-    report: Report = silent,
+    report: Report = ignore_progress,
 ) -> tuple[Results, bool]:
     """Perform the runs of a plan; write sweep.parquet and report.html.
 
@@ -45,15 +45,15 @@ def run_plan(
         OSError: A file cannot be written.
     """
     report(LABEL, 0.0, "starting")
-    known = plan.rehearse()
+    known = plan.run_corners_briefly()
     for name in metrics:
         if name not in known:
             raise BadInput(unknown_name("metric", name, known))
-    campaign = Campaign(folder, plan.about(), plan.count, plan.tasks(), perform_run, LABEL)
+    campaign = Campaign(folder, plan.definition(), plan.run_count, plan.tasks(), perform_run, LABEL)
     done = run_campaign(campaign, choose_backend(jobs, ray), report)
     results = Results(plan, done.entries, tuple(metrics))
     results.write(folder)
-    page.write(results, folder)
+    page.write_report(results, folder)
     return results, done.complete
 
 

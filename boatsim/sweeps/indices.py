@@ -47,7 +47,7 @@ class Index(NamedTuple):
     total_high: float
 
 
-def sobol(blocks: Array) -> tuple[Array, Array]:
+def sobol_indices(blocks: Array) -> tuple[Array, Array]:
     """Return first-order and total indices (D,) each; nan where the values do not vary.
 
     Args:
@@ -63,21 +63,21 @@ def sobol(blocks: Array) -> tuple[Array, Array]:
     return first, total
 
 
-def bootstrap(blocks: Array, seed: int) -> tuple[Array, Array]:
+def bootstrap_intervals(blocks: Array, seed: int) -> tuple[Array, Array]:
     """Return 95 % intervals (2, D) of the first-order and of the total indices.
 
     Args:
-        blocks: Values (D + 2, N), as of `sobol`; rows of the design are resampled.
+        blocks: Values (D + 2, N), as of `sobol_indices`; rows of the design are resampled.
         seed: Random seed.
     """
     rng = np.random.default_rng(seed)
     rows = blocks.shape[1]
-    samples = [sobol(blocks[:, rng.integers(0, rows, rows)]) for _ in range(RESAMPLES)]
+    samples = [sobol_indices(blocks[:, rng.integers(0, rows, rows)]) for _ in range(RESAMPLES)]
     first, total = np.quantile(np.array(samples), (LOW, HIGH), axis=0).transpose(1, 0, 2)
     return first, total
 
 
-def indices(results: Results) -> list[Index]:
+def sensitivity_indices(results: Results) -> list[Index]:
     """Return the indices of every metric at every grid point.
 
     Args:
@@ -87,21 +87,21 @@ def indices(results: Results) -> list[Index]:
         The indices; none if the sweep is not complete or not of Saltelli's design.
     """
     plan = results.plan
-    if plan.design != "sobol" or len(results.numbers) < plan.count:
+    if plan.design != "sobol" or len(results.numbers) < plan.run_count:
         return []
     names = [sampled.target.name for sampled in plan.sampled]
     found: list[Index] = []
     for number in range(len(plan.points)):
-        point = plan.point(number)
-        rows = results.point == number
-        for metric in results.selected:
+        point = plan.point_values(number)
+        rows = results.point_numbers == number
+        for metric in results.displayed_metrics:
             blocks = results.metrics[metric][rows].reshape(len(names) + 2, plan.runs)
             blocks = blocks[:, np.isfinite(blocks).all(axis=0)]
             count = blocks.shape[1]
             if count < 2 or np.ptp(blocks) == 0.0:
                 continue
-            first, total = sobol(blocks)
-            first_ends, total_ends = bootstrap(blocks, plan.seed)
+            first, total = sobol_indices(blocks)
+            first_ends, total_ends = bootstrap_intervals(blocks, plan.seed)
             table = np.stack([first, *first_ends, total, *total_ends], axis=1)
             for name, row in zip(names, table.tolist(), strict=True):
                 found.append(Index(point, metric, name, count, *row))

@@ -40,8 +40,8 @@ class Journal:
         file = os.fdopen(os.open(path, os.O_RDWR | os.O_CREAT, 0o666), "r+b", buffering=0)
         self.done: dict[int, Entry] = {}
         try:
-            _lock(file, folder)
-            first, entries, size = _read(file)
+            _lock_journal(file, folder)
+            first, entries, size = _read_journal(file)
             if size:
                 _check_same(folder, first, about)
         except BaseException:
@@ -51,7 +51,7 @@ class Journal:
         file.truncate(size)
         self._growing = AppendedFile(file, path, size)
         if not size:
-            self._growing.add(_line(about))
+            self._growing.add(_encode_line(about))
 
     def add(self, number: int, entry: Entry) -> None:
         """Append the result of a task; it is on the disk when this returns.
@@ -63,7 +63,7 @@ class Journal:
         Raises:
             OSError: The file cannot be written.
         """
-        line = _line({"run": number, **entry})
+        line = _encode_line({"run": number, **entry})
         self._growing.add(line)
         self.done[number] = json.loads(line)  # the same values as after a restart
 
@@ -74,11 +74,11 @@ class Journal:
         self._growing.close()
 
 
-def _line(content: Mapping[str, Any]) -> bytes:
+def _encode_line(content: Mapping[str, Any]) -> bytes:
     return (json.dumps(content, ensure_ascii=False, allow_nan=False) + "\n").encode()
 
 
-def _lock(file: IO[bytes], folder: Path) -> None:
+def _lock_journal(file: IO[bytes], folder: Path) -> None:
     """Lock the journal for this process; raises BadInput if another process uses it."""
     try:
         flock(file, LOCK_EX | LOCK_NB)
@@ -88,7 +88,7 @@ def _lock(file: IO[bytes], folder: Path) -> None:
         ) from None
 
 
-def _read(file: IO[bytes]) -> tuple[bytes, list[Entry], int]:
+def _read_journal(file: IO[bytes]) -> tuple[bytes, list[Entry], int]:
     """First line, results of tasks, and the number of bytes in complete lines."""
     first, entries, size = b"", list[Entry](), 0
     for line in file.read().splitlines(keepends=True):
@@ -114,7 +114,7 @@ def _check_same(folder: Path, first: bytes, about: Mapping[str, Any]) -> None:
             f"{folder / NAME} is not a journal of boatsim; choose another --out"
         ) from None
     old = _flatten(stored)
-    new = _flatten(json.loads(_line(about)))
+    new = _flatten(json.loads(_encode_line(about)))
     for key in new | old:
         if old.get(key) != new.get(key):
             difference = f"its {key} is {old.get(key, 'missing')}, not {new.get(key, 'missing')}"

@@ -12,11 +12,11 @@ from operator import attrgetter
 from typing import Literal, NamedTuple, TypeAlias
 
 from boatsim.errors import BadInput, unknown_name
-from boatsim.files import tables
+from boatsim.files import array_of_tables
 from boatsim.physics import vessel as vessels
 from boatsim.physics.content import all_names, library_names, load_class
 from boatsim.physics.kinds.effect import Effect
-from boatsim.simulate.cases import Place
+from boatsim.simulate.cases import ScenarioLocation
 from boatsim.simulate.controllers import controller_table
 from boatsim.simulate.scenario import Scenario, ScenarioFile, from_table
 
@@ -84,7 +84,7 @@ def parse_target(text: str) -> Target:
 
 
 def find_slots(
-    table: ScenarioTable, place: Place, target: Target
+    table: ScenarioTable, place: ScenarioLocation, target: Target
 ) -> tuple[ScenarioTable, list[Slot]]:
     """Return the values of a scenario that a target changes.
 
@@ -104,14 +104,18 @@ def find_slots(
         table, paths = _find_key(table, place, key)
         if target.operation:
             scenario = from_table(table, place)
-            slots += [Slot(path, _specified(scenario, path, key)) for path in paths]
+            slots += [Slot(path, _specified_number(scenario, path, key)) for path in paths]
         else:
             slots += map(Slot, paths)
     return table, slots
 
 
 def set_values(
-    table: ScenarioTable, place: Place, slots: Sequence[Slot], operation: Operation, value: Value
+    table: ScenarioTable,
+    place: ScenarioLocation,
+    slots: Sequence[Slot],
+    operation: Operation,
+    value: Value,
 ) -> ScenarioTable:
     """Return a scenario with other values.
 
@@ -126,20 +130,20 @@ def set_values(
         BadInput: The value cannot be applied.
     """
     for path, specified in slots:
-        new = _apply(operation, specified, value)
+        new = _apply_operation(operation, specified, value)
         if path == ("load",):
-            table = {**table, "load": _loads(table, place, str(value))}
+            table = {**table, "load": _resolve_loads(table, place, str(value))}
         elif path == ("controller", "use"):
             table = {**table, "controller": controller_table(str(value), table.get("controller"))}
         elif value == NONE and len(path) == 1:
             table = dict(table)
             table.pop(str(path[0]), None)
         else:
-            table = _with_value(table, path, new)
+            table = _replace_value(table, path, new)
     return table
 
 
-def _apply(operation: Operation, specified: float, value: Value) -> Value:
+def _apply_operation(operation: Operation, specified: float, value: Value) -> Value:
     """Replace, increase or multiply the specified number."""
     if not operation:
         return value
@@ -150,14 +154,16 @@ def _apply(operation: Operation, specified: float, value: Value) -> Value:
     return specified * float(value)
 
 
-def _find_key(table: ScenarioTable, place: Place, key: str) -> tuple[ScenarioTable, list[KeyPath]]:
+def _find_key(
+    table: ScenarioTable, place: ScenarioLocation, key: str
+) -> tuple[ScenarioTable, list[KeyPath]]:
     head, *rest = key.split(".")
     if head == "controller" and not rest:
         return table, [("controller", "use")]
     if head == "load" and not rest:
         return table, [("load",)]
     if head == "goal":
-        return table, [_goal(table, rest)]
+        return table, [_find_goal(table, rest)]
     if head == "sensor":
         return table, [("sensor", _sensor_index(table, rest[:1], key), *rest[1:])]
     if head == "effect":
@@ -172,14 +178,14 @@ def _find_key(table: ScenarioTable, place: Place, key: str) -> tuple[ScenarioTab
 
 
 def _find_effect(
-    table: ScenarioTable, place: Place, rest: Sequence[str], key: str
+    table: ScenarioTable, place: ScenarioLocation, rest: Sequence[str], key: str
 ) -> tuple[ScenarioTable, list[KeyPath]]:
     """Values of effects of the scenario, of the vessel, or of one added from the library."""
     name = rest[0] if rest else ""
     if len(rest) == 1 and name in library_names("effect"):
         kind: type[Effect] = load_class("effect", name)
         raise BadInput(f"{key} is an effect; add one of its parameters: {', '.join(kind.params())}")
-    effects = tables(table.get("effect"))
+    effects = array_of_tables(table.get("effect"))
     scenario_effects = [str(effect.get("name", effect.get("use"))) for effect in effects]
     if name in scenario_effects:
         return table, [("effect", scenario_effects.index(name), *rest[1:])]
@@ -197,9 +203,9 @@ def _find_effect(
     raise BadInput(unknown_name("key", name, allowed))
 
 
-def _goal(table: ScenarioTable, rest: Sequence[str]) -> KeyPath:
+def _find_goal(table: ScenarioTable, rest: Sequence[str]) -> KeyPath:
     """Path of `goal.u_mps`, the only [[goal]] with that key, or of `goal.2.u_mps`, the second."""
-    goals = tables(table.get("goal"))
+    goals = array_of_tables(table.get("goal"))
     if rest and rest[0].isdigit():
         number = int(rest[0])
         if not 1 <= number <= len(goals):
@@ -224,13 +230,13 @@ def _goal(table: ScenarioTable, rest: Sequence[str]) -> KeyPath:
 
 def _sensor_index(table: ScenarioTable, name: Sequence[str], key: str) -> int:
     """Index of a [[sensor]]."""
-    sensors = [str(sensor.get("use")) for sensor in tables(table.get("sensor"))]
+    sensors = [str(sensor.get("use")) for sensor in array_of_tables(table.get("sensor"))]
     if not name or name[0] not in sensors:
         raise BadInput(unknown_name(f"{key}: sensor", name[0] if name else "", sensors))
     return sensors.index(name[0])
 
 
-def _specified(scenario: Scenario, path: KeyPath, key: str) -> float:
+def _specified_number(scenario: Scenario, path: KeyPath, key: str) -> float:
     """The number specified for a value, or its default; raises BadInput if it is not a number."""
     head, *rest = path
     found: object
@@ -278,7 +284,7 @@ def _value_at(table: object, path: KeyPath) -> object:
     return table
 
 
-def _loads(table: ScenarioTable, place: Place, value: str) -> list[str]:
+def _resolve_loads(table: ScenarioTable, place: ScenarioLocation, value: str) -> list[str]:
     """Loads of the scenario; `heavy` or `heavy+wide` replace those that they exclude."""
     specified = table.get("load", [])
     before = []
@@ -288,7 +294,7 @@ def _loads(table: ScenarioTable, place: Place, value: str) -> list[str]:
     return vessels.merge_load_conditions(str(table.get("vessel")), before, more, place.path.parent)
 
 
-def _with_value(table: object, path: KeyPath, value: object) -> dict[str, object]:
+def _replace_value(table: object, path: KeyPath, value: object) -> dict[str, object]:
     """A copy of a table with one value changed."""
     head, *rest = path
     copy = dict(table) if isinstance(table, Mapping) else {}
@@ -299,9 +305,9 @@ def _with_value(table: object, path: KeyPath, value: object) -> dict[str, object
         items = list(inner) if isinstance(inner, list) else []
         index = rest[0]
         if rest[1:]:
-            value = _with_value(items[index], tuple(rest[1:]), value)
+            value = _replace_value(items[index], tuple(rest[1:]), value)
         items[index] = value
         copy[str(head)] = items
     else:
-        copy[str(head)] = _with_value(inner, tuple(rest), value)
+        copy[str(head)] = _replace_value(inner, tuple(rest), value)
     return copy

@@ -7,18 +7,18 @@ import numpy as np
 
 from boatsim.diagnosis.report.blocks import Figures, Heading, Items, Section, Table
 from boatsim.diagnosis.report.html_page import render_template
-from boatsim.files import replacing
+from boatsim.files import replace_file
 from boatsim.sweeps.keys import Value
-from boatsim.sweeps.plots import groups, legend_of, plot_metric
+from boatsim.sweeps.plots import controller_legend, group_by_controller, plot_metric
 from boatsim.sweeps.results import Results
-from boatsim.sweeps.text_tables import blank_repeats, format_values, tables
+from boatsim.sweeps.text_tables import blank_repeats, format_values, result_tables
 
 NAME = "report.html"
 TEMPLATE = Path(__file__).parent / "templates" / "sweep.html.j2"
 MOST_VALUES = 6  # of an axis that are listed; of more the first two and the last
 
 
-def write(results: Results, folder: Path) -> None:
+def write_report(results: Results, folder: Path) -> None:
     """Write report.html, one page that loads nothing from elsewhere.
 
     Args:
@@ -28,15 +28,15 @@ def write(results: Results, folder: Path) -> None:
     Raises:
         OSError: The file cannot be written.
     """
-    sections = [*_table_sections(results), _failures(results), *_plot_sections(results)]
+    sections = [*_table_sections(results), _failure_section(results), *_plot_sections(results)]
     sections = [section for section in sections if section.blocks]
-    facts = _facts(results)
-    page = render_template(TEMPLATE, title=_title(results), facts=facts, sections=sections)
-    with replacing(folder / NAME) as temporary:
+    facts = _page_facts(results)
+    page = render_template(TEMPLATE, title=_page_title(results), facts=facts, sections=sections)
+    with replace_file(folder / NAME) as temporary:
         temporary.write_text(page, encoding="utf-8")
 
 
-def _title(results: Results) -> str:
+def _page_title(results: Results) -> str:
     names = results.plan.scenarios
     what = f"{len(names)} scenarios"
     if len(names) == 1:
@@ -44,15 +44,15 @@ def _title(results: Results) -> str:
     return f"{what}: {len(results.numbers)} runs"
 
 
-def _facts(results: Results) -> list[tuple[str, str]]:
+def _page_facts(results: Results) -> list[tuple[str, str]]:
     """Label and text of the facts at the head of the page."""
     plan = results.plan
     axes = [f"{axis.target.name}: {', '.join(_shorten(axis.values))}" for axis in plan.axes]
     sampled = [f"{one.target.name}: {one}" for one in plan.sampled]
     done = len(results.numbers)
-    failed = f"{int(results.failed.sum())} of {done} runs"
-    if done < plan.count:
-        failed += f" (of {plan.count}: interrupted)"
+    failed = f"{int(results.is_failed.sum())} of {done} runs"
+    if done < plan.run_count:
+        failed += f" (of {plan.run_count}: interrupted)"
     facts = {
         "Varied": "; ".join(axes),
         "Sampled": "; ".join(sampled),
@@ -72,16 +72,16 @@ def _shorten(values: Sequence[Value]) -> list[str]:
 
 def _table_sections(results: Results) -> list[Section]:
     sections = []
-    for table in tables(results):
+    for table in result_tables(results):
         block = Table("", table.head, blank_repeats(table), tuple(range(table.left)))
         sections.append(Section(table.key, table.title, [block]))
     return sections
 
 
-def _failures(results: Results) -> Section:
+def _failure_section(results: Results) -> Section:
     """Reasons of failed runs; a section without blocks if no run failed."""
     section = Section("failed", "Why runs failed", [])
-    reasons = [(f"{count} runs", reason) for reason, count in results.reasons.items()]
+    reasons = [(f"{count} runs", reason) for reason, count in results.failure_counts.items()]
     if reasons:
         section.blocks.append(Items(tuple(reasons)))
     return section
@@ -90,14 +90,14 @@ def _failures(results: Results) -> Section:
 def _plot_sections(results: Results) -> list[Section]:
     """Plots of the metrics, a section for each scenario."""
     scenarios = results.plan.scenarios
-    names = np.array([results.plan.points[number].scenario for number in results.point])
+    names = np.array([results.plan.points[number].scenario for number in results.point_numbers])
     sections = []
     for number, scenario in enumerate(scenarios, 1):
         title = scenario if len(scenarios) > 1 else "Metrics against what varied"
         section = Section(f"norms-{number}", title)
         rows = names == scenario
-        legend = legend_of(groups(results, rows))
-        for metric in results.selected:
+        legend = controller_legend(group_by_controller(results, rows))
+        for metric in results.displayed_metrics:
             if plots := plot_metric(results, metric, rows):
                 section.blocks.extend([Heading(metric), Figures(legend, plots)])
         sections.append(section)

@@ -16,7 +16,7 @@ import numpy as np
 from boatsim.errors import BadInput, BadPhysics
 from boatsim.physics.content import find_content_file
 from boatsim.physics.signals import Array
-from boatsim.simulate.cases import Place, content, matching
+from boatsim.simulate.cases import ScenarioLocation, find_scenarios, read_scenario
 from boatsim.simulate.evaluation import metric_names
 from boatsim.simulate.run import run
 from boatsim.simulate.scenario import from_table
@@ -45,7 +45,7 @@ class Point(NamedTuple):
     scenario: str
     values: tuple[Value, ...]
     table: ScenarioTable
-    place: Place
+    place: ScenarioLocation
     slots: tuple[list[Slot], ...]
 
 
@@ -73,7 +73,7 @@ class Plan:
     def points(self) -> tuple[Point, ...]:
         """Grid points by scenario, the last axis fastest; raises BadInput for wrong keys."""
         grid = product(*map(attrgetter("values"), self.axes))
-        return tuple(starmap(self._point, product(self.scenarios, grid)))
+        return tuple(starmap(self._make_point, product(self.scenarios, grid)))
 
     @cached_property
     def probabilities(self) -> Array:
@@ -92,7 +92,7 @@ class Plan:
         return list(zip(*columns, strict=True))
 
     @property
-    def count(self) -> int:
+    def run_count(self) -> int:
         """Number of runs."""
         return len(self.points) * len(self.samples)
 
@@ -107,7 +107,7 @@ class Plan:
         return [*self._scenario_column, *map(attrgetter("name"), self.targets)]
 
     @cached_property
-    def differing(self) -> list[str]:
+    def differing_columns(self) -> list[str]:
         """Names of the columns in which grid points differ."""
         axes = [axis.target.name for axis in self.axes if len(axis.values) > 1]
         return [*self._scenario_column, *axes]
@@ -118,8 +118,8 @@ class Plan:
             return ["scenario"]
         return []
 
-    def point(self, number: int) -> tuple[Value, ...]:
-        """Return the values of a grid point in the columns `differing`.
+    def point_values(self, number: int) -> tuple[Value, ...]:
+        """Return the values of a grid point in the columns `differing_columns`.
 
         Args:
             number: Number of the grid point.
@@ -128,7 +128,7 @@ class Plan:
         several = [len(self.scenarios) > 1, *(len(axis.values) > 1 for axis in self.axes)]
         return tuple(compress((point.scenario, *point.values), several))
 
-    def values(self, number: int) -> tuple[Value, ...]:
+    def run_values(self, number: int) -> tuple[Value, ...]:
         """Return the values of a run in `columns`.
 
         Args:
@@ -151,12 +151,12 @@ class Plan:
 
     def tasks(self) -> Iterator[tuple[int, RunTask]]:
         """Yield the number and the task of every run."""
-        for number in range(self.count):
+        for number in range(self.run_count):
             point = self.points[number // len(self.samples)]
-            table = self._with_sample(point, self.samples[number % len(self.samples)])
+            table = self._apply_sample(point, self.samples[number % len(self.samples)])
             yield number, RunTask(table, point.place, self.seed_of(number))
 
-    def rehearse(self) -> set[str]:
+    def run_corners_briefly(self) -> set[str]:
         """Start a run at each corner of the grid, with all sampled quantities at their medians.
 
         This finds mistakes in keys and values, and compiles the vessels, before the sweep begins.
@@ -172,7 +172,7 @@ class Plan:
         for point in self.points:
             if not all(map(_is_corner, self.axes, point.values)):
                 continue
-            scenario = from_table(self._with_sample(point, medians), point.place)
+            scenario = from_table(self._apply_sample(point, medians), point.place)
             duration = REHEARSED_STEPS * scenario.file.step
             short = scenario.file.model_copy(update={"duration": duration})
             with suppress(BadPhysics):  # A failure of that run, which its entry reports.
@@ -180,7 +180,7 @@ class Plan:
             metrics |= metric_names(scenario)
         return metrics
 
-    def about(self) -> dict[str, Any]:
+    def definition(self) -> dict[str, Any]:
         """Return the definition of the sweep with digests of its files, for the journal."""
         return {
             "boatsim": version(),
@@ -190,11 +190,11 @@ class Plan:
             "runs": self.runs,
             "design": self.design,
             "seed": self.seed,
-            "files": _digests(self.points),
+            "files": _file_digests(self.points),
         }
 
-    def _point(self, name: str, values: tuple[Value, ...]) -> Point:
-        own, place = content(name)
+    def _make_point(self, name: str, values: tuple[Value, ...]) -> Point:
+        own, place = read_scenario(name)
         table: ScenarioTable = own
         for axis, value in zip(self.axes, values, strict=True):
             table, slots = find_slots(table, place, axis.target)
@@ -205,7 +205,7 @@ class Plan:
             sampled.append(slots)
         return Point(name, values, table, place, tuple(sampled))
 
-    def _with_sample(self, point: Point, values: Sequence[Value]) -> ScenarioTable:
+    def _apply_sample(self, point: Point, values: Sequence[Value]) -> ScenarioTable:
         table = point.table
         for one, slots, value in zip(self.sampled, point.slots, values, strict=True):
             table = set_values(table, point.place, slots, one.target.operation, value)
@@ -238,30 +238,30 @@ def make_plan(
     Raises:
         BadInput: A scenario is unknown, a key repeats, or there are too many runs.
     """
-    names = tuple(chain.from_iterable(map(matching, scenarios)))
+    names = tuple(chain.from_iterable(map(find_scenarios, scenarios)))
     plan = Plan(names, tuple(axes), tuple(sampled), runs, seed, design)
     unique = [*names, *chain.from_iterable(map(attrgetter("keys"), plan.targets))]
     for name in unique:
         if unique.count(name) > 1:
             raise BadInput(f"{name} is given twice")
-    if plan.count > MOST_RUNS:
-        raise BadInput(f"{plan.count} runs are more than {MOST_RUNS}")
+    if plan.run_count > MOST_RUNS:
+        raise BadInput(f"{plan.run_count} runs are more than {MOST_RUNS}")
     return plan
 
 
-def _digests(points: Sequence[Point]) -> dict[str, str]:
+def _file_digests(points: Sequence[Point]) -> dict[str, str]:
     """Digests of the scenarios and of the files of their vessels and controllers."""
     found: dict[str, str] = {}
     for point in points:
         if point.scenario not in found:
-            table = dumps(content(point.scenario)[0], default=str)
+            table = dumps(read_scenario(point.scenario)[0], default=str)
             found[point.scenario] = _digest(table.encode())
-        for path in _files(point):
+        for path in _point_files(point):
             found.setdefault("/".join(path.parts[-2:]), _digest(path.read_bytes()))
     return found
 
 
-def _files(point: Point) -> Iterator[Path]:
+def _point_files(point: Point) -> Iterator[Path]:
     """Files of its vessel and its controller."""
     folder = point.place.path.parent
     yield find_content_file("vessel", str(point.table["vessel"]), folder)

@@ -45,7 +45,7 @@ class _Metric(NamedTuple):
     title: str
 
 
-def groups(results: Results, rows: Array) -> list[Group]:
+def group_by_controller(results: Results, rows: Array) -> list[Group]:
     """Return the runs by controller if several were varied, at most as many as there are styles.
 
     Args:
@@ -54,7 +54,7 @@ def groups(results: Results, rows: Array) -> list[Group]:
     """
     if CONTROLLER not in results.plan.columns:
         return [Group("", STYLES[0], rows)]
-    used = np.array(list(map(str, results.varied(CONTROLLER))))
+    used = np.array(list(map(str, results.column_values(CONTROLLER))))
     names = dict.fromkeys(used.tolist())
     found = []
     for name, style in zip(names, STYLES, strict=False):
@@ -62,7 +62,7 @@ def groups(results: Results, rows: Array) -> list[Group]:
     return found
 
 
-def legend_of(found: Sequence[Group]) -> str:
+def controller_legend(found: Sequence[Group]) -> str:
     """Return the legend of the controllers as SVG; "" for one group.
 
     Args:
@@ -92,24 +92,24 @@ def plot_metric(results: Results, name: str, rows: Array) -> list[str]:
     if unit:
         title = f"{name} [{unit}]"
     y = axis_limits([values[finite]], zero=False)
-    metric = _Metric(values, groups(results, finite), y, title)
+    metric = _Metric(values, group_by_controller(results, finite), y, title)
     plots = []
     for axis in results.plan.axes:
         # The styles distinguish the controllers; they need no axis where something else varies.
         by_style = axis.target.name == CONTROLLER and len(metric.groups) < 2
         if len(axis.values) > 1 and not by_style:
             plots.append(_plot_axis(results, axis, metric))
-    for quantity, x, correlation in _correlated(results, values, finite):
+    for quantity, x, correlation in _rank_correlations(results, values, finite):
         plots.append(_plot_sampled(quantity, x, correlation, metric))
     return plots
 
 
 def _plot_axis(results: Results, axis: Axis, metric: _Metric) -> str:
     name = axis.target.name
-    varied = results.varied(name)
+    varied = results.column_values(name)
     title = metric.title
     if not axis.is_numeric:
-        return figure([_boxes(axis, varied, metric)], f"{title} by {name}")
+        return figure([_box_plot(axis, varied, metric)], f"{title} by {name}")
     x = np.array(sorted(map(float, axis.values)))
     numbers = np.array(varied, dtype=float)
     lines: list[Line] = []
@@ -137,7 +137,7 @@ def _quantiles(x: Array, numbers: Array, values: Array, rows: Array) -> Array:
     return spread
 
 
-def _boxes(axis: Axis, varied: Sequence[Any], metric: _Metric) -> Panel:
+def _box_plot(axis: Axis, varied: Sequence[Any], metric: _Metric) -> Panel:
     """A box for each value of a list; those of several controllers stand side by side."""
     count = len(metric.groups)
     by_controller = axis.target.name == CONTROLLER
@@ -171,14 +171,16 @@ def _shorten(label: str) -> str:
     return f"{label[: LONGEST_LABEL - 1]}…"
 
 
-def _correlated(results: Results, values: Array, finite: Array) -> list[tuple[str, Array, float]]:
+def _rank_correlations(
+    results: Results, values: Array, finite: Array
+) -> list[tuple[str, Array, float]]:
     """Sampled numbers (R,) with their rank correlation with a metric, the strongest first."""
     from scipy.stats import spearmanr
 
     found = []
     for sampled in results.plan.sampled:
         name = sampled.target.name
-        varied = results.varied(name)
+        varied = results.column_values(name)
         if finite.sum() < 3 or not all(isinstance(value, int | float) for value in varied):
             continue
         x = np.array(varied, dtype=float)

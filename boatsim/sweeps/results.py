@@ -48,24 +48,24 @@ class Results:
         return found
 
     @property
-    def selected(self) -> list[str]:
+    def displayed_metrics(self) -> list[str]:
         """Metrics to show; the table holds all."""
         if not self.selection:
             return list(self.units)
         return [name for name in self.units if name in self.selection]
 
     @cached_property
-    def point(self) -> Array:
+    def point_numbers(self) -> Array:
         """Number of the grid point of each run (R,)."""
         return np.array(self.numbers, dtype=int) // len(self.plan.samples)
 
     @cached_property
-    def sample(self) -> Array:
+    def sample_numbers(self) -> Array:
         """Number of the sample of each run (R,); runs with the same number share all samples."""
         return np.array(self.numbers, dtype=int) % len(self.plan.samples)
 
     @cached_property
-    def failed(self) -> Array:
+    def is_failed(self) -> Array:
         """Whether each run failed (R,)."""
         return np.array([reason is not None for reason in self._failures], dtype=bool)
 
@@ -73,27 +73,27 @@ class Results:
     def metrics(self) -> dict[str, Array]:
         """Values (R,) of each metric, nan where a run has none."""
         # A float array holds None as nan.
-        return {name: np.array(self._values_of(name), dtype=float) for name in self.units}
+        return {name: np.array(self._metric_values(name), dtype=float) for name in self.units}
 
     @property
     def _failures(self) -> list[str | None]:
         """Reason of each failed run; None for the others."""
         return list(map(itemgetter("failure"), self.entries.values()))
 
-    def _values_of(self, metric: str) -> list[float | None]:
+    def _metric_values(self, metric: str) -> list[float | None]:
         return [entry.get("norms", {}).get(metric, (None,))[0] for entry in self.entries.values()]
 
-    def varied(self, name: str) -> list[Any]:
+    def column_values(self, name: str) -> list[Any]:
         """Return the values (R,) of a column of the plan.
 
         Args:
             name: Name of the column.
         """
         index = self.plan.columns.index(name)
-        return [self.plan.values(number)[index] for number in self.numbers]
+        return [self.plan.run_values(number)[index] for number in self.numbers]
 
     @property
-    def reasons(self) -> dict[str, int]:
+    def failure_counts(self) -> dict[str, int]:
         """Reasons of failed runs with their numbers, the most frequent first."""
         return dict(Counter(filter(None, self._failures)).most_common())
 
@@ -101,16 +101,16 @@ class Results:
         """Return all columns of the table."""
         columns: dict[str, Sequence[Any]] = {
             "run": self.numbers,
-            "point": self.point.tolist(),
-            "draw": self.sample.tolist(),
+            "point": self.point_numbers.tolist(),
+            "draw": self.sample_numbers.tolist(),
         }
-        rows = list(map(self.plan.values, self.numbers))
+        rows = list(map(self.plan.run_values, self.numbers))
         for index, name in enumerate(self.plan.columns):
             columns[name] = list(map(itemgetter(index), rows))
         if "seed" not in self.plan.columns:
             columns["seed"] = list(map(self.plan.seed_of, self.numbers))
         for name in self.units:
-            columns[name] = self._values_of(name)
+            columns[name] = self._metric_values(name)
         columns["guards_met"] = [entry.get("met") for entry in self.entries.values()]
         columns["failure"] = self._failures
         return columns
@@ -124,5 +124,5 @@ class Results:
         Raises:
             OSError: The file cannot be written.
         """
-        about = dumps(self.plan.about(), ensure_ascii=False)
-        table.write(self.columns(), self.units, about, folder / NAME)
+        about = dumps(self.plan.definition(), ensure_ascii=False)
+        table.write_parquet(self.columns(), self.units, about, folder / NAME)

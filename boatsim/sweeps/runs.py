@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 from boatsim.errors import BoatsimError
 from boatsim.interruption import signal_received
-from boatsim.simulate.cases import Place
+from boatsim.simulate.cases import ScenarioLocation
 from boatsim.simulate.evaluation import all_metrics
 from boatsim.simulate.run import run
 from boatsim.simulate.scenario import from_table
@@ -25,7 +25,7 @@ class RunTask(NamedTuple):
     """
 
     table: Mapping[str, Any]
-    place: Place
+    place: ScenarioLocation
     seed: int | None
 
 
@@ -45,9 +45,9 @@ def perform_run(task: RunTask) -> Entry:
             raise KeyboardInterrupt
         metrics = all_metrics(done)
     except BoatsimError as error:
-        return failure_of(str(error))
+        return failure_entry(str(error))
     except Exception as error:  # An error in a controller, an effect or a metric of the user.
-        return failure_of(f"{type(error).__name__}: {error}")
+        return failure_entry(f"{type(error).__name__}: {error}")
     met: bool | None = None
     norms = {}
     for name, metric in metrics.items():
@@ -68,7 +68,7 @@ def _stop_if_interrupted(t: float) -> None:
         raise KeyboardInterrupt
 
 
-def failure_of(reason: str) -> Entry:
+def failure_entry(reason: str) -> Entry:
     """Return the entry of a task that failed.
 
     Args:

@@ -30,13 +30,13 @@ class Distribution(NamedTuple):
     frozen: Callable[..., Any]
 
 
-def _positive_sd(mean: float, sd: float) -> str:
+def _fault_of_sd(mean: float, sd: float) -> str:
     if sd > 0.0:
         return ""
     return "its spread must be above 0"
 
 
-def _ascending(low: float, high: float) -> str:
+def _fault_of_order(low: float, high: float) -> str:
     if low < high:
         return ""
     return "its low end must be below its high end"
@@ -45,29 +45,29 @@ def _ascending(low: float, high: float) -> str:
 def _fault_of_lognormal(median: float, spread: float) -> str:
     if median <= 0.0:
         return "its median must be above 0"
-    return _positive_sd(median, spread)
+    return _fault_of_sd(median, spread)
 
 
 def _fault_of_truncated(mean: float, sd: float, low: float, high: float) -> str:
-    return _positive_sd(mean, sd) or _ascending(low, high)
+    return _fault_of_sd(mean, sd) or _fault_of_order(low, high)
 
 
 def _fault_of_triangular(low: float, mode: float, high: float) -> str:
     if not low <= mode <= high:
         return "its mode must lie between its ends"
-    return _ascending(low, high)
+    return _fault_of_order(low, high)
 
 
 def _fault_of_loguniform(low: float, high: float) -> str:
     if low <= 0.0:
         return "its low end must be above 0"
-    return _ascending(low, high)
+    return _fault_of_order(low, high)
 
 
 DISTRIBUTIONS = {
-    "normal": Distribution(("mean", "sd"), _positive_sd, lambda s, mean, sd: s.norm(mean, sd)),
+    "normal": Distribution(("mean", "sd"), _fault_of_sd, lambda s, mean, sd: s.norm(mean, sd)),
     "uniform": Distribution(
-        ("low", "high"), _ascending, lambda s, low, high: s.uniform(low, high - low)
+        ("low", "high"), _fault_of_order, lambda s, low, high: s.uniform(low, high - low)
     ),
     # The spread is the standard deviation of the logarithm.
     "lognormal": Distribution(

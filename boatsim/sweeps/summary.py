@@ -75,17 +75,17 @@ class Pair(NamedTuple):
     second_lower: float
 
 
-def spreads(results: Results) -> list[Spread]:
+def metric_spreads(results: Results) -> list[Spread]:
     """Return the spread of every metric at every grid point where a run has a value of it.
 
     Args:
         results: Results of a sweep.
     """
     found: list[Spread] = []
-    for point, rows in _points(results):
-        failed = int(results.failed[rows].sum())
+    for point, rows in _points_with_runs(results):
+        failed = int(results.is_failed[rows].sum())
         runs = int(rows.sum())
-        for name in results.selected:
+        for name in results.displayed_metrics:
             values = results.metrics[name][rows]
             values = values[np.isfinite(values)]
             if len(values):
@@ -96,7 +96,7 @@ def spreads(results: Results) -> list[Spread]:
     return found
 
 
-def pairs(results: Results) -> list[Pair]:
+def compare_controllers(results: Results) -> list[Pair]:
     """Return the comparison of each controller with the first one, sample by sample.
 
     Args:
@@ -105,11 +105,11 @@ def pairs(results: Results) -> list[Pair]:
     Returns:
         The comparisons; none if the controller was not varied.
     """
-    names = results.plan.differing
+    names = results.plan.differing_columns
     if CONTROLLER not in names:
         return []
     column = names.index(CONTROLLER)
-    rows_of = dict(_points(results))
+    rows_of = dict(_points_with_runs(results))
     controllers = list(dict.fromkeys(point[column] for point in rows_of))
     found: list[Pair] = []
     for point, rows in rows_of.items():
@@ -120,18 +120,18 @@ def pairs(results: Results) -> list[Pair]:
             other_rows = rows_of.get((*before, other, *after))
             if other_rows is not None:
                 steered = (str(controllers[0]), str(other))
-                found += _compare(results, (rows, other_rows), steered, (*before, *after))
+                found += _compare_pair(results, (rows, other_rows), steered, (*before, *after))
     return found
 
 
-def _compare(
+def _compare_pair(
     results: Results, rows: tuple[Array, Array], names: tuple[str, str], point: tuple[Value, ...]
 ) -> list[Pair]:
     """Comparison of every metric that both controllers have."""
     found: list[Pair] = []
-    samples = results.sample[rows[0]], results.sample[rows[1]]
+    samples = results.sample_numbers[rows[0]], results.sample_numbers[rows[1]]
     _, first_index, second_index = np.intersect1d(*samples, return_indices=True)
-    for name in results.selected:
+    for name in results.displayed_metrics:
         values = results.metrics[name]
         first = values[rows[0]][first_index]
         second = values[rows[1]][second_index]
@@ -165,11 +165,11 @@ def _compare(
     return found
 
 
-def _points(results: Results) -> Sequence[tuple[tuple[Value, ...], Array]]:
+def _points_with_runs(results: Results) -> Sequence[tuple[tuple[Value, ...], Array]]:
     """Grid points that have runs, each with the mask (R,) of its runs."""
     found = []
     for number in range(len(results.plan.points)):
-        rows = results.point == number
+        rows = results.point_numbers == number
         if rows.any():
-            found.append((results.plan.point(number), rows))
+            found.append((results.plan.point_values(number), rows))
     return found

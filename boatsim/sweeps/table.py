@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from boatsim.files import replacing
+from boatsim.files import replace_file
 
 if TYPE_CHECKING:
     import pyarrow as pa
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 Columns = Mapping[str, Sequence[Any]]
 
 
-def write(columns: Columns, units: Mapping[str, str], about: str, path: Path) -> None:
+def write_parquet(columns: Columns, units: Mapping[str, str], about: str, path: Path) -> None:
     """Write a Parquet file.
 
     Args:
@@ -37,7 +37,7 @@ def write(columns: Columns, units: Mapping[str, str], about: str, path: Path) ->
         fields.append(field)
         arrays.append(pa.array(values, field.type))
     table = pa.Table.from_arrays(arrays, schema=pa.schema(fields, {"boatsim": about}))
-    with replacing(path) as temporary:
+    with replace_file(path) as temporary:
         parquet.write_table(table, temporary)
 
 

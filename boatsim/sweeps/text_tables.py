@@ -28,29 +28,29 @@ class TextTable:
     left: int
 
 
-def tables(results: Results) -> list[TextTable]:
+def result_tables(results: Results) -> list[TextTable]:
     """Return the tables that have rows: spread of metrics, pairs of controllers, Sobol indices.
 
     Args:
         results: Results of a sweep.
     """
-    names = results.plan.differing
+    names = results.plan.differing_columns
     others = [name for name in names if name != summary.CONTROLLER]
     every_table = [
-        _spreads(names, results),
-        *_pairs(others, summary.pairs(results)),
-        _indices(names, indices.indices(results)),
+        _spread_table(names, results),
+        *_pair_tables(others, summary.compare_controllers(results)),
+        _index_table(names, indices.sensitivity_indices(results)),
     ]
     return list(filter(attrgetter("rows"), every_table))
 
 
-def _spreads(names: Sequence[str], results: Results) -> TextTable:
+def _spread_table(names: Sequence[str], results: Results) -> TextTable:
     single = len(results.plan.samples) == 1
     title, columns = "All runs", ["mean", "p5", "p50", "p95", "reached"]
     if single:
         title, columns = "One run at each point", ["value"]
     rows = []
-    for s in summary.spreads(results):
+    for s in summary.metric_spreads(results):
         numbers = [format_number(s.mean)]
         if not single:
             numbers += map(format_number, (s.p5, s.p50, s.p95))
@@ -59,7 +59,7 @@ def _spreads(names: Sequence[str], results: Results) -> TextTable:
     return TextTable("runs", title, [*names, "metric", *columns], rows, len(names) + 1)
 
 
-def _pairs(names: Sequence[str], pairs: Sequence[summary.Pair]) -> list[TextTable]:
+def _pair_tables(names: Sequence[str], pairs: Sequence[summary.Pair]) -> list[TextTable]:
     """A table for each pair of controllers."""
     rows: dict[tuple[str, str], list[list[str]]] = {}
     for p in pairs:
@@ -84,7 +84,7 @@ def _pairs(names: Sequence[str], pairs: Sequence[summary.Pair]) -> list[TextTabl
     return found
 
 
-def _indices(names: Sequence[str], found: Sequence[indices.Index]) -> TextTable:
+def _index_table(names: Sequence[str], found: Sequence[indices.Index]) -> TextTable:
     rows = []
     for i in found:
         first = f"{i.first:.2f} ({i.first_low:.2f} to {i.first_high:.2f})"

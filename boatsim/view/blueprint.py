@@ -42,7 +42,9 @@ FIXED: dict[str, Colour] = {
 }
 
 
-def style(name: str, number: int, boat: str = "", colour: Colour | None = None) -> rr.SeriesLines:
+def curve_style(
+    name: str, number: int, boat: str = "", colour: Colour | None = None
+) -> rr.SeriesLines:
     """Return the style of a curve.
 
     Args:
@@ -52,13 +54,13 @@ def style(name: str, number: int, boat: str = "", colour: Colour | None = None) 
         colour: Colour; default: by signal.
     """
     bound = name.endswith(("_low", "_high"))
-    chosen = colour or _colour(name, number)
+    chosen = colour or _curve_colour(name, number)
     return rr.SeriesLines(
-        colors=[chosen], widths=[1.0 if bound else 2.0], names=[boat or words(name)]
+        colors=[chosen], widths=[1.0 if bound else 2.0], names=[boat or legend_text(name)]
     )
 
 
-def dots(boat: str, colour: Colour) -> rr.SeriesPoints:
+def sample_style(boat: str, colour: Colour) -> rr.SeriesPoints:
     """Return the style of recorded samples: dots, which do not hide the curves of models."""
     return rr.SeriesPoints(colors=[colour], markers=["circle"], marker_sizes=[2.0], names=[boat])
 
@@ -75,7 +77,7 @@ def band_style(name: str, flagged: Colour) -> rr.SeriesLines:
     return rr.SeriesLines(colors=[SKY], widths=[2.0], names=["missing"])
 
 
-def words(name: str) -> str:
+def legend_text(name: str) -> str:
     """Return the legend of a column: `actual_thrust_port_N` -> "actual thrust port [N]"."""
     end = ""
     for bound in ("_low", "_high"):
@@ -88,7 +90,7 @@ def words(name: str) -> str:
     return f"{stem}{end}".replace("_", " ") + f" [{unit}]"
 
 
-def of_run(scene: Scene, names: Sequence[str]) -> rrb.Blueprint:
+def run_layout(scene: Scene, names: Sequence[str]) -> rrb.Blueprint:
     """Return the layout of a run: scene, velocities with their references, tabs of other signals.
 
     Args:
@@ -96,21 +98,23 @@ def of_run(scene: Scene, names: Sequence[str]) -> rrb.Blueprint:
         names: Columns of the run.
     """
     turning = "Yaw and roll rate" if "p_radps" in names else "Yaw rate"
-    speed = with_goals(("u_mps", "v_mps", "reference_u_mps", "reference_v_mps"), names)
-    rate = with_goals(("r_radps", "reference_r_radps", "p_radps"), names)
+    speed = select_signals_and_goals(
+        ("u_mps", "v_mps", "reference_u_mps", "reference_v_mps"), names
+    )
+    rate = select_signals_and_goals(("r_radps", "reference_r_radps", "p_radps"), names)
     return _layout(
         rrb.Vertical(
-            _view(scene, ["path", "camera"]),
+            _scene_view(scene, ["path", "camera"]),
             rrb.TextDocumentView(origin="norms", name="Metrics"),
             row_shares=[5, 3],
         ),
-        _plot("Surge and sway velocity", speed),
-        _plot(turning, rate),
-        rrb.Tabs(*_tabs(names)),
+        _signal_plot("Surge and sway velocity", speed),
+        _signal_plot(turning, rate),
+        rrb.Tabs(*_signal_tabs(names)),
     )
 
 
-def with_goals(signals: Sequence[str], names: Iterable[str]) -> list[str]:
+def select_signals_and_goals(signals: Sequence[str], names: Iterable[str]) -> list[str]:
     """Return the names that are one of some signals, or a goal for one of them."""
     found: list[str] = []
     for name in names:
@@ -122,7 +126,7 @@ def with_goals(signals: Sequence[str], names: Iterable[str]) -> list[str]:
     return found
 
 
-def of_overlay(
+def diagnosis_layout(
     scene: Scene,
     boats: Sequence[str],
     names: Iterable[str],
@@ -143,13 +147,13 @@ def of_overlay(
     for name in MOTION:
         if name in there:
             curves = [f"{boat}/{name}" for boat in boats]
-            motion.append(_plot(TITLES.get(name, words(name)), curves, span=span))
+            motion.append(_signal_plot(TITLES.get(name, legend_text(name)), curves, span=span))
     forces: list[rrb.TimeSeriesView] = []
     for name, axis in MISSING.items():
         if name in missing:
             kind = "force [N]" if axis in ("surge", "sway", "heave") else "moment [N m]"
             curves = [name, f"{name}_low", f"{name}_high", f"{name}_flagged"]
-            forces.append(_plot(f"Missing {axis} {kind}", curves, "missing", span))
+            forces.append(_signal_plot(f"Missing {axis} {kind}", curves, "missing", span))
     length, width, x, y = scene.tank
     height = max(length / HIGH, width / WIDE)
     eye = (x - 0.15 * height, -y, height)
@@ -157,11 +161,11 @@ def of_overlay(
         eye = (-1.2 * scene.length, 0.0, 0.4 * scene.length)
     size = f", drawn {scene.times:.2g} times their size" if scene.times > 1.0 else ""
     title = f"{scene.vessel}: {', '.join(boats)}{size}"
-    view = _view(scene, [f"paths/{boat}" for boat in boats], eye, title)
+    view = _scene_view(scene, [f"paths/{boat}" for boat in boats], eye, title)
     return _layout(view, rrb.Tabs(*motion), *forces)
 
 
-def of_several(scene: Scene, boats: Mapping[str, Sequence[str]]) -> rrb.Blueprint:
+def comparison_layout(scene: Scene, boats: Mapping[str, Sequence[str]]) -> rrb.Blueprint:
     """Return the layout of several runs: the scene above their metrics, and a plot per signal.
 
     Args:
@@ -173,11 +177,13 @@ def of_several(scene: Scene, boats: Mapping[str, Sequence[str]]) -> rrb.Blueprin
     def plot(signal: str) -> rrb.TimeSeriesView:
         curves: list[str] = []
         for boat, own in boats.items():
-            curves += [f"{boat}/{name}" for name in with_goals([signal], own)]
-        return _plot(words(signal), curves)
+            curves += [f"{boat}/{name}" for name in select_signals_and_goals([signal], own)]
+        return _signal_plot(legend_text(signal), curves)
 
     motion = [n for n in (*RATES, *POSE) if n in names]
-    motion.sort(key=lambda n: len(with_goals([n], names)) < 2)  # those with a goal come first
+    motion.sort(
+        key=lambda n: len(select_signals_and_goals([n], names)) < 2
+    )  # those with a goal come first
     drives = [n for n in names if n.startswith("actual_")]
     eye = None
     if scene.open:
@@ -185,7 +191,7 @@ def of_several(scene: Scene, boats: Mapping[str, Sequence[str]]) -> rrb.Blueprin
         eye = (x - 0.2 * length, -y, 0.65 * max(length, width))
     trails = [f"paths/{boat}" for boat in boats]
     left = rrb.Vertical(
-        _view(scene, trails, eye, ", ".join(boats)),
+        _scene_view(scene, trails, eye, ", ".join(boats)),
         rrb.TextDocumentView(origin="norms", name="Metrics"),
         row_shares=[3, 2],
     )
@@ -204,7 +210,7 @@ def _layout(scene: rrb.View | rrb.Container, *plots: rrb.View | rrb.Container) -
     )
 
 
-def _view(
+def _scene_view(
     scene: Scene,
     trails: Sequence[str],
     eye: tuple[float, float, float] | None = None,
@@ -221,24 +227,24 @@ def _view(
         name=title or f"{scene.vessel} in {'open water' if scene.open else 'its tank'}",
         background=SKY,
         line_grid=False,
-        eye_controls=_with_boat() if scene.open and eye is None else _still(scene, eye),
+        eye_controls=_following_eye() if scene.open and eye is None else _fixed_eye(scene, eye),
         overrides={f"{WORLD}/{trail}": so_far for trail in trails},
     )
 
 
-def _with_boat() -> rrb.EyeControls3D:
+def _following_eye() -> rrb.EyeControls3D:
     """An eye for open water that follows the vessel and begins with a view of its whole path."""
     return rrb.EyeControls3D(tracking_entity=f"{WORLD}/boat", eye_up=(0.0, 0.0, 1.0))
 
 
-def _still(scene: Scene, eye: tuple[float, float, float] | None) -> rrb.EyeControls3D:
+def _fixed_eye(scene: Scene, eye: tuple[float, float, float] | None) -> rrb.EyeControls3D:
     """An eye that looks at the middle of the tank, by default from astern and above."""
     length, width, x, y = scene.tank
     place = eye or (x - 0.6 * max(length, width), -y, 0.6 * max(length, width))
     return rrb.EyeControls3D(position=place, look_target=(x, -y, 0.0), eye_up=(0.0, 0.0, 1.0))
 
 
-def _tabs(names: Sequence[str]) -> list[rrb.View | rrb.Container]:
+def _signal_tabs(names: Sequence[str]) -> list[rrb.View | rrb.Container]:
     """Plots of the signals other than velocities, by subject."""
     actual = [name for name in names if name.startswith("actual_")]
     sent = [name.removeprefix("actual_") for name in actual]
@@ -255,12 +261,12 @@ def _tabs(names: Sequence[str]) -> list[rrb.View | rrb.Container]:
         "Forces": matching("(force|wind)_.*_N"),
         "Yaw moments": matching("(force|wind)_.*_Nm"),
         "Heading": matching(".*psi_rad"),
-        "Position": with_goals(("x_m", "y_m", "camera_x_m", "camera_y_m"), names),
+        "Position": select_signals_and_goals(("x_m", "y_m", "camera_x_m", "camera_y_m"), names),
     }
-    return [_plot(title, members) for title, members in groups.items() if members]
+    return [_signal_plot(title, members) for title, members in groups.items() if members]
 
 
-def _plot(
+def _signal_plot(
     title: str, names: Sequence[str], under: str = SIGNALS, span: tuple[float, float] | None = None
 ) -> rrb.TimeSeriesView:
     axis = None
@@ -276,7 +282,7 @@ def _plot(
     )
 
 
-def _colour(name: str, number: int) -> Colour:
+def _curve_colour(name: str, number: int) -> Colour:
     if name.endswith(("_low", "_high")):
         return GREY
     for side, light, dark in (
@@ -286,11 +292,13 @@ def _colour(name: str, number: int) -> Colour:
         if side in name.split("_"):
             return dark if name.startswith("actual_") else light
     if name.startswith(GOAL):
-        return paler(_colour(measured_column_for_goal(name.removeprefix(GOAL)) or "", number))
+        return lighten_colour(
+            _curve_colour(measured_column_for_goal(name.removeprefix(GOAL)) or "", number)
+        )
     return FIXED.get(name, PALETTE[number % len(PALETTE)])
 
 
-def paler(colour: Colour) -> Colour:
+def lighten_colour(colour: Colour) -> Colour:
     """Return a colour halfway to white, for a goal next to its signal."""
     red, green, blue = colour
     return (red + 255) // 2, (green + 255) // 2, (blue + 255) // 2

@@ -88,7 +88,7 @@ class RerunLog:
         self._known: set[str] = set()
         self.stream = Stream("boatsim", path, viewer)
         if self.stream.has_receiver:
-            _begin(self.stream)
+            _send_axes(self.stream)
             _draw_tank(self.stream, scene)
             _draw_hull(self.stream, scene, "boat")
             self._write_text("Metrics follow when the run is over.")
@@ -143,16 +143,18 @@ class RerunLog:
     def _write(self) -> None:
         if not self._waiting:
             return
-        rows = _joined(self._waiting)
+        rows = _join_recordings(self._waiting)
         self._waiting, self._written = [], monotonic()
         new = [name for name in rows.signals if name not in self._known]
         if new:
             self._known.update(new)
             for number, name in enumerate(new):
-                self.stream.log(f"{SIGNALS}/{name}", blueprint.style(name, number), static=True)
-            self.stream.send_blueprint(blueprint.of_run(self.scene, sorted(self._known)))
+                self.stream.log(
+                    f"{SIGNALS}/{name}", blueprint.curve_style(name, number), static=True
+                )
+            self.stream.send_blueprint(blueprint.run_layout(self.scene, sorted(self._known)))
         _log_signals(self.stream, rows, SIGNALS)
-        _move(self.stream, rows, self.scene, "boat")
+        _log_motion(self.stream, rows, self.scene, "boat")
         _log_arrows(self.stream, rows, self.scene)
         self._trail = _log_path(self.stream, rows, "path", COLOURS["path"], self._trail)
         _log_camera(self.stream, rows)
@@ -182,25 +184,25 @@ def log_overlay(
         OSError: If the file can not be written.
     """
     stream = Stream("boatsim_diagnosis", path)
-    _begin(stream)
+    _send_axes(stream)
     _draw_tank(stream, scene)
     for number, (boat, segments) in enumerate(boats.items()):
         colour = BOATS.get(boat, blueprint.PALETTE[number % len(blueprint.PALETTE)])
         if number == 0:
             _draw_hull(stream, scene, f"boats/{boat}", colour)
         _draw_outline(stream, scene, boat, number, colour)
-        apart = _apart(segments)
+        apart = _separate_segment_ends(segments)
         for segment in apart:
-            _move(stream, segment, scene, f"boats/{boat}")
-            _log_path(stream, segment, f"paths/{boat}", colour, None, _above(scene, number))
+            _log_motion(stream, segment, scene, f"boats/{boat}")
+            _log_path(stream, segment, f"paths/{boat}", colour, None, _line_height(scene, number))
         for name in segments[0].signals:
-            style: rr.SeriesLines | rr.SeriesPoints = blueprint.dots(boat, colour)
+            style: rr.SeriesLines | rr.SeriesPoints = blueprint.sample_style(boat, colour)
             if number > 0:
-                style = blueprint.style(name, number, boat, colour)
+                style = blueprint.curve_style(name, number, boat, colour)
             stream.log(f"{SIGNALS}/{boat}/{name}", style, static=True)
-        _log_signals(stream, _with_gaps(apart), f"{SIGNALS}/{boat}")
+        _log_signals(stream, _join_with_gaps(apart), f"{SIGNALS}/{boat}")
     if missing is not None:
-        marked = replace(missing, signals={**missing.signals, **_flagged(missing, intervals)})
+        marked = replace(missing, signals={**missing.signals, **_flagged_force(missing, intervals)})
         for name in marked.signals:
             stream.log(
                 f"missing/{name}", blueprint.band_style(name, COLOURS["flagged"]), static=True
@@ -217,7 +219,7 @@ def log_overlay(
     if recordings:
         begins, ends = zip(*(r.t[[0, -1]].tolist() for r in recordings), strict=True)
         span = (min(begins), max(ends))
-    stream.send_blueprint(blueprint.of_overlay(scene, list(boats), names, forces, span))
+    stream.send_blueprint(blueprint.diagnosis_layout(scene, list(boats), names, forces, span))
     stream.close()
 
 
@@ -250,7 +252,7 @@ def log_side_by_side(path: Path | str, boats: Mapping[str, Boat], metrics: str) 
         OSError: If the file can not be written.
     """
     stream = Stream("boatsim_compare", path)
-    _begin(stream)
+    _send_axes(stream)
     scene = next(iter(boats.values())).scene
     _draw_tank(stream, scene)
     for number, (name, boat) in enumerate(boats.items()):
@@ -258,25 +260,29 @@ def log_side_by_side(path: Path | str, boats: Mapping[str, Boat], metrics: str) 
         if number == 0:
             _draw_hull(stream, scene, f"boats/{name}", colour)
         _draw_outline(stream, boat.scene, name, number, colour)
-        _move(stream, boat.recording, boat.scene, f"boats/{name}")
-        _log_path(stream, boat.recording, f"paths/{name}", colour, None, _above(boat.scene, number))
+        _log_motion(stream, boat.recording, boat.scene, f"boats/{name}")
+        _log_path(
+            stream, boat.recording, f"paths/{name}", colour, None, _line_height(boat.scene, number)
+        )
         signals: dict[str, Array] = {}
         for signal, values in boat.recording.signals.items():
-            style = blueprint.style(signal, number, name, colour)
+            style = blueprint.curve_style(signal, number, name, colour)
             if signal.startswith(GOAL):
                 if not boat.goals:
                     continue
-                style = blueprint.style(signal, number, boat.goals, blueprint.paler(colour))
+                style = blueprint.curve_style(
+                    signal, number, boat.goals, blueprint.lighten_colour(colour)
+                )
             signals[signal] = values
             stream.log(f"{SIGNALS}/{name}/{signal}", style, static=True)
         _log_signals(stream, replace(boat.recording, signals=signals), f"{SIGNALS}/{name}")
     stream.log("norms", rr.TextDocument(metrics, media_type="text/markdown"), static=True)
     columns = {name: list(boat.recording.signals) for name, boat in boats.items()}
-    stream.send_blueprint(blueprint.of_several(scene, columns))
+    stream.send_blueprint(blueprint.comparison_layout(scene, columns))
     stream.close()
 
 
-def _begin(stream: Stream) -> None:
+def _send_axes(stream: Stream) -> None:
     stream.log(WORLD, rr.ViewCoordinates.RIGHT_HAND_Z_UP, static=True)
 
 
@@ -290,22 +296,22 @@ def metrics_table(metrics: Mapping[str, MetricEntry]) -> str:
         return "This scenario has no metrics.\n"
     lines = ["| metric | is | value | band | met | published |", "|:---|:---|---:|---:|:---:|:---|"]
     for name, entry in metrics.items():
-        value = f"{_short(entry.get('value'))} {entry.get('unit') or ''}".strip()
+        value = f"{_format_value(entry.get('value'))} {entry.get('unit') or ''}".strip()
         verdict = VERDICTS.get(entry.get("verdict") or "", "")
         cells = [
             name,
             entry.get("kind", ""),
             entry.get("lacking") or value,
-            _band(entry.get("guard")),
+            _format_band(entry.get("guard")),
             MET[entry.get("ok")],
-            f"{_short(entry.get('published'))} {verdict}".strip(),
+            f"{_format_value(entry.get('published'))} {verdict}".strip(),
         ]
         lines.append(f"| {' | '.join(cells)} |")
     return "\n".join(lines) + "\n"
 
 
-def _band(ends: Sequence[float | None] | None) -> str:
-    low, high = map(_short, ends or (None, None))
+def _format_band(ends: Sequence[float | None] | None) -> str:
+    low, high = map(_format_value, ends or (None, None))
     if low and high:
         return f"{low} to {high}"
     if low:
@@ -315,11 +321,11 @@ def _band(ends: Sequence[float | None] | None) -> str:
     return ""
 
 
-def _short(value: float | None) -> str:
+def _format_value(value: float | None) -> str:
     return "" if value is None else f"{value:.4g}"
 
 
-def _joined(parts: Sequence[Recording]) -> Recording:
+def _join_recordings(parts: Sequence[Recording]) -> Recording:
     signals: dict[str, Array] = {}
     for name in dict.fromkeys(chain.from_iterable(part.signals for part in parts)):
         pieces = [part.signals.get(name, np.full(len(part), math.nan)) for part in parts]
@@ -327,7 +333,7 @@ def _joined(parts: Sequence[Recording]) -> Recording:
     return Recording(parts[0].name, np.concatenate([p.t for p in parts]), signals, Notes())
 
 
-def _apart(segments: Sequence[Recording]) -> list[Recording]:
+def _separate_segment_ends(segments: Sequence[Recording]) -> list[Recording]:
     """Segments whose end is moved just before the begin of the next one."""
     found: list[Recording] = []
     for segment, following in pairwise(segments):
@@ -336,26 +342,26 @@ def _apart(segments: Sequence[Recording]) -> list[Recording]:
     return [*found, segments[-1]]
 
 
-def _with_gaps(segments: Sequence[Recording]) -> Recording:
+def _join_with_gaps(segments: Sequence[Recording]) -> Recording:
     """Segments as one recording, separated by rows of nan, at which curves break."""
     parts = [segments[0]]
     for segment in segments[1:]:
         gap = dict.fromkeys(segment.signals, np.full(1, np.nan))
         parts += [Recording("", segment.t[:1] - PARTING, gap), segment]
-    return _joined(parts)
+    return _join_recordings(parts)
 
 
-def _when(t: Array) -> list[rr.TimeColumn]:
+def _time_columns(t: Array) -> list[rr.TimeColumn]:
     return [rr.TimeColumn(TIMELINE, duration=np.round(t * 1e9).astype("timedelta64[ns]"))]
 
 
 def _log_signals(stream: Stream, rows: Recording, under: str) -> None:
-    when = _when(rows.t)
+    when = _time_columns(rows.t)
     for name, values in rows.signals.items():
         stream.send_columns(f"{under}/{name}", when, rr.Scalars.columns(scalars=values))
 
 
-def _flat(x: Array, y: Array, z: float = 0.0) -> Array:
+def _picture_points(x: Array, y: Array, z: float = 0.0) -> Array:
     """SNAME x, y as points (N, 3) of the picture, z up and y to port."""
     return np.column_stack([x, -y, np.full(len(x), z)])
 
@@ -364,7 +370,7 @@ def _draw_tank(stream: Stream, scene: Scene) -> None:
     length, width, x, y = scene.tank
     for solid in scene.solids:
         if solid.part == "tank":
-            stream.log(f"{WORLD}/tank/{solid.name}", _mesh(_surface(solid)), static=True)
+            stream.log(f"{WORLD}/tank/{solid.name}", _make_mesh(_upper_side(solid)), static=True)
     if "tank" in {solid.part for solid in scene.solids}:
         return
     corners = [
@@ -389,13 +395,13 @@ def _draw_hull(
     for solid in scene.solids:
         if solid.part != "tank":
             entity = f"{WORLD}/{boat}/{solid.part}/{solid.name}"
-            stream.log(entity, _mesh(solid, tint), static=True)
+            stream.log(entity, _make_mesh(solid, tint), static=True)
     for thruster in scene.thrusters:
         at = rr.Transform3D(translation=(thruster.x, -thruster.y, 0.0))
         stream.log(f"{WORLD}/{boat}/{OUTBOARD}{thruster.name}", at, static=True)
 
 
-def _above(scene: Scene, number: int) -> float:
+def _line_height(scene: Scene, number: int) -> float:
     """Height [m] above the hull, different for each vessel, so that their lines do not flicker."""
     top = max(
         (float(s.vertices[:, 2].max()) for s in scene.solids if s.part != "tank"), default=0.0
@@ -408,7 +414,11 @@ def _draw_outline(
 ) -> None:
     """Draw the outline of the hull from above, a line from its middle to the bow, and its name."""
     ring = scene.outline()
-    height, bow, stern = _above(scene, number), float(ring[:, 0].max()), float(ring[:, 0].min())
+    height, bow, stern = (
+        _line_height(scene, number),
+        float(ring[:, 0].max()),
+        float(ring[:, 0].min()),
+    )
     side = float(np.abs(ring[:, 1]).max())
     edge, middle = (
         np.column_stack([ring, np.full(len(ring), height)]),
@@ -421,7 +431,7 @@ def _draw_outline(
     stream.log(f"{entity}/name", name, static=True)
 
 
-def _surface(solid: Solid) -> Solid:
+def _upper_side(solid: Solid) -> Solid:
     """The upper side of a transparent solid such as water, whose bottom would flicker."""
     if solid.colour[3] >= 1.0:
         return solid
@@ -430,7 +440,7 @@ def _surface(solid: Solid) -> Solid:
     return solid._replace(triangles=solid.triangles[upward])
 
 
-def _mesh(solid: Solid, tint: tuple[int, int, int] | None = None) -> rr.Mesh3D:
+def _make_mesh(solid: Solid, tint: tuple[int, int, int] | None = None) -> rr.Mesh3D:
     """Flat-shaded triangles: rerun lights only meshes with normals."""
     corners = solid.vertices[solid.triangles]  # (T, 3, 3)
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
@@ -443,24 +453,28 @@ def _mesh(solid: Solid, tint: tuple[int, int, int] | None = None) -> rr.Mesh3D:
     )
 
 
-def _move(stream: Stream, rows: Recording, scene: Scene, boat: str) -> None:
+def _log_motion(stream: Stream, rows: Recording, scene: Scene, boat: str) -> None:
     """Pose of the hull and angles of the outboards; a boat that only rolls stays at the origin."""
     zero = np.zeros(len(rows))
     pose = np.stack([rows.signals.get(name, zero) for name in POSE])
     known = np.isfinite(pose).all(axis=0)  # rows without a measurement are skipped
     x, y, z, phi, theta, psi = pose[:, known]
-    points = _flat(x, y)
+    points = _picture_points(x, y)
     points[:, 2] -= z  # z is down
-    place = rr.Transform3D.columns(translation=points, quaternion=_attitude(psi, phi, theta))
-    stream.send_columns(f"{WORLD}/{boat}", _when(rows.t[known]), place)
+    place = rr.Transform3D.columns(
+        translation=points, quaternion=_attitude_quaternions(psi, phi, theta)
+    )
+    stream.send_columns(f"{WORLD}/{boat}", _time_columns(rows.t[known]), place)
     for thruster in scene.thrusters:
         if (steer := rows.signals.get(thruster.steer)) is not None:
             # a steering angle a turns the force by a to starboard
-            turned = rr.Transform3D.columns(quaternion=_attitude(steer, zero))
-            stream.send_columns(f"{WORLD}/{boat}/{OUTBOARD}{thruster.name}", _when(rows.t), turned)
+            turned = rr.Transform3D.columns(quaternion=_attitude_quaternions(steer, zero))
+            stream.send_columns(
+                f"{WORLD}/{boat}/{OUTBOARD}{thruster.name}", _time_columns(rows.t), turned
+            )
 
 
-def _attitude(psi: Array, phi: Array, theta: Array | float = 0.0) -> Array:
+def _attitude_quaternions(psi: Array, phi: Array, theta: Array | float = 0.0) -> Array:
     """Quaternions (N, 4) x, y, z, w of heading, pitch and roll [rad] in axes of the picture."""
     cz, sz, cx, sx = np.cos(psi / 2), -np.sin(psi / 2), np.cos(phi / 2), np.sin(phi / 2)
     cy, sy = np.cos(theta / 2), -np.sin(theta / 2)
@@ -479,17 +493,27 @@ def _log_arrows(stream: Stream, rows: Recording, scene: Scene) -> None:
     for thruster in scene.thrusters:
         if (thrust := rows.signals.get(thruster.thrust)) is not None:
             steer = rows.signals.get(thruster.steer, zero)
-            vector = _flat(thrust * np.cos(steer), thrust * np.sin(steer))
-            at = _flat(zero + thruster.x, zero + thruster.y, ABOVE)
-            _arrow(stream, rows.t, f"thrust_{thruster.name}", scene, vector, at, COLOURS["thrust"])
+            vector = _picture_points(thrust * np.cos(steer), thrust * np.sin(steer))
+            at = _picture_points(zero + thruster.x, zero + thruster.y, ABOVE)
+            _log_arrow(
+                stream, rows.t, f"thrust_{thruster.name}", scene, vector, at, COLOURS["thrust"]
+            )
     for what in HEIGHTS:
         if f"{what}_X_N" in rows.signals and f"{what}_Y_N" in rows.signals:
-            vector = _flat(rows[f"{what}_X_N"], rows[f"{what}_Y_N"])
+            vector = _picture_points(rows[f"{what}_X_N"], rows[f"{what}_Y_N"])
             height = scene.length * HEIGHTS[what]
-            _arrow(stream, rows.t, what, scene, vector, _flat(zero, zero, height), COLOURS[what])
+            _log_arrow(
+                stream,
+                rows.t,
+                what,
+                scene,
+                vector,
+                _picture_points(zero, zero, height),
+                COLOURS[what],
+            )
 
 
-def _arrow(
+def _log_arrow(
     stream: Stream,
     t: Array,
     name: str,
@@ -509,7 +533,7 @@ def _arrow(
     )
     stream.log(entity, look, static=True)
     stream.send_columns(
-        entity, _when(t), rr.Arrows3D.columns(vectors=scene.reach * newtons, origins=at)
+        entity, _time_columns(t), rr.Arrows3D.columns(vectors=scene.reach * newtons, origins=at)
     )
 
 
@@ -531,14 +555,16 @@ def _log_path(
     if not len(known):
         return last
     due = known[np.unique(np.floor(rows.t[known] / TRAIL_STEP + 1e-6), return_index=True)[1]]
-    t, points = rows.t[due], _flat(rows["x_m"][due], rows["y_m"][due], height)
+    t, points = rows.t[due], _picture_points(rows["x_m"][due], rows["y_m"][due], height)
     if last is not None:
         t, points = np.append(last[0], t), np.vstack([last[1], points])
     entity = f"{WORLD}/{name}"
     if len(t) > 1:
         pairs = np.stack([points[:-1], points[1:]], axis=1)
         stream.log(entity, rr.LineStrips3D.from_fields(colors=[colour], radii=[-2.0]), static=True)
-        stream.send_columns(entity, _when(t[1:]), rr.LineStrips3D.columns(strips=list(pairs)))
+        stream.send_columns(
+            entity, _time_columns(t[1:]), rr.LineStrips3D.columns(strips=list(pairs))
+        )
     return float(t[-1]), points[-1]
 
 
@@ -557,11 +583,11 @@ def _log_camera(stream: Stream, rows: Recording) -> None:
         stream.log(
             entity, rr.Points3D.from_fields(colors=[COLOURS["camera"]], radii=[-1.2]), static=True
         )
-        points = rr.Points3D.columns(positions=_flat(x[fresh], y[fresh], 1.5 * ABOVE))
-        stream.send_columns(entity, _when(rows.t[fresh]), points)
+        points = rr.Points3D.columns(positions=_picture_points(x[fresh], y[fresh], 1.5 * ABOVE))
+        stream.send_columns(entity, _time_columns(rows.t[fresh]), points)
 
 
-def _flagged(missing: Recording, intervals: Sequence[Flagged]) -> dict[str, Array]:
+def _flagged_force(missing: Recording, intervals: Sequence[Flagged]) -> dict[str, Array]:
     """The missing force in flagged intervals, nan elsewhere, as further signals."""
     found: dict[str, Array] = {}
     for name, axis in blueprint.MISSING.items():

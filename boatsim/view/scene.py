@@ -68,7 +68,7 @@ class Scene:
     open: bool = False  # no walls; the eye follows the vessel
     times: float = 1.0  # drawn size of vessels by their true size
 
-    def enlarged(self, times: float) -> "Scene":
+    def enlarge_vessels(self, times: float) -> "Scene":
         """Return the scene with vessels enlarged; water and paths do not change.
 
         Args:
@@ -108,7 +108,7 @@ def scene_from(model: "Model", vessel: "Vessel", tank: "Tank") -> Scene:
         vessel.name,
         vessel.length,
         (tank.length, tank.width, *tank.centre),
-        _with_hull(tuple(_solids(model)), vessel),
+        _add_missing_hull(tuple(_solids(model)), vessel),
         tuple(_thrusters(vessel)),
         REACH * vessel.length / max(thrust, default=PUSH * GRAVITY * vessel.body.mass),
         open=not tank.walls,
@@ -134,7 +134,7 @@ def plain_scene(length: float, beam: float, tank: tuple[float, float, float, flo
     return Scene("boat", length, tank, (solid,), (), REACH * length)
 
 
-def _with_hull(solids: tuple[Solid, ...], vessel: "Vessel") -> tuple[Solid, ...]:
+def _add_missing_hull(solids: tuple[Solid, ...], vessel: "Vessel") -> tuple[Solid, ...]:
     """The shapes of a model, with a box where its hull has none that can be drawn."""
     if "hull" in {solid.part for solid in solids}:
         return solids
@@ -157,11 +157,13 @@ def _solids(model: "Model") -> Iterator[Solid]:
         if model.geom_group[geom] not in DRAWN_GROUPS:
             continue
         body = int(model.geom_bodyid[geom])
-        shape = _shape(model, geom)
+        shape = _geom_triangles(model, geom)
         if shape is not None:
             vertices, triangles = shape
-            part, placed = _in_part(
-                model, body, _turned(model.geom_quat[geom], vertices) + model.geom_pos[geom]
+            part, placed = _to_part_axes(
+                model,
+                body,
+                _rotate_vertices(model.geom_quat[geom], vertices) + model.geom_pos[geom],
             )
             material = int(model.geom_matid[geom])
             rgba = model.mat_rgba[material] if material >= 0 else model.geom_rgba[geom]
@@ -171,18 +173,18 @@ def _solids(model: "Model") -> Iterator[Solid]:
             )
 
 
-def _in_part(model: "Model", body: int, vertices: Array) -> tuple[str, Array]:
+def _to_part_axes(model: "Model", body: int, vertices: Array) -> tuple[str, Array]:
     """Name of the part of a body, and the vertices in axes of the part."""
     while body:
         name = model.body(body).name
         if name == "hull" or name.startswith(OUTBOARD):
             return name, vertices
-        vertices = _turned(model.body_quat[body], vertices) + model.body_pos[body]
+        vertices = _rotate_vertices(model.body_quat[body], vertices) + model.body_pos[body]
         body = int(model.body_parentid[body])
     return "tank", vertices
 
 
-def _turned(quaternion: Array, vertices: Array) -> Array:
+def _rotate_vertices(quaternion: Array, vertices: Array) -> Array:
     """Vertices (V, 3) rotated by a unit quaternion (w, x, y, z)."""
     w, axis = quaternion[0], quaternion[1:]
     cross = 2.0 * np.cross(axis, vertices)
@@ -190,7 +192,7 @@ def _turned(quaternion: Array, vertices: Array) -> Array:
     return turned
 
 
-def _shape(model: "Model", geom: int) -> tuple[Array, Triangles] | None:
+def _geom_triangles(model: "Model", geom: int) -> tuple[Array, Triangles] | None:
     kind, size = int(model.geom_type[geom]), model.geom_size[geom]
     if kind == MESH:
         mesh = int(model.geom_dataid[geom])
@@ -200,25 +202,29 @@ def _shape(model: "Model", geom: int) -> tuple[Array, Triangles] | None:
             face : face + faces
         ].astype("u4")
     if kind in (SPHERE, ELLIPSOID):
-        vertices, triangles = _lathe(
+        vertices, triangles = _surface_of_revolution(
             [(np.cos(a), np.sin(a)) for a in np.linspace(-np.pi / 2, np.pi / 2, 17)]
         )
         return vertices * (size if kind == ELLIPSOID else size[0]), triangles
     if kind == CAPSULE:
         ends = [(np.cos(a), np.sin(a), np.sign(a)) for a in np.linspace(-np.pi / 2, np.pi / 2, 18)]
-        return _lathe([(size[0] * r, size[0] * z + size[1] * end) for r, z, end in ends])
+        return _surface_of_revolution(
+            [(size[0] * r, size[0] * z + size[1] * end) for r, z, end in ends]
+        )
     if kind == CYLINDER:
-        vertices, triangles = _lathe([(0.0, -1.0), (1.0, -1.0), (1.0, 1.0), (0.0, 1.0)])
+        vertices, triangles = _surface_of_revolution(
+            [(0.0, -1.0), (1.0, -1.0), (1.0, 1.0), (0.0, 1.0)]
+        )
         return vertices * (size[0], size[0], size[1]), triangles
     if kind == BOX:
-        vertices, triangles = _lathe(
+        vertices, triangles = _surface_of_revolution(
             [(0.0, -1.0), (2**0.5, -1.0), (2**0.5, 1.0), (0.0, 1.0)], 4, np.pi / 4
         )
         return vertices * size, triangles
     return None
 
 
-def _lathe(
+def _surface_of_revolution(
     profile: list[tuple[float, float]], around: int = 32, start: float = 0.0
 ) -> tuple[Array, Triangles]:
     """Surface of revolution about z of a profile of (radius, z); strips do not share vertices."""

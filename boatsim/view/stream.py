@@ -76,7 +76,7 @@ class Stream:
             OSError: If the disk is full; then the file is as it was before.
         """
         if self._file and self._written and (new := self._written.read()):
-            self._file.add(b"".join(_messages(new, not self._has_header)))
+            self._file.add(b"".join(_split_messages(new, not self._has_header)))
             self._has_header = True
 
     def close(self) -> None:
@@ -91,10 +91,10 @@ class Stream:
             if self._file:
                 self._file.close()
             if self._viewer:
-                _end(self._viewer)
+                _close_stream(self._viewer)
 
 
-def _messages(whole: bytes, first: bool) -> Iterator[bytes]:
+def _split_messages(whole: bytes, first: bool) -> Iterator[bytes]:
     """Messages of a whole `.rrd` for appending to a file, with the header only if `first`.
 
     A message begins with its kind and length. The last one and what follows are an index of the
@@ -111,7 +111,7 @@ def _messages(whole: bytes, first: bool) -> Iterator[bytes]:
         at += FRAME.size + length
 
 
-def _end(stream: rr.RecordingStream) -> None:
+def _close_stream(stream: rr.RecordingStream) -> None:
     try:
         stream.flush(timeout_sec=PATIENCE)
     # the viewer may have been closed during the run

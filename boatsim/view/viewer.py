@@ -52,10 +52,10 @@ def viewer_for(serve: bool) -> Iterator[Viewer | None]:
         BoatsimError: If the web viewer does not start.
     """
     if serve:
-        with _web_viewer() as viewer:
+        with _run_web_viewer() as viewer:
             yield viewer
-    elif _listening(PORT) or (has_display() and _open_window()):
-        yield Viewer(_address(PORT))
+    elif _is_listening(PORT) or (has_display() and _open_window()):
+        yield Viewer(_viewer_address(PORT))
     else:
         yield None
 
@@ -69,59 +69,63 @@ def has_display() -> bool:
 
 def _open_window() -> bool:
     """Start a viewer with a window, which stays open after the run; return whether it started."""
-    started = _rerun("--bind", HERE, "--port", str(PORT), "--expect-data-soon")
+    started = _start_rerun("--bind", HERE, "--port", str(PORT), "--expect-data-soon")
     try:
         if _wait_for(started, PORT):
             return True
     except BaseException:
-        _end(started)
+        _stop_viewer(started)
         raise
-    _end(started)
+    _stop_viewer(started)
     return False
 
 
 @contextmanager
-def _web_viewer() -> Iterator[Viewer]:
+def _run_web_viewer() -> Iterator[Viewer]:
     """Rerun's web viewer in a process that ends with the block."""
-    started, viewer = _serve(_free_port(PAGE)) or _serve(_free_port(0)) or _not_started()
+    started, viewer = (
+        _start_web_viewer(_find_free_port(PAGE))
+        or _start_web_viewer(_find_free_port(0))
+        or _raise_not_started()
+    )
     try:
         yield viewer
     finally:
-        _end(started)
+        _stop_viewer(started)
 
 
-def _serve(page: int) -> "tuple[subprocess.Popen[bytes], Viewer] | None":
+def _start_web_viewer(page: int) -> "tuple[subprocess.Popen[bytes], Viewer] | None":
     """Start a web viewer on a port; None if it does not start, as when the port is in use."""
-    port = _free_port(0)
-    started = _rerun(
+    port = _find_free_port(0)
+    started = _start_rerun(
         "--serve-web", "--bind", HERE, "--port", str(port), "--web-viewer-port", str(page)
     )
     try:
-        if _wait_for(started, port, page) and not _ends(started, SETTLED):
-            address = _address(port)
+        if _wait_for(started, port, page) and not _ends_within(started, SETTLED):
+            address = _viewer_address(port)
             url = f"http://{HERE}:{page}/?url={quote(address, safe='')}"
             return started, Viewer(address, url)
     except BaseException:
-        _end(started)
+        _stop_viewer(started)
         raise
-    _end(started)
+    _stop_viewer(started)
     return None
 
 
-def _not_started() -> NoReturn:
+def _raise_not_started() -> NoReturn:
     raise BoatsimError("rerun's web viewer does not start on this machine")
 
 
-def _end(started: "subprocess.Popen[bytes]") -> None:
+def _stop_viewer(started: "subprocess.Popen[bytes]") -> None:
     """End a viewer; its process group is used, because the command is a wrapper of the viewer."""
     for number in (signal.SIGTERM, signal.SIGKILL):
         with suppress(ProcessLookupError):
             os.killpg(started.pid, number)
-        if _ends(started, PATIENCE):
+        if _ends_within(started, PATIENCE):
             return
 
 
-def _ends(started: "subprocess.Popen[bytes]", seconds: float) -> bool:
+def _ends_within(started: "subprocess.Popen[bytes]", seconds: float) -> bool:
     """Whether a process ends within so many seconds."""
     try:
         started.wait(seconds)
@@ -130,7 +134,7 @@ def _ends(started: "subprocess.Popen[bytes]", seconds: float) -> bool:
     return True
 
 
-def _rerun(*options: str) -> "subprocess.Popen[bytes]":
+def _start_rerun(*options: str) -> "subprocess.Popen[bytes]":
     """Start rerun's viewer in a new session, which signals of the terminal do not reach."""
     command = [sys.executable, "-m", "rerun"]
     script = Path(sys.executable).parent / "rerun"
@@ -145,18 +149,18 @@ def _rerun(*options: str) -> "subprocess.Popen[bytes]":
 def _wait_for(started: "subprocess.Popen[bytes]", *ports: int) -> bool:
     """Wait until a viewer listens at all ports; return whether it does."""
     until = time.monotonic() + PATIENCE
-    while not all(map(_listening, ports)):
+    while not all(map(_is_listening, ports)):
         if started.poll() is not None or time.monotonic() > until:
             return False
         time.sleep(0.05)
     return True
 
 
-def _address(port: int) -> str:
+def _viewer_address(port: int) -> str:
     return f"rerun+http://{HERE}:{port}/proxy"
 
 
-def _free_port(wanted: int) -> int:
+def _find_free_port(wanted: int) -> int:
     """The port if it is free, else another one."""
     for port in (wanted, 0):
         with socket.socket() as tried, suppress(OSError):
@@ -166,7 +170,7 @@ def _free_port(wanted: int) -> int:
     raise BoatsimError("no port of this machine is free")
 
 
-def _listening(port: int) -> bool:
+def _is_listening(port: int) -> bool:
     """Whether a program listens at a port of this machine."""
     try:
         socket.create_connection((HERE, port), 1.0).close()

@@ -16,7 +16,7 @@ MARGIN = 1.0  # lengths of the drawn vessel around all paths
 BEYOND = 4.0  # size of the water by the size of the view
 
 
-def around(vessel: Vessel, runs: Mapping[str, Sequence[Recording]]) -> Scene:
+def open_water_scene(vessel: Vessel, runs: Mapping[str, Sequence[Recording]]) -> Scene:
     """Return the scene of an overlay of runs.
 
     Args:
@@ -36,7 +36,7 @@ def around(vessel: Vessel, runs: Mapping[str, Sequence[Recording]]) -> Scene:
     length, width = x_high - x_low + margin, y_high - y_low + margin
     far = BEYOND * max(length, width)
     tank = world.Tank(far, far, vessel.draught * 2, walls=False, centre=centre)
-    scene = scene_from(world.build(vessel, tank), vessel, tank).enlarged(times)
+    scene = scene_from(world.build_model(vessel, tank), vessel, tank).enlarge_vessels(times)
     return replace(scene, tank=(length, width, *centre))
 
 

@@ -4,6 +4,6 @@ import sys
 
 from boatsim.physics import vessel
 from boatsim.physics.program import Program
-from boatsim.warp.program import text_of
+from boatsim.warp.program import translated_source
 
-print(text_of(Program(vessel.load_vessel(sys.argv[1])), "float32"))
+print(translated_source(Program(vessel.load_vessel(sys.argv[1])), "float32"))

@@ -10,8 +10,8 @@ from boatsim.physics.signals import Array
 from boatsim.physics.vessel import Vessel
 from boatsim.simulate import batch
 from boatsim.warp.device_state import Boats
-from boatsim.warp.on_mujoco import OnMujoco
-from boatsim.warp.standalone import Alone
+from boatsim.warp.on_mujoco import MujocoMotion
+from boatsim.warp.standalone import StandaloneMotion
 
 MOST_EXACT = 2**24  # integers up to this one are exact in single precision
 
@@ -60,8 +60,8 @@ class Batch(batch.Batch):
         self._numbers = np.zeros(0, dtype=np.int64)  # (n,) number of each boat's vessel
         super().__init__(vessels, n, step, seeds=seeds)
         self._there = Boats(self.program, self.n, step, device, "float64" if double else "float32")
-        self.motion: OnMujoco | Alone = (
-            OnMujoco(self._there, self.vessels) if mujoco else Alone(self._there)
+        self.motion: MujocoMotion | StandaloneMotion = (
+            MujocoMotion(self._there, self.vessels) if mujoco else StandaloneMotion(self._there)
         )
         self.send()
 
@@ -72,7 +72,7 @@ class Batch(batch.Batch):
         boats: ArrayLike | None = None,
     ) -> None:
         """Put boats at states, see `boatsim.simulate.batch.Batch.reset`."""
-        self._read()
+        self._read_from_device()
         super().reset(states, commands, boats)
         self._changed = True
 
@@ -89,42 +89,42 @@ class Batch(batch.Batch):
 
     def set(self, parameter: str, values: ArrayLike, boats: ArrayLike | None = None) -> None:
         """Set a parameter, see `boatsim.simulate.batch.Batch.set`."""
-        self._read()
+        self._read_from_device()
         super().set(parameter, values, boats)
         self._check_courses()
         self._changed = True
 
     def assign(self, vessel: ArrayLike, boats: ArrayLike | None = None) -> None:
         """Assign vessels to boats, see `boatsim.simulate.batch.Batch.assign`."""
-        self._read()
+        self._read_from_device()
         super().assign(vessel, boats)
         if boats is None:
             self._numbers = np.zeros(self.n, dtype=np.int64)
-        self._numbers[self._chosen(boats)] = vessel
+        self._numbers[self._boat_numbers(boats)] = vessel
         self._check_courses()
         self._changed = True
 
     @property
     def states(self) -> Array:
         """(n, 2 NQ) present states, body rates over ground."""
-        self._read()
+        self._read_from_device()
         return super().states
 
     @property
     def actuators(self) -> Array:
         """(n, A) actuators now, in the order of `vessel.actuators`."""
-        self._read()
+        self._read_from_device()
         return super().actuators
 
     @property
     def lost(self) -> NDArray[np.bool_]:
         """(n,) whether the motion of a boat is no longer finite; other boats are unaffected."""
-        self._read()
+        self._read_from_device()
         return super().lost
 
     def sense(self, felt: Array) -> None:
         """Write readings without noise, see `boatsim.simulate.batch.Batch.sense`."""
-        self._read()
+        self._read_from_device()
         super().sense(felt)
 
     def send(self) -> None:
@@ -132,14 +132,14 @@ class Batch(batch.Batch):
         self._there.commands.assign(self._commands)
         self._there.t.assign(self.t)
         if self._changed:
-            self._there.take(self._p, self._k)
+            self._there.copy_parameters(self._p, self._k)
             self._there.memory.assign(self._memory)
             self._there.act.assign(self._act)
-            self.motion.take(self._numbers)
-            self.motion.put(self._y)
+            self.motion.assign_vessels(self._numbers)
+            self.motion.set_states(self._y)
             self._changed = False
 
-    def _read(self) -> None:
+    def _read_from_device(self) -> None:
         """Copy states and actuators from the device if it has stepped."""
         if self._ahead:
             self._y[:] = self.motion.states()

@@ -8,7 +8,7 @@ import numpy as np
 from boatsim.physics.program import Program
 from boatsim.physics.signals import Array
 from boatsim.warp import program as programs
-from boatsim.warp.runtime import device, warp
+from boatsim.warp.runtime import find_device, import_warp
 
 
 class Boats:
@@ -25,17 +25,17 @@ class Boats:
             real: Kind of floats, "float32" or "float64".
         """
         self.program, self.n, self.step = program, n, step
-        self.wp, self.device = warp(), device(on)
+        self.wp, self.device = import_warp(), find_device(on)
         self.code = program.module
-        self.kernels: ModuleType = programs.module(program, real)
+        self.kernels: ModuleType = programs.import_program(program, real)
         self.real = getattr(self.wp, real)
         self.commands = self.zeros(len(program.vessel.inputs))
         self.memory, self.act = self.zeros(program.memory_size), self.zeros(program.held_size)
-        self.t = self.filled(np.zeros(n), self.wp.float64)  # [s]
+        self.t = self.copy_to_device(np.zeros(n), self.wp.float64)  # [s]
         self.reallocations = 0  # of arrays; a recorded graph of the GPU holds their addresses
-        self.p = self.k = self.filled(np.zeros((0, 0)))
+        self.p = self.k = self.copy_to_device(np.zeros((0, 0)))
 
-    def take(self, p: Array, k: Array) -> None:
+    def copy_parameters(self, p: Array, k: Array) -> None:
         """Copy parameters and masses to the device; one row of each if all boats are equal.
 
         Args:
@@ -48,14 +48,14 @@ class Boats:
             self.p.assign(p)
             self.k.assign(k)
         else:
-            self.p, self.k = self.filled(p), self.filled(k)
+            self.p, self.k = self.copy_to_device(p), self.copy_to_device(k)
             self.reallocations += 1
 
     def zeros(self, *shape: int) -> Any:
         """Return an array (n, ...) of zeros on the device."""
-        return self.filled(np.zeros((self.n, *shape)))
+        return self.copy_to_device(np.zeros((self.n, *shape)))
 
-    def filled(self, values: Array, kind: Any = None) -> Any:
+    def copy_to_device(self, values: Array, kind: Any = None) -> Any:
         """Return a copy of an array on the device.
 
         Args:

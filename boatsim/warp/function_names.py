@@ -71,6 +71,6 @@ OF_WHOLES = {"%": "remainder_", "//": "quotient_"}  # of integers, rounded down 
 RESERVED = ("T", "wp", "int", "float", "bool", "range", "lambda")
 
 
-def safe(name: str) -> str:
+def unreserved_name(name: str) -> str:
     """Return a name for a variable that is not reserved in Warp."""
     return f"{name}_" if name in RESERVED else name

@@ -30,7 +30,7 @@ IDLE = (
 )
 
 
-class OnMujoco:
+class MujocoMotion:
     """All boats as the worlds of one model in open water."""
 
     def __init__(self, boats: Boats, vessels: Sequence[Vessel]) -> None:
@@ -50,7 +50,7 @@ class OnMujoco:
                 'a batch on MuJoCo needs mujoco_warp: pip install "boatsim[warp]"'
             ) from None
         self.boats, self._mjw = boats, mujoco_warp
-        self._models = [world.build(v, step=boats.step, show=False) for v in vessels]
+        self._models = [world.build_model(v, step=boats.step, show=False) for v in vessels]
         model = self._models[0]
         model.opt.disableflags = IDLE  # no contacts; all forces come from the callback
         joints = [model.joint(i).name for i in range(model.njnt)]
@@ -64,16 +64,16 @@ class OnMujoco:
                 model, mujoco.MjData(model), nworld=boats.n, nconmax=0, njmax=0
             )
         self._part, self._left, self._least, self._before = (boats.zeros() for _ in range(4))
-        self._ahead = boats.filled(np.zeros(boats.n), int)
-        self._unfinished = boats.filled(np.zeros(1), int)
+        self._ahead = boats.copy_to_device(np.zeros(boats.n), int)
+        self._unfinished = boats.copy_to_device(np.zeros(1), int)
         self.model.opt.timestep = self._part
         self.model.opt.run_collision_detection = False
-        self.model.callback.passive = self._passive
+        self.model.callback.passive = self._passive_callback
         self._stage = 0
         self._graph: Any = None
         self._recorded = -1
 
-    def take(self, numbers: NDArray[np.int64]) -> None:
+    def assign_vessels(self, numbers: NDArray[np.int64]) -> None:
         """Assign vessels to boats: each world gets the mass, inertia and joints of its hull.
 
         Args:
@@ -88,10 +88,10 @@ class OnMujoco:
             if len(array) == b.n:
                 array.assign(values)
             else:
-                setattr(self.model, name, b.filled(values, array.dtype))
+                setattr(self.model, name, b.copy_to_device(values, array.dtype))
                 b.reallocations += 1
 
-    def put(self, y: Array) -> None:
+    def set_states(self, y: Array) -> None:
         """Set the states.
 
         Args:
@@ -124,29 +124,29 @@ class OnMujoco:
         b = self.boats
         with b.wp.ScopedDevice(b.device):
             if b.device.is_cuda and self._recorded != b.reallocations:
-                self._record()
+                self._record_graph()
             self._ahead.fill_(steps)
             for _ in range(steps):
                 self._advance_part()
-            while b.code.HAS_TIME_TO_DISCONTINUITY and self._any_left():
+            while b.code.HAS_TIME_TO_DISCONTINUITY and self._has_steps_left():
                 self._advance_part()
         b.launch("rest", self._part)
 
     def _advance_part(self) -> None:
         """Integrate a part of a step of each boat."""
         if self._graph is None:
-            self._part_of_all()
+            self._step_all_boats()
         else:
             self.boats.wp.capture_launch(self._graph)
 
-    def _record(self) -> None:
+    def _record_graph(self) -> None:
         """Record a part as a graph of the GPU, after compiling everything in it."""
-        self._part_of_all()  # no boat has steps left: nothing moves
+        self._step_all_boats()  # no boat has steps left: nothing moves
         with self.boats.wp.ScopedCapture() as capture:
-            self._part_of_all()
+            self._step_all_boats()
         self._graph, self._recorded = capture.graph, self.boats.reallocations
 
-    def _part_of_all(self) -> None:
+    def _step_all_boats(self) -> None:
         """Advance the actuators of each boat over a part of its step, then its motion."""
         b = self.boats
         b.launch(
@@ -166,7 +166,7 @@ class OnMujoco:
         self._stage = 0
         self._mjw.step(self.model, self.data)
 
-    def _passive(self, model: Any, data: Any) -> None:
+    def _passive_callback(self, model: Any, data: Any) -> None:
         """Callback of mujoco_warp, called once for each stage."""
         (share, place), self._stage, b = STAGES[self._stage], self._stage + 1, self.boats
         at = place * int(b.code.HELD)
@@ -185,7 +185,7 @@ class OnMujoco:
             data.M,
         )
 
-    def _any_left(self) -> bool:
+    def _has_steps_left(self) -> bool:
         """Whether any boat has steps left."""
         self._unfinished.zero_()
         self.boats.launch("find_unfinished", self._ahead, self._left, self._unfinished)

@@ -20,7 +20,7 @@ ENTRIES: dict[str, tuple[Kind, ...]] = {
 }
 
 
-def text_of(program: Program, real: str) -> str:
+def translated_source(program: Program, real: str) -> str:
     """Return the text of the translated module.
 
     Args:
@@ -33,7 +33,7 @@ def text_of(program: Program, real: str) -> str:
     code, translation = program.module, Translation()
     try:
         for name, kinds in ENTRIES.items():
-            translation.function(getattr(code, name), kinds)
+            translation.translate_function(getattr(code, name), kinds)
     except NotTranslatable as error:
         raise BadInput(f"{program.vessel.name}: {error}") from None
     limits = {
@@ -47,14 +47,14 @@ def text_of(program: Program, real: str) -> str:
     return text
 
 
-def module(program: Program, real: str = "float32") -> ModuleType:
+def import_program(program: Program, real: str = "float32") -> ModuleType:
     """Return the translated program with the kernels of `boatsim.warp.kernels`.
 
     Args:
         program: The vessel's program.
         real: Kind of its floats, "float32" or "float64".
     """
-    return import_text(text_of(program, real))
+    return import_text(translated_source(program, real))
 
 
 def import_text(text: str) -> ModuleType:

@@ -10,7 +10,7 @@ from boatsim.errors import BadInput
 from boatsim.physics.cache import cache_folder
 
 
-def warp() -> Any:
+def import_warp() -> Any:
     """Import Warp and return it.
 
     Raises:
@@ -23,12 +23,12 @@ def warp() -> Any:
     if wp.config.kernel_cache_dir is None and "WARP_CACHE_PATH" not in os.environ:
         wp.config.kernel_cache_dir = str(cache_folder() / "warp")
         wp.config.log_level = wp.LOG_ERROR  # it reports every module that it compiles
-        with no_standard_error():
+        with discard_standard_error():
             wp.get_devices()  # initialises Warp
     return wp
 
 
-def device(name: str) -> Any:
+def find_device(name: str) -> Any:
     """Return a device.
 
     Args:
@@ -37,7 +37,7 @@ def device(name: str) -> Any:
     Raises:
         BadInput: There is no such device.
     """
-    wp = warp()
+    wp = import_warp()
     try:
         return wp.get_device(name)
     except (ValueError, RuntimeError):
@@ -46,7 +46,7 @@ def device(name: str) -> Any:
 
 
 @contextmanager
-def no_standard_error() -> Iterator[None]:
+def discard_standard_error() -> Iterator[None]:
     """Discard the standard error: Warp's library reports there that a computer has no GPU."""
     sys.stderr.flush()
     kept, nowhere = os.dup(2), os.open(os.devnull, os.O_WRONLY)

@@ -7,18 +7,18 @@ from boatsim.physics.signals import Array
 from boatsim.warp.device_state import Boats
 
 
-class Alone:
+class StandaloneMotion:
     """Joint coordinates and rates of all boats, and their integration."""
 
     def __init__(self, boats: Boats) -> None:
         self.boats = boats
         self._y = boats.zeros(2 * boats.code.NQ)
-        self._none = boats.filled(np.zeros(boats.code.NQ))
+        self._none = boats.copy_to_device(np.zeros(boats.code.NQ))
 
-    def take(self, numbers: NDArray[np.int64]) -> None:
+    def assign_vessels(self, numbers: NDArray[np.int64]) -> None:
         """Assign vessels to boats: nothing to do, the arrays of the device hold their masses."""
 
-    def put(self, y: Array) -> None:
+    def set_states(self, y: Array) -> None:
         """Set the states.
 
         Args:

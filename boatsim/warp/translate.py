@@ -24,7 +24,7 @@ from boatsim.warp.function_names import (
     OF_WHOLE,
     OF_WHOLES,
     OPERATORS,
-    safe,
+    unreserved_name,
 )
 from boatsim.warp.values import (
     BITS,
@@ -37,13 +37,13 @@ from boatsim.warp.values import (
     Kind,
     Record,
     Value,
-    constant,
-    flat,
-    named,
-    real,
-    truth,
-    tuple_of,
-    written,
+    annotation_of,
+    convert_to_bool,
+    convert_to_float,
+    flatten_tuple,
+    make_constant,
+    make_tuple,
+    make_variable,
 )
 
 
@@ -69,7 +69,7 @@ class Translation:
         """Source of all structs and functions."""
         return "\n\n".join([*self.structs, *self.functions])
 
-    def record(self, kind: Any, name: str) -> Record:
+    def struct_of(self, kind: Any, name: str) -> Record:
         """Return the struct of a type of named tuples.
 
         Args:
@@ -77,7 +77,7 @@ class Translation:
             name: Its name where it is first used.
         """
         if kind not in self._records:
-            found = Record(self.unused(name), tuple(kind._fields))
+            found = Record(self.unused_name(name), tuple(kind._fields))
             self.structs.append(
                 "\n".join(
                     [
@@ -91,7 +91,7 @@ class Translation:
             self._records[kind] = found
         return self._records[kind]
 
-    def unused(self, name: str) -> str:
+    def unused_name(self, name: str) -> str:
         """Return a name that no other function or struct has.
 
         Args:
@@ -103,7 +103,7 @@ class Translation:
         self._names.add(found)
         return found
 
-    def function(self, function: Any, kinds: Sequence[Kind]) -> tuple[str, Kind]:
+    def translate_function(self, function: Any, kinds: Sequence[Kind]) -> tuple[str, Kind]:
         """Translate a function; return its name and the kind of its result.
 
         Args:
@@ -131,23 +131,27 @@ class Body:
         assert isinstance(tree, ast.FunctionDef)
         self.tree = tree
         self.about = f"{function.__module__.rpartition('.')[2]}.{function.__name__}"
-        self.name = program.unused(re.sub(r"\W", "_", self.about))
+        self.name = program.unused_name(re.sub(r"\W", "_", self.about))
         self.lines: list[str] = []
         self.depth = 1
         self.temporaries = 0
         self.returned: Kind = NOTHING
         floats = {n for n, a in function.__annotations__.items() if a is float or a == "float"}
         self.arguments = {
-            arg.arg: named(REAL if kind == WHOLE and arg.arg in floats else kind, safe(arg.arg))
+            arg.arg: make_variable(
+                REAL if kind == WHOLE and arg.arg in floats else kind, unreserved_name(arg.arg)
+            )
             for arg, kind in zip(tree.args.args, kinds, strict=True)
         }
         self.variables: dict[str, Value] = dict(self.arguments)
 
     def text(self) -> str:
         """Return the function in Warp's dialect."""
-        self.block(self.tree.body)
+        self.translate_block(self.tree.body)
         taken = ", ".join(
-            f"{v.text}: {written(v.kind)}" for a in self.arguments.values() for v in flat(a)
+            f"{v.text}: {annotation_of(v.kind)}"
+            for a in self.arguments.values()
+            for v in flatten_tuple(a)
         )
         whole = ["@wp.func", f"def {self.name}({taken}):", f"    {self.about!r}", *self.lines]
         return ast.unparse(ast.parse("\n".join(whole))) + "\n"  # without superfluous brackets
@@ -155,21 +159,23 @@ class Body:
     # Statements
     # ------------------------------------------------------------------------------------------
 
-    def add(self, line: str) -> None:
+    def add_line(self, line: str) -> None:
         """Append a line at the present indentation."""
         self.lines.append("    " * self.depth + line)
 
-    def refuse(self, node: ast.AST, what: str) -> NotTranslatable:
+    def unsupported_error(self, node: ast.AST, what: str) -> NotTranslatable:
         """Return the error for a node that cannot be translated."""
         line = self.first + getattr(node, "lineno", 1) - 1
         return NotTranslatable(f"{self.file}:{line}: {what} has no Warp form")
 
-    def block(self, statements: Sequence[ast.stmt]) -> bool:
+    def translate_block(self, statements: Sequence[ast.stmt]) -> bool:
         """Translate statements; return whether they end with a return."""
         for statement in statements:
             written_by = getattr(self, f"statement_{type(statement).__name__}", None)
             if written_by is None:
-                raise self.refuse(statement, f"'{ast.unparse(statement).splitlines()[0]}'")
+                raise self.unsupported_error(
+                    statement, f"'{ast.unparse(statement).splitlines()[0]}'"
+                )
             if written_by(statement) or isinstance(statement, ast.Return):
                 return True
         return False
@@ -179,78 +185,90 @@ class Body:
 
     def statement_Break(self, node: ast.Break) -> None:
         """Translate `break`."""
-        self.add("break")
+        self.add_line("break")
 
     def statement_Expr(self, node: ast.Expr) -> None:
         """Translate a call without a result; omit docstrings."""
         if isinstance(node.value, ast.Constant):
             return
-        self.add(self.value(node.value).text)
+        self.add_line(self.translate_expression(node.value).text)
 
     def statement_Return(self, node: ast.Return) -> None:
         """Translate `return`, with the parts of a tuple as separate values."""
-        value = self.value(node.value) if node.value else NONE
+        value = self.translate_expression(node.value) if node.value else NONE
         declared = str(self.python.__annotations__.get("return", ""))
         if "float" in declared:
-            value = tuple_of([real(v) for v in value.parts]) if value.parts else real(value)
+            value = (
+                make_tuple([convert_to_float(v) for v in value.parts])
+                if value.parts
+                else convert_to_float(value)
+            )
         if self.returned not in (NOTHING, value.kind):
-            raise self.refuse(node, "a function that returns values of different kinds")
+            raise self.unsupported_error(node, "a function that returns values of different kinds")
         self.returned = value.kind
-        self.add(f"return {', '.join(v.text for v in flat(value))}".rstrip())
+        self.add_line(f"return {', '.join(v.text for v in flatten_tuple(value))}".rstrip())
 
     def statement_Assign(self, node: ast.Assign) -> None:
         """Translate an assignment to names, tuples of names or entries of rows."""
-        value = self.value(node.value)
+        value = self.translate_expression(node.value)
         read = {n.id for n in ast.walk(node.value) if isinstance(n, ast.Name)}
         set_ = {n.id for t in node.targets for n in ast.walk(t) if isinstance(n, ast.Name)}
-        if (len(flat(value)) > 1 and read & set_) or (
+        if (len(flatten_tuple(value)) > 1 and read & set_) or (
             len(node.targets) > 1 and isinstance(node.value, ast.Call)
         ):
-            value = self.stored(value)
+            value = self.copy_to_variables(value)
         for target in node.targets:
-            self.assign(target, value)
+            self.translate_assignment(target, value)
 
     def statement_AugAssign(self, node: ast.AugAssign) -> None:
         """Translate `+=` and so on to an assignment: those of Warp are atomic."""
         before = ast.parse(ast.unparse(node.target), mode="eval").body
-        self.assign(
-            node.target, self.value(ast.copy_location(ast.BinOp(before, node.op, node.value), node))
+        self.translate_assignment(
+            node.target,
+            self.translate_expression(
+                ast.copy_location(ast.BinOp(before, node.op, node.value), node)
+            ),
         )
 
-    def assign(self, target: ast.expr, value: Value) -> None:
+    def translate_assignment(self, target: ast.expr, value: Value) -> None:
         """Assign a value to a target."""
         if isinstance(target, ast.Tuple):
             if len(target.elts) != len(value.parts):
-                raise self.refuse(target, f"'{ast.unparse(target)} = ...'")
+                raise self.unsupported_error(target, f"'{ast.unparse(target)} = ...'")
             for part, of in zip(target.elts, value.parts, strict=True):
-                self.assign(part, of)
+                self.translate_assignment(part, of)
         elif isinstance(target, ast.Subscript):
-            self.add(f"{self.value(target, store=True).text} = {real(value).text}")
+            entry = self.translate_expression(target, store=True)
+            self.add_line(f"{entry.text} = {convert_to_float(value).text}")
         elif isinstance(target, ast.Name):
             known = self.variables.get(target.id)
             if known is not None and known.kind == REAL and value.kind in (WHOLE, TRUTH):
-                value = real(value)
+                value = convert_to_float(value)
             if known is not None and known.kind != value.kind:
-                raise self.refuse(target, f"'{target.id}', which has values of different kinds,")
-            own = named(value.kind, safe(target.id))
+                raise self.unsupported_error(
+                    target, f"'{target.id}', which has values of different kinds,"
+                )
+            own = make_variable(value.kind, unreserved_name(target.id))
             self.variables[target.id] = own
-            for to, of in zip(flat(own), flat(value), strict=True):
+            for to, of in zip(flatten_tuple(own), flatten_tuple(value), strict=True):
                 # Warp would take a plain integer for a compile-time constant.
                 is_integer = of.kind == WHOLE and of.fixed is not None
-                self.add(f"{to.text} = int({of.text})" if is_integer else f"{to.text} = {of.text}")
+                self.add_line(
+                    f"{to.text} = int({of.text})" if is_integer else f"{to.text} = {of.text}"
+                )
         else:
-            raise self.refuse(target, f"'{ast.unparse(target)} = ...'")
+            raise self.unsupported_error(target, f"'{ast.unparse(target)} = ...'")
 
     def statement_If(self, node: ast.If) -> bool:
         """Translate a branch; if its test is constant, only the side that is taken."""
-        test = truth(self.value(node.test))
+        test = convert_to_bool(self.translate_expression(node.test))
         if test.fixed is not None:
-            return self.block(node.body if test.fixed else node.orelse)
-        self.add(f"if {test.text}:")
-        self.indented(node.body)
+            return self.translate_block(node.body if test.fixed else node.orelse)
+        self.add_line(f"if {test.text}:")
+        self.translate_indented(node.body)
         if node.orelse:
-            self.add("else:")
-            self.indented(node.orelse)
+            self.add_line("else:")
+            self.translate_indented(node.orelse)
         return False
 
     def statement_For(self, node: ast.For) -> None:
@@ -258,83 +276,83 @@ class Body:
         call = node.iter
         if not (
             isinstance(call, ast.Call)
-            and self.found(call.func) is range
+            and self.resolve_object(call.func) is range
             and isinstance(node.target, ast.Name)
         ):
-            raise self.refuse(node, "a loop over anything but a range")
-        bounds = ", ".join(self.value(a).text for a in call.args)
-        self.variables[node.target.id] = Value(WHOLE, safe(node.target.id))
-        self.add(f"for {safe(node.target.id)} in range({bounds}):")
-        self.indented(node.body)
+            raise self.unsupported_error(node, "a loop over anything but a range")
+        bounds = ", ".join(self.translate_expression(a).text for a in call.args)
+        self.variables[node.target.id] = Value(WHOLE, unreserved_name(node.target.id))
+        self.add_line(f"for {unreserved_name(node.target.id)} in range({bounds}):")
+        self.translate_indented(node.body)
 
     def statement_While(self, node: ast.While) -> None:
         """Translate a `while` loop."""
         before = len(self.lines)
-        test = truth(self.value(node.test))
+        test = convert_to_bool(self.translate_expression(node.test))
         if len(self.lines) != before:
-            raise self.refuse(node, f"'while {ast.unparse(node.test)}'")
-        self.add(f"while {test.text}:")
-        self.indented(node.body)
+            raise self.unsupported_error(node, f"'while {ast.unparse(node.test)}'")
+        self.add_line(f"while {test.text}:")
+        self.translate_indented(node.body)
 
-    def indented(self, statements: Sequence[ast.stmt]) -> None:
+    def translate_indented(self, statements: Sequence[ast.stmt]) -> None:
         """Translate an indented block."""
         self.depth += 1
         before = len(self.lines)
-        self.block(statements)
+        self.translate_block(statements)
         if len(self.lines) == before:
-            self.add("pass")
+            self.add_line("pass")
         self.depth -= 1
 
-    def stored(self, value: Value) -> Value:
+    def copy_to_variables(self, value: Value) -> Value:
         """Copy a value to new variables."""
-        own = self.temporary(value.kind)
-        for to, of in zip(flat(own), flat(value), strict=True):
-            self.add(f"{to.text} = {of.text}")
+        own = self.new_variables(value.kind)
+        for to, of in zip(flatten_tuple(own), flatten_tuple(value), strict=True):
+            self.add_line(f"{to.text} = {of.text}")
         return own
 
-    def temporary(self, kind: Kind) -> Value:
+    def new_variables(self, kind: Kind) -> Value:
         """Return new variables."""
         self.temporaries += 1
-        return named(kind, f"_{self.temporaries}")
+        return make_variable(kind, f"_{self.temporaries}")
 
     # Expressions
     # ------------------------------------------------------------------------------------------
 
-    def value(self, node: ast.expr, store: bool = False) -> Value:
+    def translate_expression(self, node: ast.expr, store: bool = False) -> Value:
         """Translate an expression; lines that must precede it are added first."""
         if isinstance(node, ast.Subscript):
-            return self.entry(node, store)
+            return self.translate_subscript(node, store)
         written_by = getattr(self, f"of_{type(node).__name__}", None)
         if written_by is None:
-            raise self.refuse(node, f"'{ast.unparse(node)}'")
+            raise self.unsupported_error(node, f"'{ast.unparse(node)}'")
         found: Value = written_by(node)
         return found
 
     def of_Constant(self, node: ast.Constant) -> Value:
         """Translate a constant."""
         if not isinstance(node.value, bool | int | float):
-            raise self.refuse(node, f"'{ast.unparse(node)}'")
-        return constant(node.value)
+            raise self.unsupported_error(node, f"'{ast.unparse(node)}'")
+        return make_constant(node.value)
 
     def of_Name(self, node: ast.Name) -> Value:
         """Translate a variable, or a constant of the module."""
         if node.id in self.variables:
             return self.variables[node.id]
-        return self.outside(node)
+        return self.module_constant(node)
 
-    def outside(self, node: ast.expr) -> Value:
+    def module_constant(self, node: ast.expr) -> Value:
         """Translate a constant of the module or of one that it imports."""
-        found = self.found(node)
+        found = self.resolve_object(node)
         if isinstance(found, tuple) and all(isinstance(x, bool | int | float) for x in found):
-            return tuple_of([constant(x) for x in found])
+            return make_tuple([make_constant(x) for x in found])
         if not isinstance(found, bool | int | float):
-            raise self.refuse(node, f"'{ast.unparse(node)}'")
-        return constant(found)
+            raise self.unsupported_error(node, f"'{ast.unparse(node)}'")
+        return make_constant(found)
 
-    def found(self, node: ast.expr) -> Any:
+    def resolve_object(self, node: ast.expr) -> Any:
         """Return the object of a name or of an attribute of a module, None if it is a variable."""
         if isinstance(node, ast.Attribute):
-            return getattr(self.found(node.value), node.attr, None)
+            return getattr(self.resolve_object(node.value), node.attr, None)
         if not isinstance(node, ast.Name) or node.id in self.variables:
             return None
         return self.python.__globals__.get(node.id, getattr(builtins, node.id, None))
@@ -342,17 +360,17 @@ class Body:
     def of_Attribute(self, node: ast.Attribute) -> Value:
         """Translate a field of a record or a constant of a module."""
         if isinstance(node.value, ast.Name) and node.value.id not in self.variables:
-            return self.outside(node)
-        owner = self.value(node.value)
+            return self.module_constant(node)
+        owner = self.translate_expression(node.value)
         if not isinstance(owner.kind, Record) or node.attr not in owner.kind.fields:
-            raise self.refuse(node, f"'{ast.unparse(node)}'")
+            raise self.unsupported_error(node, f"'{ast.unparse(node)}'")
         if not owner.text.isidentifier():
-            owner = self.stored(owner)
+            owner = self.copy_to_variables(owner)
         return Value(REAL, f"{owner.text}.{node.attr}")
 
-    def entry(self, node: ast.Subscript, store: bool) -> Value:
+    def translate_subscript(self, node: ast.Subscript, store: bool) -> Value:
         """Translate an entry of a row, tuple or record."""
-        owner, index = self.value(node.value), self.value(node.slice)
+        owner, index = self.translate_expression(node.value), self.translate_expression(node.slice)
         if owner.kind == ROW and index.kind == WHOLE:
             return Value(REAL, f"{owner.text}[{index.text}]")
         if isinstance(index.fixed, int) and not store:
@@ -365,58 +383,64 @@ class Body:
             for i, part in reversed(list(enumerate(owner.parts[:-1]))):
                 found = Value(part.kind, f"({part.text} if {index.text} == {i} else {found.text})")
             return found
-        raise self.refuse(node, f"'{ast.unparse(node)}'")
+        raise self.unsupported_error(node, f"'{ast.unparse(node)}'")
 
     def of_Tuple(self, node: ast.Tuple) -> Value:
         """Translate a tuple."""
-        return tuple_of([self.value(e) for e in node.elts])
+        return make_tuple([self.translate_expression(e) for e in node.elts])
 
     def of_UnaryOp(self, node: ast.UnaryOp) -> Value:
         """Translate a sign or `not`."""
-        of = self.value(node.operand)
+        of = self.translate_expression(node.operand)
         if isinstance(node.op, ast.USub) and isinstance(of.fixed, int | float):
-            return constant(-of.fixed)
+            return make_constant(-of.fixed)
         if isinstance(node.op, ast.Not):
             if of.fixed is not None:
-                return constant(not of.fixed)
-            return Value(TRUTH, f"(not {truth(of).text})")
-        return Value(of.kind, f"({self.operator(node.op)}{of.text})")
+                return make_constant(not of.fixed)
+            return Value(TRUTH, f"(not {convert_to_bool(of).text})")
+        return Value(of.kind, f"({self.operator_text(node.op)}{of.text})")
 
     def of_BinOp(self, node: ast.BinOp) -> Value:
         """Translate arithmetic.
 
         Integers become floats if the other operand is one, and in divisions.
         """
-        a, b, op = self.value(node.left), self.value(node.right), self.operator(node.op)
+        a, b, op = (
+            self.translate_expression(node.left),
+            self.translate_expression(node.right),
+            self.operator_text(node.op),
+        )
         if a.kind == b.kind == TRUTH and op in OF_TRUTHS:
             return Value(TRUTH, f"({a.text} {OF_TRUTHS[op]} {b.text})")
         if op == "/" or not {a.kind, b.kind} <= {WHOLE, BITS}:
             if op == "**":
-                return self.power(a, b)
+                return self.translate_power(a, b)
             if op not in "+-*/" or op == "//":
-                raise self.refuse(node, f"'{ast.unparse(node)}'")
-            return Value(REAL, f"({real(a).text} {op} {real(b).text})")
+                raise self.unsupported_error(node, f"'{ast.unparse(node)}'")
+            return Value(REAL, f"({convert_to_float(a).text} {op} {convert_to_float(b).text})")
         if a.kind != b.kind or op == "**":
-            raise self.refuse(node, f"'{ast.unparse(node)}'")
+            raise self.unsupported_error(node, f"'{ast.unparse(node)}'")
         if op in OF_WHOLES:
             return Value(WHOLE, f"{OF_WHOLES[op]}({a.text}, {b.text})")
         return Value(a.kind, f"({a.text} {op} {b.text})")
 
-    def power(self, base: Value, exponent: Value) -> Value:
+    def translate_power(self, base: Value, exponent: Value) -> Value:
         """Translate a power; small integer powers become products, whose base may be negative."""
         if isinstance(exponent.fixed, int) and 2 <= exponent.fixed <= 4:
-            return Value(REAL, f"power_{exponent.fixed}_({real(base).text})")
-        return Value(REAL, f"wp.pow({real(base).text}, {real(exponent).text})")
+            return Value(REAL, f"power_{exponent.fixed}_({convert_to_float(base).text})")
+        return Value(
+            REAL, f"wp.pow({convert_to_float(base).text}, {convert_to_float(exponent).text})"
+        )
 
     def of_Compare(self, node: ast.Compare) -> Value:
         """Translate one comparison or a chain."""
-        ends, parts = [self.value(e) for e in (node.left, *node.comparators)], []
+        ends, parts = [self.translate_expression(e) for e in (node.left, *node.comparators)], []
         for op, a, b in zip(node.ops, ends, ends[1:], strict=False):
             if REAL in (a.kind, b.kind):
-                a, b = real(a), real(b)
+                a, b = convert_to_float(a), convert_to_float(b)
             if a.kind != b.kind:
-                raise self.refuse(node, f"'{ast.unparse(node)}'")
-            parts.append(f"({a.text} {self.operator(op)} {b.text})")
+                raise self.unsupported_error(node, f"'{ast.unparse(node)}'")
+            parts.append(f"({a.text} {self.operator_text(op)} {b.text})")
         if len(parts) == 1:
             return Value(TRUTH, parts[0])
         return Value(TRUTH, f"({' and '.join(parts)})")
@@ -424,51 +448,55 @@ class Body:
     def of_BoolOp(self, node: ast.BoolOp) -> Value:
         """Translate `and` and `or`, without constant operands."""
         before = len(self.lines)
-        parts = [truth(self.value(v)) for v in node.values]
+        parts = [convert_to_bool(self.translate_expression(v)) for v in node.values]
         if len(self.lines) != before:
-            raise self.refuse(node, f"'{ast.unparse(node)}'")
+            raise self.unsupported_error(node, f"'{ast.unparse(node)}'")
         deciding = isinstance(node.op, ast.Or)
         if any(p.fixed is deciding for p in parts):
-            return constant(deciding)
+            return make_constant(deciding)
         parts = [p for p in parts if p.fixed is None]
         if not parts:
-            return constant(not deciding)
-        return Value(TRUTH, f"({f' {self.operator(node.op)} '.join(p.text for p in parts)})")
+            return make_constant(not deciding)
+        return Value(TRUTH, f"({f' {self.operator_text(node.op)} '.join(p.text for p in parts)})")
 
     def of_IfExp(self, node: ast.IfExp) -> Value:
         """Translate a conditional expression, or a branch if a side needs lines before it."""
-        test = truth(self.value(node.test))
+        test = convert_to_bool(self.translate_expression(node.test))
         if test.fixed is not None:
-            return self.value(node.body if test.fixed else node.orelse)
+            return self.translate_expression(node.body if test.fixed else node.orelse)
         before, first_temporary = len(self.lines), self.temporaries
-        a, b = self.alike(self.value(node.body), self.value(node.orelse))
+        a, b = self.convert_to_same_kind(
+            self.translate_expression(node.body), self.translate_expression(node.orelse)
+        )
         if len(self.lines) == before and not isinstance(a.kind, tuple):
             return Value(a.kind, f"({a.text} if {test.text} else {b.text})")
         del self.lines[before:]
         self.temporaries = first_temporary
-        own = self.temporary(a.kind)
+        own = self.new_variables(a.kind)
         for head, branch in ((f"if {test.text}:", node.body), ("else:", node.orelse)):
-            self.add(head)
+            self.add_line(head)
             self.depth += 1
-            value = self.value(branch)
-            for to, of in zip(flat(own), flat(value), strict=True):
-                self.add(f"{to.text} = {real(of).text if to.kind == REAL else of.text}")
+            value = self.translate_expression(branch)
+            for to, of in zip(flatten_tuple(own), flatten_tuple(value), strict=True):
+                self.add_line(
+                    f"{to.text} = {convert_to_float(of).text if to.kind == REAL else of.text}"
+                )
             self.depth -= 1
         return own
 
-    def alike(self, a: Value, b: Value) -> tuple[Value, Value]:
+    def convert_to_same_kind(self, a: Value, b: Value) -> tuple[Value, Value]:
         """Return two values of the same kind, floats if either is one."""
         if a.parts and len(a.parts) == len(b.parts):
-            pairs = [self.alike(x, y) for x, y in zip(a.parts, b.parts, strict=True)]
-            return tuple_of([x for x, _ in pairs]), tuple_of([y for _, y in pairs])
+            pairs = [self.convert_to_same_kind(x, y) for x, y in zip(a.parts, b.parts, strict=True)]
+            return make_tuple([x for x, _ in pairs]), make_tuple([y for _, y in pairs])
         if a.kind == b.kind:
             return a, b
-        return real(a), real(b)
+        return convert_to_float(a), convert_to_float(b)
 
-    def operator(self, op: ast.AST) -> str:
+    def operator_text(self, op: ast.AST) -> str:
         """Return the text of an operator."""
         if type(op) not in OPERATORS:
-            raise self.refuse(op, type(op).__name__)
+            raise self.unsupported_error(op, type(op).__name__)
         return OPERATORS[type(op)]
 
     # Calls
@@ -476,33 +504,41 @@ class Body:
 
     def of_Call(self, node: ast.Call) -> Value:
         """Translate a call of a function, a constructor of a named tuple or a conversion."""
-        what = self.found(node.func)
+        what = self.resolve_object(node.func)
         if isinstance(what, type) and issubclass(what, tuple) and hasattr(what, "_fields"):
             name = ast.unparse(node.func).rpartition(".")[2]
-            record, given = self.program.record(what, name), self.bound(node, what.__new__, skip=1)
-            return Value(record, f"{record.name}({', '.join(real(v).text for v in given)})")
+            record, given = (
+                self.program.struct_of(what, name),
+                self.bind_arguments(node, what.__new__, skip=1),
+            )
+            return Value(
+                record, f"{record.name}({', '.join(convert_to_float(v).text for v in given)})"
+            )
         if isinstance(what, Hashable) and what in CASTS:
-            return self.cast(CASTS[what], self.value(node.args[0]))
+            return self.convert_kind(CASTS[what], self.translate_expression(node.args[0]))
         if isinstance(what, Hashable) and what in MATH:
-            return self.mathematics(what, [self.value(a) for a in node.args])
+            return self.translate_math_call(what, [self.translate_expression(a) for a in node.args])
         if what is len:
-            return constant(len(self.found(node.args[0])))
+            return make_constant(len(self.resolve_object(node.args[0])))
         python = python_function(what)
         if inspect.isfunction(python):
-            return self.call(what, self.bound(node, python))
-        raise self.refuse(node, f"'{ast.unparse(node.func)}'")
+            return self.translate_call(what, self.bind_arguments(node, python))
+        raise self.unsupported_error(node, f"'{ast.unparse(node.func)}'")
 
-    def bound(self, node: ast.Call, python: Any, skip: int = 0) -> list[Value]:
+    def bind_arguments(self, node: ast.Call, python: Any, skip: int = 0) -> list[Value]:
         """Return the arguments of a call in the order of the function, with its defaults."""
         parameters = list(inspect.signature(python).parameters.values())[skip:]
-        given = {p.name: self.value(a) for p, a in zip(parameters, node.args, strict=False)}
-        given |= {str(k.arg): self.value(k.value) for k in node.keywords}
+        given = {
+            p.name: self.translate_expression(a)
+            for p, a in zip(parameters, node.args, strict=False)
+        }
+        given |= {str(k.arg): self.translate_expression(k.value) for k in node.keywords}
         for parameter in parameters:
             if parameter.name not in given:
-                given[parameter.name] = constant(parameter.default)
+                given[parameter.name] = make_constant(parameter.default)
         return [given[parameter.name] for parameter in parameters]
 
-    def call(self, what: Any, given: Sequence[Value]) -> Value:
+    def translate_call(self, what: Any, given: Sequence[Value]) -> Value:
         """Translate a call of a translated function.
 
         A tuple that it returns is assigned to variables.
@@ -513,36 +549,36 @@ class Body:
             for n in python.__code__.co_varnames[: len(given)]
         ]
         given = [
-            real(v) if is_float and v.kind in (WHOLE, TRUTH) else v
+            convert_to_float(v) if is_float and v.kind in (WHOLE, TRUTH) else v
             for v, is_float in zip(given, floats, strict=True)
         ]
-        name, kind = self.program.function(what, [v.kind for v in given])
-        text = f"{name}({', '.join(leaf.text for v in given for leaf in flat(v))})"
+        name, kind = self.program.translate_function(what, [v.kind for v in given])
+        text = f"{name}({', '.join(leaf.text for v in given for leaf in flatten_tuple(v))})"
         if not isinstance(kind, tuple):
             return Value(kind, text)
-        own = self.temporary(kind)
-        self.add(f"{', '.join(v.text for v in flat(own))} = {text}")
+        own = self.new_variables(kind)
+        self.add_line(f"{', '.join(v.text for v in flatten_tuple(own))} = {text}")
         return own
 
-    def mathematics(self, what: Any, given: Sequence[Value]) -> Value:
+    def translate_math_call(self, what: Any, given: Sequence[Value]) -> Value:
         """Translate a mathematical function; `min` and `max` of many arguments are nested."""
         name = MATH[what]
         whole = name in OF_WHOLE and all(v.kind == WHOLE for v in given)
-        texts = [v.text if whole else real(v).text for v in given]
+        texts = [v.text if whole else convert_to_float(v).text for v in given]
         while name in OF_TWO and len(texts) > 2:
             texts[:2] = [f"{name}({texts[0]}, {texts[1]})"]
         return Value(WHOLE if whole else REAL, f"{name}({', '.join(texts)})")
 
-    def cast(self, kind: Kind, value: Value) -> Value:
+    def convert_kind(self, kind: Kind, value: Value) -> Value:
         """Convert a value to another kind."""
         if kind == REAL:
-            return real(value)
+            return convert_to_float(value)
         if value.kind == kind:
             return value
         if kind == TRUTH:
-            return truth(value)
+            return convert_to_bool(value)
         if kind == WHOLE and isinstance(value.fixed, int | float):
-            return constant(int(value.fixed))
+            return make_constant(int(value.fixed))
         if kind == BITS and isinstance(value.fixed, int):
             # Warp's literals have fewer bits
             parts = (str(value.fixed >> shift & 0xFFFF) for shift in (48, 32, 16, 0))

@@ -34,7 +34,7 @@ class Value:
 NONE = Value(NOTHING)
 
 
-def tuple_of(parts: Sequence[Value]) -> Value:
+def make_tuple(parts: Sequence[Value]) -> Value:
     """Return a tuple of values; no values are nothing.
 
     Args:
@@ -45,7 +45,7 @@ def tuple_of(parts: Sequence[Value]) -> Value:
     return Value(tuple(p.kind for p in parts), parts=tuple(parts))
 
 
-def flat(value: Value) -> list[Value]:
+def flatten_tuple(value: Value) -> list[Value]:
     """Return the parts of a value that are no tuples; none for nothing.
 
     Args:
@@ -55,10 +55,10 @@ def flat(value: Value) -> list[Value]:
         return []
     if not isinstance(value.kind, tuple):
         return [value]
-    return list(chain.from_iterable(map(flat, value.parts)))
+    return list(chain.from_iterable(map(flatten_tuple, value.parts)))
 
 
-def named(kind: Kind, name: str) -> Value:
+def make_variable(kind: Kind, name: str) -> Value:
     """Return a variable.
 
     Args:
@@ -66,13 +66,13 @@ def named(kind: Kind, name: str) -> Value:
         name: Its name; those of the parts of a tuple are numbered.
     """
     if isinstance(kind, tuple):
-        return tuple_of([named(k, f"{name}_{i}") for i, k in enumerate(kind)])
+        return make_tuple([make_variable(k, f"{name}_{i}") for i, k in enumerate(kind)])
     if kind == NOTHING:
         return NONE
     return Value(kind, name)
 
 
-def constant(number: object) -> Value:
+def make_constant(number: object) -> Value:
     """Return a constant.
 
     Args:
@@ -89,7 +89,7 @@ def constant(number: object) -> Value:
     return Value(REAL, text, fixed=number)
 
 
-def real(value: Value) -> Value:
+def convert_to_float(value: Value) -> Value:
     """Convert a value to a float.
 
     Args:
@@ -98,13 +98,13 @@ def real(value: Value) -> Value:
     if value.kind == REAL:
         return value
     if isinstance(value.fixed, bool | int):
-        return constant(float(value.fixed))
+        return make_constant(float(value.fixed))
     if value.kind == TRUTH:
         return Value(REAL, f"wp.where({value.text}, T(1.0), T(0.0))")
     return Value(REAL, f"T({value.text})")
 
 
-def truth(value: Value) -> Value:
+def convert_to_bool(value: Value) -> Value:
     """Convert a value to a bool: whether it is not zero.
 
     Args:
@@ -113,12 +113,12 @@ def truth(value: Value) -> Value:
     if value.kind == TRUTH:
         return value
     if value.fixed is not None:
-        return constant(bool(value.fixed))
+        return make_constant(bool(value.fixed))
     zero = "T(0.0)" if value.kind == REAL else "0"
     return Value(TRUTH, f"({value.text} != {zero})")
 
 
-def written(kind: Kind) -> str:
+def annotation_of(kind: Kind) -> str:
     """Return the annotation of an argument of a kind."""
     assert not isinstance(kind, tuple)
     if isinstance(kind, Record):

@@ -100,7 +100,7 @@ def _scenario_pages() -> Iterator[tuple[str, str]]:
     for folder, names in folders.items():
         lines = [f"# {folder}", "", "| `boatsim run` | purpose |", "| --- | --- |"]
         for name in names:
-            about = str(cases.content(name)[0].get("about", ""))
+            about = str(cases.read_scenario(name)[0].get("about", ""))
             lines.append(_row((f"`{name}`", _escaped(about))))
         yield f"scenarios/{folder}", "\n".join([*lines, ""])
 

@@ -12,7 +12,7 @@ from typer.testing import CliRunner
 
 from boatsim.cli import app, progress, trust_prompt
 from boatsim.diagnosis.pipeline import diagnose
-from boatsim.progress import part
+from boatsim.progress import report_part_of
 
 DATA = Path(__file__).parents[1] / "data"
 TRIAL = [DATA / "trials" / "T002" / f"run_{i}.csv" for i in (1, 2)]
@@ -169,12 +169,12 @@ def test_the_bar_makes_way_for_a_question(monkeypatch: pytest.MonkeyPatch) -> No
 
     monkeypatch.setattr(progress, "_active", Bars())
     monkeypatch.setattr(trust_prompt.sys, "stdin", Answer())
-    assert trust_prompt._ask(Path("mine")) and seen == ["stop", "asked", "start"]
+    assert trust_prompt._ask_to_trust(Path("mine")) and seen == ["stop", "asked", "start"]
 
 
 def test_a_part_of_the_work_is_told_as_its_share_of_the_whole() -> None:
     told: list[tuple[str, float, str]] = []
-    inner = part(part(lambda *news: told.append(news), 0.2, 0.6), 0.5, 1.0)
+    inner = report_part_of(report_part_of(lambda *news: told.append(news), 0.2, 0.6), 0.5, 1.0)
     inner("a", 0.5, "b")
     inner("a", 7.0)
     assert told == [("a", pytest.approx(0.5), "b"), ("a", pytest.approx(0.6), "")]

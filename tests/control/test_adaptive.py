@@ -21,17 +21,17 @@ from boatsim.control.adaptive import (
     Predictor,
     l1_condition,
     l1_norm,
-    l1_rows,
+    l1_norm_of_outputs,
     loop_margins,
-    lyapunov,
     project_interval,
+    solve_lyapunov,
     step_response,
-    unfiltered,
+    unfiltered_system,
 )
 from boatsim.errors import BadInput
 
 AM = [[0.0, 1.0], [-1.0, -1.4]]
-P = lyapunov(AM)
+P = solve_lyapunov(AM)
 PB = (float(P[0, 1]), float(P[1, 1]))  # P b with b = (0, 1)
 
 
@@ -42,7 +42,7 @@ def project_ball(
     this radius."""
     square = sum(t * t for t in theta)
     along = sum(t * y for t, y in zip(theta, rate, strict=True))
-    share = adaptive.ball_share(square, along, radius, tolerance)
+    share = adaptive.projection_share(square, along, radius, tolerance)
     return [y - share * t for t, y in zip(theta, rate, strict=True)]
 
 
@@ -58,7 +58,7 @@ def test_lyapunov_equation_holds_for_any_weight() -> None:
         np.array([[-1.0, 3.0, 0.2], [0.0, -2.0, 1.0], [-0.5, 0.0, -0.7]]),
         np.diag([1.0, 2.0, 5.0]),
     )
-    p = lyapunov(a, q)
+    p = solve_lyapunov(a, q)
     assert a.T @ p + p @ a == pytest.approx(-q, abs=1e-12)
 
 
@@ -143,23 +143,23 @@ def test_l1_norm_of_a_damped_oscillation(sigma: float, omega: float) -> None:
 
 def test_l1_norm_adds_inputs_and_takes_the_largest_output() -> None:
     system = LinearSystem(np.diag([-2.0, -5.0]), np.array([[1.0, 3.0], [0.0, -1.0]]), np.eye(2))
-    assert l1_rows(system) == pytest.approx([4.0 / 2.0, 1.0 / 5.0])
+    assert l1_norm_of_outputs(system) == pytest.approx([4.0 / 2.0, 1.0 / 5.0])
     assert l1_norm(system) == pytest.approx(2.0)
 
 
 def test_l1_norm_of_a_double_pole() -> None:
     """The low-pass as fast as the model: s/(s + 2)^2, integral of |1 - 2 t| e^{-2t} = 1/e."""
-    assert l1_norm(unfiltered([[-2.0]], [1.0], 2.0)) == pytest.approx(exp(-1.0), rel=1e-6)
+    assert l1_norm(unfiltered_system([[-2.0]], [1.0], 2.0)) == pytest.approx(exp(-1.0), rel=1e-6)
 
 
 def test_l1_norm_of_an_unstable_system_is_refused() -> None:
     with pytest.raises(BadInput, match="stable"):
-        l1_norm(unfiltered([[0.1]], [1.0], 2.0))
+        l1_norm(unfiltered_system([[0.1]], [1.0], 2.0))
 
 
 def test_l1_norms_of_example_a() -> None:
     """A box of +-10 for both unknowns has |th1| + |th2| up to 20."""
-    assert l1_rows(unfiltered(AM, (0.0, 1.0), 160.0)) == pytest.approx(
+    assert l1_norm_of_outputs(unfiltered_system(AM, (0.0, 1.0), 160.0)) == pytest.approx(
         [0.006008, 0.014740], abs=5e-7
     )
     for bandwidth, value, digit in (
@@ -167,7 +167,7 @@ def test_l1_norms_of_example_a() -> None:
         (60.0, 0.756, 5e-4),
         (30.0, 1.437, 5e-4),
     ):
-        found = l1_condition(l1_norm(unfiltered(AM, (0.0, 1.0), bandwidth)), 20.0)
+        found = l1_condition(l1_norm(unfiltered_system(AM, (0.0, 1.0), bandwidth)), 20.0)
         assert found == pytest.approx(value, abs=digit)
 
 
@@ -176,7 +176,7 @@ def test_l1_condition_of_the_water_jet_cruise_control() -> None:
     print)."""
 
     def condition(k: float) -> float:
-        return l1_condition(l1_norm(unfiltered([[-1.4]], [1.0], 0.1 * k)), 1.7716)
+        return l1_condition(l1_norm(unfiltered_system([[-1.4]], [1.0], 0.1 * k)), 1.7716)
 
     assert condition(12.04) > 1.0 > condition(12.14)
     assert condition(35.0) == pytest.approx(0.55, abs=5e-3)
@@ -244,7 +244,7 @@ def compiled(block: Any, **replaced: Any) -> Any:
     return njit(FunctionType(block.__code__, block.__globals__ | replaced))
 
 
-ball_share = compiled(adaptive.ball_share)
+ball_share = compiled(adaptive.projection_share)
 interval = compiled(adaptive.project_interval, ball_share=ball_share)
 
 
@@ -343,7 +343,7 @@ def test_compiled_rates_are_the_gradient_laws() -> None:
         strict=True,
     )
     laws = [
-        Gradient(value, low, high, 1e5).rate(regressor, error)
+        Gradient(value, low, high, 1e5).projected_rate(regressor, error)
         for value, regressor, (low, high) in pairs
     ]
     assert ds[10:] == pytest.approx(laws)

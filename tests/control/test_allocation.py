@@ -16,7 +16,7 @@ from boatsim.control.allocation import (
     Outboards,
     Push,
     Stick,
-    keep_heading,
+    integrate_heading,
 )
 from boatsim.errors import BadInput
 
@@ -40,7 +40,7 @@ def force_of_each_motor(drive: Drive, half_spacing: float, arm: float) -> Push:
 @pytest.mark.parametrize("angle", [0.0, 0.3, ANGLE_MAX])
 def test_push_is_the_sum_over_both_motors(angle: float) -> None:
     drive = Drive(0.4, -0.3, angle)
-    assert OURS.push(drive) == pytest.approx(
+    assert OURS.nominal_wrench(drive) == pytest.approx(
         force_of_each_motor(drive, OURS.half_spacing, OURS.arm), abs=1e-14
     )
 
@@ -54,7 +54,7 @@ def test_neutral_angles_of_the_four_boats(
 ) -> None:
     boat = Outboards(half_spacing=half_spacing, arm=arm)
     assert degrees(boat.neutral_angle()) == pytest.approx(published, abs=0.01)
-    assert boat.lever(boat.neutral_angle()) == pytest.approx(0.0, abs=1e-15)
+    assert boat.moment_arm(boat.neutral_angle()) == pytest.approx(0.0, abs=1e-15)
 
 
 @pytest.mark.parametrize("difference", [-0.6, -0.3, 0.0, 0.3, 0.6])
@@ -66,7 +66,7 @@ def test_what_is_asked_inside_the_limits_is_what_is_given(difference: float) -> 
         spread = difference or moment / OURS.half_spacing
         for surge in (-0.3 * abs(spread), 0.0, 0.3 * abs(spread)):
             drive = OURS.allocate(surge, difference, moment)
-            push = OURS.push(drive)
+            push = OURS.nominal_wrench(drive)
             assert (push.X, push.N) == pytest.approx((surge, moment), abs=1e-12)
             assert drive.port - drive.starboard == pytest.approx(spread, abs=1e-12)
 
@@ -92,7 +92,7 @@ def test_surge_correction_takes_its_share_only(difference: float, share: float) 
     moment = 0.0 if difference else 0.06
     drive = OURS.allocate(5.0, difference, moment)
     assert drive.port + drive.starboard == pytest.approx(share * (drive.port - drive.starboard))
-    assert OURS.push(drive).N == pytest.approx(moment, abs=1e-12)
+    assert OURS.nominal_wrench(drive).N == pytest.approx(moment, abs=1e-12)
     roomy = OURS.allocate(5.0, difference, moment, room=0.2)
     assert roomy.port + roomy.starboard == pytest.approx(drive.port + drive.starboard + 0.2)
 
@@ -101,16 +101,16 @@ def test_sway_thrust_grows_where_the_moment_needs_it() -> None:
     for moment in (0.15, -0.15):
         drive = OURS.allocate(0.0, 0.2, moment)
         assert drive.port - drive.starboard > 0.2
-        assert OURS.push(drive).N == pytest.approx(moment)
+        assert OURS.nominal_wrench(drive).N == pytest.approx(moment)
 
 
 def test_a_turn_at_the_limits_keeps_a_reserve_for_surge() -> None:
     weak = Outboards(
         rated_thrust=0.35
     )  # astern gives 0.4 N at most, less than half of the largest difference
-    hard = weak.push(weak.allocate(0.0, 0.0, 1.0))
+    hard = weak.nominal_wrench(weak.allocate(0.0, 0.0, 1.0))
     assert hard.X == pytest.approx(0.0, abs=1e-12)
-    back = weak.push(weak.allocate(-1.0, 0.0, 1.0))
+    back = weak.nominal_wrench(weak.allocate(-1.0, 0.0, 1.0))
     assert back.X < -0.1
     assert 0.6 * hard.N < back.N < hard.N
 
@@ -142,7 +142,7 @@ def test_no_demand_exceeds_the_motors_or_the_servos(
     for thrust in drive[:2]:
         assert -astern - 1e-12 <= thrust <= ahead + 1e-12
     assert abs(drive.port - drive.starboard) <= 0.9 + 1e-12
-    setting = OURS.setting(drive)
+    setting = OURS.to_setting(drive)
     assert max(abs(setting.pwm_port), abs(setting.pwm_starboard)) <= PWM_MAX
     assert 0 <= setting.degrees <= 45
 
@@ -154,7 +154,10 @@ def test_drive_is_continuous_while_the_sway_keeps_its_side() -> None:
             line = [OURS.allocate(surge, difference, -0.4 + step * i, 0.1) for i in range(401)]
             for a, b in pairwise(line):
                 assert (
-                    max(abs(p - q) for p, q in zip(OURS.push(a), OURS.push(b), strict=True))
+                    max(
+                        abs(p - q)
+                        for p, q in zip(OURS.nominal_wrench(a), OURS.nominal_wrench(b), strict=True)
+                    )
                     < 5 * step
                 )
                 assert max(abs(a.port - b.port), abs(a.starboard - b.starboard)) < 5 * step
@@ -172,7 +175,7 @@ def test_letting_go_of_sway_is_smooth_in_a_helping_turn_and_reverses_the_motors_
     assert still_swaying == pytest.approx(turn, abs=1e-6)
     turn, still_swaying = OURS.allocate(0.0, 0.0, -0.1), OURS.allocate(0.0, 1e-9, -0.1)
     assert still_swaying.port > 0.0 > turn.port
-    assert OURS.push(still_swaying).N == pytest.approx(OURS.push(turn).N)
+    assert OURS.nominal_wrench(still_swaying).N == pytest.approx(OURS.nominal_wrench(turn).N)
 
 
 @given(st.integers(-PWM_MAX, PWM_MAX), st.floats(0.0, 60.0), st.floats(0.6, 2.0))
@@ -180,27 +183,34 @@ def test_pwm_and_thrust_are_inverse_above_the_dead_band(
     pwm: int, dead: float, power: float
 ) -> None:
     motor = Outboards(dead_pwm=dead, thrust_power=power)
-    assert motor.pwm(motor.thrust(pwm)) == (
+    assert motor.pwm_for_thrust(motor.thrust(pwm)) == (
         pwm if abs(pwm) > dead + 1 else pytest.approx(0, abs=dead + 1)
     )
 
 
 def test_a_motor_gives_less_astern() -> None:
     assert (OURS.thrust(150), OURS.thrust(-150)) == pytest.approx((0.5, -0.335))
-    assert (OURS.pwm(0.25), OURS.pwm(-0.25), OURS.pwm(9.0), OURS.pwm(-9.0)) == (75, -112, 255, -255)
+    assert (
+        OURS.pwm_for_thrust(0.25),
+        OURS.pwm_for_thrust(-0.25),
+        OURS.pwm_for_thrust(9.0),
+        OURS.pwm_for_thrust(-9.0),
+    ) == (75, -112, 255, -255)
 
 
 def test_applied_push_is_that_of_the_rounded_setting() -> None:
     drive = Drive(0.3, -0.3, radians(20.4))
-    setting = OURS.setting(drive)
+    setting = OURS.to_setting(drive)
     assert setting == (90, -134, 20)
     rounded = Drive(90 / 150 * 0.5, -134 / 150 * 0.335, radians(20))
-    assert OURS.applied(setting) == pytest.approx(OURS.push(rounded))
-    assert OURS.applied(OURS.setting(Drive(5.0, 5.0, 0.0))).X == pytest.approx(2 * 0.85)
+    assert OURS.wrench_of_setting(setting) == pytest.approx(OURS.nominal_wrench(rounded))
+    assert OURS.wrench_of_setting(OURS.to_setting(Drive(5.0, 5.0, 0.0))).X == pytest.approx(
+        2 * 0.85
+    )
 
 
 def test_commands_are_mirror_angles_by_name() -> None:
-    assert OURS.setting(Drive(0.5, -0.335, radians(30))).commands() == pytest.approx(
+    assert OURS.to_setting(Drive(0.5, -0.335, radians(30))).commands() == pytest.approx(
         {
             "pwm_port": 150,
             "pwm_starboard": -150,
@@ -216,7 +226,7 @@ def test_sway_thrust_follows_the_stick_beyond_its_dead_zone() -> None:
 
 
 def test_stick_reads_what_is_given() -> None:
-    assert Stick.read({"yaw_radps": 0.1, "elsewhere": 3.0}) == (0.0, 0.0, 0.1)
+    assert Stick.from_goal({"yaw_radps": 0.1, "elsewhere": 3.0}) == (0.0, 0.0, 0.1)
 
 
 def test_compass_takes_out_the_drift_of_the_gyro_across_the_wrap() -> None:
@@ -225,7 +235,7 @@ def test_compass_takes_out_the_drift_of_the_gyro_across_the_wrap() -> None:
         true = 4 * pi * (i + 1) / 6000
         wrapped = (true + pi) % (2 * pi) - pi
         for heading, trust in ((drifting, 0.0), (held, 0.05)):
-            keep_heading(heading, 4 * pi / 600 + 0.001, wrapped, 0.0, 0.1, trust)
+            integrate_heading(heading, 4 * pi / 600 + 0.001, wrapped, 0.0, 0.1, trust)
     assert drifting.own - true == pytest.approx(0.6)
     assert held.own - true == pytest.approx(0.001 / 0.05, rel=0.01)
     assert held.wanted == 0.0
@@ -237,5 +247,5 @@ def test_geometry_outside_its_bounds_is_refused() -> None:
 
 
 def test_lever_runs_from_spacing_to_arm() -> None:
-    assert OURS.lever(0.0) == 0.235
-    assert OURS.lever(ANGLE_MAX) == pytest.approx((0.235 - 0.62) * sin(ANGLE_MAX))
+    assert OURS.moment_arm(0.0) == 0.235
+    assert OURS.moment_arm(ANGLE_MAX) == pytest.approx((0.235 - 0.62) * sin(ANGLE_MAX))

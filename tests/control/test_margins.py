@@ -32,14 +32,14 @@ class Described:
 
 
 def test_yaw_loop_of_the_joystick_controller() -> None:
-    rows = margins.table(Described(YAW))
+    rows = margins.margin_rows(Described(YAW))
     printed = [(f"{r.crossover:.1f}", f"{r.phase_deg:.0f}", f"{r.delay_s:.2f}") for r in rows]
     assert printed == [("1.4", "30", "0.37"), ("2.3", "42", "0.32"), ("3.7", "46", "0.22")]
     assert all(r.stable for r in rows)
 
 
 def test_l1_norm_of_the_joystick_controller_is_worst_at_the_lowest_gain() -> None:
-    rows = margins.table(Described(YAW))
+    rows = margins.margin_rows(Described(YAW))
     assert max(r.norm or nan for r in rows) == rows[0].norm == pytest.approx(0.616, abs=5e-4)
     assert rows[0].slope == pytest.approx(1.62, abs=5e-3)
     assert rows[0].needed == 1.4
@@ -50,7 +50,7 @@ def test_l1_norm_falls_with_the_bandwidth(bandwidth: float, value: float) -> Non
     """Closed form: twice the peak of the step response (e^{-qt} - e^{-pt})/(p - q), at t = ln(p/q)/(p - q)."""
     p, q = 1.4, 0.5 * bandwidth
     t = log(p / q) / (p - q)
-    norm = LoopChannel("yaw", pole=p, bandwidth=bandwidth).norm(0.5)
+    norm = LoopChannel("yaw", pole=p, bandwidth=bandwidth).l1_norm(0.5)
     assert norm == pytest.approx(2.0 * (exp(-q * t) - exp(-p * t)) / (p - q), rel=1e-9)
     assert norm == pytest.approx(
         value, abs=8e-4
@@ -81,7 +81,9 @@ def largest_late_heading(gain: float, extra_periods: int) -> float:
 def test_a_sampled_boat_bears_the_delay_of_the_table_and_not_much_more(gain: float) -> None:
     """The table takes the adaptation for instant; the sampled law answers less and bears up to 0.1
     s more."""
-    bearable = int({r.input_gain: r.delay_s for r in margins.table(Described(YAW))}[gain] / PERIOD)
+    bearable = int(
+        {r.input_gain: r.delay_s for r in margins.margin_rows(Described(YAW))}[gain] / PERIOD
+    )
     assert largest_late_heading(gain, bearable) < 1e-3
     assert largest_late_heading(gain, bearable + 3) > 0.1
 
@@ -89,24 +91,24 @@ def test_a_sampled_boat_bears_the_delay_of_the_table_and_not_much_more(gain: flo
 def test_pid_channel_has_no_l1_norm() -> None:
     """PD on an undamped boat, no delay: |kp + j kd w| = w^2 at the crossover."""
     kp, kd = 0.6, 1.1
-    row = margins.table(Described(LoopChannel("yaw", pid=(kp, 0.0, kd))))[0]
+    row = margins.margin_rows(Described(LoopChannel("yaw", pid=(kp, 0.0, kd))))[0]
     assert (row.norm, row.slope, row.needed) == (None, None, None)
     assert row.crossover**4 == pytest.approx(kp**2 + (kd * row.crossover) ** 2, rel=1e-9)
-    line = margins.text([row]).splitlines()[1]
+    line = margins.format_margins([row]).splitlines()[1]
     assert line.split()[:4] == ["yaw", "1.00", "-", "-"]
 
 
 def test_unstable_loop_is_said_to_be_unstable() -> None:
     """Routh: a PID on a double integrator needs kp kd > ki."""
     steady, runaway = (LoopChannel("yaw", pid=(0.5, ki, 1.0)) for ki in (0.49, 0.51))
-    rows = margins.table(Described(steady, runaway))
+    rows = margins.margin_rows(Described(steady, runaway))
     assert [r.stable for r in rows] == [True] * 3 + [False] * 3
-    assert "unstable" in margins.text(rows).splitlines()[-1]
+    assert "unstable" in margins.format_margins(rows).splitlines()[-1]
 
 
 def test_text_judges_the_l1_condition_at_the_worst_gain() -> None:
     weak = LoopChannel("surge", pole=1.4, bandwidth=0.5, input_gain=(0.5, 1.0, 1.8))
-    text = margins.text(margins.table(Described(YAW, weak)))
+    text = margins.format_margins(margins.margin_rows(Described(YAW, weak)))
     yaw, surge = text.splitlines()[-2:]
     assert "0.616" in yaw and "1.62" in yaw and "condition met" in yaw
     assert "0.982" in surge and "not met" in surge
@@ -114,17 +116,17 @@ def test_text_judges_the_l1_condition_at_the_worst_gain() -> None:
 
 def test_damping_of_the_boat_lowers_the_slope_needed() -> None:
     damped = LoopChannel("yaw", pole=1.4, bandwidth=2.0, damping=0.9)
-    assert margins.table(Described(damped))[0].needed == pytest.approx(0.5)
+    assert margins.margin_rows(Described(damped))[0].needed == pytest.approx(0.5)
 
 
 def test_controller_without_channels_names_those_that_have() -> None:
     with pytest.raises(
         BadInput, match=r"'open_loop' describes no loop_channels \(these do: .*l1_joystick"
     ):
-        margins.table(load_class("controller", "open_loop")())
+        margins.margin_rows(load_class("controller", "open_loop")())
 
 
 def test_shipped_joystick_controller_prints_the_published_norm() -> None:
-    rows = margins.table(load_class("controller", "l1_joystick")())
+    rows = margins.margin_rows(load_class("controller", "l1_joystick")())
     assert [r.norm for r in rows if r.channel == "yaw"][0] == pytest.approx(0.616, abs=5e-4)
     assert [round(r.delay_s, 2) for r in rows if r.channel == "yaw"] == [0.37, 0.32, 0.22]

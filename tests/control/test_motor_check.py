@@ -107,13 +107,13 @@ def test_steerings_that_are_both_off_turn_the_boat_unevenly(off: float) -> None:
     tried(boat, check)
     lever = SPACING * cos(ANGLE) - ARM * sin(ANGLE) - SPACING
     reach = SPACING * sin(ANGLE) + ARM * cos(ANGLE) + ARM
-    assert check.unevenness * -lever / reach == pytest.approx(off, abs=0.002)
+    assert check.yaw_asymmetry * -lever / reach == pytest.approx(off, abs=0.002)
 
 
 def test_the_boat_is_left_as_it_says() -> None:
     boat, check = Boat(reverse=0.5), new_check()
     tried(boat, check)
-    assert check.push == pytest.approx(0.3 * (1.0 + cos(ANGLE)) / 5.0, rel=0.02)
+    assert check.ahead_acceleration == pytest.approx(0.3 * (1.0 + cos(ANGLE)) / 5.0, rel=0.02)
     assert boat.u == pytest.approx(check.speed, abs=0.003)
     assert (
         abs(check.speed) < 0.5 * PERIOD * 2.0 * boat.thrust / boat.mass + 1e-9

@@ -23,14 +23,14 @@ from typer.testing import CliRunner
 from boatsim.cli import app
 from boatsim.drive.background_tasks import background_listener
 from boatsim.drive.clock import Clock
-from boatsim.drive.driver_input import DEAD, PATIENCE, Hands, Sticks, beyond_dead_zone
-from boatsim.drive.stick_mapping import dials_of
+from boatsim.drive.driver_input import DEAD, PATIENCE, DriverInput, Sticks, beyond_dead_zone
+from boatsim.drive.stick_mapping import stick_mappings_for
 from boatsim.drive.task import Task
 from boatsim.errors import BadInput
 from boatsim.physics.content import library_names
 from boatsim.recordings.table import Recording, read
 from boatsim.simulate import scenario, tracking_errors
-from boatsim.simulate.manoeuvre import handled
+from boatsim.simulate.manoeuvre import complete_manoeuvring_table
 from boatsim.simulate.run import run as simulate
 
 pytest.importorskip("websockets")
@@ -53,34 +53,34 @@ class Time:
 
 
 def test_nothing_starts_up_before_the_sticks_were_in_the_middle() -> None:
-    hands = Hands(Time())
-    hands.move(Sticks(surge=1.0), 0.0)
+    hands = DriverInput(Time())
+    hands.store_sticks(Sticks(surge=1.0), 0.0)
     assert hands.sticks() is None
-    hands.move(Sticks(), 0.0)
-    hands.move(Sticks(surge=1.0), 0.0)
+    hands.store_sticks(Sticks(), 0.0)
+    hands.store_sticks(Sticks(surge=1.0), 0.0)
     assert hands.sticks() == Sticks(surge=1.0)
 
 
 @pytest.mark.parametrize("why", ["page closed", "page hidden"])
 def test_sticks_that_were_let_go_count_again_from_the_middle_on(why: str) -> None:
-    hands = Hands(Time())
-    hands.move(Sticks(), 0.0)
-    hands.let_go(why)
-    hands.move(Sticks(yaw=-0.5), 0.0)
-    assert hands.sticks() is None and hands.away == why
-    hands.move(Sticks(), 0.0)
-    assert hands.sticks() == Sticks() and not hands.away
+    hands = DriverInput(Time())
+    hands.store_sticks(Sticks(), 0.0)
+    hands.release(why)
+    hands.store_sticks(Sticks(yaw=-0.5), 0.0)
+    assert hands.sticks() is None and hands.release_reason == why
+    hands.store_sticks(Sticks(), 0.0)
+    assert hands.sticks() == Sticks() and not hands.release_reason
 
 
 def test_a_page_that_falls_silent_holds_no_sticks() -> None:
     clock = Time()
-    hands = Hands(clock)
-    hands.move(Sticks(), 0.0)
-    hands.move(Sticks(surge=1.0), 0.0)
+    hands = DriverInput(clock)
+    hands.store_sticks(Sticks(), 0.0)
+    hands.store_sticks(Sticks(surge=1.0), 0.0)
     clock.now += 0.9 * PATIENCE
     assert hands.sticks() is not None
     clock.now += 0.2 * PATIENCE
-    assert hands.sticks() is None and "no message" in hands.away
+    assert hands.sticks() is None and "no message" in hands.release_reason
 
 
 @given(ways)
@@ -119,11 +119,11 @@ def test_hands_on_the_channels_stay_within_their_ranges_and_leave_them_neutral_i
 ) -> None:
     task = DRIVEN.setdefault(name, Task(name))
     taken = task.vessel.commands
-    asked = task.dials.goal(sticks, 0.02, 0.0)
+    asked = task.dials.goal_from_sticks(sticks, 0.02, 0.0)
     assert all(
         taken[key].low - 1e-6 <= value <= taken[key].high + 1e-6 for key, value in asked.items()
     )
-    assert task.dials.goal(Sticks(), 0.02, 0.0) == pytest.approx(
+    assert task.dials.goal_from_sticks(Sticks(), 0.02, 0.0) == pytest.approx(
         {key: taken[key].neutral for key in asked}, abs=1e-6
     )
 
@@ -135,8 +135,11 @@ def test_most_vessels_can_be_driven_and_who_is_driven_ahead_goes_ahead() -> None
     assert len(of_hands()) >= 15
     for name in ("joystick_boat", "otter", "catamaran", "kvlcc2"):
         task = Task(name)
-        ahead = task.dials.goal(Sticks(surge=1.0), 0.02, 0.0)
-        assert all(ahead[n] * value > 0.0 for n, value in handled(task.vessel).ahead.items())
+        ahead = task.dials.goal_from_sticks(Sticks(surge=1.0), 0.02, 0.0)
+        assert all(
+            ahead[n] * value > 0.0
+            for n, value in complete_manoeuvring_table(task.vessel).ahead.items()
+        )
 
 
 @pytest.mark.parametrize("controller", ["l1_joystick", "pid_autopilot"])
@@ -144,31 +147,31 @@ def test_the_sticks_of_a_joystick_controller_ask_for_its_three_goals_either_way(
     controller: str,
 ) -> None:
     task = Task("joystick_boat", controller=controller)
-    full = task.dials.goal(Sticks(1.0, 1.0, 1.0), 0.02, 0.0)
+    full = task.dials.goal_from_sticks(Sticks(1.0, 1.0, 1.0), 0.02, 0.0)
     assert set(full) == {"surge_mps", "sway_mps", "yaw_radps"} and all(
         x > 0.0 for x in full.values()
     )
-    assert task.dials.goal(Sticks(-1.0, -1.0, -1.0), 0.02, 0.0) == {
+    assert task.dials.goal_from_sticks(Sticks(-1.0, -1.0, -1.0), 0.02, 0.0) == {
         key: -x for key, x in full.items()
     }
 
 
 def test_a_goal_that_is_a_heading_is_turned_from_where_the_boat_points() -> None:
     task = Task("jet_ski", controller="l1_heading")
-    assert task.dials.goal(Sticks(), 0.02, 1.5)["psi_rad"] == 1.5
-    turned = [task.dials.goal(Sticks(yaw=1.0), 0.02, 9.9)["psi_rad"] for _ in range(50)]
+    assert task.dials.goal_from_sticks(Sticks(), 0.02, 1.5)["psi_rad"] == 1.5
+    turned = [task.dials.goal_from_sticks(Sticks(yaw=1.0), 0.02, 9.9)["psi_rad"] for _ in range(50)]
     assert np.all(np.diff(turned) > 0.0)
-    task.dials.let_go()
-    assert task.dials.goal(Sticks(), 0.02, -0.5)["psi_rad"] == -0.5
+    task.dials.reset_heading()
+    assert task.dials.goal_from_sticks(Sticks(), 0.02, -0.5)["psi_rad"] == -0.5
 
 
 def test_a_controller_states_its_largest_goals_and_a_load_of_its_own_changes_nothing() -> None:
     task = Task("joystick_boat", "berth")
     made = scenario.load("joystick_boat/berth")
     assert (
-        dials_of(made.vessel, made.controller, "l1_joystick").goal(Sticks(yaw=1.0), 0.02, 0.0)[
-            "yaw_radps"
-        ]
+        stick_mappings_for(made.vessel, made.controller, "l1_joystick").goal_from_sticks(
+            Sticks(yaw=1.0), 0.02, 0.0
+        )["yaw_radps"]
         == 0.1396
     )
     assert task.scenario.file.tank == made.file.tank and task.scenario.file.load == made.file.load
@@ -247,7 +250,7 @@ def test_control_periods_that_begin_late_are_counted(monkeypatch: pytest.MonkeyP
             now[0] += 0.02 + 0.05
         if step == 60:
             now[0] += 5.0  # so far behind that the clock is set back
-        clock.wait(0.02 * step)
+        clock.wait_until(0.02 * step)
     assert clock.periods == 25 and clock.late == 2 and clock.worst == pytest.approx(5.0, abs=0.1)
 
 
@@ -282,10 +285,10 @@ def test_what_goes_wrong_aside_ends_the_run() -> None:
 
 @given(st.lists(st.integers(1, 99), unique=True).map(sorted))
 def test_errors_of_a_log_in_pieces_are_those_of_the_whole(cuts: list[int]) -> None:
-    tally = tracking_errors.Tally()
+    tally = tracking_errors.TrackingErrorSums()
     for begin, end in zip([0, *cuts], [*cuts, 100], strict=True):
         tally.add(rows(begin, end))
-    assert tally.metrics() == pytest.approx(tracking_errors.errors(rows(0, 100)))
+    assert tally.metrics() == pytest.approx(tracking_errors.compute_errors(rows(0, 100)))
 
 
 def until(true, seconds: float = 10.0) -> None:
@@ -414,8 +417,10 @@ def test_goals_too_many_for_a_file_are_left_out_of_it_and_what_they_are_of_stays
         (0.02 * i, {"surge_mps": 0.01 * (i % 50), "sway_mps": 0.0, "yaw_radps": 0.0})
         for i in range(40_000)
     ]
-    assert task.toml(many, 800.0) is None
-    assert "l1_joystick" in str(task.toml([], 800.0)) and "from" not in str(task.toml([], 800.0))
+    assert task.scenario_toml(many, 800.0) is None
+    assert "l1_joystick" in str(task.scenario_toml([], 800.0)) and "from" not in str(
+        task.scenario_toml([], 800.0)
+    )
 
 
 def test_a_port_that_is_taken_is_one_line(tmp_path: Path) -> None:

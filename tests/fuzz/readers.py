@@ -51,7 +51,7 @@ def _notes(path: Path) -> object:
 
 
 def _hull(path: Path) -> object:
-    return world.build(vessel.load_vessel(f"{path.parent}/"))
+    return world.build_model(vessel.load_vessel(f"{path.parent}/"))
 
 
 def _log(path: Path) -> object:

@@ -182,7 +182,7 @@ def test_an_hour_loses_a_day_s_share_of_energy_at_most(tmp_path: Path) -> None:
         Batch(boats.planar(tmp_path, boats.WITHOUT_DRAG), step=STEP),
         np.diag(rigid_mass() + ADDED),
     )
-    state = compiled_engine.coast(P3.start, {}, round(3600.0 / STEP))
+    state = compiled_engine.hold_commands(P3.start, {}, round(3600.0 / STEP))
     assert 0.5 * np.sum(mass * state[3:] ** 2) == pytest.approx(3.361, rel=1e-6 / 24)  # [J]
     momentum = turned(state[2])[:2, :2] @ (mass * state[3:])[:2]
     assert momentum == pytest.approx([6.6, 0.9], abs=1e-6 / 24 * 6.6)  # [N s]

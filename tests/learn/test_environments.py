@@ -17,14 +17,14 @@ from boatsim.control.approach import Approach  # noqa: E402
 from boatsim.control.base import Sense  # noqa: E402
 from boatsim.errors import BadInput  # noqa: E402
 from boatsim.learn import episode_random, registration  # noqa: E402
-from boatsim.learn.actions import controls  # noqa: E402
-from boatsim.learn.environment_options import play  # noqa: E402
+from boatsim.learn.actions import make_controls  # noqa: E402
+from boatsim.learn.environment_options import make_simulation  # noqa: E402
 from boatsim.learn.pilot import run_episodes  # noqa: E402
-from boatsim.learn.play import Play  # noqa: E402
+from boatsim.learn.play import TaskSimulation  # noqa: E402
 from boatsim.physics import vessel  # noqa: E402
 from boatsim.physics.content import load_class  # noqa: E402
 
-IDS = registration.ids()
+IDS = registration.environment_ids()
 STILL = {"vary": {}, "vessel": "joystick_boat"}  # one boat, no wind
 
 
@@ -36,8 +36,8 @@ def many(name: str, count: int, **more: Any) -> Any:
     return gymnasium.make_vec(name, num_envs=count, vectorization_mode="vector_entry_point", **more)
 
 
-def game(task: str, n: int, **more: Any) -> Play:
-    return play(task, n, **{**STILL, **more})  # type: ignore[arg-type]
+def game(task: str, n: int, **more: Any) -> TaskSimulation:
+    return make_simulation(task, n, **{**STILL, **more})  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize("name", IDS)
@@ -147,7 +147,7 @@ def test_boats_that_are_over_begin_when_the_mode_says_so() -> None:
 def test_actions_follow_from_the_channels_of_a_boat(
     boat: str, use: Any, names: tuple[str, ...]
 ) -> None:
-    found = controls(vessel.load_vessel(boat), use)
+    found = make_controls(vessel.load_vessel(boat), use)
     assert found.names == names
     assert np.linalg.matrix_rank(found.pattern) == len(names)  # none is there twice
     ends = found.commands(np.random.default_rng(1).uniform(-3.0, 3.0, (50, len(names))))
@@ -160,7 +160,7 @@ def test_actions_follow_from_the_channels_of_a_boat(
 )
 def test_a_positive_helm_or_turn_brings_the_bow_to_starboard(boat: str, action: str) -> None:
     sea = game("follow_path", 1, vessel=boat)
-    sea.begin(np.zeros(1, dtype=np.uint64), np.array([0]))
+    sea.begin_episodes(np.zeros(1, dtype=np.uint64), np.array([0]))
     actions = np.full((1, len(sea.controls.names)), 0.5)
     actions[0, sea.controls.names.index(action)] = 0.3
     actions[0, 0] = 0.3
@@ -172,7 +172,7 @@ def test_a_positive_helm_or_turn_brings_the_bow_to_starboard(boat: str, action: 
 
 def test_a_boat_is_berthed_once_it_has_lain_there_and_lost_once_it_touches() -> None:
     sea, task = game("berth", 3), game("berth", 3).task
-    sea.begin(np.arange(3, dtype=np.uint64), np.arange(3))
+    sea.begin_episodes(np.arange(3, dtype=np.uint64), np.arange(3))
     quay = -(0.5 * sea.scale.beam + task.gap * sea.scale.length)  # type: ignore[attr-defined]
     states = np.zeros((3, 6))
     states[1, 1] = quay + 0.5 * sea.scale.beam - 0.01  # a cm into the quay
@@ -218,7 +218,7 @@ def test_what_varies_differs_from_boat_to_boat_and_stays_within_what_is_said() -
             "body.yaw_inertia": "uniform(1.0, 1.2)",
         },
     )
-    sea.begin(np.arange(400, dtype=np.uint64), np.arange(400))
+    sea.begin_episodes(np.arange(400, dtype=np.uint64), np.arange(400))
     factor, north = sea.world.get("weak_reverse.astern_factor"), sea.world.get("current.north")
     assert 0.5 <= factor.min() < 0.52 and 0.88 < factor.max() <= 0.9
     assert north.std() == pytest.approx(0.02, rel=0.15)
@@ -249,7 +249,7 @@ shifts = { "linear_damping.surge" = 1.0 }
     text = patched.read_text()
     patched.write_text('based_on = "trial_boat"\n' + text)
     sea = game("hold_station", 4000, vessel=str(patched))
-    sea.begin(np.arange(4000, dtype=np.uint64), np.arange(4000))
+    sea.begin_episodes(np.arange(4000, dtype=np.uint64), np.arange(4000))
     gain, drag = sea.world.get("port.gain"), sea.world.get("linear_damping.surge")
     assert (gain == sea.world.get("starboard.gain")).all()
     assert gain.mean() == pytest.approx(1.0, abs=0.005) and gain.std() == pytest.approx(
@@ -260,7 +260,7 @@ shifts = { "linear_damping.surge" = 1.0 }
     )
     assert np.corrcoef(gain, drag)[0, 1] == pytest.approx(-0.8, abs=0.03)
     known = game("hold_station", 10, vessel=str(patched), vary={"spread": 0.0})
-    known.begin(np.arange(10, dtype=np.uint64), np.arange(10))
+    known.begin_episodes(np.arange(10, dtype=np.uint64), np.arange(10))
     assert (known.world.get("linear_damping.surge") == 3.0).all()
 
 
@@ -289,7 +289,7 @@ shifts = { "linear_damping.surge" = 1.0 }
 )
 def test_what_does_not_fit_is_told_in_one_line(task: str, told: dict[str, Any], line: str) -> None:
     with pytest.raises(BadInput) as error:
-        play(task, 1, **{**STILL, **told})  # type: ignore[arg-type]
+        make_simulation(task, 1, **{**STILL, **told})  # type: ignore[arg-type]
     assert line in str(error.value) and "\n" not in str(error.value)
 
 
@@ -300,7 +300,7 @@ def test_other_boats_play_too() -> None:
         ("catamaran", "follow_path"),
     ):
         sea = game(task, 2, vessel=boat)
-        sea.begin(np.arange(2, dtype=np.uint64), np.arange(2))
+        sea.begin_episodes(np.arange(2, dtype=np.uint64), np.arange(2))
         for _ in range(20):
             sea.step(np.full((2, len(sea.controls.names)), 0.2))
         assert np.isfinite(sea.observations(True)).all()
@@ -308,7 +308,9 @@ def test_other_boats_play_too() -> None:
 
 def test_numbers_drawn_by_lot_are_uniform_and_independent() -> None:
     rows = episode_random.uniform_numbers(
-        episode_random.episode(np.arange(20000, dtype=np.uint64), np.zeros(20000, dtype=np.uint64)),
+        episode_random.episode_seeds(
+            np.arange(20000, dtype=np.uint64), np.zeros(20000, dtype=np.uint64)
+        ),
         3,
     )
     assert rows.min() > 0.0 and rows.max() < 1.0

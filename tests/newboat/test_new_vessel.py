@@ -14,9 +14,9 @@ from typer.testing import CliRunner
 
 from boatsim.cli import app
 from boatsim.errors import BadInput
-from boatsim.newboat.from_log import fitted, text
-from boatsim.newboat.particulars import Particulars, particulars
-from boatsim.newboat.write import files
+from boatsim.newboat.from_log import fit_boat, fitted_vessel_text
+from boatsim.newboat.particulars import Particulars, parse_particulars
+from boatsim.newboat.write import boat_files
 from boatsim.physics import vessel
 from boatsim.physics.base import motion
 from boatsim.physics.content import library_names
@@ -54,7 +54,7 @@ def boat(**changed: object) -> Particulars:
         "thrusters": ["-1,0"],
         "steered": [],
     }
-    return particulars(**(said | changed))  # type: ignore[arg-type]
+    return parse_particulars(**(said | changed))  # type: ignore[arg-type]
 
 
 # ---- rules
@@ -123,7 +123,7 @@ def test_added_mass_goes_with_the_size_by_froudes_law(scale: float) -> None:
 def test_a_boat_of_any_kind_is_whole_and_runs_its_first_scenario(name: str, tmp_path: Path) -> None:
     folder = made(tmp_path / name, BOATS[name])
     found = vessel.load_vessel(str(folder))
-    assert world.build(found).nv == 3
+    assert world.build_model(found).nv == 3
     mujoco.MjModel.from_xml_path(str(folder / "hull.xml"))  # as any viewer opens it
     log = run(scenario.load(str(folder / "turn.toml"))).recording
     third = len(log.t) // 3
@@ -187,7 +187,7 @@ def test_a_folder_that_is_there_stays_as_it_is_without_force(tmp_path: Path) -> 
     assert result.exit_code == 2
     assert not list((tmp_path / "b").iterdir())
     assert CliRunner().invoke(app, [*args, "--force"]).exit_code == 0
-    assert sorted(p.name for p in (tmp_path / "b").iterdir()) == sorted(files(boat()))
+    assert sorted(p.name for p in (tmp_path / "b").iterdir()) == sorted(boat_files(boat()))
 
 
 def test_nothing_is_left_of_a_boat_whose_log_can_not_be_read(tmp_path: Path) -> None:
@@ -212,7 +212,7 @@ def test_a_log_of_an_independent_boat_gives_its_lag_weak_reverse_and_current(
 ) -> None:
     folder = made(tmp_path / "b", BOATS["twin"] + " --thrust 60")
     pushed_three_metre.write(tmp_path / "run.csv", 1)
-    found = fitted(folder / "vessel.toml", [tmp_path / "run.csv"])
+    found = fit_boat(folder / "vessel.toml", [tmp_path / "run.csv"])
     told = {(f.effect, f.name): x for f, x in zip(found.best.free, found.best.theta, strict=True)}
     assert told["thrust_lag", "time_constant"] == pytest.approx(pushed_three_metre.LAG, abs=0.03)
     assert told["weak_reverse", "astern_factor"] == pytest.approx(
@@ -222,7 +222,9 @@ def test_a_log_of_an_independent_boat_gives_its_lag_weak_reverse_and_current(
     assert np.allclose(current, pushed_three_metre.CURRENT, atol=0.01)
     for family, before in found.before.items():
         assert found.after[family] < 0.2 * before
-    (folder / "vessel.toml").write_text(text(found, [tmp_path / "run.csv"]), encoding="utf-8")
+    (folder / "vessel.toml").write_text(
+        fitted_vessel_text(found, [tmp_path / "run.csv"]), encoding="utf-8"
+    )
     again = vessel.load_vessel(str(folder))
     assert again.effect("current") is None  # the water's, not the boat's
     assert {"thrust_lag", "weak_reverse"} <= {e.name for e in again.effects}

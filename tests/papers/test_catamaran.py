@@ -121,16 +121,16 @@ def test_a_disturbance_fixed_to_the_hull_gives_the_published_outcomes_too(
 
 @pytest.mark.parametrize("thrust", STEADY)
 def test_steady_circle_at_full_azimuth(thrust: int) -> None:
-    u, v, r = Batch(vessel.load_vessel("catamaran"), step=0.01).coast(
+    u, v, r = Batch(vessel.load_vessel("catamaran"), step=0.01).hold_commands(
         [0.0] * 6, held(thrust), 6000
     )[3:]
     assert sqrt(u * u + v * v) / r == pytest.approx(STEADY[thrust], abs=5e-4)
 
 
 def test_a_weak_thrust_turns_in_a_circle_of_damping_alone() -> None:
-    u, v, r = Batch(vessel.load_vessel("catamaran"), step=0.01).coast([0.0] * 6, held(0.01), 6000)[
-        3:
-    ]
+    u, v, r = Batch(vessel.load_vessel("catamaran"), step=0.01).hold_commands(
+        [0.0] * 6, held(0.01), 6000
+    )[3:]
     b = 0.47 * pi
     limit = sqrt((cos(b) / 14) ** 2 + (sin(b) / 80) ** 2) / (0.4 * sin(b) / 5)
     assert sqrt(u * u + v * v) / r == pytest.approx(limit, rel=1e-3)

@@ -10,18 +10,18 @@ import numpy as np
 import pytest
 from jet_craft import STEERING, Craft, power, solved
 
-from boatsim.control.adaptive import l1_norm, project_interval, unfiltered
+from boatsim.control.adaptive import l1_norm, project_interval, unfiltered_system
 from boatsim.control.adaptive_loop import (
-    act_loop,
-    adapt,
-    begin_loop,
-    designed,
-    filtered,
-    loop_memory,
-    observe_loop,
-    projected,
+    adapt_estimates,
+    adapt_loop,
+    compute_loop_input,
+    filter_input,
+    initialise_loop,
+    loop_memory_type,
+    make_loop_design,
+    project_rate,
 )
-from boatsim.control.jet import JET_Q2, power_of, throttle_of
+from boatsim.control.jet import JET_Q2, power_at_throttle, throttle_for_power
 from boatsim.physics import vessel
 from boatsim.physics.base import Force, SignalSegment, Wrench, motion, segment_mean
 from boatsim.physics.content import library_names, load_class
@@ -59,11 +59,11 @@ def test_power_curve_has_the_published_corners(throttle: float, wanted: float) -
 
 def test_power_rises_with_the_throttle_and_its_inverse_gives_the_throttle_back() -> None:
     throttles = np.linspace(1.0, 7.0, 601).tolist()
-    powers = [power_of(h, JET_Q2) for h in throttles]
+    powers = [power_at_throttle(h, JET_Q2) for h in throttles]
     assert all(a < b for a, b in pairwise(powers))
-    assert [throttle_of(x, JET_Q2) for x in powers] == pytest.approx(throttles)
+    assert [throttle_for_power(x, JET_Q2) for x in powers] == pytest.approx(throttles)
     assert powers == pytest.approx([power(h) for h in throttles])
-    assert (throttle_of(-5.0, JET_Q2), throttle_of(1e3, JET_Q2)) == (1.0, 7.0)
+    assert (throttle_for_power(-5.0, JET_Q2), throttle_for_power(1e3, JET_Q2)) == (1.0, 7.0)
 
 
 def test_printed_q2_makes_the_power_jump_at_4() -> None:
@@ -200,7 +200,7 @@ def test_eigenvalues_of_the_steering_are_the_published_ones() -> None:
 
 def test_compiled_projection_is_the_textbook_one() -> None:
     for value, rate in ((0.3, 2.0), (0.98, 2.0), (0.98, -2.0), (-0.99, -3.0), (1.0, 1.0)):
-        assert projected(value, rate, -1.0, 1.0) == pytest.approx(
+        assert project_rate(value, rate, -1.0, 1.0) == pytest.approx(
             project_interval(value, rate, -1.0, 1.0, 0.1)
         )
 
@@ -208,20 +208,20 @@ def test_compiled_projection_is_the_textbook_one() -> None:
 def test_adaptive_loop_equals_the_textbook_example_with_a_known_reference_system() -> None:
     """theta (4, -4.5) unknown, C = 160/(s + 160), a step of 25: the known reference system gives y(1), y(2), y(5)."""
     am = [[0.0, 1.0], [-1.0, -1.4]]
-    design = designed(
+    design = make_loop_design(
         am, (-10, -10, -1e-9, 1 - 1e-9), (10, 10, 1e-9, 1 + 1e-9), (0, 0, 0, 1), gain=1e4, bandwidth=160.0,
         period=2e-4, step=2e-5,
     )  # fmt: skip
-    loop, of = np.zeros(1, loop_memory(2)).view(np.recarray)[0], design.view(np.recarray)[0]
+    loop, of = np.zeros(1, loop_memory_type(2)).view(np.recarray)[0], design.view(np.recarray)[0]
     x, a, seen, u = np.zeros(2), np.array([[0.0, 1.0], [3.0, -5.9]]), {}, 0.0
-    begin_loop(loop, of, 0.0)
+    initialise_loop(loop, of, 0.0)
     for i in range(25001):
         if i in (5000, 10000, 25000):
             seen[i // 5000] = x[0] / 25.0
         if i:
             loop.after[:] = x
-            observe_loop(loop, of, u)
-        u = act_loop(loop, of, 25.0, -1e6, 1e6, 1e9)
+            adapt_loop(loop, of, u)
+        u = compute_loop_input(loop, of, 25.0, -1e6, 1e6, 1e9)
         for _ in range(4):
             half = x + 2.5e-5 * (a @ x + [0.0, u])
             x = x + 5e-5 * (a @ half + [0.0, u])
@@ -229,17 +229,17 @@ def test_adaptive_loop_equals_the_textbook_example_with_a_known_reference_system
 
 
 def test_filter_of_the_input_is_the_first_order_low_pass() -> None:
-    mean, end = filtered(0.0, -3.0, 2.0, 5.0, -10.0, 10.0, 1e9, 0.1, 10000)
+    mean, end = filter_input(0.0, -3.0, 2.0, 5.0, -10.0, 10.0, 1e9, 0.1, 10000)
     assert end == pytest.approx(1.5 * (1.0 - exp(-1.0)), rel=1e-4)
     assert mean == pytest.approx(1.5 * (1.0 - (1.0 - exp(-1.0))), rel=1e-4)
-    assert filtered(0.0, -3.0, 2.0, 5.0, -10.0, 0.2, 1e9, 0.1, 100)[1] == 0.2
-    assert filtered(0.0, -3.0, 2.0, 5.0, -10.0, 10.0, 0.5, 0.1, 100)[1] == pytest.approx(0.05)
+    assert filter_input(0.0, -3.0, 2.0, 5.0, -10.0, 0.2, 1e9, 0.1, 100)[1] == 0.2
+    assert filter_input(0.0, -3.0, 2.0, 5.0, -10.0, 10.0, 0.5, 0.1, 100)[1] == pytest.approx(0.05)
 
 
 def test_predictor_told_the_truth_learns_nothing() -> None:
     estimates, predicted = np.array([0.5, 0.2, 2.0]), np.array([1.0])
     x1 = 1.0 + 0.01 * (-1.4 + 0.5 + 0.2 + 2.0 * 0.3)  # one sub-step: exact
-    adapt(
+    adapt_estimates(
         predicted,
         estimates,
         np.full(3, -9.0),
@@ -274,7 +274,7 @@ def test_l1_norm_condition_of_the_cruise_control() -> None:
     assert at[11.9] > 1.0 > at[12.3]  # threshold 12.1 +- 0.2, published 12.2
     assert at[35.0] == pytest.approx(0.55, abs=0.01)
     assert [at[k] for k in at] == pytest.approx([condition(k) for k in at], rel=1e-6)
-    assert l1_norm(unfiltered([[-1.4]], [1.0], 3.5)) * 1.7716 == pytest.approx(at[35.0])
+    assert l1_norm(unfiltered_system([[-1.4]], [1.0], 3.5)) * 1.7716 == pytest.approx(at[35.0])
 
 
 NAMES = [name for name in library_names("scenario") if name.startswith("jet_ski/")]

@@ -8,7 +8,7 @@ import pytest
 
 from boatsim.control.adaptive import Predictor
 from boatsim.control.base import Sense
-from boatsim.control.margins import table
+from boatsim.control.margins import margin_rows
 from boatsim.errors import BadInput
 from boatsim.physics.content import load_class
 
@@ -370,7 +370,7 @@ def test_lasting_moment_is_answered_in_full() -> None:
     boat = Turntable(push=0.03, damping=2.8)  # the predictor's own pole: nothing else is unknown
     controller = L1Joystick()
     boat.run(controller, {"sway_mps": 0.07}, 40.0)
-    assert controller.remembered["N"] == pytest.approx(
+    assert controller.memory_record["N"] == pytest.approx(
         -0.03, abs=0.006
     )  # a servo step of 1 deg is 0.006 N m
     assert controller.estimates()["sigma_yaw_Nm"].value == pytest.approx(0.03, abs=0.008)
@@ -392,7 +392,7 @@ def test_saturation_does_not_wind_the_pid_up() -> None:
 
 @RIVALS
 def test_loops_bear_two_more_periods_of_delay(controller: Any) -> None:
-    rows = table(controller())
+    rows = margin_rows(controller())
     assert {row.channel for row in rows} == {"yaw", "surge"}
     assert all(row.stable and row.delay_s > 0.16 for row in rows)
 
@@ -408,7 +408,7 @@ def test_loops_bear_two_more_periods_of_delay(controller: Any) -> None:
 def test_every_channel_meets_the_l1_condition_for_every_input_gain(
     name: str, channels: set[str]
 ) -> None:
-    rows = table(load_class("controller", name)())
+    rows = margin_rows(load_class("controller", name)())
     assert {row.channel for row in rows} == channels
     assert all(row.norm * row.needed < 1.0 and row.stable and row.delay_s > 0.16 for row in rows)
 
@@ -445,7 +445,7 @@ def test_a_blind_boat_hears_no_stick_while_its_motors_are_tried() -> None:
         c["pwm_port"] == c["pwm_starboard"]
         for c in played(controller, [STILL] * 40, {"sway_mps": 0.07})
     )
-    assert controller.found is None
+    assert controller.check_result is None
 
 
 def test_a_blind_boat_that_is_tied_up_says_so() -> None:

@@ -14,7 +14,7 @@ from runs import mean_of
 from scipy.signal import cont2discrete
 
 from benchmarks.low_speed_margins import LAWS, control_loop, margins
-from boatsim.control.adaptive import held
+from boatsim.control.adaptive import zero_order_hold
 from boatsim.metrics.crossing import Crossing
 from boatsim.metrics.heading_hold import HeadingHold
 from boatsim.metrics.step_response import StepResponse
@@ -178,9 +178,9 @@ def test_seed_draws_the_waves_and_still_water_stays_still() -> None:
 
 
 def test_wave_filter_and_low_pass_are_the_reconstructed_ones() -> None:
-    h, c = Heading().filter(), Heading().low_pass()
+    h, c = Heading().make_wave_filter(), Heading().make_low_pass()
     assert h.numerator[1] == pytest.approx(0.2754, abs=1e-4)
-    assert [float(f.at(np.array(1.0))) for f in (h, c)] == pytest.approx([1.0, 1.0], abs=1e-3)
+    assert [float(f.evaluate(np.array(1.0))) for f in (h, c)] == pytest.approx([1.0, 1.0], abs=1e-3)
     assert np.sort(np.roots(h.denominator)) == pytest.approx([0.22313, 0.49659, 0.87372], abs=1e-5)
     assert np.polymul([0.27545, -0.27545 * 1.55748], [1.0]) == pytest.approx(
         h.numerator[1:3], abs=1e-4
@@ -191,7 +191,7 @@ def test_wave_filter_and_low_pass_are_the_reconstructed_ones() -> None:
 
 
 def test_printed_low_pass_is_the_held_integrator_with_a_lag() -> None:
-    d = held([1.0], [1.0, 0.640, 0.0], T_S)
+    d = zero_order_hold([1.0], [1.0, 0.640, 0.0], T_S)
     assert d.numerator[1] == pytest.approx(4.894e-3, abs=2e-6)
     assert d.numerator[2] / d.numerator[1] == pytest.approx(
         0.9789, abs=1e-4
@@ -200,14 +200,14 @@ def test_printed_low_pass_is_the_held_integrator_with_a_lag() -> None:
 
 
 def test_printed_zeros_of_the_wave_filter_give_a_gain_of_134() -> None:
-    h = Heading(filter_as_published=1.0).filter()
+    h = Heading(filter_as_published=1.0).make_wave_filter()
     assert np.roots(h.numerator[1:]) == pytest.approx([-1.35 + 4.29j, -1.35 - 4.29j], abs=0.01)
-    assert float(h.at(np.array(1.0))) == pytest.approx(134.0, abs=1.0)
+    assert float(h.evaluate(np.array(1.0))) == pytest.approx(134.0, abs=1.0)
 
 
 def test_held_filters_are_those_of_scipy_and_step_as_their_difference_equation() -> None:
     top, bottom = [2.0, 1.0, 3.0], [2.0, 3.0, 4.0, 1.0]
-    ours = held(top, bottom, 0.3)
+    ours = zero_order_hold(top, bottom, 0.3)
     numerator, denominator, _ = cont2discrete((top, bottom), 0.3)
     assert ours.numerator == pytest.approx(numerator.ravel(), abs=1e-12)
     assert ours.denominator == pytest.approx(denominator, abs=1e-12)

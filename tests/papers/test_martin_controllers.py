@@ -18,7 +18,13 @@ from scipy.linalg import expm
 
 from benchmarks import martin
 from boatsim.control.base import Sense
-from boatsim.control.identification import Estimator, Forgetting, Ship, state_space, with_rudder
+from boatsim.control.identification import (
+    Estimator,
+    Forgetting,
+    Ship,
+    append_rudder_state,
+    state_space,
+)
 from boatsim.errors import BadInput
 from boatsim.metrics.settling import Settling
 from boatsim.physics.base import Array
@@ -269,7 +275,10 @@ def test_iteration_gives_the_printed_switching_surface(
 ) -> None:
     """All entries of all three G."""
     settings = {"roll_reduction": roll_reduction, "design_rate": radians(rate)}
-    printed, found = Sliding(**settings).surface(), Sliding(printed=False, **settings).surface()
+    printed, found = (
+        Sliding(**settings).switching_gains(),
+        Sliding(printed=False, **settings).switching_gains(),
+    )
     assert found == pytest.approx(printed, rel=within)
 
 
@@ -286,7 +295,7 @@ def test_surface_solves_the_equation_of_appendix_iii() -> None:
 
 
 def test_course_keeping_surface_has_a_time_constant_of_three_seconds() -> None:
-    zeros = np.roots(Sliding().surface()[::-1])
+    zeros = np.roots(Sliding().switching_gains()[::-1])
     assert np.abs(zeros) == pytest.approx([0.85, 0.85], abs=0.01)
     assert -T / log(np.abs(zeros).max()) == pytest.approx(3.0, abs=0.2)
 
@@ -298,7 +307,7 @@ def test_a_surface_that_does_not_exist_is_refused() -> None:
 
 def test_angles_are_radians_because_printed_runs_rest_where_degrees_could_not() -> None:
     """A ship at rest off her course has S = sum(G) psi, inside the layer; printed rests go up to 0.56 deg."""
-    radian = degrees(0.04 / sum(Sliding().surface()))
+    radian = degrees(0.04 / sum(Sliding().switching_gains()))
     printed = (0.5593, 0.1325, 0.3253, 0.2376, 0.3546)  # E1 offset, E1 to E3 impulse, slow servo
     assert radian / 57.2958 < min(printed) and max(printed) < radian
     for test in ("E2 impulse", "E3 impulse"):
@@ -324,7 +333,7 @@ def samples(n: int, noise: float, seed: int = 0) -> tuple[Array, Array, Array]:
 def learnt(law: Forgetting, x: Array, y: Array) -> Estimator:
     found = Estimator(np.zeros(3), law)
     for row, value in zip(x, y, strict=True):
-        found.learn(row, value)
+        found.update(row, value)
     return found
 
 
@@ -383,9 +392,9 @@ def test_a_ship_of_the_assumed_form_is_identified_from_her_motion() -> None:
         x = a @ x + b * u
         past.append(x)
         older = past[-3] if len(past) > 2 else np.zeros(4)
-        ship.learn([x[0], x[1], older[0]], [x[2], x[3], older[2]], u)
-    assert ship.yaw == pytest.approx(yaw, abs=1e-4)
-    assert ship.roll == pytest.approx(roll, abs=1e-3)
+        ship.update([x[0], x[1], older[0]], [x[2], x[3], older[2]], u)
+    assert ship.yaw_coefficients == pytest.approx(yaw, abs=1e-4)
+    assert ship.roll_coefficients == pytest.approx(roll, abs=1e-3)
 
 
 # Adaptive laws
@@ -395,7 +404,7 @@ YAW, ROLL = (0.7, 0.05, -0.01), (-1.7, 0.9, 0.02, -0.25)
 
 
 def test_predictions_are_the_ship_simulated() -> None:
-    a, b = with_rudder(*state_space(YAW, ROLL))
+    a, b = append_rudder_state(*state_space(YAW, ROLL))
     forced, free = predictions(a, b, 10, [0, 2])
     x, start, found = np.array([0.1, 0.08, -0.05, 0.02, 0.15]), 0.03, []
     state = a @ x + b * start  # one swing now
@@ -411,7 +420,7 @@ def frozen(controller: Any) -> Any:
     controller.reset()
     controller.ship._yaw.theta[:] = YAW
     controller.ship._roll.theta[:4] = ROLL
-    controller.ship.learn = lambda *a: None
+    controller.ship.update = lambda *a: None
     return controller
 
 
@@ -448,7 +457,7 @@ def test_minimum_variance_takes_the_swing_whose_next_state_is_nearest_the_ideal(
             )
 
         best = min((u, u - radians(2.5), u + radians(2.5)), key=cost)
-        assert readings(keeper, psi, phi, u).demand() == pytest.approx(best)
+        assert readings(keeper, psi, phi, u).rudder_demand() == pytest.approx(best)
 
 
 @pytest.mark.parametrize("roll_reduction", [False, True])
@@ -464,12 +473,12 @@ def test_predictive_swing_minimises_the_sum_of_squares_ahead(roll_reduction: boo
             total += state[0] ** 2 + (state[2] ** 2 if roll_reduction else 0.0)
         return float(total)
 
-    best = readings(keeper, (x[0], x[1], 0.0), (x[2], x[3], 0.0), u).demand() - u
+    best = readings(keeper, (x[0], x[1], 0.0), (x[2], x[3], 0.0), u).rudder_demand() - u
     assert all(cost(best) < cost(best + step) for step in (-1e-4, 1e-4))
     bang = frozen(Predictive(roll_reduction=roll_reduction, bang_bang=True))
-    assert readings(bang, (x[0], x[1], 0.0), (x[2], x[3], 0.0), u).demand() - u == pytest.approx(
-        min((0.0, -radians(2.5), radians(2.5)), key=cost)
-    )
+    assert readings(
+        bang, (x[0], x[1], 0.0), (x[2], x[3], 0.0), u
+    ).rudder_demand() - u == pytest.approx(min((0.0, -radians(2.5), radians(2.5)), key=cost))
 
 
 def test_predictive_swing_with_the_printed_sign_turns_away() -> None:
@@ -480,7 +489,7 @@ def test_predictive_swing_with_the_printed_sign_turns_away() -> None:
 @pytest.mark.parametrize("roll_reduction", [False, True])
 def test_poles_are_placed_where_asked_for(roll_reduction: bool) -> None:
     keeper = frozen(PolePlacement(roll_reduction=roll_reduction))
-    readings(keeper, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), 0.0).demand()
+    readings(keeper, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), 0.0).rudder_demand()
     n = 4 if roll_reduction else 2
     a, b = (m[:n, :n] if m.ndim == 2 else m[:n] for m in state_space(YAW, ROLL))
     wanted = [0.89, 0.91, *([0.798 + 0.363j, 0.798 - 0.363j] if roll_reduction else [])]

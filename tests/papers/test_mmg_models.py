@@ -47,7 +47,7 @@ def test_every_number_of_the_ship_is_the_models_by_froudes_law() -> None:
 
 def zigzag(name: str, step: float) -> Recording:
     """A 10/10 zig-zag with this step [s] and rows at every fourth."""
-    made = manoeuvre.scenario_of("zigzag", name, angle=10.0)
+    made = manoeuvre.manoeuvre_scenario("zigzag", name, angle=10.0)
     made = replace(made, file=made.file.model_copy(update={"step": step, "log": 4 * step}))
     made.controller.period = step  # type: ignore[attr-defined]
     return run(made).recording

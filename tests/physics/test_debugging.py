@@ -87,7 +87,7 @@ def test_a_native_callback_with_other_numbers_is_reported(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     native_callback.warn_of_slow_callback.cache_clear()
-    monkeypatch.setattr(Engine, "_agree", lambda *_: False)
+    monkeypatch.setattr(Engine, "_callbacks_agree", lambda *_: False)
     with pytest.warns(native_callback.SlowCallbackWarning, match="accelerations differ"):
         Engine(boats.planar(tmp_path))
 

@@ -12,7 +12,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from boatsim.errors import BadInput
-from boatsim.files import replacing
+from boatsim.files import replace_file
 from boatsim.recordings import units
 from boatsim.recordings.readers import csv
 from boatsim.recordings.table import Notes, Recording, read, write_csv
@@ -161,7 +161,7 @@ def test_parquet_gives_the_same_recording_as_csv(tmp_path):
 
 def test_a_failed_write_leaves_the_old_file_and_nothing_else(tmp_path):
     path = file(tmp_path, "old")
-    with pytest.raises(RuntimeError), replacing(path) as temporary:
+    with pytest.raises(RuntimeError), replace_file(path) as temporary:
         temporary.write_text("half")
         raise RuntimeError
     assert path.read_text() == "old" and list(tmp_path.iterdir()) == [path]

@@ -39,7 +39,7 @@ def drawn(folder: Path, geoms: str) -> Path:
 
 def scene(place: Path) -> Scene:
     boat, tank = vessel.load_vessel(str(place)), Tank(10.0, 10.0, 1.0, walls=False)
-    return scene_from(world.build(boat, tank), boat, tank)
+    return scene_from(world.build_model(boat, tank), boat, tank)
 
 
 @pytest.mark.parametrize("geoms", HULLS.values(), ids=HULLS)

@@ -15,9 +15,9 @@ from boatsim.simulate.baselines import (
     TOLERANCE,
     Baseline,
     BaselinesFile,
-    baselines_of,
-    differences,
-    read,
+    compare_with_baselines,
+    make_baselines,
+    read_baselines,
     to_toml,
 )
 from boatsim.simulate.evaluation import Metric
@@ -62,7 +62,7 @@ def test_the_same_folder_gives_the_same_pins_and_nothing_differs(folder: Path) -
 def test_a_change_of_the_boat_is_named_with_old_and_new_value_and_leaves_with_1(
     folder: Path,
 ) -> None:
-    old = read(folder)
+    old = read_baselines(folder)
     assert old is not None
     (folder / "sway.toml").write_text(SCENARIO.replace("light", "heavy"))
     result = boatsim("test", folder)
@@ -143,7 +143,7 @@ def test_wrong_use_is_one_line(
 
 
 def test_a_tolerance_spans_the_seeds_and_is_never_less_than_arithmetic() -> None:
-    pins = baselines_of(
+    pins = make_baselines(
         [
             {"a": norm(2.0), "b": norm(1.0)},
             {"a": norm(2.3), "b": norm(1.0)},
@@ -156,14 +156,14 @@ def test_a_tolerance_spans_the_seeds_and_is_never_less_than_arithmetic() -> None
 
 def test_drift_begins_at_the_tolerance_and_a_norm_that_is_lost_is_one() -> None:
     pins = {"a": Baseline(value=2.0, unit="m", tolerance=0.4)}
-    assert differences(pins, {"a": norm(2.39)}) == []
-    assert differences(pins, {"a": norm(2.41)}) == ["a: 2 -> 2.41 m (+- 0.4)"]
-    assert differences(pins, {"a": Metric(None, "m", lacking="not reached: why")}) == [
+    assert compare_with_baselines(pins, {"a": norm(2.39)}) == []
+    assert compare_with_baselines(pins, {"a": norm(2.41)}) == ["a: 2 -> 2.41 m (+- 0.4)"]
+    assert compare_with_baselines(pins, {"a": Metric(None, "m", lacking="not reached: why")}) == [
         "a: 2 -> not reached: why m (+- 0.4)"
     ]
-    assert differences(pins, {}) == [
+    assert compare_with_baselines(pins, {}) == [
         "a has a baseline and is not computed any more"
-    ] and differences({}, {"a": norm(1.0)}) == ["a has no baseline"]
+    ] and compare_with_baselines({}, {"a": norm(1.0)}) == ["a has no baseline"]
 
 
 def test_pins_survive_their_file(tmp_path: Path) -> None:
@@ -174,4 +174,4 @@ def test_pins_survive_their_file(tmp_path: Path) -> None:
         },
     )
     (tmp_path / "pins.toml").write_text(to_toml(pins), encoding="utf-8")
-    assert read(tmp_path) == pins
+    assert read_baselines(tmp_path) == pins

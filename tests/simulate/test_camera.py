@@ -21,13 +21,13 @@ MARKS = {"mast": (0.1, 0.0), "port_light": (0.4, -0.3), "cleat": (-0.7, 0.2)}
 
 @pytest.mark.parametrize("pose", [(0.0, 0.0, 0.0), (3.0, -2.0, 1.2), (-5.0, 0.4, -3.0)])
 def test_marks_seen_without_noise_give_the_true_pose(pose: tuple[float, float, float]) -> None:
-    frame = Camera(mark_sd=0.0, marks=MARKS).shoot(1.0, pose, np.zeros(6))
+    frame = Camera(mark_sd=0.0, marks=MARKS).take_frame(1.0, pose, np.zeros(6))
     assert (frame.x, frame.y, frame.psi) == pytest.approx(pose, abs=1e-12)
 
 
 def test_marks_stand_where_a_turned_hull_carries_them() -> None:
     """On an easterly heading what is ahead lies east, what is to starboard south."""
-    frame = Camera(marks=MARKS).shoot(0.0, (10.0, 20.0, pi / 2), np.zeros(6))
+    frame = Camera(marks=MARKS).take_frame(0.0, (10.0, 20.0, pi / 2), np.zeros(6))
     assert frame.marks == pytest.approx((10.0, 20.1, 10.3, 20.4, 9.8, 19.3))
 
 
@@ -37,8 +37,8 @@ def test_marks_stand_where_a_turned_hull_carries_them() -> None:
 def test_the_pose_scatters_as_the_notes_say(marks: dict[str, tuple[float, float]]) -> None:
     camera, n = Camera(mark_sd=0.003, marks=marks), 40_000
     noise = np.random.default_rng(1).standard_normal((n, 2 * len(marks)))
-    place, psi = camera.pose(camera.seen(np.zeros(n), np.full(n, 0.7), noise))
-    told = camera.noise()
+    place, psi = camera.fit_pose(camera.measure_marks(np.zeros(n), np.full(n, 0.7), noise))
+    told = camera.pose_noise()
     assert (place.real.std(), place.imag.std()) == pytest.approx(
         (told["position_sd_m"],) * 2, rel=0.02
     )
@@ -91,6 +91,9 @@ def test_marks_that_can_not_be_are_one_line(marks: object, line: str) -> None:
 
 def test_size_of_the_picture_does_not_turn_the_boat() -> None:
     camera = Camera(marks=MARKS)
-    seen = camera.seen(np.array(0j), np.array(0.3), np.zeros(6))
-    assert camera.pose(1.05 * seen)[1] == pytest.approx(0.3)
-    assert replace(camera, mark_sd=0.0).noise() == {"position_sd_m": 0.0, "heading_sd_rad": 0.0}
+    seen = camera.measure_marks(np.array(0j), np.array(0.3), np.zeros(6))
+    assert camera.fit_pose(1.05 * seen)[1] == pytest.approx(0.3)
+    assert replace(camera, mark_sd=0.0).pose_noise() == {
+        "position_sd_m": 0.0,
+        "heading_sd_rad": 0.0,
+    }

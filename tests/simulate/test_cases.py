@@ -9,7 +9,7 @@ from boatsim.cli.run_many import plan_runs
 from boatsim.errors import BadInput
 from boatsim.physics.content import find_content_file, library_names
 from boatsim.simulate import scenario
-from boatsim.simulate.cases import cases, content, matching, merged
+from boatsim.simulate.cases import case_names, find_scenarios, merge_tables, read_scenario
 
 HEAD = 'vessel = "trial_boat"\nduration = 2.0\n[controller]\nuse = "open_loop"\nperiod = 0.5\n'
 
@@ -31,7 +31,7 @@ def test_tables_are_merged_key_by_key_and_all_else_takes_the_place() -> None:
         "goal": [{"n": 1}, {"n": 2}],
     }
     over = {"b": 3, "start": {"u": 5.0, "commands": {"y": 9.0}}, "goal": [{"n": 7}]}
-    assert merged(base, over) == {
+    assert merge_tables(base, over) == {
         "a": 1,
         "b": 3,
         "start": {"u": 5.0, "commands": {"x": 1.0, "y": 9.0}},
@@ -42,8 +42,10 @@ def test_tables_are_merged_key_by_key_and_all_else_takes_the_place() -> None:
 
 def test_a_table_that_says_what_to_use_begins_anew() -> None:
     base = {"controller": {"use": "waypoint", "radius": 2.0}}
-    assert merged(base, {"controller": {"use": "replay"}}) == {"controller": {"use": "replay"}}
-    assert merged(base, {"controller": {"radius": 3.0}}) == {
+    assert merge_tables(base, {"controller": {"use": "replay"}}) == {
+        "controller": {"use": "replay"}
+    }
+    assert merge_tables(base, {"controller": {"radius": 3.0}}) == {
         "controller": {"use": "waypoint", "radius": 3.0}
     }
 
@@ -66,8 +68,8 @@ def test_a_case_lies_on_the_rest_of_its_file_or_on_the_base_it_names(tmp_path: P
 
 def test_a_file_builds_on_a_shipped_scenario_and_on_files_beside_it(tmp_path: Path) -> None:
     shipped = write(tmp_path / "far.toml", 'base = "joystick_boat/sway_1"\ncontroller.pole = 2.0\n')
-    assert content(str(shipped))[0] == merged(
-        content("joystick_boat/sway_1")[0], {"controller": {"pole": 2.0}}
+    assert read_scenario(str(shipped))[0] == merge_tables(
+        read_scenario("joystick_boat/sway_1")[0], {"controller": {"pole": 2.0}}
     )
     write(tmp_path / "_common.toml", HEAD)
     write(tmp_path / "some.toml", 'base = "_common.toml"\n[[case]]\nname = "a"\nstart.u = 4.0\n')
@@ -95,26 +97,28 @@ def test_every_name_of_a_shipped_scenario_is_a_case_or_a_file_of_its_folder() ->
     for name in library_names("scenario"):
         folder, own = name.split("/")
         path = find_content_file("scenario", name)
-        assert path.parent.name == folder and own in (cases(path) or [path.stem])
-        assert content(name)[1].name == name
+        assert path.parent.name == folder and own in (case_names(path) or [path.stem])
+        assert read_scenario(name)[1].name == name
 
 
 def test_a_folder_a_pattern_and_a_file_stand_for_their_scenarios(tmp_path: Path) -> None:
     everything = library_names("scenario")
     assert (
-        matching("jet_ski")
-        == matching("jet_ski/")
+        find_scenarios("jet_ski")
+        == find_scenarios("jet_ski/")
         == [n for n in everything if n.startswith("jet_ski/")]
     )
-    assert matching("joystick_boat/sway_?") == [f"joystick_boat/sway_{n}" for n in (1, 2, 3, 4)]
-    assert matching("joystick_boat/sway_1") == ["joystick_boat/sway_1"]
+    assert find_scenarios("joystick_boat/sway_?") == [
+        f"joystick_boat/sway_{n}" for n in (1, 2, 3, 4)
+    ]
+    assert find_scenarios("joystick_boat/sway_1") == ["joystick_boat/sway_1"]
     file = write(tmp_path / "mine.toml", HEAD + '[[case]]\nname = "one"\n[[case]]\nname = "two"\n')
     alone = write(tmp_path / "plain.toml", HEAD)
     write(tmp_path / "_common.toml", HEAD)
-    assert matching(str(file)) == [f"{file}:one", f"{file}:two"] and matching(str(alone)) == [
+    assert find_scenarios(str(file)) == [f"{file}:one", f"{file}:two"] and find_scenarios(
         str(alone)
-    ]
-    assert matching(str(tmp_path)) == [f"{file}:one", f"{file}:two", str(alone)]
+    ) == [str(alone)]
+    assert find_scenarios(str(tmp_path)) == [f"{file}:one", f"{file}:two", str(alone)]
 
 
 def test_cases_run_into_folders_of_their_own_names(tmp_path: Path) -> None:

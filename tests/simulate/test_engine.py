@@ -22,7 +22,7 @@ from boatsim.physics.signals import signals_of
 from boatsim.physics.vessel import Vessel
 from boatsim.simulate import scenario
 from boatsim.simulate.batch import Batch
-from boatsim.simulate.engine import Engine, State, installed
+from boatsim.simulate.engine import Engine, State, installed_callback
 from boatsim.simulate.run import run
 from boatsim.simulate.world import Tank
 
@@ -125,7 +125,7 @@ def test_many_steps_at_once_are_the_same_as_one_by_one(tmp_path: Path) -> None:
     for _ in range(50):
         one.advance()
     many.advance(50)
-    coasting.coast(50)
+    coasting.advance_without_actuators(50)
     assert one.state == many.state == coasting.state
     assert one.state.t == pytest.approx(1.0)
 
@@ -175,7 +175,7 @@ def contact_force(engine: Engine, probe: Any) -> tuple[Array, int]:
         engine.data.qvel,
         engine.data.userdata,
     )
-    with installed(engine.callback):
+    with installed_callback(engine.callback):
         mujoco.mj_forward(engine.model, probe)
     X, Y, N = probe.qfrc_constraint * (1.0, -1.0, -1.0)
     s = engine.state
@@ -335,7 +335,7 @@ def falling_body() -> tuple[Any, Any]:
 def test_the_callback_leaves_models_of_another_size_alone(tmp_path: Path, callback: str) -> None:
     model, data = falling_body()
     engine = Engine(boats.planar(tmp_path), callback=callback)
-    with installed(engine.callback):
+    with installed_callback(engine.callback):
         mujoco.mj_step(model, data, nstep=100)
     _, undisturbed = falling_body()
     mujoco.mj_step(model, undisturbed, nstep=100)
@@ -349,7 +349,7 @@ def test_the_callback_is_there_only_while_stepping(tmp_path: Path, callback: str
     assert mujoco.get_mjcb_passive() is None
     engine.advance(3)
     assert mujoco.get_mjcb_passive() is None
-    engine.coast(3)
+    engine.advance_without_actuators(3)
     assert mujoco.get_mjcb_passive() is None
 
 

@@ -23,7 +23,7 @@ from boatsim.errors import BadInput, BadPhysics
 from boatsim.physics.commands import clipped_recorded_commands
 from boatsim.recordings.notes import unit_of
 from boatsim.simulate import env, scenario  # before dm_control, whose renderer it chooses
-from boatsim.simulate.cases import Place
+from boatsim.simulate.cases import ScenarioLocation
 from boatsim.simulate.engine import Engine
 from boatsim.simulate.run import run
 from boatsim.simulate.scenario import Scenario
@@ -384,7 +384,7 @@ def test_what_can_be_no_environment_is_refused_in_a_line() -> None:
         "controller": {"use": "open_loop"},
     }
     with pytest.raises(BadInput, match="kvlcc2_roll is not free in surge, sway and yaw"):
-        env.load(scenario.from_table(rolling, Place(Path("rolling.toml"))))
+        env.load(scenario.from_table(rolling, ScenarioLocation(Path("rolling.toml"))))
     with pytest.raises(BadInput, match=r"period 0.08 s is not a whole number of steps of 0.03 s"):
         env.load(short(step=0.03))
     with pytest.raises(BadInput, match="allowed 0 to 1"):

@@ -79,7 +79,7 @@ def filmed(
     noise = np.random.default_rng(5)
     camera = replace(told.camera, mark_sd=marks)
     frames = [
-        camera.shoot(k / 6, pose(k / 6), noise.standard_normal(4))
+        camera.take_frame(k / 6, pose(k / 6), noise.standard_normal(4))
         for k in range(int(6 * until) + 1)
     ]
     names = [f"camera_{mark}_{axis}_m" for mark in camera.marks for axis in "xy"]
@@ -164,7 +164,7 @@ def test_moving_average_halves_a_jump_of_five_frames() -> None:
     """A turn of 6 deg in five intervals of 1/3 s at 3.6 deg/s: ten rates never hold more than those
     five."""
     psi = np.radians(np.concatenate([np.zeros(20), np.linspace(0.0, 6.0, 6), np.full(20, 6.0)]))
-    assert float(Sway().yaw_rates(psi, 1 / 3)["yaw_rate_inf"]) == pytest.approx(3.6 / 2)
+    assert float(Sway().yaw_rate_metrics(psi, 1 / 3)["yaw_rate_inf"]) == pytest.approx(3.6 / 2)
 
 
 def test_what_was_never_reached_has_no_value_and_fails_its_bar() -> None:

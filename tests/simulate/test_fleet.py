@@ -9,7 +9,7 @@ import pytest
 from boatsim.errors import BadInput
 from boatsim.simulate import scenario
 from boatsim.simulate.batch import TURN
-from boatsim.simulate.fleet import Fleet, Voyages
+from boatsim.simulate.fleet import Fleet, FleetLog
 from boatsim.simulate.run import run
 
 OPEN = {"until": {}, "tank": {"length": 1e3, "width": 1e3}, "duration": 8.0}
@@ -58,7 +58,7 @@ def test_each_boat_sails_as_a_run_with_its_seed_does(case) -> None:
 def test_a_boat_sails_to_the_last_bit_alike_alone_and_among_others_on_any_number_of_threads(
     controller,
 ) -> None:
-    def sailed(n: int, threads: int, first: int = 0) -> Voyages:
+    def sailed(n: int, threads: int, first: int = 0) -> FleetLog:
         seeds = range(first, first + n)
         return Fleet(SWAY, n, seeds=seeds, controller=controller, threads=threads).run(2.0, log=0.4)
 

@@ -7,8 +7,8 @@ import pytest
 
 from boatsim.errors import BadInput
 from boatsim.physics import vessel
-from boatsim.simulate.hull_xml_check import check_text
-from boatsim.simulate.world import build
+from boatsim.simulate.hull_xml_check import check_hull_file
+from boatsim.simulate.world import build_model
 
 BEGIN = '<mujoco><worldbody><body name="hull"><geom {} type="box" size="1 1 1"/></body></worldbody>{}</mujoco>'
 
@@ -30,7 +30,7 @@ def test_what_would_end_the_process_is_refused(tmp_path: Path, text: str, said: 
         '<mujocoinclude><include file="hull.xml"/><a class="%n"/></mujocoinclude>'
     )
     with pytest.raises(BadInput, match=said):
-        check_text(tmp_path / "hull.xml")
+        check_hull_file(tmp_path / "hull.xml")
 
 
 @pytest.mark.parametrize(
@@ -45,23 +45,23 @@ def test_what_would_end_the_process_is_refused(tmp_path: Path, text: str, said: 
 def test_what_could_hide_a_tag_is_refused(tmp_path: Path, hiding: str) -> None:
     (tmp_path / "hull.xml").write_text(hiding + BEGIN.format('class="%n"', ""))
     with pytest.raises(BadInput, match="allowed are tags and comments"):
-        check_text(tmp_path / "hull.xml")
+        check_hull_file(tmp_path / "hull.xml")
 
 
 def test_an_instruction_hides_no_tag(tmp_path: Path) -> None:
     (tmp_path / "hull.xml").write_text(
         '<?xml version="1.0" encoding="utf-8"?>' + BEGIN.format("", "")
     )
-    check_text(tmp_path / "hull.xml")
+    check_hull_file(tmp_path / "hull.xml")
     (tmp_path / "hull.xml").write_text("<?odd ' ?>" + BEGIN.format('class="%n"', ""))
     with pytest.raises(BadInput, match="has a %"):
-        check_text(tmp_path / "hull.xml")
+        check_hull_file(tmp_path / "hull.xml")
 
 
 @pytest.mark.parametrize("comment", ["<!-- 5 % of trim -->", '<!-- class="%n" -->', "<!-- nan -->"])
 def test_a_comment_may_say_anything(tmp_path: Path, comment: str) -> None:
     (tmp_path / "hull.xml").write_text(comment + BEGIN.format('name="nanny"', comment))
-    check_text(tmp_path / "hull.xml")
+    check_hull_file(tmp_path / "hull.xml")
 
 
 @pytest.mark.parametrize(
@@ -69,7 +69,7 @@ def test_a_comment_may_say_anything(tmp_path: Path, comment: str) -> None:
 )
 def test_rubbish_takes_no_time(tmp_path: Path, text: str) -> None:
     (tmp_path / "hull.xml").write_text(text)
-    check_text(tmp_path / "hull.xml")
+    check_hull_file(tmp_path / "hull.xml")
 
 
 @pytest.mark.parametrize(
@@ -87,4 +87,4 @@ def test_a_hull_that_is_none_is_one_line(tmp_path: Path, hull: bytes) -> None:
     place = boats.written(tmp_path, "test_boat", boats.ROLL)
     (place / "hull.xml").write_bytes(hull)
     with pytest.raises(BadInput, match=r"hull\.xml: "):
-        build(vessel.load_vessel(f"{place}/"))
+        build_model(vessel.load_vessel(f"{place}/"))

@@ -27,7 +27,7 @@ from boatsim.physics.content import load_class
 from boatsim.recordings.table import Recording
 from boatsim.simulate import imo
 from boatsim.simulate.evaluation import requested_metrics
-from boatsim.simulate.manoeuvre import handled, scenario_of
+from boatsim.simulate.manoeuvre import complete_manoeuvring_table, manoeuvre_scenario
 from boatsim.simulate.run import run
 
 LENGTH = 2.0  # [m] of the ships here
@@ -279,17 +279,23 @@ def test_crash_stop_goes_astern_until_there_is_no_way_on() -> None:
 def test_limits_of_the_10_10_zigzag_meet_at_their_boundaries() -> None:
     for ratio, first, second in ((10.0, 10.0, 25.0), (30.0, 20.0, 40.0)):
         for beside in (ratio * (1 - 1e-9), ratio, ratio * (1 + 1e-9)):
-            assert imo.FIRST_OVERSHOOT_10.at(beside, 1.0) == pytest.approx(first)
-            assert imo.SECOND_OVERSHOOT_10.at(beside, 1.0) == pytest.approx(second)
-    assert (imo.FIRST_OVERSHOOT_10.at(1.2, 0.5), imo.SECOND_OVERSHOOT_10.at(1.2, 0.5)) == (
+            assert imo.FIRST_OVERSHOOT_10.limit_angle(beside, 1.0) == pytest.approx(first)
+            assert imo.SECOND_OVERSHOOT_10.limit_angle(beside, 1.0) == pytest.approx(second)
+    assert (
+        imo.FIRST_OVERSHOOT_10.limit_angle(1.2, 0.5),
+        imo.SECOND_OVERSHOOT_10.limit_angle(1.2, 0.5),
+    ) == (
         10.0,
         25.0,
     )
-    assert (imo.FIRST_OVERSHOOT_10.at(400.0, 10.0), imo.SECOND_OVERSHOOT_10.at(400.0, 10.0)) == (
+    assert (
+        imo.FIRST_OVERSHOOT_10.limit_angle(400.0, 10.0),
+        imo.SECOND_OVERSHOOT_10.limit_angle(400.0, 10.0),
+    ) == (
         20.0,
         40.0,
     )
-    assert imo.FIRST_OVERSHOOT_10.at(160.0, 8.0) == pytest.approx(15.0)
+    assert imo.FIRST_OVERSHOOT_10.limit_angle(160.0, 8.0) == pytest.approx(15.0)
 
 
 @pytest.mark.parametrize(
@@ -310,7 +316,7 @@ def test_limits_of_the_10_10_zigzag_meet_at_their_boundaries() -> None:
 def test_limits_stand_beside_the_manoeuvres_they_are_for(
     manoeuvre: str, angle: float, wanted: dict[str, float]
 ) -> None:
-    assert imo.limits(manoeuvre, angle, 160.0, 8.0) == pytest.approx(wanted)
+    assert imo.imo_limits(manoeuvre, angle, 160.0, 8.0) == pytest.approx(wanted)
 
 
 # Vessels
@@ -322,7 +328,10 @@ STEERED = [
 
 @pytest.mark.parametrize("name", few(STEERED))
 def test_every_vessel_that_can_turn_does_a_short_zigzag_and_a_turning_circle(name: str) -> None:
-    zigzag, turn = scenario_of("zigzag", name, angle=10.0), scenario_of("turning_circle", name)
+    zigzag, turn = (
+        manoeuvre_scenario("zigzag", name, angle=10.0),
+        manoeuvre_scenario("turning_circle", name),
+    )
     boat, unit = zigzag.vessel, zigzag.vessel.length / zigzag.file.start.u
     seen = run(
         replace(zigzag, file=zigzag.file.model_copy(update={"duration": 12.0 * unit}))
@@ -349,7 +358,7 @@ def test_a_symmetric_boat_does_the_same_to_both_sides(manoeuvre: str) -> None:
         {
             k: n.value
             for k, n in requested_metrics(
-                run(scenario_of(manoeuvre, "trial_boat", angle=angle))
+                run(manoeuvre_scenario(manoeuvre, "trial_boat", angle=angle))
             ).items()
         }
         for angle in (20.0, -20.0)
@@ -363,7 +372,7 @@ def test_helm_is_reversed_at_the_heading_and_not_at_the_end_of_a_step() -> None:
     it."""
     found = []
     for share in (1.0, 0.05):
-        made = scenario_of("zigzag", "kvlcc2_mmg", angle=15.0)
+        made = manoeuvre_scenario("zigzag", "kvlcc2_mmg", angle=15.0)
         made = replace(made, file=made.file.model_copy(update={"step": share * made.file.step}))
         made.controller.period, made.controller.reversals = made.file.step, 2  # type: ignore[attr-defined]
         done = run(made)
@@ -376,7 +385,7 @@ def test_helm_is_reversed_at_the_heading_and_not_at_the_end_of_a_step() -> None:
 
 @pytest.mark.parametrize("angle", [20.0, -20.0])
 def test_a_20_10_zigzag_puts_20_degrees_of_helm_on_and_reverses_at_10(angle: float) -> None:
-    made = scenario_of("zigzag", "mariner", angle=angle, heading=10.0)
+    made = manoeuvre_scenario("zigzag", "mariner", angle=angle, heading=10.0)
     assert not made.file.norms  # the limits are those of 10/10 and 20/20
     done = run(made)
     helm, psi = done.recording["reference_helm_rad"], done.recording["psi_rad"]
@@ -391,7 +400,7 @@ def test_roll_decay_of_a_vessel_shows_its_damping() -> None:
     """kvlcc2_roll is linear: inertia 135.4 kg m^2, damping 6.7 N m s, stiffness 822.3 N m."""
     found = {
         k: n.value
-        for k, n in requested_metrics(run(scenario_of("roll_decay", "kvlcc2_roll"))).items()
+        for k, n in requested_metrics(run(manoeuvre_scenario("roll_decay", "kvlcc2_roll"))).items()
     }
     zeta = 6.7 / (2.0 * sqrt(822.3 * 135.4))
     assert found["damping_mean"] == pytest.approx(zeta, rel=1e-3)
@@ -400,7 +409,7 @@ def test_roll_decay_of_a_vessel_shows_its_damping() -> None:
 
 def test_a_hull_that_also_turns_is_heeled_before_it_is_released() -> None:
     """Eastward Ho's roll is linear: 2 pi / sqrt(m g GM / I) = 7.14 s; sway and yaw add a little."""
-    made = scenario_of("roll_decay", "eastward_ho", angle=5.0)
+    made = manoeuvre_scenario("roll_decay", "eastward_ho", angle=5.0)
     assert made.file.duration == pytest.approx(12 * 7.14, rel=0.02)
     assert requested_metrics(run(made))["period"].value == pytest.approx(7.14, rel=0.005)
 
@@ -411,14 +420,14 @@ def test_a_tunnel_across_the_bow_drives_no_boat_ahead(tmp_path: Path) -> None:
         boats.PLANAR.replace("[channels]\n", "[channels]\nbow_N = { low = -8.0, high = 8.0 }\n")
         + bow
     )
-    table = handled(
+    table = complete_manoeuvring_table(
         vessel.load_vessel(str(boats.written(tmp_path, "test_boat", text) / "vessel.toml"))
     )
     assert set(table.ahead) == set(table.astern) == {"thrust_port_N", "thrust_starboard_N"}
 
 
 def test_a_boat_without_a_table_is_handled_by_its_channels() -> None:
-    table = handled(vessel.load_vessel("trial_boat"))
+    table = complete_manoeuvring_table(vessel.load_vessel("trial_boat"))
     assert table.ahead == {"thrust_port_N": 0.5, "thrust_starboard_N": 0.5}
     assert table.astern == {"thrust_port_N": -0.5, "thrust_starboard_N": -0.5}
     assert table.steer == {

@@ -87,7 +87,9 @@ def test_a_roll_period_is_that_of_the_whole_inertia() -> None:
 def test_coasting_is_a_free_run_with_constant_commands(tmp_path: Path) -> None:
     compiled, start = Batch(boats.planar(tmp_path)), [0.0, 0.0, 0.3, 0.2, 0.1, -0.1]
     run = compiled.rollout(start, held(compiled, 50, 2.0, 0.1), 0.1)
-    assert compiled.coast(start, boats.push(2.0, 0.1), 250) == pytest.approx(run[-1], rel=1e-12)
+    assert compiled.hold_commands(start, boats.push(2.0, 0.1), 250) == pytest.approx(
+        run[-1], rel=1e-12
+    )
     assert run[0] == pytest.approx(start)
 
 

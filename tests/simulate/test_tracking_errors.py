@@ -41,11 +41,11 @@ def log(step: float = 0.1, **signals: float) -> Recording:
 def test_a_constant_error_has_its_size_as_rms_and_largest_and_its_size_by_time_as_integral() -> (
     None
 ):
-    found = tracking_errors.errors(log(v_mps=0.5, goal_sway_mps=0.7))
+    found = tracking_errors.compute_errors(log(v_mps=0.5, goal_sway_mps=0.7))
     assert found == pytest.approx(
         {"sway_error_rms": 0.2, "sway_error_largest": 0.2, "sway_error_integral": 2.0}
     )
-    assert list(tracking_errors.units(["sway_mps"]).values()) == ["m/s", "m/s", "m"]
+    assert list(tracking_errors.error_units(["sway_mps"]).values()) == ["m/s", "m/s", "m"]
 
 
 @pytest.mark.parametrize(("angle", "rate"), [("yaw_rad", "yaw_radps"), ("roll_rad", "roll_radps")])
@@ -59,21 +59,25 @@ def test_an_angle_and_its_rate_that_are_both_followed_have_norms_of_their_own(
         "roll_radps": "p_radps",
     }
     reached = {column[angle]: 0.5, column[rate]: 0.1}
-    found = tracking_errors.errors(log(**reached, **{f"goal_{angle}": 0.6, f"goal_{rate}": 0.3}))
+    found = tracking_errors.compute_errors(
+        log(**reached, **{f"goal_{angle}": 0.6, f"goal_{rate}": 0.3})
+    )
     assert found[f"{angle}_error_largest"] == pytest.approx(np.degrees(0.1))
     assert found[f"{rate}_error_largest"] == pytest.approx(np.degrees(0.2))
-    units = tracking_errors.units([angle, rate])
+    units = tracking_errors.error_units([angle, rate])
     assert list(units) == list(found) and (
         units[f"{angle}_error_rms"],
         units[f"{rate}_error_rms"],
     ) == ("deg", "deg/s")
-    assert list(tracking_errors.units([rate, "surge_mps"]))[0] == rate.replace("radps", "error_rms")
+    assert list(tracking_errors.error_units([rate, "surge_mps"]))[0] == rate.replace(
+        "radps", "error_rms"
+    )
 
 
 def test_the_step_of_the_log_changes_no_norm() -> None:
     def wave(step: float) -> dict[str, float]:
         told = log(step, psi_rad=0.0, goal_psi_rad=0.0)
-        return tracking_errors.errors(
+        return tracking_errors.compute_errors(
             Recording("wave", told.t, {**told.signals, "psi_rad": np.sin(2 * pi * told.t / 10.0)})
         )
 
@@ -81,11 +85,11 @@ def test_the_step_of_the_log_changes_no_norm() -> None:
     for name in fine:
         assert fine[name] == pytest.approx(coarse[name], rel=1e-3)
     assert fine["psi_error_rms"] == pytest.approx(np.degrees(sqrt(0.5)), rel=1e-6)
-    assert tracking_errors.units(["psi_rad"])["psi_error_integral"] == "deg s"
+    assert tracking_errors.error_units(["psi_rad"])["psi_error_integral"] == "deg s"
 
 
 def test_a_heading_is_off_by_the_shorter_way_round() -> None:
-    assert tracking_errors.errors(log(psi_rad=2 * pi - 0.1, goal_psi_rad=0.1))[
+    assert tracking_errors.compute_errors(log(psi_rad=2 * pi - 0.1, goal_psi_rad=0.1))[
         "psi_error_largest"
     ] == pytest.approx(np.degrees(0.2))
 
@@ -95,7 +99,7 @@ def test_while_no_goal_is_in_force_nothing_is_judged() -> None:
     goal, u = told["goal_u_mps"].copy(), told["u_mps"].copy()
     goal[50:], u[50:] = np.nan, 99.0
     assert (
-        tracking_errors.errors(Recording("half", told.t, {"u_mps": u, "goal_u_mps": goal}))[
+        tracking_errors.compute_errors(Recording("half", told.t, {"u_mps": u, "goal_u_mps": goal}))[
             "u_error_largest"
         ]
         == 0.0
@@ -105,8 +109,8 @@ def test_while_no_goal_is_in_force_nothing_is_judged() -> None:
 @pytest.mark.parametrize("key", ["throttle", "jet_rad", "elevator_rad"])
 def test_a_goal_that_is_no_signal_of_the_motion_is_not_judged(key: str) -> None:
     assert (
-        tracking_errors.units([key]) == {}
-        and tracking_errors.errors(log(**{f"goal_{key}": 1.0})) == {}
+        tracking_errors.error_units([key]) == {}
+        and tracking_errors.compute_errors(log(**{f"goal_{key}": 1.0})) == {}
     )
 
 
@@ -123,7 +127,7 @@ def test_a_run_logs_its_goals_judges_them_and_says_why_a_norm_is_not_reached(
         done.recording["goal_sway_mps"][~first]
     ).all()
     norms = all_metrics(done)
-    assert list(norms) == ["time", *tracking_errors.units(["sway_mps", "yaw_radps"])]
+    assert list(norms) == ["time", *tracking_errors.error_units(["sway_mps", "yaw_radps"])]
     assert norms["sway_error_largest"].value == pytest.approx(
         np.abs(0.07 - done.recording["v_mps"][first]).max()
     )
@@ -147,14 +151,14 @@ def test_a_guard_of_a_tracking_norm_is_judged(tmp_path: Path) -> None:
 
 def test_why_tells_the_nearest_that_was_reached() -> None:
     assert (
-        Crossing(signal="u_mps", level=1.0).why("time", log(u_mps=0.7))
+        Crossing(signal="u_mps", level=1.0).explain_missing_value("time", log(u_mps=0.7))
         == "never reached 1 m/s: largest 0.7"
     )
     assert (
-        Crossing(signal="u_mps", level=-1.0).why("time", log(u_mps=0.7))
+        Crossing(signal="u_mps", level=-1.0).explain_missing_value("time", log(u_mps=0.7))
         == "never reached -1 m/s: smallest 0.7"
     )
-    far = Arrival(x=5.0, radius=1.0).why("time", log(x_m=2.0, y_m=0.0))
+    far = Arrival(x=5.0, radius=1.0).explain_missing_value("time", log(x_m=2.0, y_m=0.0))
     assert far == "never within 1 m of the point: closest 3"
 
 

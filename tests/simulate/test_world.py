@@ -78,7 +78,7 @@ def read_obj(path: Path) -> tuple[np.ndarray, np.ndarray]:
 
 @pytest.mark.parametrize("name", VESSELS)
 def test_joints_follow_the_freedoms_in_order(name: str) -> None:
-    model = world.build(vessel.load_vessel(name), WALLED)
+    model = world.build_model(vessel.load_vessel(name), WALLED)
     assert [model.joint(i).name for i in range(model.njnt)] == JOINTS[name]
     assert model.nu == 0 and not model.opt.gravity.any()
     assert model.opt.integrator == mujoco.mjtIntegrator.mjINT_RK4
@@ -96,7 +96,7 @@ def test_mass_matrix_stores_its_whole_lower_triangle(
     level = boat.geometry | {
         "cg_above_keel": boat.draught
     }  # mass centre in the waterline: nothing offset
-    model = world.build(replace(boat, dof=dof, geometry=level), WALLED, show=show)
+    model = world.build_model(replace(boat, dof=dof, geometry=level), WALLED, show=show)
     n = len(dof)
     assert model.M_rownnz.tolist() == list(range(1, n + 1))
     assert mujoco.MjData(model).M.shape == (n * (n + 1) // 2,)
@@ -118,7 +118,7 @@ def test_mass_and_inertia_are_those_of_the_vessel_about_its_mass_centre(
     boat = replace(vessel.load_vessel("joystick_boat", loads), dof=("surge", "sway", "roll", "yaw"))
     body = boat.body
     expected = np.diag([body.mass, body.mass, body.yaw_inertia, body.roll_inertia])
-    assert mass_matrix(world.build(boat, WALLED)) == pytest.approx(expected, abs=1e-12)
+    assert mass_matrix(world.build_model(boat, WALLED)) == pytest.approx(expected, abs=1e-12)
 
 
 @pytest.mark.parametrize("name", VESSELS)
@@ -137,7 +137,7 @@ def test_hull_opens_alone_and_agrees_with_the_vessel_file(name: str) -> None:
 
 @pytest.mark.parametrize("name", VESSELS)
 def test_what_is_drawn_weighs_and_touches_nothing(name: str) -> None:
-    model = world.build(vessel.load_vessel(name), WALLED)
+    model = world.build_model(vessel.load_vessel(name), WALLED)
     assert (
         not model.geom_contype.any() and not model.geom_conaffinity.any()
     )  # contacts only by explicit pair
@@ -152,7 +152,7 @@ def test_what_is_drawn_weighs_and_touches_nothing(name: str) -> None:
 def test_leaving_out_what_is_only_seen_changes_no_motion(boat: vessel.Vessel) -> None:
     ends = []
     for show in (True, False):
-        model = world.build(boat, WALLED, show=show)
+        model = world.build_model(boat, WALLED, show=show)
         data = mujoco.MjData(model)
         data.qvel[:] = (0.2, -0.3, 0.4)
         mujoco.mj_step(model, data, nstep=500)
@@ -172,7 +172,7 @@ def test_boat_thrown_at_a_wall_stays_inside(
     boat: vessel.Vessel, velocity: tuple[float, float, float]
 ) -> None:
     tank = Tank(length=1.6, width=2.0, centre=(0.1, 0.2))
-    model = world.build(boat, tank)
+    model = world.build_model(boat, tank)
     data = mujoco.MjData(model)
     data.qvel[:] = velocity
     touched = 0
@@ -186,7 +186,7 @@ def test_boat_thrown_at_a_wall_stays_inside(
 
 def restitution(boat: vessel.Vessel, speed: float, step: float) -> float:
     """Share of its speed [m/s] with which a boat that coasts ahead comes back from the wall."""
-    model = world.build(boat, Tank(2.5 * boat.length, 2.5 * boat.length, boat.length), step)
+    model = world.build_model(boat, Tank(2.5 * boat.length, 2.5 * boat.length, boat.length), step)
     data = mujoco.MjData(model)
     data.qvel[0] = speed
     for _ in range(round(2.0 * boat.length / speed / step)):
@@ -217,7 +217,7 @@ def test_a_wall_gives_little_back_at_the_usual_step(name: str, speed: float) -> 
 
 
 def test_elastic_wall_without_friction_turns_a_head_on_velocity_round(boat: vessel.Vessel) -> None:
-    model = world.build(boat, WALLED, step=0.001, wall_solref=(-2000.0, 0.0))
+    model = world.build_model(boat, WALLED, step=0.001, wall_solref=(-2000.0, 0.0))
     data = mujoco.MjData(model)
     data.qvel[:] = (0.1, 0.02, 0.0)
     mujoco.mj_step(model, data, nstep=3000)
@@ -227,7 +227,7 @@ def test_elastic_wall_without_friction_turns_a_head_on_velocity_round(boat: vess
 def test_friction_slows_the_slide_along_a_wall(boat: vessel.Vessel) -> None:
     left = []
     for friction in (0.0, 0.5):
-        model = world.build(boat, Tank(length=30.0, width=1.0), friction=friction)
+        model = world.build_model(boat, Tank(length=30.0, width=1.0), friction=friction)
         data = mujoco.MjData(model)
         data.qvel[:2] = (0.5, 0.3)
         mujoco.mj_step(model, data, nstep=500)
@@ -236,7 +236,7 @@ def test_friction_slows_the_slide_along_a_wall(boat: vessel.Vessel) -> None:
 
 
 def test_open_water_never_stops_the_boat(boat: vessel.Vessel) -> None:
-    model = world.build(boat, Tank(1.5, 3.0, walls=False))
+    model = world.build_model(boat, Tank(1.5, 3.0, walls=False))
     data = mujoco.MjData(model)
     data.qvel[:2] = (0.3, -0.4)
     mujoco.mj_step(model, data, nstep=1000)
@@ -246,7 +246,7 @@ def test_open_water_never_stops_the_boat(boat: vessel.Vessel) -> None:
 def test_port_is_up_in_mujoco_and_the_tank_lies_where_start_axes_put_it(
     boat: vessel.Vessel,
 ) -> None:
-    model = world.build(
+    model = world.build_model(
         boat, Tank(length=2.0, width=4.0, centre=(0.3, 0.9))
     )  # most of the water to starboard
     ends = {name: model.geom(name).pos for name in WALLS}
@@ -269,7 +269,7 @@ def test_all_of_the_water_lies_before_the_sun(name: str, centre: tuple[float, fl
     boat = vessel.load_vessel(name)
     side = 10.0 * boat.length
     where = (centre[0] * boat.length, centre[1] * boat.length)
-    model = world.build(boat, Tank(side, side, boat.length, walls=False, centre=where))
+    model = world.build_model(boat, Tank(side, side, boat.length, walls=False, centre=where))
     sun, way = model.light("sun").pos, model.light("sun").dir
     for x in (-side / 2, side / 2):
         for y in (-side / 2, side / 2):
@@ -284,10 +284,10 @@ def test_tank_without_size_and_hull_without_body_are_refused(
         Tank(length=1.5, width=0.0)
     (tmp_path / "hull.xml").write_text('<mujoco><worldbody><body name="hul"/></worldbody></mujoco>')
     with pytest.raises(BadInput, match="did you mean 'hul'"):
-        world.build(replace(boat, path=tmp_path))
+        world.build_model(replace(boat, path=tmp_path))
     (tmp_path / "hull.xml").write_text("no XML")
     with pytest.raises(BadInput, match="hull.xml"):
-        world.build(replace(boat, path=tmp_path))
+        world.build_model(replace(boat, path=tmp_path))
 
 
 # --- loads
@@ -299,7 +299,7 @@ def test_tank_without_size_and_hull_without_body_are_refused(
 )
 def test_outboards_stand_where_the_load_has_them(loads: tuple[str, ...], half: float) -> None:
     boat = vessel.load_vessel("joystick_boat", loads)
-    model = world.build(boat, WALLED)
+    model = world.build_model(boat, WALLED)
     aft = -boat.geometry["cg_from_transom"]
     assert model.body("outboard_port").pos == pytest.approx((aft, half, 0), abs=0.006)
     assert model.body("outboard_starboard").pos == pytest.approx((aft, -half, 0), abs=0.006)
@@ -308,7 +308,7 @@ def test_outboards_stand_where_the_load_has_them(loads: tuple[str, ...], half: f
 
 def test_ballast_is_there_only_when_it_weighs_something() -> None:
     light, heavy = (
-        world.build(vessel.load_vessel("joystick_boat", loads)) for loads in ((), ("heavy",))
+        world.build_model(vessel.load_vessel("joystick_boat", loads)) for loads in ((), ("heavy",))
     )
     names = [light.geom(i).name for i in range(light.ngeom)]
     assert "ballast" not in names and "led" in names
@@ -322,7 +322,7 @@ def test_hull_reaches_from_transom_to_bow_about_its_mass_centre(
     loads: tuple[str, ...], length: float
 ) -> None:
     boat = vessel.load_vessel("joystick_boat", loads)
-    model = world.build(boat, WALLED)
+    model = world.build_model(boat, WALLED)
     data = mujoco.MjData(model)
     mujoco.mj_forward(model, data)
     x = corners(model, data)[:, 0]

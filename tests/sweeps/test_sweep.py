@@ -20,13 +20,13 @@ from scipy import stats
 
 import boatsim
 from boatsim.errors import BadInput
-from boatsim.simulate.cases import content
+from boatsim.simulate.cases import read_scenario
 from boatsim.simulate.run import run
 from boatsim.simulate.scenario import Scenario, from_table
 from boatsim.sweeps.axes import parse_axis
 from boatsim.sweeps.designs import design_matrix
 from boatsim.sweeps.execute import run_plan
-from boatsim.sweeps.indices import bootstrap, sobol
+from boatsim.sweeps.indices import bootstrap_intervals, sobol_indices
 from boatsim.sweeps.journal import Journal
 from boatsim.sweeps.keys import find_slots, parse_target, set_values
 from boatsim.sweeps.plan import make_plan
@@ -62,7 +62,7 @@ def short(tmp_path: Path) -> str:
 
 
 def changed(scenario: str, key: str, value: bool | int | float | str) -> Scenario:
-    said, place = content(scenario)
+    said, place = read_scenario(scenario)
     wanted = parse_target(key)
     told, at = find_slots(said, place, wanted)
     return from_table(set_values(told, place, at, wanted.operation, value), place)
@@ -551,7 +551,7 @@ def test_sobol_indices_of_ishigamis_function_are_the_known_ones() -> None:
     found = blocks(
         lambda x, y, z: np.sin(x) + a * np.sin(y) ** 2 + b * z**4 * np.sin(x), [(-pi, pi)] * 3, 4096
     )
-    first, total = sobol(found)
+    first, total = sobol_indices(found)
     variance = a**2 / 8 + b * pi**4 / 5 + b**2 * pi**8 / 18 + 0.5
     alone = 0.5 * (1 + b * pi**4 / 5) ** 2, a**2 / 8, 0.0
     beside = b**2 * pi**8 * (1 / 18 - 1 / 50)
@@ -559,7 +559,7 @@ def test_sobol_indices_of_ishigamis_function_are_the_known_ones() -> None:
     assert total == pytest.approx(
         np.array([alone[0] + beside, alone[1], beside]) / variance, abs=0.02
     )
-    for known, ends in zip((first, total), bootstrap(found, 0), strict=True):
+    for known, ends in zip((first, total), bootstrap_intervals(found, 0), strict=True):
         assert (
             (ends[0] <= known).all()
             and (known <= ends[1]).all()
@@ -571,7 +571,7 @@ def test_the_design_is_that_of_scipy() -> None:
     found = blocks(lambda x, y: x + 3 * y**2, [(0, 1), (0, 1)], 256)
     given = {"f_A": found[:1], "f_B": found[1:2], "f_AB": found[2:, None, :]}
     theirs = stats.sobol_indices(func=given, n=256)
-    first, total = sobol(found)
+    first, total = sobol_indices(found)
     assert first == pytest.approx(np.ravel(theirs.first_order), abs=0.02)
     assert total == pytest.approx(np.ravel(theirs.total_order), abs=1e-6)
 

@@ -131,12 +131,14 @@ def test_heading_is_clockwise_and_roll_is_starboard_down():
     """SNAME to z-up: (x, y) -> (x, -y), a turn to starboard lowers the picture's angle, roll lowers
     what is at -y."""
     quarter = np.array([np.pi / 2])
-    x, y, z, w = rerun_log._attitude(quarter, np.zeros(1))[0]
+    x, y, z, w = rerun_log._attitude_quaternions(quarter, np.zeros(1))[0]
     assert (x, y, z, w) == pytest.approx((0, 0, -np.sqrt(0.5), np.sqrt(0.5)))
-    x, y, z, w = rerun_log._attitude(np.zeros(1), np.array([0.2]))[0]
+    x, y, z, w = rerun_log._attitude_quaternions(np.zeros(1), np.array([0.2]))[0]
     starboard = 2 * (y * z + w * x) * -1.0  # height of a point at (0, -1, 0)
     assert starboard == pytest.approx(-np.sin(0.2))
-    np.testing.assert_array_equal(rerun_log._flat(np.ones(1), np.ones(1)), [[1.0, -1.0, 0.0]])
+    np.testing.assert_array_equal(
+        rerun_log._picture_points(np.ones(1), np.ones(1)), [[1.0, -1.0, 0.0]]
+    )
 
 
 @pytest.mark.parametrize("content", [b"", b"RRF2", b"no log of ours at all " * 20])
@@ -235,7 +237,7 @@ def test_the_scene_of_a_vessel_has_its_hull_and_a_thruster_on_each_side():
     from boatsim.simulate import world
 
     boat, tank = vessel.load_vessel("trial_boat"), world.Tank(length=8.0, width=6.0)
-    scene = scene_from(world.build(boat, tank), boat, tank)
+    scene = scene_from(world.build_model(boat, tank), boat, tank)
     hull = np.concatenate([solid.vertices for solid in scene.solids if solid.part == "hull"])
     assert np.ptp(hull[:, 0]) == pytest.approx(boat.length, rel=0.1)
     assert {thruster.name: np.sign(thruster.y) for thruster in scene.thrusters} == {
@@ -253,11 +255,13 @@ def test_every_closed_shape_has_its_outside_outside():
         a, b, c = (vertices[triangles[:, i]] for i in range(3))
         return float(np.einsum("ij,ij->", a, np.cross(b, c))) / 6.0
 
-    from boatsim.view.scene import _lathe
+    from boatsim.view.scene import _surface_of_revolution
 
-    brick = _lathe([(0.0, -1.0), (2**0.5, -1.0), (2**0.5, 1.0), (0.0, 1.0)], 4, np.pi / 4)
+    brick = _surface_of_revolution(
+        [(0.0, -1.0), (2**0.5, -1.0), (2**0.5, 1.0), (0.0, 1.0)], 4, np.pi / 4
+    )
     assert volume(*brick) == pytest.approx(8.0)
-    barrel = _lathe([(0.0, -1.0), (1.0, -1.0), (1.0, 1.0), (0.0, 1.0)], 256)
+    barrel = _surface_of_revolution([(0.0, -1.0), (1.0, -1.0), (1.0, 1.0), (0.0, 1.0)], 256)
     assert volume(*barrel) == pytest.approx(2 * np.pi, rel=1e-3)
     (hull,) = SCENE.solids
     assert volume(hull.vertices, hull.triangles) == pytest.approx(0.875 * 1.2 * 0.3 * 0.13 * 1.2)
@@ -280,7 +284,7 @@ def test_boats_are_as_large_as_the_track_asks_for_and_all_of_it_lies_in_view_on_
         "nominal": [track_of(1e4 * size)],
         "patched": [track_of(size, 0.2 * size)],
     }
-    scene = water.around(boat, boats)
+    scene = water.open_water_scene(boat, boats)
     hull = np.concatenate([s.vertices for s in scene.solids if s.part == "hull"])
     sea = np.concatenate([s.vertices for s in scene.solids if s.part == "tank"])
     assert (
@@ -304,7 +308,7 @@ def test_a_boat_that_goes_nowhere_is_drawn_at_its_size():
     from boatsim.physics import vessel
 
     t = np.linspace(0.0, 5.0, 20)
-    scene = water.around(
+    scene = water.open_water_scene(
         vessel.load_vessel("kvlcc2_roll"),
         {"recording": [Recording("a", t, {"phi_rad": 0.1 * np.sin(t)})]},
     )
@@ -347,6 +351,6 @@ def test_norms_are_told_with_what_was_published_and_whether_the_bar_is_met():
 
 
 def test_a_legend_says_the_unit():
-    assert blueprint.words("actual_thrust_port_N") == "actual thrust port [N]"
-    assert blueprint.words("estimate_d_N_low") == "estimate d low [N]"
-    assert blueprint.words("pwm_port") == "pwm port"
+    assert blueprint.legend_text("actual_thrust_port_N") == "actual thrust port [N]"
+    assert blueprint.legend_text("estimate_d_N_low") == "estimate d low [N]"
+    assert blueprint.legend_text("pwm_port") == "pwm port"

@@ -42,7 +42,7 @@ def test_a_run_takes_its_time_divided_by_the_speed(speed: float) -> None:
     pace = Pace(speed, clock, clock.sleep)
     for step in range(1001):
         clock.now += 1e-4  # of work
-        pace.wait(0.01 * step)
+        pace.wait_until(0.01 * step)
     assert clock.now - 100.0 == pytest.approx(10.0 / speed, rel=1e-3)
 
 
@@ -52,15 +52,15 @@ def test_a_run_that_was_held_up_goes_on_at_its_pace_and_does_not_rush() -> None:
     for step in range(201):
         if step == 100:
             clock.now += 30.0
-        pace.wait(0.01 * step)
+        pace.wait_until(0.01 * step)
     assert clock.now - 100.0 == pytest.approx(32.0, abs=0.02)
 
 
 def test_whoever_stops_a_run_does_not_wait_for_its_clock() -> None:
     clock = Clock()
     pace = Pace(1e-3, clock, clock.sleep)
-    pace.wait(0.0)
-    pace.wait(10.0, lambda: clock.now > 101.0)
+    pace.wait_until(0.0)
+    pace.wait_until(10.0, lambda: clock.now > 101.0)
     assert clock.now < 102.0
 
 
@@ -82,9 +82,9 @@ def boatsim(*arguments: object):
 def test_without_a_display_it_is_said_in_one_line_where_the_run_can_be_seen(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(viewer, "_listening", lambda port: False)
+    monkeypatch.setattr(viewer, "_is_listening", lambda port: False)
     monkeypatch.setattr(viewer, "has_display", lambda: False)
-    monkeypatch.setattr(Pace, "wait", lambda *_: pytest.fail("nobody watches"))
+    monkeypatch.setattr(Pace, "wait_until", lambda *_: pytest.fail("nobody watches"))
     done = boatsim("run", "joystick_boat/sway_1", "--live", "--out", tmp_path / "out")
     assert done.exit_code == 0 and (tmp_path / "out" / "run.rrd").is_file()
     (line,) = done.stderr.splitlines()

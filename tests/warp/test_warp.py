@@ -23,9 +23,9 @@ from boatsim.physics.vessel import Vessel
 from boatsim.simulate import batch as cores
 from boatsim.warp import Batch
 from boatsim.warp.kernels import HEAD
-from boatsim.warp.on_mujoco import OnMujoco
-from boatsim.warp.program import import_text, module
-from boatsim.warp.runtime import warp
+from boatsim.warp.on_mujoco import MujocoMotion
+from boatsim.warp.program import import_program, import_text
+from boatsim.warp.runtime import import_warp
 from boatsim.warp.translate import Translation
 from boatsim.warp.values import REAL, ROW, WHOLE
 
@@ -113,7 +113,7 @@ def test_accelerations_are_the_forces_by_the_whole_mass(tmp_path: Path) -> None:
     )
     ahead, aside, turning = np.linalg.solve(M, force)
     batch.send()
-    assert isinstance(batch.motion, OnMujoco)
+    assert isinstance(batch.motion, MujocoMotion)
     for psi, found in zip(headings, batch.motion.accelerations(), strict=True):
         turned = (
             np.cos(psi) * ahead - np.sin(psi) * aside,
@@ -145,10 +145,13 @@ def test_the_whole_library_has_the_same_forces_and_actuators() -> None:
     )
 
     translation = Translation()
-    translation.function(code.total_body_force, [REAL, ROW, ROW, WHOLE, ROW, ROW])
-    translation.function(code.substep_length, [ROW, ROW, REAL, REAL, ROW, ROW])
-    translation.function(code.advance_actuators, [ROW, ROW, REAL, ROW, ROW, ROW])
-    wp, kernels = warp(), import_text(HEAD.replace("{real}", "float64") + translation.text + CHECK)
+    translation.translate_function(code.total_body_force, [REAL, ROW, ROW, WHOLE, ROW, ROW])
+    translation.translate_function(code.substep_length, [ROW, ROW, REAL, REAL, ROW, ROW])
+    translation.translate_function(code.advance_actuators, [ROW, ROW, REAL, ROW, ROW, ROW])
+    wp, kernels = (
+        import_warp(),
+        import_text(HEAD.replace("{real}", "float64") + translation.text + CHECK),
+    )
     there = [
         wp.array(x, dtype=wp.float64)
         for x in (t, s, act, values, on, commands, memory, moved, pauses, s[:, :3])
@@ -263,8 +266,8 @@ def test_without_the_libraries_one_line_says_what_brings_them(
 
 @pytest.mark.parametrize("name", ["joystick_boat", "otter"])
 def test_a_program_compiles_for_a_gpu_where_there_is_none(name: str, tmp_path: Path) -> None:
-    warp().compile_aot_module(
-        module(Program(vessel.load_vessel(name))), arch=90, module_dir=tmp_path
+    import_warp().compile_aot_module(
+        import_program(Program(vessel.load_vessel(name))), arch=90, module_dir=tmp_path
     )
     assert any(path.stat().st_size > 10_000 for path in tmp_path.glob("*.cubin"))
 

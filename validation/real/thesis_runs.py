@@ -21,7 +21,7 @@ from boatsim.physics.kernel.records import VesselNumbers
 from boatsim.physics.program import Program
 from boatsim.simulate import scenario
 from boatsim.simulate.camera_metric import CameraFrames, CameraMetricSet
-from boatsim.simulate.cases import content
+from boatsim.simulate.cases import read_scenario
 from boatsim.simulate.scenario import Scenario
 from validation.real.common import names_of
 
@@ -80,7 +80,7 @@ class ThesisTest:
             nominal: Tables `[set]` of the scenario.
             replayed: Every boat gets the commands that the scenario's own boat gets.
         """
-        raw: dict[str, Any] = content(f"joystick_boat/{name}")[0]
+        raw: dict[str, Any] = read_scenario(f"joystick_boat/{name}")[0]
         added = {effect["use"]: dict(effect) for effect in extra}
         kept = []
         for table in raw.get("effect", []):
@@ -118,7 +118,7 @@ class ThesisTest:
         """Return the metrics, averaged over seeds; empty if a run ends before they are defined."""
         by_metric: dict[str, list[float]] = {}
         for seed in seeds:
-            found = self.measure.from_frames(self._film(knobs, values, seed))
+            found = self.measure.values_from_frames(self._film(knobs, values, seed))
             if not found:
                 return {}
             for name, x in found.items():
@@ -164,11 +164,13 @@ class ThesisTest:
         noise = marks.standard_normal((len(frames), 2 * len(camera.marks)))[::every]
         frames = frames[::every]
         x, east, psi = (np.interp(frames, t, column) for column in y[:, :3].T)
-        seen = camera.seen(x + 1j * east, psi, noise)
+        seen = camera.measure_marks(x + 1j * east, psi, noise)
         points = {}
         for name, z in zip(camera.marks, seen.T, strict=True):
             points[name] = np.stack([z.real, z.imag], axis=-1)
-        return CameraFrames(frames, camera.pose(seen)[1], points, np.stack([x, east], axis=-1), psi)
+        return CameraFrames(
+            frames, camera.fit_pose(seen)[1], points, np.stack([x, east], axis=-1), psi
+        )
 
     def commands(self, rng: np.random.Generator) -> Array:
         """Return the commands (N, C) of every step of the boat without knobs.

@@ -16,7 +16,7 @@ from boatsim.diagnosis.report.answer import NEXT_SCENARIO
 from boatsim.diagnosis.report.figures import group_by_recording
 from boatsim.diagnosis.report.findings import Findings, MissingForceCurve
 from boatsim.errors import BadPhysics
-from boatsim.files import replacing
+from boatsim.files import replace_file
 from boatsim.physics.signals import COMPONENTS, Array
 from boatsim.recordings.table import Recording
 
@@ -78,8 +78,8 @@ def write_overlay(found: Diagnosis, path: Path) -> None:
         if missing is not None:
             flagged = found.findings.answer["where"]["intervals"]
             intervals = [i for i in flagged if i["run"] == missing.name]
-    scene = water.around(found.vessel, boats)
-    with replacing(path) as temporary:
+    scene = water.open_water_scene(found.vessel, boats)
+    with replace_file(path) as temporary:
         rerun_log.log_overlay(temporary, boats, missing, intervals, scene)
 
 

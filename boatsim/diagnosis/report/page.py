@@ -18,7 +18,7 @@ from boatsim.diagnosis.report.sentences import (
     only_measurement_errors,
     verdict_sentences,
 )
-from boatsim.files import replacing
+from boatsim.files import replace_file
 
 VERDICTS = {  # verdict of the answer -> words at the top of the report
     "named": "Effect identified",
@@ -49,7 +49,7 @@ def write_report(findings: Findings, folder: Path) -> None:
         "report.md": report_markdown(findings, sections),
     }
     for name, text in texts.items():
-        with replacing(folder / name) as temporary:
+        with replace_file(folder / name) as temporary:
             temporary.write_text(text, encoding="utf-8")
 
 

@@ -10,7 +10,7 @@ from tomlkit.items import InlineTable, Table
 
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.diagnosis.report import spread_table
-from boatsim.files import replacing
+from boatsim.files import replace_file
 from boatsim.physics.base import ChannelEffect, CoefficientChange, CoefficientRelease, Effect
 from boatsim.physics.content import effect_address, find_content_file, vessel_address
 from boatsim.physics.vessel import Body, Vessel, apply_load_values, effect_from_table
@@ -89,7 +89,7 @@ def write_patched_vessel(
         path: The file.
         described: Terms of formulas that generalize, by the name of their slot.
     """
-    with replacing(path) as temporary:
+    with replace_file(path) as temporary:
         temporary.write_text(
             patched_vessel_text(problem, vessel, found, path, described), encoding="utf-8"
         )

@@ -39,7 +39,7 @@ class CandidateSets:
         problem: Problem,
         candidates: tuple[str, ...],
         base: Fit,
-        report: progress.Report = progress.silent,
+        report: progress.Report = progress.ignore_progress,
     ) -> None:
         """Create an empty cache.
 
@@ -210,7 +210,7 @@ class CandidateSets:
 
     def _report_screening(self, share: float) -> None:
         stage = f"screening {len(self.candidates)} entries"
-        progress.part(self.report, *SCREENING)(stage, share)
+        progress.report_part_of(self.report, *SCREENING)(stage, share)
 
     def _recheck_failed(self, best: Fit, allowed: Mapping[str, Fit]) -> dict[str, Fit]:
         """Fit candidates whose screening failed, where much remains that no other one explains.

@@ -25,7 +25,7 @@ from boatsim.diagnosis.search.validation import (
     remove_refuted_rivals,
 )
 from boatsim.physics.described_laws import SymbolicTerm
-from boatsim.progress import Report, silent
+from boatsim.progress import Report, ignore_progress
 
 JUDGING = 0.8  # share of the work, by experience, that is done when held-out recordings decide
 
@@ -76,7 +76,7 @@ def rank(
     candidates: tuple[str, ...],
     held_out: Sequence[MappedRecording] = (),
     begin: Fit | None = None,
-    report: Report = silent,
+    report: Report = ignore_progress,
     base: Baseline | None = None,
 ) -> Ranking:
     """Select the candidates that the recordings require.

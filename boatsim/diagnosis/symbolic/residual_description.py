@@ -14,7 +14,7 @@ from boatsim.diagnosis.symbolic.curves import curve
 from boatsim.diagnosis.symbolic.grammar import longest_duration
 from boatsim.diagnosis.symbolic.term_forces import fitted_recordings
 from boatsim.diagnosis.symbolic.term_selection import Formula, select_terms, without_term
-from boatsim.progress import Report, silent
+from boatsim.progress import Report, ignore_progress
 
 
 def describe(
@@ -22,7 +22,7 @@ def describe(
     best: Fit,
     recalibrated: Fit,
     held_out: Sequence[MappedRecording],
-    report: Report = silent,
+    report: Report = ignore_progress,
 ) -> Description | None:
     """Describe the force that a fit leaves unexplained by a formula.
 

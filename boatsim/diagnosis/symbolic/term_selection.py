@@ -18,7 +18,7 @@ from boatsim.diagnosis.symbolic.slots import free_slot, write_term
 from boatsim.diagnosis.symbolic.term_forces import FittedRecording, fitted_recordings
 from boatsim.diagnosis.symbolic.term_scores import ScoredTerm, score_terms, varying_signals
 from boatsim.physics.described_laws import SymbolicTerm
-from boatsim.progress import Report, silent
+from boatsim.progress import Report, ignore_progress
 
 DESCRIBING = "describing the unexplained force"
 Recordings = Sequence[MappedRecording]
@@ -48,7 +48,7 @@ class _Trial:
 
 
 def select_terms(
-    problem: Problem, best: Fit, held_out: Recordings, report: Report = silent
+    problem: Problem, best: Fit, held_out: Recordings, report: Report = ignore_progress
 ) -> Formula:
     """Add terms to a fit, each time the one with most evidence, while it has enough.
 

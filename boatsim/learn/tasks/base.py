@@ -56,7 +56,7 @@ class Task(CheckedParameters):
         """Return the name of the task, which is that of its file."""
         return snake_case(cls.__name__)
 
-    def check(self, name: str, actions: Sequence[str]) -> None:
+    def check_actions(self, name: str, actions: Sequence[str]) -> None:
         """Check that a vessel has enough actions.
 
         Args:
@@ -89,7 +89,7 @@ class Task(CheckedParameters):
         return Tank(12.0 * scale.length, 12.0 * scale.length, scale.length, walls=False)
 
     @abstractmethod
-    def begin(self, uniforms: Array, scale: Scale) -> tuple[Array, Array]:
+    def sample_episodes(self, uniforms: Array, scale: Scale) -> tuple[Array, Array]:
         """Return the starts and goals of episodes.
 
         Args:
@@ -114,7 +114,7 @@ class Task(CheckedParameters):
             scale: Scale of the vessel.
         """
 
-    def start(self, observed: tuple[Array, ...], scale: Scale) -> Array:
+    def initial_memory(self, observed: tuple[Array, ...], scale: Scale) -> Array:
         """Return the memory (k, `memory`) at the start of episodes: zeros unless overridden.
 
         Args:

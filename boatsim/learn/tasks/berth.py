@@ -102,7 +102,7 @@ class Berth(Task):
         quay = 0.5 * scale.beam + self.gap * scale.length
         return Tank(width, width, scale.length, centre=(0.0, 0.5 * width - quay))
 
-    def begin(self, uniforms: Array, scale: Scale) -> tuple[Array, Array]:
+    def sample_episodes(self, uniforms: Array, scale: Scale) -> tuple[Array, Array]:
         """Return starts almost at rest, at headings within 90 degrees of the quay's.
 
         The bearing from the berth is within 60 degrees of the normal to the quay; see `Task`.
@@ -134,7 +134,7 @@ class Berth(Task):
         velocity = (m.u, m.v, m.r)
         return (*place, s, c, off, *velocity, *velocity, room, distance, off, speed)
 
-    def start(self, observed: tuple[Array, ...], scale: Scale) -> Array:
+    def initial_memory(self, observed: tuple[Array, ...], scale: Scale) -> Array:
         """Return the initial distance and heading error, and no time at the berth; see `Task`."""
         *_, distance, off, _ = observed
         potential = distance + HEADING_WEIGHT * np.abs(off)

@@ -79,7 +79,7 @@ class FollowPath(Task):
             Signal("r_radps", scale.speed / scale.length, "yaw rate"),
         )
 
-    def begin(self, uniforms: Array, scale: Scale) -> tuple[Array, Array]:
+    def sample_episodes(self, uniforms: Array, scale: Scale) -> tuple[Array, Array]:
         """Return starts within half a length and half a radian of the path; see `Task`."""
         length = scale.length
         wave = 2.0 * pi / (length * (8.0 + 16.0 * uniforms[:, 0]))

@@ -72,7 +72,7 @@ class HoldStation(Task):
             Signal("r_radps", scale.speed / scale.length, "yaw rate"),
         )
 
-    def begin(self, uniforms: Array, scale: Scale) -> tuple[Array, Array]:
+    def sample_episodes(self, uniforms: Array, scale: Scale) -> tuple[Array, Array]:
         """Return starts at rest near the station and its heading; see `Task`."""
         offset = 2.0 * uniforms - 1.0
         place = self.start_within * scale.length * offset[:, :2]

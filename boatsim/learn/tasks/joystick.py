@@ -64,7 +64,7 @@ class Joystick(Task):
             Signal("goal_yaw_radps", yaw, "requested yaw rate"),
         )
 
-    def begin(self, uniforms: Array, scale: Scale) -> tuple[Array, Array]:
+    def sample_episodes(self, uniforms: Array, scale: Scale) -> tuple[Array, Array]:
         """Return starts at rest, and goals.
 
         A move requests sway, yaw, both or neither, each with probability 1/4; see `Task`.

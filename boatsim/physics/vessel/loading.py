@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from boatsim.errors import BadInput
-from boatsim.files import checked, read_toml
+from boatsim.files import read_toml, validate_table
 from boatsim.physics.content import find_content_file
 from boatsim.physics.vessel import loads as load_conditions
 from boatsim.physics.vessel.effect_tables import effect_from_table, effect_name
@@ -41,13 +41,13 @@ def load_vessel(
         vessel_name = path.parent.name
     label = _label(path)
     raw: Mapping[str, object] = read_toml(path)
-    conditions = checked(VesselFile, raw, label).loads
+    conditions = validate_table(VesselFile, raw, label).loads
     load_conditions.check_loads_exist(loads, conditions, label)
     load_conditions.check_loads_compatible(loads, conditions, label)
     for one in dict.fromkeys(loads):
         raw = load_conditions.apply_load_values(raw, conditions[one], label)
     raw = load_conditions.apply_load_values(raw, dict(settings or {}), label)
-    content = checked(VesselFile, raw, label)
+    content = validate_table(VesselFile, raw, label)
     content.check_channels(label)
     _check_new_names(extra, content, vessel_name)
     folder = _hull_folder(content.based_on, path, label)
@@ -78,7 +78,7 @@ def merge_load_conditions(
     """
     path = find_content_file("vessel", name, base_folder)
     label = _label(path)
-    conditions = checked(VesselFile, read_toml(path), label).loads
+    conditions = validate_table(VesselFile, read_toml(path), label).loads
     load_conditions.check_loads_exist(more, conditions, label)
     merged: list[str] = []
     for one in loads:

@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from itertools import combinations
 
 from boatsim.errors import BadInput, unknown_name
-from boatsim.files import tables
+from boatsim.files import array_of_tables
 from boatsim.physics.vessel.effect_tables import effect_name
 
 INNER_TABLES = ("body", "geometry", "manoeuvring", "diagnosis")
@@ -74,7 +74,7 @@ def apply_load_values(
         BadInput: For an effect or a table that does not exist.
     """
     changed = dict(raw)
-    effects: list[dict[str, object]] = list(map(dict, tables(raw.get("effect"))))
+    effects: list[dict[str, object]] = list(map(dict, array_of_tables(raw.get("effect"))))
     by_name: dict[str, dict[str, object]] = {}
     for table in effects:
         by_name.setdefault(effect_name(table), table)

@@ -10,7 +10,7 @@ from typing import Any, Self
 import tomlkit
 
 from boatsim.errors import BadInput, unknown_name
-from boatsim.files import checked, replacing
+from boatsim.files import replace_file, validate_table
 from boatsim.physics.content import vessel_address
 from boatsim.physics.estimate.base import HullParticulars
 from boatsim.physics.kernel.equations import has_hull_fixed_axes
@@ -203,7 +203,7 @@ class Vessel(ChannelBindings):
             # The drawing's mass centre is at mid-length and in the water surface
             "geometry": {"cg_from_transom": 0.5 * length, "cg_above_keel": draught},
         }
-        content = checked(VesselFile, table | more, name)
+        content = validate_table(VesselFile, table | more, name)
         content.check_channels(name)
         if content.loads or content.effect:
             raise BadInput(f"{name}: loads and effect are not allowed here; give effects")
@@ -268,7 +268,9 @@ class Vessel(ChannelBindings):
         values = dict(parameters)
         if "body" in values:
             table = self.body.model_dump(exclude_none=True) | dict(values.pop("body"))
-            changed = dataclasses.replace(self, body=checked(Body, table, f"{self.name}: body"))
+            changed = dataclasses.replace(
+                self, body=validate_table(Body, table, f"{self.name}: body")
+            )
         for name in values:
             if name not in self._effect_names():
                 names = ["body", *self._effect_names()]
@@ -412,7 +414,7 @@ class Vessel(ChannelBindings):
         """
         place = Path(folder).resolve()
         table = self._table(place)
-        with replacing(place / FILE_NAME) as temporary:
+        with replace_file(place / FILE_NAME) as temporary:
             temporary.write_text(tomlkit.dumps(table), encoding="utf-8")
         own_hull = place / self.hull
         if self.hull_xml and not own_hull.is_file():

@@ -6,7 +6,7 @@ from pathlib import Path
 from pydantic import Field, field_validator, model_validator
 
 from boatsim.errors import BadInput
-from boatsim.files import Table, checked, read_toml
+from boatsim.files import Table, read_toml, validate_table
 from boatsim.physics.signals import POSE, RATES
 
 COMPUTED = ("t_s", "x_m", "y_m")  # columns that follow from the clock and from `position`
@@ -89,7 +89,7 @@ class Map(Table):
             return found
         for name, value in found.items():
             if isinstance(value, dict):
-                checked(Range, value, f"columns.{name}")
+                validate_table(Range, value, f"columns.{name}")
             elif not isinstance(value, str | Range):
                 allowed = (
                     '"[-] signal [* unit or number] [+ number]" or { signal, low, neutral, '
@@ -122,7 +122,7 @@ def read_map(path: Path) -> Map:
 def parse_map(table: Mapping[str, object], file: str) -> Map:
     """Return the map of the content of a file. Raises BadInput."""
     try:
-        return checked(Map, table, file)
+        return validate_table(Map, table, file)
     except BadInput as error:
         message = str(error)
         if not message.startswith(file):

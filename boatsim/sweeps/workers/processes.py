@@ -70,7 +70,7 @@ class Processes:
         try:
             while not stop():
                 while len(workers) < self.jobs and (task := next_task()):
-                    workers.append(_start(work, task))
+                    workers.append(_start_worker(work, task))
                 if not workers:
                     return
                 ready = wait(list(map(attrgetter("pipe"), workers)), POLL)
@@ -80,7 +80,7 @@ class Processes:
                         yield number, worker.pipe.recv()
                     except (EOFError, OSError):  # The process has died.
                         workers.remove(worker)
-                        _end(worker)
+                        _stop_worker(worker)
                         if attempts[number] < MOST_ATTEMPTS:
                             repeated.append(worker.task)
                         else:
@@ -92,15 +92,17 @@ class Processes:
                             worker.pipe.send(task[1])
                     else:
                         workers.remove(worker)
-                        _end(worker)
+                        _stop_worker(worker)
         finally:
             for worker in workers:
-                _end(worker)
+                _stop_worker(worker)
 
 
-def _start(work: Work, task: Task) -> Worker:
+def _start_worker(work: Work, task: Task) -> Worker:
     own, other = CONTEXT.Pipe()
-    process = CONTEXT.Process(target=_serve, args=(other, work, trust.current_trust()), daemon=True)
+    process = CONTEXT.Process(
+        target=_worker_main, args=(other, work, trust.current_trust()), daemon=True
+    )
     with ignored_signals():  # Only the parent process handles signals; the workers end with it.
         process.start()
     other.close()
@@ -109,14 +111,14 @@ def _start(work: Work, task: Task) -> Worker:
     return Worker(process, own, task)
 
 
-def _end(worker: Worker) -> None:
+def _stop_worker(worker: Worker) -> None:
     worker.pipe.close()
     worker.process.kill()
     worker.process.join()
     worker.process.close()
 
 
-def _serve(pipe: Connection, work: Work, trusted: trust.TrustedFolders) -> None:
+def _worker_main(pipe: Connection, work: Work, trusted: trust.TrustedFolders) -> None:
     """Main function of a process: perform tasks until the other end of the pipe is closed."""
     trust.adopt_trust(trusted)
     with suppress(EOFError, OSError):

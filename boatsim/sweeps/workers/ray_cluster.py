@@ -40,7 +40,7 @@ class Cluster:
         Raises:
             BadInput: There is no cluster at the address, or Ray is not installed.
         """
-        ray = _ray()
+        ray = _import_ray()
         try:
             ray.init(self.address, logging_level="error", log_to_driver=False)
         except (ConnectionError, RuntimeError, ValueError) as error:
@@ -50,15 +50,15 @@ class Cluster:
                 "`ray start --head` starts one"
             ) from None
         try:
-            yield from _perform(ray, work, tasks, stop)
+            yield from _perform_tasks(ray, work, tasks, stop)
         finally:
             ray.shutdown()
 
 
-def _perform(
+def _perform_tasks(
     ray: Any, work: Work, tasks: Iterable[Task], stop: Callable[[], bool]
 ) -> Iterator[tuple[int, Entry | None]]:
-    remote = ray.remote(num_cpus=1, max_retries=MOST_RESTARTS)(_work)
+    remote = ray.remote(num_cpus=1, max_retries=MOST_RESTARTS)(_perform_task)
     trusted = trust.current_trust()
     pending = iter(tasks)
     running: dict[Any, Task] = {}
@@ -78,13 +78,13 @@ def _perform(
                 yield number, None
 
 
-def _work(work: Work, argument: Any, trusted: trust.TrustedFolders) -> Entry:
+def _perform_task(work: Work, argument: Any, trusted: trust.TrustedFolders) -> Entry:
     """Perform one task on a node."""
     trust.adopt_trust(trusted)
     return work(argument)
 
 
-def _ray() -> Any:
+def _import_ray() -> Any:
     try:
         import ray
     except ImportError:

@@ -27,7 +27,7 @@ from boatsim.physics.program import Program
 from boatsim.physics.vessel import Vessel
 from boatsim.recordings.table import Recording, write_csv
 from boatsim.simulate import env, scenario
-from boatsim.simulate.manoeuvre import handled
+from boatsim.simulate.manoeuvre import complete_manoeuvring_table
 from boatsim.simulate.run import run
 
 HULL = {"front": 0.3, "side": 0.8, "arm": 0.05, "swing": -0.1}  # [m^2], [m]
@@ -125,7 +125,11 @@ def test_nothing_that_acts_on_commands_acts_on_what_is_measured(boat: Vessel) ->
     }
     everything = (*boat.effects, *library_for(boat).compiled)
     assert not measured & {n for e in everything for n in boat.target_actuators(e)}
-    assert not measured & {*driven_commands(boat), *handled(boat).steer, *handled(boat).ahead}
+    assert not measured & {
+        *driven_commands(boat),
+        *complete_manoeuvring_table(boat).steer,
+        *complete_manoeuvring_table(boat).ahead,
+    }
     assert not measured & {
         n for m in available_manoeuvres(boat, {}, 0.0, False) for level in m.levels for n in level
     }
