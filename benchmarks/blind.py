@@ -65,11 +65,11 @@ def identified_controller(test: str, settings: dict[str, Any], seed: int) -> dic
     controller = checked.controller
 
     def tested() -> bool:
-        return simulation.time > LONGEST or controller.found is not None
+        return simulation.time > LONGEST or controller.check_result is not None
 
     simulation = Simulation(checked, RunOptions(seed=1000 + seed, stop=tested))
     simulation.run()
-    astern, angle, scale = controller.found
+    astern, angle, scale = controller.check_result
     return {**blind, "known_astern": astern, "known_angle": angle, "known_scale": scale}
 
 
