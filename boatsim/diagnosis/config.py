@@ -1046,6 +1046,20 @@ class AnswerConfig:
         "more than this factor.",
         low=1.0,
     )
+    refined_sds: float = setting(
+        2.0,
+        "sd",
+        "A refitted coefficient is listed as a refined number if it differs from the vessel file "
+        "by more than this many sd; a smaller difference may be chance.",
+        low=0.0,
+    )
+    refined_share: float = setting(
+        0.05,
+        "1",
+        "A refitted coefficient is listed as a refined number if it differs from the vessel file "
+        "by more than this share; a smaller difference does not matter to an owner.",
+        low=0.0,
+    )
 
 
 @dataclass(frozen=True)

@@ -16,7 +16,7 @@ from boatsim.diagnosis import loading, pipeline
 from boatsim.diagnosis.candidates import library_for
 from boatsim.diagnosis.filter import NoiseLevels, free_run_segments, map_recording, prior_levels
 from boatsim.diagnosis.problem import froude_scale
-from boatsim.diagnosis.report.answer import parameter_key
+from boatsim.diagnosis.report.parameters import parameter_key
 from boatsim.errors import BadInput
 from boatsim.physics import vessel
 from boatsim.physics.content import effect_address, load_class

@@ -182,7 +182,8 @@ class Judge:
             n for e in answer["effects"] for n in dict.fromkeys([e["name"], *e["tied_with"]])
         ]
         if self.case.cause:
-            r.physics_named = bool(set(r.effects) & set(CAUSES[self.case.cause].named))
+            known = {*r.effects, *(e["name"] for e in answer.get("refined", ()))}
+            r.physics_named = bool(known & set(CAUSES[self.case.cause].named))
         if self.case.wrong:
             identified = r.fault_named or any(
                 e["name"] in self.case.wrong.named for e in answer.get("log", [])

@@ -19,7 +19,7 @@ from boatsim.diagnosis.filter import map_recording, prior_levels, shared_noise
 from boatsim.diagnosis.loading import open_recording
 from boatsim.diagnosis.problem import Fit, FreeParameter, Problem
 from boatsim.diagnosis.report import patched_vessel
-from boatsim.diagnosis.report.answer import parameter_key
+from boatsim.diagnosis.report.parameters import parameter_key
 from boatsim.physics.base import Array, Effect
 from boatsim.physics.program import Program
 from boatsim.physics.vessel import Vessel

@@ -20,6 +20,8 @@ from boatsim.diagnosis.question import Question
 from boatsim.diagnosis.report.assumptions import excluded_candidates, rules_entry
 from boatsim.diagnosis.report.described_terms import described_entries
 from boatsim.diagnosis.report.formatting import capitalize, join_words
+from boatsim.diagnosis.report.layers import separate_layers
+from boatsim.diagnosis.report.parameters import parameter_key, reported_sd
 from boatsim.diagnosis.report.schema import (
     Acting,
     Answer,
@@ -65,19 +67,22 @@ def compose_answer(
         seconds: Duration of the diagnosis [s].
     """
     vessel = problem.program.vessel
-    effects = []
+    entries = {}
     for identified in ranking.named:
-        effects.append(_effect(problem, ranking.best, identified))
+        entries[identified.name] = _effect(problem, ranking.best, identified)
+    layers = separate_layers(problem, ranking.best, entries)
     formulas = described_entries(ranking.description, vessel)
     limits = {}
     for name, fitted in ranking.last.items():
         limits[base_name(name)] = _limits(problem, fitted, name)
     answer: Answer = {
-        "verdict": _verdict(ranking, effects, bool(formulas)),
+        "verdict": _verdict(ranking, layers.effects, bool(formulas)),
         "sentence": "",
         "seconds": round(seconds, 3),
         "version": version(),
-        "effects": effects,
+        "effects": layers.effects,
+        "refined": layers.refined,
+        "also_possible": layers.also_possible,
         "unknown": _unknown(problem, ranking, evaluation),
         "described": formulas,
         "candidates": _candidates(ranking),
@@ -194,19 +199,6 @@ def effect_meanings(candidates: Iterable[Effect], vessel: Vessel) -> dict[str, s
     return found | parameters
 
 
-def parameter_key(name: str, unit: str) -> str:
-    """Return the key of a parameter: force in N is force_N, north in m/s is north_mps.
-
-    Args:
-        name: Name of the parameter.
-        unit: Its unit; "" for a ratio, whose key is its name.
-    """
-    suffix = unit.replace("1/", "per").replace("/", "p").replace("^", "").replace(" ", "")
-    if suffix:
-        return f"{name}_{suffix}"
-    return name
-
-
 def _fit(evaluation: Evaluation, held_out: Sequence[str]) -> FitEntry:
     """Return the errors of the free runs; that of roll only where it was recorded."""
     errors = evaluation.errors
@@ -284,27 +276,6 @@ def _words(best: Fit, effect: Effect) -> str:
             return f"{words}, in the actuator and not in its command"
         return f"{words}, already in the command"
     return words
-
-
-def reported_sd(best: Fit, effect: Effect, name: str, config: AnswerConfig) -> float:
-    """Return the standard deviation of a parameter, with the error of a law that is nearly right.
-
-    Args:
-        best: A fit.
-        effect: One of its effects.
-        name: Name of the parameter.
-        config: Size of that error.
-    """
-    kind = type(effect)
-    value, sd = best.value(effect.name, name)
-    param = kind.params()[name]
-    if name in (kind.strength or kind.params()):
-        # some laws are absent at an infinite value
-        strength = min(abs(value - param.inactive_value), abs(value) or np.inf)
-        return float(np.hypot(sd, config.law_error * strength))
-    if param.unit == "rad":
-        return float(np.hypot(sd, config.law_error))
-    return sd
 
 
 def _parameter(best: Fit, effect: Effect, name: str, config: AnswerConfig) -> ParameterEntry:

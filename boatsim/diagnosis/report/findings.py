@@ -73,6 +73,9 @@ class Findings:
         """Whether the patched vessel has any effect that the recalibrated one does not have."""
         if self.answer["effects"]:
             return True
+        for entry in self.answer.get("refined", ()):
+            if "parameters" in entry:  # of an effect, not of a coefficient
+                return True
         return any(law["carries_over"] for law in self.answer["described"])
 
     def setting(self, name: str) -> float:

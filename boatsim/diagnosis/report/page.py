@@ -29,6 +29,7 @@ VERDICTS = {  # verdict of the answer -> words at the top of the report
 }
 LOG_PROBLEM = "Probably the log"  # a certain problem of the whole recording
 NONE_TESTED = "Something missing, no candidates tested"
+REFINED = "No physics missing, numbers refined"  # only numbers of a rough model were improved
 MEASUREMENT_ERROR = "Measurement error"  # all identified effects are errors of measurement
 LONGEST_HEADLINE = 200  # characters; a longer sentence is not used as the headline
 
@@ -138,6 +139,8 @@ def _verdict(f: Findings) -> str:
         return NONE_TESTED
     if only_measurement_errors(f.answer):
         return MEASUREMENT_ERROR
+    if verdict == "nothing_missing" and f.answer.get("refined"):
+        return REFINED
     return VERDICTS[verdict]
 
 

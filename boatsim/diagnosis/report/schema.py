@@ -35,6 +35,38 @@ class EffectEntry(Acting):
     parameters: dict[str, ParameterEntry]  # by name with unit
 
 
+class RefinedEntry(Acting):
+    """A better value of a number that the vessel file calls an estimate.
+
+    It comes from an identified effect, whose keys it has too, or from a refitted coefficient. An
+    effect that refines several numbers has an entry for each.
+    """
+
+    name: str  # of the effect, or "effect.number" of a coefficient
+    number: str  # in words
+    before: float  # in the vessel file, 0 if the file does not have the number
+    after: float  # in the patched vessel
+    sd: float  # of `after`
+    unit: str
+    off: float | None  # change relative to `before`; None where that is 0
+    kind: NotRequired[str]
+    probability: NotRequired[float]
+    gain_nats: NotRequired[float]
+    words: NotRequired[str]
+    tied_with: NotRequired[list[str]]
+    parameters: NotRequired[dict[str, ParameterEntry]]
+
+
+class PossibleEntry(TypedDict):
+    """An effect that may act, but that these recordings do not confirm."""
+
+    name: str
+    probability: float
+    gain_nats: float
+    words: str
+    why: str  # reason why it is not among the identified effects
+
+
 class TermEntry(TypedDict):
     """One term of a formula."""
 
@@ -200,6 +232,8 @@ class Answer(TypedDict):
     seconds: float
     version: str
     effects: list[EffectEntry]
+    refined: NotRequired[list[RefinedEntry]]  # empty for a vessel file without [estimated]
+    also_possible: NotRequired[list[PossibleEntry]]
     unknown: UnknownEntry
     described: list[DescribedEntry]
     mean_left: NotRequired[dict[str, MeanEntry]]  # by axis; empty if no mean force remains

@@ -52,7 +52,9 @@ from boatsim.diagnosis.report.sentences import (
     any_tested,
     assumption_sentences,
     effect_description,
+    effects_of_kind,
     only_measurement_errors,
+    refined_rows,
 )
 
 MOST_INTERVALS = 24  # rows of the table of flagged intervals; diagnosis.json has all of them
@@ -73,7 +75,9 @@ def sections_of(f: Findings) -> list[Section]:
     """
     return [
         Section("log", "Problems of the recordings", list(_log_problems(f))),
-        Section("what", "What was found", list(_identified_effects(f))),
+        Section("what", "Missing physics", list(_missing_physics(f))),
+        Section("refined", "Numbers refined", list(_refined(f))),
+        Section("possible", "Also possible", list(_also_possible(f))),
         Section("taken", "Candidates and assumptions", list(_assumptions(f))),
         Section("where", "Where and when a force is missing", list(_missing_force(f))),
         Section("ranking", "Ranking of the candidate effects", list(_ranking(f))),
@@ -88,7 +92,7 @@ def sections_of(f: Findings) -> list[Section]:
 
 
 def _log_problems(f: Findings) -> Iterator[Block]:
-    """Yield the problems of the recordings, and the lines that correct them."""
+    """Yield the problems of the recordings with their corrections, and the measurement errors."""
     for e in f.answer.get("log", ()):
         cause = e.get("words", "corrected or allowed for by the diagnosis")
         facts = f"{e['run']} · {cause} · probability {format_probability(e['sure'])}"
@@ -98,6 +102,7 @@ def _log_problems(f: Findings) -> Iterator[Block]:
             yield Items(corrections)
         if "remedy" in e:
             yield Text(f"{capitalize(e['remedy'])}.")
+    yield from _effects(f, "measurement")
 
 
 def _corrections(e: LogEntry) -> tuple[tuple[str, str], ...]:
@@ -109,10 +114,9 @@ def _corrections(e: LogEntry) -> tuple[tuple[str, str], ...]:
     return tuple(lines)
 
 
-def _identified_effects(f: Findings) -> Iterator[Block]:
-    """Yield the identified effects, the formulas, and what remains unexplained."""
-    for i, e in enumerate(f.answer["effects"]):
-        yield from _effect(f, e, explain_deviation=i == _first_with_parameters(f))
+def _missing_physics(f: Findings) -> Iterator[Block]:
+    """Yield the effects that the model lacks, the formulas, and what remains unexplained."""
+    yield from _effects(f, "physics")
     unknown = f.answer["unknown"]
     if not any_tested(f.answer):
         yield Text(f"{capitalize(NONE_TESTED)}.")
@@ -125,12 +129,42 @@ def _identified_effects(f: Findings) -> Iterator[Block]:
         )
 
 
-def _first_with_parameters(f: Findings) -> int:
-    """Return the number of the first effect with fitted values, -1 if there is none."""
-    for i, e in enumerate(f.answer["effects"]):
-        if e["parameters"]:
-            return i
-    return -1
+def _effects(f: Findings, kind: str) -> Iterator[Block]:
+    """Yield the identified effects of a kind; the first of all explains the deviations."""
+    explained = _first_with_parameters(f)
+    for effect in effects_of_kind(f.answer, kind):
+        yield from _effect(f, effect, explain_deviation=effect is explained)
+
+
+def _first_with_parameters(f: Findings) -> EffectEntry | None:
+    """Return the first effect of the page that has fitted values, None if there is none."""
+    effects = effects_of_kind(f.answer, "measurement") + effects_of_kind(f.answer, "physics")
+    for effect in effects:
+        if effect["parameters"]:
+            return effect
+    return None
+
+
+def _refined(f: Findings) -> Iterator[Block]:
+    """Yield the numbers of the vessel file that the recordings improve."""
+    rows = refined_rows(f.answer)
+    if not rows:
+        return
+    yield Text(
+        "The vessel file calls these numbers estimates. The recordings give better values, which "
+        "are in the patched vessel. They are no faults of the boat or of the log."
+    )
+    header = ["number", "before", "after ± deviation", "off by"]
+    yield Table("Numbers of the vessel file", header, rows)
+
+
+def _also_possible(f: Findings) -> Iterator[Block]:
+    """Yield the effects that may act but that these recordings do not confirm."""
+    for entry in f.answer.get("also_possible", []):
+        likely = f"probability {format_probability(entry['probability'])} among its rivals"
+        facts = f"{entry['name']} · {format_evidence(entry['gain_nats'])} · {likely}"
+        yield Heading(capitalize(effect_description(entry["words"])), facts)
+        yield Text(f"{capitalize(entry['why'])}.")
 
 
 def _effect(f: Findings, e: EffectEntry, explain_deviation: bool) -> Iterator[Block]:
@@ -506,6 +540,10 @@ def _ranking(f: Findings) -> Iterator[Block]:
 def _status(f: Findings) -> dict[str, str]:
     """Return the verdict on identified effects and their look-alikes, by name."""
     status = {}
+    for possible in f.answer.get("also_possible", []):
+        status[possible["name"]] = "also possible"
+    for refined in f.answer.get("refined", []):
+        status[refined["name"]] = "number refined"
     for e in f.answer["effects"]:
         for rival in e["tied_with"]:
             status[rival] = f"look-alike of {words_of_name(e['name'])}"

@@ -50,6 +50,12 @@ NOTHING_MISSING = (
     "No missing effect was found: the vessel model explains these recordings to within their noise."
 )
 
+NONE_MISSING_WITH_REFINED = (
+    "No missing effect was found: with {} refined, the vessel model explains these recordings to "
+    "within their noise."
+)
+NOT_IN_FILE = "not in the file"  # change of a number that the vessel file does not have
+
 
 def effect_description(effect_words: str) -> str:
     """Return the description of an effect without the remark that it is not physics."""
@@ -84,9 +90,15 @@ def verdict_sentences(answer: Answer, words: Mapping[str, str] | None = None) ->
         return _none_tested(answer)
     statements = _effects(answer, words or {})
     statements += _formulas(answer, bool(answer["effects"]))
+    refined = _refined_numbers(answer)
+    if not statements and refined:
+        return NONE_MISSING_WITH_REFINED.format(refined)
     if not statements:
         return NOTHING_MISSING
     statements += _look_alikes(answer["effects"])
+    if refined:
+        verb = "was" if len(answer["refined"]) == 1 else "were"
+        statements.append(f"{refined} {verb} refined")
     return " ".join(f"{capitalize(statement)}." for statement in statements)
 
 
@@ -128,6 +140,36 @@ def _effects(answer: Answer, words: Mapping[str, str]) -> list[str]:
                 f"{_clauses(measured)}"
             )
     return statements
+
+
+def _refined_numbers(answer: Answer) -> str:
+    """Return the count of refined numbers in words, "" if there are none."""
+    refined = answer.get("refined", [])
+    if not refined:
+        return ""
+    return f"{count_in_words(len(refined), 'number')} of the rough model"
+
+
+def refined_rows(answer: Answer) -> list[list[str]]:
+    """Return the rows of the table of refined numbers.
+
+    Args:
+        answer: Content of diagnosis.json.
+
+    Returns:
+        For each number: its words, its value before and after, and the relative change.
+    """
+    rows = []
+    for entry in answer.get("refined", []):
+        before = format_quantity(entry["before"], entry["unit"])
+        if entry["before"] == 0.0:
+            before = "0"
+        after = format_quantity(entry["after"], entry["unit"], entry["sd"])
+        off = NOT_IN_FILE
+        if entry["off"] is not None:
+            off = f"{100.0 * entry['off']:+.0f} %".replace("-", "−")
+        rows.append([entry["number"], before, after, off])
+    return rows
 
 
 def count_in_words(count: int, noun: str) -> str:
@@ -329,21 +371,20 @@ def console_lines(f: Findings) -> list[str]:
         f: Findings of a diagnosis.
 
     Returns:
-        Verdict, evidence and values of each effect, assumptions, errors on held-out recordings,
-        a remaining mean force, and the next experiment.
+        Verdict, evidence and values of each effect (errors of the recordings first), refined
+        numbers, effects that are also possible, assumptions, errors on held-out recordings, a
+        remaining mean force, and the next experiment.
     """
     answer = f.answer
     lines = [answer["sentence"]]
-    for effect in answer["effects"]:
-        likely = f"probability {format_probability(effect['probability'])} among its rivals"
-        lines.append(f"  {effect['name']}: {format_evidence(effect['gain_nats'])}, {likely}")
-        for key, p in effect["parameters"].items():
-            lines.append(f"    {key} = {p['value']:.4g} ± {p['sd']:.2g}")
+    lines += _effect_lines("Errors of the recordings", effects_of_kind(answer, "measurement"))
+    lines += _effect_lines("Missing physics", effects_of_kind(answer, "physics"))
     for law in answer["described"]:
         for term in law["terms"]:
             varies = f"{effect_of_axis(law['axis'])} that varies with {term['of']}"
             lines.append(f"  formula: {varies}: {format_evidence(term['gain_nats'])}")
             lines.append(f"    {term['value']:.4g} ± {term['sd']:.2g} {term['unit']}".rstrip())
+    lines += [*_refined_lines(answer), *_possible_lines(answer)]
     for line in assumption_sentences(answer):
         lines.append(f"  {line}")
     lines += [*_validation(f), *mean_force_paragraph(answer, f.has_added_effects)]
@@ -351,6 +392,53 @@ def console_lines(f: Findings) -> list[str]:
         rivals, expected = join_words(wanted["separates"], "or"), wanted["expected_gain_nats"]
         lines.append(f"next experiment: {wanted['manoeuvre']}")
         lines.append(f"  it distinguishes {rivals}; expected {format_evidence(expected)}")
+    return lines
+
+
+def effects_of_kind(answer: Answer, kind: str) -> list[EffectEntry]:
+    """Return the identified effects of a kind.
+
+    Args:
+        answer: Content of diagnosis.json.
+        kind: "physics" or "measurement".
+    """
+    return [effect for effect in answer["effects"] if effect["kind"] == kind]
+
+
+def _effect_lines(title: str, effects: Sequence[EffectEntry]) -> list[str]:
+    """Return evidence and values of effects under a title; no lines without an effect."""
+    if not effects:
+        return []
+    lines = [f"{title}:"]
+    for effect in effects:
+        likely = f"probability {format_probability(effect['probability'])} among its rivals"
+        lines.append(f"  {effect['name']}: {format_evidence(effect['gain_nats'])}, {likely}")
+        for key, p in effect["parameters"].items():
+            lines.append(f"    {key} = {p['value']:.4g} ± {p['sd']:.2g}")
+    return lines
+
+
+def _refined_lines(answer: Answer) -> list[str]:
+    """Return the table of refined numbers, with aligned columns."""
+    rows = refined_rows(answer)
+    if not rows:
+        return []
+    table = [["number", "before", "after", "off by"], *rows]
+    widths = [max(map(len, column)) for column in zip(*table, strict=True)]
+    lines = ["Numbers refined:"]
+    for row in table:
+        lines.append(f"  {'  '.join(map(str.ljust, row, widths))}".rstrip())
+    return lines
+
+
+def _possible_lines(answer: Answer) -> list[str]:
+    """Return the effects that may act but are not confirmed, with the reason."""
+    possible = answer.get("also_possible", [])
+    if not possible:
+        return []
+    lines = ["Also possible:"]
+    for entry in possible:
+        lines.append(f"  {words_of_name(entry['name'])}: {entry['why']}")
     return lines
 
 

@@ -8,7 +8,7 @@ from tomlkit.items import Table
 
 from boatsim.diagnosis.filter import BODY
 from boatsim.diagnosis.problem import Fit, FreeParameter, Problem
-from boatsim.diagnosis.report.answer import reported_sd
+from boatsim.diagnosis.report.parameters import reported_sd
 
 DIGITS = 6  # significant
 

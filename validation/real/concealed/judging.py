@@ -10,7 +10,7 @@ from boatsim.diagnosis.candidates import FURTHER, base_name
 from boatsim.diagnosis.fit import converge, gauss_newton
 from boatsim.diagnosis.pipeline import Diagnosis
 from boatsim.diagnosis.problem import Fit, Problem
-from boatsim.diagnosis.report.answer import parameter_key
+from boatsim.diagnosis.report.parameters import parameter_key
 from boatsim.diagnosis.report.schema import EffectEntry
 from boatsim.diagnosis.search.screening import add_effect
 from boatsim.physics.base import Effect

@@ -1,0 +1,41 @@
+"""Keys and standard deviations of the fitted parameters that an answer reports."""
+
+import numpy as np
+
+from boatsim.diagnosis.config import AnswerConfig
+from boatsim.diagnosis.problem import Fit
+from boatsim.physics.base import Effect
+
+
+def parameter_key(name: str, unit: str) -> str:
+    """Return the key of a parameter: force in N is force_N, north in m/s is north_mps.
+
+    Args:
+        name: Name of the parameter.
+        unit: Its unit; "" for a ratio, whose key is its name.
+    """
+    suffix = unit.replace("1/", "per").replace("/", "p").replace("^", "").replace(" ", "")
+    if suffix:
+        return f"{name}_{suffix}"
+    return name
+
+
+def reported_sd(best: Fit, effect: Effect, name: str, config: AnswerConfig) -> float:
+    """Return the standard deviation of a parameter, with the error of a law that is nearly right.
+
+    Args:
+        best: A fit.
+        effect: One of its effects.
+        name: Name of the parameter.
+        config: Size of that error.
+    """
+    kind = type(effect)
+    value, sd = best.value(effect.name, name)
+    param = kind.params()[name]
+    if name in (kind.strength or kind.params()):
+        # some laws are absent at an infinite value
+        strength = min(abs(value - param.inactive_value), abs(value) or np.inf)
+        return float(np.hypot(sd, config.law_error * strength))
+    if param.unit == "rad":
+        return float(np.hypot(sd, config.law_error))
+    return sd

@@ -1,0 +1,151 @@
+"""Missing physics, refined numbers and effects of unknown size are separated in the answer."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+
+import boats
+import numpy as np
+import pytest
+
+from boatsim.diagnosis.candidates import diagnosis_program
+from boatsim.diagnosis.filter import MappedRecording, NoiseLevels
+from boatsim.diagnosis.problem import Fit, Problem
+from boatsim.diagnosis.report.layers import Layers, separate_layers
+from boatsim.diagnosis.report.parameters import parameter_key, reported_sd
+from boatsim.diagnosis.report.schema import EffectEntry
+from boatsim.diagnosis.report.sentences import refined_rows, verdict_sentences
+from boatsim.physics import vessel
+from tests.diagnosis.report.test_page import planar
+
+ESTIMATED = (
+    "[estimated]\ndamping = 1.0\nthrust = 0.3\nadded_mass = 0.4\nlag = 1.0\nmass_centre = 1.0\n"
+)
+FITTED = {  # value and standard deviation by effect and parameter
+    "thrust_lag": {"time_constant": (0.31, 0.02)},
+    "added_mass_error": {
+        "surge_factor": (1.0, 0.3),
+        "sway_factor": (1.5, 0.05),
+        "yaw_factor": (0.8, 0.1),
+    },
+    "weak_reverse": {"astern_factor": (0.7, 0.01)},
+    "sway_yaw_coupling": {"sway": (15.0, 154.0), "yaw": (0.2, 3.0)},
+    "further_quadratic_damping": {"surge": (4.0, 0.5), "sway": (0.1, 9.0), "yaw": (0.0, 0.3)},
+}
+
+
+def layers_of(
+    text: str,
+    folder: Path,
+    coefficients: Mapping[tuple[str, str], tuple[float, float]] | None = None,
+) -> Layers:
+    """The layers of a fit that is made up: all effects of FITTED, and factors of coefficients."""
+    boat = vessel.load(str(boats.written(folder, "test_boat", boats.PLANAR + text)))
+    program, _ = diagnosis_program(boat)
+    rows = 5
+    mapped = MappedRecording(
+        "made_up",
+        program,
+        0.1 * np.arange(rows),
+        np.full((rows, 1), np.nan),
+        ("heading_sd_rad",),
+        ("psi_rad",),
+        np.array([2]),
+        np.zeros((rows, len(boat.commands))),
+        np.append(program.values(), program.body),
+        {"heading_sd_rad": 1.0},
+    )
+    levels = NoiseLevels(np.ones(3), 1.0, {"heading_sd_rad": 0.01})
+    problem = Problem([mapped], levels, {"damping": 1.0, "thrust": 0.3})
+    free = problem.parameters(tuple(FITTED))
+    theta, sds = [], []
+    for f in free:
+        value = (coefficients or {}).get((f.effect, f.name), (1.0, 0.01))
+        if not f.relative:
+            value = FITTED[f.effect][f.name]
+        theta.append(value[0])
+        sds.append(value[1])
+    best = Fit(tuple(FITTED), free, np.array(theta), np.diag(np.square(sds)), levels, -1.0)
+    entries = {}
+    for name in FITTED:
+        entries[name] = entry_of(problem, best, name)
+    return separate_layers(problem, best, entries)
+
+
+def entry_of(problem: Problem, best: Fit, name: str) -> EffectEntry:
+    effect = problem.candidates[name]
+    parameters = {}
+    for key, (value, _) in FITTED[name].items():
+        unit = type(effect).params()[key].unit
+        sd = reported_sd(best, effect, key, problem.config.answer)
+        parameters[parameter_key(key, unit)] = {"value": value, "sd": sd, "unit": unit}
+    return {
+        "name": name.removeprefix("further_"), "kind": "physics", "probability": 1.0,
+        "gain_nats": 20.0, "words": name, "tied_with": [], "parameters": parameters,
+    }  # type: ignore[typeddict-item]  # fmt: skip
+
+
+def test_without_estimates_every_effect_of_known_size_is_missing_physics(tmp_path: Path) -> None:
+    layers = layers_of("", tmp_path, {("linear_damping", "surge"): (1.4, 0.02)})
+    names = [e["name"] for e in layers.effects]
+    assert names == ["thrust_lag", "added_mass_error", "weak_reverse", "quadratic_damping"]
+    assert not layers.refined
+
+
+def test_an_effect_smaller_than_its_spread_is_only_possible(tmp_path: Path) -> None:
+    (possible,) = layers_of("", tmp_path).also_possible
+    assert possible["name"] == "sway_yaw_coupling" and possible["gain_nats"] == 20.0
+    assert "do not determine its size: sway 15 ± 154 kg and yaw" in possible["why"]
+
+
+def test_better_values_of_estimates_are_refined_numbers(tmp_path: Path) -> None:
+    coefficients = {
+        ("linear_damping", "surge"): (1.4, 0.02),
+        ("linear_damping", "sway"): (1.4, 0.3),
+    }
+    layers = layers_of(ESTIMATED, tmp_path, coefficients)
+    assert [e["name"] for e in layers.effects] == ["weak_reverse"]
+    refined = {e["number"]: e for e in layers.refined}
+    # those that differ by less than their sd are left out; sway damping is within two
+    assert list(refined) == [
+        "thrust lag",
+        "added mass in sway",
+        "added mass in yaw",
+        "quadratic damping in surge",
+        "linear damping in surge",
+    ]
+    lag = refined["thrust lag"]
+    assert (lag["before"], lag["after"], lag["off"], lag["unit"]) == (0.0, 0.31, None, "s")
+    assert lag["gain_nats"] == 20.0 and "time_constant_s" in lag["parameters"]
+    mass = refined["added mass in sway"]
+    assert (mass["before"], mass["after"], mass["unit"]) == (3.0, pytest.approx(4.5), "kg")
+    assert mass["off"] == pytest.approx(0.5) and mass["sd"] == pytest.approx(3.0 * 0.05, rel=0.3)
+    more = refined["quadratic damping in surge"]
+    assert (more["before"], more["after"]) == (8.0, pytest.approx(12.0))
+    damping = refined["linear damping in surge"]
+    assert (damping["before"], damping["after"]) == (3.0, pytest.approx(4.2))
+    assert damping["name"] == "linear_damping.surge" and "parameters" not in damping
+
+
+def test_a_number_alone_may_be_an_estimate(tmp_path: Path) -> None:
+    layers = layers_of('[estimated]\n"thrust_lag.time_constant" = 1.0\n', tmp_path)
+    assert [e["number"] for e in layers.refined] == ["thrust lag"]
+    assert "added_mass_error" in [e["name"] for e in layers.effects]
+
+
+def test_the_verdict_and_the_report_have_the_refined_numbers_last(tmp_path: Path) -> None:
+    findings = planar()
+    refined = layers_of(ESTIMATED, tmp_path).refined
+    possible = layers_of(ESTIMATED, tmp_path).also_possible
+    answer = findings.answer | {"refined": refined, "also_possible": possible}
+    sentence = verdict_sentences(answer)
+    assert sentence.endswith("Four numbers of the rough model were refined.")
+    assert sentence.startswith("The model leaves out one effect")
+    answer |= {"effects": [], "verdict": "nothing_missing"}
+    assert verdict_sentences(answer).startswith(
+        "No missing effect was found: with four numbers of the rough model refined"
+    )
+    assert refined_rows(answer)[0][0] == "thrust lag"
+    assert refined_rows(answer)[0][-1] == "not in the file"
+    assert refined_rows(answer)[1][-1] == "+50 %"
+    assert replace(findings, answer=answer).has_added_effects
