@@ -10,7 +10,7 @@ from boatsim.diagnosis.problem import Fit, FreeParameter, Problem
 from boatsim.diagnosis.report.formatting import format_parameter, join_words, words_of_name
 from boatsim.diagnosis.report.parameters import parameter_key, reported_sd
 from boatsim.diagnosis.report.schema import EffectEntry, PossibleEntry, RefinedEntry
-from boatsim.physics.base import AXES, Change, Effect, Release
+from boatsim.physics.base import AXES, CoefficientChange, CoefficientRelease, Effect
 from boatsim.physics.vessel import number_sd, refined_sd
 
 BODY_UNITS = {"mass": "kg"}  # all other numbers of the body are inertias
@@ -130,9 +130,9 @@ def _possible(best: Fit, effect: Effect, entry: EffectEntry) -> PossibleEntry:
     }
 
 
-def _changes(problem: Problem, effect: Effect) -> list[Change]:
+def _changes(problem: Problem, effect: Effect) -> list[CoefficientChange]:
     """Changes of the vessel's own numbers by an effect."""
-    if isinstance(effect, Release):
+    if isinstance(effect, CoefficientRelease):
         return effect.changes(problem.program.vessel)
     return []
 
@@ -165,7 +165,7 @@ def _refined_number(problem: Problem, best: Fit, effect: Effect, name: str) -> _
             sd *= abs(change.weight)
         unit = _unit(problem, change.owner, change.key)
         return _Number(words, float(recording.values[at]), float(after[at]), sd, unit)
-    own = problem.program.vessel.effect(type(effect).idea())
+    own = problem.program.vessel.effect(type(effect).type_name())
     if own is None or not effect.name.startswith(FURTHER):
         return _Number(words, param.inactive_value, value, sd, param.unit)
     # The vessel has this effect already: the new one adds to its number
@@ -210,7 +210,7 @@ def _unit(problem: Problem, owner: str, key: str) -> str:
 
 def _words_of_parameter(effect: Effect, name: str, count: int) -> str:
     """Words for a number: that of the effect if it has only one, else with axis or name."""
-    words = words_of_name(type(effect).idea()).removesuffix(" error")
+    words = words_of_name(type(effect).type_name()).removesuffix(" error")
     if count == 1 and name not in AXES:
         return words
     return _words_of_number(words, name)

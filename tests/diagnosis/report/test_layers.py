@@ -40,7 +40,7 @@ def layers_of(
     coefficients: Mapping[tuple[str, str], tuple[float, float]] | None = None,
 ) -> Layers:
     """The layers of a fit that is made up: all effects of FITTED, and factors of coefficients."""
-    boat = vessel.load(str(boats.written(folder, "test_boat", boats.PLANAR + text)))
+    boat = vessel.load_vessel(str(boats.written(folder, "test_boat", boats.PLANAR + text)))
     program, _ = diagnosis_program(boat)
     rows = 5
     mapped = MappedRecording(
