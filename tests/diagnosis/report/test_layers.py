@@ -14,7 +14,8 @@ from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.diagnosis.report.layers import Layers, separate_layers
 from boatsim.diagnosis.report.parameters import parameter_key, reported_sd
 from boatsim.diagnosis.report.schema import EffectEntry
-from boatsim.diagnosis.report.sentences import refined_rows, verdict_sentences
+from boatsim.diagnosis.report.sections import sections_of
+from boatsim.diagnosis.report.sentences import console_lines, refined_rows, verdict_sentences
 from boatsim.physics import vessel
 from tests.diagnosis.report.test_page import planar
 
@@ -149,3 +150,29 @@ def test_the_verdict_and_the_report_have_the_refined_numbers_last(tmp_path: Path
     assert refined_rows(answer)[0][-1] == "not in the file"
     assert refined_rows(answer)[1][-1] == "+50 %"
     assert replace(findings, answer=answer).has_added_effects
+
+
+def test_log_and_missing_physics_stand_before_the_refined_numbers(tmp_path: Path) -> None:
+    findings = planar()
+    layers = layers_of(ESTIMATED, tmp_path)
+    error = findings.answer["effects"][0] | {"name": "clock_offset", "kind": "measurement"}
+    answer = findings.answer | {
+        "effects": [*findings.answer["effects"], error],
+        "refined": layers.refined,
+        "also_possible": layers.also_possible,
+    }
+    findings = replace(findings, answer=answer)
+    titles = [line for line in console_lines(findings) if line.endswith(":")]
+    assert titles[:4] == [
+        "Errors of the recordings:",
+        "Missing physics:",
+        "Numbers refined:",
+        "Also possible:",
+    ]
+    shown = [section.title for section in sections_of(findings) if section.blocks]
+    assert shown[:4] == [
+        "Problems of the recordings",
+        "Missing physics",
+        "Numbers refined",
+        "Also possible",
+    ]
