@@ -132,6 +132,14 @@ class LoadConfig:
         "No boat reaches this Froude number; positions that move faster are in another unit.",
         low=1.0,
     )
+    fast_share: float = setting(
+        0.25,
+        "1",
+        "Share of the rows that must move faster than `fastest_froude`: a unit concerns all rows, "
+        "a jump of the position only a few.",
+        0.0,
+        1.0,
+    )
     command_percentile: float = setting(
         98.0,
         "%",
@@ -792,6 +800,40 @@ class FitConfig:
     )
     fewest_stretches: int = setting(
         10, "count", "Fewest stretches from which the sandwich covariance is estimated.", low=2
+    )
+    lost_rms: float = setting(
+        10.0,
+        "sd",
+        "A model whose whitened prediction errors have a larger rms in a recording, although the "
+        "latent force was fitted, does not follow that recording; the rms of a good fit is 1, and "
+        "of the practice trials at most 1.2.",
+        low=2.0,
+    )
+    lost_sds: float = setting(
+        20.0,
+        "sd",
+        "The vessel as written loses a recording where its prediction errors stay larger than "
+        "this; four times the limit of a single outlier.",
+        low=5.0,
+    )
+    lost_window: float = setting(
+        2.0,
+        "correlation time",
+        "Errors stay outside if their rms over this time, from an outlier on, is outside.",
+        low=0.5,
+    )
+    lost_raise: float = setting(
+        4.0,
+        "1",
+        "Factor by which the latent force is raised at a time until a lost recording is followed.",
+        low=1.5,
+    )
+    lost_raises: int = setting(
+        16,
+        "count",
+        "Largest number of such steps per axis: 4^16 is more than any force in proportion to the "
+        "assumed disturbance.",
+        low=1,
     )
 
 

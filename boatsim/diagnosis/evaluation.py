@@ -63,11 +63,8 @@ def evaluate(problem: Problem, ranking: Ranking, held_out: Sequence[MappedRecord
         ranking: Result of the selection, with its description.
         held_out: Held-out recordings, at least one.
     """
-    horizon = problem.horizon
-    longest = max(float(np.ptp(mapped.times)) for mapped in held_out)
-    if longest < horizon:
-        horizon = min(horizon, float(f"{longest:.3g}"))
-    everything = _in_order([*problem.recordings, *held_out])
+    horizon = free_run_horizon(problem, held_out)
+    everything = in_order([*problem.recordings, *held_out])
     missing = missing_force(problem, ranking.recalibrated, everything)
     remaining = residual_force(problem, ranking.best, everything)
     fits = compared_fits(ranking)
@@ -85,8 +82,25 @@ def evaluate(problem: Problem, ranking: Ranking, held_out: Sequence[MappedRecord
     )
 
 
-def _in_order(recordings: Sequence[MappedRecording]) -> list[MappedRecording]:
-    """Recordings as they were given, the thirds of a single one in order of time."""
+def free_run_horizon(problem: Problem, held_out: Sequence[MappedRecording]) -> float:
+    """Return the length of free runs [s], at most that of the longest held-out recording.
+
+    Args:
+        problem: Problem with the usual length.
+        held_out: Held-out recordings, at least one.
+    """
+    longest = max(float(np.ptp(mapped.times)) for mapped in held_out)
+    if longest < problem.horizon:
+        return min(problem.horizon, float(f"{longest:.3g}"))
+    return problem.horizon
+
+
+def in_order(recordings: Sequence[MappedRecording]) -> list[MappedRecording]:
+    """Return recordings as they were given, the thirds of a single one in order of time.
+
+    Args:
+        recordings: Fitted and held-out recordings.
+    """
     names = [mapped.name for mapped in recordings]
     order = recording_order(names, [float(mapped.times[0]) for mapped in recordings])
     return [recordings[i] for i in order]

@@ -547,13 +547,28 @@ def map_recording(
         config=config.filter,
     )
     if "surge" in axes:
-        speed = float(np.sqrt(mapped.initial.covariance[len(axes), len(axes)]))
+        speed = _speed_of_share(mapped, config.load.fast_share)
         if speed > config.load.fastest_froude * np.sqrt(GRAVITY * vessel.length):
             raise BadInput(
                 f"{where}: x_m, y_m move at {speed:.3g} m/s, far beyond a hull of "
                 f"{vessel.length:g} m; are they in m?"
             )
     return mapped
+
+
+def _speed_of_share(mapped: MappedRecording, share: float) -> float:
+    """Speed [m/s] along x or y that a share of the rows exceeds; rms of recorded velocities."""
+    axes = axes_of(mapped.program.vessel)
+    speeds = []
+    for c, code in enumerate(mapped.codes.tolist()):
+        recorded = np.isfinite(mapped.measured[:, c])
+        if code < len(axes) and axes[code] in ("surge", "sway") and recorded.any():
+            rates = _rates_of_change(mapped.times[recorded], mapped.measured[recorded, c])
+            if len(rates):
+                speeds.append(float(np.quantile(np.abs(rates), 1.0 - share)))
+    if speeds:
+        return max(speeds)
+    return float(np.sqrt(mapped.initial.covariance[len(axes), len(axes)]))
 
 
 def _check_columns(recording: Recording, vessel: Vessel, found: Sequence[Signal]) -> None:

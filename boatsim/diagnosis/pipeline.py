@@ -4,11 +4,13 @@ Each stage is a function from the results of earlier stages to a frozen result. 
 alone.
 """
 
+import json
 import time
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 from threadpoolctl import threadpool_limits
@@ -20,6 +22,7 @@ from boatsim.diagnosis.checks.initial_actuator_state import with_initial_actuato
 from boatsim.diagnosis.config import DEFAULT, DiagnosisConfig
 from boatsim.diagnosis.correlation_time import with_correlation_time
 from boatsim.diagnosis.covariance_inflation import inflate_covariance
+from boatsim.diagnosis.divergence import is_lost
 from boatsim.diagnosis.evaluation import Evaluation, evaluate
 from boatsim.diagnosis.experiment_design import next_experiment
 from boatsim.diagnosis.filter import MappedRecording, map_recording
@@ -29,10 +32,11 @@ from boatsim.diagnosis.question import Question, compile_program, pose_question
 from boatsim.diagnosis.report.answer import compose_answer
 from boatsim.diagnosis.report.findings import Findings
 from boatsim.diagnosis.report.results import findings_of
+from boatsim.diagnosis.report.schema import Answer
 from boatsim.diagnosis.search.ranking import Baseline, Ranking, fit_baseline, rank
 from boatsim.diagnosis.symbolic.residual_description import describe as describe_residual
 from boatsim.diagnosis.symbolic.slots import write_term
-from boatsim.errors import BadInput
+from boatsim.diagnosis.without_fit import unknown_cause
 from boatsim.files import Value
 from boatsim.physics.vessel import Vessel
 from boatsim.progress import Report, ignore_progress, report_part_of
@@ -133,22 +137,86 @@ def diagnose_loaded(
     report("compiling, or loading what was compiled before")
     compile_program(question.problem)
     begin = time.perf_counter()
-    with _numerical_environment(loaded):
+    with threadpool_limits(1, "blas"):
         report("comparing what the columns may mean", SELECTING[0] / 2)
         findings = check(loaded, question)
-        base = fit(question)
-        selection = select(question, base, loaded, report_part_of(report, *SELECTING))
-        ranking = describe(question, selection, report_part_of(report, *DESCRIBING))
-        report("planning what to record next", DESCRIBING[1])
-        next_plan = plan(selection, ranking)
-        report("free runs", EVALUATING)
-        evaluation = validate(question, selection, ranking)
-    problem, seconds = selection.problem, time.perf_counter() - begin
+        found = None
+        with suppress(np.linalg.LinAlgError, FloatingPointError):
+            found = _fit_and_select(loaded, question, findings, begin, report)
+        if found is None or not _is_finite(found.findings.answer):
+            report("locating where the model cannot follow", EVALUATING)
+            found = _diagnose_without_fit(loaded, question, findings, begin)
+    return found
+
+
+def _fit_and_select(
+    loaded: Loaded, question: Question, findings: Sequence[Finding], begin: float, report: Report
+) -> Diagnosis | None:
+    """Run all stages after the checks; None if the vessel's own fit does not follow."""
+    base = fit(question)
+    if is_lost(question.problem, base.recalibrated):
+        return None
+    selection = select(question, base, loaded, report_part_of(report, *SELECTING))
+    ranking = describe(question, selection, report_part_of(report, *DESCRIBING))
+    report("planning what to record next", DESCRIBING[1])
+    next_plan = plan(selection, ranking)
+    report("free runs", EVALUATING)
+    evaluation = validate(question, selection, ranking)
+    stages = Stages(selection.problem, ranking, evaluation, next_plan)
+    return _compose(loaded, question, findings, stages, begin)
+
+
+def _diagnose_without_fit(
+    loaded: Loaded, question: Question, findings: Sequence[Finding], begin: float
+) -> Diagnosis:
+    """Return the diagnosis of recordings that no fit follows. Raises BadInput."""
+    where = str(loaded.fitted[0].path or loaded.fitted[0].name)
+    ranking, evaluation = unknown_cause(question.problem, question.held_out, where)
+    stages = Stages(question.problem, ranking, evaluation)
+    return _compose(loaded, question, findings, stages, begin)
+
+
+class Stages(NamedTuple):
+    """Results of the stages, of which an answer is composed."""
+
+    problem: Problem
+    ranking: Ranking
+    evaluation: Evaluation
+    plan: next_experiment.Plan | None = None
+
+
+def _compose(
+    loaded: Loaded,
+    question: Question,
+    findings: Sequence[Finding],
+    stages: Stages,
+    begin: float,
+) -> Diagnosis:
+    """Compose the answer and what the report shows."""
+    seconds = time.perf_counter() - begin
     answer = compose_answer(
-        loaded, question, findings, problem, ranking, evaluation, next_plan, seconds
+        loaded,
+        question,
+        findings,
+        stages.problem,
+        stages.ranking,
+        stages.evaluation,
+        stages.plan,
+        seconds,
     )
-    shown = findings_of(answer, loaded, question, problem, ranking, evaluation, next_plan)
-    return Diagnosis(shown, loaded.vessel, problem, ranking, loaded.remarks, next_plan)
+    shown = findings_of(answer, loaded, question, *stages)
+    return Diagnosis(
+        shown, loaded.vessel, stages.problem, stages.ranking, loaded.remarks, stages.plan
+    )
+
+
+def _is_finite(answer: Answer) -> bool:
+    """Whether all numbers of an answer are finite."""
+    try:
+        json.dumps(answer, allow_nan=False)
+    except ValueError:
+        return False
+    return True
 
 
 def check(loaded: Loaded, question: Question) -> tuple[Finding, ...]:
@@ -252,20 +320,3 @@ def plan(selection: Selection, ranking: Ranking) -> next_experiment.Plan | None:
     before = replace(selection.ranking, named=ranking.named)
     undecided = next_experiment.open_question(before, selection.problem.config)
     return next_experiment.best_plan(selection.problem, *undecided)
-
-
-@contextmanager
-def _numerical_environment(loaded: Loaded) -> Iterator[None]:
-    """Limit linear algebra to one thread, and turn its failures into one clear line.
-
-    The matrices are small: on a busy machine threads are up to twenty times slower.
-    """
-    try:
-        with threadpool_limits(1, "blas"):
-            yield
-    except (np.linalg.LinAlgError, FloatingPointError) as error:
-        where = loaded.fitted[0].path or loaded.fitted[0].name
-        raise BadInput(
-            f"{where}: {loaded.vessel.name} can not follow this recording ({error}); are its "
-            "units right?"
-        ) from None

@@ -24,6 +24,11 @@ MAX_NOISE = 0.15
 MAX_ROLL = 1.0
 MIN_ROWS = 4  # with increasing time
 MIN_CORRELATION = 0.8  # between two series of the same motion
+# [rad] excess over a full circle of a wrapped heading, for numbers are rounded
+WRAP_TOLERANCE = 0.01
+# share of the circle that a wrapped heading of a turning vessel covers
+MIN_COVERED = 0.95
+MIN_WRAPS = 2  # one large step may be an outlier
 ANGLES = {"r_radps": "psi_rad", "p_radps": "phi_rad"}  # rate -> its integral
 
 
@@ -89,6 +94,8 @@ def heading_in_degrees(t: Array, psi: Array, signals: Mapping[str, Array]) -> in
     """
     steps = np.diff(psi)
     largest = int(np.argmax(np.abs(steps))) + 1
+    if _is_wrapped_in_radians(psi, steps):
+        return None
     if abs(steps[largest - 1]) > 3.0 * math.pi:  # radians wrap by 2 pi, degrees by 360
         return largest
     if "r_radps" in signals:
@@ -107,6 +114,19 @@ def heading_in_degrees(t: Array, psi: Array, signals: Mapping[str, Array]) -> in
     if _heading_noise(steps) > MAX_NOISE or _sustained_turning(t, psi) > MAX_TURNING:
         return largest
     return None
+
+
+def _is_wrapped_in_radians(psi: Array, steps: Array) -> bool:
+    """Whether a heading fills one turn in radians and wraps at its ends, as no heading in degrees.
+
+    A vessel that spins under a large unknown moment turns faster than any other recording.
+    """
+    if not MIN_COVERED * 2.0 * math.pi < float(np.ptp(psi)) < 2.0 * math.pi + WRAP_TOLERANCE:
+        return False
+    low = float(psi.min())
+    one_turn = min(abs(low), abs(low + math.pi)) < 2.0 * math.pi * (1.0 - MIN_COVERED)
+    inside = low > -math.pi - WRAP_TOLERANCE and float(psi.max()) < 2.0 * math.pi + WRAP_TOLERANCE
+    return one_turn and inside and int(np.sum(np.abs(steps) > math.pi)) >= MIN_WRAPS
 
 
 def rate_in_degrees(t: Array, rate: Array, angle: Array | None) -> int | None:

@@ -195,6 +195,14 @@ def test_a_boat_that_moves_sideways_while_its_heading_swings_is_not_called_degre
     assert units.heading_in_degrees(t, 0.9 * t, spinning) is None
 
 
+def test_a_wrapped_heading_of_a_spinning_boat_is_not_called_degrees():
+    t = np.arange(0, 40, 1 / 6)
+    psi = np.remainder(8.0 * np.maximum(t - 10.0, 0.0) + math.pi, 2.0 * math.pi)
+    assert units.heading_in_degrees(t, psi - math.pi, {}) is None
+    assert units.heading_in_degrees(t, psi, {}) is None
+    assert units.heading_in_degrees(t, np.degrees(psi), {}) is not None
+
+
 def test_a_part_keeps_its_times_and_an_empty_part_says_what_there_is():
     run = circle().between(2.0, 4.0)
     assert (run.t[0], run.t[-1], len(run)) == (pytest.approx(2.0), pytest.approx(4.0), 41)

@@ -72,6 +72,7 @@ def compose_answer(
         entries[identified.name] = _effect(problem, ranking.best, identified)
     layers = separate_layers(problem, ranking.best, entries)
     formulas = described_entries(ranking.description, vessel)
+    tested = () if ranking.divergences else question.candidates
     limits = {}
     for name, fitted in ranking.last.items():
         limits[base_name(name)] = _limits(problem, fitted, name)
@@ -92,15 +93,15 @@ def compose_answer(
         "next_experiment": next_experiment.plan_entry(plan, NEXT_SCENARIO),
         "patch": "patched.toml",
         "mean_left": dict(evaluation.mean_force),
-        "tried": sorted(set(map(base_name, question.candidates))),
+        "tried": sorted(set(map(base_name, tested))),
         "left_out": excluded_candidates(question),
         "facts": dict(problem.recordings[0].facts),
-        "rules": rules_entry(problem, len(question.candidates)),
+        "rules": rules_entry(problem, len(tested)),
         "log": _log(loaded, findings),
         "config": settings_by_name(problem.config),
     }
     verdict = verdict_sentences(answer, effect_meanings(problem.program.candidates, vessel))
-    answer["sentence"] = _with_log_first(verdict, findings, problem)
+    answer["sentence"] = _with_log_first(verdict, findings, problem, ranking)
     return answer
 
 
@@ -126,6 +127,18 @@ def _unknown(problem: Problem, ranking: Ranking, evaluation: Evaluation) -> Unkn
         entry["rest"] = locate.strength(problem, evaluation.remaining)
     if ranking.structure.significant:
         entry["structure"] = _structure(ranking.structure)
+    if ranking.divergences:
+        entry["diverges"] = []
+        for place in ranking.divergences:
+            entry["diverges"].append(
+                {
+                    "run": place.run,
+                    "from_s": round(place.from_s, 3),
+                    "axis": place.axis,
+                    "rms": place.rms,
+                    "unit": place.unit,
+                }
+            )
     return entry
 
 
@@ -150,6 +163,8 @@ def _where(problem: Problem, ranking: Ranking, evaluation: Evaluation) -> WhereE
         entry["intervals"].append(
             {"run": i.run, "from_s": i.from_s, "to_s": i.to_s, "axis": i.axis}
         )
+    if ranking.divergences:  # a linear test for regions would not hold
+        return entry
     for r in regions(problem, ranking.recalibrated):
         entry["region"].append(
             {"variable": r.variable, "statement": r.statement, "p_value": r.p_value}
@@ -167,10 +182,18 @@ def _log(loaded: Loaded, findings: Sequence[Finding]) -> list[LogEntry]:
     return entries
 
 
-def _with_log_first(verdict: str, findings: Sequence[Finding], problem: Problem) -> str:
-    """Return the verdict, preceded by the findings that certainly concern the whole log."""
+def _with_log_first(
+    verdict: str, findings: Sequence[Finding], problem: Problem, ranking: Ranking
+) -> str:
+    """Return the verdict, preceded by the findings that certainly concern the whole log.
+
+    If no fit follows the recordings, it is preceded by all faults of the log.
+    """
     config = problem.config.checks
     certain = [finding.description for finding in findings if finding.invalidates_log(config)]
+    if ranking.divergences:
+        faults = [finding.description for finding in findings if finding.kind == "fault"]
+        certain = list(dict.fromkeys(faults))
     if not certain:
         return verdict
     rest = f"{verdict[:1].lower()}{verdict[1:]}"

@@ -97,6 +97,16 @@ class StructureEntry(TypedDict):
     tried: int  # number of quantities tested
 
 
+class DivergenceEntry(TypedDict):
+    """The place at which the vessel's model can no longer follow a recording."""
+
+    run: str
+    from_s: float
+    axis: str  # of the largest missing force there
+    rms: float  # of that force from then on
+    unit: str
+
+
 class UnknownEntry(TypedDict):
     """Whether a force is missing that no candidate effect explains."""
 
@@ -105,6 +115,8 @@ class UnknownEntry(TypedDict):
     told_from_nats: float  # threshold of the gain; it increases with the evidence explained
     rest: NotRequired[dict[str, "StrengthEntry"]]  # force that the identified effects leave
     structure: NotRequired[StructureEntry]  # if that force varies with any quantity
+    # if fits diverge: no candidate effect was ranked
+    diverges: NotRequired[list[DivergenceEntry]]
 
 
 class CandidateEntry(TypedDict):

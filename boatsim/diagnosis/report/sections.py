@@ -48,11 +48,11 @@ from boatsim.diagnosis.report.schema import (
 )
 from boatsim.diagnosis.report.sentences import (
     FAMILIES,
-    NONE_TESTED,
     any_tested,
     assumption_sentences,
     effect_description,
     effects_of_kind,
+    none_tested_reason,
     only_measurement_errors,
     refined_rows,
 )
@@ -119,7 +119,7 @@ def _missing_physics(f: Findings) -> Iterator[Block]:
     yield from _effects(f, "physics")
     unknown = f.answer["unknown"]
     if not any_tested(f.answer):
-        yield Text(f"{capitalize(NONE_TESTED)}.")
+        yield Text(f"{capitalize(none_tested_reason(f.answer))}.")
     elif unknown["flag"]:
         yield from _unexplained(f)
     elif not f.answer["effects"]:

@@ -46,6 +46,10 @@ NONE_TESTED = (
     "no candidate effect was tested: the facts of the recordings or the vessel file exclude all "
     "of them"
 )
+NOTHING_RANKED = (
+    "no candidate effect was ranked and no coefficient was refitted, because the fits to these "
+    "recordings diverge"
+)
 NOTHING_MISSING = (
     "No missing effect was found: the vessel model explains these recordings to within their noise."
 )
@@ -86,6 +90,8 @@ def verdict_sentences(answer: Answer, words: Mapping[str, str] | None = None) ->
         Sentences on the identified effects with their first numbers, on formulas, and on what the
         recordings cannot distinguish.
     """
+    if answer["unknown"].get("diverges"):
+        return _cannot_follow(answer)
     if not any_tested(answer):
         return _none_tested(answer)
     statements = _effects(answer, words or {})
@@ -100,6 +106,32 @@ def verdict_sentences(answer: Answer, words: Mapping[str, str] | None = None) ->
         verb = "was" if len(answer["refined"]) == 1 else "were"
         statements.append(f"{refined} {verb} refined")
     return " ".join(f"{capitalize(statement)}." for statement in statements)
+
+
+def none_tested_reason(answer: Answer) -> str:
+    """Return why no candidate effect was tested.
+
+    Args:
+        answer: Content of diagnosis.json, without candidates.
+    """
+    if answer["unknown"].get("diverges"):
+        return NOTHING_RANKED
+    return NONE_TESTED
+
+
+def _cannot_follow(answer: Answer) -> str:
+    """Return from which time on, and along which axis, the model cannot follow each recording."""
+    places = []
+    for place in answer["unknown"]["diverges"][:MOST_NUMBERS]:
+        size = format_quantity(place["rms"], place["unit"], digits=2)
+        places.append(
+            f"from t = {place['from_s']:.4g} s of {place['run']}, in {place['axis']} "
+            f"({size} rms from then on)"
+        )
+    return (
+        f"The cause is unknown {join_words(places)}: the vessel's model can no longer follow the "
+        f"recording. {capitalize(NOTHING_RANKED)}."
+    )
 
 
 def _none_tested(answer: Answer) -> str:
@@ -274,6 +306,8 @@ def improvement_on_held_out(f: Findings) -> str:
             errors.append(f"{before} in {words}")
             compared.append(f"{after} in {words} instead of {before} ({_improvement_factor(gain)})")
             gains.append(gain)
+    if not errors and f.answer["unknown"].get("diverges"):
+        return "The result could not be validated: free runs of the vessel diverge."
     if not errors:
         return "The result could not be validated: no recording was held out."
     runs = f"In free runs of {fit['horizon_s']:g} s over the held-out recordings"

@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 from boatsim.diagnosis.covariance_inflation import inflate_covariance
 from boatsim.diagnosis.description import Description
+from boatsim.diagnosis.divergence import Divergence
 from boatsim.diagnosis.filter import MappedRecording
 from boatsim.diagnosis.fit import converge, gauss_newton
 from boatsim.diagnosis.locate.residual_structure import Structure, find_structure
@@ -53,6 +54,8 @@ class Ranking:
     told_from: float  # [nats] of `unexplained_evidence` from which an unknown cause is reported
     structured: bool  # whether that force, however weak, clearly correlates with something
     description: Description | None = None  # symbolic description of it
+    # where the model loses each recording, if fits diverge; nothing was fitted then
+    divergences: tuple[Divergence, ...] = ()
 
     @property
     def adds_effects(self) -> bool:
@@ -67,7 +70,7 @@ class Ranking:
     @property
     def unknown(self) -> bool:
         """Whether something remains that no candidate explains."""
-        described = self.description is not None
+        described = self.description is not None or bool(self.divergences)
         return described or bool(self.left_over > self.told_from) or self.structured
 
 

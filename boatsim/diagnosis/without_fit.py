@@ -1,0 +1,100 @@
+"""The results of a diagnosis whose fits diverge: an unknown cause, with its time and axis."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from boatsim.diagnosis.divergence import divergences, first_rows_are_finite, follow
+from boatsim.diagnosis.evaluation import MODELS, Evaluation, free_run_horizon, in_order
+from boatsim.diagnosis.filter import MappedRecording, axes_of
+from boatsim.diagnosis.free_runs import FreeRun, free_runs, rms_errors
+from boatsim.diagnosis.locate.missing_force import MissingForce, residual_force
+from boatsim.diagnosis.locate.residual_structure import CONSTANT, Structure
+from boatsim.diagnosis.problem import Fit, Problem
+from boatsim.diagnosis.search.ranking import Ranking
+from boatsim.errors import BadInput
+from boatsim.recordings.table import HUGE
+
+# [nats] limit of a gain of evidence in the answer: more is no more certain
+LARGEST_GAIN = 1e9
+
+
+def unknown_cause(
+    problem: Problem, held_out: Sequence[MappedRecording], where: str
+) -> tuple[Ranking, Evaluation]:
+    """Return the results of a diagnosis that fits no parameter.
+
+    The vessel as written follows the recordings with a larger latent force, which is the missing
+    force. No candidate is ranked.
+
+    Args:
+        problem: Recordings and priors.
+        held_out: Held-out recordings.
+        where: Name of the first recording, for the message.
+
+    Raises:
+        BadInput: The model cannot be evaluated at all.
+    """
+    everything = in_order([*problem.recordings, *held_out])
+    if not first_rows_are_finite(problem, everything):
+        raise _not_evaluated(problem, where)
+    with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
+        fit = follow(problem, everything)
+        forces = _finite_forces(residual_force(problem, fit, everything))
+        if not any(len(force.t) for force in forces):
+            raise _not_evaluated(problem, where)
+        places = divergences(problem, everything, forces)
+        horizon = free_run_horizon(problem, held_out)
+        runs = _finite_runs(problem, fit, held_out, horizon)
+        before = problem.on(everything).log_likelihood(
+            fit.free, fit.theta, problem.program.switches(()), problem.ambient
+        )
+    gain = float(np.nan_to_num(fit.evidence - before, nan=LARGEST_GAIN, posinf=LARGEST_GAIN))
+    nothing = Structure(axes_of(problem.program.vessel)[0], CONSTANT, 0.0, 1.0, 0, False)
+    ranking = Ranking(
+        nominal=fit,
+        recalibrated=fit,
+        best=fit,
+        named=(),
+        first={},
+        last={},
+        left_over=min(max(gain, 0.0), LARGEST_GAIN),
+        structure=nothing,
+        explained=0.0,
+        told_from=0.0,
+        structured=False,
+        divergences=places,
+    )
+    some = tuple(force for force in forces if len(force.t))
+    evaluation = Evaluation(horizon, runs, rms_errors(runs), (), (), some, some, {})
+    return ranking, evaluation
+
+
+def _not_evaluated(problem: Problem, where: str) -> BadInput:
+    name = problem.program.vessel.name
+    return BadInput(
+        f"{where}: the forces of {name} are not finite in the first seconds of the recordings; "
+        "a number of its vessel file or the initial motion is far out of range"
+    )
+
+
+def _finite_forces(forces: Sequence[MissingForce]) -> list[MissingForce]:
+    """The rows of the forces that are finite."""
+    found = []
+    for force in forces:
+        rows = (np.isfinite(force.mean) & np.isfinite(force.sd)).all(axis=1)
+        rows &= (np.abs(force.mean) < HUGE**2).all(axis=1)
+        found.append(MissingForce(force.run, force.t[rows], force.mean[rows], force.sd[rows]))
+    return found
+
+
+def _finite_runs(
+    problem: Problem, fit: Fit, held_out: Sequence[MappedRecording], horizon: float
+) -> tuple[FreeRun, ...]:
+    """Free runs of the vessel as written that stay finite, under the names of all models."""
+    found = []
+    for run in free_runs(problem, dict.fromkeys(MODELS, fit), held_out, horizon):
+        channels = np.concatenate(list(run.channels[MODELS[0]].values()))
+        if (np.abs(channels) < HUGE).all():
+            found.append(run)
+    return tuple(found)
