@@ -805,8 +805,8 @@ class FitConfig:
         10.0,
         "sd",
         "A model whose whitened prediction errors have a larger rms in a recording, although the "
-        "latent force was fitted, does not follow that recording; it is 0.95 to 1.04 in the practice "
-        "trials with an odd number, causes included.",
+        "latent force was fitted, does not follow that recording; it is 0.95 to 1.04 in the "
+        "practice trials with an odd number, causes included.",
         low=2.0,
     )
     lost_sds: float = setting(
