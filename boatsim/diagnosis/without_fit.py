@@ -42,7 +42,11 @@ def unknown_cause(
         fit = follow(problem, everything)
         forces = _finite_forces(residual_force(problem, fit, everything))
         if not any(len(force.t) for force in forces):
-            raise _not_evaluated(problem, where)
+            raise BadInput(
+                f"{where}: {problem.program.vessel.name} moves so fast between two rows that its "
+                "missing force can not be estimated, not even with a larger disturbance; record "
+                "at a higher rate"
+            )
         places = divergences(problem, everything, forces)
         horizon = free_run_horizon(problem, held_out)
         runs = _finite_runs(problem, fit, held_out, horizon)
