@@ -1,4 +1,4 @@
-"""The pipeline of a diagnosis: load, check, fit, select, describe, validate, plan, report.
+"""The pipeline of a diagnosis: load, check, fit, select, decide, describe, validate, plan, report.
 
 Each stage is a function from the results of earlier stages to a frozen result. It can be called
 alone.
@@ -27,6 +27,8 @@ from boatsim.diagnosis.evaluation import Evaluation, evaluate
 from boatsim.diagnosis.experiment_design import next_experiment
 from boatsim.diagnosis.filter import MappedRecording, map_recording
 from boatsim.diagnosis.loading import Loaded, Request
+from boatsim.diagnosis.open_set.decision import Decision, undecided
+from boatsim.diagnosis.open_set.decision import decide as judge_names
 from boatsim.diagnosis.problem import Problem
 from boatsim.diagnosis.question import Question, compile_program, pose_question
 from boatsim.diagnosis.report.answer import compose_answer
@@ -157,12 +159,13 @@ def _fit_and_select(
     if is_lost(question.problem, base.recalibrated):
         return None
     selection = select(question, base, loaded, report_part_of(report, *SELECTING))
-    ranking = describe(question, selection, report_part_of(report, *DESCRIBING))
+    decision = decide(question, selection)
+    ranking = describe(question, decision, report_part_of(report, *DESCRIBING))
     report("planning what to record next", DESCRIBING[1])
-    next_plan = plan(selection, ranking)
+    next_plan = plan(decision, ranking)
     report("free runs", EVALUATING)
-    evaluation = validate(question, selection, ranking)
-    stages = Stages(selection.problem, ranking, evaluation, next_plan)
+    evaluation = validate(question, decision, ranking)
+    stages = Stages(decision, ranking, evaluation, next_plan)
     return _compose(loaded, question, findings, stages, begin)
 
 
@@ -172,14 +175,14 @@ def _diagnose_without_fit(
     """Return the diagnosis of recordings that no fit follows. Raises BadInput."""
     where = str(loaded.fitted[0].path or loaded.fitted[0].name)
     ranking, evaluation = unknown_cause(question.problem, question.held_out, where)
-    stages = Stages(question.problem, ranking, evaluation)
+    stages = Stages(undecided(question.problem, ranking), ranking, evaluation)
     return _compose(loaded, question, findings, stages, begin)
 
 
 class Stages(NamedTuple):
     """Results of the stages, of which an answer is composed."""
 
-    problem: Problem
+    decision: Decision
     ranking: Ranking
     evaluation: Evaluation
     plan: next_experiment.Plan | None = None
@@ -198,16 +201,15 @@ def _compose(
         loaded,
         question,
         findings,
-        stages.problem,
+        stages.decision,
         stages.ranking,
         stages.evaluation,
         stages.plan,
         seconds,
     )
-    shown = findings_of(answer, loaded, question, *stages)
-    return Diagnosis(
-        shown, loaded.vessel, stages.problem, stages.ranking, loaded.remarks, stages.plan
-    )
+    problem = stages.decision.problem
+    shown = findings_of(answer, loaded, question, problem, *stages[1:])
+    return Diagnosis(shown, loaded.vessel, problem, stages.ranking, loaded.remarks, stages.plan)
 
 
 def _is_finite(answer: Answer) -> bool:
@@ -271,17 +273,28 @@ def select(
     return Selection(again, rank(again, candidates, held_out, ranking.best))
 
 
-def describe(question: Question, selection: Selection, report: Report = ignore_progress) -> Ranking:
+def decide(question: Question, selection: Selection) -> Decision:
+    """Return the selection with the probability that each of its names is right.
+
+    Args:
+        question: Candidates and held-out recordings.
+        selection: Selected effects.
+    """
+    problem, ranking = selection.problem, selection.ranking
+    return judge_names(problem, ranking, question.held_out, len(question.candidates))
+
+
+def describe(question: Question, decision: Decision, report: Report = ignore_progress) -> Ranking:
     """Return the ranking with a symbolic description of a force that no candidate explains.
 
     Effects that the description replaces are removed.
 
     Args:
         question: Held-out recordings.
-        selection: Selected effects.
+        decision: Selected effects with their probability.
         report: Receives the progress.
     """
-    problem, ranking = selection.problem, selection.ranking
+    problem, ranking = decision.problem, decision.ranking
     if not ranking.unknown:
         return ranking
     best, recalibrated = ranking.best, ranking.recalibrated
@@ -295,28 +308,34 @@ def describe(question: Question, selection: Selection, report: Report = ignore_p
         if term.carries:
             term = replace(term, sd=best.value(term.term.name, "coefficient")[1])
         terms.append(term)
-    named = tuple(one for one in ranking.named if one.name in found.fit.effects)
-    return replace(ranking, best=best, named=named, description=replace(found, terms=tuple(terms)))
+    effects = found.fit.effects
+    return replace(
+        ranking,
+        best=best,
+        named=tuple(one for one in ranking.named if one.name in effects),
+        doubtful=tuple(one for one in ranking.doubtful if one.name in effects),
+        description=replace(found, terms=tuple(terms)),
+    )
 
 
-def validate(question: Question, selection: Selection, ranking: Ranking) -> Evaluation:
+def validate(question: Question, decision: Decision, ranking: Ranking) -> Evaluation:
     """Return free runs of the models over held-out recordings, and the forces that remain.
 
     Args:
         question: Held-out recordings.
-        selection: The problem with its correlation time.
+        decision: The problem with its correlation time.
         ranking: Selected and described effects.
     """
-    return evaluate(selection.problem, ranking, question.held_out)
+    return evaluate(decision.problem, ranking, question.held_out)
 
 
-def plan(selection: Selection, ranking: Ranking) -> next_experiment.Plan | None:
+def plan(decision: Decision, ranking: Ranking) -> next_experiment.Plan | None:
     """Return the manoeuvre that would add most evidence; None if none would add enough.
 
     Args:
-        selection: The problem, and the selection before the description.
+        decision: The problem, and the selection before the description.
         ranking: Selected and described effects.
     """
-    before = replace(selection.ranking, named=ranking.named)
-    undecided = next_experiment.open_question(before, selection.problem.config)
-    return next_experiment.best_plan(selection.problem, *undecided)
+    before = replace(decision.ranking, named=ranking.named)
+    question = next_experiment.open_question(before, decision.problem.config)
+    return next_experiment.best_plan(decision.problem, *question)

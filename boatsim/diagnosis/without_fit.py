@@ -67,6 +67,7 @@ def unknown_cause(
         explained=0.0,
         told_from=0.0,
         structured=False,
+        without={},
         divergences=places,
     )
     some = tuple(force for force in forces if len(force.t))

@@ -72,12 +72,13 @@ def test_later_stages_take_the_results_of_earlier_ones(
     selection = pipeline.select(question, base, loaded)
     assert selection.ranking.recalibrated is base.recalibrated
     assert set(selection.ranking.first) == {ONLY}
-    ranking = replace(pipeline.describe(question, selection), description=None)
-    evaluation = pipeline.validate(question, selection, ranking)
+    decision = pipeline.decide(question, selection)
+    assert len(decision.judgements) == len(selection.ranking.named)
+    ranking = replace(pipeline.describe(question, decision), description=None)
+    evaluation = pipeline.validate(question, decision, ranking)
     assert set(MODELS) <= set(evaluation.free_runs[0].channels)
-    plan = pipeline.plan(selection, ranking)
-    problem = selection.problem
-    answer = compose_answer(loaded, question, (), problem, ranking, evaluation, plan, 1.0)
+    plan = pipeline.plan(decision, ranking)
+    answer = compose_answer(loaded, question, (), decision, ranking, evaluation, plan, 1.0)
     assert answer["tried"] == [ONLY]
     assert answer["fit"]["held_out"] == [mapped.name for mapped in question.held_out]
     assert answer["config"]["load.row_rate"] == 4.0

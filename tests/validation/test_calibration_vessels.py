@@ -12,7 +12,7 @@ from boatsim.physics import vessel
 from boatsim.physics.base import Array
 from boatsim.simulate.batch import Batch
 from validation.calibration import unknown_causes, vessels
-from validation.practice.make import Trial, simulate_boat_trial, write_trial
+from validation.practice.make import Trial, simulate_trial, write_trial
 from validation.practice.motion import generalised_force, motion_relative_to_water
 
 NEW = ("blueboat", "mariner")
@@ -73,11 +73,11 @@ def test_law_and_mass_matrix_give_the_accelerations_of_the_compiled_program(name
 @pytest.mark.parametrize("concealed", [False, True])
 @pytest.mark.parametrize("name", NEW)
 def test_boatsim_reads_a_simulated_trial(tmp_path: Path, name: str, concealed: bool) -> None:
-    boat, plan = vessels.BOATS[name](), vessels.PLANS[name]
+    boat, plan = vessels.BOATS[name], vessels.PLANS[name]
     makers = (unknown_causes.flooded_tank,)
-    trial = Trial("T001_" + name, name, "unknown", concealed, False, makers)
-    oracle = simulate_boat_trial(trial, boat, plan, (4, 1), np.array([0.3]))
-    write_trial(tmp_path / trial.name, boat, plan, oracle.voyage, {"kind": "unknown"})
+    trial = Trial("T001_" + name, name, "unknown", concealed, False, makers, plan, boat)
+    oracle = simulate_trial(trial, (4, 1), np.array([0.3]))
+    write_trial(tmp_path / trial.name, boat(), plan, oracle.voyage, {"kind": "unknown"})
     recording, found = open_recording(tmp_path / trial.name / "run_3.csv", None, ())
     assert found.name == name
     assert len(recording) >= 240

@@ -9,6 +9,7 @@ import pytest
 
 from boatsim.diagnosis.loading import open_recording
 from validation.practice import hulls
+from validation.practice.boats import BOATS
 from validation.practice.make import Trial, evidence_gains, make_trial, simulate_trial, trials
 from validation.practice.plans import PLANS
 
@@ -19,6 +20,8 @@ CHEAP = Trial(
     False,
     False,
     (hulls.quadratic_damping,),
+    PLANS["martin_tank_model"],
+    BOATS["martin_tank_model"],
 )
 
 
@@ -47,7 +50,11 @@ def test_a_set_has_all_kinds_for_every_vessel_and_conceals_half_of_the_single_ef
 def test_the_tool_reads_a_trial_of_every_vessel_by_its_recording_toml(
     tmp_path: Path, vessel: str
 ) -> None:
-    made = make_trial(Trial("T002_" + vessel, vessel, "none", False, True, ()), 5, tmp_path)
+    made = make_trial(
+        Trial("T002_" + vessel, vessel, "none", False, True, (), PLANS[vessel], BOATS[vessel]),
+        5,
+        tmp_path,
+    )
     recording, boat = open_recording(tmp_path / f"T002_{vessel}" / "run_3.csv", None, ())
     assert boat.name == vessel and len(recording) >= 240 and not recording.remarks
     assert json.loads((tmp_path / f"T002_{vessel}" / "answer.json").read_text()) == made

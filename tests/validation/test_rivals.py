@@ -12,7 +12,9 @@ from validation import trials
 from validation.entry import BadEntry, horizon_of, read_answer, read_answers, replay_errors
 from validation.practice import __main__ as practice
 from validation.practice import hulls
+from validation.practice.boats import BOATS
 from validation.practice.make import Trial, make_trial
+from validation.practice.plans import PLANS
 from validation.rivals.__main__ import RIVALS, answer_trial
 from validation.rivals.accelerations import acceleration_weights, smoothed_derivative
 from validation.rivals.evidence import Judge
@@ -25,6 +27,8 @@ EASY = Trial(
     False,
     False,
     (hulls.righting_arm_stiffening,),
+    PLANS["martin_tank_model"],
+    BOATS["martin_tank_model"],
 )
 NOTHING = {"effects": [], "unknown": {"flag": False}}
 

@@ -7,7 +7,7 @@ from boatsim.physics.content import library_names
 from validation.calibration.unknown_causes import FURTHER, UNKNOWN, LaggedSignal
 from validation.calibration.vessels import BOATS, PLANS
 from validation.practice.cause import Maker
-from validation.practice.make import Trial, simulate_boat_trial
+from validation.practice.make import Trial, simulate_trial
 from validation.practice.motion import RUNS, Boat, Motion
 
 CASES = [(vessel, maker) for vessel in sorted(UNKNOWN) for maker in UNKNOWN[vessel]]
@@ -87,9 +87,16 @@ def test_a_stronger_cause_gives_more_evidence(index: int) -> None:
     maker = FURTHER[name][index]
     gains = []
     for strength in (0.1, 0.5):
-        trial = Trial("T001_" + name, name, "unknown", False, False, (maker,))
-        oracle = simulate_boat_trial(
-            trial, BOATS[name](), PLANS[name], (3, 1), np.array([strength])
+        trial = Trial(
+            "T001_" + name,
+            name,
+            "unknown",
+            False,
+            False,
+            (maker,),
+            PLANS[name],
+            BOATS[name],
         )
+        oracle = simulate_trial(trial, (3, 1), np.array([strength]))
         gains.append(oracle.beyond_library(oracle.causes[0]))
     assert 0.0 < gains[0] < gains[1]

@@ -1,1 +1,1 @@
-"""Calibration campaign: how often the stated probabilities of diagnoses are right."""
+"""Calibration of a diagnosis: how often names are right that are stated with some probability."""

@@ -1,7 +1,7 @@
 """Generation of trials: sample causes, simulate three runs, compute evidence, write files."""
 
 import json
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -30,6 +30,7 @@ KINDS = (
     "unknown",
 )  # alternating open-loop and track-keeping trials
 CALIBRATION = 0.03  # relative sd of a real boat's damping and thrust
+LEAST_FACTOR = 0.3  # of a coefficient of the file
 RIGHTING = 0.005  # relative sd of its righting levers
 SEEN, SURE = 12.0, (5.0, 20.0)  # [nats] visible from, borderline between
 STRANGE_SEEN, STRANGE_SURE = 20.0, (10.0, 40.0)  # [nats] the same of causes outside the library
@@ -51,6 +52,20 @@ class Trial:
     concealed: bool
     outliers: bool
     makers: tuple[Maker, ...]
+    plan: Plan
+    boat: Callable[[], Boat]
+    calibration: float = CALIBRATION  # relative sd of the real boat's damping and thrust
+    stated: bool = False  # whether recording.toml states that sd
+
+    def nominal(self) -> Boat:
+        """Return the boat of the vessel file, with the uncertainty that the trial states."""
+        boat = self.boat()
+        if not self.stated:
+            return boat
+        kinds = sorted({"damping", "thrust"} & set(boat.kinds.values()))
+        return replace(
+            boat, uncertainty={**boat.uncertainty, **dict.fromkeys(kinds, self.calibration)}
+        )
 
 
 def trials(seed: int, per_vessel: int) -> Iterator[Trial]:
@@ -73,6 +88,8 @@ def trials(seed: int, per_vessel: int) -> Iterator[Trial]:
                 concealed,
                 kind == "none" and i > 0,
                 sampled_causes,
+                plan,
+                BOATS[vessel],
             )
 
 
@@ -95,8 +112,8 @@ class Deck:
 
 def make_trial(trial: Trial, seed: int, out: Path) -> dict[str, Any]:
     """Write one trial to its folder and return its answer."""
-    seeds = (seed, int(trial.name[1:4]))
-    plan, strange = PLANS[trial.vessel], trial.kind == "unknown"
+    seeds = (seed, int(trial.name[1:].partition("_")[0]))
+    plan, strange = trial.plan, trial.kind == "unknown"
     strengths, oracle, gains = choose_strengths(trial, seeds)
     answer = {
         "kind": trial.kind,
@@ -104,7 +121,7 @@ def make_trial(trial: Trial, seed: int, out: Path) -> dict[str, Any]:
         "concealed": trial.concealed,
         "strength": [round(float(s), 3) for s in strengths],
         "outliers": trial.outliers,
-        "calibration_error": CALIBRATION,
+        "calibration_error": trial.calibration,
         "effects": [cause_entry(c) for c in oracle.causes],
         **{
             f"noise_{f}_{UNITS[f]}": float(f"{s:.3g}")
@@ -122,7 +139,7 @@ def make_trial(trial: Trial, seed: int, out: Path) -> dict[str, Any]:
             k: round(v, 6) for k, v in rms.items() if k != left_out
         }
     voyage = add_outliers(oracle.voyage, oracle.noise, rng) if trial.outliers else oracle.voyage
-    write_trial(out / trial.name, oracle.nominal, plan, voyage, answer)
+    write_trial(out / trial.name, oracle.nominal, plan, voyage, answer, trial.stated)
     return answer
 
 
@@ -149,23 +166,10 @@ def choose_strengths(trial: Trial, seeds: tuple[int, int]) -> tuple[Array, Oracl
 
 def simulate_trial(trial: Trial, seeds: tuple[int, int], strengths: Array) -> Oracle:
     """Simulate the trial with causes of these strengths; all other samples are unchanged."""
-    return simulate_boat_trial(trial, BOATS[trial.vessel](), PLANS[trial.vessel], seeds, strengths)
-
-
-def simulate_boat_trial(
-    trial: Trial, nominal: Boat, plan: Plan, seeds: tuple[int, ...], strengths: Array
-) -> Oracle:
-    """Simulate a trial of a boat.
-
-    Args:
-        trial: Specification; its causes, and whether a track keeper conceals them.
-        nominal: Boat with the numbers of its vessel file.
-        plan: Recording plan of the boat.
-        seeds: Seeds of all samples.
-        strengths: Strength of each cause; it does not change any other sample.
-    """
+    nominal, plan = trial.nominal(), trial.plan
     grid, rng = plan.grid(), np.random.default_rng([*seeds, 2])
-    noise, real = sample_instrument_noise(nominal, plan, rng), sample_true_boat(nominal, rng)
+    noise = sample_instrument_noise(nominal, plan, rng)
+    real = sample_true_boat(nominal, rng, trial.calibration)
     causes = []
     for i, (maker, s) in enumerate(zip(trial.makers, strengths, strict=True)):
         causes.append(
@@ -195,10 +199,12 @@ def sample_instrument_noise(boat: Boat, plan: Plan, rng: Rng) -> Array:
     return np.array([usual[f] if i in boat.free else 0.0 for i, f in enumerate(FAMILIES)])
 
 
-def sample_true_boat(nominal: Boat, rng: Rng) -> Boat:
+def sample_true_boat(nominal: Boat, rng: Rng, calibration: float) -> Boat:
     """Return a boat with coefficients sampled near those of the file."""
-    sd = {"damping": CALIBRATION, "thrust": CALIBRATION, "restoring": RIGHTING}
-    factors = {n: 1.0 + sd[kind] * rng.standard_normal() for n, kind in nominal.kinds.items()}
+    sd = {"damping": calibration, "thrust": calibration, "restoring": RIGHTING}
+    factors = {}
+    for name, kind in nominal.kinds.items():
+        factors[name] = max(1.0 + sd[kind] * rng.standard_normal(), LEAST_FACTOR)
     return replace(nominal, c={n: x * factors.get(n, 1.0) for n, x in nominal.c.items()})
 
 
@@ -240,6 +246,12 @@ def equivalent_effects(trial: Trial, causes: tuple[Cause, ...]) -> dict[str, Any
     return {}
 
 
+def uncertainty_table(boat: Boat) -> str:
+    """Return the table of recording.toml with the uncertainty of the boat's coefficients."""
+    lines = [f"{kind} = {sd:g}" for kind, sd in sorted(boat.uncertainty.items())]
+    return "\n[coefficient_uncertainty]\n" + "\n".join(lines) + "\n"
+
+
 def add_outliers(voyage: Voyage, noise: Array, rng: Rng) -> Voyage:
     """Add outliers to two per cent of the rows, as by reflections or receiver jumps."""
     hit = rng.random((len(voyage.recorded), RUNS)) < OUTLIERS
@@ -249,7 +261,12 @@ def add_outliers(voyage: Voyage, noise: Array, rng: Rng) -> Voyage:
 
 
 def write_trial(
-    folder: Path, boat: Boat, plan: Plan, voyage: Voyage, answer: dict[str, Any]
+    folder: Path,
+    boat: Boat,
+    plan: Plan,
+    voyage: Voyage,
+    answer: dict[str, Any],
+    stated: bool = False,
 ) -> None:
     """Write recording.toml, three runs and answer.json."""
     folder.mkdir(parents=True, exist_ok=True)
@@ -261,6 +278,7 @@ def write_trial(
         f'vessel = "{boat.name}"\n\n[noise]\n'
         + "".join(f"{k} = {noise[k]:g}\n" for k in STATED if k in noise)
         + f"\n[ambient]\naxes = {json.dumps(free)}\nforce_rms = [{force_rms}]\n"
+        + (uncertainty_table(boat) if stated else "")
     )
     t = np.arange(voyage.grid.rows) * voyage.grid.row
     used = [i for i in range(len(boat.channels)) if np.any(voyage.commands[:, i])]

@@ -15,6 +15,7 @@ from boatsim.diagnosis.loading import Loaded
 from boatsim.diagnosis.locate import missing_force as locate
 from boatsim.diagnosis.locate.regions import regions
 from boatsim.diagnosis.locate.residual_structure import Structure
+from boatsim.diagnosis.open_set.decision import Decision
 from boatsim.diagnosis.problem import Fit, FreeParameter, Problem
 from boatsim.diagnosis.question import Question
 from boatsim.diagnosis.report.assumptions import excluded_candidates, rules_entry
@@ -30,11 +31,13 @@ from boatsim.diagnosis.report.schema import (
     FitEntry,
     LogEntry,
     ParameterEntry,
+    PossibleEntry,
     StructureEntry,
     UnknownEntry,
     WhereEntry,
 )
 from boatsim.diagnosis.report.sentences import verdict_sentences
+from boatsim.diagnosis.report.signs import reason_for_doubt, signs_entry
 from boatsim.diagnosis.search.pruning import IdentifiedEffect
 from boatsim.diagnosis.search.ranking import Ranking
 from boatsim.physics.base import ChannelEffect, Effect
@@ -48,7 +51,7 @@ def compose_answer(
     loaded: Loaded,
     question: Question,
     findings: Sequence[Finding],
-    problem: Problem,
+    decision: Decision,
     ranking: Ranking,
     evaluation: Evaluation,
     plan: next_experiment.Plan | None,
@@ -60,17 +63,21 @@ def compose_answer(
         loaded: Recordings and vessels.
         question: Candidates and held-out recordings.
         findings: Findings of the log quality checks.
-        problem: Recordings and priors, with the correlation time that was chosen.
-        ranking: Result of the selection, with its description.
+        decision: Signs and probabilities of the names, and the problem with its correlation time.
+        ranking: The decided selection, with its description.
         evaluation: Free runs and unexplained forces.
         plan: The next experiment; None if no manoeuvre would add evidence.
         seconds: Duration of the diagnosis [s].
     """
+    problem = decision.problem
     vessel = problem.program.vessel
     entries = {}
     for identified in ranking.named:
         entries[identified.name] = _effect(problem, ranking.best, identified)
     layers = separate_layers(problem, ranking.best, entries)
+    possible = layers.also_possible
+    for identified in ranking.doubtful:
+        possible.append(_possible(problem, ranking.best, identified, decision))
     formulas = described_entries(ranking.description, vessel)
     tested = () if ranking.divergences else question.candidates
     limits = {}
@@ -83,7 +90,7 @@ def compose_answer(
         "version": version(),
         "effects": layers.effects,
         "refined": layers.refined,
-        "also_possible": layers.also_possible,
+        "also_possible": possible,
         "unknown": _unknown(problem, ranking, evaluation),
         "described": formulas,
         "candidates": _candidates(ranking),
@@ -98,6 +105,7 @@ def compose_answer(
         "facts": dict(problem.recordings[0].facts),
         "rules": rules_entry(problem, len(tested)),
         "log": _log(loaded, findings),
+        "signs": signs_entry(decision),
         "config": settings_by_name(problem.config),
     }
     verdict = verdict_sentences(answer, effect_meanings(problem.program.candidates, vessel))
@@ -256,6 +264,21 @@ def _effect(problem: Problem, best: Fit, named: IdentifiedEffect) -> EffectEntry
         "words": _words(best, effect),
         "tied_with": list(map(base_name, named.tied_with)),
         "parameters": parameters | _ratios(problem, best, effect),
+    }
+
+
+def _possible(
+    problem: Problem, best: Fit, doubtful: IdentifiedEffect, decision: Decision
+) -> PossibleEntry:
+    """Return the entry of an effect that is probably a stand-in for another cause."""
+    effect = next(e for e in problem.program.candidates if e.name == doubtful.name)
+    return {
+        "name": base_name(doubtful.name),
+        "probability": round(doubtful.probability, 4),
+        "gain_nats": round(doubtful.gain, 2),
+        "words": _words(best, effect),
+        "why": reason_for_doubt(decision.judgement(doubtful.name).signs, decision.log),
+        "in_patch": True,
     }
 
 

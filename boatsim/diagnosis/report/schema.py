@@ -65,6 +65,66 @@ class PossibleEntry(TypedDict):
     gain_nats: float
     words: str
     why: str  # reason why it is not among the identified effects
+    in_patch: NotRequired[bool]  # whether the patched vessel contains it, as a description
+
+
+class FactorEntry(TypedDict):
+    """Size of an effect on a part of the data, as a factor of the fitted size."""
+
+    value: float
+    sd: float
+
+
+class VariationEntry(TypedDict):
+    """Variation of the size of an effect between parts of the data."""
+
+    excess: float  # sd between the parts beyond their own sd, as a share of the fitted size
+    chi_square: float  # of the hypothesis that the size is the same
+    dof: int
+
+
+class ConsistencyEntry(TypedDict):
+    """Signs by which true effects differ from stand-ins."""
+
+    recordings: list[FactorEntry]  # on each fitted recording
+    held_out: FactorEntry
+    between_times: VariationEntry
+    between_ranges: VariationEntry  # of the quantity with the largest variation
+    quantity: str
+    parts_that_gain: float  # share of the parts in time whose likelihood increases
+    held_out_gain: float  # [nats]
+    alternative_gain: float  # [nats] of the best single-term force in its place
+    prior_distance: float  # largest distance from zero effect, in prior sds
+    at_bound: bool
+
+
+class EffectSignsEntry(TypedDict):
+    """Signs of an identified effect, and the probability that follows from them."""
+
+    name: str
+    gain_nats: float
+    stochastic: bool
+    tied_with: list[str]
+    probability: float  # that it, or one of its look-alikes, is a true cause
+    signs: ConsistencyEntry
+
+
+class LogSignsEntry(TypedDict):
+    """Signs of a log that some cause is not described by the identified effects."""
+
+    coefficient_shift: float  # rms, in prior sds
+    force_ratio: float  # of the fitted to the assumed level of the latent force
+    unexplained: float  # evidence as a share of the threshold of an unknown cause
+    structure_gain: float  # [nats]
+    effects_gain: float  # [nats]
+    effects: int
+
+
+class SignsEntry(TypedDict):
+    """Signs from which the probability of each name is computed."""
+
+    effects: list[EffectSignsEntry]
+    log: LogSignsEntry
 
 
 class TermEntry(TypedDict):
@@ -246,6 +306,7 @@ class Answer(TypedDict):
     effects: list[EffectEntry]
     refined: NotRequired[list[RefinedEntry]]  # empty for a vessel file without [estimated]
     also_possible: NotRequired[list[PossibleEntry]]
+    signs: NotRequired[SignsEntry]
     unknown: UnknownEntry
     described: list[DescribedEntry]
     mean_left: NotRequired[dict[str, MeanEntry]]  # by axis; empty if no mean force remains

@@ -53,14 +53,18 @@ class Ranking:
     explained: float  # [nats] that the deterministic effects of the best set gain
     told_from: float  # [nats] of `unexplained_evidence` from which an unknown cause is reported
     structured: bool  # whether that force, however weak, clearly correlates with something
+    without: Mapping[str, Fit]  # fits without one of the identified effects, by its name
     description: Description | None = None  # symbolic description of it
     # where the model loses each recording, if fits diverge; nothing was fitted then
     divergences: tuple[Divergence, ...] = ()
+    # effects that the best fit contains, but that are probably stand-ins for an unknown cause
+    doubtful: tuple[IdentifiedEffect, ...] = ()
+    stands_in: bool = False  # whether one of them explains so much that a cause must exist
 
     @property
     def adds_effects(self) -> bool:
         """Whether the best fit adds anything to the vessel."""
-        return bool(self.named) or bool(self.described_terms)
+        return bool(self.named) or bool(self.doubtful) or bool(self.described_terms)
 
     @property
     def described_terms(self) -> Mapping[str, SymbolicTerm]:
@@ -71,7 +75,8 @@ class Ranking:
     def unknown(self) -> bool:
         """Whether something remains that no candidate explains."""
         described = self.description is not None or bool(self.divergences)
-        return described or bool(self.left_over > self.told_from) or self.structured
+        remains = bool(self.left_over > self.told_from) or self.structured
+        return described or remains or self.stands_in
 
 
 def rank(
@@ -142,6 +147,7 @@ def rank(
         structured=_clearly_correlates(
             sets, correlated, float(inflated.evidence - sets.base.evidence)
         ),
+        without=sets.fits_without_each(best),
     )
 
 

@@ -1,0 +1,113 @@
+"""The decide stage: which identified effects are stated as causes, and how surely."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+from boatsim.diagnosis.filter import MappedRecording
+from boatsim.diagnosis.open_set.consistency import Consistency, consistency_of
+from boatsim.diagnosis.open_set.log_signs import NO_SIGNS, LogSigns, log_signs
+from boatsim.diagnosis.open_set.probability import features, probability_of_true_cause
+from boatsim.diagnosis.problem import Problem
+from boatsim.diagnosis.search.evidence import required_gain, unknown_threshold
+from boatsim.diagnosis.search.pruning import IdentifiedEffect
+from boatsim.diagnosis.search.ranking import Ranking
+
+
+@dataclass(frozen=True)
+class Judgement:
+    """Signs of an identified effect, and the probability that follows from them.
+
+    Attributes:
+        effect: The effect with its statistics among the candidates.
+        stochastic: Whether it is a stochastic force, or the drift of an instrument.
+        signs: Signs by which true effects differ from stand-ins.
+        probability: Probability that it, or one of its look-alikes, is a true cause.
+    """
+
+    effect: IdentifiedEffect
+    stochastic: bool
+    signs: Consistency
+    probability: float
+
+
+@dataclass(frozen=True)
+class Decision:
+    """Result of the decide stage.
+
+    Attributes:
+        problem: The problem with its correlation time.
+        ranking: The selection; its `named` effects are stated as causes, with their probability,
+            and its `doubtful` ones are only possible.
+        judgements: Signs and probability of all these effects.
+        log: Signs of the log.
+    """
+
+    problem: Problem
+    ranking: Ranking
+    judgements: tuple[Judgement, ...]
+    log: LogSigns
+
+    def judgement(self, name: str) -> Judgement:
+        """Return the judgement of an effect.
+
+        Args:
+            name: Name of the candidate.
+        """
+        return next(one for one in self.judgements if one.effect.name == name)
+
+
+def decide(
+    problem: Problem, ranking: Ranking, held_out: Sequence[MappedRecording], candidates: int
+) -> Decision:
+    """Return a selection whose names are stated only as surely as they are right.
+
+    An effect that is probably a stand-in is not named. It stays in the patched vessel, because it
+    describes the data, and if it explains much the cause is reported as unknown.
+
+    Args:
+        problem: Recordings and priors.
+        ranking: Identified effects.
+        held_out: Held-out recordings.
+        candidates: Number of candidates that were tested.
+    """
+    config = problem.config
+    of_log = log_signs(problem, ranking)
+    signs = consistency_of(problem, ranking.best, ranking.without, held_out)
+    judgements = tuple(_judge(problem, one, signs, of_log) for one in ranking.named)
+    named, doubtful = list[IdentifiedEffect](), list[IdentifiedEffect]()
+    stands_in = False
+    for one in judgements:
+        stated = replace(one.effect, probability=one.probability * one.effect.probability)
+        if one.probability >= config.decide.least_probability:
+            named.append(stated)
+            continue
+        doubtful.append(stated)
+        others = ranking.explained - stated.gain
+        least = required_gain(candidates, config.select) + unknown_threshold(config.select, others)
+        stands_in = stands_in or stated.shared > least
+    decided = replace(ranking, named=tuple(named), doubtful=tuple(doubtful), stands_in=stands_in)
+    return Decision(problem, decided, judgements, of_log)
+
+
+def undecided(problem: Problem, ranking: Ranking) -> Decision:
+    """Return the decision where nothing was fitted, so that no effect is identified.
+
+    Args:
+        problem: Recordings and priors.
+        ranking: Result without identified effects.
+    """
+    return Decision(problem, ranking, (), NO_SIGNS)
+
+
+def _judge(
+    problem: Problem,
+    effect: IdentifiedEffect,
+    signs: Mapping[str, Consistency],
+    of_log: LogSigns,
+) -> Judgement:
+    """Signs and probability of one effect."""
+    stochastic = bool(type(problem.candidates[effect.name]).random)
+    own = signs[effect.name]
+    found = features(effect.gain, stochastic, own, of_log)
+    probability = probability_of_true_cause(found, problem.config.decide)
+    return Judgement(effect, stochastic, own, probability)

@@ -1,0 +1,63 @@
+"""Signs of a whole log that a cause outside the candidates acts."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from boatsim.diagnosis.problem import Fit, Problem
+from boatsim.diagnosis.search.ranking import Ranking
+
+
+@dataclass(frozen=True)
+class LogSigns:
+    """Signs of a selection that some cause is not described by its effects.
+
+    Attributes:
+        coefficient_shift: Rms distance of the nominal coefficients from the vessel file, in prior
+            standard deviations.
+        force_ratio: Largest ratio of the fitted to the assumed level of the latent force.
+        unexplained: Evidence for a force beyond the assumed disturbance, as a share of the
+            threshold of an unknown cause.
+        structure_gain: Evidence of the largest dependence of the remaining force on motion,
+            commands, place or time [nats].
+        effects_gain: Evidence that all identified effects gain together [nats].
+        effects: Number of identified effects.
+    """
+
+    coefficient_shift: float
+    force_ratio: float
+    unexplained: float
+    structure_gain: float
+    effects_gain: float
+    effects: int
+
+
+# where nothing was fitted
+NO_SIGNS = LogSigns(0.0, 1.0, 0.0, 0.0, 0.0, 0)
+
+
+def log_signs(problem: Problem, ranking: Ranking) -> LogSigns:
+    """Return the signs of a selection.
+
+    Args:
+        problem: Recordings and priors.
+        ranking: Identified effects.
+    """
+    best = ranking.best
+    return LogSigns(
+        _coefficient_shift(best),
+        float(np.max(best.levels.force / problem.ambient.force)),
+        float(ranking.left_over / ranking.told_from),
+        float(ranking.structure.gain),
+        float(best.evidence - ranking.recalibrated.evidence),
+        len(ranking.named),
+    )
+
+
+def _coefficient_shift(fit: Fit) -> float:
+    """Rms distance of the nominal coefficients from the vessel file, in prior sds."""
+    shifts = []
+    for parameter, x in zip(fit.free, fit.theta, strict=True):
+        if parameter.relative:
+            shifts.append((float(x) - parameter.mean) / parameter.sd)
+    return float(np.sqrt(np.mean(np.square(shifts)))) if shifts else 0.0

@@ -1,0 +1,108 @@
+"""Signs of stand-ins in diagnosis.json, and the reason why an effect is only possible."""
+
+from boatsim.diagnosis.candidates import base_name
+from boatsim.diagnosis.open_set.consistency import Consistency, Factor, Variation
+from boatsim.diagnosis.open_set.decision import Decision
+from boatsim.diagnosis.open_set.log_signs import LogSigns
+from boatsim.diagnosis.report.schema import (
+    ConsistencyEntry,
+    EffectSignsEntry,
+    FactorEntry,
+    SignsEntry,
+    VariationEntry,
+)
+
+# from which a sign is given as the reason; below these true effects are as frequent as stand-ins
+CLEAR_DEVIATION = 2.5  # standard deviations of the size on held-out recordings
+CLEAR_EXCESS = 0.3  # share of the size by which it varies
+CLEAR_REST = 1.0  # times the threshold of an unknown cause
+
+
+def signs_entry(decision: Decision) -> SignsEntry:
+    """Return the signs of all identified effects and of the log.
+
+    Args:
+        decision: Result of the decide stage.
+    """
+    effects: list[EffectSignsEntry] = []
+    for one in decision.judgements:
+        effects.append(
+            {
+                "name": base_name(one.effect.name),
+                "gain_nats": round(one.effect.gain, 2),
+                "stochastic": one.stochastic,
+                "tied_with": list(map(base_name, one.effect.tied_with)),
+                "probability": round(one.probability, 4),
+                "signs": _consistency(one.signs),
+            }
+        )
+    log = decision.log
+    return {
+        "effects": effects,
+        "log": {
+            "coefficient_shift": round(log.coefficient_shift, 4),
+            "force_ratio": round(log.force_ratio, 4),
+            "unexplained": round(log.unexplained, 4),
+            "structure_gain": round(log.structure_gain, 3),
+            "effects_gain": round(log.effects_gain, 2),
+            "effects": log.effects,
+        },
+    }
+
+
+def reason_for_doubt(signs: Consistency, log: LogSigns) -> str:
+    """Return the clearest sign, in words, that an effect is a stand-in for another cause.
+
+    Args:
+        signs: Signs of the effect.
+        log: Signs of the log.
+    """
+    held_out = signs.held_out
+    if abs(held_out.value - 1.0) > CLEAR_DEVIATION * held_out.sd:
+        return (
+            f"in held-out recordings it has {held_out.value:.2f} ± {held_out.sd:.2f} times the "
+            "fitted size"
+        )
+    if signs.between_ranges.excess > CLEAR_EXCESS:
+        return (
+            f"its size is not the same at all values of {signs.quantity}: it varies by "
+            f"{100.0 * signs.between_ranges.excess:.0f} %"
+        )
+    if signs.between_times.excess > CLEAR_EXCESS:
+        return (
+            "its size is not the same at all times: it varies by "
+            f"{100.0 * signs.between_times.excess:.0f} %"
+        )
+    if log.unexplained > CLEAR_REST:
+        return "with it much of the missing force remains unexplained"
+    if signs.at_bound:
+        return "its fitted size is at the end of the range of plausible values"
+    return "several weak signs together make it more likely that it stands in for another cause"
+
+
+def _consistency(signs: Consistency) -> ConsistencyEntry:
+    """Signs of one effect."""
+    return {
+        "recordings": [_factor(one) for one in signs.recordings],
+        "held_out": _factor(signs.held_out),
+        "between_times": _variation(signs.between_times),
+        "between_ranges": _variation(signs.between_ranges),
+        "quantity": signs.quantity,
+        "parts_that_gain": round(signs.parts_that_gain, 4),
+        "held_out_gain": round(signs.held_out_gain, 3),
+        "alternative_gain": round(signs.alternative_gain, 3),
+        "prior_distance": round(signs.prior_distance, 4),
+        "at_bound": signs.at_bound,
+    }
+
+
+def _factor(factor: Factor) -> FactorEntry:
+    return {"value": round(factor.value, 4), "sd": round(factor.sd, 4)}
+
+
+def _variation(variation: Variation) -> VariationEntry:
+    return {
+        "excess": round(variation.excess, 4),
+        "chi_square": round(variation.chi_square, 3),
+        "dof": variation.dof,
+    }

@@ -1,0 +1,185 @@
+"""The trials of a campaign: specified by seed and number, made, diagnosed, and recorded as JSON."""
+
+import json
+import tempfile
+from collections.abc import Iterator, Mapping, Sequence
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from rich.progress import Progress
+
+from validation.calibration.unknown_causes import UNKNOWN
+from validation.calibration.vessels import BOATS, PLANS
+from validation.practice.cause import Maker, Rng
+from validation.practice.make import CALIBRATION, Trial, make_trial
+
+# share of the trials of each kind
+KINDS = {"none": 0.4, "single": 0.27, "pair": 0.08, "unknown": 0.25}
+ROUGH_SHARE = 0.4  # of trials whose vessel file is rough
+ROUGH = 0.2  # relative sd of its damping and thrust, which recording.toml states
+OUTLIER_SHARE = 0.2  # of trials whose instruments have outliers
+# share of the usual number of trials: six degrees of freedom, and a polynomial with forty
+# coefficients, take longer
+SLOW = {"otter": 0.12, "mariner": 0.6}
+
+Record = dict[str, Any]
+
+
+@dataclass(frozen=True)
+class Job:
+    """One trial of a campaign."""
+
+    seed: int
+    number: int
+
+    @property
+    def name(self) -> str:
+        """Name of its record."""
+        return f"S{self.seed}_T{self.number:05d}"
+
+    def trial(self) -> Trial:
+        """Return its specification, a function of seed and number alone."""
+        rng = np.random.default_rng([self.seed, self.number, 4])
+        weights = np.array([SLOW.get(vessel, 1.0) for vessel in PLANS])
+        vessel = list(PLANS)[rng.choice(len(PLANS), p=weights / weights.sum())]
+        kind = str(rng.choice(list(KINDS), p=list(KINDS.values())))
+        plan = PLANS[vessel]
+        known, unknown = plan.single, UNKNOWN[vessel]
+        causes = sample(unknown, 1, rng) if kind == "unknown" else ()
+        if kind in ("single", "pair"):
+            causes = sample(known, 1 if kind == "single" else 2, rng)
+        rough = bool(rng.random() < ROUGH_SHARE)
+        return Trial(
+            f"T{self.number:05d}_{vessel}",
+            vessel,
+            kind,
+            concealed=plan.kept and bool(rng.random() < 0.5),
+            outliers=bool(rng.random() < OUTLIER_SHARE),
+            makers=causes,
+            plan=plan,
+            boat=BOATS[vessel],
+            calibration=ROUGH if rough else CALIBRATION,
+            stated=rough,
+        )
+
+
+def sample(makers: Sequence[Maker], count: int, rng: Rng) -> tuple[Maker, ...]:
+    """Return different causes, sampled without replacement."""
+    return tuple(makers[i] for i in rng.choice(len(makers), count, replace=False))
+
+
+def run(out: Path, seed: int, count: int, jobs: int) -> None:
+    """Make and diagnose the trials that have no record yet.
+
+    Args:
+        out: Folder of the records.
+        seed: Seed of the campaign.
+        count: Number of trials.
+        jobs: Number of processes.
+    """
+    out.mkdir(parents=True, exist_ok=True)
+    waiting = []
+    for number in range(1, count + 1):
+        job = Job(seed, number)
+        if not record_file(out, job).is_file():
+            waiting.append(job)
+    if not waiting:
+        return
+    with ProcessPoolExecutor(jobs) as pool, Progress() as progress:
+        task = progress.add_task("trials", total=len(waiting))
+        futures = [pool.submit(record, out, job) for job in waiting]
+        for future in as_completed(futures):
+            future.result()
+            progress.advance(task)
+
+
+def record_file(out: Path, job: Job) -> Path:
+    """Return the file with the record of a trial."""
+    return out / f"{job.name}.json"
+
+
+def records(out: Path) -> Iterator[Record]:
+    """Yield the recorded diagnoses of a folder in order of their names."""
+    for file in sorted(out.glob("S*_T*.json")):
+        yield from json.loads(file.read_text())
+
+
+def record(out: Path, job: Job) -> None:
+    """Make one trial, diagnose it, and write the records of its diagnoses."""
+    trial = job.trial()
+    found = []
+    with tempfile.TemporaryDirectory() as folder:
+        answer = make_trial(trial, job.seed, Path(folder))
+        files = Path(folder) / trial.name
+        first = diagnosed(files, trial, answer, ())
+        found.append(first)
+        alike = look_alikes(answer, first)
+        if trial.kind == "single" and answer["visible"] and alike:
+            found.append(diagnosed(files, trial, answer, alike))
+    part = record_file(out, job).with_suffix(".part")
+    part.write_text(json.dumps(found))
+    part.replace(record_file(out, job))
+
+
+def look_alikes(answer: Mapping[str, Any], found: Record) -> tuple[str, ...]:
+    """Return the true effect of a trial with its equivalents and look-alikes.
+
+    None are returned if the diagnosis did not name it.
+    """
+    truth = [effect["name"] for effect in answer["effects"]]
+    same = set(truth)
+    for name in truth:
+        same.update(answer.get("equivalent", {}).get(name, []))
+    for effect in found["effects"]:
+        if effect["name"] in same:
+            return tuple(sorted(same | set(effect["tied_with"])))
+    return ()
+
+
+def diagnosed(
+    files: Path, trial: Trial, answer: Mapping[str, Any], without: Sequence[str]
+) -> Record:
+    """Diagnose a trial and return its record.
+
+    Args:
+        files: Folder of the trial.
+        trial: Its specification.
+        answer: Its answer.json.
+        without: Candidates that are excluded.
+    """
+    from boatsim.diagnosis import pipeline
+
+    runs = [files / "run_1.csv", files / "run_2.csv"]
+    # the program is compiled once for all recordings of a vessel, whatever is excluded
+    diagnosis = pipeline.diagnose(runs, [files / "run_3.csv"], trial.vessel, without=without)
+    given = dict(diagnosis.findings.answer)
+    kind = trial.kind
+    if without:
+        kind = "removed"
+    kept = (
+        "verdict",
+        "effects",
+        "unknown",
+        "signs",
+        "fit",
+        "seconds",
+        "refined",
+        "also_possible",
+    )
+    return {
+        "trial": trial.name,
+        "vessel": trial.vessel,
+        "kind": kind,
+        "concealed": trial.concealed,
+        "rough": trial.stated,
+        "causes": [effect["name"] for effect in answer["effects"]],
+        "equivalent": answer.get("equivalent", {}),
+        "visible": answer.get("visible", False),
+        "borderline": answer.get("borderline", False),
+        "gains": answer.get("marginal_gain_nats", []),
+        "reference": answer.get("reference_position_rms_m", {}),
+        **{key: given[key] for key in kept},
+    }

@@ -1,0 +1,108 @@
+"""Weights of the signs: logistic regression of right and wrong names over a campaign's records."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import minimize
+from scipy.special import expit
+
+from boatsim.diagnosis.open_set.consistency import Consistency, Factor, Variation
+from boatsim.diagnosis.open_set.log_signs import LogSigns
+from boatsim.diagnosis.open_set.probability import features
+from validation.calibration.table import right_names
+
+Array = NDArray[np.float64]
+
+# prior sd of a weight per standard deviation of its feature: chosen by cross-validated likelihood
+WEIGHT_SD = 0.6
+FOLDS = 10  # of the cross-validation, whole trials each
+
+Record = dict[str, Any]
+
+
+def examples(records: Sequence[Record]) -> tuple[list[str], Array, Array, Array]:
+    """Return all identified effects of a campaign as examples.
+
+    An effect removed from the candidates makes no example: what stands in for it is often the
+    same law in other words.
+
+    Returns:
+        Names of the features, features (N, F), whether the name or one of its look-alikes is right
+        (N,), and the number of the trial (N,).
+    """
+    names: list[str] = []
+    rows, right, trials = [], [], []
+    for number, record in enumerate(records):
+        if record["kind"] == "removed":
+            continue
+        truth = right_names(record)
+        signs = record["signs"]
+        log_signs = LogSigns(**signs["log"])
+        for effect in signs["effects"]:
+            found = features(
+                effect["gain_nats"], effect["stochastic"], consistency(effect["signs"]), log_signs
+            )
+            names = list(found)
+            rows.append(list(found.values()))
+            right.append(bool(truth & {effect["name"], *effect["tied_with"]}))
+            trials.append(number)
+    return names, np.array(rows), np.array(right, dtype=float), np.array(trials)
+
+
+def consistency(entry: dict[str, Any]) -> Consistency:
+    """Return the signs of an effect from their entry in diagnosis.json."""
+    given = dict(entry)
+    given["recordings"] = tuple(Factor(**one) for one in entry["recordings"])
+    given["held_out"] = Factor(**entry["held_out"])
+    for name in ("between_times", "between_ranges"):
+        given[name] = Variation(**entry[name])
+    return Consistency(**given)
+
+
+def fit_weights(X: Array, right: Array) -> tuple[float, Array]:
+    """Return the intercept and the weights (F,) of the most probable logistic regression.
+
+    Args:
+        X: Features (N, F).
+        right: Outcomes (N,), 0 or 1.
+    """
+    mean, sd = X.mean(axis=0), X.std(axis=0)
+    sd[sd == 0.0] = 1.0
+    Z = np.column_stack([np.ones(len(X)), (X - mean) / sd])
+
+    def loss(w: Array) -> tuple[float, Array]:
+        odds = Z @ w
+        value = np.logaddexp(0.0, odds) - right * odds
+        penalty = 0.5 * np.sum((w[1:] / WEIGHT_SD) ** 2)
+        slope = Z.T @ (expit(odds) - right)
+        slope[1:] += w[1:] / WEIGHT_SD**2
+        return float(value.sum() + penalty), slope
+
+    w = minimize(loss, np.zeros(Z.shape[1]), jac=True, method="L-BFGS-B").x
+    weights = w[1:] / sd
+    return float(w[0] - weights @ mean), weights
+
+
+def cross_validated(X: Array, right: Array, trials: Array) -> Array:
+    """Return probabilities (N,), each from weights that were fitted to other trials."""
+    found = np.zeros(len(X))
+    for fold in range(FOLDS):
+        inside = trials % FOLDS == fold
+        intercept, weights = fit_weights(X[~inside], right[~inside])
+        found[inside] = expit(intercept + X[inside] @ weights)
+    return found
+
+
+def print_weights(records: Sequence[Record]) -> None:
+    """Print the settings of the decide stage, and their cross-validated likelihood."""
+    names, X, right, trials = examples(records)
+    intercept, weights = fit_weights(X, right)
+    print(f"{len(right)} identified effects, {right.mean():.3f} right")
+    probabilities = np.clip(cross_validated(X, right, trials), 1e-9, 1.0 - 1e-9)
+    log_loss = -np.mean(np.log(np.where(right > 0, probabilities, 1.0 - probabilities)))
+    print(f"cross-validated log loss {log_loss:.3f}")
+    print(f"intercept {intercept:.3g}")
+    for name, weight in zip(names, weights, strict=True):
+        print(f"{name} {weight:.3g}")
