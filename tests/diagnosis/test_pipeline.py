@@ -305,7 +305,7 @@ def test_patched_file_gives_the_fitted_motion_back(folder):
         folder, *(recorded(f"both_{i}", 10 + i, astern=0.7, wind=(0.12, 0.8)) for i in range(2))
     )
     found = pipeline.diagnose(runs[:1], runs[1:], "trial_boat")
-    commands.write(found, folder)
+    commands.write_diagnosis(found, folder)
     again = vessel.load_vessel(str(folder / "patched.toml"))
     assert {e.name for e in again.effects} >= {"weak_reverse", "wind"}
     assert "# [kg]" in (folder / "patched.toml").read_text()  # comments are kept

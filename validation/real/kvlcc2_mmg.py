@@ -217,7 +217,7 @@ def print_error_sources(
     rng = np.random.default_rng(0)
     samples = rng.multivariate_normal(before.theta, before.covariance, SAMPLES)
     expected = []
-    for theta in ParameterSpace(before.free).clipped(samples):
+    for theta in ParameterSpace(before.free).clip(samples):
         expected.append(errors_of(replace(before, theta=theta)))
     rows = []
     for what, error in errors_of(before).items():

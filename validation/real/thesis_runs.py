@@ -144,7 +144,7 @@ class ThesisTest:
                 for change in self._released[knob.effect]:
                     if change.parameter == knob.name:
                         at = self.program.parameter_index(change.owner, change.key)
-                        p[at] = change.of(p[at], x)
+                        p[at] = change.apply_to(p[at], x)
             else:
                 at = self.program.parameter_index(knob.effect, knob.name)
                 p[at] = knob.applied(p[at], x)

@@ -265,7 +265,7 @@ def gauss_newton(tables: Tables, names: Sequence[str], theta: Array, most: int =
     """
     knobs = strengths_of(names)
     space = ParameterSpace(knobs)  # type: ignore[arg-type]
-    theta, damping = space.clipped(theta), 1e-3
+    theta, damping = space.clip(theta), 1e-3
     best, e = log_posterior(tables, knobs, theta)
     A = jacobian(tables, knobs, theta, e)
     for _ in range(most):
@@ -303,7 +303,7 @@ def fit_with_candidate(tables: Tables, base: Fit, name: str) -> Fit:
     )
     starts = []
     for shift in (-1.0, -0.3, 0.3, 1.0):
-        strengths = space.clipped(space.mean + shift * space.sd)
+        strengths = space.clip(space.mean + shift * space.sd)
         starts += [np.concatenate([thrust, base.theta[2:], strengths]) for thrust in thrusts]
     best = max(starts, key=lambda theta: log_posterior(tables, knobs, theta)[0])
     return gauss_newton(tables, names, best, 3)

@@ -84,7 +84,7 @@ def decide(
         doubtful.append(stated)
         others = ranking.explained - stated.gain
         least = required_gain(candidates, config.select) + unknown_threshold(config.select, others)
-        stands_in = stands_in or stated.shared > least
+        stands_in = stands_in or bool(stated.shared > least)
     decided = replace(ranking, named=tuple(named), doubtful=tuple(doubtful), stands_in=stands_in)
     return Decision(problem, decided, judgements, of_log)
 

@@ -193,7 +193,7 @@ def _clearly_correlates(sets: CandidateSets, correlated: Structure, explained: f
     """Whether the force that remains, however weak, clearly correlates with something."""
     config = sets.config.select
     threshold = unknown_threshold(config, explained, config.structure_error)
-    return correlated.significant and correlated.gain > threshold
+    return bool(correlated.significant and correlated.gain > threshold)
 
 
 def select_effects(problem: Problem, candidates: tuple[str, ...]) -> tuple[Fit, Fit]:

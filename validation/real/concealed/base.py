@@ -128,13 +128,13 @@ class PatchedVesselStudy:
             else:
                 place = names.index(change.owner)
                 table, owner = document["effect"][place], self.vessel.effects[place]
-            table[change.key] = change.of(float(getattr(owner, change.key)), undone)
+            table[change.key] = change.apply_to(float(getattr(owner, change.key)), undone)
 
     def _write(self, diagnosis: Diagnosis, name: str) -> Path:
         """Write the patched vessel of a diagnosis; return the file."""
         path = self.folder / name
         ranking = diagnosis.ranking
         patched_vessel.write_patched_vessel(
-            diagnosis.problem, diagnosis.vessel, ranking.best, path, ranking.laws
+            diagnosis.problem, diagnosis.vessel, ranking.best, path, ranking.described_terms
         )
         return path
