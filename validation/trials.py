@@ -75,7 +75,11 @@ def diagnose_one(trial: Path, out: Path, without: Sequence[str] = ()) -> dict[st
     )
     out.mkdir(parents=True, exist_ok=True)
     patched_vessel.write_patched_vessel(
-        found.problem, found.vessel, found.ranking.best, out / "patched.toml", found.ranking.described_terms
+        found.problem,
+        found.vessel,
+        found.ranking.best,
+        out / "patched.toml",
+        found.ranking.described_terms,
     )
     with contextlib.redirect_stdout(io.StringIO()):
         commands.replay(trial / "run_3.csv", str(out / "patched.toml"), [], horizon_of(trial), out)
