@@ -35,7 +35,7 @@ def simulated() -> dict[str, np.ndarray]:
     turn = np.where(np.floor(t / 5.0) % 2 == 0, 1.0, -1.0) * np.where(t < 2.0, 0.0, 1.0)
     port, starboard = 62.4 + 20.8 * turn, 62.4 - 20.8 * turn
     boat = Batch(load_vessel("otter"), step=STEP)
-    assert list(boat.vessel.commands) == ["n_port_radps", "n_starboard_radps"]
+    assert list(boat.vessels[0].commands) == ["n_port_radps", "n_starboard_radps"]
     start = [0.0] * 12
     start[5] = math.radians(350.0)
     states = boat.rollout(start, np.column_stack([port, starboard])[:-1], STEP)

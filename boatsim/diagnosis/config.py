@@ -1035,6 +1035,22 @@ class DecideConfig:
         0.0,
         1.0,
     )
+    unexplained_share: float = setting(
+        0.25,
+        "1",
+        "Share of the explained evidence added to `select.unknown_gain`: a smaller remainder is "
+        "reported as an error of the identified laws and not as an unknown cause. Of the known "
+        "causes of the campaign fewer are called unknown with it, and no unknown cause is missed.",
+        0.0,
+        1.0,
+    )
+    structure_share: float = setting(
+        0.1,
+        "1",
+        "The same share where the remaining force correlates with a motion, a command or a place.",
+        0.0,
+        1.0,
+    )
     intercept: float = setting(
         -0.902, "1", "Log of the odds of a name whose features are all zero.", low=-inf
     )

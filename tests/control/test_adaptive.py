@@ -245,7 +245,7 @@ def compiled(block: Any, **replaced: Any) -> Any:
 
 
 ball_share = compiled(adaptive.projection_share)
-interval = compiled(adaptive.project_interval, ball_share=ball_share)
+interval = compiled(adaptive.project_interval, projection_share=ball_share)
 
 
 class Figures(NamedTuple):

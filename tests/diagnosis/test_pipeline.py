@@ -160,7 +160,7 @@ def test_likelihood_hangs_neither_on_the_filters_step_nor_on_a_delay_that_merely
     laid, levels = map_recording(recording, joystick), prior_levels(joystick.vessel, [recording])
     nothing, delayed = joystick.switches(), joystick.switches(["command_delay"])
     split = laid.values.copy()
-    split[joystick.index("command_delay", "delay")] = 1e-5
+    split[joystick.parameter_index("command_delay", "delay")] = 1e-5
     by_step = []
     for step in (laid.step, laid.step / 2, 1e-3):
         laid = replace(laid, specified_step=step)
@@ -171,10 +171,10 @@ def test_likelihood_hangs_neither_on_the_filters_step_nor_on_a_delay_that_merely
 
 def test_a_ramp_ends_where_the_signal_that_pwm_is_turned_into_is_reached(joystick):
     code, values, on = joystick.module, joystick.values(), joystick.switches(["command_delay"])
-    values[joystick.index("command_delay", "delay")] = 1e-5
+    values[joystick.parameter_index("command_delay", "delay")] = 1e-5
     (
-        values[joystick.index("thrust_lag", "time_constant")],
-        values[joystick.index("rate_limit", "rate")],
+        values[joystick.parameter_index("thrust_lag", "time_constant")],
+        values[joystick.parameter_index("rate_limit", "rate")],
     ) = 0.0, 2.0
     memory, act = np.zeros(joystick.memory_size), np.zeros(joystick.held_size)
     full, none = (joystick.command_array({"pwm_port": pwm}) for pwm in (150.0, 0.0))

@@ -38,10 +38,10 @@ PidCourse, Sliding, MinimumVariance, Predictive, PolePlacement = (
     for n in ("pid_course", "sliding", "minimum_variance", "predictive", "pole_placement")
 )
 surface, nominal = (
-    getattr(sys.modules[Sliding.__module__], name) for name in ("surface", "nominal")
+    getattr(sys.modules[Sliding.__module__], name) for name in ("switching_surface", "nominal_ship")
 )
-predictions = sys.modules[Predictive.__module__].predictions
-ackermann = sys.modules[PolePlacement.__module__].ackermann
+predictions = sys.modules[Predictive.__module__].prediction_matrices
+ackermann = sys.modules[PolePlacement.__module__].ackermann_gains
 T = 0.5  # [s] control period
 
 # Ships: -a_rr -a_rv -a_rphi -a_vr -a_vv a_pr a_pv -a_pphi b_r b_v b_p zeta (the review's section

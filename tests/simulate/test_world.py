@@ -401,7 +401,7 @@ except Exception as error:
 import mujoco
 from boatsim.physics import vessel
 from boatsim.simulate import world
-model = world.build(vessel.load_vessel("joystick_boat"), world.Tank(1.5, 3.0, 0.1, centre=(0.1, 0.0)))
+model = world.build_model(vessel.load_vessel("joystick_boat"), world.Tank(1.5, 3.0, 0.1, centre=(0.1, 0.0)))
 data = mujoco.MjData(model)
 pictures = {}
 with mujoco.Renderer(model, 240, 320) as renderer:

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from boatsim.diagnosis.problem import Fit, Problem
+from boatsim.diagnosis.search.evidence import unknown_threshold
 from boatsim.diagnosis.search.ranking import Ranking
 
 
@@ -47,7 +48,7 @@ def log_signs(problem: Problem, ranking: Ranking) -> LogSigns:
     return LogSigns(
         _coefficient_shift(best),
         float(np.max(best.levels.force / problem.ambient.force)),
-        float(ranking.left_over / ranking.told_from),
+        float(ranking.left_over / unknown_threshold(problem.config.select, ranking.explained)),
         float(ranking.structure.gain),
         float(best.evidence - ranking.recalibrated.evidence),
         len(ranking.named),

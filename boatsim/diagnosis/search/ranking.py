@@ -143,9 +143,14 @@ def rank(
         remaining,
         correlated,
         explained,
-        told_from=unknown_threshold(problem.config.select, explained),
+        told_from=unknown_threshold(
+            problem.config.select, explained, problem.config.decide.unexplained_share
+        ),
         structured=_clearly_correlates(
-            sets, correlated, float(inflated.evidence - sets.base.evidence)
+            sets,
+            correlated,
+            float(inflated.evidence - sets.base.evidence),
+            problem.config.decide.structure_share,
         ),
         without=sets.fits_without_each(best),
     )
@@ -184,15 +189,21 @@ def _remove_refuted_effects(
 def _replaces_law(sets: CandidateSets, best: Fit, waves: str, correlated: Structure) -> bool:
     """Whether a stochastic force leaves a good part of its gain correlated with the motion."""
     gain = float(best.evidence - sets.fit_without(best, waves).evidence)
-    clear = _clearly_correlates(sets, correlated, float(best.evidence - sets.base.evidence))
+    clear = _clearly_correlates(
+        sets,
+        correlated,
+        float(best.evidence - sets.base.evidence),
+        sets.config.select.structure_error,
+    )
     enough = correlated.gain > sets.config.select.remaining_share * gain
     return correlated.is_effect and clear and enough
 
 
-def _clearly_correlates(sets: CandidateSets, correlated: Structure, explained: float) -> bool:
+def _clearly_correlates(
+    sets: CandidateSets, correlated: Structure, explained: float, model_error: float
+) -> bool:
     """Whether the force that remains, however weak, clearly correlates with something."""
-    config = sets.config.select
-    threshold = unknown_threshold(config, explained, config.structure_error)
+    threshold = unknown_threshold(sets.config.select, explained, model_error)
     return bool(correlated.significant and correlated.gain > threshold)
 
 

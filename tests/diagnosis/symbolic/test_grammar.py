@@ -120,7 +120,11 @@ def test_a_described_law_in_a_vessel_file_acts_on_engine_and_twin_alike(tmp_path
     law = '[[effect]]\nuse = "described_force"\naxis = "yaw"\nof = ["surge_speed", "abs_yaw_rate"]\ncoefficient = -0.4\n'
     boat = vessel.load_vessel(str(boats.written(tmp_path, "odd", boats.PLANAR + law)))
     (own,) = (e for e in boat.effects if isinstance(e, DescribedForce))
-    assert own.shape() == {"axis": "yaw", "of": ["surge_speed", "abs_yaw_rate"], "acts": "always"}
+    assert own.fixed_settings() == {
+        "axis": "yaw",
+        "of": ["surge_speed", "abs_yaw_rate"],
+        "acts": "always",
+    }
     assert own.wrench(motion(u=2.0, r=-0.5), np.zeros(9), 0, 0).N == pytest.approx(-0.4)
 
 
