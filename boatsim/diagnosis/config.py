@@ -1133,7 +1133,7 @@ class DecideConfig:
     at_bound: float = setting(
         -4.69,
         "1",
-        "Weight: whether a parameter is at a bound of its range.",
+        "Weight: whether a parameter is at a bound of its range and a recording requires more.",
         low=-inf,
     )
     stochastic: float = setting(

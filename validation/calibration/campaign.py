@@ -17,9 +17,11 @@ from validation.practice.cause import Maker, Rng
 from validation.practice.make import CALIBRATION, Trial, make_trial
 
 # share of the trials of each kind
-KINDS = {"none": 0.4, "single": 0.27, "pair": 0.08, "unknown": 0.25}
+KINDS = {"none": 0.3, "single": 0.27, "pair": 0.08, "unknown": 0.25, "mixed": 0.1}
 ROUGH_SHARE = 0.4  # of trials whose vessel file is rough
 ROUGH = 0.2  # relative sd of its damping and thrust, which recording.toml states
+# of trials whose single effect is diagnosed again with the effect removed from the candidates
+REMOVED_SHARE = 0.3
 OUTLIER_SHARE = 0.2  # of trials whose instruments have outliers
 # share of the usual number of trials: six degrees of freedom, and a polynomial with forty
 # coefficients, take longer
@@ -51,6 +53,8 @@ class Job:
         causes = sample(unknown, 1, rng) if kind == "unknown" else ()
         if kind in ("single", "pair"):
             causes = sample(known, 1 if kind == "single" else 2, rng)
+        if kind == "mixed":
+            causes = sample(known, 1, rng) + sample(unknown, 1, rng)
         rough = bool(rng.random() < ROUGH_SHARE)
         return Trial(
             f"T{self.number:05d}_{vessel}",
@@ -117,7 +121,8 @@ def record(out: Path, job: Job) -> None:
         first = diagnosed(files, trial, answer, ())
         found.append(first)
         alike = look_alikes(answer, first)
-        if trial.kind == "single" and answer["visible"] and alike:
+        removes = np.random.default_rng([job.seed, job.number, 5]).random() < REMOVED_SHARE
+        if trial.kind == "single" and answer["visible"] and alike and removes:
             found.append(diagnosed(files, trial, answer, alike))
     part = record_file(out, job).with_suffix(".part")
     part.write_text(json.dumps(found))

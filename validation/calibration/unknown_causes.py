@@ -246,29 +246,7 @@ def one_sided_rub(boat: Boat, rng: Rng, s: float) -> Cause:
     return Cause("outside_library:one_sided_rub", force=force)
 
 
-# ---- instruments
-
-
-def multipath(boat: Boat, rng: Rng, s: float) -> Cause:
-    """Shift the recorded position in some places, as by reflections from buildings."""
-    spacing = (20.0 if boat.cruise else 5.0) * boat.length
-    k, least = 2 * np.pi / spacing, 0.3
-    size = 0.5 * s * boat.length * (3.0 if boat.cruise else 1.0)
-    toward = rng.uniform(-np.pi, np.pi)
-    a, b = rng.uniform(0.0, 2 * np.pi, 2)
-
-    def show(q: Array) -> Array:
-        reflected = np.maximum(np.sin(k * q[0] + a) * np.sin(k * q[1] + b) - least, 0.0)
-        off = size * (reflected / (1.0 - least)) ** 2
-        shifted = q.copy()
-        shifted[0] += off * np.cos(toward)
-        shifted[1] += off * np.sin(toward)
-        return shifted
-
-    return Cause("outside_library:multipath", show=show)
-
-
-IN_THE_PLANE = (drift_moment, flooded_tank, multipath)
+IN_THE_PLANE = (drift_moment, flooded_tank)
 OF_FREE_SPEED = (weed_bunch, spray_rail)
 OF_PROPELLERS = (thrust_hysteresis, bank_suction)
 OF_ROLL = (roll_tank, one_sided_rub)  # the Otter rolls too little to show them

@@ -158,6 +158,8 @@ def steady_force(boat: Boat, rng: Rng, s: float) -> Cause:
         "steady_force",
         {"roll_Nm": K},
         force=lambda b, m: stack_forces(m.t.size, K=K * np.cos(m.q[3])),
+        # a hull whose righting moment is in proportion to the heel only moves its rest position
+        same=("roll_offset",),
     )
 
 

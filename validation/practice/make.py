@@ -1,7 +1,7 @@
 """Generation of trials: sample causes, simulate three runs, compute evidence, write files."""
 
 import json
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -56,6 +56,14 @@ class Trial:
     boat: Callable[[], Boat]
     calibration: float = CALIBRATION  # relative sd of the real boat's damping and thrust
     stated: bool = False  # whether recording.toml states that sd
+
+    @property
+    def strange(self) -> list[bool]:
+        """Whether each cause is outside the library; of a mixed trial only the last one is."""
+        count = len(self.makers)
+        if self.kind == "mixed":
+            return [False] * (count - 1) + [True]
+        return [self.kind == "unknown"] * count
 
     def nominal(self) -> Boat:
         """Return the boat of the vessel file, with the uncertainty that the trial states."""
@@ -113,7 +121,7 @@ class Deck:
 def make_trial(trial: Trial, seed: int, out: Path) -> dict[str, Any]:
     """Write one trial to its folder and return its answer."""
     seeds = (seed, int(trial.name[1:].partition("_")[0]))
-    plan, strange = trial.plan, trial.kind == "unknown"
+    plan, strange = trial.plan, any(trial.strange)
     strengths, oracle, gains = choose_strengths(trial, seeds)
     answer = {
         "kind": trial.kind,
@@ -128,7 +136,7 @@ def make_trial(trial: Trial, seed: int, out: Path) -> dict[str, Any]:
             for f, s in zip(FAMILIES, oracle.noise, strict=True)
             if s
         },
-        **evidence_entries(strange, gains),
+        **evidence_entries(trial.strange, gains),
         **equivalent_effects(trial, oracle.causes),
     }
     rng = np.random.default_rng([*seeds, 1])
@@ -149,19 +157,18 @@ def choose_strengths(trial: Trial, seeds: tuple[int, int]) -> tuple[Array, Oracl
     Returns:
         The strengths of the causes, the trial, and the gains [nats].
     """
-    strange, count = trial.kind == "unknown", len(trial.makers)
-    low, high = np.log(STRANGE_WANTED if strange else WANTED)
-    wanted = np.exp(
-        [np.random.default_rng([*seeds, 0, i]).uniform(low, high) for i in range(count)]
-    )
-    strengths = np.full(count, FIRST)
+    wanted = []
+    for i, strange in enumerate(trial.strange):
+        low, high = np.log(STRANGE_WANTED if strange else WANTED)
+        wanted.append(np.exp(np.random.default_rng([*seeds, 0, i]).uniform(low, high)))
+    strengths = np.full(len(wanted), FIRST)
     oracle = simulate_trial(trial, seeds, strengths)
-    if not count:
+    if not wanted:
         return strengths, oracle, strengths
-    found = np.maximum(evidence_gains(oracle, strange), 0.1)
-    strengths = np.clip(strengths * np.sqrt(wanted / found), *WEAK_TO_STRONG)
+    found = np.maximum(evidence_gains(oracle, trial.strange), 0.1)
+    strengths = np.clip(strengths * np.sqrt(np.array(wanted) / found), *WEAK_TO_STRONG)
     oracle = simulate_trial(trial, seeds, strengths)
-    return strengths, oracle, evidence_gains(oracle, strange)
+    return strengths, oracle, evidence_gains(oracle, trial.strange)
 
 
 def simulate_trial(trial: Trial, seeds: tuple[int, int], strengths: Array) -> Oracle:
@@ -217,21 +224,25 @@ def cause_entry(cause: Cause) -> dict[str, Any]:
     return found | ({"not_compared": list(cause.not_compared)} if cause.not_compared else {})
 
 
-def evidence_gains(oracle: Oracle, strange: bool) -> Array:
+def evidence_gains(oracle: Oracle, strange: Sequence[bool]) -> Array:
     """Return the evidence gain [nats] of each cause over the others, or over the library."""
-    return np.array(
-        [oracle.beyond_library(c) if strange else oracle.marginal(c) for c in oracle.causes]
-    )
+    gains = []
+    for cause, outside in zip(oracle.causes, strange, strict=True):
+        alone = outside and len(strange) == 1
+        gains.append(oracle.beyond_library(cause) if alone else oracle.marginal(cause))
+    return np.array(gains)
 
 
-def evidence_entries(strange: bool, gains: Array) -> dict[str, Any]:
+def evidence_entries(strange: Sequence[bool], gains: Array) -> dict[str, Any]:
     """Return the entries about evidence in answer.json."""
     if not len(gains):
         return {}
-    seen, (low, high) = (STRANGE_SEEN, STRANGE_SURE) if strange else (SEEN, SURE)
-    least = float(gains.min())
+    thresholds = np.array([STRANGE_SEEN if outside else SEEN for outside in strange])
+    weakest = int(np.argmin(gains / thresholds))
+    low, high = STRANGE_SURE if strange[weakest] else SURE
+    least = float(gains[weakest])
     return {
-        "visible": least > seen,
+        "visible": bool(least > thresholds[weakest]),
         "borderline": low < least < high,
         "marginal_gain_nats": [round(float(g), 1) for g in gains],
     }

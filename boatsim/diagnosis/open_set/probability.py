@@ -53,7 +53,7 @@ def features(
         "ranges_ratio": _log_ratio(consistency.between_ranges),
         "alternative": _within(consistency.alternative_gain / max(gain, 1.0), 0.0, 2.0),
         "prior_distance": log1p(consistency.prior_distance),
-        "at_bound": float(consistency.at_bound),
+        "at_bound": float(exceeds_range(consistency)),
         "stochastic": float(stochastic),
         "coefficient_shift": _within(log_signs.coefficient_shift, 0.0, 4.0),
         "force_ratio": _within(log(max(log_signs.force_ratio, 0.1)), -1.0, 4.0),
@@ -75,6 +75,16 @@ def probability_of_true_cause(found: dict[str, float], config: DecideConfig) -> 
     for name, value in found.items():
         odds += getattr(config, name) * value
     return 1.0 / (1.0 + exp(-_within(odds, -MOST_LOG_ODDS, MOST_LOG_ODDS)))
+
+
+def exceeds_range(consistency: Consistency) -> bool:
+    """Whether a parameter is at a bound of its range, and a recording requires more than that.
+
+    Args:
+        consistency: Signs of an effect.
+    """
+    sizes = [factor.value for factor in consistency.recordings]
+    return consistency.at_bound and max(sizes, default=2.0) > 1.0 + LAW_ERROR
 
 
 def _within(value: float, low: float, high: float) -> float:

@@ -4,6 +4,7 @@ from boatsim.diagnosis.candidates import base_name
 from boatsim.diagnosis.open_set.consistency import Consistency, Factor, Variation
 from boatsim.diagnosis.open_set.decision import Decision
 from boatsim.diagnosis.open_set.log_signs import LogSigns
+from boatsim.diagnosis.open_set.probability import exceeds_range
 from boatsim.diagnosis.report.schema import (
     ConsistencyEntry,
     EffectSignsEntry,
@@ -75,7 +76,7 @@ def reason_for_doubt(signs: Consistency, log: LogSigns) -> str:
         )
     if log.unexplained > CLEAR_REST:
         return "with it much of the missing force remains unexplained"
-    if signs.at_bound:
+    if exceeds_range(signs):
         return "its fitted size is at the end of the range of plausible values"
     return "several weak signs together make it more likely that it stands in for another cause"
 
