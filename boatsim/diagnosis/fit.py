@@ -13,8 +13,8 @@ from boatsim.diagnosis.problem import (
     Fit,
     FreeParameter,
     Problem,
+    free_parameter_values,
     priors_of,
-    theta_of,
 )
 from boatsim.physics.base import Array
 
@@ -81,7 +81,7 @@ def remove_effect(problem: Problem, found: Fit, name: str) -> Fit:
     """
     effects = tuple(n for n in found.effects if n != name)
     free = problem.parameters(effects)
-    theta = theta_of(free, found.values())
+    theta = free_parameter_values(free, found.values())
     nothing = priors_of(free).mean
     on = problem.program.switches(effects)
     for _ in range(problem.config.fit.halvings):

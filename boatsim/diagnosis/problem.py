@@ -127,7 +127,9 @@ def priors_of(free: Sequence[FreeParameter]) -> Priors:
     return Priors(*np.array(rows, dtype=float).reshape(-1, 4).T.copy())
 
 
-def theta_of(free: Sequence[FreeParameter], values: Mapping[tuple[str, str], float]) -> Array:
+def free_parameter_values(
+    free: Sequence[FreeParameter], values: Mapping[tuple[str, str], float]
+) -> Array:
     """Return the values (F,) of free parameters; those without one have their prior mean.
 
     Args:

@@ -61,7 +61,7 @@ class Session:
         self.replayable = True
         self.latencies: list[float] = []
 
-    def start(self, engine: Engine | OpenWater, stop: Callable[[], bool]) -> None:
+    def prepare_run(self, engine: Engine | OpenWater, stop: Callable[[], bool]) -> None:
         """Show the vessel and wait until a driver has taken the sticks.
 
         Args:

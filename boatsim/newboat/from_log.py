@@ -24,7 +24,7 @@ from boatsim.diagnosis.filter import map_recording, prior_levels
 from boatsim.diagnosis.fit import converge, unfitted_hypothesis
 from boatsim.diagnosis.free_runs import free_runs, rms_errors
 from boatsim.diagnosis.loading import open_recording
-from boatsim.diagnosis.problem import Fit, Problem, theta_of
+from boatsim.diagnosis.problem import Fit, Problem, free_parameter_values
 from boatsim.diagnosis.report import patched_vessel
 from boatsim.diagnosis.search.ranking import fit_baseline
 from boatsim.errors import BadInput
@@ -185,7 +185,9 @@ def _initial_fit(problem: Problem, best: Fit, name: str) -> Fit:
     """The initial values of a fit with one more effect."""
     effects = (*best.effects, name)
     free = problem.parameters(effects)
-    return unfitted_hypothesis(effects, free, theta_of(free, best.values()), best.levels)
+    return unfitted_hypothesis(
+        effects, free, free_parameter_values(free, best.values()), best.levels
+    )
 
 
 def _remove_effects(best: Fit, names: Sequence[str]) -> Fit:

@@ -38,7 +38,7 @@ def effect_kinds() -> list[type[EffectKind]]:
 
 
 class Composition:
-    """The arguments with which the laws of each effect are called: parameters, signals, states."""
+    """Places of each effect's parameters, signals and states in the flat arrays of a program."""
 
     def __init__(self, vessel: Vessel, effects: Sequence[Effect], offsets: Sequence[int]) -> None:
         """Assign places to signals and states.

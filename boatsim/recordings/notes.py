@@ -158,10 +158,10 @@ def _folders_to_search(folder: Path) -> Iterator[Path]:
 
 def _parse(file: Path, stem: str) -> NotesFile:
     table = read_toml(file)
-    runs = _Reader(file, table).table("runs")
+    runs = _Reader(file, table).read_table("runs")
     table.pop("runs", None)
-    merged = _merge(table, _Reader(file, runs, "runs.").table(stem))
-    return _Reader(file, merged).notes()
+    merged = _merge(table, _Reader(file, runs, "runs.").read_table(stem))
+    return _Reader(file, merged).read_notes()
 
 
 def _merge(base: Mapping[str, Value], over: Mapping[str, Value]) -> dict[str, Value]:
@@ -205,80 +205,80 @@ class _Reader:
     def __init__(self, file: Path, table: Mapping[str, Value], prefix: str = "") -> None:
         self.file, self.content, self.prefix = file, table, prefix
 
-    def bad(self, key: str, allowed: str) -> BadInput:
+    def bad_value(self, key: str, allowed: str) -> BadInput:
         found = " ".join(repr(self.content[key])[:60].split())
         return BadInput(f"{self.file}: {self.prefix}{key} = {found}; allowed is {allowed}")
 
-    def table(self, key: str) -> dict[str, Value]:
+    def read_table(self, key: str) -> dict[str, Value]:
         value = self.content.get(key, {})
         if not isinstance(value, dict):
-            raise self.bad(key, "a table")
+            raise self.bad_value(key, "a table")
         return value
 
-    def inner(self, key: str) -> "_Reader":
-        return _Reader(self.file, self.table(key), f"{self.prefix}{key}.")
+    def subtable_reader(self, key: str) -> "_Reader":
+        return _Reader(self.file, self.read_table(key), f"{self.prefix}{key}.")
 
-    def text(self, key: str) -> str | None:
+    def read_text(self, key: str) -> str | None:
         value = self.content.get(key)
         if value is None or (isinstance(value, str) and value):
             return value
-        raise self.bad(key, "a text in quotation marks")
+        raise self.bad_value(key, "a text in quotation marks")
 
-    def texts(self, key: str) -> tuple[str, ...]:
+    def read_texts(self, key: str) -> tuple[str, ...]:
         value = self.content.get(key, [])
         texts: list[str] = []
         if not isinstance(value, list):
             value = [value]
         for text in value:
             if not isinstance(text, str):
-                raise self.bad(key, "a text or a list of texts")
+                raise self.bad_value(key, "a text or a list of texts")
             texts.append(text)
         return tuple(texts)
 
-    def number(self, key: str, *, low: float = -math.inf) -> float:
+    def read_number(self, key: str, *, low: float = -math.inf) -> float:
         value = self.content[key]
         if isinstance(value, int | float) and not isinstance(value, bool):
             if low <= value <= MAX_NUMBER:
                 return float(value)
         if low < 0:
-            raise self.bad(key, "a number")
-        raise self.bad(key, f"a number of at least {low:g}")
+            raise self.bad_value(key, "a number")
+        raise self.bad_value(key, f"a number of at least {low:g}")
 
-    def numbers(self, *, low: float = -math.inf) -> dict[str, float]:
-        read = partial(self.number, low=low)
+    def read_numbers(self, *, low: float = -math.inf) -> dict[str, float]:
+        read = partial(self.read_number, low=low)
         return dict(zip(self.content, map(read, self.content), strict=True))
 
-    def use(self) -> tuple[float, float] | None:
+    def read_use(self) -> tuple[float, float] | None:
         if "use" not in self.content:
             return None
         ends = _numbers(self.content["use"])
         if len(ends) != 2 or not ends[0] < ends[1]:
-            raise self.bad("use", "[from_s, to_s], two numbers of which the second is larger")
+            raise self.bad_value("use", "[from_s, to_s], two numbers of which the second is larger")
         return float(ends[0]), float(ends[1])
 
-    def columns(self) -> dict[str, str]:
-        inner = self.inner("columns")
+    def read_columns(self) -> dict[str, str]:
+        inner = self.subtable_reader("columns")
         columns: dict[str, str] = {}
         for name in inner.content:
-            column = inner.text(name)
+            column = inner.read_text(name)
             if column is not None:
                 columns[name] = column
         return columns
 
-    def ambient(self) -> Ambient:
-        inner, found = self.inner("ambient"), Ambient()
+    def read_ambient(self) -> Ambient:
+        inner, found = self.subtable_reader("ambient"), Ambient()
         if "axes" in inner.content:
-            found["axes"] = list(inner.texts("axes"))
+            found["axes"] = list(inner.read_texts("axes"))
         for axis in found.get("axes", ()):
             if axis not in AXES:
                 raise BadInput(f"{self.file}: {unknown_name('ambient.axes: axis', axis, AXES)}")
         if "time_constant_s" in inner.content:
-            found["time_constant_s"] = inner.number("time_constant_s", low=0.0)
+            found["time_constant_s"] = inner.read_number("time_constant_s", low=0.0)
         if "force_rms" in inner.content:
-            found["force_rms"] = inner.sizes("force_rms")
+            found["force_rms"] = inner.read_force_rms("force_rms")
         return found
 
-    def sizes(self, key: str) -> list[float] | dict[str, float]:
+    def read_force_rms(self, key: str) -> list[float] | dict[str, float]:
         """Numbers of at least 0, by axis or in a list."""
         value = self.content[key]
         listed: list[Value] = [value]
@@ -288,18 +288,18 @@ class _Reader:
             listed = value
         found = _numbers(listed)
         if len(found) < len(listed) or min(found, default=0.0) < 0:
-            raise self.bad(key, "a number of at least 0 for each axis")
+            raise self.bad_value(key, "a number of at least 0 for each axis")
         if isinstance(value, dict):
             return dict(zip(value, found, strict=True))
         return found
 
-    def facts(self) -> dict[str, Value]:
+    def checked_facts(self) -> dict[str, Value]:
         if found := first_invalid(self.content):
-            raise self.bad(*found)
+            raise self.bad_value(*found)
         return dict(self.content)
 
-    def notes(self) -> NotesFile:
-        """The notes of the whole file. Raises one BadInput with all mistakes."""
+    def read_notes(self) -> NotesFile:
+        """Return the content of recording.toml. Raises one BadInput with all mistakes."""
         facts: dict[str, Value] = {}
         unknown: list[str] = []
         for key, value in self.content.items():
@@ -311,26 +311,30 @@ class _Reader:
                 unknown.append(_with_hint(key, KEYS))
         mistakes: list[str] = []
         notes = Notes(
-            vessel=_read_or_collect_mistake(mistakes, lambda: self.text("vessel"), None),
-            load=_read_or_collect_mistake(mistakes, lambda: self.texts("load"), ()),
-            settings=_read_or_collect_mistake(mistakes, self.settings, {}),
-            use=_read_or_collect_mistake(mistakes, self.use, None),
-            scale=_read_or_collect_mistake(mistakes, self.scale, None),
+            vessel=_read_or_collect_mistake(mistakes, lambda: self.read_text("vessel"), None),
+            load=_read_or_collect_mistake(mistakes, lambda: self.read_texts("load"), ()),
+            settings=_read_or_collect_mistake(mistakes, self.read_settings, {}),
+            use=_read_or_collect_mistake(mistakes, self.read_use, None),
+            scale=_read_or_collect_mistake(mistakes, self.read_scale, None),
             noise=_read_or_collect_mistake(
-                mistakes, lambda: self.inner("noise").numbers(low=0.0), {}
+                mistakes, lambda: self.subtable_reader("noise").read_numbers(low=0.0), {}
             ),
-            ambient=_read_or_collect_mistake(mistakes, self.ambient, Ambient()),
+            ambient=_read_or_collect_mistake(mistakes, self.read_ambient, Ambient()),
             coefficient_uncertainty=_read_or_collect_mistake(
-                mistakes, lambda: self.inner("coefficient_uncertainty").numbers(low=0.0), {}
+                mistakes,
+                lambda: self.subtable_reader("coefficient_uncertainty").read_numbers(low=0.0),
+                {},
             ),
             facts=_read_or_collect_mistake(mistakes, lambda: self.all_facts(facts), {}),
         )
         noise = {name: sd for name, sd in notes.noise.items() if name in NOISE}
-        columns: dict[str, str] = _read_or_collect_mistake(mistakes, self.columns, dict[str, str]())
+        columns: dict[str, str] = _read_or_collect_mistake(
+            mistakes, self.read_columns, dict[str, str]()
+        )
         if mistakes:
             raise BadInput(join_mistakes(mistakes, self.file))
         for table, allowed in (("noise", NOISE), ("ambient", AMBIENT)):
-            for key in self.table(table):
+            for key in self.read_table(table):
                 if key not in allowed:
                     unknown.append(_with_hint(f"{table}.{key}", allowed))
         remarks = []
@@ -339,22 +343,22 @@ class _Reader:
         notes = replace(notes, noise=noise)
         return NotesFile(notes, columns, tuple(remarks), self.file.parent)
 
-    def settings(self) -> dict[str, dict[str, float]]:
-        settings = self.inner("set")
+    def read_settings(self) -> dict[str, dict[str, float]]:
+        settings = self.subtable_reader("set")
         values: dict[str, dict[str, float]] = {}
         for effect in settings.content:
-            values[effect] = settings.inner(effect).numbers()
+            values[effect] = settings.subtable_reader(effect).read_numbers()
         return values
 
-    def scale(self) -> float | None:
+    def read_scale(self) -> float | None:
         if "scale" not in self.content:
             return None
-        return self.number("scale", low=1e-9)
+        return self.read_number("scale", low=1e-9)
 
     def all_facts(self, outside: Mapping[str, Value]) -> dict[str, Value]:
         """The [facts] table, with the facts outside it."""
-        facts = {**outside, **self.table("facts")}
-        return _Reader(self.file, facts, f"{self.prefix}facts.").facts()
+        facts = {**outside, **self.read_table("facts")}
+        return _Reader(self.file, facts, f"{self.prefix}facts.").checked_facts()
 
 
 def _with_hint(key: str, allowed: tuple[str, ...]) -> str:

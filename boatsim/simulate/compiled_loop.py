@@ -53,7 +53,7 @@ class Goals(NamedTuple):
 
 
 class Orders(NamedTuple):
-    """Commands that the controllers send."""
+    """Arrays with the commands that the controllers of n boats send, and their limits."""
 
     values: Array  # (n, orders) numbers of the records `sent`
     places: Any  # (orders,) input of the vessel that each order is for

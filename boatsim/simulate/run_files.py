@@ -67,7 +67,7 @@ class Steering(Protocol):
     def is_finished(self) -> bool:
         """Return whether the run shall end."""
 
-    def start(self, engine: Engine | OpenWater, stop: Callable[[], bool]) -> None:
+    def prepare_run(self, engine: Engine | OpenWater, stop: Callable[[], bool]) -> None:
         """Prepare for a run of an engine.
 
         Raises:
@@ -168,7 +168,7 @@ def _apply_steering(
     options: RunOptions, steering: Steering, engine: Engine | OpenWater
 ) -> RunOptions:
     """Options under a driver, who is ready when this returns."""
-    steering.start(engine, options.stop)
+    steering.prepare_run(engine, options.stop)
     return replace(
         options,
         goal_source=steering.goal_at,

@@ -93,7 +93,7 @@ class MetricTable(Table):
 
 
 class CheckTable(Table):
-    """A limit of the norm of a signal."""
+    """Table [[check]]: a bound that the norm of a logged signal must stay below."""
 
     signal: str
     norm: Literal["inf", "rms", "l2", "l1"]

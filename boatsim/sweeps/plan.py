@@ -77,7 +77,7 @@ class Plan:
 
     @cached_property
     def probabilities(self) -> Array:
-        """Design matrix (N, D) of the samples at every point."""
+        """Probabilities (N, D) at which the D distributions are inverted for the N samples."""
         names = list(map(attrgetter("target.name"), self.sampled))
         return design_matrix(self.design, names, self.runs, self.seed)
 

@@ -11,7 +11,7 @@ from boatsim.errors import BadInput
 from boatsim.physics import content, vessel
 from boatsim.physics.base import Effect
 from boatsim.physics.kinds.effect import REFINED_GROUPS
-from boatsim.physics.vessel import refined_sd
+from boatsim.physics.vessel import sd_of_refined_numbers
 
 TABLE = """
 [estimated]
@@ -84,8 +84,8 @@ def test_an_effect_refines_numbers_that_are_estimated(
     line: str, effect: str, sd: float | None, tmp_path: Path
 ) -> None:
     loaded = of(f"[estimated]\n{line}\n", tmp_path)
-    assert refined_sd(candidate(effect, loaded), loaded, loaded.estimated) == sd
-    assert refined_sd(candidate(effect, loaded), loaded, {}) is None
+    assert sd_of_refined_numbers(candidate(effect, loaded), loaded, loaded.estimated) == sd
+    assert sd_of_refined_numbers(candidate(effect, loaded), loaded, {}) is None
 
 
 def test_an_estimate_is_the_prior_of_the_coefficients(tmp_path: Path) -> None:

@@ -30,7 +30,7 @@ from boatsim.diagnosis.fit import converge, fit, unfitted_hypothesis
 from boatsim.diagnosis.free_runs import FreeRun, free_runs, rms_errors
 from boatsim.diagnosis.loading import Loaded
 from boatsim.diagnosis.pipeline import Diagnosis
-from boatsim.diagnosis.problem import Fit, Problem, theta_of
+from boatsim.diagnosis.problem import Fit, Problem, free_parameter_values
 from boatsim.physics.base import Array
 from boatsim.physics.vessel import Vessel
 from boatsim.recordings.table import Recording
@@ -247,7 +247,7 @@ class Weather:
         if "wind" not in names:
             names = (*names, "wind")
         free = problem.parameters(names)
-        theta = theta_of(free, ship.values())
+        theta = free_parameter_values(free, ship.values())
         self.rest = []  # positions of all parameters but those of the wind
         for i, f in enumerate(free):
             if f.effect != "wind" or f.name not in WEATHER:

@@ -247,6 +247,15 @@ def format_probability(share: float) -> str:
     return f"{100 * share:.1f} %"
 
 
+def format_cause_probability(probability: float) -> str:
+    """Return the probability that an effect, or a look-alike of it, is a true cause, in words.
+
+    Args:
+        probability: Between 0 and 1.
+    """
+    return f"probability {format_probability(probability)} that it is a true cause"
+
+
 def convenient_unit(unit: str, largest: float) -> tuple[str, float]:
     """Return the printed unit and the factor from SI for numbers up to this size: N -> (kN, 1e-3).
 

@@ -11,7 +11,7 @@ from boatsim.diagnosis.report.formatting import format_parameter, join_words, wo
 from boatsim.diagnosis.report.parameters import parameter_key, reported_sd
 from boatsim.diagnosis.report.schema import EffectEntry, PossibleEntry, RefinedEntry
 from boatsim.physics.base import AXES, CoefficientChange, CoefficientRelease, Effect
-from boatsim.physics.vessel import number_sd, refined_sd
+from boatsim.physics.vessel import number_sd, sd_of_refined_numbers
 
 BODY_UNITS = {"mass": "kg"}  # all other numbers of the body are inertias
 INERTIA_UNIT = "kg m^2"
@@ -67,7 +67,7 @@ def separate_layers(problem: Problem, best: Fit, entries: Mapping[str, EffectEnt
         effect = problem.candidates[name]
         if not _has_known_size(problem, best, effect):
             layers.also_possible.append(_possible(best, effect, entry))
-        elif refined_sd(effect, vessel, vessel.estimated) is None:
+        elif sd_of_refined_numbers(effect, vessel, vessel.estimated) is None:
             layers.effects.append(entry)
         else:
             for number in _refined_numbers(problem, best, effect):

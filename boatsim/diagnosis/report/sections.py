@@ -23,6 +23,7 @@ from boatsim.diagnosis.report.blocks import (
 from boatsim.diagnosis.report.findings import Findings, MissingForceCurve
 from boatsim.diagnosis.report.formatting import (
     capitalize,
+    format_cause_probability,
     format_evidence,
     format_in_one_unit,
     format_nats,
@@ -161,7 +162,7 @@ def _refined(f: Findings) -> Iterator[Block]:
 def _also_possible(f: Findings) -> Iterator[Block]:
     """Yield the effects that may act but that these recordings do not confirm."""
     for entry in f.answer.get("also_possible", []):
-        likely = f"probability {format_probability(entry['probability'])} among its rivals"
+        likely = format_cause_probability(entry["probability"])
         facts = f"{entry['name']} · {format_evidence(entry['gain_nats'])} · {likely}"
         yield Heading(capitalize(effect_description(entry["words"])), facts)
         yield Text(f"{capitalize(entry['why'])}.")
@@ -169,7 +170,7 @@ def _also_possible(f: Findings) -> Iterator[Block]:
 
 def _effect(f: Findings, e: EffectEntry, explain_deviation: bool) -> Iterator[Block]:
     kind = "measurement error" if e["kind"] == "measurement" else "physics"
-    likely = f"probability {format_probability(e['probability'])} among its rivals"
+    likely = format_cause_probability(e["probability"])
     facts = f"{e['name']} · {kind} · {format_evidence(e['gain_nats'])} · {likely}"
     yield Heading(capitalize(effect_description(e["words"])), facts)
     if e["parameters"]:

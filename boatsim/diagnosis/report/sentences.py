@@ -8,11 +8,11 @@ from boatsim.diagnosis.report.described_terms import effect_of_axis
 from boatsim.diagnosis.report.findings import Findings
 from boatsim.diagnosis.report.formatting import (
     capitalize,
+    format_cause_probability,
     format_evidence,
     format_in_one_unit,
     format_number,
     format_parameter,
-    format_probability,
     format_quantity,
     join_words,
     words_of_name,
@@ -445,7 +445,7 @@ def _effect_lines(title: str, effects: Sequence[EffectEntry]) -> list[str]:
         return []
     lines = [f"{title}:"]
     for effect in effects:
-        likely = f"probability {format_probability(effect['probability'])} among its rivals"
+        likely = format_cause_probability(effect["probability"])
         lines.append(f"  {effect['name']}: {format_evidence(effect['gain_nats'])}, {likely}")
         for key, p in effect["parameters"].items():
             lines.append(f"    {key} = {p['value']:.4g} ± {p['sd']:.2g}")

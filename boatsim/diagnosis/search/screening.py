@@ -20,7 +20,7 @@ from boatsim.diagnosis.fit import (
     unfitted_hypothesis,
 )
 from boatsim.diagnosis.noise_levels import log_force_prior
-from boatsim.diagnosis.problem import FilterPasses, Fit, Problem, theta_of
+from boatsim.diagnosis.problem import FilterPasses, Fit, Problem, free_parameter_values
 from boatsim.physics.base import Array, Effect, RandomForce
 
 
@@ -123,7 +123,7 @@ def confirm_screening(problem: Problem, base: Fit, screened: Fit) -> Fit:
     at_base = problem.log_likelihood(base.free, base.theta, on_base, base.levels)
     at_base += log_prior(base.free, base.theta)
     predicted = screened.evidence - base.evidence
-    nothing = theta_of(screened.free, base.values())
+    nothing = free_parameter_values(screened.free, base.values())
     theta, best = screened.theta, screened
     for i in range(config.recheck_points):
         likelihood = problem.log_likelihood(screened.free, theta, on, screened.levels)
@@ -186,7 +186,7 @@ def add_effect(problem: Problem, base: Fit, name: str, start: Mapping[str, float
     values = base.values()
     for parameter, x in start.items():
         values.setdefault((name, parameter), x)
-    return unfitted_hypothesis(effects, free, theta_of(free, values), base.levels)
+    return unfitted_hypothesis(effects, free, free_parameter_values(free, values), base.levels)
 
 
 def hand_over_coefficient(start: Fit, effect: Effect) -> Fit:

@@ -303,7 +303,7 @@ def predict_motion_and_transition(
 
 
 @lean
-def recorded_channel_value(y: Array, code: int, p: Array, on: Any) -> float:
+def predicted_measurement(y: Array, code: int, p: Array, on: Any) -> float:
     """Value of one channel that a recording shows of a motion y (2 NQ,)."""
     return float(apply_measurement_errors(pose_and_velocities(y), p, on)[SHOWS[code]])
 
@@ -337,7 +337,7 @@ def expected_measurement(z: Array, code: int, slope: Array, row: Array, p: Array
             row[j] = 0.0
         return expected_measurement_level(z, code, row)
     copy_vector(slope, row[:NY])
-    return recorded_channel_value(z, code, p, on)
+    return predicted_measurement(z, code, p, on)
 
 
 @compiled
@@ -349,7 +349,7 @@ def remove_position_errors(z: Array, p: Array, on: Any) -> None:
         copy_vector(z, y)
         for _ in range(INVERT):
             for j in range(NQ):
-                z[j] += positions[j] - recorded_channel_value(y, j, p, on)
+                z[j] += positions[j] - predicted_measurement(y, j, p, on)
             copy_vector(z, y)
 
 
@@ -558,4 +558,4 @@ def simulate_intervals(
             if i > starts[run]:
                 last = predict_motion(inputs, i, delay, last, max_step, laws, plant)
             for code in range(NY):
-                out[run, i, code] = recorded_channel_value(y, code, p, on)
+                out[run, i, code] = predicted_measurement(y, code, p, on)

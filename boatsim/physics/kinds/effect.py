@@ -121,7 +121,10 @@ class Effect(CheckedParameters):
 
     @classmethod
     def signals_type(cls) -> Callable[..., tuple[float, ...]]:
-        """Return the NamedTuple type of the role signals, with cosine and sine of angles."""
+        """Return the NamedTuple type of the signals that a vessel assigns to the effect's roles.
+
+        A role in radians also has its cosine and sine.
+        """
         angles: list[str] = []
         for name, role in cls.roles.items():
             if role.unit == "rad":

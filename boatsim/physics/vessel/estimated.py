@@ -55,7 +55,7 @@ def _numbers_of(owner: str, vessel: ChannelBindings) -> list[str]:
     return list(kind.params())
 
 
-def refined_sd(
+def sd_of_refined_numbers(
     effect: Effect, vessel: ChannelBindings, estimated: Mapping[str, float]
 ) -> float | None:
     """Return the relative standard deviation of the estimated numbers that an effect refines.
