@@ -12,7 +12,8 @@ import argparse
 import os
 from pathlib import Path
 
-from validation.calibration import campaign, table
+from validation.calibration import campaign, table, weights
+from validation.calibration.curve import reliability_curve
 
 
 def main() -> None:
@@ -25,10 +26,20 @@ def main() -> None:
     parser.add_argument("--trials", type=int, default=1000)
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
     parser.add_argument("--tables", action="store_true", help="only print the tables")
+    parser.add_argument(
+        "--weights", action="store_true", help="print the weights of the signs that fit best"
+    )
+    parser.add_argument("--curve", type=Path, help="write the reliability curve to this SVG file")
     args = parser.parse_args()
     if not args.tables:
         campaign.run(args.out, args.seed, args.trials, args.jobs)
-    table.print_tables(list(campaign.records(args.out)))
+    records = list(campaign.records(args.out))
+    table.print_tables(records)
+    if args.weights:
+        weights.print_weights(records)
+    if args.curve:
+        rows = table.reliability(table.statements(records))
+        args.curve.write_text(reliability_curve(rows), encoding="utf-8")
 
 
 if __name__ == "__main__":

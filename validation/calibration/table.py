@@ -85,6 +85,7 @@ def figures(records: Sequence[Record]) -> dict[str, str]:
     known = of_kind(records, "single", "pair")
     single = [r for r in of_kind(records, "single") if clearly_visible(r)]
     pair = [r for r in of_kind(records, "pair") if clearly_visible(r)]
+    mixed = [r for r in of_kind(records, "mixed") if clearly_visible(r)]
     piloted = [r for r in unknown if not r["concealed"]]
     concealed = [r for r in unknown if r["concealed"]]
     return {
@@ -101,6 +102,9 @@ def figures(records: Sequence[Record]) -> dict[str, str]:
         "visible single causes, exactly named": count(single, exact),
         "visible pairs, exactly named": count(pair, exact),
         "known causes, a wrong name": count(known, wrong),
+        "known cause beside an unknown one, named": count(mixed, names_a_cause),
+        "known cause beside an unknown one, flagged": count(mixed, flagged),
+        "known cause beside an unknown one, a wrong name": count(mixed, wrong),
         "logs whose recalibrated model is worse than the file": count(records, harmed),
     }
 
@@ -149,6 +153,12 @@ def wrong(record: Record) -> bool:
     return False
 
 
+def names_a_cause(record: Record) -> bool:
+    """Whether a cause of the library was named, or is tied with a name."""
+    right = right_names(record)
+    return any(right & {effect["name"], *effect["tied_with"]} for effect in record["effects"])
+
+
 def harmed(record: Record) -> bool:
     """Whether recalibration made free runs over held-out data worse than the file as written.
 
@@ -166,14 +176,26 @@ WORSE = 1.02  # product of the error ratios from which recalibration has harmed
 
 
 def share(right: Sequence[bool]) -> str:
-    """Return a share with its 95 % interval (E. B. Wilson, JASA 22, 1927) as text."""
+    """Return a share with its 95 % interval as text."""
     n = len(right)
     if not n:
         return "none"
-    p, z = sum(right) / n, QUANTILE
+    p = sum(right) / n
+    low, high = wilson_interval(p, n)
+    return f"{sum(right)}/{n} = {p:.3f} ({low:.3f} to {high:.3f})"
+
+
+def wilson_interval(share_of_trials: float, count: int) -> tuple[float, float]:
+    """Return the 95 % interval of a probability (E. B. Wilson, JASA 22, 1927).
+
+    Args:
+        share_of_trials: Observed share.
+        count: Number of trials, at least one.
+    """
+    p, n, z = share_of_trials, count, QUANTILE
     middle = (p + z * z / (2 * n)) / (1 + z * z / n)
     half = z * sqrt(p * (1 - p) / n + z * z / (4 * n * n)) / (1 + z * z / n)
-    return f"{sum(right)}/{n} = {p:.3f} ({middle - half:.3f} to {middle + half:.3f})"
+    return middle - half, middle + half
 
 
 def count(records: Sequence[Record], holds: Callable[[Record], bool]) -> str:
