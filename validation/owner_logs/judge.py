@@ -46,6 +46,8 @@ class Result:
     accused: bool = False  # false alarm on a good log
     verdict: str = ""
     effects: list[str] = field(default_factory=list)
+    false_names: int = 0  # effects that are neither the cause nor the fault, nor tied with them
+    first_named: bool | None = None  # whether the first effect is the cause
     physics_named: bool | None = None
     called_physics: bool | None = None
     nominal_m: float = float("nan")  # second log, vessel from particulars
@@ -181,7 +183,11 @@ class Judge:
         r.effects = [
             n for e in answer["effects"] for n in dict.fromkeys([e["name"], *e["tied_with"]])
         ]
+        right = self.right_names()
+        meant = [{e["name"], *e["tied_with"]} for e in answer["effects"]]
+        r.false_names = sum(not names & right for names in meant)
         if self.case.cause:
+            r.first_named = bool(meant and meant[0] & set(CAUSES[self.case.cause].named))
             known = {*r.effects, *(e["name"] for e in answer.get("refined", ()))}
             r.physics_named = bool(known & set(CAUSES[self.case.cause].named))
         if self.case.wrong:
@@ -193,6 +199,15 @@ class Judge:
             )
             r.called_physics = not identified and r.verdict != "nothing_missing"
         self.foretell(out / "patched.toml")
+
+    def right_names(self) -> set[str]:
+        """Return the names of effects that are the cause or the fault of the case."""
+        names = set[str]()
+        if self.case.cause:
+            names.update(CAUSES[self.case.cause].named)
+        if self.case.wrong:
+            names.update(self.case.wrong.named, self.case.wrong.entries)
+        return names
 
     def foretell(self, patched: Path) -> None:
         """Simulate the second log with both vessels."""
