@@ -1045,139 +1045,106 @@ class DecideConfig:
         1.0,
     )
     structure_share: float = setting(
-        0.1,
+        0.15,
         "1",
         "The same share where the remaining force correlates with a motion, a command or a place.",
         0.0,
         1.0,
     )
     intercept: float = setting(
-        -0.902, "1", "Log of the odds of a name whose features are all zero.", low=-inf
-    )
-    gain: float = setting(
-        0.785,
+        2.88,
         "1",
-        "Weight: log of the evidence gained [nats]: a weak effect is more often wrong.",
+        "Log of the odds of a name whose features are all zero.",
+        low=-inf,
+    )
+    held_out_gain: float = setting(
+        0.287,
+        "1",
+        "Weight: log of the log-likelihood [nats] that held-out recordings gain by the effect.",
         low=-inf,
     )
     held_out_significance: float = setting(
-        0.058,
+        0.0686,
         "1",
-        "Weight: size on held-out recordings in its standard deviations: a true effect is "
-        "found again.",
+        "Weight: size on held-out recordings in its standard deviations: a true effect is found"
+        " again.",
         low=-inf,
     )
     held_out_deviation: float = setting(
-        -0.258,
+        -0.401,
         "1",
-        "Weight: deviation of the size on held-out recordings from the fitted size, in "
-        "standard deviations with 10 % error of the law.",
-        low=-inf,
-    )
-    weakest_recording: float = setting(
-        -0.0543,
-        "1",
-        "Weight: size on the fitted recording that shows it least, in its standard deviations.",
-        low=-inf,
-    )
-    recordings_apart: float = setting(
-        -0.0122,
-        "1",
-        "Weight: difference of the sizes on the fitted recordings, as a share of the fitted size.",
-        low=-inf,
-    )
-    parts_that_gain: float = setting(
-        3.23,
-        "1",
-        "Weight: share of the parts in time whose likelihood increases by the effect.",
+        "Weight: deviation of the size on held-out recordings from the fitted size, in standard"
+        " deviations with 10 % error of the law.",
         low=-inf,
     )
     times_apart: float = setting(
-        -1.69,
+        -1.6,
         "1",
         "Weight: variation of the size between parts in time, as a share of the fitted size.",
         low=-inf,
     )
-    times_ratio: float = setting(
-        0.0481,
-        "1",
-        "Weight: log of the chi-square per degree of freedom of the variation between parts "
-        "in time.",
-        low=-inf,
-    )
     ranges_apart: float = setting(
-        -0.137,
+        -1.22,
         "1",
-        "Weight: variation of the size between ranges of a speed, a command or the heading.",
-        low=-inf,
-    )
-    ranges_ratio: float = setting(
-        0.0215,
-        "1",
-        "Weight: log of the chi-square per degree of freedom of the variation between ranges.",
-        low=-inf,
-    )
-    alternative: float = setting(
-        -0.152,
-        "1",
-        "Weight: evidence of the best single-term force in its place, as a share of its own.",
-        low=-inf,
-    )
-    prior_distance: float = setting(
-        -1.12,
-        "1",
-        "Weight: log of the distance from zero effect in prior standard deviations: an "
-        "implausible size.",
-        low=-inf,
-    )
-    at_bound: float = setting(
-        -4.69,
-        "1",
-        "Weight: whether a parameter is at a bound of its range and a recording requires more.",
-        low=-inf,
-    )
-    stochastic: float = setting(
-        -0.509,
-        "1",
-        "Weight: whether it is a stochastic force or the drift of an instrument, which fits "
-        "almost anything.",
-        low=-inf,
-    )
-    coefficient_shift: float = setting(
-        -1.13,
-        "1",
-        "Weight: rms distance of the refitted coefficients from the vessel file in prior "
-        "standard deviations.",
-        low=-inf,
-    )
-    force_ratio: float = setting(
-        -0.0693,
-        "1",
-        "Weight: log of the largest ratio of the fitted to the assumed disturbance.",
+        "Weight: variation of the size between ranges of a speed, a command or the heading, as "
+        "a share of the fitted size.",
         low=-inf,
     )
     unexplained: float = setting(
-        -0.507,
+        -0.206,
         "1",
         "Weight: evidence that remains unexplained, as a share of the threshold of an unknown "
         "cause.",
         low=-inf,
     )
     structure: float = setting(
-        -1.78,
+        -0.443,
         "1",
         "Weight: dependence of the remaining force on motion, commands, place or time, as a "
         "share of all gained evidence.",
         low=-inf,
     )
-    structure_gain: float = setting(
-        -0.294,
+    alternative: float = setting(
+        -0.284,
         "1",
-        "Weight: log of the evidence of that dependence [nats].",
+        "Weight: evidence of the best single-term force in its place, as a share of its own.",
+        low=-inf,
+    )
+    prior_distance: float = setting(
+        -1.24,
+        "1",
+        "Weight: log of the distance from zero effect in prior standard deviations: an "
+        "implausible size.",
+        low=-inf,
+    )
+    at_bound: float = setting(
+        -3.65,
+        "1",
+        "Weight: whether a parameter is at a bound of its range and a recording requires more.",
+        low=-inf,
+    )
+    stochastic: float = setting(
+        -2.98,
+        "1",
+        "Weight: whether it is a stochastic force or the drift of an instrument, which fits "
+        "almost anything.",
+        low=-inf,
+    )
+    look_alikes: float = setting(
+        0.729,
+        "1",
+        "Weight: number of its look-alikes, each of which may be the true cause.",
+        low=-inf,
+    )
+    coefficient_shift: float = setting(
+        -0.524,
+        "1",
+        "Weight: rms distance of the refitted coefficients from the vessel file in prior "
+        "standard deviations.",
         low=-inf,
     )
     effects: float = setting(
-        -0.886,
+        -1.33,
         "1",
         "Weight: number of further identified effects: true causes are few.",
         low=-inf,

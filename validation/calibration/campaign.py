@@ -19,6 +19,7 @@ from validation.practice.make import CALIBRATION, Trial, make_trial
 # share of the trials of each kind
 KINDS = {"none": 0.3, "single": 0.27, "pair": 0.08, "unknown": 0.25, "mixed": 0.1}
 ROUGH_SHARE = 0.4  # of trials whose vessel file is rough
+FARTHEST = 1e5  # [m, s, N] beyond which a recorded value belongs to a simulation that diverges
 ROUGH = 0.2  # relative sd of its damping and thrust, which recording.toml states
 # of trials whose single effect is diagnosed again with the effect removed from the candidates
 REMOVED_SHARE = 0.3
@@ -118,12 +119,29 @@ def record(out: Path, job: Job) -> None:
     with tempfile.TemporaryDirectory() as folder:
         answer = make_trial(trial, job.seed, Path(folder))
         files = Path(folder) / trial.name
+        if diverges(files):
+            save(out, job, [])
+            return
         first = diagnosed(files, trial, answer, ())
         found.append(first)
         alike = look_alikes(answer, first)
         removes = np.random.default_rng([job.seed, job.number, 5]).random() < REMOVED_SHARE
         if trial.kind == "single" and answer["visible"] and alike and removes:
             found.append(diagnosed(files, trial, answer, alike))
+    save(out, job, found)
+
+
+def diverges(files: Path) -> bool:
+    """Whether the simulated boat of a trial runs away, as a cause of great strength may make it."""
+    for file in sorted(files.glob("run_*.csv")):
+        values = np.loadtxt(file, delimiter=",", skiprows=1)
+        if not np.all(np.abs(values) < FARTHEST):
+            return True
+    return False
+
+
+def save(out: Path, job: Job, found: Sequence[Record]) -> None:
+    """Write the records of a trial; an interrupted write leaves no file."""
     part = record_file(out, job).with_suffix(".part")
     part.write_text(json.dumps(found))
     part.replace(record_file(out, job))

@@ -11,6 +11,7 @@ from scipy.special import expit
 from boatsim.diagnosis.open_set.consistency import Consistency, Factor, Variation
 from boatsim.diagnosis.open_set.log_signs import LogSigns
 from boatsim.diagnosis.open_set.probability import features
+from boatsim.diagnosis.search.pruning import IdentifiedEffect
 from validation.calibration.table import right_names
 
 Array = NDArray[np.float64]
@@ -42,13 +43,19 @@ def examples(records: Sequence[Record]) -> tuple[list[str], Array, Array, Array]
         log_signs = LogSigns(**signs["log"])
         for effect in signs["effects"]:
             found = features(
-                effect["gain_nats"], effect["stochastic"], consistency(effect["signs"]), log_signs
+                identified(effect), effect["stochastic"], consistency(effect["signs"]), log_signs
             )
             names = list(found)
             rows.append(list(found.values()))
             right.append(bool(truth & {effect["name"], *effect["tied_with"]}))
             trials.append(number)
     return names, np.array(rows), np.array(right, dtype=float), np.array(trials)
+
+
+def identified(entry: dict[str, Any]) -> IdentifiedEffect:
+    """Return the effect of an entry of the signs in diagnosis.json, without its rivals."""
+    gain, tied = entry["gain_nats"], tuple(entry["tied_with"])
+    return IdentifiedEffect(entry["name"], gain, gain, entry["probability"], tied, {})
 
 
 def consistency(entry: dict[str, Any]) -> Consistency:

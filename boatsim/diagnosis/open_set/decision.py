@@ -108,6 +108,6 @@ def _judge(
     """Signs and probability of one effect."""
     stochastic = bool(type(problem.candidates[effect.name]).random)
     own = signs[effect.name]
-    found = features(effect.gain, stochastic, own, of_log)
+    found = features(effect, stochastic, own, of_log)
     probability = probability_of_true_cause(found, problem.config.decide)
     return Judgement(effect, stochastic, own, probability)
