@@ -1,0 +1,124 @@
+"""Words for what held-out recordings show: of each effect, and of the refitted coefficients."""
+
+from collections.abc import Mapping, Sequence
+
+from boatsim.diagnosis.open_set.confirmation import Errors
+from boatsim.diagnosis.open_set.decision import Judgement
+from boatsim.diagnosis.report.families import FAMILIES
+from boatsim.diagnosis.report.formatting import (
+    capitalize,
+    format_in_one_unit,
+    join_words,
+    words_of_name,
+)
+from boatsim.diagnosis.report.schema import AloneEntry, Answer, EffectEntry, Family
+
+NOT_SHOWN = (
+    "Held-out recordings do not show it: they are too short for its size, or do not excite it"
+)
+
+
+def alone_entry(errors: Mapping[str, Errors]) -> dict[Family, AloneEntry]:
+    """Return the errors on held-out recordings without and with an effect, for diagnosis.json.
+
+    Args:
+        errors: Errors by family of signals.
+    """
+    found: dict[Family, AloneEntry] = {}
+    for family in FAMILIES:
+        if family in errors:
+            pair = errors[family]
+            found[family] = {"without": pair.without, "with": pair.with_effect}
+    return found
+
+
+def effect_sentences(effect: EffectEntry) -> list[str]:
+    """Return how an effect alone changes the errors on held-out data, and whether they show it.
+
+    Args:
+        effect: Entry of an identified effect.
+    """
+    found = []
+    if changes := _changes(effect.get("alone", {})):
+        found.append(f"On held-out data it alone {join_words(changes)}.")
+    if not effect.get("confirmed", True):
+        found.append(f"{NOT_SHOWN}.")
+    return found
+
+
+def _changes(alone: Mapping[Family, AloneEntry]) -> list[str]:
+    """Return phrases such as: reduces the position error from 0.52 m to 0.31 m."""
+    reduced, increased, same = list[str](), list[str](), list[str]()
+    for family, (words, unit) in FAMILIES.items():
+        if family not in alone:
+            continue
+        pair = alone[family]
+        before, after = format_in_one_unit([pair["without"], pair["with"]], unit)
+        if before == after:
+            same.append(f"the {words} error ({after})")
+        elif pair["with"] < pair["without"]:
+            reduced.append(f"the {words} error from {before} to {after}")
+        else:
+            increased.append(f"the {words} error from {before} to {after}")
+    found = []
+    for verb, phrases in (
+        ("reduces", reduced),
+        ("increases", increased),
+        ("does not change", same),
+    ):
+        if phrases:
+            found.append(f"{verb} {join_words(phrases)}")
+    return found
+
+
+def contradiction(judged: Judgement) -> str:
+    """Return the reason why held-out recordings contradict an effect, in words.
+
+    Args:
+        judged: Judgement of the effect.
+    """
+    size = judged.signs.held_out
+    changes = join_words(_changes(alone_entry(judged.alone)))
+    reason = (
+        f"held-out recordings contradict it: there it has {size.value:.2f} ± {size.sd:.2f} times "
+        "the fitted size and does not make the recordings more probable"
+    )
+    if changes:
+        reason += f", and it alone {changes}"
+    return reason
+
+
+def recalibration_sentences(answer: Answer) -> list[str]:
+    """Return sentences on coefficients that keep the value of the vessel file.
+
+    Args:
+        answer: Content of diagnosis.json.
+    """
+    found = answer.get("recalibration")
+    if found is None:
+        return []
+    if not found["adopted"]:
+        return [_not_adopted(answer, found["refitted"])]
+    if not found["undetermined"]:
+        return []
+    names = join_words(_names(found["undetermined"]))
+    verb = "keeps its value" if len(found["undetermined"]) == 1 else "keep their values"
+    return [f"{capitalize(names)} {verb} of the vessel file: the recordings do not determine more."]
+
+
+def _not_adopted(answer: Answer, refitted: Mapping[Family, float]) -> str:
+    """Return the sentence on coefficients that would increase the errors on held-out data."""
+    errors = []
+    for family, (words, unit) in FAMILIES.items():
+        if family in refitted and family in answer["fit"]:
+            pair = [answer["fit"][family]["nominal"], refitted[family]]
+            before, after = format_in_one_unit(pair, unit)
+            errors.append(f"{after} in {words} instead of {before}")
+    return (
+        "The coefficients keep the values of the vessel file, because refitted ones have larger "
+        f"errors on held-out data: {join_words(errors)}."
+    )
+
+
+def _names(coefficients: Sequence[str]) -> list[str]:
+    return [words_of_name(name.replace(".", ", ")) for name in coefficients]
