@@ -1060,12 +1060,12 @@ class DecideConfig:
         0.0,
         1.0,
     )
-    held_out_sd: float = setting(
-        0.5,
-        "1",
-        "Largest sd of the size of an effect on held-out recordings, as a share of the fitted "
-        "size, for which these may contradict the effect: a true effect then differs from zero by "
-        "two standard deviations.",
+    contradicting_sds: float = setting(
+        2.0,
+        "sd",
+        "Standard deviations, with 10 % error of the law, by which the size of an effect on "
+        "held-out recordings must be below the fitted size for these to contradict it: a true "
+        "effect falls below by chance in 2 % of logs.",
         0.0,
     )
     intercept: float = setting(

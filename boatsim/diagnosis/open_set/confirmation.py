@@ -2,25 +2,26 @@
 
 An effect is compared with the fit that has all other effects, refitted without it. It is confirmed
 if free runs over held-out recordings are better with it, or if these recordings are more likely
-with it. If neither holds there are two cases. Where the held-out recordings would determine the
-size of the effect, they contradict it, and it is not named. Where they are too short for that, or
-do not excite the effect, they are no evidence against it: the name, which the fitted recordings
-require, stays, and the report states that held-out recordings do not show it.
+with it. If neither holds there are two cases. If its size on the held-out recordings is also
+clearly below the fitted size, they contradict it, and it is not named. Otherwise they may be too
+short, or may not excite the effect. Absent data refute nothing: the name, which the fitted
+recordings require, stays, and the report states that held-out recordings do not confirm it.
 """
 
 from collections.abc import Mapping, Sequence
-from math import exp, log
+from math import exp, hypot, log
 from typing import Literal, NamedTuple
 
 from boatsim.diagnosis.config import DecideConfig
 from boatsim.diagnosis.filter import MappedRecording
 from boatsim.diagnosis.free_runs import free_run_horizon, free_runs, rms_errors
 from boatsim.diagnosis.open_set.consistency import Consistency
+from boatsim.diagnosis.open_set.probability import LAW_ERROR
 from boatsim.diagnosis.problem import Fit, Problem
 
 WHOLE = ""  # name of the fit with all effects among free runs
 
-Outcome = Literal["confirmed", "not shown", "contradicted"]
+Outcome = Literal["confirmed", "open", "contradicted"]
 
 
 class Errors(NamedTuple):
@@ -63,13 +64,14 @@ def outcome_of(errors: Mapping[str, Errors], signs: Consistency, config: DecideC
     Args:
         errors: Errors of free runs without and with it, by family.
         signs: Its gain of likelihood and its size on held-out recordings.
-        config: Largest sd of a size that held-out recordings determine.
+        config: Standard deviations by which a contradicted effect is smaller there.
     """
     if signs.held_out_gain > 0.0 or mean_ratio(errors) < 1.0:
         return "confirmed"
-    if signs.held_out.sd > config.held_out_sd:
-        return "not shown"
-    return "contradicted"
+    size = signs.held_out
+    if 1.0 - size.value > config.contradicting_sds * hypot(size.sd, LAW_ERROR):
+        return "contradicted"
+    return "open"
 
 
 def mean_ratio(errors: Mapping[str, Errors]) -> float:

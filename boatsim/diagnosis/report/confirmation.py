@@ -13,8 +13,9 @@ from boatsim.diagnosis.report.formatting import (
 )
 from boatsim.diagnosis.report.schema import AloneEntry, Answer, EffectEntry, Family
 
-NOT_SHOWN = (
-    "Held-out recordings do not show it: they are too short for its size, or do not excite it"
+NOT_CONFIRMED = (
+    "Held-out recordings neither confirm nor contradict it: they may be too short, or may not "
+    "excite it."
 )
 
 
@@ -33,7 +34,7 @@ def alone_entry(errors: Mapping[str, Errors]) -> dict[Family, AloneEntry]:
 
 
 def effect_sentences(effect: EffectEntry) -> list[str]:
-    """Return how an effect alone changes the errors on held-out data, and whether they show it.
+    """Return how an effect alone changes the errors on held-out data, and whether they confirm it.
 
     Args:
         effect: Entry of an identified effect.
@@ -42,7 +43,7 @@ def effect_sentences(effect: EffectEntry) -> list[str]:
     if changes := _changes(effect.get("alone", {})):
         found.append(f"On held-out data it alone {join_words(changes)}.")
     if not effect.get("confirmed", True):
-        found.append(f"{NOT_SHOWN}.")
+        found.append(NOT_CONFIRMED)
     return found
 
 
