@@ -1,19 +1,22 @@
 """Recalibration never harms: laws of which refitted coefficients are adopted."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
-from pushed_boat import BOAT, COMMANDS, DAMPING, sail
+from pushed_boat import BOAT, COMMANDS, DAMPING, Missing, sail
 
 from boatsim.diagnosis.candidates import library_for
 from boatsim.diagnosis.config import DEFAULT
 from boatsim.diagnosis.filter import NoiseLevels, map_recording, prior_levels
 from boatsim.diagnosis.problem import Fit, FreeParameter, Problem
 from boatsim.diagnosis.recalibration import recalibrate, undetermined_coefficients
+from boatsim.diagnosis.report.patched_vessel import write_patched_vessel
 from boatsim.diagnosis.search.ranking import fit_baseline
 from boatsim.physics.base import Array
 from boatsim.physics.program import Program
+from boatsim.physics.vessel import load_vessel
 from boatsim.recordings.table import Notes, Recording
 
 PROGRAM = Program(BOAT, library_for(BOAT).compiled)
@@ -66,7 +69,9 @@ def test_a_recording_without_excitation_leaves_all_coefficients_as_in_the_file()
 
 
 @pytest.mark.parametrize(("held_out_boat", "adopted"), [(draggy, True), (slippery, False)])
-def test_coefficients_are_adopted_only_if_held_out_data_agree(held_out_boat, adopted) -> None:
+def test_coefficients_are_adopted_only_if_held_out_data_agree(
+    held_out_boat: Missing, adopted: bool, tmp_path: Path
+) -> None:
     problem = problem_of(sail("fitted", 1, draggy)[0])
     held_out = [map_recording(sail("held out", 2, held_out_boat)[0], PROGRAM)]
     nominal, refitted = fit_baseline(problem)
@@ -80,6 +85,9 @@ def test_coefficients_are_adopted_only_if_held_out_data_agree(held_out_boat, ado
         # the recordings differ from these numbers by what they were fitted to
         sd = np.sqrt(np.diag(found.fit.covariance))[drag]
         assert np.all(sd > 0.5 * np.abs(refitted.theta[drag] - 1.0))
+        patched = tmp_path / "patched.toml"
+        write_patched_vessel(problem, BOAT, found.fit, patched)
+        assert load_vessel(str(patched)).effects == BOAT.effects
 
 
 def test_of_two_coefficients_whose_ratio_alone_is_determined_one_is_kept() -> None:

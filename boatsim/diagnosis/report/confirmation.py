@@ -5,13 +5,13 @@ from collections.abc import Mapping, Sequence
 from boatsim.diagnosis.open_set.confirmation import Errors
 from boatsim.diagnosis.open_set.decision import Judgement
 from boatsim.diagnosis.report.families import FAMILIES
+from boatsim.diagnosis.report.findings import Findings
 from boatsim.diagnosis.report.formatting import (
-    capitalize,
     format_in_one_unit,
     join_words,
     words_of_name,
 )
-from boatsim.diagnosis.report.schema import AloneEntry, Answer, EffectEntry, Family
+from boatsim.diagnosis.report.schema import AloneEntry, EffectEntry, Family
 
 NOT_CONFIRMED = (
     "Held-out recordings neither confirm nor contradict it: they may be too short, or may not "
@@ -89,36 +89,41 @@ def contradiction(judged: Judgement) -> str:
     return reason
 
 
-def recalibration_sentences(answer: Answer) -> list[str]:
-    """Return sentences on coefficients that keep the value of the vessel file.
+def recalibration_sentences(f: Findings) -> list[str]:
+    """Return sentences on coefficients that keep the values of the vessel file.
 
     Args:
-        answer: Content of diagnosis.json.
+        f: Findings of a diagnosis.
     """
-    found = answer.get("recalibration")
+    found = f.answer.get("recalibration")
     if found is None:
         return []
     if not found["adopted"]:
-        return [_not_adopted(answer, found["refitted"])]
+        return _not_adopted(f, found["refitted"])
     if not found["undetermined"]:
         return []
     names = join_words(_names(found["undetermined"]))
-    verb = "keeps its value" if len(found["undetermined"]) == 1 else "keep their values"
-    return [f"{capitalize(names)} {verb} of the vessel file: the recordings do not determine more."]
+    return [
+        "The recalibrated vessel keeps these numbers of the vessel file, because the recordings "
+        f"do not determine them better: {names}."
+    ]
 
 
-def _not_adopted(answer: Answer, refitted: Mapping[Family, float]) -> str:
-    """Return the sentence on coefficients that would increase the errors on held-out data."""
+def _not_adopted(f: Findings, refitted: Mapping[Family, float]) -> list[str]:
+    """Return the sentences on coefficients that would be worse on held-out data."""
     errors = []
     for family, (words, unit) in FAMILIES.items():
-        if family in refitted and family in answer["fit"]:
-            pair = [answer["fit"][family]["nominal"], refitted[family]]
+        if family in refitted and family in f.answer["fit"]:
+            pair = [f.answer["fit"][family]["nominal"], refitted[family]]
             before, after = format_in_one_unit(pair, unit)
             errors.append(f"{after} in {words} instead of {before}")
-    return (
-        "The coefficients keep the values of the vessel file, because refitted ones have larger "
-        f"errors on held-out data: {join_words(errors)}."
-    )
+    sentences = [
+        "The recalibrated vessel has the coefficients of the vessel file, because refitted ones "
+        f"are worse on held-out data: {join_words(errors)}."
+    ]
+    if f.has_added_effects:
+        sentences.append("The patched vessel has coefficients fitted together with its effects.")
+    return sentences
 
 
 def _names(coefficients: Sequence[str]) -> list[str]:

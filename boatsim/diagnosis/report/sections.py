@@ -429,7 +429,7 @@ def _validation(f: Findings) -> Iterator[Block]:
             f"rms error of free runs of {fit['horizon_s']:g} s over {join_words(fit['held_out'])}"
         )
         yield Table(caption, ["error in", *header], rows)
-    if sentences := recalibration_sentences(f.answer):
+    if sentences := recalibration_sentences(f):
         yield Text(" ".join(sentences))
     by_run = figures.group_by_recording(f.free_runs)
     if len(by_run) > 1:

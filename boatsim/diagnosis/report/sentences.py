@@ -488,6 +488,6 @@ def _validation(f: Findings) -> list[str]:
                 unit, scale = "deg", 57.29578
             cells = ", ".join(f"{model} {rms[model] * scale:.4g}" for model in MODELS)
             lines.append(f"  {words} [{unit}]: {cells}")
-    for sentence in recalibration_sentences(f.answer):
+    for sentence in recalibration_sentences(f):
         lines.append(f"  {sentence}")
     return lines
