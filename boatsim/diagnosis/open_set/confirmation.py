@@ -2,26 +2,25 @@
 
 An effect is compared with the fit that has all other effects, refitted without it. It is confirmed
 if free runs over held-out recordings are better with it, or if these recordings are more likely
-with it. If neither holds there are two cases. If its size on the held-out recordings is also
-clearly below the fitted size, they contradict it, and it is not named. Otherwise they may be too
-short, or may not excite the effect. Absent data refute nothing: the name, which the fitted
-recordings require, stays, and the report states that held-out recordings do not confirm it.
+with it. If neither holds there are two cases. Where the held-out recordings determine its size,
+they could have shown it, but are explained as well without it: it is unconfirmed, and is not named.
+Where they are too short for that, or do not excite the effect, they are no evidence against it: the
+name, which the fitted recordings require, stays, and the report states that it is open.
 """
 
 from collections.abc import Mapping, Sequence
-from math import exp, hypot, log
+from math import exp, log
 from typing import Literal, NamedTuple
 
 from boatsim.diagnosis.config import DecideConfig
 from boatsim.diagnosis.filter import MappedRecording
 from boatsim.diagnosis.free_runs import free_run_horizon, free_runs, rms_errors
 from boatsim.diagnosis.open_set.consistency import Consistency
-from boatsim.diagnosis.open_set.probability import LAW_ERROR
 from boatsim.diagnosis.problem import Fit, Problem
 
 WHOLE = ""  # name of the fit with all effects among free runs
 
-Outcome = Literal["confirmed", "open", "contradicted"]
+Outcome = Literal["confirmed", "open", "unconfirmed"]
 
 
 class Errors(NamedTuple):
@@ -64,14 +63,13 @@ def outcome_of(errors: Mapping[str, Errors], signs: Consistency, config: DecideC
     Args:
         errors: Errors of free runs without and with it, by family.
         signs: Its gain of likelihood and its size on held-out recordings.
-        config: Standard deviations by which a contradicted effect is smaller there.
+        config: Largest sd of a size that held-out recordings determine.
     """
     if signs.held_out_gain > 0.0 or mean_ratio(errors) < 1.0:
         return "confirmed"
-    size = signs.held_out
-    if 1.0 - size.value > config.contradicting_sds * hypot(size.sd, LAW_ERROR):
-        return "contradicted"
-    return "open"
+    if signs.held_out.sd > config.confirmed_sd:
+        return "open"
+    return "unconfirmed"
 
 
 def mean_ratio(errors: Mapping[str, Errors]) -> float:

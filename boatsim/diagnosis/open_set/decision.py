@@ -66,9 +66,9 @@ def decide(
 ) -> Decision:
     """Return a selection whose names are stated only as surely as they are right.
 
-    An effect that is probably a stand-in, or that held-out recordings contradict, is not named. It
-    stays in the patched vessel, because it describes the data, and if it explains much the cause is
-    reported as unknown.
+    An effect that is probably a stand-in, or that held-out recordings do not confirm, is not named.
+    It stays in the patched vessel, because it describes the data, and if it explains much the cause
+    is reported as unknown.
 
     Args:
         problem: Recordings and priors.
@@ -90,7 +90,7 @@ def decide(
         probability = judged.probability * judged.effect.probability
         stated = replace(judged.effect, probability=probability)
         probable = judged.probability >= config.decide.least_probability
-        if probable and judged.outcome != "contradicted":
+        if probable and judged.outcome != "unconfirmed":
             named.append(stated)
             continue
         doubtful.append(stated)

@@ -20,7 +20,7 @@ from boatsim.diagnosis.problem import Fit, FreeParameter, Problem
 from boatsim.diagnosis.question import Question
 from boatsim.diagnosis.recalibration import Recalibration
 from boatsim.diagnosis.report.assumptions import excluded_candidates, rules_entry
-from boatsim.diagnosis.report.confirmation import alone_entry, contradiction
+from boatsim.diagnosis.report.confirmation import alone_entry, reason_unconfirmed
 from boatsim.diagnosis.report.described_terms import described_entries
 from boatsim.diagnosis.report.families import FAMILIES
 from boatsim.diagnosis.report.formatting import capitalize, join_words
@@ -299,8 +299,8 @@ def _possible(
     effect = next(e for e in problem.program.candidates if e.name == doubtful.name)
     judged = decision.judgement(doubtful.name)
     why = reason_for_doubt(judged.signs, decision.log)
-    if judged.outcome == "contradicted":
-        why = contradiction(judged)
+    if judged.outcome == "unconfirmed":
+        why = reason_unconfirmed(judged)
     return {
         "name": base_name(doubtful.name),
         "probability": round(doubtful.probability, 4),

@@ -13,9 +13,9 @@ from boatsim.diagnosis.report.formatting import (
 )
 from boatsim.diagnosis.report.schema import AloneEntry, EffectEntry, Family
 
-NOT_CONFIRMED = (
-    "Held-out recordings neither confirm nor contradict it: they may be too short, or may not "
-    "excite it."
+OPEN = (
+    "Held-out recordings neither confirm nor contradict it: they are too short, or do not excite "
+    "it."
 )
 
 
@@ -43,7 +43,7 @@ def effect_sentences(effect: EffectEntry) -> list[str]:
     if changes := _changes(effect.get("alone", {})):
         found.append(f"On held-out data it alone {join_words(changes)}.")
     if not effect.get("confirmed", True):
-        found.append(NOT_CONFIRMED)
+        found.append(OPEN)
     return found
 
 
@@ -72,20 +72,16 @@ def _changes(alone: Mapping[Family, AloneEntry]) -> list[str]:
     return found
 
 
-def contradiction(judged: Judgement) -> str:
-    """Return the reason why held-out recordings contradict an effect, in words.
+def reason_unconfirmed(judged: Judgement) -> str:
+    """Return the reason why an effect is not confirmed, in words.
 
     Args:
         judged: Judgement of the effect.
     """
-    size = judged.signs.held_out
+    reason = "held-out recordings, which could show it, are explained as well without it"
     changes = join_words(_changes(alone_entry(judged.alone)))
-    reason = (
-        f"held-out recordings contradict it: there it has {size.value:.2f} ± {size.sd:.2f} times "
-        "the fitted size and does not make the recordings more probable"
-    )
     if changes:
-        reason += f", and it alone {changes}"
+        reason += f": there it alone {changes}"
     return reason
 
 

@@ -39,7 +39,7 @@ class EffectEntry(Acting):
     parameters: dict[str, ParameterEntry]  # by name with unit
     # errors without it, all else refitted, and with it
     alone: NotRequired[dict[Family, AloneEntry]]
-    # whether held-out recordings confirm it; an effect that they contradict is not identified
+    # whether held-out recordings confirm it; else they could not show it
     confirmed: NotRequired[bool]
 
 
