@@ -786,6 +786,15 @@ class FitConfig:
     correlation_time_steps: int = setting(
         2, "count", "Halvings or doublings of the correlation time that are tested.", low=0
     )
+    undetermined_sd: float = setting(
+        0.7,
+        "prior sd",
+        "A coefficient with a larger posterior sd keeps the value of the vessel file: the "
+        "recordings then say less about it than the prior does, because precisions add up and "
+        "0.7 is the root of one half.",
+        0.0,
+        1.0,
+    )
     correlation_time_certainty: float = setting(
         2.0,
         "standard errors",
@@ -1051,6 +1060,15 @@ class DecideConfig:
         0.0,
         1.0,
     )
+    confirmed_sd: float = setting(
+        0.5,
+        "1",
+        "Largest sd of the size of an effect on held-out recordings, as a share of the fitted "
+        "size, for which these must confirm it: a true effect then differs from zero by two "
+        "standard deviations. Of 33 names in a sample of the campaign this removes one of two "
+        "wrong ones and none of 31 right ones.",
+        0.0,
+    )
     intercept: float = setting(
         3.1,
         "1",
@@ -1177,6 +1195,14 @@ class ValidateConfig:
         "almost nothing of it.",
         0.0,
         1.0,
+    )
+    harmful: float = setting(
+        1.0,
+        "1",
+        "Ratio of rms errors of free runs, geometric mean over the signals, above which refitted "
+        "coefficients are not adopted. A change of the vessel file needs a reason, and no gain on "
+        "held-out recordings is none.",
+        low=1.0,
     )
     alone_share: float = setting(
         0.95,

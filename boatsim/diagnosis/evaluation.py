@@ -3,11 +3,9 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-import numpy as np
-
 from boatsim.diagnosis.filter import MappedRecording
 from boatsim.diagnosis.fit import gauss_newton
-from boatsim.diagnosis.free_runs import FreeRun, free_runs, rms_errors
+from boatsim.diagnosis.free_runs import FreeRun, free_run_horizon, free_runs, rms_errors
 from boatsim.diagnosis.loading import recording_order
 from boatsim.diagnosis.locate.mean_force import mean_residual_force
 from boatsim.diagnosis.locate.missing_force import MissingForce, missing_force, residual_force
@@ -80,19 +78,6 @@ def evaluate(problem: Problem, ranking: Ranking, held_out: Sequence[MappedRecord
         tuple(remaining),
         mean_residual_force(problem, ranking.best, everything),
     )
-
-
-def free_run_horizon(problem: Problem, held_out: Sequence[MappedRecording]) -> float:
-    """Return the length of free runs [s], at most that of the longest held-out recording.
-
-    Args:
-        problem: Problem with the usual length.
-        held_out: Held-out recordings, at least one.
-    """
-    longest = max(float(np.ptp(mapped.times)) for mapped in held_out)
-    if longest < problem.horizon:
-        return min(problem.horizon, float(f"{longest:.3g}"))
-    return problem.horizon
 
 
 def in_order(recordings: Sequence[MappedRecording]) -> list[MappedRecording]:

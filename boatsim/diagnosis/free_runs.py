@@ -38,6 +38,19 @@ class FreeRun:
         return [simulated[name] - recorded[name] for name in signals if name in recorded]
 
 
+def free_run_horizon(problem: Problem, held_out: Sequence[MappedRecording]) -> float:
+    """Return the length of free runs [s], at most that of the longest held-out recording.
+
+    Args:
+        problem: Problem with the usual length.
+        held_out: Held-out recordings, at least one.
+    """
+    longest = max(float(np.ptp(mapped.times)) for mapped in held_out)
+    if longest < problem.horizon:
+        return min(problem.horizon, float(f"{longest:.3g}"))
+    return problem.horizon
+
+
 def free_runs(
     problem: Problem,
     fits: Mapping[str, Fit],

@@ -1,4 +1,4 @@
-"""The pipeline of a diagnosis: load, check, fit, select, decide, describe, validate, plan, report.
+"""The pipeline of a diagnosis: load, check, fit, select, decide, describe, plan, adopt, validate.
 
 Each stage is a function from the results of earlier stages to a frozen result. It can be called
 alone.
@@ -31,6 +31,7 @@ from boatsim.diagnosis.open_set.decision import Decision, undecided
 from boatsim.diagnosis.open_set.decision import decide as judge_names
 from boatsim.diagnosis.problem import Problem
 from boatsim.diagnosis.question import Question, compile_program, pose_question
+from boatsim.diagnosis.recalibration import keep_undetermined, recalibrate
 from boatsim.diagnosis.report.answer import compose_answer
 from boatsim.diagnosis.report.findings import Findings
 from boatsim.diagnosis.report.results import findings_of
@@ -164,6 +165,7 @@ def _fit_and_select(
     report("planning what to record next", DESCRIBING[1])
     next_plan = plan(decision, ranking)
     report("free runs", EVALUATING)
+    ranking = adopt(question, decision, ranking)
     evaluation = validate(question, decision, ranking)
     stages = Stages(decision, ranking, evaluation, next_plan)
     return _compose(loaded, question, findings, stages, begin)
@@ -316,6 +318,30 @@ def describe(question: Question, decision: Decision, report: Report = ignore_pro
         doubtful=tuple(one for one in ranking.doubtful if one.name in effects),
         description=replace(found, terms=tuple(terms)),
     )
+
+
+def adopt(question: Question, decision: Decision, ranking: Ranking) -> Ranking:
+    """Return the ranking with those refitted coefficients that are determined and do no harm.
+
+    The selection has compared hypotheses with all coefficients free, so that its evidence stays
+    valid. Without effects the patched vessel is the recalibrated one. A formula stays with the
+    coefficients that it was fitted with.
+
+    Args:
+        question: Held-out recordings.
+        decision: The problem with its correlation time.
+        ranking: Selected and described effects.
+    """
+    problem, best = decision.problem, ranking.best
+    refitted = ranking.recalibrated
+    if not best.effects:
+        refitted = best
+    found = recalibrate(problem, ranking.nominal, refitted, question.held_out)
+    if not best.effects:
+        best = found.fit
+    elif ranking.description is None:
+        best = keep_undetermined(problem, best)
+    return replace(ranking, best=best, recalibrated=found.fit, recalibration=found)
 
 
 def validate(question: Question, decision: Decision, ranking: Ranking) -> Evaluation:

@@ -5,9 +5,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from boatsim.diagnosis.divergence import divergences, first_rows_are_finite, follow
-from boatsim.diagnosis.evaluation import MODELS, Evaluation, free_run_horizon, in_order
+from boatsim.diagnosis.evaluation import MODELS, Evaluation, in_order
 from boatsim.diagnosis.filter import MappedRecording, axes_of
-from boatsim.diagnosis.free_runs import FreeRun, free_runs, rms_errors
+from boatsim.diagnosis.free_runs import FreeRun, free_run_horizon, free_runs, rms_errors
 from boatsim.diagnosis.locate.missing_force import MissingForce, residual_force
 from boatsim.diagnosis.locate.residual_structure import CONSTANT, Structure
 from boatsim.diagnosis.problem import Fit, Problem

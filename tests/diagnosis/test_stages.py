@@ -75,6 +75,7 @@ def test_later_stages_take_the_results_of_earlier_ones(
     decision = pipeline.decide(question, selection)
     assert len(decision.judgements) == len(selection.ranking.named)
     ranking = replace(pipeline.describe(question, decision), description=None)
+    ranking = pipeline.adopt(question, decision, ranking)
     evaluation = pipeline.validate(question, decision, ranking)
     assert set(MODELS) <= set(evaluation.free_runs[0].channels)
     plan = pipeline.plan(decision, ranking)
@@ -82,4 +83,10 @@ def test_later_stages_take_the_results_of_earlier_ones(
     assert answer["tried"] == [ONLY]
     assert answer["fit"]["held_out"] == [mapped.name for mapped in question.held_out]
     assert answer["config"]["load.row_rate"] == 4.0
+    position, heading = answer["fit"]["position_rms_m"], answer["fit"]["heading_rms_rad"]
+    nominal = position["nominal"] * heading["nominal"]
+    assert position["recalibrated"] * heading["recalibrated"] <= nominal
+    for effect in answer["effects"]:
+        alone = effect["alone"]["position_rms_m"]
+        assert alone["with"] == pytest.approx(position["patched"], rel=0.05)
     assert answer["seconds"] == 1.0

@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from boatsim.diagnosis.filter import MappedRecording
+from boatsim.diagnosis.open_set.confirmation import Errors, Outcome, errors_of_each, outcome_of
 from boatsim.diagnosis.open_set.consistency import Consistency, consistency_of
 from boatsim.diagnosis.open_set.log_signs import NO_SIGNS, LogSigns, log_signs
 from boatsim.diagnosis.open_set.probability import features, probability_of_true_cause
@@ -22,12 +23,16 @@ class Judgement:
         stochastic: Whether it is a stochastic force, or the drift of an instrument.
         signs: Signs by which true effects differ from stand-ins.
         probability: Probability that it, or one of its look-alikes, is a true cause.
+        alone: Errors of free runs over held-out recordings without and with it, by family.
+        outcome: What held-out recordings show of it.
     """
 
     effect: IdentifiedEffect
     stochastic: bool
     signs: Consistency
     probability: float
+    alone: Mapping[str, Errors]
+    outcome: Outcome
 
 
 @dataclass(frozen=True)
@@ -61,8 +66,9 @@ def decide(
 ) -> Decision:
     """Return a selection whose names are stated only as surely as they are right.
 
-    An effect that is probably a stand-in is not named. It stays in the patched vessel, because it
-    describes the data, and if it explains much the cause is reported as unknown.
+    An effect that is probably a stand-in, or that held-out recordings do not confirm, is not named.
+    It stays in the patched vessel, because it describes the data, and if it explains much the cause
+    is reported as unknown.
 
     Args:
         problem: Recordings and priors.
@@ -73,12 +79,18 @@ def decide(
     config = problem.config
     of_log = log_signs(problem, ranking)
     signs = consistency_of(problem, ranking.best, ranking.without, held_out)
-    judgements = tuple(_judge(problem, one, signs, of_log) for one in ranking.named)
+    alone = errors_of_each(problem, ranking.best, ranking.without, held_out)
+    judgements = []
+    for one in ranking.named:
+        own, errors = signs[one.name], alone[one.name]
+        judgements.append(_judge(problem, one, own, of_log, errors))
     named, doubtful = list[IdentifiedEffect](), list[IdentifiedEffect]()
     stands_in = False
-    for one in judgements:
-        stated = replace(one.effect, probability=one.probability * one.effect.probability)
-        if one.probability >= config.decide.least_probability:
+    for judged in judgements:
+        probability = judged.probability * judged.effect.probability
+        stated = replace(judged.effect, probability=probability)
+        probable = judged.probability >= config.decide.least_probability
+        if probable and judged.outcome != "unconfirmed":
             named.append(stated)
             continue
         doubtful.append(stated)
@@ -86,7 +98,7 @@ def decide(
         least = required_gain(candidates, config.select) + unknown_threshold(config.select, others)
         stands_in = stands_in or bool(stated.shared > least)
     decided = replace(ranking, named=tuple(named), doubtful=tuple(doubtful), stands_in=stands_in)
-    return Decision(problem, decided, judgements, of_log)
+    return Decision(problem, decided, tuple(judgements), of_log)
 
 
 def undecided(problem: Problem, ranking: Ranking) -> Decision:
@@ -102,12 +114,14 @@ def undecided(problem: Problem, ranking: Ranking) -> Decision:
 def _judge(
     problem: Problem,
     effect: IdentifiedEffect,
-    signs: Mapping[str, Consistency],
+    signs: Consistency,
     of_log: LogSigns,
+    alone: Mapping[str, Errors],
 ) -> Judgement:
-    """Signs and probability of one effect."""
+    """Signs, probability and confirmation of one effect."""
+    config = problem.config.decide
     stochastic = bool(type(problem.candidates[effect.name]).random)
-    own = signs[effect.name]
-    found = features(effect, stochastic, own, of_log)
-    probability = probability_of_true_cause(found, problem.config.decide)
-    return Judgement(effect, stochastic, own, probability)
+    found = features(effect, stochastic, signs, of_log)
+    probability = probability_of_true_cause(found, config)
+    outcome = outcome_of(alone, signs, config)
+    return Judgement(effect, stochastic, signs, probability, alone, outcome)

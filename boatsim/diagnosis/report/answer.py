@@ -18,8 +18,11 @@ from boatsim.diagnosis.locate.residual_structure import Structure
 from boatsim.diagnosis.open_set.decision import Decision
 from boatsim.diagnosis.problem import Fit, FreeParameter, Problem
 from boatsim.diagnosis.question import Question
+from boatsim.diagnosis.recalibration import Recalibration
 from boatsim.diagnosis.report.assumptions import excluded_candidates, rules_entry
+from boatsim.diagnosis.report.confirmation import alone_entry, reason_unconfirmed
 from boatsim.diagnosis.report.described_terms import described_entries
+from boatsim.diagnosis.report.families import FAMILIES
 from boatsim.diagnosis.report.formatting import capitalize, join_words
 from boatsim.diagnosis.report.layers import separate_layers
 from boatsim.diagnosis.report.parameters import parameter_key, reported_sd
@@ -28,10 +31,12 @@ from boatsim.diagnosis.report.schema import (
     Answer,
     CandidateEntry,
     EffectEntry,
+    Family,
     FitEntry,
     LogEntry,
     ParameterEntry,
     PossibleEntry,
+    RecalibrationEntry,
     StructureEntry,
     UnknownEntry,
     WhereEntry,
@@ -73,7 +78,7 @@ def compose_answer(
     vessel = problem.program.vessel
     entries = {}
     for identified in ranking.named:
-        entries[identified.name] = _effect(problem, ranking.best, identified)
+        entries[identified.name] = _effect(problem, ranking.best, identified, decision)
     layers = separate_layers(problem, ranking.best, entries)
     possible = layers.also_possible
     for identified in ranking.doubtful:
@@ -108,6 +113,8 @@ def compose_answer(
         "signs": signs_entry(decision),
         "config": settings_by_name(problem.config),
     }
+    if ranking.recalibration is not None:
+        answer["recalibration"] = _recalibration(ranking.recalibration)
     verdict = verdict_sentences(answer, effect_meanings(problem.program.candidates, vessel))
     answer["sentence"] = _with_log_first(verdict, findings, problem, ranking)
     return answer
@@ -244,8 +251,24 @@ def _fit(evaluation: Evaluation, held_out: Sequence[str]) -> FitEntry:
     return fit
 
 
-def _effect(problem: Problem, best: Fit, named: IdentifiedEffect) -> EffectEntry:
+def _recalibration(found: Recalibration) -> RecalibrationEntry:
+    """Return which refitted coefficients are adopted."""
+    refitted: dict[Family, float] = {}
+    for family in FAMILIES:
+        if family in found.refitted:
+            refitted[family] = found.refitted[family]
+    return {
+        "adopted": found.adopted,
+        "undetermined": list(found.undetermined),
+        "refitted": refitted,
+    }
+
+
+def _effect(
+    problem: Problem, best: Fit, named: IdentifiedEffect, decision: Decision
+) -> EffectEntry:
     """Return the entry of an identified effect."""
+    judged = decision.judgement(named.name)
     effect = next(e for e in problem.program.candidates if e.name == named.name)
     kind, config = type(effect), problem.config.answer
     acting: Acting = {}
@@ -264,6 +287,8 @@ def _effect(problem: Problem, best: Fit, named: IdentifiedEffect) -> EffectEntry
         "words": _words(best, effect),
         "tied_with": list(map(base_name, named.tied_with)),
         "parameters": parameters | _ratios(problem, best, effect),
+        "alone": alone_entry(judged.alone),
+        "confirmed": judged.outcome == "confirmed",
     }
 
 
@@ -272,13 +297,19 @@ def _possible(
 ) -> PossibleEntry:
     """Return the entry of an effect that is probably a stand-in for another cause."""
     effect = next(e for e in problem.program.candidates if e.name == doubtful.name)
+    judged = decision.judgement(doubtful.name)
+    why = reason_for_doubt(judged.signs, decision.log)
+    if judged.outcome == "unconfirmed":
+        why = reason_unconfirmed(judged)
     return {
         "name": base_name(doubtful.name),
         "probability": round(doubtful.probability, 4),
         "gain_nats": round(doubtful.gain, 2),
         "words": _words(best, effect),
-        "why": reason_for_doubt(decision.judgement(doubtful.name).signs, decision.log),
+        "why": why,
         "in_patch": True,
+        "alone": alone_entry(judged.alone),
+        "confirmed": judged.outcome == "confirmed",
     }
 
 

@@ -19,7 +19,8 @@ def glossary(f: Findings) -> tuple[tuple[str, str], ...]:
         (
             "nominal, recalibrated, patched",
             "Nominal is the vessel file as given. Recalibrated is the same vessel with its own "
-            "coefficients refitted to the recordings. Patched is the recalibrated vessel with the "
+            "coefficients refitted to the recordings, as far as these determine them and held-out "
+            "data get no worse. Patched is the recalibrated vessel with the "
             "identified effects added. Effects are compared with the recalibrated vessel, because "
             "refitting alone reduces any error a little.",
         ),

@@ -56,6 +56,8 @@ def patched_vessel_text(
         if not free.relative:
             settings[free.effect][free.name] = float(x)
             continue
+        if x == 1.0:  # it keeps the value of the vessel file
+            continue
         for name in vessel.names_of(free.effect):
             change = CoefficientChange(free.name, name, free.name, "scales", 1.0)
             _change_number(document, vessel, change, float(x), f"recalibrated x {x:.4f}")

@@ -17,6 +17,10 @@ class ParameterEntry(TypedDict):
     at_bound: NotRequired[bool]  # at a bound of its range: the true value may lie outside
 
 
+AloneEntry = TypedDict("AloneEntry", {"without": float, "with": float})
+"""Rms errors of free runs over held-out recordings without and with one effect [m or rad]."""
+
+
 class Acting(TypedDict, total=False):
     """The signals on which an effect acts, if it specifies any."""
 
@@ -33,6 +37,10 @@ class EffectEntry(Acting):
     words: str
     tied_with: list[str]  # look-alikes
     parameters: dict[str, ParameterEntry]  # by name with unit
+    # errors without it, all else refitted, and with it
+    alone: NotRequired[dict[Family, AloneEntry]]
+    # whether held-out recordings confirm it; else they could not show it
+    confirmed: NotRequired[bool]
 
 
 class RefinedEntry(Acting):
@@ -55,6 +63,8 @@ class RefinedEntry(Acting):
     words: NotRequired[str]
     tied_with: NotRequired[list[str]]
     parameters: NotRequired[dict[str, ParameterEntry]]
+    alone: NotRequired[dict[Family, AloneEntry]]
+    confirmed: NotRequired[bool]
 
 
 class PossibleEntry(TypedDict):
@@ -66,6 +76,8 @@ class PossibleEntry(TypedDict):
     words: str
     why: str  # reason why it is not among the identified effects
     in_patch: NotRequired[bool]  # whether the patched vessel contains it, as a description
+    alone: NotRequired[dict[Family, AloneEntry]]
+    confirmed: NotRequired[bool]
 
 
 class FactorEntry(TypedDict):
@@ -239,6 +251,14 @@ class FitEntry(TypedDict):
     roll_rms_rad: NotRequired[dict[str, float]]
 
 
+class RecalibrationEntry(TypedDict):
+    """Which refitted coefficients the recalibrated vessel has."""
+
+    adopted: bool  # else all coefficients have the value of the vessel file
+    undetermined: list[str]  # "effect.number" of those that keep that value in any case
+    refitted: dict[Family, float]  # rms errors on held-out recordings with refitted coefficients
+
+
 class NextEntry(TypedDict, total=False):
     """The next experiment; empty if no manoeuvre adds evidence."""
 
@@ -319,6 +339,7 @@ class Answer(TypedDict):
     upper_limits: dict[str, dict[str, float]]
     where: WhereEntry
     fit: FitEntry
+    recalibration: NotRequired[RecalibrationEntry]  # absent if nothing could be fitted
     next_experiment: NextEntry
     patch: str
     config: NotRequired[dict[str, Plain]]  # all settings by dotted name, such as "select.odds"

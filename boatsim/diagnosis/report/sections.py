@@ -20,6 +20,8 @@ from boatsim.diagnosis.report.blocks import (
     Text,
     without_empty_columns,
 )
+from boatsim.diagnosis.report.confirmation import effect_sentences, recalibration_sentences
+from boatsim.diagnosis.report.families import FAMILIES
 from boatsim.diagnosis.report.findings import Findings, MissingForceCurve
 from boatsim.diagnosis.report.formatting import (
     capitalize,
@@ -48,7 +50,6 @@ from boatsim.diagnosis.report.schema import (
     TermEntry,
 )
 from boatsim.diagnosis.report.sentences import (
-    FAMILIES,
     any_tested,
     assumption_sentences,
     effect_description,
@@ -178,6 +179,8 @@ def _effect(f: Findings, e: EffectEntry, explain_deviation: bool) -> Iterator[Bl
         yield without_empty_columns(Table("Fitted values", header, _values(f, e), prose=(2,)))
     if explain_deviation:
         yield Text(_about_deviations(f, e))
+    if sentences := effect_sentences(e):
+        yield Text(" ".join(sentences))
     if e["tied_with"]:
         rivals = []
         for name in e["tied_with"]:
@@ -426,6 +429,8 @@ def _validation(f: Findings) -> Iterator[Block]:
             f"rms error of free runs of {fit['horizon_s']:g} s over {join_words(fit['held_out'])}"
         )
         yield Table(caption, ["error in", *header], rows)
+    if sentences := recalibration_sentences(f):
+        yield Text(" ".join(sentences))
     by_run = figures.group_by_recording(f.free_runs)
     if len(by_run) > 1:
         rows = []

@@ -4,7 +4,9 @@ import itertools
 from collections.abc import Mapping, Sequence
 
 from boatsim.diagnosis.evaluation import MODELS
+from boatsim.diagnosis.report.confirmation import effect_sentences, recalibration_sentences
 from boatsim.diagnosis.report.described_terms import effect_of_axis
+from boatsim.diagnosis.report.families import FAMILIES
 from boatsim.diagnosis.report.findings import Findings
 from boatsim.diagnosis.report.formatting import (
     capitalize,
@@ -21,16 +23,10 @@ from boatsim.diagnosis.report.schema import (
     AmbientEntry,
     Answer,
     EffectEntry,
-    Family,
     LeftOutEntry,
     MeanEntry,
 )
 
-FAMILIES: dict[Family, tuple[str, str]] = {  # key of `fit` -> its signal in words, SI unit
-    "position_rms_m": ("position", "m"),
-    "heading_rms_rad": ("heading", "rad"),
-    "roll_rms_rad": ("roll", "rad"),
-}
 WAYS = {  # axis -> direction of a positive mean force, and of a negative one
     "surge": ("forward", "astern"),
     "sway": ("to starboard", "to port"),
@@ -449,6 +445,8 @@ def _effect_lines(title: str, effects: Sequence[EffectEntry]) -> list[str]:
         lines.append(f"  {effect['name']}: {format_evidence(effect['gain_nats'])}, {likely}")
         for key, p in effect["parameters"].items():
             lines.append(f"    {key} = {p['value']:.4g} ± {p['sd']:.2g}")
+        for sentence in effect_sentences(effect):
+            lines.append(f"    {sentence}")
     return lines
 
 
@@ -490,4 +488,6 @@ def _validation(f: Findings) -> list[str]:
                 unit, scale = "deg", 57.29578
             cells = ", ".join(f"{model} {rms[model] * scale:.4g}" for model in MODELS)
             lines.append(f"  {words} [{unit}]: {cells}")
+    for sentence in recalibration_sentences(f):
+        lines.append(f"  {sentence}")
     return lines

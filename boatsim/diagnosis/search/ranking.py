@@ -12,6 +12,7 @@ from boatsim.diagnosis.fit import converge, gauss_newton
 from boatsim.diagnosis.locate.residual_structure import Structure, find_structure
 from boatsim.diagnosis.noise_levels import fit_noise
 from boatsim.diagnosis.problem import Fit, Problem
+from boatsim.diagnosis.recalibration import Recalibration
 from boatsim.diagnosis.search.candidate_sets import CandidateSets
 from boatsim.diagnosis.search.energy_balance import braking_force, oscillating_force
 from boatsim.diagnosis.search.evidence import gains_over, unexplained_evidence, unknown_threshold
@@ -60,6 +61,8 @@ class Ranking:
     # effects that the best fit contains, but that are probably stand-ins for an unknown cause
     doubtful: tuple[IdentifiedEffect, ...] = ()
     stands_in: bool = False  # whether one of them explains so much that a cause must exist
+    # which refitted coefficients `recalibrated` has; None before that is decided
+    recalibration: Recalibration | None = None
 
     @property
     def adds_effects(self) -> bool:

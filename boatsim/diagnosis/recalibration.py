@@ -1,0 +1,138 @@
+"""Decides which refitted coefficients are adopted.
+
+A coefficient that the recordings do not determine keeps the value of the vessel file. No
+coefficient is adopted if free runs over held-out recordings are worse with the refitted ones than
+with those of the file.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from boatsim.diagnosis.config import FitConfig
+from boatsim.diagnosis.filter import MappedRecording
+from boatsim.diagnosis.fit import gauss_newton
+from boatsim.diagnosis.free_runs import FreeRun, free_run_horizon, free_runs, rms_errors
+from boatsim.diagnosis.problem import Fit, Problem, priors_of
+from boatsim.diagnosis.search import generalization
+from boatsim.physics.base import Array
+
+WRITTEN, REFITTED = "written", "refitted"  # the vessels that are compared
+
+
+@dataclass(frozen=True)
+class Recalibration:
+    """The vessel with those refitted coefficients that are adopted.
+
+    Attributes:
+        fit: The vessel as it is reported.
+        undetermined: Coefficients that the recordings do not determine, as "effect.number".
+        adopted: Whether the other coefficients are adopted.
+        refitted: Rms errors of free runs over held-out recordings with the refitted coefficients,
+            by family of signals.
+    """
+
+    fit: Fit
+    undetermined: tuple[str, ...]
+    adopted: bool
+    refitted: Mapping[str, float]
+
+
+def recalibrate(
+    problem: Problem, written: Fit, refitted: Fit, held_out: Sequence[MappedRecording]
+) -> Recalibration:
+    """Return the vessel with the refitted coefficients that are determined and do no harm.
+
+    Args:
+        problem: Recordings and priors.
+        written: The vessel as written, with its noise levels fitted.
+        refitted: The vessel without candidate effects, its coefficients fitted.
+        held_out: Held-out recordings, at least one.
+    """
+    kept = undetermined_coefficients(refitted, problem.config.fit)
+    names = tuple(f"{refitted.free[i].effect}.{refitted.free[i].name}" for i in kept)
+    found = keep_undetermined(problem, refitted)
+    horizon = free_run_horizon(problem, held_out)
+    runs = free_runs(problem, {WRITTEN: written, REFITTED: found}, held_out, horizon)
+    adopted = not is_harmful(problem, runs)
+    errors = {family: rms[REFITTED] for family, rms in rms_errors(runs).items()}
+    if not adopted:
+        moved = _move(found, written.theta)
+        found = replace(written, covariance=moved.covariance)
+    return Recalibration(found, names, adopted, errors)
+
+
+def keep_undetermined(problem: Problem, found: Fit) -> Fit:
+    """Return a fit in which undetermined coefficients have the value of the vessel file.
+
+    The other parameters are refitted. Levels and evidence stay those of the hypothesis in which all
+    coefficients are free. The covariance is that of the posterior about the new values.
+
+    Args:
+        problem: Recordings and priors.
+        found: A converged fit.
+    """
+    kept = undetermined_coefficients(found, problem.config.fit)
+    if not kept:
+        return found
+    theta = priors_of(found.free).mean
+    rest = [i for i in range(len(found.free)) if i not in kept]
+    if rest:
+        free = tuple(found.free[i] for i in rest)
+        own = found.covariance[np.ix_(rest, rest)]
+        start = replace(found, free=free, theta=found.theta[rest], covariance=own)
+        config = problem.config.fit
+        refitted = gauss_newton(problem, start, config.last_steps, config.step_gain)
+        if not np.isfinite(refitted.evidence):  # the simulated boat diverges
+            return found
+        theta[rest] = refitted.theta
+    return _move(found, theta)
+
+
+def undetermined_coefficients(found: Fit, config: FitConfig) -> list[int]:
+    """Return the places of the coefficients that keep the value of the vessel file.
+
+    The coefficient with the largest posterior sd, in prior sds, is held first. The others are then
+    more certain, because the recordings may determine a combination of coefficients only, such as
+    the ratio of thrust and damping.
+
+    Args:
+        found: A converged fit.
+        config: Largest posterior sd of a determined coefficient, in prior sds.
+    """
+    variance = priors_of(found.free).sd ** 2
+    covariance = found.covariance.copy()
+    coefficients = [i for i, f in enumerate(found.free) if f.relative]
+    kept = list[int]()
+    while coefficients:
+        share = np.diag(covariance)[coefficients] / variance[coefficients]
+        worst = coefficients[int(np.argmax(share))]
+        if not float(share.max()) > config.undetermined_sd**2:
+            break
+        kept.append(worst)
+        coefficients.remove(worst)
+        column = covariance[:, worst].copy()
+        covariance -= np.outer(column, column) / column[worst]
+    return sorted(kept)
+
+
+def is_harmful(problem: Problem, runs: Sequence[FreeRun]) -> bool:
+    """Whether free runs are worse with the refitted coefficients than with those of the file.
+
+    Args:
+        problem: Problem whose configuration holds the limit.
+        runs: Free runs of both vessels over held-out recordings.
+    """
+    before = generalization.mean_square_errors(runs, WRITTEN)
+    if not before:
+        return False
+    after = generalization.mean_square_errors(runs, REFITTED)
+    limit = problem.config.validate.harmful**2
+    return not generalization.error_ratio(after, before) <= limit
+
+
+def _move(found: Fit, theta: Array) -> Fit:
+    """Move a fit to other values; its covariance becomes that of the posterior about them."""
+    off = found.theta - theta
+    return replace(found, theta=theta, covariance=found.covariance + np.outer(off, off))

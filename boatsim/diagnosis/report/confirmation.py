@@ -1,0 +1,126 @@
+"""Words for what held-out recordings show: of each effect, and of the refitted coefficients."""
+
+from collections.abc import Mapping, Sequence
+
+from boatsim.diagnosis.open_set.confirmation import Errors
+from boatsim.diagnosis.open_set.decision import Judgement
+from boatsim.diagnosis.report.families import FAMILIES
+from boatsim.diagnosis.report.findings import Findings
+from boatsim.diagnosis.report.formatting import (
+    format_in_one_unit,
+    join_words,
+    words_of_name,
+)
+from boatsim.diagnosis.report.schema import AloneEntry, EffectEntry, Family
+
+OPEN = (
+    "Held-out recordings neither confirm nor contradict it: they are too short, or do not excite "
+    "it."
+)
+
+
+def alone_entry(errors: Mapping[str, Errors]) -> dict[Family, AloneEntry]:
+    """Return the errors on held-out recordings without and with an effect, for diagnosis.json.
+
+    Args:
+        errors: Errors by family of signals.
+    """
+    found: dict[Family, AloneEntry] = {}
+    for family in FAMILIES:
+        if family in errors:
+            pair = errors[family]
+            found[family] = {"without": pair.without, "with": pair.with_effect}
+    return found
+
+
+def effect_sentences(effect: EffectEntry) -> list[str]:
+    """Return how an effect alone changes the errors on held-out data, and whether they confirm it.
+
+    Args:
+        effect: Entry of an identified effect.
+    """
+    found = []
+    if changes := _changes(effect.get("alone", {})):
+        found.append(f"On held-out data it alone {join_words(changes)}.")
+    if not effect.get("confirmed", True):
+        found.append(OPEN)
+    return found
+
+
+def _changes(alone: Mapping[Family, AloneEntry]) -> list[str]:
+    """Return phrases such as: reduces the position error from 0.52 m to 0.31 m."""
+    reduced, increased, same = list[str](), list[str](), list[str]()
+    for family, (words, unit) in FAMILIES.items():
+        if family not in alone:
+            continue
+        pair = alone[family]
+        before, after = format_in_one_unit([pair["without"], pair["with"]], unit)
+        if before == after:
+            same.append(f"the {words} error ({after})")
+        elif pair["with"] < pair["without"]:
+            reduced.append(f"the {words} error from {before} to {after}")
+        else:
+            increased.append(f"the {words} error from {before} to {after}")
+    found = []
+    for verb, phrases in (
+        ("reduces", reduced),
+        ("increases", increased),
+        ("does not change", same),
+    ):
+        if phrases:
+            found.append(f"{verb} {join_words(phrases)}")
+    return found
+
+
+def reason_unconfirmed(judged: Judgement) -> str:
+    """Return the reason why an effect is not confirmed, in words.
+
+    Args:
+        judged: Judgement of the effect.
+    """
+    reason = "held-out recordings, which could show it, are explained as well without it"
+    changes = join_words(_changes(alone_entry(judged.alone)))
+    if changes:
+        reason += f": there it alone {changes}"
+    return reason
+
+
+def recalibration_sentences(f: Findings) -> list[str]:
+    """Return sentences on coefficients that keep the values of the vessel file.
+
+    Args:
+        f: Findings of a diagnosis.
+    """
+    found = f.answer.get("recalibration")
+    if found is None:
+        return []
+    if not found["adopted"]:
+        return _not_adopted(f, found["refitted"])
+    if not found["undetermined"]:
+        return []
+    names = join_words(_names(found["undetermined"]))
+    return [
+        "The recalibrated vessel keeps these numbers of the vessel file, because the recordings "
+        f"do not determine them better: {names}."
+    ]
+
+
+def _not_adopted(f: Findings, refitted: Mapping[Family, float]) -> list[str]:
+    """Return the sentences on coefficients that would be worse on held-out data."""
+    errors = []
+    for family, (words, unit) in FAMILIES.items():
+        if family in refitted and family in f.answer["fit"]:
+            pair = [f.answer["fit"][family]["nominal"], refitted[family]]
+            before, after = format_in_one_unit(pair, unit)
+            errors.append(f"{after} in {words} instead of {before}")
+    sentences = [
+        "The recalibrated vessel has the coefficients of the vessel file, because refitted ones "
+        f"are worse on held-out data: {join_words(errors)}."
+    ]
+    if f.has_added_effects:
+        sentences.append("The patched vessel has coefficients fitted together with its effects.")
+    return sentences
+
+
+def _names(coefficients: Sequence[str]) -> list[str]:
+    return [words_of_name(name.replace(".", ", ")) for name in coefficients]

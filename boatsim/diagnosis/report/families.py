@@ -1,0 +1,9 @@
+"""Families of signals whose errors on held-out recordings are reported."""
+
+from boatsim.diagnosis.report.schema import Family
+
+FAMILIES: dict[Family, tuple[str, str]] = {  # key of `fit` -> its signal in words, SI unit
+    "position_rms_m": ("position", "m"),
+    "heading_rms_rad": ("heading", "rad"),
+    "roll_rms_rad": ("roll", "rad"),
+}

@@ -1,0 +1,79 @@
+"""The report states what each effect alone does to held-out errors, and why a file is not changed."""
+
+from dataclasses import replace
+
+import pytest
+
+from boatsim.diagnosis.open_set.confirmation import Errors
+from boatsim.diagnosis.report.confirmation import (
+    alone_entry,
+    effect_sentences,
+    recalibration_sentences,
+)
+from boatsim.diagnosis.report.findings import Findings
+from boatsim.diagnosis.report.page import report_html, report_markdown
+from boatsim.diagnosis.report.schema import RecalibrationEntry
+from boatsim.diagnosis.report.sections import sections_of
+from boatsim.diagnosis.report.sentences import console_lines
+from tests.diagnosis.report.test_page import planar
+
+ERRORS = {
+    "position_rms_m": Errors(0.52, 0.31),
+    "heading_rms_rad": Errors(0.05, 0.06),
+    "roll_rms_rad": Errors(0.02, 0.02),
+}
+STATEMENT = (
+    "On held-out data it alone reduces the position error from 52.0 cm to 31.0 cm, increases the "
+    "heading error from 2.86° to 3.44° and does not change the roll error (1.15°)."
+)
+
+
+def confirmed(value: bool) -> Findings:
+    """The findings of a made-up diagnosis, with the errors of its effect alone."""
+    findings = planar()
+    effect = {**findings.answer["effects"][0], "alone": alone_entry(ERRORS), "confirmed": value}
+    return replace(findings, answer={**findings.answer, "effects": [effect]})  # type: ignore
+
+
+def everywhere(findings: Findings) -> list[str]:
+    """What the terminal, the page and the Markdown file show."""
+    sections = sections_of(findings)
+    pages = [report_html(findings, sections), report_markdown(findings, sections)]
+    return ["\n".join(console_lines(findings)), *pages]
+
+
+def test_each_effect_has_a_sentence_on_what_it_alone_does() -> None:
+    findings = confirmed(True)
+    assert effect_sentences(findings.answer["effects"][0]) == [STATEMENT]
+    for text in everywhere(findings):
+        assert STATEMENT in text and "neither confirm" not in text
+
+
+def test_an_effect_that_held_out_recordings_do_not_confirm_is_marked() -> None:
+    for text in everywhere(confirmed(False)):
+        assert "Held-out recordings neither confirm nor contradict it" in text
+
+
+@pytest.mark.parametrize(
+    ("entry", "expected"),
+    [
+        (
+            {"adopted": False, "undetermined": [], "refitted": {"position_rms_m": 0.2}},
+            "The recalibrated vessel has the coefficients of the vessel file, because refitted "
+            "ones are worse on held-out data: 20.0 cm in position instead of 14.2 cm.",
+        ),
+        (
+            {"adopted": True, "undetermined": ["linear_damping.sway"], "refitted": {}},
+            "The recalibrated vessel keeps these numbers of the vessel file, because the recordings "
+            "do not determine them better: linear damping, sway.",
+        ),
+    ],
+)
+def test_coefficients_that_keep_their_value_are_stated(
+    entry: RecalibrationEntry, expected: str
+) -> None:
+    findings = planar()
+    findings = replace(findings, answer={**findings.answer, "recalibration": entry})
+    assert recalibration_sentences(findings)[0] == expected
+    for text in everywhere(findings):
+        assert expected in text

@@ -1,0 +1,104 @@
+"""Recalibration never harms: laws of which refitted coefficients are adopted."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from pushed_boat import BOAT, COMMANDS, DAMPING, Missing, sail
+
+from boatsim.diagnosis.candidates import library_for
+from boatsim.diagnosis.config import DEFAULT
+from boatsim.diagnosis.filter import NoiseLevels, map_recording, prior_levels
+from boatsim.diagnosis.problem import Fit, FreeParameter, Problem
+from boatsim.diagnosis.recalibration import recalibrate, undetermined_coefficients
+from boatsim.diagnosis.report.patched_vessel import write_patched_vessel
+from boatsim.diagnosis.search.ranking import fit_baseline
+from boatsim.physics.base import Array
+from boatsim.physics.program import Program
+from boatsim.physics.vessel import load_vessel
+from boatsim.recordings.table import Notes, Recording
+
+PROGRAM = Program(BOAT, library_for(BOAT).compiled)
+DRAG = 0.4  # share by which a boat has more drag than its file
+
+
+def draggy(t: float, y: Array, command: Array) -> Array:
+    return np.asarray(-DRAG * DAMPING * y[3:6])
+
+
+def slippery(t: float, y: Array, command: Array) -> Array:
+    return np.asarray(DRAG * DAMPING * y[3:6])
+
+
+def at_rest(seed: int) -> Recording:
+    """A minute in calm water without any command, and the noise of the instruments."""
+    rng, rows = np.random.default_rng(seed), 240
+    seen = rng.standard_normal((rows, 3)) * [0.003, 0.003, 0.012]
+    signals = dict(zip(("x_m", "y_m", "psi_rad"), seen.T, strict=True))
+    signals |= dict.fromkeys(COMMANDS, np.zeros(rows))
+    return Recording("rest", np.arange(rows) / 6.0, signals, Notes(vessel=BOAT.name))
+
+
+def problem_of(recording: Recording) -> Problem:
+    return Problem(
+        [map_recording(recording, PROGRAM)],
+        prior_levels(BOAT, [recording]),
+        {"damping": 0.3, "thrust": 0.1},
+    )
+
+
+def posterior(covariance: list[list[float]]) -> Fit:
+    """A fit of coefficients with a prior sd of one."""
+    names = ("surge", "sway", "yaw")[: len(covariance)]
+    free = []
+    for i, name in enumerate(names):
+        free.append(FreeParameter("damping", name, (i,), 1.0, 1.0, 0.05, 20.0, relative=True))
+    theta = np.full(len(free), 1.1)
+    levels = NoiseLevels(np.ones(3), 1.0, {})
+    return Fit((), tuple(free), theta, np.array(covariance), levels, 0.0)
+
+
+def test_a_recording_without_excitation_leaves_all_coefficients_as_in_the_file() -> None:
+    problem = problem_of(at_rest(1))
+    held_out = [map_recording(at_rest(2), PROGRAM)]
+    nominal, refitted = fit_baseline(problem)
+    found = recalibrate(problem, nominal, refitted, held_out)
+    assert len(found.undetermined) == len(refitted.free)
+    assert np.all(found.fit.theta == 1.0)
+
+
+@pytest.mark.parametrize(("held_out_boat", "adopted"), [(draggy, True), (slippery, False)])
+def test_coefficients_are_adopted_only_if_held_out_data_agree(
+    held_out_boat: Missing, adopted: bool, tmp_path: Path
+) -> None:
+    problem = problem_of(sail("fitted", 1, draggy)[0])
+    held_out = [map_recording(sail("held out", 2, held_out_boat)[0], PROGRAM)]
+    nominal, refitted = fit_baseline(problem)
+    found = recalibrate(problem, nominal, refitted, held_out)
+    assert found.adopted is adopted
+    drag = [i for i, f in enumerate(refitted.free) if "damping" in f.effect]
+    if adopted:
+        assert found.fit.theta[drag] == pytest.approx(1.0 + DRAG, abs=0.15)
+    else:
+        assert np.all(found.fit.theta == 1.0)
+        # the recordings differ from these numbers by what they were fitted to
+        sd = np.sqrt(np.diag(found.fit.covariance))[drag]
+        assert np.all(sd > 0.5 * np.abs(refitted.theta[drag] - 1.0))
+        patched = tmp_path / "patched.toml"
+        write_patched_vessel(problem, BOAT, found.fit, patched)
+        assert load_vessel(str(patched)).effects == BOAT.effects
+
+
+def test_of_two_coefficients_whose_ratio_alone_is_determined_one_is_kept() -> None:
+    one_direction = posterior([[0.505, 0.495], [0.495, 0.505]])
+    assert len(undetermined_coefficients(one_direction, DEFAULT.fit)) == 1
+    neither = posterior([[0.9, 0.0], [0.0, 0.8]])
+    assert undetermined_coefficients(neither, DEFAULT.fit) == [0, 1]
+
+
+def test_only_coefficients_of_the_file_are_kept_and_not_parameters_of_effects() -> None:
+    found = posterior([[0.9, 0.0], [0.0, 0.9]])
+    effect = replace(found.free[1], effect="wind", relative=False)
+    found = replace(found, free=(found.free[0], effect))
+    assert undetermined_coefficients(found, DEFAULT.fit) == [0]
