@@ -855,6 +855,15 @@ class SelectConfig:
         "their own.",
         low=1,
     )
+    budget: int = setting(
+        300_000_000,
+        "rows x dof",
+        "Work of the search: rows filtered, counted in every pass of the filter, times degrees of "
+        "freedom. A trial of a minute needs 1 to 80 million. 300 million take about 3 minutes on "
+        "a planar vessel and 6 in six degrees of freedom; then the search ends and reports what "
+        "it has not tried.",
+        low=1,
+    )
     least_gain: float = setting(
         4.0, "nats", "Evidence that an identified effect must gain alone.", low=0.0
     )

@@ -7,7 +7,7 @@ estimates of parameters are not biased to absorb it.
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cache, cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -692,11 +692,16 @@ def inertia_of(program: Program, values: Array, on: Array) -> Array:
     code = program.module
     constants = np.zeros(code.K)
     code.compute_mass_constants(rigid_body_values(values), values, on, constants)
-    order = [AXES.index(axis) for axis in axes_of(program.vessel)]
-    diagonal = constants[-MASS_ENTRIES:][order]
+    diagonal = constants[-MASS_ENTRIES:][_places(tuple(program.vessel.dof))]
     if code.CLOSED:  # the constants hold the inverse
         diagonal = 1.0 / diagonal
     return np.asarray(diagonal)
+
+
+@cache
+def _places(dof: tuple[str, ...]) -> list[int]:
+    """Places of degrees of freedom among all six, in the order of the filter."""
+    return [AXES.index(axis) for axis in AXES if axis in dof]
 
 
 def parameter_values(program: Program, facts: Mapping[str, Any]) -> Array:

@@ -10,6 +10,7 @@ from boatsim.diagnosis.candidates import base_name
 from boatsim.diagnosis.filter import MappedRecording
 from boatsim.diagnosis.fit import converge, fit, gauss_newton, remove_effect
 from boatsim.diagnosis.problem import Fit, Problem
+from boatsim.diagnosis.search.budget import SearchBudget, addition_to
 from boatsim.diagnosis.search.evidence import (
     fits_with_evidence_above,
     leading_candidates,
@@ -44,6 +45,7 @@ class CandidateSets:
         candidates: tuple[str, ...],
         base: Fit,
         report: progress.Report = progress.ignore_progress,
+        budget: SearchBudget | None = None,
     ) -> None:
         """Create an empty cache.
 
@@ -52,8 +54,10 @@ class CandidateSets:
             candidates: Names of the candidates that are tested.
             base: The recalibrated vessel without candidates.
             report: Receives the progress.
+            budget: Work that the search may do; None: that of the configuration, from now on.
         """
         self.problem = problem
+        self.budget = budget or SearchBudget(problem.filtered, problem.config.select.budget)
         self.config = problem.config
         self.candidates = candidates
         self.base = base
@@ -179,6 +183,8 @@ class CandidateSets:
     def screen_candidates(self, best: Fit, among: Sequence[str] = ()) -> dict[str, Fit]:
         """Return the screenings of other candidates on top of a set, the best ones fitted in full.
 
+        When the budget is spent, only the candidates alone are still screened.
+
         Args:
             best: A fit.
             among: Names of candidates; none: all of them.
@@ -190,6 +196,9 @@ class CandidateSets:
         known = self.screenings.setdefault(key, {})
         ideas = set(map(base_name, best.effects))
         rest = [n for n in among or self.candidates if base_name(n) not in ideas and n not in known]
+        if key and self.budget.spent:
+            self.budget.omit(len(rest), f"tested {addition_to(best.effects)}")
+            return known
         if rest:
             report = self._report_screening if len(self.screenings) == 1 else None
             known |= screen(self.problem, best, rest, report, self._linearised(best))
@@ -205,6 +214,9 @@ class CandidateSets:
             ahead = leading_candidates(promising, best, self.config.select)
             ahead = [n for n in ahead if (key, n) not in self.fitted_in_full]
             if not ahead:
+                break
+            if self.budget.spent:
+                self.budget.omit(len(ahead), f"fitted in full {addition_to(best.effects)}")
                 break
             name = ahead[0]
             found = known[name]
