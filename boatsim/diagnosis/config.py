@@ -859,9 +859,9 @@ class SelectConfig:
         300_000_000,
         "rows x dof",
         "Work of the search: rows filtered, counted in every pass of the filter, times degrees of "
-        "freedom. A trial of a minute needs 1 to 80 million. 300 million take about 3 minutes on "
-        "a planar vessel and 6 in six degrees of freedom; then the search ends and reports what "
-        "it has not tried.",
+        "freedom. Recordings of a minute and a half need 2 to 80 million. 300 million take about "
+        "2.5 minutes on a planar vessel and 5 in six degrees of freedom; then the search ends and "
+        "reports what it has not tried.",
         low=1,
     )
     least_gain: float = setting(
