@@ -864,6 +864,15 @@ class SelectConfig:
         "their own.",
         low=1,
     )
+    budget: int = setting(
+        300_000_000,
+        "rows x dof",
+        "Work of the search: rows filtered, counted in every pass of the filter, times degrees of "
+        "freedom. Recordings of a minute and a half need 2 to 80 million. 300 million take about "
+        "2.5 minutes on a planar vessel and 5 in six degrees of freedom; then the search ends and "
+        "reports what it has not tried.",
+        low=1,
+    )
     least_gain: float = setting(
         4.0, "nats", "Evidence that an identified effect must gain alone.", low=0.0
     )

@@ -30,6 +30,7 @@ def maximize(
         enough: Smaller rises of the score are ignored.
         config: Number of rounds, and bounds of the steps.
     """
+    score = _evaluated_once(score)
     best, steps, visited = score(x), np.full(len(x), step), np.full(len(x), -np.inf)
     for _ in range(config.search_rounds):
         due = [j for j in range(len(x)) if best > visited[j] + enough]
@@ -42,6 +43,19 @@ def maximize(
             finest, longest = config.search_finest * step, config.search_reach * step
             steps[j] = np.clip(abs(x[j] - before), finest, longest)
     return best, x
+
+
+def _evaluated_once(score: Callable[[Array], float]) -> Callable[[Array], float]:
+    """The score, evaluated only once at each point, because a search returns to its points."""
+    known: dict[bytes, float] = {}
+
+    def evaluate(x: Array) -> float:
+        key = x.tobytes()
+        if key not in known:
+            known[key] = score(x)
+        return known[key]
+
+    return evaluate
 
 
 def _search_along(

@@ -51,7 +51,14 @@ def problem_with_correlation_time(
         horizon: Its length of free runs [s].
     """
     ambient = problem.ambient.with_time_constant(seconds)
-    return Problem(recordings, ambient, problem.uncertainty, horizon, problem.config)
+    return Problem(
+        recordings,
+        ambient,
+        problem.uncertainty,
+        horizon,
+        problem.config,
+        filtered=problem.filtered,
+    )
 
 
 def correlation_time(problem: Problem, found: Fit) -> float:

@@ -7,13 +7,14 @@ estimates of parameters are not biased to absorb it.
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cache, cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from boatsim.diagnosis import priors
 from boatsim.diagnosis.config import DEFAULT, DiagnosisConfig, FilterConfig
+from boatsim.diagnosis.recent_results import RecentResults
 from boatsim.errors import BadInput
 from boatsim.physics.base import DriftingMeasurement, RandomForce
 from boatsim.physics.commands import clipped_recorded_commands
@@ -40,6 +41,11 @@ FEWEST_IN_PART = FEWEST_ROWS // 3
 BODY = ("mass", "centre_ahead", "centre_below", "roll_inertia", "pitch_inertia", "yaw_inertia")
 # entries of the mass matrix at the end of the constants of a compiled pass, the diagonal first
 MASS_ENTRIES = 12
+# Latest results of a recording that are kept, because the stages of a diagnosis ask for them again.
+# A pass over 6,000 rows in six degrees of freedom has 30 MB, free runs have 1 MB.
+KEPT_PASSES = 2
+KEPT_FREE_RUNS = 8
+KEPT_LIKELIHOODS = 512
 # variance added to the mean square of recorded speeds, so that it is positive [m^2/s^2, rad^2/s^2]
 LEAST_RATE_VARIANCE = 1e-8
 
@@ -152,6 +158,18 @@ class MappedRecording:
         return Inputs(self.times, self.command_times, self.command_values)
 
     @cached_property
+    def _passes(self) -> RecentResults[FilterPass]:
+        return RecentResults(KEPT_PASSES)
+
+    @cached_property
+    def _likelihoods(self) -> RecentResults[float]:
+        return RecentResults(KEPT_LIKELIHOODS)
+
+    @cached_property
+    def _free_runs(self) -> RecentResults[list[tuple[int, Array]]]:
+        return RecentResults(KEPT_FREE_RUNS)
+
+    @cached_property
     def inertia(self) -> Array:
         """(NQ,) mass or moment of inertia of the nominal hull with added mass [kg, kg m^2]."""
         return inertia_of(self.program, self.values, self.program.switches())
@@ -189,6 +207,16 @@ class MappedRecording:
             levels: Levels of sensor noise and latent force.
             about: Pass whose linearisation is used again, for other noise levels; None: linearise.
         """
+        if about is not None:
+            return self._run_filter(values, on, levels, about)
+        key = _key_of(values, on, levels)
+        found = self._passes.result(key, lambda: self._run_filter(values, on, levels, None))
+        self._likelihoods.result(key, lambda: found.log_likelihood)
+        return found
+
+    def _run_filter(
+        self, values: Array, on: Array, levels: NoiseLevels, about: FilterPass | None
+    ) -> FilterPass:
         n, channels = self.measured.shape
         whitened = np.zeros((n, channels))
         gains = np.zeros((n, channels, self.program.module.NZ))
@@ -215,7 +243,10 @@ class MappedRecording:
         self, values: Array, on: Array, levels: NoiseLevels, about: FilterPass | None = None
     ) -> float:
         """Return the log likelihood of `filter` with the same arguments."""
-        return self.filter(values, on, levels, about).log_likelihood
+        if about is not None:
+            return self._run_filter(values, on, levels, about).log_likelihood
+        key = _key_of(values, on, levels)
+        return self._likelihoods.result(key, lambda: self.filter(values, on, levels).log_likelihood)
 
     def whitened_errors(
         self, values: Array, on: Array, levels: NoiseLevels, about: FilterPass
@@ -289,10 +320,18 @@ class MappedRecording:
         Returns:
             First row and channels (M, 2 NQ), as the recording would show them, of each free run.
         """
-        means = self.smooth(values, on, levels).means
+        key = _key_of(values, on, levels, horizon)
+        return self._free_runs.result(
+            key, lambda: self._simulate_free_runs(values, on, levels, horizon)
+        )
+
+    def _simulate_free_runs(
+        self, values: Array, on: Array, levels: NoiseLevels, horizon: float
+    ) -> list[tuple[int, Array]]:
         starts, ends = free_run_segments(self.times, horizon)
         if not starts:
             return []
+        means = self.smooth(values, on, levels).means
         nq = self.program.module.NQ
         out = np.full((len(starts), len(self.times), 2 * nq), np.nan)
         states = np.ascontiguousarray(means[starts, : 2 * nq])
@@ -393,6 +432,13 @@ class MappedRecording:
             keep or _no_history(),
         )
         return float(found)
+
+
+def _key_of(values: Array, on: Array, levels: NoiseLevels, horizon: float = 0.0) -> bytes:
+    """All that a result for a recording depends on, as one key."""
+    numbers = (horizon, levels.time_constant, sorted(levels.sensors.items()))
+    arrays = (values, np.asarray(on), levels.force, levels.initial_force)
+    return b"".join([repr(numbers).encode(), *(array.tobytes() for array in arrays)])
 
 
 def _no_history() -> FilterHistory:
@@ -646,11 +692,16 @@ def inertia_of(program: Program, values: Array, on: Array) -> Array:
     code = program.module
     constants = np.zeros(code.K)
     code.compute_mass_constants(rigid_body_values(values), values, on, constants)
-    order = [AXES.index(axis) for axis in axes_of(program.vessel)]
-    diagonal = constants[-MASS_ENTRIES:][order]
+    diagonal = constants[-MASS_ENTRIES:][_places(tuple(program.vessel.dof))]
     if code.CLOSED:  # the constants hold the inverse
         diagonal = 1.0 / diagonal
     return np.asarray(diagonal)
+
+
+@cache
+def _places(dof: tuple[str, ...]) -> list[int]:
+    """Places of degrees of freedom among all six, in the order of the filter."""
+    return [AXES.index(axis) for axis in AXES if axis in dof]
 
 
 def parameter_values(program: Program, facts: Mapping[str, Any]) -> Array:

@@ -116,18 +116,17 @@ class ParameterSpace:
         """Return parameters (F,) within the bounds."""
         return np.asarray(np.clip(theta, self.low, self.high))
 
-    def damped_step(self, theta: Array, J: Array, g: Array, damping: float) -> Array:
+    def damped_step(self, theta: Array, A: Array, g: Array, damping: float) -> Array:
         """Return the parameters after a damped Gauss-Newton step.
 
         A parameter whose step leads out of a bound stays at the bound.
 
         Args:
             theta: (F,) parameters before the step.
-            J: (rows, F) derivatives of the whitened errors by theta / sd.
+            A: (F, F) information J.T @ J of the derivatives J of the whitened errors by theta / sd.
             g: (F,) gradient of the score by theta / sd.
             damping: Damping of the step.
         """
-        A = J.T @ J
         free = np.diag(A) > 0.0
         step = np.zeros(len(g))
         for _ in range(4):
@@ -255,9 +254,10 @@ def gauss_newton(problem: Problem, start: Fit, iterations: int, enough: float) -
         if not known:
             J, rest = _derivatives(hypothesis, here)
         g = rest - J.T @ here.passes.whitened - (here.theta - space.mean) / space.sd
+        A = J.T @ J
         further, gain = None, 0.0
         for _ in range(config.most_dampings):
-            trial = hypothesis.evaluate_at(space.damped_step(here.theta, J, g, damping))
+            trial = hypothesis.evaluate_at(space.damped_step(here.theta, A, g, damping))
             if np.isfinite(trial.score) and trial.score > here.score - LOST:
                 further, gain = trial, trial.score - here.score
                 break

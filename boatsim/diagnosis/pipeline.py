@@ -36,6 +36,7 @@ from boatsim.diagnosis.report.answer import compose_answer
 from boatsim.diagnosis.report.findings import Findings
 from boatsim.diagnosis.report.results import findings_of
 from boatsim.diagnosis.report.schema import Answer
+from boatsim.diagnosis.search.budget import BudgetSpentError, SearchBudget
 from boatsim.diagnosis.search.ranking import Baseline, Ranking, fit_baseline, rank
 from boatsim.diagnosis.symbolic.residual_description import describe as describe_residual
 from boatsim.diagnosis.symbolic.slots import write_term
@@ -50,6 +51,11 @@ LOADED = 0.05
 SELECTING = (0.1, 0.7)
 DESCRIBING = (0.7, 0.85)
 EVALUATING = 0.9
+# what a search whose budget is spent has not tried
+TIME_NOT_CHOSEN = "the correlation time of the latent force was not chosen by the recordings"
+NOT_SELECTED_AGAIN = (
+    "the effects were not selected again with the correlation time that predicts best"
+)
 
 
 @dataclass(frozen=True)
@@ -255,7 +261,8 @@ def select(
     """Select the effects that the recordings require.
 
     If the notes do not specify the correlation time of the latent force, it is chosen for the
-    effects that were selected, and they are selected again.
+    effects that were selected, and they are selected again. All of that has one budget. If it is
+    spent, the last finished selection is returned.
 
     Args:
         question: Mapped recordings, priors and candidates.
@@ -264,15 +271,27 @@ def select(
         report: Receives the progress.
     """
     problem, candidates, held_out = question.problem, question.candidates, question.held_out
-    ranking = rank(problem, candidates, held_out, report=report, base=base)
-    report("choosing the correlation time of the latent force", 1.0)
+    budget = SearchBudget(problem.filtered, problem.config.select.budget)
+    ranking = rank(problem, candidates, held_out, report=report, base=base, budget=budget)
     if "time_constant_s" in loaded.fitted[0].notes.ambient:
         return Selection(problem, ranking)
+    if budget.spent:
+        return Selection(problem, _with_skipped(ranking, TIME_NOT_CHOSEN))
+    report("choosing the correlation time of the latent force", 1.0)
     again = with_correlation_time(problem, ranking.best)
     if again is problem:
         return Selection(problem, ranking)
     report("selecting again with that correlation time", 1.0)
-    return Selection(again, rank(again, candidates, held_out, ranking.best))
+    rest = SearchBudget(problem.filtered, budget.left, complete=True)
+    try:
+        return Selection(again, rank(again, candidates, held_out, ranking.best, budget=rest))
+    except BudgetSpentError:  # the finished search is the better one
+        return Selection(problem, _with_skipped(ranking, NOT_SELECTED_AGAIN))
+
+
+def _with_skipped(ranking: Ranking, statement: str) -> Ranking:
+    """A ranking with one more statement of what was not tried."""
+    return replace(ranking, skipped=(*ranking.skipped, statement))
 
 
 def decide(question: Question, selection: Selection) -> Decision:

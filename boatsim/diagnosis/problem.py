@@ -209,6 +209,13 @@ def check_uncertainty(vessel: Vessel, specified: Mapping[str, float], where: str
         )
 
 
+@dataclass
+class WorkCount:
+    """Count of the work that fits have done: rows filtered times degrees of freedom."""
+
+    work: int = 0
+
+
 class _Target(NamedTuple):
     """Places in the parameter values of a run that a parameter changes, and their weights."""
 
@@ -227,6 +234,7 @@ class Problem:
     config: DiagnosisConfig = DEFAULT
     # prior sd of the coefficients of described terms, by the name of the effect
     spreads: dict[str, float] = field(default_factory=dict)
+    filtered: WorkCount = field(default_factory=WorkCount)  # work done for this problem
     program: Program = field(init=False)
     horizon: float = field(init=False)  # [s] length of free runs
     # coefficients of the vessel's own effects that are refitted with every hypothesis
@@ -352,6 +360,7 @@ class Problem:
             levels: Levels of sensor noise and latent force.
             about: Passes whose linearisation is used again; None: linearise.
         """
+        self._count_work()
         before = about.passes if about else [None] * len(self.recordings)
         found = []
         for mapped, one in zip(self.recordings, before, strict=True):
@@ -367,7 +376,18 @@ class Problem:
         about: FilterPasses | None = None,
     ) -> float:
         """Return the log likelihood of `filter` with the same arguments."""
-        return self.filter(free, theta, on, levels, about).log_likelihood
+        self._count_work()
+        before = about.passes if about else [None] * len(self.recordings)
+        found = 0.0
+        for mapped, one in zip(self.recordings, before, strict=True):
+            values = self.values(mapped, free, theta)
+            found += mapped.log_likelihood(values, on, levels, one)
+        return found
+
+    def _count_work(self) -> None:
+        """Count one pass over all recordings."""
+        rows = sum(len(mapped.times) for mapped in self.recordings)
+        self.filtered.work += rows * int(self.program.module.NQ)
 
     def whitened_errors(
         self,
@@ -386,6 +406,7 @@ class Problem:
             levels: Levels of sensor noise and latent force.
             about: Passes whose gains are used.
         """
+        self._count_work()
         found = []
         for mapped, one in zip(self.recordings, about.passes, strict=True):
             found.append(mapped.whitened_errors(self.values(mapped, free, theta), on, levels, one))

@@ -271,7 +271,7 @@ def gauss_newton(tables: Tables, names: Sequence[str], theta: Array, most: int =
     for _ in range(most):
         g, gain = -(A.T @ e) - (theta - space.mean) / space.sd, 0.0
         for _ in range(4):
-            trial = space.damped_step(theta, A, g, damping)
+            trial = space.damped_step(theta, A.T @ A, g, damping)
             value, after = log_posterior(tables, knobs, trial)
             if value > best:
                 theta, e, gain, best, damping = trial, after, value - best, value, damping / 10.0

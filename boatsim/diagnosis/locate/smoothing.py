@@ -169,22 +169,25 @@ def separate_information(shapes: Array, force: LatentForce) -> tuple[Array, Arra
 
 def _weighted(shapes: Array, force: LatentForce) -> tuple[Array, Array]:
     """C^-1 S and K S (N, k, S) of `joint_information`."""
-    covariances = force.covariances
-    gains = force.gains
+    part, gains = force.part, force.gains
     n = len(force.times)
-    weights = np.zeros((n, covariances.shape[1], shapes.shape[2]))
-    weights[:, force.part] = _times_precision(shapes, force) / (force.rms**2)[:, None]
-    # P_i w_i + G_i (the same sum of all later rows)
-    ahead = weights.copy()
-    ahead[-1] = covariances[-1] @ weights[-1]
+    weights = _times_precision(shapes, force) / (force.rms**2)[:, None]
+    # P_i w_i + G_i (the same sum of all later rows); the weights of motions are zero
+    from_force = np.ascontiguousarray(force.covariances[:, :, part])
+    smoothed = np.empty_like(weights)
+    ahead = from_force[-1] @ weights[-1]
+    smoothed[-1] = ahead[part]
     for i in range(n - 2, -1, -1):
-        ahead[i] = covariances[i] @ weights[i] + gains[i] @ ahead[i + 1]
-    # G'_i-1 (w_i-1 + the same sum of all earlier rows)
-    before = np.zeros_like(weights)
+        ahead = from_force[i] @ weights[i] + gains[i] @ ahead
+        smoothed[i] = ahead[part]
+    # plus P_i G'_i-1 (w_i-1 + the same sum of all earlier rows)
+    to_force = np.ascontiguousarray(force.covariances[:, part])
+    before = np.zeros_like(ahead)
     for i in range(1, n):
-        before[i] = gains[i - 1].T @ (before[i - 1] + weights[i - 1])
-    seen = shapes - (ahead + covariances @ before)[:, force.part]
-    return weights[:, force.part], seen
+        before[part] += weights[i - 1]
+        before = gains[i - 1].T @ before
+        smoothed[i] += to_force[i] @ before
+    return weights, shapes - smoothed
 
 
 def _times_precision(values: Array, force: LatentForce) -> Array:

@@ -51,6 +51,11 @@ from boatsim.version import version
 
 NEXT_SCENARIO = "next.toml"  # scenario of the next experiment, in the folder of the answer
 
+INCOMPLETE = (
+    "The search ended before it had compared all candidates, because its budget was spent; "
+    "shorter recordings, or a larger select.budget, complete it."
+)
+
 
 def compose_answer(
     loaded: Loaded,
@@ -107,6 +112,7 @@ def compose_answer(
         "mean_left": dict(evaluation.mean_force),
         "tried": sorted(set(map(base_name, tested))),
         "left_out": excluded_candidates(question),
+        "skipped": list(ranking.skipped),
         "facts": dict(problem.recordings[0].facts),
         "rules": rules_entry(problem, len(tested)),
         "log": _log(loaded, findings),
@@ -116,6 +122,8 @@ def compose_answer(
     if ranking.recalibration is not None:
         answer["recalibration"] = _recalibration(ranking.recalibration)
     verdict = verdict_sentences(answer, effect_meanings(problem.program.candidates, vessel))
+    if ranking.skipped:
+        verdict = f"{verdict} {INCOMPLETE}"
     answer["sentence"] = _with_log_first(verdict, findings, problem, ranking)
     return answer
 

@@ -334,6 +334,8 @@ class Answer(TypedDict):
     candidates: list[CandidateEntry]
     tried: NotRequired[list[str]]
     left_out: NotRequired[list[LeftOutEntry]]
+    # what the search has not tried because its budget was spent, one clause each; usually empty
+    skipped: NotRequired[list[str]]
     facts: NotRequired[dict[str, object]]
     rules: NotRequired[RulesEntry]
     upper_limits: dict[str, dict[str, float]]

@@ -380,7 +380,10 @@ def assumption_sentences(answer: Answer) -> list[str]:
     for axis, level in answer["rules"]["ambient"].items():
         size = format_quantity(level["rms"], level["unit"], digits=2)
         levels.append(f"{axis} {size}{_of_thrust(level)}")
-    lines = [tested, f"assumed disturbance level (rms): {', '.join(levels)}"]
+    lines = [tested]
+    for statement in answer.get("skipped", []):
+        lines.append(f"the search's budget was spent: {statement}")
+    lines.append(f"assumed disturbance level (rms): {', '.join(levels)}")
     for rule, reason in answer["rules"]["overridden"].items():
         lines.append(f"{rule} is specified by the vessel file: {reason}")
     return lines

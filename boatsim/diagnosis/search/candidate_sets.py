@@ -7,8 +7,10 @@ import numpy as np
 
 from boatsim import progress
 from boatsim.diagnosis.candidates import base_name
+from boatsim.diagnosis.filter import MappedRecording
 from boatsim.diagnosis.fit import converge, fit, gauss_newton, remove_effect
 from boatsim.diagnosis.problem import Fit, Problem
+from boatsim.diagnosis.search.budget import SearchBudget, addition_to
 from boatsim.diagnosis.search.evidence import (
     fits_with_evidence_above,
     leading_candidates,
@@ -17,7 +19,9 @@ from boatsim.diagnosis.search.evidence import (
     unknown_threshold,
 )
 from boatsim.diagnosis.search.screening import (
+    Linearisation,
     confirm_screening,
+    linearise,
     screen,
     starting_fits,
     starting_points,
@@ -29,6 +33,7 @@ CALM_STEPS = 4  # Gauss-Newton steps of a refit with the assumed levels
 START_STEPS = 2  # Gauss-Newton steps from each starting point of a candidate
 
 Set = frozenset[str]  # names of the effects of a fit
+Recordings = Sequence[MappedRecording]
 
 
 class CandidateSets:
@@ -40,6 +45,7 @@ class CandidateSets:
         candidates: tuple[str, ...],
         base: Fit,
         report: progress.Report = progress.ignore_progress,
+        budget: SearchBudget | None = None,
     ) -> None:
         """Create an empty cache.
 
@@ -48,8 +54,10 @@ class CandidateSets:
             candidates: Names of the candidates that are tested.
             base: The recalibrated vessel without candidates.
             report: Receives the progress.
+            budget: Work that the search may do; None: that of the configuration, from now on.
         """
         self.problem = problem
+        self.budget = budget or SearchBudget(problem.filtered, problem.config.select.budget)
         self.config = problem.config
         self.candidates = candidates
         self.base = base
@@ -57,12 +65,15 @@ class CandidateSets:
         self.fits: dict[Set, Fit] = {frozenset(): base}
         self.promised: dict[Set, float] = {}  # evidence that a screening promised
         self.screenings: dict[Set, dict[str, Fit]] = {}
+        self.linearised: tuple[Fit, Linearisation] | None = None  # of the latest screening
         # screenings of a candidate on top of a set that were computed again with the full filter
         self.rechecked: set[tuple[Set, str]] = set()
         self.fitted_in_full: set[tuple[Set, str]] = set()
         self.banned: set[str] = set()
         # effects without which held-out recordings are predicted worse, as free runs show
         self.supported: set[str] = set()
+        # log likelihoods of recordings that are held out, by the identities of these and of the fit
+        self.predictions: dict[tuple[int, int], tuple[Fit, Recordings, float]] = {}
         self.random = set[str]()  # stochastic forces, and drifts of instruments
         self.unsteady = set[str]()  # stochastic forces
         for name, effect in problem.candidates.items():
@@ -148,6 +159,9 @@ class CandidateSets:
             best: A fit.
             name: Name of one of its effects.
         """
+        known = self.fits.get(frozenset(best.effects) - {name})
+        if known is not None:
+            return known
         return self.converged_fit(remove_effect(self.problem, best, name))
 
     def screen_unrefuted(self, best: Fit, among: Sequence[str] = ()) -> dict[str, Fit]:
@@ -169,6 +183,8 @@ class CandidateSets:
     def screen_candidates(self, best: Fit, among: Sequence[str] = ()) -> dict[str, Fit]:
         """Return the screenings of other candidates on top of a set, the best ones fitted in full.
 
+        When the budget is spent, only the candidates alone are still screened.
+
         Args:
             best: A fit.
             among: Names of candidates; none: all of them.
@@ -180,9 +196,12 @@ class CandidateSets:
         known = self.screenings.setdefault(key, {})
         ideas = set(map(base_name, best.effects))
         rest = [n for n in among or self.candidates if base_name(n) not in ideas and n not in known]
+        if key and self.budget.spent:
+            self.budget.omit(len(rest), f"tested {addition_to(best.effects)}")
+            return known
         if rest:
             report = self._report_screening if len(self.screenings) == 1 else None
-            known |= screen(self.problem, best, rest, report)
+            known |= screen(self.problem, best, rest, report, self._linearised(best))
         allowed = self._unrefuted_fits(known)
         least = best.evidence + self.required_gain
         if not among and all(f.evidence < least for f in allowed.values()):
@@ -196,6 +215,9 @@ class CandidateSets:
             ahead = [n for n in ahead if (key, n) not in self.fitted_in_full]
             if not ahead:
                 break
+            if self.budget.spent:
+                self.budget.omit(len(ahead), f"fitted in full {addition_to(best.effects)}")
+                break
             name = ahead[0]
             found = known[name]
             if (key, name) not in self.rechecked and name not in self.random:
@@ -207,6 +229,12 @@ class CandidateSets:
                 found = self.fit_in_full(best, name, found)
             allowed[name] = known[name] = found
         return known
+
+    def _linearised(self, best: Fit) -> Linearisation:
+        """A fit linearised, once for consecutive screenings on top of it."""
+        if self.linearised is None or self.linearised[0] is not best:
+            self.linearised = best, linearise(self.problem, best)
+        return self.linearised[1]
 
     def _report_screening(self, share: float) -> None:
         stage = f"screening {len(self.candidates)} entries"

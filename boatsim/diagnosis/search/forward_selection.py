@@ -7,6 +7,7 @@ import numpy as np
 
 from boatsim.diagnosis.candidates import base_name
 from boatsim.diagnosis.problem import Fit
+from boatsim.diagnosis.search.budget import addition_to
 from boatsim.diagnosis.search.candidate_sets import CandidateSets
 from boatsim.diagnosis.search.evidence import combined_gain, gain_by_curvature, gains_over
 
@@ -20,7 +21,8 @@ REMAINS = 0.7
 def select_forward(sets: CandidateSets, best: Fit) -> Fit:
     """Add candidates to a set one by one and return the resulting fit.
 
-    Earlier effects that a newer one makes unnecessary are removed.
+    Earlier effects that a newer one makes unnecessary are removed. When the budget of the search is
+    spent, no further candidate is added.
 
     Args:
         sets: Fits of candidate sets.
@@ -40,12 +42,23 @@ def select_forward(sets: CandidateSets, best: Fit) -> Fit:
         if _combined_gain(tested, best) < max(sets.required_gain, slight):
             break
         name = max(tested, key=lambda n: tested[n].evidence)
+        if sets.budget.spent:
+            gain = tested[name].evidence - best.evidence
+            sets.budget.state(_not_added(name, best, gain))
+            break
         converged = sets.refit_from_assumed_disturbance(sets.converged_fit(tested[name]))
         further = _without_unnecessary(sets, converged)
         if set(further.effects) == set(best.effects):
             break  # the newest one was removed again
         best = further
     return best
+
+
+def _not_added(name: str, best: Fit, gain: float) -> str:
+    """The statement that a candidate was not added."""
+    where = f" {addition_to(best.effects)}" if best.effects else ""
+    added = f"{base_name(name)} was not added{where}"
+    return f"{added}, although a first estimate of its evidence is {gain:.0f} nats"
 
 
 def _report(sets: CandidateSets, best: Fit) -> None:

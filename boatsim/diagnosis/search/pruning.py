@@ -38,7 +38,7 @@ def prune(sets: CandidateSets, best: Fit) -> tuple[Fit, tuple[IdentifiedEffect, 
     """Remove effects with insufficient evidence.
 
     An effect in whose place another one is better is replaced, unless that leads back to a set that
-    was examined before.
+    was examined before, or the budget of the search is spent.
 
     Args:
         sets: Fits of candidate sets.
@@ -53,7 +53,9 @@ def prune(sets: CandidateSets, best: Fit) -> tuple[Fit, tuple[IdentifiedEffect, 
         named = tuple(_compare_with_rivals(sets, best, name) for name in best.effects)
         better = _better_rivals(sets, best, named)
         further = best
-        if better:
+        if better and sets.budget.spent:
+            sets.budget.state(_not_replaced(best, max(better, key=lambda f: f.evidence)))
+        elif better:
             further = select_forward(sets, max(better, key=lambda f: f.evidence))
         if frozenset(further.effects) not in examined:
             best = further
@@ -71,6 +73,14 @@ def prune(sets: CandidateSets, best: Fit) -> tuple[Fit, tuple[IdentifiedEffect, 
         if removed in calming:
             sets.banned.add(removed.name)
         best = sets.fit_without(best, removed.name)
+
+
+def _not_replaced(best: Fit, better: Fit) -> str:
+    """The statement that a better set with another effect was not examined."""
+    gain = better.evidence - best.evidence
+    old = ", ".join(base_name(name) for name in best.effects if name not in better.effects)
+    new = ", ".join(base_name(name) for name in better.effects if name not in best.effects)
+    return f"{new} did not replace {old}, although that gains {gain:.0f} nats"
 
 
 def _better_rivals(
@@ -188,18 +198,30 @@ def _compare_with_rivals(sets: CandidateSets, best: Fit, name: str) -> Identifie
     config = sets.config.select
     without = sets.fit_without(best, name)
     gain = best.evidence - without.evidence
-    tested = sets.screen_unrefuted(
-        without, [n for n in sets.promising_candidates(without) if n != name]
-    )
+    tested = _tested_instead(sets, best, name, without)
     others = {n: f for n, f in tested.items() if n not in best.effects}
     key, rivals = frozenset(without.effects), {}
-    for rival in leading_candidates(others, without, config)[: config.most_rivals]:
+    leading = leading_candidates(others, without, config)[: config.most_rivals]
+    for i, rival in enumerate(leading):
+        if sets.budget.spent:
+            sets.budget.omit(len(leading) - i, f"refitted in place of {base_name(name)}")
+            break
         found = others[rival]
         poor = found.evidence < without.evidence + config.front_share * gain
         if not poor or (key, rival) not in sets.fitted_in_full:
             found = sets.converged_fit(found)
         rivals[rival] = found
     return compare_rivals(name, best, without, rivals, config)
+
+
+def _tested_instead(sets: CandidateSets, best: Fit, name: str, without: Fit) -> Mapping[str, Fit]:
+    """Screenings of promising candidates in the place of an effect; none without a budget."""
+    promising = [n for n in sets.promising_candidates(without) if n != name]
+    if not sets.budget.spent:
+        return sets.screen_unrefuted(without, promising)
+    others = set(promising) - sets.banned - set(best.effects)
+    sets.budget.omit(len(others), f"refitted in place of {base_name(name)}")
+    return {}
 
 
 def compare_rivals(

@@ -13,6 +13,7 @@ from boatsim.diagnosis.locate.residual_structure import Structure, find_structur
 from boatsim.diagnosis.noise_levels import fit_noise
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.diagnosis.recalibration import Recalibration
+from boatsim.diagnosis.search.budget import SearchBudget
 from boatsim.diagnosis.search.candidate_sets import CandidateSets
 from boatsim.diagnosis.search.energy_balance import braking_force, oscillating_force
 from boatsim.diagnosis.search.evidence import gains_over, unexplained_evidence, unknown_threshold
@@ -60,6 +61,7 @@ class Ranking:
     divergences: tuple[Divergence, ...] = ()
     # effects that the best fit contains, but that are probably stand-ins for an unknown cause
     doubtful: tuple[IdentifiedEffect, ...] = ()
+    skipped: tuple[str, ...] = ()  # what was not tried because the search's budget was spent
     stands_in: bool = False  # whether one of them explains so much that a cause must exist
     # which refitted coefficients `recalibrated` has; None before that is decided
     recalibration: Recalibration | None = None
@@ -89,6 +91,7 @@ def rank(
     begin: Fit | None = None,
     report: Report = ignore_progress,
     base: Baseline | None = None,
+    budget: SearchBudget | None = None,
 ) -> Ranking:
     """Select the candidates that the recordings require.
 
@@ -104,13 +107,16 @@ def rank(
         begin: Fit whose effects are the start; None: start without effects.
         report: Receives the progress.
         base: Fits of the vessel without candidates; None: fit them.
+        budget: Work that the search may do; None: that of the configuration. When it is spent, no
+            candidate is added or exchanged any more. Effects without sufficient evidence are still
+            removed.
 
     Returns:
         The identified effects with the evidence of all candidates.
     """
     report("fitting the vessel as written")
     nominal, recalibrated = base or fit_baseline(problem)
-    sets = CandidateSets(problem, candidates, recalibrated, report)
+    sets = CandidateSets(problem, candidates, recalibrated, report, budget)
     start = refit_from_base_levels(sets, begin) if begin else recalibrated
     best, named = prune(sets, select_forward(sets, start))
     while True:
@@ -156,6 +162,7 @@ def rank(
             problem.config.decide.structure_share,
         ),
         without=sets.fits_without_each(best),
+        skipped=sets.budget.skipped,
     )
 
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -39,6 +40,12 @@ class Linearisation:
     def white(self) -> Array:
         """(rows,) whitened errors."""
         return self.passes.whitened
+
+    @cached_property
+    def half_log_determinant(self) -> float:
+        """Half the log determinant of the information, which the score of a fit loses."""
+        count = self.columns.shape[1]
+        return _half_log_determinant(np.eye(count) + self.columns.T @ self.columns)
 
     def predicted_gain(self, white: Array) -> float:
         """Return the evidence that some multiple of a change of the errors gains [nats].
@@ -81,6 +88,7 @@ def screen(
     base: Fit,
     candidates: Sequence[str],
     report: Callable[[float], None] | None = None,
+    about: Linearisation | None = None,
 ) -> dict[str, Fit]:
     """Return a rough fit of each candidate on top of a fit.
 
@@ -92,8 +100,9 @@ def screen(
         base: A converged fit.
         candidates: Names of the candidates.
         report: Receives the share of the candidates that have been screened.
+        about: The fit linearised; None: linearise it.
     """
-    about = linearise(problem, base)
+    about = about or linearise(problem, base)
     effects = problem.candidates
     found: dict[str, Fit] = {}
     for name in sorted(candidates, key=lambda n: type(effects[n]).random):
@@ -138,8 +147,8 @@ def confirm_screening(problem: Problem, base: Fit, screened: Fit) -> Fit:
     return further if np.isfinite(further.evidence) else best
 
 
-def _half_log_determinant(J: Array) -> float:
-    return 0.5 * float(np.linalg.slogdet(np.eye(J.shape[1]) + J.T @ J)[1])
+def _half_log_determinant(information: Array) -> float:
+    return 0.5 * float(np.linalg.slogdet(information)[1])
 
 
 def starting_points(problem: Problem, effect: Effect) -> list[dict[str, float]]:
@@ -247,7 +256,7 @@ def _screen_deterministic(problem: Problem, base: Fit, effect: Effect, about: Li
     found, score = best
     truncation = log_truncation(found.free, found.theta, found.covariance)
     truncation -= log_truncation(base.free, base.theta, base.covariance)
-    gain = score - about.score + _half_log_determinant(about.columns) + truncation
+    gain = score - about.score + about.half_log_determinant + truncation
     return replace(found, evidence=base.evidence + gain)
 
 
@@ -280,14 +289,15 @@ def _gauss_newton_steps(
         white, score = evaluate(theta)
     if not np.isfinite(score):
         return start, -np.inf
-    damping, J = FIRST_DAMPING, known
+    damping, A = FIRST_DAMPING, np.zeros((len(free), len(free)))
     for _ in range(rounds):
         J = jacobian(problem, free, theta, on, levels, about.passes, white, known.shape[1])
         J = np.hstack([known, J])
+        A = J.T @ J
         gain, ends = 0.0, False
         for _ in range(config.screening_dampings):
             g = slope - J.T @ white - (theta - space.mean) / space.sd
-            trial = space.damped_step(theta, J, g, damping)
+            trial = space.damped_step(theta, A, g, damping)
             predicted = space.predicted_gain(J, g, theta, trial)
             if predicted >= 0.0 and score + predicted < about.score + config.screening_promise:
                 # too little to follow: the prediction is accepted
@@ -302,9 +312,9 @@ def _gauss_newton_steps(
             damping = max(damping, LEAST_DAMPING) * DAMPING_GROWTH
         if gain < problem.config.fit.step_gain or ends:
             break
-    covariance = space.covariance(np.eye(len(free)) + J.T @ J)
-    found = replace(start, theta=theta, covariance=covariance)
-    return found, score - _half_log_determinant(J)
+    information = np.eye(len(free)) + A
+    found = replace(start, theta=theta, covariance=space.covariance(information))
+    return found, score - _half_log_determinant(information)
 
 
 def _screen_stochastic(problem: Problem, base: Fit, effect: Effect, about: Linearisation) -> Fit:

@@ -5,17 +5,14 @@ from dataclasses import replace
 
 import numpy as np
 
-from boatsim.diagnosis.filter import MappedRecording
 from boatsim.diagnosis.free_runs import FreeRun, free_runs
 from boatsim.diagnosis.noise_levels import fit_force, log_force_prior
 from boatsim.diagnosis.problem import Fit
 from boatsim.diagnosis.search import generalization
-from boatsim.diagnosis.search.candidate_sets import CandidateSets
+from boatsim.diagnosis.search.candidate_sets import CandidateSets, Recordings
 from boatsim.diagnosis.search.evidence import unexplained_evidence, unknown_threshold
 from boatsim.diagnosis.search.generalization import Squares
 from boatsim.diagnosis.search.pruning import IdentifiedEffect, compare_rivals
-
-Recordings = Sequence[MappedRecording]
 
 
 def misleading_effect(sets: CandidateSets, best: Fit, held_out: Recordings) -> str:
@@ -123,11 +120,15 @@ def predictive_log_likelihood(sets: CandidateSets, found: Fit, held_out: Recordi
         found: A fit.
         held_out: Held-out recordings.
     """
-    problem = sets.problem.on(held_out)
-    refitted = fit_force(problem, found)
-    on = problem.program.switches(refitted.effects)
-    likelihood = problem.log_likelihood(refitted.free, refitted.theta, on, refitted.levels)
-    return likelihood + log_force_prior(problem, refitted.levels)
+    key = (id(found), id(held_out))
+    if key not in sets.predictions:
+        problem = sets.problem.on(held_out)
+        refitted = fit_force(problem, found)
+        on = problem.program.switches(refitted.effects)
+        likelihood = problem.log_likelihood(refitted.free, refitted.theta, on, refitted.levels)
+        predicted = likelihood + log_force_prior(problem, refitted.levels)
+        sets.predictions[key] = found, held_out, predicted  # both stay alive with their identities
+    return sets.predictions[key][2]
 
 
 def evaluate_rivals_on_all(

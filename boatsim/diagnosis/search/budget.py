@@ -1,0 +1,93 @@
+"""The budget of a search: a limit of its work, and what was not tried after it was spent.
+
+The work is counted in rows filtered times degrees of freedom: one pass of the filter over 1,000
+rows of a vessel in surge, sway and yaw counts 3,000. The count depends on the recordings and on the
+settings alone, never on the speed of the machine, so that a diagnosis gives the same answer
+everywhere.
+"""
+
+from collections.abc import Iterable
+
+from boatsim.diagnosis.candidates import base_name
+from boatsim.diagnosis.problem import WorkCount
+
+
+class BudgetSpentError(Exception):
+    """A search that has to be complete has spent its budget."""
+
+
+class SearchBudget:
+    """What remains of the work that a search may do, and a list of what it has not tried."""
+
+    def __init__(self, count: WorkCount, work: int, *, complete: bool = False) -> None:
+        """Start with the whole budget.
+
+        Args:
+            count: Count of the work that has been done.
+            work: Work that may be done from now on [rows x dof].
+            complete: Whether the search has to end at once when the budget is spent.
+        """
+        self._count = count
+        self._last = count.work + work
+        self._complete = complete
+        self._omitted: dict[str, int] = {}
+        self._statements: list[str] = []
+
+    @property
+    def left(self) -> int:
+        """Work that may still be done, at least 0 [rows x dof]."""
+        return max(self._last - self._count.work, 0)
+
+    @property
+    def spent(self) -> bool:
+        """Whether nothing of the budget is left."""
+        return self.left == 0
+
+    @property
+    def skipped(self) -> tuple[str, ...]:
+        """What was not tried, in words, one statement each."""
+        found = []
+        for how, number in self._omitted.items():
+            candidates = "1 candidate was" if number == 1 else f"{number} candidates were"
+            found.append(f"{candidates} not {how}")
+        return (*found, *self._statements)
+
+    def omit(self, number: int, how: str) -> None:
+        """Record candidates that are not tried; a later record of the same trial replaces it.
+
+        Args:
+            number: Number of candidates; 0 records nothing.
+            how: How they would have been tried, such as "refitted in place of wind".
+
+        Raises:
+            BudgetSpentError: The search has to be complete.
+        """
+        if number == 0:
+            return
+        if self._complete:
+            raise BudgetSpentError
+        self._omitted[how] = number
+
+    def state(self, what: str) -> None:
+        """Record something else that is not tried.
+
+        Args:
+            what: A clause, such as "wind was not added".
+
+        Raises:
+            BudgetSpentError: The search has to be complete.
+        """
+        if self._complete:
+            raise BudgetSpentError
+        if what not in self._statements:
+            self._statements.append(what)
+
+
+def addition_to(effects: Iterable[str]) -> str:
+    """Return the words "in addition to ..." for a set of effects.
+
+    Args:
+        effects: Names of the effects of a set.
+    """
+    names = ", ".join(dict.fromkeys(map(base_name, effects)))
+    return f"in addition to {names}" if names else "alone"

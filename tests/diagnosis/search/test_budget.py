@@ -1,0 +1,125 @@
+"""The budget of a search: its count, the end of the search, and the report of what was skipped."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from pushed_boat import BOAT, push, sail
+
+from boatsim.diagnosis import loading, pipeline
+from boatsim.diagnosis.config import DEFAULT, DiagnosisConfig
+from boatsim.diagnosis.loading import Loaded, Request
+from boatsim.diagnosis.problem import WorkCount
+from boatsim.diagnosis.question import Question, pose_question
+from boatsim.diagnosis.report.answer import INCOMPLETE
+from boatsim.diagnosis.report.sentences import console_lines
+from boatsim.diagnosis.search.budget import BudgetSpentError, SearchBudget, addition_to
+from boatsim.physics.base import Array
+from boatsim.recordings.table import write_csv
+
+FAST = replace(DEFAULT, load=replace(DEFAULT.load, row_rate=4.0))
+CANDIDATES = ("weak_reverse", "steady_force", "thrust_lag", "wave_forcing")
+
+
+def weak_astern(t: float, y: Array, command: Array) -> Array:
+    """A third of the thrust astern is missing."""
+    return np.asarray(-0.33 * push(np.minimum(command[:2], 0.0), command[2:]))
+
+
+@pytest.fixture(scope="module")
+def loaded(tmp_path_factory: pytest.TempPathFactory) -> Loaded:
+    path = tmp_path_factory.mktemp("budget") / "run.csv"
+    write_csv(sail("run", 7, weak_astern)[0], path)
+    return loading.load(Request([path], vessel=BOAT.name), config=FAST)
+
+
+def with_budget(work: int) -> DiagnosisConfig:
+    return replace(FAST, select=replace(FAST.select, budget=work))
+
+
+def question_with(loaded: Loaded, config: DiagnosisConfig) -> Question:
+    question = pose_question(loaded, config)
+    return replace(question, candidates=CANDIDATES)
+
+
+def selection_with(loaded: Loaded, config: DiagnosisConfig) -> pipeline.Selection:
+    question = question_with(loaded, config)
+    return pipeline.select(question, pipeline.fit(question), loaded)
+
+
+def test_a_pass_counts_the_rows_of_all_recordings_times_the_degrees_of_freedom(
+    loaded: Loaded,
+) -> None:
+    problem = question_with(loaded, FAST).problem
+    found = problem.nominal_hypothesis()
+    on = problem.program.switches()
+    rows = sum(len(mapped.times) for mapped in problem.recordings)
+    before = problem.filtered.work
+    passes = problem.filter(found.free, found.theta, on, found.levels)
+    problem.log_likelihood(found.free, found.theta, on, found.levels)
+    problem.whitened_errors(found.free, found.theta, on, found.levels, passes)
+    assert problem.filtered.work == before + 3 * rows * len(problem.program.vessel.dof)
+
+
+def test_the_default_budget_skips_nothing(loaded: Loaded) -> None:
+    ranking = selection_with(loaded, FAST).ranking
+    assert not ranking.skipped
+    assert [one.name for one in ranking.named] == ["weak_reverse"]
+
+
+def test_a_search_without_budget_adds_nothing_and_states_what_it_skipped(loaded: Loaded) -> None:
+    ranking = selection_with(loaded, with_budget(1)).ranking
+    assert not ranking.named and not ranking.best.effects
+    assert len(ranking.first) == len(CANDIDATES)  # each candidate alone is always screened
+    assert any(what.startswith("weak_reverse was not added") for what in ranking.skipped)
+    assert pipeline.TIME_NOT_CHOSEN in ranking.skipped
+
+
+def test_a_budget_that_ends_the_search_halfway_keeps_the_best_set_found(loaded: Loaded) -> None:
+    question = question_with(loaded, FAST)
+    base = pipeline.fit(question)
+    before = question.problem.filtered.work
+    complete = pipeline.select(question, base, loaded).ranking
+    used = question.problem.filtered.work - before
+    evidence = []
+    for share in (0.0, 0.3, 0.6, 1.0):
+        ranking = selection_with(loaded, with_budget(1 + int(share * used))).ranking
+        evidence.append(ranking.best.evidence)
+    assert evidence == sorted(evidence)
+    assert evidence[-1] == complete.best.evidence
+
+
+def test_the_same_budget_gives_the_same_answer_again(loaded: Loaded) -> None:
+    first, second = (selection_with(loaded, with_budget(200_000)).ranking for _ in range(2))
+    assert first.skipped == second.skipped
+    assert first.best.effects == second.best.effects
+    assert first.best.evidence == second.best.evidence
+
+
+def test_the_answer_says_in_words_what_was_skipped(loaded: Loaded) -> None:
+    found = pipeline.diagnose_loaded(loaded, config=with_budget(1))
+    answer = found.findings.answer
+    assert answer["skipped"]
+    assert answer["sentence"].endswith(INCOMPLETE)
+    printed = "\n".join(console_lines(found.findings))
+    for what in answer["skipped"]:
+        assert f"the search's budget was spent: {what}" in printed
+
+
+def test_statements_count_the_candidates_once_for_each_trial() -> None:
+    budget = SearchBudget(WorkCount(), 0)
+    budget.omit(3, f"tested {addition_to(['wind'])}")
+    budget.omit(2, f"tested {addition_to(['wind'])}")
+    budget.omit(0, "refitted in place of wind")
+    budget.omit(1, "refitted in place of current")
+    assert budget.skipped == (
+        "2 candidates were not tested in addition to wind",
+        "1 candidate was not refitted in place of current",
+    )
+
+
+def test_a_search_that_has_to_be_complete_ends_at_once() -> None:
+    budget = SearchBudget(WorkCount(), 0, complete=True)
+    budget.omit(0, "tested alone")
+    with pytest.raises(BudgetSpentError):
+        budget.omit(1, "tested alone")
