@@ -42,8 +42,8 @@ PLACEHOLDERS = {
 class Library:
     """Candidate effects of one diagnosis, and those that are excluded."""
 
-    # all candidates that can act on the vessel; they are compiled whatever is known of a run, except
-    # that errors of single instruments need their recorded columns
+    # all candidates that can act on the vessel; they are compiled whatever is known of a run,
+    # except errors of single instruments whose columns were not recorded
     entries: tuple[Effect, ...]
     # effects reserved for terms found by symbolic regression; they are compiled, too
     placeholders: tuple[Effect, ...]

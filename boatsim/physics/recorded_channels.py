@@ -5,6 +5,7 @@ single channels use these functions.
 """
 
 from math import cos, sin, tan
+from typing import NamedTuple
 
 import numpy as np
 
@@ -14,6 +15,41 @@ from boatsim.physics.signals import STATE, MeasuredMotion
 CHANNELS = tuple(signal.column for signal in STATE)  # in the order of the fields
 # as 64-bit integers: numba would compile a function for each value of a plain integer
 X, Y, Z, PHI, THETA, PSI, U, V, W, P, Q, R = np.arange(12)
+
+
+class InstrumentChannel(NamedTuple):
+    """A channel with an instrument of its own; x and y are those of one fix."""
+
+    column: str
+    axis: str  # degree of freedom
+    words: str
+    unit: str
+    largest: float  # [unit] bound of a constant error
+    rate: str = ""  # column of its rate, where that is another channel
+
+
+HEAVE = InstrumentChannel("z_m", "heave", "heave", "m", 100.0, "w_mps")
+ROLL = InstrumentChannel("phi_rad", "roll", "roll", "rad", 1.0, "p_radps")
+PITCH = InstrumentChannel("theta_rad", "pitch", "pitch", "rad", 1.0, "q_radps")
+HEADING = InstrumentChannel("psi_rad", "yaw", "heading", "rad", 1.0, "r_radps")
+SURGE_VELOCITY = InstrumentChannel("u_mps", "surge", "surge velocity", "m/s", 50.0)
+SWAY_VELOCITY = InstrumentChannel("v_mps", "sway", "sway velocity", "m/s", 50.0)
+HEAVE_VELOCITY = InstrumentChannel("w_mps", "heave", "heave velocity", "m/s", 50.0)
+ROLL_RATE = InstrumentChannel("p_radps", "roll", "roll rate", "rad/s", 10.0)
+PITCH_RATE = InstrumentChannel("q_radps", "pitch", "pitch rate", "rad/s", 10.0)
+YAW_RATE = InstrumentChannel("r_radps", "yaw", "yaw rate", "rad/s", 10.0)
+INSTRUMENT_CHANNELS = (
+    HEAVE,
+    ROLL,
+    PITCH,
+    HEADING,
+    SURGE_VELOCITY,
+    SWAY_VELOCITY,
+    HEAVE_VELOCITY,
+    ROLL_RATE,
+    PITCH_RATE,
+    YAW_RATE,
+)
 
 
 @merged

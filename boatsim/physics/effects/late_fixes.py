@@ -32,8 +32,8 @@ class LateFixes(Measurement):
 
     x_recorded = x - latency (u cos(psi_m) - v sin(psi_m)),  psi_m = psi - 0.5 latency r
 
-    and y likewise: the delay of a `sensor_error` of x and of y. Acceleration within the latency is neglected; that part of a long latency
-    appears as a delayed command.
+    and y likewise: the delay of a `sensor_error` of x and of y. Acceleration within the latency is
+    neglected; that part of a long latency appears as a delayed command.
     """
 
     of_columns: ClassVar = ("x_m", "y_m")

@@ -1,7 +1,7 @@
 """Sensor error: gain, offset, delay and drift of one recorded channel."""
 
 from dataclasses import dataclass
-from typing import Any, ClassVar, NamedTuple
+from typing import Any, ClassVar
 
 import numpy as np
 from numba import njit
@@ -10,7 +10,22 @@ from boatsim.errors import BadInput, unknown_name
 from boatsim.physics.base import Boat, MeasuredMotion, Measurement, param, preset_effect
 from boatsim.physics.param import code_parameter
 from boatsim.physics.presets import ParameterChanges
-from boatsim.physics.recorded_channels import CHANNELS, delayed_channel, with_channel
+from boatsim.physics.recorded_channels import (
+    CHANNELS,
+    HEADING,
+    HEAVE,
+    HEAVE_VELOCITY,
+    PITCH,
+    PITCH_RATE,
+    ROLL,
+    ROLL_RATE,
+    SURGE_VELOCITY,
+    SWAY_VELOCITY,
+    YAW_RATE,
+    InstrumentChannel,
+    delayed_channel,
+    with_channel,
+)
 from boatsim.physics.signals import RATES
 
 
@@ -101,35 +116,17 @@ class SensorError(Measurement):
         return {"channel": self.channel}
 
 
-class Channel(NamedTuple):
-    """One recorded channel and the size that errors of its instrument may have."""
-
-    column: str
-    axis: str  # degree of freedom
-    noun: str  # in words
-    unit: str
-    largest: float  # [unit] bound of a constant error
-    rate: str = ""  # column of its rate, where that is another channel
-
-
 # Prior sds for a hull of 1.2 m. An offset of 0.05 m, rad, m/s or rad/s is 10 % of what such a hull
 # reaches in its usual motions; a drift of 0.001 per second adds as much within a minute.
 OFFSET_SPREAD, DRIFT_SPREAD, GAIN_SPREAD, DELAY_SPREAD = 0.05, 0.001, 0.1, 0.2
 
-HEAVE = Channel("z_m", "heave", "heave", "m", 100.0, "w_mps")
-ROLL = Channel("phi_rad", "roll", "roll", "rad", 1.0, "p_radps")
-PITCH = Channel("theta_rad", "pitch", "pitch", "rad", 1.0, "q_radps")
-HEADING = Channel("psi_rad", "yaw", "heading", "rad", 1.0, "r_radps")
-SURGE_VELOCITY = Channel("u_mps", "surge", "surge velocity", "m/s", 50.0)
-SWAY_VELOCITY = Channel("v_mps", "sway", "sway velocity", "m/s", 50.0)
-HEAVE_VELOCITY = Channel("w_mps", "heave", "heave velocity", "m/s", 50.0)
-ROLL_RATE = Channel("p_radps", "roll", "roll rate", "rad/s", 10.0)
-PITCH_RATE = Channel("q_radps", "pitch", "pitch rate", "rad/s", 10.0)
-YAW_RATE = Channel("r_radps", "yaw", "yaw rate", "rad/s", 10.0)
-
 
 def special_case(
-    channel: Channel, freed: str, about: ParameterChanges, words: str, with_rate: bool = False
+    channel: InstrumentChannel,
+    freed: str,
+    about: ParameterChanges,
+    words: str,
+    with_rate: bool = False,
 ) -> dict[str, Any]:
     """Return the settings of `preset_effect` for one error of one channel.
 
@@ -141,36 +138,36 @@ def special_case(
         with_rate: Whether the error shows only in comparison with the recorded rate of the channel.
     """
     others = {"gain_fraction", "offset", "delay", "drift"} - {freed}
-    columns = (channel.column,)
+    columns = [channel.column]
     if with_rate:
-        columns = (channel.column, channel.rate)
+        columns.append(channel.rate)
     return {
         "frees": {freed: about},
         "fixed": dict.fromkeys(sorted(others), 0.0),
-        "words": f"the recorded {channel.noun} {words} (not physics)",
+        "words": f"the recorded {channel.words} {words} (not physics)",
         "column": channel.column,
         "of_columns": (channel.column,),
-        "needs_columns": columns,
+        "needs_columns": tuple(columns),
         "needs": (channel.axis,),
         "special_case": True,
     }
 
 
-def gain_of(channel: Channel, with_rate: bool = False) -> dict[str, Any]:
+def gain_of(channel: InstrumentChannel, with_rate: bool = False) -> dict[str, Any]:
     """Return the settings of `preset_effect` for a gain error of a channel."""
     about: ParameterChanges = {
-        "words": f"relative error of the {channel.noun}",
+        "words": f"relative error of the {channel.words}",
         "spread": GAIN_SPREAD,
     }
     settings = special_case(channel, "gain_fraction", about, "is too small", with_rate)
-    above = f"the recorded {channel.noun} is too large (not physics)"
+    above = f"the recorded {channel.words} is too large (not physics)"
     return settings | {"words_above": above}
 
 
-def offset_of(channel: Channel) -> dict[str, Any]:
+def offset_of(channel: InstrumentChannel) -> dict[str, Any]:
     """Return the settings of `preset_effect` for a constant error of a channel."""
     about: ParameterChanges = {
-        "words": f"constant error of the {channel.noun}",
+        "words": f"constant error of the {channel.words}",
         "unit": channel.unit,
         "spread": OFFSET_SPREAD,
         "low": -channel.largest,
@@ -179,13 +176,13 @@ def offset_of(channel: Channel) -> dict[str, Any]:
     return special_case(channel, "offset", about, "has a constant error")
 
 
-def drift_of(channel: Channel, with_rate: bool = False) -> dict[str, Any]:
+def drift_of(channel: InstrumentChannel, with_rate: bool = False) -> dict[str, Any]:
     """Return the settings of `preset_effect` for an error that grows with time."""
     unit = f"{channel.unit}/s"
     if channel.unit.endswith("/s"):
         unit = f"{channel.unit}^2"
     about: ParameterChanges = {
-        "words": f"growth of the error of the {channel.noun}",
+        "words": f"growth of the error of the {channel.words}",
         "unit": unit,
         "spread": DRIFT_SPREAD,
         "low": -channel.largest,
@@ -194,10 +191,10 @@ def drift_of(channel: Channel, with_rate: bool = False) -> dict[str, Any]:
     return special_case(channel, "drift", about, "has an error that grows with time", with_rate)
 
 
-def delay_of(channel: Channel) -> dict[str, Any]:
+def delay_of(channel: InstrumentChannel) -> dict[str, Any]:
     """Return the settings of `preset_effect` for a delay, which the recorded rate reveals."""
     about: ParameterChanges = {
-        "words": f"delay of the {channel.noun}",
+        "words": f"delay of the {channel.words}",
         "spread": DELAY_SPREAD,
     }
     return special_case(channel, "delay", about, "is older than its rate in the same row", True)

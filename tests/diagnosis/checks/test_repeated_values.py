@@ -9,7 +9,7 @@ import pytest
 from answers import diagnosed
 from real_boat import Real, recorded
 
-from boatsim.diagnosis.checks.repeated_positions import drop_repeated_positions, repeated_rows
+from boatsim.diagnosis.checks.repeated_values import drop_repeated_values, repeated_rows
 from boatsim.recordings.table import Recording
 
 
@@ -24,7 +24,7 @@ def held(run: Recording, rows: int) -> Recording:
 def test_repetitions_are_found_and_nothing_else() -> None:
     run = recorded(Real(), 1)
     assert not repeated_rows(np.column_stack([run["x_m"], run["y_m"]])).any()
-    found = drop_repeated_positions(held(run, 4))
+    found = drop_repeated_values(held(run, 4))
     assert np.flatnonzero(np.isfinite(found["x_m"])).tolist() == list(range(0, len(run), 4))
     assert np.isfinite(found["psi_rad"]).all() and "x_m, y_m repeat each fix" in found.remarks[-1]
 
