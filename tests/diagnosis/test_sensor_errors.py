@@ -15,6 +15,7 @@ from boatsim.diagnosis.candidates import library_for
 from boatsim.physics import content, vessel
 from boatsim.physics.base import Array
 from boatsim.physics.effects.sensor_error import SensorError
+from boatsim.physics.recorded_channels import CHANNELS
 from boatsim.recordings.table import Recording
 
 GYRO = 0.01  # [rad/s] noise
@@ -51,18 +52,19 @@ def test_sensor_errors_are_candidates_where_their_columns_were_recorded_and_nowh
         assert found - {e.name for e in usual.entries} == {f"{word}_velocity_{e}" for e in errors}
 
 
-def test_a_boat_that_pitches_and_heaves_has_candidates_for_both() -> None:
-    """Every special case is a candidate of a boat with all freedoms and all columns."""
-    boat = vessel.load_vessel("kvlcc2_roll")
-    everything = [s for s in content.library_names("effect")]
-    special = {
-        n
-        for n in everything
-        if issubclass(content.load_class("effect", n), SensorError) and n != "sensor_error"
-    }
-    names = {e.name for e in library_for(boat, (), None, ("phi_rad", "p_radps")).entries}
-    rolls = {n for n in special if n.startswith("roll_")}
-    assert rolls == {n for n in special & names} and len(rolls) == 6
+def test_every_special_case_is_a_candidate_of_a_boat_with_all_freedoms_and_all_columns() -> None:
+    boat = vessel.load_vessel("otter")
+    special = {}
+    for name in content.library_names("effect"):
+        kind = content.load_class("effect", name)
+        if issubclass(kind, SensorError) and kind is not SensorError:
+            special[name] = kind
+    assert set(special) <= {e.name for e in library_for(boat, (), None, CHANNELS).entries}
+    for column in CHANNELS[2:]:
+        library = library_for(boat, (), None, [c for c in CHANNELS if c != column])
+        without = set(special) - {e.name for e in library.entries}
+        assert without == {n for n, kind in special.items() if column in kind.needs_columns}
+        assert {library.inapplicable[n] for n in without} <= {f"no column {column} was recorded"}
 
 
 def test_a_perfect_gyro_names_nothing(tmp_path: Path) -> None:
