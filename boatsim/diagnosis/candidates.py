@@ -42,7 +42,8 @@ PLACEHOLDERS = {
 class Library:
     """Candidate effects of one diagnosis, and those that are excluded."""
 
-    # all candidates that can act on the vessel; they are compiled whatever is known of a run
+    # all candidates that can act on the vessel; they are compiled whatever is known of a run,
+    # except errors of single instruments whose columns were not recorded
     entries: tuple[Effect, ...]
     # effects reserved for terms found by symbolic regression; they are compiled, too
     placeholders: tuple[Effect, ...]
@@ -81,7 +82,8 @@ def library_for(
         vessel: Vessel of the recordings.
         own: Effects that the user requests, by name or file.
         facts: Facts of the recordings in addition to the vessel's.
-        columns: Recorded columns; None: any.
+        columns: Recorded columns; None: unknown. Effects with `needs_columns` are candidates only
+            where these columns are known to be recorded.
 
     Raises:
         BadInput: An effect that is requested does not exist, or has no parameter to fit.
@@ -101,6 +103,7 @@ def library_for(
                 )
             continue
         missing = missing_requirements(kind, vessel, known, source.table)
+        missing = missing or _missing_columns(kind, columns)
         if missing:
             inapplicable[name] = missing
             continue
@@ -192,6 +195,16 @@ def _unrecorded_columns(kind: type[Effect], columns: Sequence[str] | None) -> st
     if set(kind.of_columns) & set(columns):
         return ""
     return f"no column {' or '.join(kind.of_columns)} was recorded"
+
+
+def _missing_columns(kind: type[Effect], columns: Sequence[str] | None) -> str:
+    """The columns without which an error of an instrument is not even compiled, in words, or ""."""
+    if not issubclass(kind, Measurement):
+        return ""
+    missing = [name for name in kind.needs_columns if name not in (columns or ())]
+    if not missing:
+        return ""
+    return f"no column {' and '.join(missing)} was recorded"
 
 
 def missing_requirements(

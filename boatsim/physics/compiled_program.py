@@ -199,8 +199,8 @@ class CompiledProgram(Protocol):
         Fills out (runs, N, 2 NQ) with all channels as the recording would show them.
         """
 
-    def remove_position_errors(self, z: Array, p: Array, on: Array) -> None:
-        """Replace recorded positions z[:NQ] by those of the vessel."""
+    def remove_position_errors(self, z: Array, t: float, p: Array, on: Array) -> None:
+        """Replace positions z[:NQ], recorded t [s] after the first row, by those of the vessel."""
 
     def oscillating_force(self, p: Array, on: Array) -> OscillatingForce:
         """The random oscillating force; frequency 0: none."""

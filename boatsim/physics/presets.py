@@ -50,7 +50,10 @@ def preset_effect(
     namespace: dict[str, object] = {**about, "__doc__": about["words"], "__module__": module}
     namespace["__annotations__"] = types
     defaults = {f.name: f.default for f in fields(law)}
+    codes = {f.name for f in fields(law) if "ours" in f.metadata}
     for key, known in law.params().items():
+        if key in codes:  # set by the effect, and not by files
+            continue
         nominal = defaults[key]
         if key in frees:
             known = known._replace(fit=True, calibrates="", **frees[key])

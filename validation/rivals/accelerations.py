@@ -191,8 +191,8 @@ def true_positions(track: MappedRecording, recorded: Array, values: Array, on: A
     """Return positions (N, NQ) of the boat from instrument readings."""
     nq, out = track.program.module.NQ, np.zeros((len(recorded), track.program.module.NZ))
     out[:, :nq] = recorded
-    for row in out:
-        track.program.module.remove_position_errors(row, values, on)
+    for row, t in zip(out, track.times - track.times[0], strict=True):
+        track.program.module.remove_position_errors(row, t, values, on)
     return out[:, :nq].copy()
 
 

@@ -14,7 +14,7 @@ from boatsim.control.base import wrap
 from boatsim.diagnosis import priors
 from boatsim.diagnosis.candidates import base_name, library_for
 from boatsim.diagnosis.checks.position_outliers import drop_position_outliers
-from boatsim.diagnosis.checks.repeated_positions import drop_repeated_positions
+from boatsim.diagnosis.checks.repeated_values import drop_repeated_values
 from boatsim.diagnosis.filter import map_recording, prior_levels, shared_noise
 from boatsim.diagnosis.loading import open_recording
 from boatsim.diagnosis.problem import Fit, FreeParameter, Problem
@@ -54,9 +54,7 @@ def read_question(trial: Path) -> Question:
     runs = []
     for r, b in opened:
         runs.append(
-            drop_position_outliers(
-                drop_repeated_positions(r.thinned(priors.used_sample_rate(b))), b
-            )
+            drop_position_outliers(drop_repeated_values(r.thinned(priors.used_sample_rate(b))), b)
         )
     columns = sorted({c for r in runs for c in r.signals})
     library = library_for(vessel, (), runs[0].notes.facts, columns)

@@ -1,6 +1,6 @@
 """Corrections that a diagnosis applies to a log automatically, and the findings about them.
 
-Repeated fixes and outliers are ignored, positions that contradict the velocities are dropped, and
+Repeated values and outliers are ignored, positions that contradict the velocities are dropped, and
 rudder signs are aligned with the vessel.
 """
 
@@ -14,7 +14,11 @@ from boatsim.diagnosis.checks.finding import Finding
 from boatsim.diagnosis.checks.position_frame import drop_rotated_positions
 from boatsim.diagnosis.checks.position_outliers import drop_position_outliers
 from boatsim.diagnosis.checks.reinterpretations import MIRRORED, MIRRORED_WORDS
-from boatsim.diagnosis.checks.repeated_positions import drop_repeated_positions
+from boatsim.diagnosis.checks.repeated_values import (
+    FIX_REPEATED,
+    VALUE_REPEATED,
+    drop_repeated_values,
+)
 from boatsim.diagnosis.checks.steering_sense import correct_rudder_sense
 from boatsim.diagnosis.checks.wrapped_angles import unwrap_directions
 from boatsim.diagnosis.config import DEFAULT, ChecksConfig, DiagnosisConfig
@@ -23,7 +27,8 @@ from boatsim.recordings.table import Recording
 
 # phrase in a remark of a recording -> name of the finding
 FINDING_OF_REMARK = {
-    "repeat each fix": "position_held",
+    FIX_REPEATED: "position_held",
+    VALUE_REPEATED: "channel_held",
     "jump away and return": "outliers",
     "off the course of the following fixes": "begins_astray",
     "were rotated with the heading": "positions_turned",
@@ -54,7 +59,7 @@ def clean_recording(
     duration: float = 0.0,
     config: DiagnosisConfig = DEFAULT,
 ) -> Recording:
-    """Reduce a prepared recording to the useful rate, without repeated fixes and outliers.
+    """Reduce a prepared recording to the useful rate, without repeated values and outliers.
 
     Args:
         recording: A prepared recording.
@@ -66,7 +71,7 @@ def clean_recording(
         The cleaned recording; ignored values are nan, and its remarks list each correction.
     """
     reduced = recording.thinned(priors.used_sample_rate(vessel, duration, config.load))
-    return drop_position_outliers(drop_repeated_positions(reduced), vessel, config)
+    return drop_position_outliers(drop_repeated_values(reduced), vessel, config)
 
 
 def total_duration(recordings: Sequence[Recording]) -> float:

@@ -354,8 +354,10 @@ def _words(best: Fit, effect: Effect) -> str:
     """Return the meaning of an effect, or of its opposite where its factor is above 1."""
     kind = type(effect)
     words, own = kind.words, list(_fitted_parameters(best, effect))
-    if own and kind.words_above and best.value(effect.name, own[0])[0] > 1.0:
-        words = kind.words_above
+    if own and kind.words_above:
+        inactive = kind.params()[own[0]].inactive_value
+        if best.value(effect.name, own[0])[0] > inactive:
+            words = kind.words_above
     if isinstance(effect, ChannelEffect) and effect.other_side:
         if kind.stage < 0:
             return f"{words}, in the actuator and not in its command"

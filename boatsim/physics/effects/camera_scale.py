@@ -6,6 +6,7 @@ from typing import Any, ClassVar
 from numba import njit
 
 from boatsim.physics.base import MeasuredMotion, Measurement, param
+from boatsim.physics.recorded_channels import X, Y, with_channel
 
 
 @njit(inline="always")
@@ -19,25 +20,13 @@ def apply_measurement_error(m: MeasuredMotion, q: Any) -> MeasuredMotion:
     Returns:
         The recorded motion.
     """
-    return MeasuredMotion(
-        (1.0 + q.x_fraction) * m.x,
-        (1.0 + q.y_fraction) * m.y,
-        m.z,
-        m.phi,
-        m.theta,
-        m.psi,
-        m.u,
-        m.v,
-        m.w,
-        m.p,
-        m.q,
-        m.r,
-    )
+    scaled = with_channel(m, X, (1.0 + q.x_fraction) * m.x)
+    return with_channel(scaled, Y, (1.0 + q.y_fraction) * m.y)
 
 
 @dataclass(frozen=True)
 class CameraScale(Measurement):
-    """Scale error of a camera in each axis of the tank.
+    """Scale error of a camera in each axis of the tank: a `sensor_error` of x and one of y.
 
     x_recorded = (1 + x_fraction) x,  y_recorded = (1 + y_fraction) y
     """

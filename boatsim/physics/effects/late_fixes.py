@@ -1,12 +1,12 @@
 """Late fixes: recorded positions are older than the headings in the same row."""
 
 from dataclasses import dataclass
-from math import cos, sin
 from typing import Any, ClassVar
 
 from numba import njit
 
 from boatsim.physics.base import MeasuredMotion, Measurement, param
+from boatsim.physics.recorded_channels import X, Y, delayed_channel, with_channel
 
 
 @njit(inline="always")
@@ -22,10 +22,8 @@ def apply_measurement_error(m: MeasuredMotion, q: Any) -> MeasuredMotion:
     Returns:
         The recorded motion.
     """
-    middle = m.psi - 0.5 * q.latency * m.r
-    c, s = cos(middle), sin(middle)
-    x, y = m.x - q.latency * (c * m.u - s * m.v), m.y - q.latency * (s * m.u + c * m.v)
-    return MeasuredMotion(x, y, m.z, m.phi, m.theta, m.psi, m.u, m.v, m.w, m.p, m.q, m.r)
+    x, y = delayed_channel(m, X, q.latency), delayed_channel(m, Y, q.latency)
+    return with_channel(with_channel(m, X, x), Y, y)
 
 
 @dataclass(frozen=True)
@@ -34,8 +32,8 @@ class LateFixes(Measurement):
 
     x_recorded = x - latency (u cos(psi_m) - v sin(psi_m)),  psi_m = psi - 0.5 latency r
 
-    and y likewise. Acceleration within the latency is neglected; that part of a long latency
-    appears as a delayed command.
+    and y likewise: the delay of a `sensor_error` of x and of y. Acceleration within the latency is
+    neglected; that part of a long latency appears as a delayed command.
     """
 
     of_columns: ClassVar = ("x_m", "y_m")

@@ -6,6 +6,7 @@ from typing import Any, ClassVar
 from numba import njit
 
 from boatsim.physics.base import MeasuredMotion, Measurement, param
+from boatsim.physics.recorded_channels import PHI, with_channel
 
 
 @njit(inline="always")
@@ -19,14 +20,14 @@ def apply_measurement_error(m: MeasuredMotion, q: Any) -> MeasuredMotion:
     Returns:
         The recorded motion.
     """
-    return MeasuredMotion(
-        m.x, m.y, m.z, m.phi + q.offset, m.theta, m.psi, m.u, m.v, m.w, m.p, m.q, m.r
-    )
+    return with_channel(m, PHI, m.phi + q.offset)
 
 
 @dataclass(frozen=True)
 class RollOffset(Measurement):
     """Constant error of the recorded roll angle: phi_recorded = phi + offset.
+
+    It is the offset of a `sensor_error` of roll.
 
     For a linear righting arm a constant heeling moment looks the same. A nonlinear righting arm
     differs, because it is symmetric about upright and not about the zero of the instrument.

@@ -303,31 +303,33 @@ def predict_motion_and_transition(
 
 
 @lean
-def predicted_measurement(y: Array, code: int, p: Array, on: Any) -> float:
-    """Value of one channel that a recording shows of a motion y (2 NQ,)."""
-    return float(apply_measurement_errors(pose_and_velocities(y), p, on)[SHOWS[code]])
+def predicted_measurement(y: Array, t: float, code: int, p: Array, on: Any) -> float:
+    """Value of one channel that a recording shows of a motion y (2 NQ,), t after its first row."""
+    return float(apply_measurement_errors(pose_and_velocities(y), t, p, on)[SHOWS[code]])
 
 
 @lean
-def differentiate_channels(z: Array, codes: Any, H: Array, p: Array, on: Any) -> None:
+def differentiate_channels(z: Array, t: float, codes: Any, H: Array, p: Array, on: Any) -> None:
     """Fill H (C, 2 NQ) with the derivatives of the channels by z that need differences."""
     if not HULL_FIXED_AXES and not has_measurement_errors(on):
         return
-    seen = apply_measurement_errors(pose_and_velocities(z), p, on)
+    seen = apply_measurement_errors(pose_and_velocities(z), t, p, on)
     for c in range(len(codes)):
         H[c, 0] = seen[SHOWS[codes[c]]]
     # The first column is written last: until then it holds the values at z itself.
     for j in range(NY - 1, -1, -1):
         here = z[j]
         z[j] = here + DIFFERENCE
-        displaced = apply_measurement_errors(pose_and_velocities(z), p, on)
+        displaced = apply_measurement_errors(pose_and_velocities(z), t, p, on)
         for c in range(len(codes)):
             H[c, j] = (displaced[SHOWS[codes[c]]] - H[c, 0]) / DIFFERENCE
         z[j] = here
 
 
 @lean
-def expected_measurement(z: Array, code: int, slope: Array, row: Array, p: Array, on: Any) -> float:
+def expected_measurement(
+    z: Array, t: float, code: int, slope: Array, row: Array, p: Array, on: Any
+) -> float:
     """Return the expected value of one channel; fill its row (n,) of the measurement matrix.
 
     `slope` is its row by `differentiate_channels`, where that filled it.
@@ -337,19 +339,19 @@ def expected_measurement(z: Array, code: int, slope: Array, row: Array, p: Array
             row[j] = 0.0
         return expected_measurement_level(z, code, row)
     copy_vector(slope, row[:NY])
-    return predicted_measurement(z, code, p, on)
+    return predicted_measurement(z, t, code, p, on)
 
 
 @compiled
-def remove_position_errors(z: Array, p: Array, on: Any) -> None:
-    """Replace recorded positions by those of the vessel, in place."""
+def remove_position_errors(z: Array, t: float, p: Array, on: Any) -> None:
+    """Replace positions recorded t after the first row by those of the vessel, in place."""
     if has_measurement_errors(on):
         positions, y = np.zeros(NQ), np.zeros(NY)
         copy_vector(z, positions)
         copy_vector(z, y)
         for _ in range(INVERT):
             for j in range(NQ):
-                z[j] += positions[j] - predicted_measurement(y, j, p, on)
+                z[j] += positions[j] - predicted_measurement(y, t, j, p, on)
             copy_vector(z, y)
 
 
@@ -369,13 +371,14 @@ def update_row(
     likelihood, z, codes = 0.0, estimate.z, measured.codes
     p, on, m, work = f.laws.p, f.laws.on, f.noise.m, f.work
     values, scale, white = measured.values[i], out.scale[i], out.whitened[i]
+    t = f.inputs.times[i] - f.inputs.times[0]
     if gains:
-        differentiate_channels(z, codes, work.H, p, on)
+        differentiate_channels(z, t, codes, work.H, p, on)
     for c in range(len(values)):
         if np.isnan(values[c]):
             scale[c] = white[c] = 0.0
             continue
-        error = values[c] - expected_measurement(z, codes[c], work.H[c], work.row, p, on)
+        error = values[c] - expected_measurement(z, t, codes[c], work.H[c], work.row, p, on)
         own = np.int64(-1)
         if estimate.n > m and codes[c] < NQ:
             own = m + codes[c]
@@ -451,7 +454,7 @@ def kalman_filter(
     z, P, F, y, times = estimate.z, estimate.P, work.F, plant.y, inputs.times
     about = np.zeros(NZ)
     initialise_filter(start, noise, estimate)
-    remove_position_errors(z, p, on)
+    remove_position_errors(z, 0.0, p, on)
     likelihood, last = 0.0, np.int64(0)  # with a plain 0 `predict_motion` would be compiled twice
     if options.history:
         copy_vector(z, history.means[0])
@@ -558,4 +561,5 @@ def simulate_intervals(
             if i > starts[run]:
                 last = predict_motion(inputs, i, delay, last, max_step, laws, plant)
             for code in range(NY):
-                out[run, i, code] = predicted_measurement(y, code, p, on)
+                t = times[i] - times[0]
+                out[run, i, code] = predicted_measurement(y, t, code, p, on)

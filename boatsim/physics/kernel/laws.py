@@ -52,8 +52,8 @@ def time_to_discontinuity(commands: Array, memory: Array, p: Array, on: Any) -> 
     raise NotImplementedError
 
 
-def apply_measurement_errors(m: MeasuredMotion, p: Array, on: Any) -> MeasuredMotion:
-    """Motion as the recording shows it."""
+def apply_measurement_errors(m: MeasuredMotion, t: float, p: Array, on: Any) -> MeasuredMotion:
+    """Motion as the recording shows it t seconds after its first row."""
     raise NotImplementedError
 
 

@@ -41,7 +41,8 @@ class Effect(CheckedParameters):
 
     # sentence in a report: "a steady wind pushes the hull downwind ..."
     words: ClassVar[str] = ""
-    words_above: ClassVar[str] = ""  # the same if a weakening factor exceeds one
+    # the same if the first fitted parameter exceeds its inactive value
+    words_above: ClassVar[str] = ""
     shown_by: ClassVar[str] = ""  # manoeuvre in which the effect is most visible
     kind: ClassVar[str] = "physics"  # or "measurement"
     source: ClassVar[str] = ""  # paper, equation or table of the law

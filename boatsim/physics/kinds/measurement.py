@@ -7,7 +7,7 @@ from typing import ClassVar
 from boatsim.physics.kinds.effect import EffectKind, InsertionPoint, ProgramFunction, ProgramLayout
 from boatsim.physics.signals import MeasuredMotion
 
-APPLY_ERRORS = ProgramFunction("apply_measurement_errors", "m, p, on", ("pass",), "m")
+APPLY_ERRORS = ProgramFunction("apply_measurement_errors", "m, t, p, on", ("pass",), "m")
 HAS_ERRORS = ProgramFunction("has_measurement_errors", "on", ("found = False",), "found")
 MOTION_LATENCY = ProgramFunction("motion_latency", "p, on", ("seconds = 0.0",), "seconds")
 
@@ -17,7 +17,8 @@ class Measurement(EffectKind):
     """Error of a recording: a difference between recorded and true motion.
 
     `apply_measurement_error(motion, values)`, compiled, takes and returns a `MeasuredMotion`. It
-    acts in the diagnosis filter and in `replay`, not on the simulated boat.
+    acts in the diagnosis filter and in `replay`, not on the simulated boat. With `uses_time` it is
+    `apply_measurement_error(motion, time, values)`; time is that since the first row [s].
     `motion_latency(values)`, if defined, is the latency [s] of the recorded motion behind the
     recorded commands (negative: early).
     """
@@ -28,6 +29,9 @@ class Measurement(EffectKind):
     of_columns: ClassVar[
         tuple[str, ...]
     ] = ()  # recorded columns that it changes; one of them must exist
+    # columns without which it is no candidate and is not compiled; all of them must be recorded
+    needs_columns: ClassVar[tuple[str, ...]] = ()
+    uses_time: ClassVar[bool] = False  # its law also takes the time since the first row
     apply_measurement_error: ClassVar[Callable[..., MeasuredMotion] | None] = None
     motion_latency: ClassVar[Callable[..., float] | None] = None
 
@@ -47,9 +51,10 @@ class Measurement(EffectKind):
         if not isinstance(effect, Measurement):
             return
         kind = type(effect)
+        motion = ("m", "t") if kind.uses_time else ("m",)
         for site in program.law_calls(number):
             if part is APPLY_ERRORS and kind.apply_measurement_error is not None:
-                yield f"m = {site.text('apply_measurement_error', 'm')}"
+                yield f"m = {site.text('apply_measurement_error', *motion)}"
             if part is HAS_ERRORS and kind.apply_measurement_error is not None:
                 yield "found = True"
             if part is MOTION_LATENCY and kind.motion_latency is not None:

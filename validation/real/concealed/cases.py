@@ -7,7 +7,7 @@ from pathlib import Path
 
 from boatsim.diagnosis import loading, priors
 from boatsim.diagnosis.checks.position_outliers import drop_position_outliers
-from boatsim.diagnosis.checks.repeated_positions import drop_repeated_positions
+from boatsim.diagnosis.checks.repeated_values import drop_repeated_values
 from boatsim.diagnosis.loading import Loaded
 from boatsim.physics.base import Effect
 from boatsim.physics.vessel import Vessel
@@ -90,7 +90,7 @@ def planar_opener(
 
 def clean_recording(recording: Recording, vessel: Vessel) -> Recording:
     """Return a recording without repeated positions and outliers."""
-    return drop_position_outliers(drop_repeated_positions(recording), vessel)
+    return drop_position_outliers(drop_repeated_values(recording), vessel)
 
 
 def open_release_at_rest(patched: str | None, alter: Alteration) -> Loaded:

@@ -9,7 +9,8 @@ import pytest
 from answers import diagnosed
 from real_boat import Real, recorded
 
-from boatsim.diagnosis.checks.repeated_positions import drop_repeated_positions, repeated_rows
+from boatsim.diagnosis.checks.data_cleaning import cleaning_findings
+from boatsim.diagnosis.checks.repeated_values import drop_repeated_values, repeated_rows
 from boatsim.recordings.table import Recording
 
 
@@ -24,9 +25,23 @@ def held(run: Recording, rows: int) -> Recording:
 def test_repetitions_are_found_and_nothing_else() -> None:
     run = recorded(Real(), 1)
     assert not repeated_rows(np.column_stack([run["x_m"], run["y_m"]])).any()
-    found = drop_repeated_positions(held(run, 4))
+    found = drop_repeated_values(held(run, 4))
     assert np.flatnonzero(np.isfinite(found["x_m"])).tolist() == list(range(0, len(run), 4))
     assert np.isfinite(found["psi_rad"]).all() and "x_m, y_m repeat each fix" in found.remarks[-1]
+
+
+def test_a_held_gyro_is_found_and_the_finding_names_its_channel() -> None:
+    run = recorded(Real(), 1, gyro=0.01)
+    last = np.arange(len(run)) // 3 * 3
+    gyro = replace(run, signals=run.signals | {"r_radps": run["r_radps"][last]})
+    found = drop_repeated_values(gyro)
+    assert np.flatnonzero(np.isfinite(found["r_radps"])).tolist() == list(range(0, len(run), 3))
+    for name in ("x_m", "y_m", "psi_rad"):
+        assert np.array_equal(found[name], run[name])
+    (finding,) = cleaning_findings(found)
+    assert finding.name == "channel_held" and finding.kind == "mended"
+    assert "the recorded yaw rate (r_radps) repeats each value" in finding.evidence
+    assert not drop_repeated_values(run).remarks
 
 
 def test_a_boat_that_lies_still_between_moves_repeats_nothing() -> None:

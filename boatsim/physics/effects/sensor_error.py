@@ -1,0 +1,235 @@
+"""Sensor error: gain, offset, delay and drift of one recorded channel."""
+
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+from numba import njit
+
+from boatsim.errors import BadInput, unknown_name
+from boatsim.physics.base import Boat, MeasuredMotion, Measurement, param, preset_effect
+from boatsim.physics.param import code_parameter
+from boatsim.physics.presets import ParameterChanges
+from boatsim.physics.recorded_channels import (
+    CHANNELS,
+    HEADING,
+    HEAVE,
+    HEAVE_VELOCITY,
+    PITCH,
+    PITCH_RATE,
+    ROLL,
+    ROLL_RATE,
+    SURGE_VELOCITY,
+    SWAY_VELOCITY,
+    YAW_RATE,
+    InstrumentChannel,
+    delayed_channel,
+    with_channel,
+)
+from boatsim.physics.signals import RATES
+
+
+@njit(inline="always")
+def apply_measurement_error(m: MeasuredMotion, t: float, q: Any) -> MeasuredMotion:
+    """Return the recorded motion with the error of one channel.
+
+    Args:
+        m: True motion: position [m], attitude [rad], velocities [m/s], rates [rad/s].
+        t: Time since the first row of the recording [s].
+        q: Parameters of the effect, with the names and units of its class.
+
+    Returns:
+        The recorded motion.
+    """
+    channel = np.int64(q.place)
+    value = (1.0 + q.gain_fraction) * delayed_channel(m, channel, q.delay)
+    return with_channel(m, channel, value + q.offset + q.drift * t)
+
+
+@dataclass(frozen=True)
+class SensorError(Measurement):
+    """Error of the instrument that records one channel; other channels are unaffected.
+
+    recorded(t) = (1 + gain_fraction) value(t - delay) + offset + drift t
+
+    t is the time since the first row of the recording. The delay is of first order: value(t -
+    delay) = value - delay rate, where the rate follows from the velocities. A velocity channel has
+    no delay here, because its rate is an acceleration, which a recording does not contain; the
+    check `velocity_late` of the log finds such a delay.
+
+    `channel` is the column, such as "r_radps". A diagnosis tests the special cases of this effect
+    that have a name: those of the channels that were recorded.
+    """
+
+    column: ClassVar[str] = "r_radps"  # default channel; the only one of a special case
+    special_case: ClassVar[bool] = False
+    uses_time: ClassVar[bool] = True
+    words: ClassVar[str] = "one recorded channel has an error of its instrument (not physics)"
+    shown_by: ClassVar[str] = "comparison with the other channels"
+    source: ClassVar[str] = (
+        "J. A. Farrell, Aided Navigation: GPS with High Rate Sensors, 2008 (scale factor and bias)"
+    )
+    apply_measurement_error: ClassVar = apply_measurement_error
+
+    channel: str = ""  # a column of a recording; empty: `column`
+    gain_fraction: float = param(
+        0.0, low=-0.95, high=20.0, unit="", words="relative error of the channel"
+    )
+    offset: float = param(
+        0.0, low=-1e6, high=1e6, unit="", words="constant error [unit of the channel]"
+    )
+    delay: float = param(
+        0.0, low=0.0, high=60.0, unit="s", words="delay of the channel", within=(0.0, 1.0)
+    )
+    drift: float = param(
+        0.0, low=-1e6, high=1e6, unit="", words="growth of the error [unit of the channel / s]"
+    )
+    place: float = code_parameter("place of the channel among those of a motion")
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        allowed = CHANNELS
+        if self.special_case:
+            allowed = (self.column,)
+        channel = self.channel or self.column
+        if channel not in allowed:
+            raise BadInput(unknown_name(f"{self.name}: channel", channel, allowed))
+        if channel in RATES and self.delay != 0.0:
+            raise BadInput(
+                f"{self.name}: delay = {self.delay:g} s of {channel}; allowed is 0, because the "
+                "rate of change of a velocity is not recorded"
+            )
+        object.__setattr__(self, "channel", channel)
+
+    def derived_parameters(self, vessel: Boat) -> dict[str, float]:
+        """Return the number of the channel for the compiled program.
+
+        Args:
+            vessel: Vessel on which the effect acts.
+        """
+        return {"place": float(CHANNELS.index(self.channel))}
+
+    def fixed_settings(self) -> dict[str, object]:
+        """Return the channel, where the name of the effect does not state it."""
+        if self.special_case:
+            return {}
+        return {"channel": self.channel}
+
+
+# Prior sds for a hull of 1.2 m. An offset of 0.05 m, rad, m/s or rad/s is 10 % of what such a hull
+# reaches in its usual motions; a drift of 0.001 per second adds as much within a minute.
+OFFSET_SPREAD, DRIFT_SPREAD, GAIN_SPREAD, DELAY_SPREAD = 0.05, 0.001, 0.1, 0.2
+
+
+def special_case(
+    channel: InstrumentChannel,
+    freed: str,
+    about: ParameterChanges,
+    words: str,
+    with_rate: bool = False,
+) -> dict[str, Any]:
+    """Return the settings of `preset_effect` for one error of one channel.
+
+    Args:
+        channel: The channel.
+        freed: Parameter that a diagnosis fits; the others are zero.
+        about: Attributes of the parameter.
+        words: Description of the error.
+        with_rate: Whether the error shows only in comparison with the recorded rate of the channel.
+    """
+    others = {"gain_fraction", "offset", "delay", "drift"} - {freed}
+    columns = [channel.column]
+    if with_rate:
+        columns.append(channel.rate)
+    return {
+        "frees": {freed: about},
+        "fixed": dict.fromkeys(sorted(others), 0.0),
+        "words": f"the recorded {channel.words} {words} (not physics)",
+        "column": channel.column,
+        "of_columns": (channel.column,),
+        "needs_columns": tuple(columns),
+        "needs": (channel.axis,),
+        "special_case": True,
+    }
+
+
+def gain_of(channel: InstrumentChannel, with_rate: bool = False) -> dict[str, Any]:
+    """Return the settings of `preset_effect` for a gain error of a channel."""
+    about: ParameterChanges = {
+        "words": f"relative error of the {channel.words}",
+        "spread": GAIN_SPREAD,
+    }
+    settings = special_case(channel, "gain_fraction", about, "is too small", with_rate)
+    above = f"the recorded {channel.words} is too large (not physics)"
+    return settings | {"words_above": above}
+
+
+def offset_of(channel: InstrumentChannel) -> dict[str, Any]:
+    """Return the settings of `preset_effect` for a constant error of a channel."""
+    about: ParameterChanges = {
+        "words": f"constant error of the {channel.words}",
+        "unit": channel.unit,
+        "spread": OFFSET_SPREAD,
+        "low": -channel.largest,
+        "high": channel.largest,
+    }
+    return special_case(channel, "offset", about, "has a constant error")
+
+
+def drift_of(channel: InstrumentChannel, with_rate: bool = False) -> dict[str, Any]:
+    """Return the settings of `preset_effect` for an error that grows with time."""
+    unit = f"{channel.unit}/s"
+    if channel.unit.endswith("/s"):
+        unit = f"{channel.unit}^2"
+    about: ParameterChanges = {
+        "words": f"growth of the error of the {channel.words}",
+        "unit": unit,
+        "spread": DRIFT_SPREAD,
+        "low": -channel.largest,
+        "high": channel.largest,
+    }
+    return special_case(channel, "drift", about, "has an error that grows with time", with_rate)
+
+
+def delay_of(channel: InstrumentChannel) -> dict[str, Any]:
+    """Return the settings of `preset_effect` for a delay, which the recorded rate reveals."""
+    about: ParameterChanges = {
+        "words": f"delay of the {channel.words}",
+        "spread": DELAY_SPREAD,
+    }
+    return special_case(channel, "delay", about, "is older than its rate in the same row", True)
+
+
+SurgeVelocityGain = preset_effect(SensorError, "SurgeVelocityGain", **gain_of(SURGE_VELOCITY))
+SurgeVelocityOffset = preset_effect(SensorError, "SurgeVelocityOffset", **offset_of(SURGE_VELOCITY))
+SurgeVelocityDrift = preset_effect(SensorError, "SurgeVelocityDrift", **drift_of(SURGE_VELOCITY))
+SwayVelocityGain = preset_effect(SensorError, "SwayVelocityGain", **gain_of(SWAY_VELOCITY))
+SwayVelocityOffset = preset_effect(SensorError, "SwayVelocityOffset", **offset_of(SWAY_VELOCITY))
+SwayVelocityDrift = preset_effect(SensorError, "SwayVelocityDrift", **drift_of(SWAY_VELOCITY))
+HeaveVelocityGain = preset_effect(SensorError, "HeaveVelocityGain", **gain_of(HEAVE_VELOCITY))
+HeaveVelocityOffset = preset_effect(SensorError, "HeaveVelocityOffset", **offset_of(HEAVE_VELOCITY))
+HeaveVelocityDrift = preset_effect(SensorError, "HeaveVelocityDrift", **drift_of(HEAVE_VELOCITY))
+RollRateGain = preset_effect(SensorError, "RollRateGain", **gain_of(ROLL_RATE))
+RollRateOffset = preset_effect(SensorError, "RollRateOffset", **offset_of(ROLL_RATE))
+RollRateDrift = preset_effect(SensorError, "RollRateDrift", **drift_of(ROLL_RATE))
+PitchRateGain = preset_effect(SensorError, "PitchRateGain", **gain_of(PITCH_RATE))
+PitchRateOffset = preset_effect(SensorError, "PitchRateOffset", **offset_of(PITCH_RATE))
+PitchRateDrift = preset_effect(SensorError, "PitchRateDrift", **drift_of(PITCH_RATE))
+YawRateGain = preset_effect(SensorError, "YawRateGain", **gain_of(YAW_RATE))
+YawRateOffset = preset_effect(SensorError, "YawRateOffset", **offset_of(YAW_RATE))
+YawRateDrift = preset_effect(SensorError, "YawRateDrift", **drift_of(YAW_RATE))
+HeaveGain = preset_effect(SensorError, "HeaveGain", **gain_of(HEAVE))
+HeaveOffset = preset_effect(SensorError, "HeaveOffset", **offset_of(HEAVE))
+HeaveDrift = preset_effect(SensorError, "HeaveDrift", **drift_of(HEAVE))
+PitchGain = preset_effect(SensorError, "PitchGain", **gain_of(PITCH))
+PitchOffset = preset_effect(SensorError, "PitchOffset", **offset_of(PITCH))
+PitchDrift = preset_effect(SensorError, "PitchDrift", **drift_of(PITCH))
+
+# The recorded rate distinguishes these errors from motions.
+RollGain = preset_effect(SensorError, "RollGain", **gain_of(ROLL, True))
+RollDrift = preset_effect(SensorError, "RollDrift", **drift_of(ROLL, True))
+HeadingDrift = preset_effect(SensorError, "HeadingDrift", **drift_of(HEADING, True))
+HeaveDelay = preset_effect(SensorError, "HeaveDelay", **delay_of(HEAVE))
+RollDelay = preset_effect(SensorError, "RollDelay", **delay_of(ROLL))
+PitchDelay = preset_effect(SensorError, "PitchDelay", **delay_of(PITCH))
+HeadingDelay = preset_effect(SensorError, "HeadingDelay", **delay_of(HEADING))
