@@ -1079,60 +1079,60 @@ class DecideConfig:
         0.0,
     )
     intercept: float = setting(
-        3.1,
+        3.15,
         "1",
         "Log of the odds of a name whose features are all zero.",
         low=-inf,
     )
     held_out_gain: float = setting(
-        0.246,
+        0.25,
         "1",
         "Weight: log of the log-likelihood [nats] that held-out recordings gain by the effect.",
         low=-inf,
     )
     held_out_significance: float = setting(
-        0.0898,
+        0.0804,
         "1",
         "Weight: size on held-out recordings in its standard deviations: a true effect is found"
         " again.",
         low=-inf,
     )
     held_out_deviation: float = setting(
-        -0.403,
+        -0.423,
         "1",
         "Weight: deviation of the size on held-out recordings from the fitted size, in standard"
         " deviations with 10 % error of the law.",
         low=-inf,
     )
     times_apart: float = setting(
-        -1.22,
+        -1.13,
         "1",
         "Weight: variation of the size between parts in time, as a share of the fitted size.",
         low=-inf,
     )
     ranges_apart: float = setting(
-        -1.24,
+        -1.31,
         "1",
         "Weight: variation of the size between ranges of a speed, a command or the heading, as "
         "a share of the fitted size.",
         low=-inf,
     )
     unexplained: float = setting(
-        -0.24,
+        -0.286,
         "1",
         "Weight: evidence that remains unexplained, as a share of the threshold of an unknown "
         "cause.",
         low=-inf,
     )
     structure: float = setting(
-        -0.918,
+        -0.755,
         "1",
         "Weight: dependence of the remaining force on motion, commands, place or time, as a "
         "share of all gained evidence.",
         low=-inf,
     )
     alternative: float = setting(
-        -0.203,
+        -0.173,
         "1",
         "Weight: evidence of the best single-term force in its place, as a share of its own.",
         low=-inf,
@@ -1145,33 +1145,33 @@ class DecideConfig:
         low=-inf,
     )
     at_bound: float = setting(
-        -3.57,
+        -3.6,
         "1",
         "Weight: whether a parameter is at a bound of its range and a recording requires more.",
         low=-inf,
     )
     stochastic: float = setting(
-        -2.98,
+        -3.04,
         "1",
         "Weight: whether it is a stochastic force or the drift of an instrument, which fits "
         "almost anything.",
         low=-inf,
     )
     look_alikes: float = setting(
-        0.709,
+        0.691,
         "1",
         "Weight: number of its look-alikes, each of which may be the true cause.",
         low=-inf,
     )
     coefficient_shift: float = setting(
-        -0.64,
+        -0.629,
         "1",
         "Weight: rms distance of the refitted coefficients from the vessel file in prior "
         "standard deviations.",
         low=-inf,
     )
     effects: float = setting(
-        -1.37,
+        -1.39,
         "1",
         "Weight: number of further identified effects: true causes are few.",
         low=-inf,

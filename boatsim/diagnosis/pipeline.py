@@ -282,7 +282,7 @@ def select(
     if again is problem:
         return Selection(problem, ranking)
     report("selecting again with that correlation time", 1.0)
-    rest = SearchBudget(problem.filtered, budget.left, complete=True)
+    rest = SearchBudget(problem.filtered, budget.remaining_work, complete=True)
     try:
         return Selection(again, rank(again, candidates, held_out, ranking.best, budget=rest))
     except BudgetSpentError:  # the finished search is the better one

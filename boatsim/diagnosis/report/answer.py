@@ -148,6 +148,8 @@ def _unknown(problem: Problem, ranking: Ranking, evaluation: Evaluation) -> Unkn
     }
     if ranking.unknown:
         entry["rest"] = locate.strength(problem, evaluation.remaining)
+    if ranking.stands_in and not ranking.remains:
+        entry["stand_ins"] = [base_name(one.name) for one in ranking.doubtful]
     if ranking.structure.significant:
         entry["structure"] = _structure(ranking.structure)
     if ranking.divergences:

@@ -187,6 +187,8 @@ class UnknownEntry(TypedDict):
     told_from_nats: float  # threshold of the gain; it increases with the evidence explained
     rest: NotRequired[dict[str, "StrengthEntry"]]  # force that the identified effects leave
     structure: NotRequired[StructureEntry]  # if that force varies with any quantity
+    # effects that explain the force, but that are probably not its cause, if none of it remains
+    stand_ins: NotRequired[list[str]]
     # if fits diverge: no candidate effect was ranked
     diverges: NotRequired[list[DivergenceEntry]]
 

@@ -139,7 +139,9 @@ def _none_tested(answer: Answer) -> str:
 def _effects(answer: Answer, words: Mapping[str, str]) -> list[str]:
     """Return statements on an unknown cause, on missing physics and on errors of measurement."""
     statements = []
-    if answer["unknown"]["flag"] and not answer["described"]:
+    if answer["unknown"].get("stand_ins") and not answer["described"]:
+        statements.append(_stand_ins(answer))
+    elif answer["unknown"]["flag"] and not answer["described"]:
         statements.append(
             f"a force is missing that no candidate effect explains{_unexplained_rms(answer)}"
         )
@@ -168,6 +170,17 @@ def _effects(answer: Answer, words: Mapping[str, str]) -> list[str]:
                 f"{_clauses(measured)}"
             )
     return statements
+
+
+def _stand_ins(answer: Answer) -> str:
+    """Return the statement that an effect which explains the recordings is no likely cause."""
+    names, effects = answer["unknown"]["stand_ins"], []
+    for entry in answer.get("also_possible", []):
+        if entry["name"] in names:
+            effects.append(f"“{effect_description(entry['words'])}”, but {entry['why']}")
+    return (
+        f"something is missing whose cause is unknown: best described by {'; or by '.join(effects)}"
+    )
 
 
 def _refined_numbers(answer: Answer) -> str:

@@ -17,7 +17,7 @@ class BudgetSpentError(Exception):
 
 
 class SearchBudget:
-    """What remains of the work that a search may do, and a list of what it has not tried."""
+    """Remaining work that a search may do, and a list of what it has not tried."""
 
     def __init__(self, count: WorkCount, work: int, *, complete: bool = False) -> None:
         """Start with the whole budget.
@@ -34,18 +34,18 @@ class SearchBudget:
         self._statements: list[str] = []
 
     @property
-    def left(self) -> int:
+    def remaining_work(self) -> int:
         """Work that may still be done, at least 0 [rows x dof]."""
         return max(self._last - self._count.work, 0)
 
     @property
     def spent(self) -> bool:
         """Whether nothing of the budget is left."""
-        return self.left == 0
+        return self.remaining_work == 0
 
     @property
     def skipped(self) -> tuple[str, ...]:
-        """What was not tried, in words, one statement each."""
+        """Statements of what was not tried."""
         found = []
         for how, number in self._omitted.items():
             candidates = "1 candidate was" if number == 1 else f"{number} candidates were"

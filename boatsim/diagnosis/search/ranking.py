@@ -80,8 +80,12 @@ class Ranking:
     def unknown(self) -> bool:
         """Whether something remains that no candidate explains."""
         described = self.description is not None or bool(self.divergences)
-        remains = bool(self.left_over > self.told_from) or self.structured
-        return described or remains or self.stands_in
+        return described or self.remains or self.stands_in
+
+    @property
+    def remains(self) -> bool:
+        """Whether a force remains that is too large for, or not alike, the assumed disturbance."""
+        return bool(self.left_over > self.told_from) or self.structured
 
 
 def rank(
