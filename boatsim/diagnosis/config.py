@@ -865,11 +865,11 @@ class SelectConfig:
         low=1,
     )
     budget: int = setting(
-        300_000_000,
+        500_000_000,
         "rows x dof",
         "Work of the search: rows filtered, counted in every pass of the filter, times degrees of "
-        "freedom. Recordings of a minute and a half need 2 to 80 million. 300 million take about "
-        "2.5 minutes on a planar vessel and 5 in six degrees of freedom; then the search ends and "
+        "freedom. Recordings of a minute and a half need 2 to 80 million. 500 million take about "
+        "4 minutes on a planar vessel and 8 in six degrees of freedom; then the search ends and "
         "reports what it has not tried.",
         low=1,
     )
