@@ -1040,9 +1040,10 @@ class SelectConfig:
 class DecideConfig:
     """Open-set decision: the probability that an identified effect is a true cause.
 
-    The weights are those of a logistic regression of right and wrong names over the campaign
-    `python -m validation.calibration --seed 2`; `--weights` prints them. Each multiplies a feature
-    of `boatsim.diagnosis.open_set.probability`.
+    The weights are those of a logistic regression of right and wrong names, over 1,005 of the logs
+    that `python -m validation.calibration --seed 2` makes; its option `--weights` prints them for
+    the logs that it has diagnosed. Each multiplies a feature of
+    `boatsim.diagnosis.open_set.probability`.
     """
 
     least_probability: float = setting(

@@ -248,7 +248,7 @@ def format_probability(share: float) -> str:
 
 
 def format_cause_probability(probability: float) -> str:
-    """Return the probability that an effect, or a look-alike of it, is a true cause, in words.
+    """Return the probability that an effect is a true cause, in words.
 
     Args:
         probability: Between 0 and 1.

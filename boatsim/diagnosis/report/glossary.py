@@ -44,12 +44,13 @@ def glossary(f: Findings) -> tuple[tuple[str, str], ...]:
         ),
         (
             "probability that it is a true cause",
-            "The probability that an identified effect, or one of its look-alikes, is a true "
-            "cause, and not a stand-in for a cause that is not among the candidates. It follows "
+            "The probability that an identified effect is a true cause, and neither one of its "
+            "rivals nor a stand-in for a cause that is not among the candidates. It follows "
             "from the size of the effect in each recording, at each time, in each range of speed "
             "and command and in the held-out recordings, and from the force that remains. Of many "
-            "simulated logs whose causes are known, this share of such names was right. Below "
-            f"{100 * named:.0f} % an effect is only called possible.",
+            "simulated logs whose causes are known, this share of such names was right. An "
+            f"effect below {100 * named:.0f} %, together with its look-alikes, is only called "
+            "possible.",
         ),
         (
             "missing force",

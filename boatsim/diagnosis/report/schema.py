@@ -32,7 +32,7 @@ class EffectEntry(Acting):
 
     name: str
     kind: str  # "physics" or "measurement"
-    probability: float  # that it, or a look-alike of it, is a true cause
+    probability: float  # that it is a true cause
     gain_nats: float  # log Bayes factor
     words: str
     tied_with: list[str]  # look-alikes
