@@ -1174,7 +1174,7 @@ class DecideConfig:
     effects: float = setting(
         -1.39,
         "1",
-        "Weight: number of further identified effects: true causes are few.",
+        "Weight: log of the number of identified effects: true causes are few.",
         low=-inf,
     )
 

@@ -17,7 +17,15 @@ from validation.practice.cause import Maker, Rng
 from validation.practice.make import CALIBRATION, Trial, make_trial
 
 # share of the trials of each kind
-KINDS = {"none": 0.3, "single": 0.27, "pair": 0.08, "unknown": 0.25, "mixed": 0.1}
+KINDS = {
+    "none": 0.28,
+    "single": 0.25,
+    "pair": 0.08,
+    "unknown": 0.24,
+    "mixed": 0.09,  # a cause of the library and one outside it
+    "several": 0.06,
+}
+KNOWN = {"single": 1, "pair": 2, "several": 3}  # number of causes of the library
 ROUGH_SHARE = 0.4  # of trials whose vessel file is rough
 FARTHEST = 1e5  # [m, s, N] beyond which a recorded value belongs to a simulation that diverges
 ROUGH = 0.2  # relative sd of its damping and thrust, which recording.toml states
@@ -52,8 +60,8 @@ class Job:
         plan = PLANS[vessel]
         known, unknown = plan.single, UNKNOWN[vessel]
         causes = sample(unknown, 1, rng) if kind == "unknown" else ()
-        if kind in ("single", "pair"):
-            causes = sample(known, 1 if kind == "single" else 2, rng)
+        if kind in KNOWN:
+            causes = sample(known, min(KNOWN[kind], len(known)), rng)
         if kind == "mixed":
             causes = sample(known, 1, rng) + sample(unknown, 1, rng)
         rough = bool(rng.random() < ROUGH_SHARE)

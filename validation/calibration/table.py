@@ -82,9 +82,10 @@ def figures(records: Sequence[Record]) -> dict[str, str]:
     none = of_kind(records, "none")
     unknown = [r for r in of_kind(records, "unknown") if clearly_visible(r)]
     removed = of_kind(records, "removed")
-    known = of_kind(records, "single", "pair")
+    known = of_kind(records, "single", "pair", "several")
     single = [r for r in of_kind(records, "single") if clearly_visible(r)]
     pair = [r for r in of_kind(records, "pair") if clearly_visible(r)]
+    several = [r for r in of_kind(records, "several") if clearly_visible(r)]
     mixed = [r for r in of_kind(records, "mixed") if clearly_visible(r)]
     piloted = [r for r in unknown if not r["concealed"]]
     concealed = [r for r in unknown if r["concealed"]]
@@ -101,6 +102,7 @@ def figures(records: Sequence[Record]) -> dict[str, str]:
         "known causes called unknown": count(known, flagged),
         "visible single causes, exactly named": count(single, exact),
         "visible pairs, exactly named": count(pair, exact),
+        "three visible causes, exactly named": count(several, exact),
         "known causes, a wrong name": count(known, wrong),
         "known cause beside an unknown one, named": count(mixed, names_a_cause),
         "known cause beside an unknown one, flagged": count(mixed, flagged),

@@ -57,7 +57,7 @@ def features(
         "stochastic": float(stochastic),
         "look_alikes": float(len(effect.tied_with)),
         "coefficient_shift": _within(log_signs.coefficient_shift, 0.0, 4.0),
-        "effects": float(log_signs.effects - 1),
+        "effects": log(max(log_signs.effects, 1)),
     }
 
 
