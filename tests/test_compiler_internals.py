@@ -20,7 +20,7 @@ from numba.core.caching import FunctionCache, IndexDataCacheFile
 
 from boatsim.physics import compiler_internals as internals
 from boatsim.physics.content import content_root
-from boatsim.physics.kernel.compiling import compiled, lean
+from boatsim.physics.kernel.compiling import WITHOUT_REFERENCE_COUNTS, compiled
 from boatsim.physics.signals import Wrench, wrench
 
 PRIVATE = re.compile(r"numba\.core|\._cache\b|_nrt\b|llvmlite|\._address\b")
@@ -108,7 +108,7 @@ def test_3_functions_without_reference_counts_contain_none() -> None:
         body = text[text.index("define") : text.index("define", text.index("define") + 1)]
         return len(re.findall(r"call void @NRT_(?:incref|decref)", body))
 
-    assert counts(lean(first)) == 0
+    assert counts(njit(**WITHOUT_REFERENCE_COUNTS)(first)) == 0
 
 
 def test_4_compiled_code_calls_a_function_by_its_pointer() -> None:

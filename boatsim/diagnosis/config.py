@@ -1040,7 +1040,7 @@ class SelectConfig:
 class DecideConfig:
     """Open-set decision: the probability that an identified effect is a true cause.
 
-    The weights are those of a logistic regression of right and wrong names, over 1,005 of the logs
+    The weights are those of a logistic regression of right and wrong names, over 1080 of the logs
     that `python -m validation.calibration --seed 2` makes; its option `--weights` prints them for
     the logs that it has diagnosed. Each multiplies a feature of
     `boatsim.diagnosis.open_set.probability`.
@@ -1080,99 +1080,99 @@ class DecideConfig:
         0.0,
     )
     intercept: float = setting(
-        3.15,
+        3.42,
         "1",
         "Log of the odds of a name whose features are all zero.",
         low=-inf,
     )
     held_out_gain: float = setting(
-        0.25,
+        0.231,
         "1",
         "Weight: log of the log-likelihood [nats] that held-out recordings gain by the effect.",
         low=-inf,
     )
     held_out_significance: float = setting(
-        0.0804,
+        0.0797,
         "1",
         "Weight: size on held-out recordings in its standard deviations: a true effect is found"
         " again.",
         low=-inf,
     )
     held_out_deviation: float = setting(
-        -0.423,
+        -0.412,
         "1",
         "Weight: deviation of the size on held-out recordings from the fitted size, in standard"
         " deviations with 10 % error of the law.",
         low=-inf,
     )
     times_apart: float = setting(
-        -1.13,
+        -0.851,
         "1",
         "Weight: variation of the size between parts in time, as a share of the fitted size.",
         low=-inf,
     )
     ranges_apart: float = setting(
-        -1.31,
+        -1.41,
         "1",
         "Weight: variation of the size between ranges of a speed, a command or the heading, as "
         "a share of the fitted size.",
         low=-inf,
     )
     unexplained: float = setting(
-        -0.286,
+        -0.274,
         "1",
         "Weight: evidence that remains unexplained, as a share of the threshold of an unknown "
         "cause.",
         low=-inf,
     )
     structure: float = setting(
-        -0.755,
+        -1.25,
         "1",
         "Weight: dependence of the remaining force on motion, commands, place or time, as a "
         "share of all gained evidence.",
         low=-inf,
     )
     alternative: float = setting(
-        -0.173,
+        -0.226,
         "1",
         "Weight: evidence of the best single-term force in its place, as a share of its own.",
         low=-inf,
     )
     prior_distance: float = setting(
-        -1.37,
+        -1.43,
         "1",
         "Weight: log of the distance from zero effect in prior standard deviations: an "
         "implausible size.",
         low=-inf,
     )
     at_bound: float = setting(
-        -3.6,
+        -3.98,
         "1",
         "Weight: whether a parameter is at a bound of its range and a recording requires more.",
         low=-inf,
     )
     stochastic: float = setting(
-        -3.04,
+        -3.07,
         "1",
         "Weight: whether it is a stochastic force or the drift of an instrument, which fits "
         "almost anything.",
         low=-inf,
     )
     look_alikes: float = setting(
-        0.691,
+        0.647,
         "1",
         "Weight: number of its look-alikes, each of which may be the true cause.",
         low=-inf,
     )
     coefficient_shift: float = setting(
-        -0.629,
+        -0.48,
         "1",
         "Weight: rms distance of the refitted coefficients from the vessel file in prior "
         "standard deviations.",
         low=-inf,
     )
     effects: float = setting(
-        -1.39,
+        -1.68,
         "1",
         "Weight: log of the number of identified effects: true causes are few.",
         low=-inf,

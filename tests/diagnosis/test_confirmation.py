@@ -59,7 +59,7 @@ def outcome(fitted: tuple[Problem, Fit, Fit], held_out: MappedRecording) -> Outc
     problem, without, best = fitted
     signs = consistency_of(problem, best, {ONLY: without}, [held_out])
     errors = errors_of_each(problem, best, {ONLY: without}, [held_out])
-    return outcome_of(errors[ONLY], signs[ONLY], DEFAULT.decide)
+    return outcome_of(problem.candidates[ONLY], errors[ONLY], signs[ONLY], DEFAULT.decide)
 
 
 def test_a_true_effect_is_confirmed_and_alone_reduces_the_errors(fitted) -> None:

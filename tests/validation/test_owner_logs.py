@@ -253,10 +253,12 @@ def test_the_goals_count_what_they_ask_for() -> None:
         edits=["absent rudder_rad"],
     )
     both.fault_named, both.physics_named, both.called_physics = True, False, False
+    both.first_named = False
     rows = {row[:58].strip(): row[58:].split() for row in goal_rows([good, both])}
     assert rows["log read, or its need stated in one line"][:2] == ["2", "(100"]
     assert rows["map of the commands proposed whole and right"][:2] == ["1", "(50"]
     assert rows["the log's fault named"][:2] == ["1", "(100"]
-    assert rows["the physics named"][:2] == ["0", "(0"]
+    assert rows["the physics named, or refined in the vessel file"][:2] == ["0", "(0"]
+    assert rows["the cause is the first name"][:2] == ["0", "(0"]
     assert rows["good logs accused"][:2] == ["0", "(0"]
     assert rows["second log predicted with at most half the error"][:2] == ["1", "(100"]

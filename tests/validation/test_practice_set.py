@@ -66,7 +66,7 @@ def test_the_tool_reads_a_trial_of_every_vessel_by_its_recording_toml(
 
 def test_a_stronger_effect_gives_more_evidence_and_none_gives_none() -> None:
     gains = [
-        float(evidence_gains(simulate_trial(CHEAP, (3, 1), np.array([s])), False)[0])
+        float(evidence_gains(simulate_trial(CHEAP, (3, 1), np.array([s])), [False])[0])
         for s in (1e-6, 0.05, 0.1)
     ]
     assert (

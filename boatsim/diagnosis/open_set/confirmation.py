@@ -17,6 +17,7 @@ from boatsim.diagnosis.filter import MappedRecording
 from boatsim.diagnosis.free_runs import free_run_horizon, free_runs, rms_errors
 from boatsim.diagnosis.open_set.consistency import Consistency
 from boatsim.diagnosis.problem import Fit, Problem
+from boatsim.physics.base import CoefficientRelease, Effect
 
 WHOLE = ""  # name of the fit with all effects among free runs
 
@@ -57,17 +58,23 @@ def errors_of_each(
     return found
 
 
-def outcome_of(errors: Mapping[str, Errors], signs: Consistency, config: DecideConfig) -> Outcome:
+def outcome_of(
+    effect: Effect, errors: Mapping[str, Errors], signs: Consistency, config: DecideConfig
+) -> Outcome:
     """Return what held-out recordings show of an effect.
 
+    An effect that releases coefficients of the vessel is never unconfirmed. Without it the same
+    coefficients are refitted, only far outside of their stated uncertainty, and predict the same.
+
     Args:
+        effect: The effect.
         errors: Errors of free runs without and with it, by family.
         signs: Its gain of likelihood and its size on held-out recordings.
         config: Largest sd of a size that held-out recordings determine.
     """
     if signs.held_out_gain > 0.0 or mean_ratio(errors) < 1.0:
         return "confirmed"
-    if signs.held_out.sd > config.confirmed_sd:
+    if signs.held_out.sd > config.confirmed_sd or isinstance(effect, CoefficientRelease):
         return "open"
     return "unconfirmed"
 

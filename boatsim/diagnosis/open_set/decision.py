@@ -120,8 +120,9 @@ def _judge(
 ) -> Judgement:
     """Signs, probability and confirmation of one effect."""
     config = problem.config.decide
-    stochastic = bool(type(problem.candidates[effect.name]).random)
+    candidate = problem.candidates[effect.name]
+    stochastic = bool(type(candidate).random)
     found = features(effect, stochastic, signs, of_log)
     probability = probability_of_true_cause(found, config)
-    outcome = outcome_of(alone, signs, config)
+    outcome = outcome_of(candidate, alone, signs, config)
     return Judgement(effect, stochastic, signs, probability, alone, outcome)
