@@ -34,14 +34,14 @@ def alone_entry(errors: Mapping[str, Errors]) -> dict[Family, AloneEntry]:
 
 
 def effect_sentences(effect: EffectEntry) -> list[str]:
-    """Return how an effect alone changes the errors on held-out data, and whether they confirm it.
+    """Return how adding an effect changes the errors on held-out data, and whether they confirm it.
 
     Args:
         effect: Entry of an identified effect.
     """
     found = []
     if changes := _changes(effect.get("alone", {})):
-        found.append(f"On held-out data it alone {join_words(changes)}.")
+        found.append(f"On held-out data adding it {join_words(changes)}.")
     if not effect.get("confirmed", True):
         found.append(OPEN)
     return found
@@ -81,7 +81,7 @@ def reason_unconfirmed(judged: Judgement) -> str:
     reason = "held-out recordings, which could show it, are explained as well without it"
     changes = join_words(_changes(alone_entry(judged.alone)))
     if changes:
-        reason += f": there it alone {changes}"
+        reason += f": there adding it {changes}"
     return reason
 
 
