@@ -54,6 +54,7 @@ NONE_MISSING_WITH_REFINED = (
     "No missing effect was found: with {} refined, the vessel model explains these recordings to "
     "within their noise."
 )
+SURE = 0.8  # probability below which an effect is only probable: one of eight such names is wrong
 NOT_IN_FILE = "not in the file"  # change of a number that the vessel file does not have
 
 
@@ -148,16 +149,18 @@ def _effects(answer: Answer, words: Mapping[str, str]) -> list[str]:
         if found := answer["unknown"].get("structure"):
             statements.append(f"in {found['axis']} it varies with {found['goes_with']}")
     physics: list[str] = []
+    probable: list[str] = []
     measured: list[str] = []
     for effect in answer["effects"]:
         if effect["kind"] == "measurement":
             measured.append(_clause(effect, words))
+        elif _probability_with_look_alikes(answer, effect) < SURE:
+            probable.append(_clause(effect, words))
         else:
             physics.append(_clause(effect, words))
     addition = "in addition, " if statements else ""
-    if physics:
-        effects = count_in_words(len(physics), "effect")
-        statements.append(f"{addition}the model leaves out {effects}: {_clauses(physics)}")
+    if physics or probable:
+        statements.append(f"{addition}the model {_left_out(physics, probable)}")
     if measured:
         errors = "a measurement error"
         if len(measured) > 1:
@@ -170,6 +173,26 @@ def _effects(answer: Answer, words: Mapping[str, str]) -> list[str]:
                 f"{_clauses(measured)}"
             )
     return statements
+
+
+def _left_out(sure: Sequence[str], probable: Sequence[str]) -> str:
+    """Return which effects the model leaves out, and which it probably leaves out."""
+    if not sure:
+        effects = count_in_words(len(probable), "effect")
+        return f"probably leaves out {effects}: {_clauses(probable)}"
+    statement = f"leaves out {count_in_words(len(sure), 'effect')}: {_clauses(sure)}"
+    if probable:
+        more = COUNTS[len(probable)] if len(probable) < len(COUNTS) else str(len(probable))
+        statement += f"; and probably {more} more: {_clauses(probable)}"
+    return statement
+
+
+def _probability_with_look_alikes(answer: Answer, effect: EffectEntry) -> float:
+    """Return the probability that an effect or one of its look-alikes is a true cause."""
+    for one in answer.get("signs", {}).get("effects", []):
+        if one["name"] == effect["name"]:
+            return one["probability"]
+    return 1.0
 
 
 def _stand_ins(answer: Answer) -> str:
