@@ -105,7 +105,7 @@ class Diagnosis:
 
     @property
     def verdict(self) -> str:
-        """One of "named", "ambiguous", "described", "unknown" and "nothing_missing"."""
+        """Verdict: "named", "ambiguous", "described", "unknown" or "nothing_missing"."""
         return self.answer["verdict"]
 
     @property

@@ -150,7 +150,7 @@ class AdaptiveJoystick(Outboards, CompiledController):
         }
 
     def largest_goals(self) -> Mapping[str, float]:
-        """Return the largest demands, including the rated turn [rad/s]."""
+        """Return the goals at full stick: largest speeds [m/s] and turn rate [rad/s]."""
         return {**super().largest_goals(), "yaw_radps": self.rated_yaw}
 
     def loop_channels(self) -> tuple[LoopChannel, ...]:

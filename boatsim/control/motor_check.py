@@ -43,7 +43,7 @@ class Drift(NamedTuple):
 
 
 class Found(NamedTuple):
-    """Result of one train of pulses."""
+    """Response of the boat to one series of thrust pulses of a motor check."""
 
     turn: float  # [rad/s^2] while both motors push ahead
     reverse: float  # thrust astern over thrust ahead, of the settings that were played

@@ -31,7 +31,7 @@ class TankWorld:
 
     @property
     def engine(self) -> Engine:
-        """The boat's engine."""
+        """Simulation of the boat by MuJoCo."""
         if self._engine is None:
             self._engine = Engine(self.vessel, self.tank, self.step, show=False)
         return self._engine

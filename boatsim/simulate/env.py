@@ -230,7 +230,7 @@ class BoatTask(control.Task):
         physics.set_control(action)
 
     def action_spec(self, physics: BoatPhysics) -> specs.BoundedArray:
-        """Return the limits of the commands (C,); the name lists them, tab-separated."""
+        """Return the lower and upper limits of the C commands; its name lists the commands."""
         channels = self.scenario.vessel.commands
         limits = [(channel.low, channel.high) for channel in channels.values()]
         low, high = np.array(limits, dtype=float).reshape(-1, 2).T

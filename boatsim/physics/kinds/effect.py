@@ -323,7 +323,7 @@ class Boat(Protocol):
 
     @property
     def described_signals(self) -> Sequence[str]:
-        """Actuator signals for described laws: values, cosine and sine of angles, sums."""
+        """Actuator signals for laws of symbolic regression: values, cos, sin, sums."""
 
     def effect(self, name: str) -> Effect | None:
         """Return the vessel's effect of that name, or its only one of that class."""

@@ -369,7 +369,7 @@ def _remark_times(work: _Work, rows: Array) -> None:
 
 
 def position_fix(map: Map) -> str | None:
-    """Return the fact `position_fix` of a map: "gnss" where positions are latitudes, else None."""
+    """Return how positions were measured: "gnss" if the columns are latitudes, else None."""
     if map.position:
         return "gnss"
     return None
