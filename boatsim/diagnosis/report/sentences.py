@@ -54,7 +54,7 @@ NONE_MISSING_WITH_REFINED = (
     "No missing effect was found: with {} refined, the vessel model explains these recordings to "
     "within their noise."
 )
-SURE = 0.8  # probability below which an effect is only probable: one of eight such names is wrong
+SURE = 0.75  # probability from which an effect is stated without "probably": 9 of 10 are right
 NOT_IN_FILE = "not in the file"  # change of a number that the vessel file does not have
 
 
