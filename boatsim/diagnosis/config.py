@@ -1154,8 +1154,7 @@ class DecideConfig:
     stochastic: float = setting(
         -3.07,
         "1",
-        "Weight: whether it is a stochastic force or the drift of an instrument, which fits "
-        "almost anything.",
+        "Weight: whether it is a stochastic force, which fits almost anything.",
         low=-inf,
     )
     look_alikes: float = setting(

@@ -31,7 +31,7 @@ from boatsim.diagnosis.open_set.decision import Decision, undecided
 from boatsim.diagnosis.open_set.decision import decide as judge_names
 from boatsim.diagnosis.problem import Problem
 from boatsim.diagnosis.question import Question, compile_program, pose_question
-from boatsim.diagnosis.recalibration import keep_undetermined, recalibrate
+from boatsim.diagnosis.recalibration import recalibrate
 from boatsim.diagnosis.report.answer import compose_answer
 from boatsim.diagnosis.report.findings import Findings
 from boatsim.diagnosis.report.results import findings_of
@@ -343,8 +343,8 @@ def adopt(question: Question, decision: Decision, ranking: Ranking) -> Ranking:
     """Return the ranking with those refitted coefficients that are determined and do no harm.
 
     The selection has compared hypotheses with all coefficients free, so that its evidence stays
-    valid. Without effects the patched vessel is the recalibrated one. A formula stays with the
-    coefficients that it was fitted with.
+    valid. Without effects the patched vessel is the recalibrated one. Effects and formulas stay
+    with the coefficients that they were fitted with.
 
     Args:
         question: Held-out recordings.
@@ -358,8 +358,6 @@ def adopt(question: Question, decision: Decision, ranking: Ranking) -> Ranking:
     found = recalibrate(problem, ranking.nominal, refitted, question.held_out)
     if not best.effects:
         best = found.fit
-    elif ranking.description is None:
-        best = keep_undetermined(problem, best)
     return replace(ranking, best=best, recalibrated=found.fit, recalibration=found)
 
 

@@ -12,6 +12,7 @@ from boatsim.diagnosis.problem import Problem
 from boatsim.diagnosis.search.evidence import required_gain, unknown_threshold
 from boatsim.diagnosis.search.pruning import IdentifiedEffect
 from boatsim.diagnosis.search.ranking import Ranking
+from boatsim.physics.base import RandomForce
 
 
 @dataclass(frozen=True)
@@ -20,7 +21,7 @@ class Judgement:
 
     Attributes:
         effect: The effect with its statistics among the candidates.
-        stochastic: Whether it is a stochastic force, or the drift of an instrument.
+        stochastic: Whether it is a stochastic force.
         signs: Signs by which true effects differ from stand-ins.
         probability: Probability that it, or one of its look-alikes, is a true cause.
         alone: Errors of free runs over held-out recordings without and with it, by family.
@@ -121,7 +122,7 @@ def _judge(
     """Signs, probability and confirmation of one effect."""
     config = problem.config.decide
     candidate = problem.candidates[effect.name]
-    stochastic = bool(type(candidate).random)
+    stochastic = isinstance(candidate, RandomForce)
     found = features(effect, stochastic, signs, of_log)
     probability = probability_of_true_cause(found, config)
     outcome = outcome_of(candidate, alone, signs, config)

@@ -29,7 +29,7 @@ def features(
 
     Args:
         effect: The effect with its evidence and its look-alikes.
-        stochastic: Whether it is a stochastic force, or the drift of an instrument.
+        stochastic: Whether it is a stochastic force.
         consistency: Signs of the effect.
         log_signs: Signs of the log.
 
