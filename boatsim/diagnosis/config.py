@@ -1047,10 +1047,11 @@ class DecideConfig:
     """
 
     least_probability: float = setting(
-        0.5,
+        0.45,
         "1",
-        "Probability from which an effect is named; below it a cause outside the candidates is "
-        "more likely, and the effect is only reported as possible.",
+        "Probability, together with look-alikes, from which an effect is named; below it an effect "
+        "is only reported as possible. It is a little below one half, because a true effect that "
+        "is not named is reported as an unknown cause.",
         0.0,
         1.0,
     )
