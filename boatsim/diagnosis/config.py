@@ -814,8 +814,8 @@ class FitConfig:
         10.0,
         "sd",
         "A model whose whitened prediction errors have a larger rms in a recording, although the "
-        "latent force was fitted, does not follow that recording; it is 0.95 to 1.04 in the "
-        "practice trials with an odd number, causes included.",
+        "latent force was fitted, does not follow that recording; it is about 1 where a model "
+        "follows, whatever effects it lacks.",
         low=2.0,
     )
     lost_sds: float = setting(
@@ -1040,9 +1040,10 @@ class SelectConfig:
 class DecideConfig:
     """Open-set decision: the probability that an identified effect is a true cause.
 
-    The weights are those of a logistic regression of right and wrong names, over 1080 of the logs
-    that `python -m validation.calibration --seed 2` makes; its option `--weights` prints them for
-    the logs that it has diagnosed. Each multiplies a feature of
+    The weights are those of a logistic regression of right and wrong names, over about 1,080
+    simulated logs with known causes, made by `validation.calibration` with the seeds 2 and 3 while
+    its shares of the kinds of logs were being chosen. `python -m validation.calibration --weights`
+    fits weights to the logs that it has diagnosed. Each multiplies a feature of
     `boatsim.diagnosis.open_set.probability`.
     """
 
@@ -1059,8 +1060,7 @@ class DecideConfig:
         0.25,
         "1",
         "Share of the explained evidence added to `select.unknown_gain`: a smaller remainder is "
-        "reported as an error of the identified laws and not as an unknown cause. Of the known "
-        "causes of the campaign fewer are called unknown with it, and no unknown cause is missed.",
+        "reported as an error of the identified laws and not as an unknown cause.",
         0.0,
         1.0,
     )
@@ -1076,8 +1076,7 @@ class DecideConfig:
         "1",
         "Largest sd of the size of an effect on held-out recordings, as a share of the fitted "
         "size, for which these must confirm it: a true effect then differs from zero by two "
-        "standard deviations. Of 33 names in a sample of the campaign this removes one of two "
-        "wrong ones and none of 31 right ones.",
+        "standard deviations.",
         0.0,
     )
     intercept: float = setting(

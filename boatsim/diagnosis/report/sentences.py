@@ -54,7 +54,8 @@ NONE_MISSING_WITH_REFINED = (
     "No missing effect was found: with {} refined, the vessel model explains these recordings to "
     "within their noise."
 )
-SURE = 0.75  # probability from which an effect is stated without "probably": 9 of 10 are right
+# probability from which an effect is stated without "probably": odds of 3 to 1
+SURE = 0.75
 NOT_IN_FILE = "not in the file"  # change of a number that the vessel file does not have
 
 
