@@ -1,8 +1,9 @@
-"""Every use that boatsim makes of undocumented parts of numba, llvmlite and MuJoCo.
+"""What boatsim uses of undocumented parts of numba, llvmlite and MuJoCo.
 
-No other module may rely on them. Each assumption below is checked by
-`tests/test_compiler_internals.py`, and the upper bounds on numba and MuJoCo in `pyproject.toml`
-exist because of this module: raise a bound after that test has passed on the new version.
+Only `function_compiler`, which replaces passes of numba's compiler, relies on others. Each
+assumption below is checked by `tests/test_compiler_internals.py`, and the upper bounds on numba and
+MuJoCo in `pyproject.toml` exist because of these two modules: raise a bound after that test and
+`tests/physics/test_function_compiler.py` have passed on the new version.
 
 1. numba reads the default of each argument of a Python function through an `AbstractTemplate`
    (`register_with_numba`).

@@ -12,17 +12,31 @@ from numba import njit
 
 from boatsim.physics.compiler_internals import WITHOUT_REFERENCE_COUNTS, keep_on_disk
 from boatsim.physics.debugging import DEBUG, python_function
+from boatsim.physics.function_compiler import compile_both_forms
 
 
-def cached_njit(**options: Any) -> Callable[[Any], Any]:
-    """Return a decorator like `njit` that keeps the compiled code on disk.
+def compiled_by(**options: Any) -> Callable[[Any], Any]:
+    """Return a decorator like `njit` for functions that compiled code calls more than Python.
 
     Args:
         options: Further options of `njit`.
     """
 
     def decorate(function: Any) -> Any:
-        compiled = njit(error_model="numpy", **options)(function)
+        return compile_both_forms(function, {"error_model": "numpy", **options})
+
+    return decorate
+
+
+def cached_njit(**options: Any) -> Callable[[Any], Any]:
+    """Return a decorator like `compiled_by` that keeps the compiled code on disk.
+
+    Args:
+        options: Further options of `njit`.
+    """
+
+    def decorate(function: Any) -> Any:
+        compiled = compiled_by(**options)(function)
         return compiled if DEBUG else keep_on_disk(compiled, function)
 
     return decorate
@@ -35,12 +49,12 @@ lean = cached_njit(**WITHOUT_REFERENCE_COUNTS)
 # The same, for functions that other threads may run at the same time.
 unlocked = cached_njit(nogil=True, **WITHOUT_REFERENCE_COUNTS)
 # A part that few vessels call: never inlined, so that it does not lengthen the programs around it.
-apart: Any = njit(error_model="numpy", **WITHOUT_REFERENCE_COUNTS)
+apart: Any = compiled_by(**WITHOUT_REFERENCE_COUNTS)
 # A small part of one or two other functions: numba analyses it again in each of them.
 inlined = njit(error_model="numpy", inline="always")
 # A large part of many functions: analysed once and inlined by LLVM, which moves what does not
 # change out of loops.
-merged = njit(error_model="numpy", forceinline=True, **WITHOUT_REFERENCE_COUNTS)
+merged = compiled_by(forceinline=True, **WITHOUT_REFERENCE_COUNTS)
 
 
 @cache

@@ -75,6 +75,7 @@ ADVANCE = ProgramFunction(
     "commands, memory, dt, p, on, act, held",
     ("pass",),
     "",
+    compiled="merged",
     stations=actuator_stations,
 )
 TIME_TO_DISCONTINUITY = ProgramFunction(
@@ -82,6 +83,7 @@ TIME_TO_DISCONTINUITY = ProgramFunction(
     "commands, memory, p, on",
     ("left = np.inf",),
     "left",
+    compiled="merged",
     stations=discontinuity_stations,
 )
 

@@ -7,7 +7,9 @@ from typing import ClassVar
 from boatsim.physics.kinds.effect import EffectKind, InsertionPoint, ProgramFunction, ProgramLayout
 from boatsim.physics.signals import MeasuredMotion
 
-APPLY_ERRORS = ProgramFunction("apply_measurement_errors", "m, t, p, on", ("pass",), "m")
+APPLY_ERRORS = ProgramFunction(
+    "apply_measurement_errors", "m, t, p, on", ("pass",), "m", compiled="merged"
+)
 HAS_ERRORS = ProgramFunction("has_measurement_errors", "on", ("found = False",), "found")
 MOTION_LATENCY = ProgramFunction("motion_latency", "p, on", ("seconds = 0.0",), "seconds")
 

@@ -1,0 +1,218 @@
+"""How numba compiles the functions of a program.
+
+A program has about a hundred compiled functions, of which Python calls ten. numba by itself gives
+each of them machine code and a wrapper for calls from Python, and optimises it again within each
+of its callers. Here a function has two forms:
+
+1. The inner form is what compiled functions call: LLVM code that is linked into the caller, without
+   machine code of its own (`InnerLowering`).
+2. The outer form is what Python calls: a wrapper around the inner form, with machine code. It is
+   made at the first call from Python, and kept on disk (`compiler_internals.keep_on_disk`).
+
+The types of operators are looked up once for each combination of arguments
+(`RememberingContext`), because numba tries some twenty overloads for every product of two floats.
+
+This module and `compiler_internals` are the only ones that rely on undocumented parts of numba;
+`tests/physics/test_function_compiler.py` checks what this one assumes.
+"""
+
+from collections.abc import Callable, Mapping
+from functools import cache
+from typing import Any
+
+from numba import _dynfunc, njit, types
+from numba.core.codegen import JITCodeLibrary
+from numba.core.compiler import CompilerBase, CompileResult, DefaultPassBuilder
+from numba.core.compiler_machinery import register_pass
+from numba.core.registry import CPUDispatcher
+from numba.core.typed_passes import NativeLowering
+from numba.core.typing import Context
+
+# Types whose operators always have the same result for the same types
+PLAIN_TYPES = (types.Number, types.Boolean, types.Array, types.StringLiteral, types.SliceType)
+
+
+# Type inference
+# ------------------------------------------------------------------------------------------------
+
+
+class RememberingContext(Context):
+    """numba's typing context, with a memory of the types of operators and builtin functions."""
+
+    __slots__ = ("_resolved",)
+
+    def __init__(self, context: Context) -> None:
+        """Share all state with `context`; its own initialisation must not run again."""
+        object.__setattr__(self, "__dict__", context.__dict__)
+        self._resolved: dict[Any, Any] = {}
+
+    def resolve_function_type(self, func: Any, args: Any, kws: Any) -> Any:
+        """Return the signature of a call, from memory if all arguments are plain."""
+        if kws or isinstance(func, types.Dispatcher) or not all(map(is_plain, args)):
+            return super().resolve_function_type(func, args, kws)
+        key = (func, tuple(args))
+        if key not in self._resolved:
+            found = super().resolve_function_type(func, args, kws)
+            if found is None:
+                return None
+            self._resolved[key] = found
+        return self._resolved[key]
+
+
+def is_plain(kind: Any) -> bool:
+    """Return whether a type is a number, an array, or a tuple of these."""
+    if isinstance(kind, types.BaseTuple):
+        return all(map(is_plain, kind))
+    return isinstance(kind, PLAIN_TYPES)
+
+
+@cache
+def remembering(context: Context) -> RememberingContext:
+    """Return the context with a memory that belongs to one of numba's contexts."""
+    return RememberingContext(context)
+
+
+# Inner functions
+# ------------------------------------------------------------------------------------------------
+
+
+class InnerLibrary(JITCodeLibrary):
+    """LLVM code of one function for linking into its callers, without machine code of its own."""
+
+    def _optimize_final_module(self) -> None:
+        """Run the inexpensive passes only; the callers are optimised with what they call."""
+        passes, builder = self._codegen._module_pass_manager(
+            loop_vectorize=False,
+            slp_vectorize=False,
+            opt=self._codegen._opt_level,
+            cost="cheap",
+        )
+        passes.run(self._final_module, builder)
+
+    def _finalize_final_module(self) -> None:
+        self._finalize_dynamic_globals()
+        self._verify_declare_only_symbols()
+        self._finalized = True
+
+
+@register_pass(mutates_CFG=True, analysis_only=False)
+class InnerLowering(NativeLowering):
+    """Lowers a function to an `InnerLibrary`."""
+
+    _name = "inner_native_lowering"
+
+    def run_pass(self, state: Any) -> bool:
+        """Lower the function, and register it for calls from compiled code."""
+        state.library = state.targetctx.codegen().create_library(state.func_id.func_qualname)
+        state.library.__class__ = InnerLibrary
+        state.flags.no_compile = True
+        super().run_pass(state)
+        state.library.finalize()
+        lowered = state["cr"]
+        about = lowered.fndesc
+        # numba identifies the function by this object. Its address is 0: nothing may call it.
+        handle = _dynfunc.make_function(
+            about.lookup_module(), about.qualname.split(".")[-1], "", 0, lowered.env, ()
+        )
+        state.targetctx.insert_user_function(handle, about, [state.library])
+        state["cr"] = lowered._replace(cfunc=handle)
+        return True
+
+
+class QuickCompiler(CompilerBase):
+    """numba's compiler with a `RememberingContext`."""
+
+    def __init__(self, typingctx: Context, *args: Any) -> None:
+        """Take the arguments of numba's compiler."""
+        super().__init__(remembering(typingctx), *args)
+
+    def define_pipelines(self) -> list[Any]:
+        """Return the passes."""
+        return [DefaultPassBuilder.define_nopython_pipeline(self.state)]
+
+
+class InnerCompiler(QuickCompiler):
+    """Compiler of inner functions."""
+
+    def define_pipelines(self) -> list[Any]:
+        """Return the passes, with `InnerLowering` in place of numba's."""
+        (manager,) = super().define_pipelines()
+        for place, (one, about) in enumerate(manager.passes):
+            if one is NativeLowering:
+                manager.passes[place] = (InnerLowering, about)
+        manager._finalized = False
+        manager.finalize()
+        return [manager]
+
+
+# Functions with both forms
+# ------------------------------------------------------------------------------------------------
+
+
+class OuterCompiler:
+    """Makes the outer form of a function from its inner one."""
+
+    def __init__(self, inner: CPUDispatcher, releases_gil: bool) -> None:
+        """Take the dispatcher of the inner form.
+
+        Args:
+            inner: The dispatcher.
+            releases_gil: Whether other threads of Python may run during a call.
+        """
+        self._inner = inner
+        self._releases_gil = releases_gil
+        self.fold_argument_types = inner._compiler.fold_argument_types
+
+    def compile(self, args: Any, return_type: Any) -> CompileResult:
+        """Return the wrapper for calls from Python and the one for calls by address.
+
+        Args:
+            args: Types of the arguments.
+            return_type: Type of the result; None: as inferred.
+        """
+        self._inner.compile(tuple(args))
+        inner = self._inner.overloads[tuple(args)]
+        context, about = inner.target_context, inner.fndesc
+        library = context.codegen().create_library(about.qualname)
+        library.enable_object_caching()
+        library.add_linking_library(inner.library)
+        parts = (library, about, inner.environment, inner.call_helper)
+        context.create_cpython_wrapper(*parts, release_gil=self._releases_gil)
+        context.create_cfunc_wrapper(*parts)
+        called = context.get_executable(library, about, inner.environment)
+        context.insert_user_function(called, about, [library])
+        # numba enters its timings of each form.
+        notes = {name: value for name, value in inner.metadata.items() if name != "timers"}
+        return inner._replace(entry_point=called, library=library, metadata=notes)
+
+
+class TwoFormFunction(CPUDispatcher):
+    """A compiled function whose inner form compiled code calls, and Python the outer one."""
+
+    inner: CPUDispatcher
+
+    def get_call_template(self, args: Any, kws: Any) -> Any:
+        """Return the typing of a call from compiled code."""
+        return self.inner.get_call_template(args, kws)
+
+    def get_overload(self, sig: Any) -> Any:
+        """Return what identifies the inner form of a signature."""
+        return self.inner.get_overload(sig)
+
+
+def compile_both_forms(function: Callable[..., Any], options: Mapping[str, Any]) -> Any:
+    """Return a compiled function with an inner and an outer form.
+
+    Args:
+        function: The Python function.
+        options: Options of `njit`.
+    """
+    outer = njit(**options)(function)
+    if not isinstance(outer, CPUDispatcher):  # compiling is switched off
+        return outer
+    outer.__class__ = TwoFormFunction
+    outer.inner = njit(
+        pipeline_class=InnerCompiler, no_cpython_wrapper=True, no_cfunc_wrapper=True, **options
+    )(function)
+    outer._compiler = OuterCompiler(outer.inner, bool(options.get("nogil")))
+    return outer
