@@ -5,7 +5,7 @@ by its kind also thrusters, rudders, numbers of the vessel) and which facts excl
 and its recordings decide.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import count, islice
 from typing import NamedTuple
@@ -355,6 +355,30 @@ def with_specified_position_drift(vessel: Vessel, facts: Mapping[str, object]) -
     time = float(str(known[time_fact]))
     error = load_class("effect", "position_wander").from_settings({"position": sd, "time": time})
     return replace(vessel, effects=(*vessel.effects, error.with_all_parameters(vessel)))
+
+
+def program_to_replay(vessel: Vessel) -> tuple[Program, tuple[str, ...]]:
+    """Return a vessel's program, and the names of the candidates in it that are active.
+
+    The program of a patched vessel is that of its diagnosis, which was compiled before. That of
+    another vessel holds its own effects only, and compiles in half the time.
+
+    Args:
+        vessel: Vessel file, or a patched one.
+    """
+    if vessel.found:
+        return diagnosis_program(vessel)
+    return Program(vessel), ()
+
+
+def program_with_candidates(vessel: Vessel, names: Collection[str]) -> Program:
+    """Return a vessel's program with the named candidates, as far as they can act on it.
+
+    Args:
+        vessel: Vessel file.
+        names: Names of candidates.
+    """
+    return Program(vessel, tuple(e for e in library_for(vessel).compiled if e.name in names))
 
 
 def diagnosis_program(vessel: Vessel) -> tuple[Program, tuple[str, ...]]:

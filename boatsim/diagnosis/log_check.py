@@ -60,7 +60,8 @@ def check_files(
             usable.append(checked.recording)
     if usable:
         try:
-            question = pose_question(Loaded(usable, (), vessels, ""))
+            loaded = Loaded(usable, (), vessels, "")
+            question = pose_question(loaded, with_candidates=False)
             compared = compare_reinterpretations(usable, question.map_recording, question.problem)
             findings += [replace(f, run=str(usable[0].path)) for f in compared]
         except BadInput as error:

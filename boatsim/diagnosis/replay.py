@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from boatsim.diagnosis.candidates import diagnosis_program
+from boatsim.diagnosis.candidates import program_to_replay
 from boatsim.diagnosis.checks.initial_actuator_state import with_initial_actuators
 from boatsim.diagnosis.filter import map_recording, prior_levels
 from boatsim.diagnosis.free_runs import FreeRun, free_runs
@@ -90,7 +90,7 @@ def fit_noise_only(
         The problem and its fit.
     """
     report("compiling, or loading what was compiled before", 0.1)
-    program, acting = diagnosis_program(vessel)
+    program, acting = program_to_replay(vessel)
     levels = prior_levels(vessel, [recording])
     mapped = with_initial_actuators(map_recording(recording, program), levels)
     problem = Problem([mapped], levels, {})

@@ -17,7 +17,7 @@ import tomlkit
 from threadpoolctl import threadpool_limits
 
 from boatsim.diagnosis import priors
-from boatsim.diagnosis.candidates import diagnosis_program
+from boatsim.diagnosis.candidates import program_with_candidates
 from boatsim.diagnosis.checks.data_cleaning import clean_recording, total_duration
 from boatsim.diagnosis.checks.initial_actuator_state import with_initial_actuators
 from boatsim.diagnosis.filter import map_recording, prior_levels
@@ -157,7 +157,7 @@ def _make_problems(
     boat: Vessel, first: Sequence[Recording], last: Sequence[Recording]
 ) -> tuple[Problem, Problem]:
     """The estimation problems of the fitted and the held-out parts."""
-    program, _ = diagnosis_program(boat)
+    program = program_with_candidates(boat, (*OF_BOAT, *OF_DAY))
     levels = prior_levels(boat, first)
     mapped = [with_initial_actuators(map_recording(r, program), levels) for r in first]
     problem = Problem(mapped, levels, priors.coefficient_uncertainty(boat))

@@ -7,13 +7,12 @@ import numpy as np
 import pytest
 from jet_craft import Craft, sailed
 
-from boatsim.diagnosis.candidates import library_for
+from boatsim.diagnosis.candidates import program_with_candidates
 from boatsim.diagnosis.coordinate_search import maximize
 from boatsim.diagnosis.filter import map_recording, prior_levels
 from boatsim.diagnosis.fit import broyden_update
 from boatsim.physics import vessel
 from boatsim.physics.base import Array
-from boatsim.physics.program import Program
 
 TOP = np.array([2.0, -1.0, 0.3])
 BEND = np.array([[40.0, 12.0, 0.0], [12.0, 30.0, -5.0], [0.0, -5.0, 20.0]])
@@ -66,7 +65,7 @@ def test_the_filter_follows_drag_that_dies_out_faster_than_its_steps_and_as_shor
 ):
     boat = vessel.load_vessel("jet_ski")
     run = sailed(Craft(cube=0.2), np.repeat([2.0, 6.0, 3.0], 50), np.zeros(150), 5.0)
-    program = Program(boat, library_for(boat).entries)
+    program = program_with_candidates(boat, ["cubic_damping"])
     said = []
     for share in (1.0, 0.1):
         laid = map_recording(run, program)
@@ -84,7 +83,7 @@ def test_a_recording_that_begins_at_full_speed_is_followed_from_its_first_row_on
     boat, craft = vessel.load_vessel("jet_ski"), Craft()
     run = sailed(craft, np.full(100, 4.0), np.repeat([0.1, -0.1], 50), 24.0)
     del run.signals["u_mps"]
-    program = Program(boat, library_for(boat).entries)
+    program = program_with_candidates(boat, ["cubic_damping"])
     laid = map_recording(run, program)
     means, covariances, _ = laid.smooth(laid.values, program.switches(), prior_levels(boat, [run]))
     assert laid.initial.rates[0] == pytest.approx(24.0, abs=1.5)  # of noisy fixes a second apart
@@ -106,7 +105,7 @@ def test_a_recording_without_positions_begins_at_the_speeds_that_it_shows() -> N
     for name in ("x_m", "y_m"):
         del run.signals[name]
     run.signals["psi_rad"] = run.signals["psi_rad"] + 2.0
-    program = Program(boat, library_for(boat).entries)
+    program = program_with_candidates(boat, ["cubic_damping"])
     laid = map_recording(run, program)
     assert laid.initial.rates[:2] == pytest.approx(
         [24.0 * np.cos(2.0), 24.0 * np.sin(2.0)], abs=0.5
@@ -118,7 +117,7 @@ def test_a_recording_without_positions_begins_at_the_speeds_that_it_shows() -> N
 def test_the_order_of_independent_calls_changes_no_number() -> None:
     boat = vessel.load_vessel("jet_ski")
     run = sailed(Craft(), np.full(60, 4.0), np.repeat([0.1, -0.1], 30), 24.0)
-    program = Program(boat, library_for(boat).entries)
+    program = program_with_candidates(boat, ["cubic_damping"])
     laid, levels = map_recording(run, program), prior_levels(boat, [run])
     on, more = program.switches(), program.switches(("cubic_damping",))
     rough = replace(levels, force=2.0 * levels.force)

@@ -13,7 +13,7 @@ from scipy.stats import multivariate_normal
 
 from boatsim.cli import diagnosis as commands
 from boatsim.diagnosis import loading, pipeline
-from boatsim.diagnosis.candidates import library_for
+from boatsim.diagnosis.candidates import program_with_candidates
 from boatsim.diagnosis.filter import NoiseLevels, free_run_segments, map_recording, prior_levels
 from boatsim.diagnosis.problem import froude_scale
 from boatsim.diagnosis.report.parameters import parameter_key
@@ -125,7 +125,7 @@ def joystick():
     boat = vessel.load_vessel(
         "joystick_boat", extra=[{"use": "rate_limit", "on": ["thrust_port_N"]}]
     )
-    return Program(boat, library_for(boat).compiled)
+    return program_with_candidates(boat, ["command_delay"])
 
 
 def driven(boat: vessel.Vessel) -> Recording:

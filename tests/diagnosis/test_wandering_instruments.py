@@ -9,7 +9,7 @@ import pytest
 from answers import diagnosed
 from real_boat import FURTHER, Real, recorded
 
-from boatsim.diagnosis.candidates import library_for
+from boatsim.diagnosis.candidates import library_for, program_with_candidates
 from boatsim.diagnosis.filter import (
     InitialState,
     MappedRecording,
@@ -28,7 +28,7 @@ NOISE, RMS, TIME = 0.01, 0.05, 4.0  # [m], [m], [s]
 
 def laid_at_rest(x: Array, every: float) -> tuple[Program, MappedRecording]:
     boat = vessel.load_vessel("trial_boat")
-    program = Program(boat, library_for(boat).entries)
+    program = program_with_candidates(boat, ["position_wander", "extra_mass"])
     t = every * np.arange(len(x))
     still = {name: np.zeros(len(x)) for name in ("y_m", "psi_rad", *boat.commands)}
     return program, map_recording(Recording("still", t, {"x_m": x} | still), program)
@@ -75,7 +75,7 @@ def test_added_mass_does_not_calm_the_water() -> None:
     """The latent force shakes a heavier hull as much: otherwise mass would be believed for making
     errors smaller."""
     boat = vessel.load_vessel("trial_boat")
-    program = Program(boat, library_for(boat).entries)
+    program = program_with_candidates(boat, ["position_wander", "extra_mass"])
     values = np.append(program.values(), program.body)
     heavier = values.copy()
     heavier[program.parameter_index("extra_mass", "mass")] = boat.body.mass

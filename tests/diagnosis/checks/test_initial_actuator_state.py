@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from boatsim.diagnosis.candidates import diagnosis_program
+from boatsim.diagnosis.candidates import program_to_replay
 from boatsim.diagnosis.checks.initial_actuator_state import with_initial_actuators
 from boatsim.diagnosis.filter import map_recording, prior_levels
 from boatsim.diagnosis.free_runs import free_runs, rms_errors
@@ -34,7 +34,7 @@ def test_a_log_from_rest_is_replayed_as_it_was(log: Recording) -> None:
 
 def test_a_log_from_under_way_begins_with_actuators_that_have_settled(log: Recording) -> None:
     boat = scenario.load("otter/turn").vessel
-    program, _ = diagnosis_program(boat)
+    program, _ = program_to_replay(boat)
     levels = prior_levels(boat, [log])
     late = log.between(3.0, 20.0)
     for recording, rows in ((log, 2), (late, 1)):  # of commands, which stay as they are
@@ -46,7 +46,7 @@ def test_a_log_from_under_way_begins_with_actuators_that_have_settled(log: Recor
 
 def test_where_nothing_tells_the_actuators_have_settled(log: Recording) -> None:
     boat = scenario.load("otter/turn").vessel
-    program, _ = diagnosis_program(boat)
+    program, _ = program_to_replay(boat)
     still = replace(log, signals=log.signals | {n: np.zeros(len(log)) for n in boat.commands})
     laid = map_recording(still, program)
     assert with_initial_actuators(laid, prior_levels(boat, [still])) is laid

@@ -12,7 +12,7 @@ from scipy.integrate import odeint
 from scipy.linalg import expm
 from scipy.stats import kstest
 
-from boatsim.diagnosis.candidates import library_for
+from boatsim.diagnosis.candidates import program_with_candidates
 from boatsim.diagnosis.config import DEFAULT
 from boatsim.diagnosis.filter import map_recording, prior_levels
 from boatsim.diagnosis.locate.missing_force import intervals, missing_force, residual_force
@@ -328,7 +328,7 @@ def test_walls_stated_in_a_recording_are_those_of_the_library_entry_too() -> Non
     stated = Recording(
         "stated", np.arange(30) / RATE, still, Notes(facts={"walls_m": [-1.0, 2.0, -3.0, 5.0]})
     )
-    program = Program(BOAT, library_for(BOAT).entries)
+    program = program_with_candidates(BOAT, ["wall_effect"])
     own, other = (
         map_recording(replace(stated, notes=Notes()), program),
         map_recording(stated, program),
