@@ -81,6 +81,7 @@ def pose_question(
         BadInput: A column is missing, or a level or an uncertainty cannot be used.
     """
     first, vessel = loaded.fitted[0], loaded.vessel
+    uncertainty = _uncertainty(loaded, vessel, config)
     facts = first.notes.facts
     columns = sorted({column for recording in loaded.fitted for column in recording.signals})
     libraries, programs = dict[Path | None, Library](), dict[Path | None, Program]()
@@ -97,7 +98,6 @@ def pose_question(
     for recording in loaded.held_out:
         ratio = relative_noise(vessel, loaded.fitted, recording, config)
         held_out.append(mapper(recording, ratio))
-    uncertainty = _uncertainty(loaded, vessel, config)
     problem = Problem(fitted, levels, uncertainty, loaded.horizon, config)
     library = libraries[first.path]
     names = names_without(library, loaded.without)
