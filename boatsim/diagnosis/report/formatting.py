@@ -85,28 +85,33 @@ def format_nats(log_bayes_factor: float) -> str:
 
 
 def format_odds(log_bayes_factor: float) -> str:
-    """Return the odds that evidence of this size is due to chance.
+    """Return the odds that the better fit behind evidence of this size is chance.
 
     Args:
         log_bayes_factor: Evidence [nats].
 
     Returns:
-        Words such as "odds of chance 1 in 55": the Bayes factor is exp(evidence).
+        Words such as "1 in 55 that the better fit is chance": the Bayes factor is exp(evidence).
     """
     if log_bayes_factor < math.log(2.0):
-        return "no evidence"
+        return "the better fit may be chance"
     if log_bayes_factor < math.log(1e6):
         odds = float(f"{math.exp(log_bayes_factor):.1e}")
-        return f"odds of chance 1 in {odds:,.0f}"
+        return f"1 in {odds:,.0f} that the better fit is chance"
     power = math.floor(log_bayes_factor / math.log(10.0))
-    return f"odds of chance below 1 in {_power_of_ten(power)}"
+    return f"less than 1 in {_power_of_ten(power)} that the better fit is chance"
 
 
 def format_evidence(log_bayes_factor: float) -> str:
-    """Return evidence in nats with its odds: log Bayes factor 4.0 nats (odds of chance 1 in 55)."""
-    return (
-        f"log Bayes factor {format_nats(log_bayes_factor)} nats ({format_odds(log_bayes_factor)})"
-    )
+    """Return evidence in nats with its odds.
+
+    Args:
+        log_bayes_factor: Evidence [nats].
+
+    Returns:
+        Words such as "evidence 4.0 nats (1 in 55 that the better fit is chance)".
+    """
+    return f"evidence {format_nats(log_bayes_factor)} nats ({format_odds(log_bayes_factor)})"
 
 
 def format_with_sd(value: float, sd: float) -> str:

@@ -30,13 +30,14 @@ def glossary(f: Findings) -> tuple[tuple[str, str], ...]:
             "not have. A diagnosis tests each of them.",
         ),
         (
-            "log Bayes factor, nats",
-            "The evidence for an effect: the natural logarithm of how many times better the model "
+            "evidence, nats",
+            "The log Bayes factor: the natural logarithm of how many times better the model "
             "with the effect predicts the recordings than the model without it. Each additional "
             "parameter lowers it. Its unit is the nat: 1 nat is a factor of 2.7, 3 nats are a "
-            "factor of 20, 4 nats a factor of 55. The odds of chance next to it are the reciprocal "
-            "of this factor: odds of 1 in 55 mean that the model without the effect is 55 times "
-            "less probable, if both were equally probable before the recordings were made. An "
+            "factor of 20, 4 nats a factor of 55. The odds next to it are the reciprocal of this "
+            "factor: 1 in 55 that the better fit is chance means that the model without the effect "
+            "is 55 times less probable, if both were equally probable before the recordings were "
+            "made. They say that something is missing there, and not that it is this effect. An "
             f"effect is identified if it reaches {least:g} nats. Together with its look-alikes it "
             f"must also reach {odds:g} nats plus the logarithm of the number of candidates tested, "
             f"and {slight:g} % of the evidence of the other effects, whose laws are never exact. "

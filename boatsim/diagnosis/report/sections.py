@@ -164,7 +164,7 @@ def _also_possible(f: Findings) -> Iterator[Block]:
     """Yield the effects that may act but that these recordings do not confirm."""
     for entry in f.answer.get("also_possible", []):
         likely = format_cause_probability(entry["probability"])
-        facts = f"{entry['name']} · {format_evidence(entry['gain_nats'])} · {likely}"
+        facts = f"{entry['name']} · {likely} · {format_evidence(entry['gain_nats'])}"
         yield Heading(capitalize(effect_description(entry["words"])), facts)
         yield Text(f"{capitalize(entry['why'])}.")
 
@@ -172,7 +172,7 @@ def _also_possible(f: Findings) -> Iterator[Block]:
 def _effect(f: Findings, e: EffectEntry, explain_deviation: bool) -> Iterator[Block]:
     kind = "measurement error" if e["kind"] == "measurement" else "physics"
     likely = format_cause_probability(e["probability"])
-    facts = f"{e['name']} · {kind} · {format_evidence(e['gain_nats'])} · {likely}"
+    facts = f"{e['name']} · {kind} · {likely} · {format_evidence(e['gain_nats'])}"
     yield Heading(capitalize(effect_description(e["words"])), facts)
     if e["parameters"]:
         header = ["parameter", "value ± deviation", "meaning"]
@@ -233,8 +233,8 @@ def _unexplained(f: Findings) -> Iterator[Block]:
     if unknown["gain_nats"] > unknown["told_from_nats"]:
         yield Text(
             "Even with all identified effects, the recordings require an additional random force "
-            f"of more than {factor:g} times the assumed disturbance level. The evidence for it is "
-            f"a {format_evidence(unknown['gain_nats'])}. Such a force is reported from "
+            f"of more than {factor:g} times the assumed disturbance level: "
+            f"{format_evidence(unknown['gain_nats'])}. Such a force is reported from "
             f"{format_nats(unknown['told_from_nats'])} nats on. This threshold increases with the "
             "evidence that the identified effects explain, because their laws are never exact. The "
             "section on the missing force shows where and when the force acts."
@@ -264,7 +264,7 @@ def _formulas(f: Findings) -> Iterator[Block]:
             value = _coefficient(law["axis"], term)
             rows.append([term["of"], value, format_nats(term["gain_nats"])])
         yield Heading(capitalize(law["statement"]), f"formula · {format_evidence(gain)}")
-        header = ["varies with", "value ± deviation", "log Bayes factor [nats]"]
+        header = ["varies with", "value ± deviation", "evidence [nats]"]
         yield Table("Terms", header, rows)
         if law["carries_over"]:
             yield Text(
@@ -519,7 +519,7 @@ def _ranking(f: Findings) -> Iterator[Block]:
         )
     bars = tuple((np.maximum(gains, 0.0) / max(*gains, 1e-9)).tolist())
     caption = (
-        "Each candidate effect tested alone. The log Bayes factor compares the recalibrated vessel "
+        "Each candidate effect tested alone. The evidence compares the recalibrated vessel "
         "with and without the candidate. For an identified effect it differs from the value above, "
         "which is computed in the presence of all other identified effects. The probability "
         "assumes that exactly one of these candidates is missing, or none. The probabilities add "
@@ -527,7 +527,7 @@ def _ranking(f: Findings) -> Iterator[Block]:
     )
     header = [
         "candidate",
-        "log Bayes factor [nats]",
+        "evidence [nats]",
         "probability, if only one effect is missing",
         "verdict",
         "meaning",

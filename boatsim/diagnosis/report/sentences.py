@@ -482,7 +482,7 @@ def _effect_lines(title: str, effects: Sequence[EffectEntry]) -> list[str]:
     lines = [f"{title}:"]
     for effect in effects:
         likely = format_cause_probability(effect["probability"])
-        lines.append(f"  {effect['name']}: {format_evidence(effect['gain_nats'])}, {likely}")
+        lines.append(f"  {effect['name']}: {likely}; {format_evidence(effect['gain_nats'])}")
         for key, p in effect["parameters"].items():
             lines.append(f"    {key} = {p['value']:.4g} ± {p['sd']:.2g}")
         for sentence in effect_sentences(effect):
