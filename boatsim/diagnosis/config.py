@@ -1071,6 +1071,54 @@ class DecideConfig:
         0.0,
         1.0,
     )
+    sure_probability: float = setting(
+        0.75,
+        "1",
+        "Probability from which an effect is stated without the word probably: odds of 3 to 1.",
+        0.0,
+        1.0,
+    )
+    time_parts: int = setting(
+        4,
+        "count",
+        "Parts in time of each recording between which the size of an effect is compared: two "
+        "halves, each again halved.",
+        low=2,
+    )
+    ranges: int = setting(
+        4,
+        "count",
+        "Ranges of each speed and command, with equal numbers of rows, between which the size of "
+        "an effect is compared: quartiles.",
+        low=2,
+    )
+    law_error: float = setting(
+        0.1,
+        "1",
+        "Share of an effect by which a true law may differ from the candidate's.",
+        0.0,
+    )
+    clear_deviation: float = setting(
+        2.5,
+        "sd",
+        "Deviation of the size on held-out recordings from which it is given as the reason why an "
+        "effect is only possible; below it, true effects are as frequent as stand-ins.",
+        0.0,
+    )
+    clear_excess: float = setting(
+        0.3,
+        "1",
+        "Variation of the size of an effect, as a share of it, from which it is given as the "
+        "reason why the effect is only possible.",
+        0.0,
+    )
+    clear_rest: float = setting(
+        1.0,
+        "1",
+        "Unexplained force, relative to the threshold of an unknown cause, from which it is given "
+        "as the reason why an effect is only possible.",
+        0.0,
+    )
     confirmed_sd: float = setting(
         0.5,
         "1",

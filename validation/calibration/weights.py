@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from scipy.optimize import minimize
 from scipy.special import expit
 
+from boatsim.diagnosis.config import DEFAULT
 from boatsim.diagnosis.open_set.consistency import Consistency, Factor, Variation
 from boatsim.diagnosis.open_set.log_signs import LogSigns
 from boatsim.diagnosis.open_set.probability import features
@@ -43,7 +44,11 @@ def examples(records: Sequence[Record]) -> tuple[list[str], Array, Array, Array]
         log_signs = LogSigns(**signs["log"])
         for effect in signs["effects"]:
             found = features(
-                identified(effect), effect["stochastic"], consistency(effect["signs"]), log_signs
+                identified(effect),
+                effect["stochastic"],
+                consistency(effect["signs"]),
+                log_signs,
+                DEFAULT.decide,
             )
             names = list(found)
             rows.append(list(found.values()))

@@ -23,8 +23,6 @@ from boatsim.diagnosis.locate.smoothing import latent_force
 from boatsim.diagnosis.problem import FilterPasses, Fit, Problem, priors_of
 from boatsim.physics.base import Array
 
-PARTS_OF_RECORDING = 4  # parts in time of each recording: two halves, each again halved
-RANGES = 4  # ranges of a quantity with equal numbers of rows: quartiles
 # prior sd of a factor, so that a part without information does not make the equations singular
 FACTOR_SD = 100.0
 UNDETERMINED = 1e6  # sd of a factor that the data do not determine
@@ -116,7 +114,7 @@ def consistency_of(
     if not best.effects:
         return {}
     fitted = _linearised(problem, best)
-    parts = _parts_in_time(problem)
+    parts = _parts_in_time(problem, problem.config.decide.time_parts)
     ranges = list(_ranges(problem, best))
     unseen_problem = problem.on(held_out)
     unseen = _linearised(unseen_problem, best) if held_out else None
@@ -267,13 +265,13 @@ def _recordings(problem: Problem) -> NDArray[np.int_]:
     return np.repeat(np.arange(len(sizes)), sizes)
 
 
-def _parts_in_time(problem: Problem) -> NDArray[np.int_]:
+def _parts_in_time(problem: Problem, count: int) -> NDArray[np.int_]:
     """(rows,) number of the part in time of each whitened error."""
     found = []
     for k, mapped in enumerate(problem.recordings):
         n, channels = mapped.measured.shape
-        part = (np.arange(n) * PARTS_OF_RECORDING) // n
-        found.append(np.repeat(part + k * PARTS_OF_RECORDING, channels))
+        part = (np.arange(n) * count) // n
+        found.append(np.repeat(part + k * count, channels))
     return np.concatenate(found)
 
 
@@ -294,7 +292,8 @@ def _ranges(problem: Problem, fit: Fit) -> Iterator[tuple[str, NDArray[np.int_]]
         together = np.concatenate(values_of)
         if not np.ptp(together) > 0.0:
             continue
-        edges = np.unique(np.quantile(together, np.arange(1, RANGES) / RANGES))
+        count = problem.config.decide.ranges
+        edges = np.unique(np.quantile(together, np.arange(1, count) / count))
         groups = []
         for values, count in zip(values_of, channels, strict=True):
             groups.append(np.repeat(np.searchsorted(edges, values, side="left"), count))

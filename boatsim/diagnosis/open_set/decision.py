@@ -123,7 +123,7 @@ def _judge(
     config = problem.config.decide
     candidate = problem.candidates[effect.name]
     stochastic = isinstance(candidate, RandomForce)
-    found = features(effect, stochastic, signs, of_log)
+    found = features(effect, stochastic, signs, of_log, config)
     probability = probability_of_true_cause(found, config)
     outcome = outcome_of(candidate, alone, signs, config)
     return Judgement(effect, stochastic, signs, probability, alone, outcome)

@@ -17,13 +17,16 @@ from boatsim.diagnosis.search.pruning import IdentifiedEffect
 MOST_SIGNIFICANT = 10.0
 MOST_DEVIATION = 8.0
 MOST_EXCESS = 2.0
-LAW_ERROR = 0.1  # share of an effect by which a true law may differ from the candidate's
 LEAST_GAIN = 0.1  # [nats] on held-out recordings; less is no evidence
 MOST_LOG_ODDS = 30.0  # beyond it the probability is 0 or 1 in every printed digit
 
 
 def features(
-    effect: IdentifiedEffect, stochastic: bool, consistency: Consistency, log_signs: LogSigns
+    effect: IdentifiedEffect,
+    stochastic: bool,
+    consistency: Consistency,
+    log_signs: LogSigns,
+    config: DecideConfig,
 ) -> dict[str, float]:
     """Return the numbers whose weighted sum is the log of the odds that a name is right.
 
@@ -32,12 +35,13 @@ def features(
         stochastic: Whether it is a stochastic force.
         consistency: Signs of the effect.
         log_signs: Signs of the log.
+        config: Settings of the decision.
 
     Returns:
         Features by the name of their weight in `DecideConfig`.
     """
     held_out = consistency.held_out
-    off = abs(held_out.value - 1.0) / hypot(held_out.sd, LAW_ERROR)
+    off = abs(held_out.value - 1.0) / hypot(held_out.sd, config.law_error)
     alternative = consistency.alternative_gain / max(effect.gain, 1.0)
     distance = consistency.prior_distance
     if stochastic:  # the prior of a disturbance is a usual level, not what is plausible
@@ -53,7 +57,7 @@ def features(
         "structure": _within(structure, 0.0, 1.0),
         "alternative": _within(alternative, 0.0, 2.0),
         "prior_distance": log1p(distance),
-        "at_bound": float(exceeds_range(consistency)),
+        "at_bound": float(exceeds_range(consistency, config)),
         "stochastic": float(stochastic),
         "look_alikes": float(len(effect.tied_with)),
         "coefficient_shift": _within(log_signs.coefficient_shift, 0.0, 4.0),
@@ -74,14 +78,15 @@ def probability_of_true_cause(found: dict[str, float], config: DecideConfig) -> 
     return 1.0 / (1.0 + exp(-_within(odds, -MOST_LOG_ODDS, MOST_LOG_ODDS)))
 
 
-def exceeds_range(consistency: Consistency) -> bool:
+def exceeds_range(consistency: Consistency, config: DecideConfig) -> bool:
     """Whether a parameter is at a bound of its range, and a recording requires more than that.
 
     Args:
         consistency: Signs of an effect.
+        config: Settings of the decision.
     """
     sizes = [factor.value for factor in consistency.recordings]
-    return consistency.at_bound and max(sizes, default=2.0) > 1.0 + LAW_ERROR
+    return consistency.at_bound and max(sizes, default=2.0) > 1.0 + config.law_error
 
 
 def _within(value: float, low: float, high: float) -> float:

@@ -308,7 +308,7 @@ def _possible(
     """Return the entry of an effect that is probably a stand-in for another cause."""
     effect = next(e for e in problem.program.candidates if e.name == doubtful.name)
     judged = decision.judgement(doubtful.name)
-    why = reason_for_doubt(judged.signs, decision.log)
+    why = reason_for_doubt(judged.signs, decision.log, problem.config.decide)
     if judged.outcome == "unconfirmed":
         why = reason_unconfirmed(judged)
     return {

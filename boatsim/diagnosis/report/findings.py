@@ -10,6 +10,18 @@ from boatsim.diagnosis.report.schema import Answer
 from boatsim.physics.base import Array
 
 
+def setting_of(answer: Answer, name: str) -> float:
+    """Return the value of a numerical setting of the diagnosis that an answer reports.
+
+    Args:
+        answer: Content of diagnosis.json; one without settings has the default ones.
+        name: Dotted name, such as "select.alike".
+    """
+    value = answer.get("config", {}).get(name, settings_by_name(DEFAULT)[name])
+    assert not isinstance(value, list)
+    return float(value)
+
+
 @dataclass(frozen=True)
 class MissingForceCurve:
     """The missing force of a recording over time: what the vessel model does not explain.
@@ -80,6 +92,4 @@ class Findings:
 
     def setting(self, name: str) -> float:
         """Return the value of a setting that the diagnosis used, such as "select.alike"."""
-        value = self.answer.get("config", {}).get(name, settings_by_name(DEFAULT)[name])
-        assert not isinstance(value, list)
-        return float(value)
+        return setting_of(self.answer, name)

@@ -7,7 +7,7 @@ from boatsim.diagnosis.evaluation import MODELS
 from boatsim.diagnosis.report.confirmation import effect_sentences, recalibration_sentences
 from boatsim.diagnosis.report.described_terms import effect_of_axis
 from boatsim.diagnosis.report.families import FAMILIES
-from boatsim.diagnosis.report.findings import Findings
+from boatsim.diagnosis.report.findings import Findings, setting_of
 from boatsim.diagnosis.report.formatting import (
     capitalize,
     format_cause_probability,
@@ -54,8 +54,6 @@ NONE_MISSING_WITH_REFINED = (
     "No missing effect was found: with {} refined, the vessel model explains these recordings to "
     "within their noise."
 )
-# probability from which an effect is stated without "probably": odds of 3 to 1
-SURE = 0.75
 NOT_IN_FILE = "not in the file"  # change of a number that the vessel file does not have
 
 
@@ -152,10 +150,11 @@ def _effects(answer: Answer, words: Mapping[str, str]) -> list[str]:
     physics: list[str] = []
     probable: list[str] = []
     measured: list[str] = []
+    sure = setting_of(answer, "decide.sure_probability")
     for effect in answer["effects"]:
         if effect["kind"] == "measurement":
             measured.append(_clause(effect, words))
-        elif _probability_with_look_alikes(answer, effect) < SURE:
+        elif _probability_with_look_alikes(answer, effect) < sure:
             probable.append(_clause(effect, words))
         else:
             physics.append(_clause(effect, words))

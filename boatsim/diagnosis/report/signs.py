@@ -1,6 +1,7 @@
 """Signs of stand-ins in diagnosis.json, and the reason why an effect is only possible."""
 
 from boatsim.diagnosis.candidates import base_name
+from boatsim.diagnosis.config import DecideConfig
 from boatsim.diagnosis.open_set.consistency import Consistency, Factor, Variation
 from boatsim.diagnosis.open_set.decision import Decision
 from boatsim.diagnosis.open_set.log_signs import LogSigns
@@ -12,11 +13,6 @@ from boatsim.diagnosis.report.schema import (
     SignsEntry,
     VariationEntry,
 )
-
-# from which a sign is given as the reason; below these true effects are as frequent as stand-ins
-CLEAR_DEVIATION = 2.5  # standard deviations of the size on held-out recordings
-CLEAR_EXCESS = 0.3  # share of the size by which it varies
-CLEAR_REST = 1.0  # times the threshold of an unknown cause
 
 
 def signs_entry(decision: Decision) -> SignsEntry:
@@ -51,32 +47,33 @@ def signs_entry(decision: Decision) -> SignsEntry:
     }
 
 
-def reason_for_doubt(signs: Consistency, log: LogSigns) -> str:
+def reason_for_doubt(signs: Consistency, log: LogSigns, config: DecideConfig) -> str:
     """Return the clearest sign, in words, that an effect is a stand-in for another cause.
 
     Args:
         signs: Signs of the effect.
         log: Signs of the log.
+        config: Settings of the decision.
     """
     held_out = signs.held_out
-    if abs(held_out.value - 1.0) > CLEAR_DEVIATION * held_out.sd:
+    if abs(held_out.value - 1.0) > config.clear_deviation * held_out.sd:
         return (
             f"in held-out recordings it has {held_out.value:.2f} ± {held_out.sd:.2f} times the "
             "fitted size"
         )
-    if signs.between_ranges.excess > CLEAR_EXCESS:
+    if signs.between_ranges.excess > config.clear_excess:
         return (
             f"its size is not the same at all values of {signs.quantity}: it varies by "
             f"{100.0 * signs.between_ranges.excess:.0f} %"
         )
-    if signs.between_times.excess > CLEAR_EXCESS:
+    if signs.between_times.excess > config.clear_excess:
         return (
             "its size is not the same at all times: it varies by "
             f"{100.0 * signs.between_times.excess:.0f} %"
         )
-    if log.unexplained > CLEAR_REST:
+    if log.unexplained > config.clear_rest:
         return "with it much of the missing force remains unexplained"
-    if exceeds_range(signs):
+    if exceeds_range(signs, config):
         return "its fitted size is at the end of the range of plausible values"
     return "several weak signs together make it more likely that it stands in for another cause"
 

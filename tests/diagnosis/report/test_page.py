@@ -691,6 +691,14 @@ def test_a_diagnosis_with_nothing_to_try_says_so(verdict: str, begins: str) -> N
     assert said == f"{begins}{NONE_TESTED}."
 
 
+def test_the_setting_of_the_answer_decides_what_is_stated_as_probable():
+    answer = planar_answer([])
+    answer["candidates"] = []
+    for sure, probable in ((0.8, False), (0.9, True)):
+        answer["config"] = {"decide.sure_probability": sure}
+        assert ("probably" in verdict_sentences(answer)) == probable
+
+
 def test_a_sentence_leaves_out_what_may_be_zero_and_all_but_the_first_few_numbers():
     values = {
         "surge_N": 0.2,
