@@ -12,7 +12,7 @@ from boatsim.recordings.table import Recording
 
 
 def check_clock(recording: Recording, vessel: Vessel, config: ChecksConfig) -> list[Finding]:
-    """Find rows that are not later than the row before, and time jumps without motion.
+    """Find faulty time stamps: rows not later than the row before, and time jumps without motion.
 
     Args:
         recording: The recording as written in the file.

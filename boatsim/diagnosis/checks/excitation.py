@@ -10,7 +10,9 @@ from boatsim.recordings.table import Recording
 
 
 def check_excitation(recording: Recording, vessel: Vessel, config: ChecksConfig) -> list[Finding]:
-    """Find commands, headings and speeds that hardly vary.
+    """Find commands, headings and speeds that hardly vary in a recording.
+
+    Coefficients that depend on them cannot be identified from it.
 
     Args:
         recording: A prepared recording.

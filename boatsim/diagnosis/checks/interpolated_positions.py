@@ -17,7 +17,9 @@ MAX_DECIMALS = 7
 def check_interpolated_positions(
     recording: Recording, _: Vessel, config: ChecksConfig
 ) -> list[Finding]:
-    """Find runs of rows with equal steps, where the noise elsewhere rules them out.
+    """Find positions of a recording that were interpolated over gaps of the measurement.
+
+    They show as runs of rows with equal steps, which the noise of the other rows rules out.
 
     Args:
         recording: A prepared recording.
@@ -48,7 +50,7 @@ def check_interpolated_positions(
 
 
 def interpolated_rows(recording: Recording, config: ChecksConfig) -> NDArray[np.bool_]:
-    """Return which rows were interpolated.
+    """Return which rows of a recording are interpolated positions instead of measurements.
 
     Args:
         recording: A prepared recording.

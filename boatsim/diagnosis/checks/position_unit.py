@@ -18,7 +18,9 @@ INTEGER_DEGREES = 1e-7  # [deg] unit of positions that GNSS receivers write as i
 def check_position_unit(
     recording: Recording, vessel: Vessel, config: ChecksConfig
 ) -> list[Finding]:
-    """Find positions whose speed is impossible in metres but plausible in another unit.
+    """Find recorded positions in a wrong unit, such as latitude and longitude or feet.
+
+    The speed of the boat is then impossible in metres, but plausible in the other unit.
 
     Args:
         recording: The recording as written in the file.

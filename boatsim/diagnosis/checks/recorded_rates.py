@@ -20,7 +20,9 @@ SPEED_UNITS = ("kn", "kmh", "cmps")
 def check_recorded_rates(
     recording: Recording, vessel: Vessel, config: ChecksConfig
 ) -> list[Finding]:
-    """Compare each recorded rate with the one that follows from the poses.
+    """Find recorded velocities and turn rates that contradict the recorded positions and headings.
+
+    A rate may have another sign, unit or latency, or belong to another point of the hull.
 
     Args:
         recording: A prepared recording.
