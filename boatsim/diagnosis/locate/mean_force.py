@@ -16,7 +16,9 @@ from boatsim.physics.base import Array
 def mean_residual_force(
     problem: Problem, fit: Fit, recordings: Sequence[MappedRecording]
 ) -> dict[str, MeanEntry]:
-    """Return the mean over all recordings of the force that a fit leaves unexplained.
+    """Return the constant part of the force that a fitted vessel model leaves unexplained.
+
+    It is the mean of the smoothed latent force over all recordings.
 
     Args:
         problem: The problem; its settings and its assumed disturbance level are used.

@@ -12,7 +12,7 @@ from boatsim.diagnosis.search.candidate_sets import CandidateSets
 
 
 def oscillating_force(sets: CandidateSets, best: Fit) -> str:
-    """Return the name of the oscillating force of a fit, or "".
+    """Return the name of the oscillating stochastic force of a fit, such as waves; "" without one.
 
     Args:
         sets: Fits of candidate sets.
@@ -22,7 +22,9 @@ def oscillating_force(sets: CandidateSets, best: Fit) -> str:
 
 
 def braking_force(sets: CandidateSets, best: Fit) -> str:
-    """Return the name of the oscillating force of a fit if it brakes the hull, or "".
+    """Return the name of a fit's oscillating force if that force takes energy from the hull, or "".
+
+    Waves give energy to a hull. A force that brakes it only imitates a missing damping law.
 
     Args:
         sets: Fits of candidate sets.

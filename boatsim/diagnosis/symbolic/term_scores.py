@@ -31,7 +31,7 @@ SPEED_FIELDS = ("ur", "vr", "wr", "p", "q", "r")  # fields of a motion, by axis
 
 @dataclass(frozen=True)
 class ScoredTerm:
-    """A term and its approximate fit.
+    """A term of the symbolic regression with its approximate evidence and coefficient.
 
     Attributes:
         term: The term.
@@ -49,7 +49,9 @@ class ScoredTerm:
 def score_terms(
     recordings: Sequence[FittedRecording], terms: Sequence[SymbolicTerm]
 ) -> list[ScoredTerm]:
-    """Return the approximate evidence of each term alone in addition to a fit.
+    """Return the approximate evidence of each symbolic term, added alone to a fit.
+
+    It follows from the force that the fit leaves unexplained, without a refit.
 
     Args:
         recordings: The recordings as the fit explains them.
@@ -108,7 +110,9 @@ def _size(fitted: FittedRecording, term: SymbolicTerm) -> Array:
 
 
 def strength(vessel: Vessel, term: SymbolicTerm) -> float:
-    """Return the prior standard deviation of a term where it acts.
+    """Return the prior standard deviation of the force of a symbolic term on a vessel.
+
+    It holds where the term acts and scales with the vessel's size by Froude's law.
 
     Args:
         vessel: The vessel.
@@ -127,7 +131,7 @@ def strength(vessel: Vessel, term: SymbolicTerm) -> float:
 def varying_signals(
     recordings: Sequence[FittedRecording],
 ) -> tuple[dict[str, Array], list[str]]:
-    """Return the speeds and actuator signals that vary along the recordings.
+    """Return the speeds and actuator signals that vary, of which symbolic terms can be made.
 
     Args:
         recordings: The recordings as a fit explains them.
