@@ -30,8 +30,8 @@ def with_correlation_time(problem: Problem, found: Fit) -> Problem:
     decides between correlation times, for the candidate effects of a fit.
 
     Args:
-        problem: Recordings and priors.
-        found: A converged fit.
+        problem: The estimation problem: recordings, vessel model, candidate effects and priors.
+        found: Converged fit of the vessel model with some candidate effects.
 
     Returns:
         The same object if the correlation time does not change.
@@ -73,7 +73,7 @@ def correlation_time(problem: Problem, found: Fit) -> float:
     predict clearly better.
 
     Args:
-        problem: Recordings and priors.
+        problem: The estimation problem: recordings, vessel model, candidate effects and priors.
         found: A converged fit; without effects it attributes nothing to the latent force that
             coefficients could explain, and the usual value stays.
     """
@@ -115,7 +115,7 @@ def slice_rows(mapped: MappedRecording, begin: int, end: int) -> MappedRecording
     """Return a mapped recording that is cut to a range of rows.
 
     Args:
-        mapped: The recording.
+        mapped: The mapped recording.
         begin: First row.
         end: Row after the last one.
     """
@@ -159,7 +159,7 @@ def cross_validation_errors(problem: Problem, start: Fit, seconds: float) -> Arr
     a given correlation time of the latent force.
 
     Args:
-        problem: Recordings and priors.
+        problem: The estimation problem: recordings, vessel model, candidate effects and priors.
         start: Start of the fits.
         seconds: Correlation time of the latent force [s].
 

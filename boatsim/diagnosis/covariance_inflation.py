@@ -22,8 +22,8 @@ def inflate_covariance(problem: Problem, found: Fit) -> Fit:
     The sandwich estimator over stretches of the recordings replaces a variance where it is larger.
 
     Args:
-        problem: Recordings and priors.
-        found: A converged fit.
+        problem: The estimation problem: recordings, vessel model, candidate effects and priors.
+        found: Converged fit of the vessel model with some candidate effects.
     """
     config = problem.config.fit
     blocks = list(blocks_of_rows(problem, config.stretch * found.levels.time_constant))

@@ -43,8 +43,8 @@ def is_lost(problem: Problem, fit: Fit) -> bool:
     Also true if its evidence or covariance is not finite.
 
     Args:
-        problem: Recordings and priors.
-        fit: A fit.
+        problem: The estimation problem: recordings, vessel model, candidate effects and priors.
+        fit: Fit of the vessel model.
     """
     if not (np.isfinite(fit.evidence) and np.isfinite(fit.covariance).all()):
         return True
@@ -58,8 +58,8 @@ def follow(problem: Problem, recordings: Sequence[MappedRecording]) -> Fit:
     time on the axis where it gains most likelihood.
 
     Args:
-        problem: Priors and settings.
-        recordings: Recordings on the program of the problem.
+        problem: The estimation problem, with its priors and settings.
+        recordings: Recordings mapped to the vessel program of the problem.
     """
     everything = problem.on(recordings)
     fit = problem.nominal_hypothesis()
@@ -84,8 +84,8 @@ def divergences(
     followed, the one with the largest errors is returned.
 
     Args:
-        problem: Priors and settings.
-        recordings: Recordings on the program of the problem.
+        problem: The estimation problem, with its priors and settings.
+        recordings: Recordings mapped to the vessel program of the problem.
         forces: Missing force of each recording.
     """
     passes = _passes(problem.on(recordings), problem.nominal_hypothesis()).passes
@@ -112,8 +112,8 @@ def first_rows_are_finite(problem: Problem, recordings: Sequence[MappedRecording
     """Return whether the nominal vessel model has finite forces in the first seconds of recordings.
 
     Args:
-        problem: Priors and settings.
-        recordings: Recordings on the program of the problem.
+        problem: The estimation problem, with its priors and settings.
+        recordings: Recordings mapped to the vessel program of the problem.
     """
     passes = _passes(problem.on(recordings), problem.nominal_hypothesis()).passes
     for mapped, passed in zip(recordings, passes, strict=True):

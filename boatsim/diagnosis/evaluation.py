@@ -67,8 +67,8 @@ def evaluate(problem: Problem, ranking: Ranking, held_out: Sequence[MappedRecord
     latent force gives the force that each model leaves unexplained.
 
     Args:
-        problem: Recordings and priors.
-        ranking: Result of the selection, with its description.
+        problem: The estimation problem: recordings, vessel model, candidate effects and priors.
+        ranking: Result of the selection of effects, with the formula, if one was found.
         held_out: Held-out recordings, at least one.
     """
     horizon = free_run_horizon(problem, held_out)

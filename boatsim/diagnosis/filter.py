@@ -226,7 +226,7 @@ class MappedRecording:
         Args:
             values: Parameter values of the vessel model, as `values` of the recording.
             on: (effects,) 1 for the effects that act, else 0.
-            levels: Levels of sensor noise and latent force.
+            levels: Levels of sensor noise and of the latent (unmodelled) force.
             about: Pass whose linearisation is used again, for other noise levels; None: linearise.
         """
         if about is not None:
@@ -283,7 +283,7 @@ class MappedRecording:
         Args:
             values: Parameter values of the vessel model for this recording.
             on: (effects,) 1 for the effects that act, else 0.
-            levels: Levels of sensor noise and latent force.
+            levels: Levels of sensor noise and of the latent (unmodelled) force.
             about: Pass whose gains, scale and integration steps are used.
         """
         whitened = np.zeros(self.measured.shape)
@@ -305,7 +305,7 @@ class MappedRecording:
         Args:
             values: Parameter values of the vessel model for this recording.
             on: (effects,) 1 for the effects that act, else 0.
-            levels: Levels of sensor noise and latent force.
+            levels: Levels of sensor noise and of the latent (unmodelled) force.
         """
         n, channels = self.measured.shape
         size, state, nq = self.program.module.NZ, len(self.initial.mean), self.program.module.NQ
@@ -343,7 +343,7 @@ class MappedRecording:
         Args:
             values: Parameter values of the vessel model for this recording.
             on: (effects,) 1 for the effects that act, else 0.
-            levels: Levels of sensor noise and latent force.
+            levels: Levels of sensor noise and of the latent (unmodelled) force.
             horizon: Length of each free run [s].
 
         Returns:
@@ -416,7 +416,7 @@ class MappedRecording:
         Args:
             values: Parameter values of the vessel model for this recording.
             on: (effects,) 1 for the effects that act, else 0.
-            levels: Levels of sensor noise and latent force.
+            levels: Levels of sensor noise and of the latent (unmodelled) force.
 
         Returns:
             Rms (NQ,) [N, N m], and rms (NQ,) at the first row.

@@ -35,7 +35,7 @@ def fit(problem: Problem, found: Fit, converged: bool = False) -> Fit:
     parameters again.
 
     Args:
-        problem: Recordings and priors.
+        problem: The estimation problem: recordings, vessel model, candidate effects and priors.
         found: Hypothesis with the values from which the fit starts.
         converged: Whether the parameters have already been fitted to the present noise levels.
     """
@@ -57,7 +57,7 @@ def converge(problem: Problem, found: Fit) -> Fit:
     is then not merely the gain of a refit.
 
     Args:
-        problem: Recordings and priors.
+        problem: The estimation problem: recordings, vessel model, candidate effects and priors.
         found: Hypothesis with the values from which the fit starts.
     """
     config = problem.config.fit
@@ -77,8 +77,8 @@ def remove_effect(problem: Problem, found: Fit, name: str) -> Fit:
     The other parameters are moved towards zero effect where the simulated boat would diverge.
 
     Args:
-        problem: Recordings and priors.
-        found: A fit.
+        problem: The estimation problem: recordings, vessel model, candidate effects and priors.
+        found: Fit of the vessel model with some candidate effects.
         name: Name of one of its effects.
     """
     effects = tuple(n for n in found.effects if n != name)
@@ -105,7 +105,7 @@ def unfitted_hypothesis(
         effects: Names of the candidates that act.
         free: Its free parameters.
         theta: (F,) their values.
-        levels: Levels of sensor noise and latent force.
+        levels: Levels of sensor noise and of the latent (unmodelled) force.
     """
     covariance = np.diag([f.sd**2 for f in free])
     return Fit(effects, free, theta, covariance, levels, -np.inf)
@@ -251,7 +251,7 @@ def gauss_newton(problem: Problem, start: Fit, iterations: int, enough: float) -
     computed again only where a step does not gain what they predicted.
 
     Args:
-        problem: Recordings and priors.
+        problem: The estimation problem: recordings, vessel model, candidate effects and priors.
         start: Hypothesis with the values from which the search starts; its noise levels are kept.
         iterations: Largest number of steps.
         enough: A smaller gain ends the search [nats].
@@ -378,11 +378,11 @@ def jacobian(
     filter are held fixed.
 
     Args:
-        problem: Recordings and priors.
+        problem: The estimation problem: recordings, vessel model, candidate effects and priors.
         free: Free parameters.
         theta: (F,) their values.
         on: (effects,) 1 for the effects that act, else 0.
-        levels: Levels of sensor noise and latent force.
+        levels: Levels of sensor noise and of the latent (unmodelled) force.
         about: Passes whose gains are used.
         white: (rows,) whitened errors at theta; None: those of `about`.
         first: Parameters before this one are omitted.

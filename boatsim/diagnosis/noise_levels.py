@@ -76,7 +76,7 @@ def fit_force(problem: Problem, found: Fit, enough: float | None = None) -> Fit:
     drift.
 
     Args:
-        problem: Recordings and priors.
+        problem: The estimation problem: recordings, vessel model, candidate effects and priors.
         found: Fit from which the search starts.
         enough: Accuracy [nats]; None: the rough one of levels that are fitted again later.
     """
@@ -119,7 +119,7 @@ def fit_noise(problem: Problem, found: Fit) -> Fit:
     """Fit the sensor noise and the level of the latent (unmodelled) force; keep all parameters.
 
     Args:
-        problem: Recordings and priors.
+        problem: The estimation problem: recordings, vessel model, candidate effects and priors.
         found: Fit of the vessel model whose parameters are kept.
     """
     config, prior_levels = problem.config.fit, problem.ambient
@@ -168,7 +168,7 @@ def fit_time_constant(problem: Problem, found: Fit) -> NoiseLevels:
     They are used to locate a missing force in time.
 
     Args:
-        problem: Recordings and priors.
+        problem: The estimation problem: recordings, vessel model, candidate effects and priors.
         found: Fit of the vessel model whose parameters are kept.
 
     Returns:

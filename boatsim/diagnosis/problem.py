@@ -376,7 +376,7 @@ class Problem:
             free: Free parameters of the hypothesis.
             theta: (F,) their values.
             on: (effects,) 1 for the effects that act, else 0.
-            levels: Levels of sensor noise and latent force.
+            levels: Levels of sensor noise and of the latent (unmodelled) force.
             about: Passes whose linearisation is used again; None: linearise.
         """
         self._count_work()
@@ -427,7 +427,7 @@ class Problem:
             free: Free parameters of the hypothesis.
             theta: (F,) their values.
             on: (effects,) 1 for the effects that act, else 0.
-            levels: Levels of sensor noise and latent force.
+            levels: Levels of sensor noise and of the latent (unmodelled) force.
             about: Passes whose gains are used.
         """
         self._count_work()

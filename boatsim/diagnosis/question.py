@@ -124,7 +124,7 @@ def compile_program(problem: Problem) -> None:
     The functions that a diagnosis calls are called once.
 
     Args:
-        problem: Recordings and priors.
+        problem: The estimation problem: recordings, vessel model, candidate effects and priors.
     """
     nominal, on = problem.nominal_hypothesis(), problem.program.switches()
     mapped = problem.recordings[0]

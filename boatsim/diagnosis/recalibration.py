@@ -50,7 +50,7 @@ def recalibrate(
     worse.
 
     Args:
-        problem: Recordings and priors.
+        problem: The estimation problem: recordings, vessel model, candidate effects and priors.
         written: The vessel model as specified in its file, with its noise levels fitted.
         refitted: The vessel model without candidate effects, its coefficients fitted.
         held_out: Held-out recordings, at least one.
@@ -76,8 +76,8 @@ def keep_undetermined(problem: Problem, found: Fit) -> Fit:
     of the posterior about the new values.
 
     Args:
-        problem: Recordings and priors.
-        found: A converged fit.
+        problem: The estimation problem: recordings, vessel model, candidate effects and priors.
+        found: Converged fit of the vessel model with some candidate effects.
     """
     kept = undetermined_coefficients(found, problem.config.fit)
     if not kept:
@@ -104,7 +104,7 @@ def undetermined_coefficients(found: Fit, config: FitConfig) -> list[int]:
     the ratio of thrust and damping.
 
     Args:
-        found: A converged fit.
+        found: Converged fit of the vessel model with some candidate effects.
         config: Largest posterior sd of a determined coefficient, in prior sds.
     """
     variance = priors_of(found.free).sd ** 2

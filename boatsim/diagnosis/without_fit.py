@@ -28,8 +28,8 @@ def unknown_cause(
     the recordings with a larger latent force, which is reported as a force of unknown cause.
 
     Args:
-        problem: Recordings and priors.
-        held_out: Held-out recordings.
+        problem: The estimation problem: recordings, vessel model, candidate effects and priors.
+        held_out: Held-out recordings, which no fit has used.
         where: Name of the first recording, for the message.
 
     Raises:

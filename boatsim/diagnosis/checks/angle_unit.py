@@ -24,7 +24,7 @@ def check_angle_unit(recording: Recording, _: Vessel, config: ChecksConfig) -> l
 
     Args:
         recording: The recording as written in the file.
-        config: Thresholds of the checks.
+        config: Thresholds of the quality checks.
 
     Returns:
         One finding per column in degrees.

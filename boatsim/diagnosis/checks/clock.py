@@ -17,7 +17,7 @@ def check_clock(recording: Recording, vessel: Vessel, config: ChecksConfig) -> l
     Args:
         recording: The recording as written in the file.
         vessel: The vessel; its length scales the durations.
-        config: Thresholds of the checks.
+        config: Thresholds of the quality checks.
 
     Returns:
         Findings "clock_stalls" and "clock_goes_back"; without them at most one "clock_leaps".

@@ -25,7 +25,7 @@ def check_column_names(recording: Recording, vessel: Vessel, config: ChecksConfi
     Args:
         recording: The recording as written in the file.
         vessel: The vessel, which determines the required columns.
-        config: Thresholds of the checks.
+        config: Thresholds of the quality checks.
 
     Returns:
         At most one finding "column_names" for all missing columns.

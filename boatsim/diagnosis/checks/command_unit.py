@@ -40,7 +40,7 @@ def check_command_unit(recording: Recording, vessel: Vessel, config: ChecksConfi
     Args:
         recording: The recording as written in the file.
         vessel: The vessel with its command limits.
-        config: Thresholds of the checks.
+        config: Thresholds of the quality checks.
 
     Returns:
         One finding "command_unit" per conversion, with all channels that it concerns.

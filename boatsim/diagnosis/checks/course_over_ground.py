@@ -31,7 +31,7 @@ def heading_offset(
     Args:
         recordings: Recordings with positions and headings.
         vessel: The vessel; its length scales the durations.
-        config: Thresholds of the checks.
+        config: Thresholds of the quality checks.
 
     Returns:
         Angle [rad] from the bow to the course, positive to starboard; None if the recordings do

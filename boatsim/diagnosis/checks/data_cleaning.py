@@ -47,7 +47,7 @@ def prepare_recording(
     Args:
         recording: The recording as read.
         vessel: The vessel that it is a recording of.
-        config: Thresholds of the checks.
+        config: Thresholds of the quality checks.
 
     Returns:
         The prepared recording; its remarks list each correction.

@@ -17,7 +17,7 @@ def check_excitation(recording: Recording, vessel: Vessel, config: ChecksConfig)
     Args:
         recording: A prepared recording.
         vessel: The vessel with its commands.
-        config: Thresholds of the checks.
+        config: Thresholds of the quality checks.
 
     Returns:
         Findings of kind "limit", each with advice for the next log.

@@ -26,7 +26,7 @@ def with_initial_actuators(
     Args:
         recording: The recording mapped to its vessel.
         levels: Noise levels.
-        config: Thresholds of the checks.
+        config: Thresholds of the quality checks.
 
     Returns:
         The recording with neutral commands before the first row, if the vessel lies still then and

@@ -23,7 +23,7 @@ def check_interpolated_positions(
 
     Args:
         recording: A prepared recording.
-        config: Thresholds of the checks.
+        config: Thresholds of the quality checks.
 
     Returns:
         At most one finding "bridged".
@@ -54,7 +54,7 @@ def interpolated_rows(recording: Recording, config: ChecksConfig) -> NDArray[np.
 
     Args:
         recording: A prepared recording.
-        config: Thresholds of the checks.
+        config: Thresholds of the quality checks.
 
     Returns:
         True (N,) for rows inside a run with equal steps in all noisy columns.

@@ -25,7 +25,7 @@ def drop_rotated_positions(
     Args:
         recording: The recording; it is checked only if all poses and velocities are complete,
             because a sum of velocities has no meaning over gaps.
-        config: Thresholds of the checks.
+        config: Thresholds of the quality checks.
 
     Returns:
         The recording, without x_m and y_m and with a remark if they were rotated.

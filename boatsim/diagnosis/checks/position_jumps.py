@@ -22,7 +22,7 @@ def check_position_jumps(recording: Recording, _: Vessel, config: ChecksConfig) 
 
     Args:
         recording: A prepared recording.
-        config: Thresholds of the checks.
+        config: Thresholds of the quality checks.
 
     Returns:
         Findings "position_leaps" and "heading_leaps".
@@ -68,7 +68,7 @@ def jump_rows(t: Array, values: Array, config: ChecksConfig = DEFAULT.checks) ->
     Args:
         t: Times (N,) [s].
         values: Values (N, C), complete.
-        config: Thresholds of the checks.
+        config: Thresholds of the quality checks.
 
     Returns:
         Indices (K,) of the rows before a jump.

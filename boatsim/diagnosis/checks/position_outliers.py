@@ -116,7 +116,7 @@ def outlier_rows(
         values: Values (N, C); nan where nothing was measured.
         finest: Least sd of a prediction over one step, in the unit of the values.
         duration: Outliers last less than this time [s].
-        config: Thresholds of the checks.
+        config: Thresholds of the quality checks.
 
     Returns:
         True (N,) for outliers.

@@ -25,7 +25,7 @@ def check_position_unit(
     Args:
         recording: The recording as written in the file.
         vessel: The vessel; its length gives the Froude number.
-        config: Thresholds of the checks.
+        config: Thresholds of the quality checks.
 
     Returns:
         At most one finding, "latitude_as_metres" or "position_unit".

@@ -27,7 +27,7 @@ def check_recorded_rates(
     Args:
         recording: A prepared recording.
         vessel: The vessel; its length scales lengths and durations.
-        config: Thresholds of the checks.
+        config: Thresholds of the quality checks.
 
     Returns:
         Findings "velocity_sign", "velocity_unit", "velocity_late" and "velocity_elsewhere".

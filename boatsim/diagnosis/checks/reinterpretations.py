@@ -67,7 +67,7 @@ def reinterpretations(
     Args:
         recordings: Prepared recordings.
         vessel: The vessel that they are recordings of.
-        config: Thresholds of the checks.
+        config: Thresholds of the quality checks.
 
     Returns:
         Reinterpretations; their changes concern columns that the recordings have.
@@ -103,7 +103,7 @@ def heading_disagrees_with_course(
     Args:
         recordings: Prepared recordings.
         vessel: The vessel that they are recordings of.
-        config: Thresholds of the checks.
+        config: Thresholds of the quality checks.
     """
     if not _have_planar_poses(recordings, vessel):
         return False

@@ -40,7 +40,7 @@ def check_table(path: Path, vessel: Vessel, config: ChecksConfig) -> list[Findin
     Args:
         path: The file.
         vessel: The vessel that it is a recording of.
-        config: Thresholds of the checks.
+        config: Thresholds of the quality checks.
 
     Returns:
         Findings about the file.
@@ -70,7 +70,7 @@ def check_recording(
         recording: The prepared recording.
         cleaned: The same recording without repeated values and outliers.
         vessel: The vessel that it is a recording of.
-        config: Thresholds of the checks.
+        config: Thresholds of the quality checks.
 
     Returns:
         Findings about the recording.
@@ -89,7 +89,7 @@ def check_identifiability(
     Args:
         recording: A prepared recording.
         vessel: The vessel that it is a recording of.
-        config: Thresholds of the checks.
+        config: Thresholds of the quality checks.
 
     Returns:
         Findings on saturated commands and on missing excitation.

@@ -18,7 +18,7 @@ def check_saturation(recording: Recording, vessel: Vessel, config: ChecksConfig)
     Args:
         recording: A prepared recording.
         vessel: The vessel with its command limits.
-        config: Thresholds of the checks.
+        config: Thresholds of the quality checks.
 
     Returns:
         Findings "saturated" of kind "limit".

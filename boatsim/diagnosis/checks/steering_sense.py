@@ -23,7 +23,7 @@ def correct_rudder_sense(recording: Recording, vessel: Vessel, config: ChecksCon
     Args:
         recording: The recording, with unwrapped angles.
         vessel: The vessel; each rudder command specifies to which side it turns.
-        config: Thresholds of the checks.
+        config: Thresholds of the quality checks.
 
     Returns:
         The recording, with a remark for each changed sign.

@@ -20,7 +20,7 @@ def check_time_unit(recording: Recording, vessel: Vessel, config: ChecksConfig) 
     Args:
         recording: The recording as written in the file.
         vessel: The vessel; its length scales the durations.
-        config: Thresholds of the checks.
+        config: Thresholds of the quality checks.
 
     Returns:
         At most one finding "time_unit".

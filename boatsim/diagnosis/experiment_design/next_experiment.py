@@ -78,7 +78,7 @@ def best_plan(problem: Problem, best: Fit, rivals: Mapping[str, Fit]) -> Plan | 
     The result is deterministic. Each manoeuvre and rival takes a few tens of filter passes.
 
     Args:
-        problem: The problem.
+        problem: The estimation problem.
         best: Fit of the best hypothesis on what the vessel model lacks.
         rivals: Fits of rival hypotheses by name.
 
@@ -99,7 +99,7 @@ def all_plans(problem: Problem, best: Fit, rivals: Mapping[str, Fit]) -> list[Pl
     list is empty if there are no rivals.
 
     Args:
-        problem: The problem.
+        problem: The estimation problem.
         best: Fit of the best hypothesis on what the vessel model lacks.
         rivals: Fits of rival hypotheses by name.
     """
@@ -250,7 +250,7 @@ def expected_log_bayes_factors(
     it.
 
     Args:
-        problem: The problem.
+        problem: The estimation problem.
         recording: Expected motion of the best hypothesis in a manoeuvre.
         best: Fit of the best hypothesis on what the vessel model lacks.
         rivals: Fits of rival hypotheses by name.

@@ -41,7 +41,7 @@ def simulate_manoeuvre(
 
     Args:
         problem: The problem; its first recording provides the sensors and the row rate.
-        fit: The fit.
+        fit: Fit of the vessel model.
         manoeuvre: The manoeuvre.
 
     Returns:

@@ -22,8 +22,8 @@ def mean_residual_force(
 
     Args:
         problem: The problem; its settings and its assumed disturbance level are used.
-        fit: The fit.
-        recordings: Recordings on the program of the problem.
+        fit: Fit of the vessel model.
+        recordings: Recordings mapped to the vessel program of the problem.
 
     Returns:
         Mean force or moment in body axes, by axis. Only axes are included on which the mean is

@@ -61,9 +61,9 @@ def missing_force(
     the uncertainty of the coefficients.
 
     Args:
-        problem: The problem.
+        problem: The estimation problem.
         fit: The recalibrated vessel: its coefficients are fitted, and no candidate acts.
-        recordings: Recordings on the program of the problem.
+        recordings: Recordings mapped to the vessel program of the problem.
 
     Returns:
         One missing force per recording.
@@ -80,9 +80,9 @@ def residual_force(
     The latent force has the level and correlation time of the fit.
 
     Args:
-        problem: The problem.
-        fit: Any fit.
-        recordings: Recordings on the program of the problem.
+        problem: The estimation problem.
+        fit: Fit of the vessel model with any candidate effects.
+        recordings: Recordings mapped to the vessel program of the problem.
 
     Returns:
         One force per recording.

@@ -18,7 +18,7 @@ def actuator_states(
     The mean state from each row to the next is returned.
 
     Args:
-        mapped: The recording.
+        mapped: The mapped recording.
         effects: Candidates that act.
         values: Parameter values; None for those of the vessel as specified.
 
@@ -102,9 +102,9 @@ def coefficient_forces(problem: Problem, fit: Fit, mapped: MappedRecording, stat
     recalibration changes.
 
     Args:
-        problem: The problem.
+        problem: The estimation problem.
         fit: The recalibrated vessel.
-        mapped: The recording.
+        mapped: The mapped recording.
         states: Smoothed states (N, 2 NQ).
 
     Returns:

@@ -42,7 +42,7 @@ def region_candidates(
     roll and nearness to a wall.
 
     Args:
-        mapped: The recording.
+        mapped: The mapped recording.
         states: Smoothed states (N, 2 NQ).
         damping: Damping force (N, axes) of the vessel as specified.
         config: Settings of the regions.

@@ -38,7 +38,7 @@ def regions(problem: Problem, fit: Fit) -> list[Region]:
     periodic force completes them.
 
     Args:
-        problem: The problem.
+        problem: The estimation problem.
         fit: The recalibrated vessel: its coefficients are fitted, and no candidate acts.
 
     Returns:

@@ -71,8 +71,8 @@ def find_structure(problem: Problem, fit: Fit) -> Structure:
     The level of that force is limited to a multiple of the assumed disturbance.
 
     Args:
-        problem: The problem.
-        fit: The fit.
+        problem: The estimation problem.
+        fit: Fit of the vessel model.
     """
     config = problem.config.locate
     limit = config.disturbance_factor * problem.ambient.force
@@ -114,7 +114,7 @@ def features(
     Quantities are motions, commands, places and time.
 
     Args:
-        mapped: The recording.
+        mapped: The mapped recording.
         states: Smoothed states (N, 2 NQ).
         time_constant: Time constant of the latent force [s].
         config: Settings of the features.

@@ -48,9 +48,9 @@ def latent_force(
     """Return the latent (unmodelled) force that a fitted model's smoother finds in a recording.
 
     Args:
-        problem: The problem.
-        fit: The fit.
-        mapped: The recording.
+        problem: The estimation problem.
+        fit: Fit of the vessel model.
+        mapped: The mapped recording.
         levels: Levels of sensor noise and latent force that the filter uses.
     """
     nq = problem.program.module.NQ

@@ -46,10 +46,10 @@ def errors_of_each(
     and with the effect, by name of the effect and by family of signals (position, heading, roll).
 
     Args:
-        problem: Recordings and priors.
-        best: A fit.
+        problem: The estimation problem: recordings, vessel model, candidate effects and priors.
+        best: Fit of the vessel model with some candidate effects.
         without_each: Fits without one of the effects, by the name of that effect.
-        held_out: Held-out recordings.
+        held_out: Held-out recordings, which no fit has used.
     """
     if not held_out:
         return {name: {} for name in without_each}

@@ -123,10 +123,10 @@ def consistency_of(
     held-out recordings.
 
     Args:
-        problem: Recordings and priors.
-        best: A converged fit.
+        problem: The estimation problem: recordings, vessel model, candidate effects and priors.
+        best: Converged fit of the vessel model with some candidate effects.
         without_each: Fits without one of the effects, by the name of that effect.
-        held_out: Held-out recordings.
+        held_out: Held-out recordings, which no fit has used.
 
     Returns:
         Statistics by name of the effect.

@@ -72,9 +72,9 @@ def decide(
     data, and if it explains much the cause is reported as unknown.
 
     Args:
-        problem: Recordings and priors.
+        problem: The estimation problem: recordings, vessel model, candidate effects and priors.
         ranking: Result of the selection of effects.
-        held_out: Held-out recordings.
+        held_out: Held-out recordings, which no fit has used.
         candidates: Number of candidates that were tested.
     """
     config = problem.config
@@ -106,7 +106,7 @@ def undecided(problem: Problem, ranking: Ranking) -> Decision:
     """Return the decision for recordings that no model could be fitted to: no effect is identified.
 
     Args:
-        problem: Recordings and priors.
+        problem: The estimation problem: recordings, vessel model, candidate effects and priors.
         ranking: Result of the selection, without identified effects.
     """
     return Decision(problem, ranking, (), NO_SIGNS)

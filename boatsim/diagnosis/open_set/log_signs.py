@@ -43,7 +43,7 @@ def log_signs(problem: Problem, ranking: Ranking) -> LogSigns:
     They are computed from the recordings as a whole, after the selection of effects.
 
     Args:
-        problem: Recordings and priors.
+        problem: The estimation problem: recordings, vessel model, candidate effects and priors.
         ranking: Result of the selection of effects.
     """
     best = ranking.best

@@ -12,7 +12,7 @@ from boatsim.physics.base import Array
 
 @dataclass(frozen=True)
 class MissingForceCurve:
-    """The missing force of a recording over time: what the vessel model does not explain.
+    """The force over time in a recording that the vessel model does not explain, for the report.
 
     Attributes:
         run: Name of the recording.
@@ -33,7 +33,7 @@ class MissingForceCurve:
 
 @dataclass(frozen=True)
 class Findings:
-    """The result of a diagnosis as the report shows it.
+    """All results of a diagnosis that the report shows: content of diagnosis.json and its curves.
 
     Attributes:
         answer: Content of diagnosis.json.
@@ -70,7 +70,7 @@ class Findings:
 
     @property
     def has_added_effects(self) -> bool:
-        """Whether the patched vessel has any effect that the recalibrated one does not have."""
+        """Whether the patched vessel has any effect in addition to those of the vessel file."""
         if self.answer["effects"]:
             return True
         for entry in self.answer.get("refined", ()):
@@ -79,7 +79,10 @@ class Findings:
         return any(law["carries_over"] for law in self.answer["described"])
 
     def setting(self, name: str) -> float:
-        """Return the value of a setting that the diagnosis used, such as "select.alike"."""
+        """Return the value of a setting that the diagnosis used, by its name.
+
+        An example of a name is "select.alike".
+        """
         value = self.answer.get("config", {}).get(name, settings_by_name(DEFAULT)[name])
         assert not isinstance(value, list)
         return float(value)

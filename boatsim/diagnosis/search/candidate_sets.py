@@ -54,7 +54,7 @@ class CandidateSets:
         """Create an empty cache.
 
         Args:
-            problem: Recordings and priors.
+            problem: The estimation problem: recordings, vessel model, candidate effects and priors.
             candidates: Names of the candidates that are tested.
             base: The recalibrated vessel without candidates.
             report: Receives the progress.
@@ -93,7 +93,7 @@ class CandidateSets:
         Stochastic forces and drifts of instruments are not counted.
 
         Args:
-            best: A fit.
+            best: Fit of the vessel model with some candidate effects.
         """
         laws = best
         for name in best.effects:
@@ -164,7 +164,7 @@ class CandidateSets:
         """Return the converged fit of a candidate set with one of its effects removed.
 
         Args:
-            best: A fit.
+            best: Fit of the vessel model with some candidate effects.
             name: Name of one of its effects.
         """
         known = self.fits.get(frozenset(best.effects) - {name})
@@ -183,7 +183,7 @@ class CandidateSets:
         """Return, for each effect of a fit, the converged fit with this effect removed.
 
         Args:
-            best: A fit.
+            best: Fit of the vessel model with some candidate effects.
         """
         return {name: self.fit_without(best, name) for name in best.effects}
 
@@ -198,7 +198,7 @@ class CandidateSets:
         budget is spent, only additions to the vessel alone are still screened.
 
         Args:
-            best: A fit.
+            best: Fit of the vessel model with some candidate effects.
             among: Names of candidates; none: all of them.
 
         Returns:
@@ -283,7 +283,7 @@ class CandidateSets:
         best of the candidate's starting points is used.
 
         Args:
-            best: A fit.
+            best: Fit of the vessel model with some candidate effects.
             name: Name of the candidate.
             screening: Rough fit with the candidate added.
         """
@@ -307,7 +307,7 @@ class CandidateSets:
         empty if no subset was screened; all candidates are screened then.
 
         Args:
-            best: A fit.
+            best: Fit of the vessel model with some candidate effects.
         """
         key = frozenset(best.effects)
         gained = set[str]()

@@ -15,8 +15,8 @@ def oscillating_force(sets: CandidateSets, best: Fit) -> str:
     """Return the name of the oscillating stochastic force of a fit, such as waves; "" without one.
 
     Args:
-        sets: Fits of candidate sets.
-        best: A fit.
+        sets: Cache of the fits of candidate sets, with the estimation problem.
+        best: Fit of the vessel model with some candidate effects.
     """
     return next((name for name in best.effects if name in sets.unsteady), "")
 
@@ -27,8 +27,8 @@ def braking_force(sets: CandidateSets, best: Fit) -> str:
     Waves give energy to a hull. A force that brakes it only imitates a missing damping law.
 
     Args:
-        sets: Fits of candidate sets.
-        best: A fit.
+        sets: Cache of the fits of candidate sets, with the estimation problem.
+        best: Fit of the vessel model with some candidate effects.
     """
     name = oscillating_force(sets, best)
     if name and _share_of_power(sets, best) < sets.config.select.braking_share:

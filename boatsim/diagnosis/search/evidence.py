@@ -56,7 +56,7 @@ def gain_by_curvature(best: Fit, name: str) -> float:
     does not show.
 
     Args:
-        best: A fit.
+        best: Fit of the vessel model with some candidate effects.
         name: Name of one of its effects.
     """
     own = [i for i, f in enumerate(best.free) if f.effect == name and not f.relative]
@@ -114,8 +114,8 @@ def unexplained_evidence(problem: Problem, best: Fit) -> float:
     It is the log likelihood that a fit loses if its latent force is limited to that level.
 
     Args:
-        problem: Recordings and priors.
-        best: A fit.
+        problem: The estimation problem: recordings, vessel model, candidate effects and priors.
+        best: Fit of the vessel model with some candidate effects.
     """
     factor = problem.config.locate.disturbance_factor
     on = problem.program.switches(best.effects)

@@ -25,7 +25,7 @@ def select_forward(sets: CandidateSets, best: Fit) -> Fit:
     unnecessary are removed. When the budget of the search is spent, no further candidate is added.
 
     Args:
-        sets: Fits of candidate sets.
+        sets: Cache of the fits of candidate sets, with the estimation problem.
         best: Fit from which the selection starts.
 
     Returns:
@@ -76,7 +76,7 @@ def refit_from_base_levels(sets: CandidateSets, other: Fit) -> Fit:
     """Refit the effects of a fit, starting from the noise levels of the vessel without effects.
 
     Args:
-        sets: Fits of candidate sets.
+        sets: Cache of the fits of candidate sets, with the estimation problem.
         other: A fit to the same recordings.
     """
     return sets.converged_fit(replace(other, levels=sets.base.levels, evidence=-np.inf))

@@ -44,8 +44,8 @@ def prune(sets: CandidateSets, best: Fit) -> tuple[Fit, tuple[IdentifiedEffect, 
     was examined before, or the budget of the search is spent.
 
     Args:
-        sets: Fits of candidate sets.
-        best: A fit.
+        sets: Cache of the fits of candidate sets, with the estimation problem.
+        best: Fit of the vessel model with some candidate effects.
 
     Returns:
         The fit with the remaining effects, and the statistics of these effects.
@@ -171,8 +171,8 @@ def differs_from_zero(sets: CandidateSets, best: Fit, name: str) -> bool:
     but not that speed. (The frequency of a stochastic force is determined by any trace of it.)
 
     Args:
-        sets: Fits of candidate sets.
-        best: A fit.
+        sets: Cache of the fits of candidate sets, with the estimation problem.
+        best: Fit of the vessel model with some candidate effects.
         name: Name of one of its effects.
     """
     config = sets.config.select

@@ -115,9 +115,9 @@ def rank(
     decide between look-alikes.
 
     Args:
-        problem: Recordings and priors.
+        problem: The estimation problem: recordings, vessel model, candidate effects and priors.
         candidates: Names of the candidates that are tested.
-        held_out: Held-out recordings.
+        held_out: Held-out recordings, which no fit has used.
         begin: Fit whose effects the search starts with; None: start without effects.
         report: Receives the progress.
         base: Fits of the vessel without candidates; None: fit them.
@@ -235,7 +235,7 @@ def select_effects(problem: Problem, candidates: tuple[str, ...]) -> tuple[Fit, 
     """Select candidate effects by forward selection alone, for cross-validation.
 
     Args:
-        problem: Recordings and priors.
+        problem: The estimation problem: recordings, vessel model, candidate effects and priors.
         candidates: Names of the candidates that are tested.
 
     Returns:
@@ -253,7 +253,7 @@ def fit_baseline(problem: Problem) -> Baseline:
     In the first fit only the noise levels are fitted.
 
     Args:
-        problem: Recordings and priors.
+        problem: The estimation problem: recordings, vessel model, candidate effects and priors.
     """
     config = problem.config.fit
     nominal = fit_noise(problem, problem.nominal_hypothesis())

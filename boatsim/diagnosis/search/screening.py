@@ -76,8 +76,8 @@ def linearise(problem: Problem, base: Fit) -> Linearisation:
     """Linearise a fit about its parameters, with the gains of the Kalman filter held.
 
     Args:
-        problem: Recordings and priors.
-        base: A converged fit.
+        problem: The estimation problem: recordings, vessel model, candidate effects and priors.
+        base: Converged fit to which candidate effects are to be added.
     """
     on = problem.program.switches(base.effects)
     passes = problem.filter(base.free, base.theta, on, base.levels)
@@ -104,8 +104,8 @@ def screen(
     candidates that are fitted in full.
 
     Args:
-        problem: Recordings and priors.
-        base: A converged fit.
+        problem: The estimation problem: recordings, vessel model, candidate effects and priors.
+        base: Converged fit to which candidate effects are to be added.
         candidates: Names of the candidates.
         report: Receives the share of the candidates that have been screened.
         about: The given fit linearised; None: linearise it.
@@ -134,7 +134,7 @@ def confirm_screening(problem: Problem, base: Fit, screened: Fit) -> Fit:
     the filter confirms may still gain most.
 
     Args:
-        problem: Recordings and priors.
+        problem: The estimation problem: recordings, vessel model, candidate effects and priors.
         base: The fit on top of which the candidate was screened.
         screened: Rough fit with the candidate added.
     """
@@ -170,8 +170,8 @@ def starting_points(problem: Problem, effect: Effect) -> list[dict[str, float]]:
     command recorded; a small value where there are none.
 
     Args:
-        problem: Recordings and priors.
-        effect: The candidate.
+        problem: The estimation problem: recordings, vessel model, candidate effects and priors.
+        effect: The candidate effect.
     """
     kind = type(effect)
     default = {}
@@ -197,8 +197,8 @@ def add_effect(problem: Problem, base: Fit, name: str, start: Mapping[str, float
     """Add a candidate effect to a fit at given parameter values; nothing is fitted yet.
 
     Args:
-        problem: Recordings and priors.
-        base: A fit.
+        problem: The estimation problem: recordings, vessel model, candidate effects and priors.
+        base: Fit to which the candidate effect is added.
         name: Name of the candidate that is added.
         start: Parameter values of the candidate by name.
     """
@@ -235,9 +235,9 @@ def starting_fits(problem: Problem, base: Fit, effect: Effect) -> list[Fit]:
     """Add a candidate effect to a fit at each of its starting points; nothing is fitted yet.
 
     Args:
-        problem: Recordings and priors.
-        base: A fit.
-        effect: The candidate.
+        problem: The estimation problem: recordings, vessel model, candidate effects and priors.
+        base: Fit to which the candidate effect is added.
+        effect: The candidate effect.
     """
     points = starting_points(problem, effect)
     return [
@@ -385,9 +385,9 @@ def stochastic_starting_fits(problem: Problem, base: Fit, effect: Effect) -> lis
     without it have absorbed part of it.
 
     Args:
-        problem: Recordings and priors.
-        base: A fit.
-        effect: The candidate.
+        problem: The estimation problem: recordings, vessel model, candidate effects and priors.
+        base: Fit to which the candidate effect is added.
+        effect: The candidate effect.
     """
     shared = problem.config.select.swell_share * base.levels.force
     if isinstance(effect, RandomForce):

@@ -22,9 +22,9 @@ def misleading_effect(sets: CandidateSets, best: Fit, held_out: Recordings) -> s
     with all effects of the fit than with none.
 
     Args:
-        sets: Fits of candidate sets.
-        best: A fit.
-        held_out: Held-out recordings.
+        sets: Cache of the fits of candidate sets, with the estimation problem.
+        best: Fit of the vessel model with some candidate effects.
+        held_out: Held-out recordings, which no fit has used.
 
     Returns:
         Name of the effect without which they are best, or "".
@@ -59,10 +59,10 @@ def refuted_effect(
     require the effect all the same, as they may where these go beyond the fitted ones.
 
     Args:
-        sets: Fits of candidate sets.
-        best: A fit.
-        named: Its effects.
-        held_out: Held-out recordings.
+        sets: Cache of the fits of candidate sets, with the estimation problem.
+        best: Fit of the vessel model with some candidate effects.
+        named: Identified effects of the fit, with their statistics.
+        held_out: Held-out recordings, which no fit has used.
     """
     if not held_out:
         return ""
@@ -100,10 +100,10 @@ def generalizes_worse(sets: CandidateSets, before: Fit, after: Fit, held_out: Re
     """Whether one fit simulates held-out recordings clearly worse than another.
 
     Args:
-        sets: Fits of candidate sets.
+        sets: Cache of the fits of candidate sets, with the estimation problem.
         before: The fit that serves as reference.
         after: The fit that replaces it.
-        held_out: Held-out recordings.
+        held_out: Held-out recordings, which no fit has used.
     """
     runs = _free_runs(sets, {"before": before, "after": after}, held_out)
     old = generalization.mean_square_errors(runs, "before")
@@ -119,9 +119,9 @@ def predictive_log_likelihood(sets: CandidateSets, found: Fit, held_out: Recordi
     Only the level of the latent (unmodelled) force is refitted to them.
 
     Args:
-        sets: Fits of candidate sets.
-        found: A fit.
-        held_out: Held-out recordings.
+        sets: Cache of the fits of candidate sets, with the estimation problem.
+        found: Fit of the vessel model with some candidate effects.
+        held_out: Held-out recordings, which no fit has used.
     """
     key = (id(found), id(held_out))
     if key not in sets.predictions:
@@ -142,10 +142,10 @@ def evaluate_rivals_on_all(
     A rival is a fit with another candidate effect in its place.
 
     Args:
-        sets: Fits of candidate sets.
+        sets: Cache of the fits of candidate sets, with the estimation problem.
         best: The fit with the effect.
         rivals: Fits with other candidates in the effect's place, by name.
-        held_out: Held-out recordings.
+        held_out: Held-out recordings, which no fit has used.
     """
     own = predictive_log_likelihood(sets, best, held_out)
     if not np.isfinite(own):  # the simulated boat diverges
@@ -167,9 +167,9 @@ def deterministic_replacement(
 
     Args:
         sets: Fits of candidate sets; an effect that is replaced is added to those refuted.
-        best: A fit.
-        named: Its effects.
-        held_out: Held-out recordings.
+        best: Fit of the vessel model with some candidate effects.
+        named: Identified effects of the fit, with their statistics.
+        held_out: Held-out recordings, which no fit has used.
 
     Returns:
         The fit with the replacement; None if there is none.
@@ -211,10 +211,10 @@ def remove_refuted_rivals(
     recordings, or by simulations (free runs) that get clearly worse.
 
     Args:
-        sets: Fits of candidate sets.
-        best: A fit.
-        named: Its effects.
-        held_out: Held-out recordings.
+        sets: Cache of the fits of candidate sets, with the estimation problem.
+        best: Fit of the vessel model with some candidate effects.
+        named: Identified effects of the fit, with their statistics.
+        held_out: Held-out recordings, which no fit has used.
 
     Returns:
         The identified effects with their remaining rivals.
@@ -249,8 +249,8 @@ def remove_dwarfed_effects(sets: CandidateSets, best: Fit, held_out: Recordings)
 
     Args:
         sets: Fits of candidate sets; effects that are removed are added to those refuted.
-        best: A fit.
-        held_out: Held-out recordings.
+        best: Fit of the vessel model with some candidate effects.
+        held_out: Held-out recordings, which no fit has used.
 
     Returns:
         The fit without them; the same object if no effect is removed.

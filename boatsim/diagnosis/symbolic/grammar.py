@@ -281,7 +281,7 @@ def neighbours(
     The constants are its times, lengths or thresholds.
 
     Args:
-        term: The term.
+        term: The symbolic term.
         recordings: The fitted recordings.
         step: Size of the change, relative to the step of the grammar.
         config: Settings of the symbolic regression.

@@ -54,7 +54,7 @@ class FittedRecording:
     Attributes:
         problem: The estimation problem.
         recording: The recording.
-        fit: The fit.
+        fit: Fit of the vessel model.
         states: Smoothed states (N, 2 NQ).
         residual: Force (N, axes) [N, N m] that the fit does not explain.
         smoother: Covariances (N, n, n) of the smoothed states, and gains (N, n, n) of the smoother.
@@ -118,7 +118,7 @@ class FittedRecording:
         """Return the force of a symbolic term along the recording, for a coefficient of 1.
 
         Args:
-            term: The term.
+            term: The symbolic term.
 
         Returns:
             Force (N, axes) [N, N m]; zero for an event of another recording.
@@ -147,7 +147,7 @@ class FittedRecording:
         It is the product of the term's factors and of its course over time.
 
         Args:
-            term: The term.
+            term: The symbolic term.
         """
         vessel = self.problem.program.vessel
         acts = float(terms.COURSES.index(term.acts))

@@ -34,7 +34,7 @@ class ScoredTerm:
     """A term of the symbolic regression with its approximate evidence and coefficient.
 
     Attributes:
-        term: The term.
+        term: The symbolic term.
         gain: Log Bayes factor [nats] in addition to the fit.
         coefficient: Its coefficient.
         spread: Prior standard deviation of the coefficient.
@@ -116,7 +116,7 @@ def strength(vessel: Vessel, term: SymbolicTerm) -> float:
 
     Args:
         vessel: The vessel.
-        term: The term.
+        term: The symbolic term.
 
     Returns:
         A force [N], a moment [N m] or a share of the thrust.

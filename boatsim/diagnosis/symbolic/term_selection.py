@@ -30,7 +30,7 @@ class Formula:
     """A fit of the vessel model with the terms that symbolic regression has added to it.
 
     Attributes:
-        fit: The fit.
+        fit: Fit of the vessel model.
         terms: Terms by the name of their placeholder effect, in the order in which they were added.
     """
 
@@ -130,7 +130,7 @@ def family(term: SymbolicTerm) -> Family:
     The constants are times, wavelength and threshold.
 
     Args:
-        term: The term.
+        term: The symbolic term.
     """
     place = [getattr(term, name, "") for name in ("axis", "side", "sense")]
     return type(term), term.of, term.acts, term.run, *place
