@@ -311,7 +311,9 @@ def effect_at_zero(
     facts: Mapping[str, object] | None = None,
     given: Mapping[str, object] | None = None,
 ) -> Effect:
-    """Return an instance of an effect with parameters at which it exerts no force or change.
+    """Return an instance of an effect at the parameter values at which it changes nothing.
+
+    For example, a force of size zero, or a factor of one.
 
     Args:
         kind: Class of the effect.
@@ -372,7 +374,9 @@ def without_excluded_effects(vessel: Vessel, facts: Mapping[str, object]) -> Ves
 
 
 def with_specified_position_drift(vessel: Vessel, facts: Mapping[str, object]) -> Vessel:
-    """Return a vessel model with the drift of its position fixes, if facts specify that drift.
+    """Add the drift error of position fixes to a vessel model, if facts of the run specify it.
+
+    The facts give the standard deviation and the time constant of the drift.
 
     Args:
         vessel: Vessel of the recordings.

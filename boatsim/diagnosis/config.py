@@ -157,7 +157,10 @@ class LoadConfig:
 
 @dataclass(frozen=True)
 class FilterConfig:
-    """Integration steps and initial states of the Kalman filter, the smoother and free runs."""
+    """Settings of the Kalman filter, the smoother and free runs: integration steps, initial states.
+
+    A free run is a simulation from a recorded state with the recorded commands alone.
+    """
 
     free_run_step: float = setting(
         0.02,
@@ -216,8 +219,9 @@ class FilterConfig:
 
 @dataclass(frozen=True)
 class ChecksConfig:
-    """Quality checks of a log, and the comparison of its reinterpretations.
+    """Thresholds of the quality checks of recordings, such as units, clock, outliers and signs.
 
+    They include the comparison of a recording with corrected versions of it on the vessel model.
     Durations for a hull of 1.2 m are scaled by Froude's law.
     """
 
@@ -1046,13 +1050,12 @@ class SelectConfig:
 
 @dataclass(frozen=True)
 class DecideConfig:
-    """Open-set decision: the probability that an identified effect is a true cause.
+    """Weights of a logistic regression: the probability that an identified effect is a true cause.
 
-    The weights are those of a logistic regression of right and wrong names, over about 1,080
-    simulated logs with known causes, made by `validation.calibration` with the seeds 2 and 3 while
-    its shares of the kinds of logs were being chosen. `python -m validation.calibration --weights`
-    fits weights to the logs that it has diagnosed. Each multiplies a feature of
-    `boatsim.diagnosis.open_set.probability`.
+    The regression is one of right and wrong effects, over about 1,080 simulated logs with known
+    causes, made by `validation.calibration` with the seeds 2 and 3 while its shares of the kinds of
+    logs were being chosen. `python -m validation.calibration --weights` fits weights to the logs
+    that it has diagnosed. Each multiplies a feature of `boatsim.diagnosis.open_set.probability`.
     """
 
     least_probability: float = setting(

@@ -132,9 +132,10 @@ def slice_rows(mapped: MappedRecording, begin: int, end: int) -> MappedRecording
 
 
 def errors_clearly_fell(after: Array, before: Array, config: DiagnosisConfig = DEFAULT) -> bool:
-    """Whether the errors of free runs are clearly smaller for one model than for another.
+    """Whether the simulation errors of one model are clearly smaller than those of another.
 
-    The mean of the logarithms of their ratios is compared with its standard error and with a limit.
+    The errors are those of free runs (simulations with the recorded commands alone). The mean of
+    the logarithms of their ratios is compared with its standard error and with a limit.
 
     Args:
         after: (S,) errors of the new model; nan where nothing was recorded, which is ignored.

@@ -107,9 +107,10 @@ class FilterPass:
 
     @property
     def log_density(self) -> float:
-        """Log likelihood that measurements equal to the filter's predictions would have had.
+        """Log density of measurements that would be equal to the filter's predictions.
 
-        It depends on the predicted covariances only, not on the prediction errors.
+        It depends on the predicted covariances only, not on the prediction errors, and is known up
+        to a constant.
         """
         return float(np.sum(np.log(self.scale[self.scale > 0.0])))
 
@@ -126,7 +127,7 @@ class SmoothedStates(NamedTuple):
 
 
 class HullMotion(NamedTuple):
-    """Fastest decay rate, and largest integration step, of the nominal hull about rest."""
+    """Fastest decay rate of the nominal hull about rest, and the integration step it allows."""
 
     decay_rate: float  # [1/s] of the fastest motion
     largest_step: float  # [s] with which Runge-Kutta follows its oscillations

@@ -156,19 +156,20 @@ class FilterPasses:
 
     @cached_property
     def log_likelihood(self) -> float:
-        """Log likelihood of all recordings together."""
+        """Log likelihood of all recordings together, by the extended Kalman filter."""
         return sum(one.log_likelihood for one in self.passes)
 
     @cached_property
     def whitened(self) -> Array:
-        """Whitened prediction errors of all recordings, one after the other."""
+        """Whitened prediction errors of the Kalman filter for all recordings in one array."""
         return np.concatenate([one.whitened for one in self.passes])
 
     @property
     def log_density(self) -> float:
-        """Log likelihood that measurements equal to the filter's predictions would have had.
+        """Log density of measurements that would be equal to the filter's predictions.
 
-        The sum over all recordings depends on the predicted covariances only.
+        The sum over all recordings depends on the predicted covariances only, and is known up to a
+        constant.
         """
         return sum(one.log_density for one in self.passes)
 
@@ -437,7 +438,7 @@ class Problem:
         return np.concatenate(found)
 
     def scale(self, effect: Effect, name: str) -> float:
-        """Return the factor by which a candidate effect's parameter scales from the reference hull.
+        """Return the ratio of a candidate effect's parameter to its value on the reference hull.
 
         Quantities follow Froude's law. The threshold of a command scales with the largest command
         recorded, because the full thrust of the reference hull is 1 N. The drift of an instrument

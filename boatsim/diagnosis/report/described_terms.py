@@ -77,14 +77,17 @@ def _group(w: FittedTerm) -> tuple[str, bool, str]:
 
 
 def term_axis(term: SymbolicTerm) -> str:
-    """Return the axis of a symbolic term's force; "thrust" if it changes the drives' thrust."""
+    """Return the axis of the force of a term found by symbolic regression.
+
+    It is "thrust" if the term changes the thrust of the drives.
+    """
     if isinstance(term, DescribedForce):
         return term.axis
     return "thrust"
 
 
 def effect_of_axis(axis: str) -> str:
-    """Return what a formula for a given axis describes, in words such as "a side force"."""
+    """Return words for what a formula describes, by its axis, such as "a side force"."""
     return FORCES.get(axis, "a change of thrust")
 
 
@@ -122,7 +125,10 @@ def _recent_words(how: str, signal: str) -> str:
 
 
 def term_unit(term: SymbolicTerm) -> str:
-    """Return the unit of a symbolic term's force: "N", "N m", or "" for a share of the thrust."""
+    """Return the unit of the force of a term found by symbolic regression.
+
+    It is "N", "N m", or "" for a share of the thrust.
+    """
     axis = term_axis(term)
     if axis == "thrust":
         return ""
@@ -222,7 +228,10 @@ def _activity_condition(term: SymbolicTerm) -> str:
 
 
 def factors_in_words(term: SymbolicTerm) -> str:
-    """Return in words what a symbolic term is proportional to; "" if it is constant."""
+    """Return in words what a term found by symbolic regression is proportional to.
+
+    The text is empty if the term is constant.
+    """
     parts = []
     for name, power in Counter(term.of).items():
         if name.startswith("abs_") and name.removeprefix("abs_") in term.of:
@@ -262,10 +271,10 @@ def _factor(name: str, term: SymbolicTerm) -> str:
 
 
 def coefficient_unit(term: SymbolicTerm, vessel: Vessel) -> str:
-    """Return the unit of the coefficient of a symbolic term.
+    """Return the unit of the coefficient of a term found by symbolic regression.
 
     Args:
-        term: The symbolic term.
+        term: A term of the symbolic regression.
         vessel: The vessel, for the units of its commands.
 
     Returns:

@@ -224,6 +224,8 @@ def _refined_numbers(answer: Answer) -> str:
 def refined_rows(answer: Answer) -> list[list[str]]:
     """Return the rows of the report's table of refined numbers of the vessel file.
 
+    A refined number is an estimate of the vessel file to which the recordings give a better value.
+
     Args:
         answer: Content of diagnosis.json.
 
@@ -409,7 +411,9 @@ def _of_thrust(entry: MeanEntry | AmbientEntry) -> str:
 
 
 def assumption_sentences(answer: Answer) -> list[str]:
-    """Return lines on the candidate effects tested and excluded, and on the assumptions made.
+    """Return lines on the candidate effects tested and excluded, and on assumptions made.
+
+    They are part of the report of a diagnosis.
 
     Args:
         answer: Content of diagnosis.json.
@@ -444,7 +448,7 @@ def _exclusions(excluded: Sequence[LeftOutEntry]) -> str:
 
 
 def console_lines(f: Findings) -> list[str]:
-    """Return the summary of a diagnosis that `boatsim diagnose` prints on the console.
+    """Return the lines of a diagnosis's summary that `boatsim diagnose` prints on the console.
 
     Args:
         f: Findings of a diagnosis.

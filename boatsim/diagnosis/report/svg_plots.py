@@ -45,7 +45,10 @@ class Line:
 
 @dataclass(frozen=True)
 class Box:
-    """A box of a box plot: 5, 25, 50, 75 and 95 % of the values at `x` are below `below`."""
+    """A box of a box plot, drawn at the abscissa `x`.
+
+    The array `below` holds the 5, 25, 50, 75 and 95 % quantiles of the values.
+    """
 
     look: str
     x: float

@@ -13,9 +13,9 @@ from boatsim.diagnosis.problem import WorkCount
 
 
 class BudgetSpentError(Exception):
-    """Raised if the budget of a search is spent, but the search has to be complete.
+    """A search for candidate effects has spent its budget of computing work before its end.
 
-    The search is that for the best set of candidate effects.
+    It is raised only in searches that have to be complete.
     """
 
 
@@ -52,7 +52,7 @@ class SearchBudget:
 
     @property
     def skipped(self) -> tuple[str, ...]:
-        """Sentences on the trials of candidate effects that the search skipped without budget."""
+        """Sentences on candidate effects that the search skipped because its budget was spent."""
         found = []
         for how, number in self._omitted.items():
             candidates = "1 candidate was" if number == 1 else f"{number} candidates were"

@@ -281,7 +281,7 @@ def neighbours(
     The constants are its times, lengths or thresholds.
 
     Args:
-        term: The symbolic term.
+        term: A term of the symbolic regression.
         recordings: The fitted recordings.
         step: Size of the change, relative to the step of the grammar.
         config: Settings of the symbolic regression.

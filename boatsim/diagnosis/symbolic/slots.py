@@ -39,7 +39,7 @@ def write_term(
     Args:
         problem: The estimation problem.
         slot: Name of the placeholder.
-        term: The symbolic term.
+        term: A term of the symbolic regression.
         recordings: Recordings whose parameter values are changed.
     """
     parameters = term.with_all_parameters(problem.program.vessel).law_parameters()

@@ -115,10 +115,12 @@ class FittedRecording:
         return {}
 
     def force(self, term: SymbolicTerm) -> Array:
-        """Return the force of a symbolic term along the recording, for a coefficient of 1.
+        """Return the force along the recording of a term of the symbolic regression.
+
+        The coefficient of the term is taken as 1.
 
         Args:
-            term: The symbolic term.
+            term: A term of the symbolic regression.
 
         Returns:
             Force (N, axes) [N, N m]; zero for an event of another recording.
@@ -142,12 +144,13 @@ class FittedRecording:
         return out
 
     def size(self, term: SymbolicTerm) -> Array:
-        """Return the value (N,) of a symbolic term along the recording, without its coefficient.
+        """Return the value (N,) along the recording of a term of the symbolic regression.
 
-        It is the product of the term's factors and of its course over time.
+        It is the product of the term's factors and of its course over time, without its
+        coefficient.
 
         Args:
-            term: The symbolic term.
+            term: A term of the symbolic regression.
         """
         vessel = self.problem.program.vessel
         acts = float(terms.COURSES.index(term.acts))
@@ -168,7 +171,9 @@ class FittedRecording:
         return size
 
     def factor(self, code: float, detail: terms.Detail, average: Average = NO_AVERAGE) -> Array:
-        """Return one factor (N,) of a symbolic term along the recording, for example a speed.
+        """Return one factor (N,) of a term of the symbolic regression, for example a speed.
+
+        It is evaluated at all rows of the recording.
 
         Args:
             code: Code of the factor, by `terms.factor_codes`.

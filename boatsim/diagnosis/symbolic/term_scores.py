@@ -34,7 +34,7 @@ class ScoredTerm:
     """A term of the symbolic regression with its approximate evidence and coefficient.
 
     Attributes:
-        term: The symbolic term.
+        term: A term of the symbolic regression.
         gain: Log Bayes factor [nats] in addition to the fit.
         coefficient: Its coefficient.
         spread: Prior standard deviation of the coefficient.
@@ -110,13 +110,13 @@ def _size(fitted: FittedRecording, term: SymbolicTerm) -> Array:
 
 
 def strength(vessel: Vessel, term: SymbolicTerm) -> float:
-    """Return the prior standard deviation of the force of a symbolic term on a vessel.
+    """Return the prior standard deviation of the force that a symbolic term exerts on a vessel.
 
-    It holds where the term acts and scales with the vessel's size by Froude's law.
+    It is that of the force where the term acts, and scales with the vessel's size by Froude's law.
 
     Args:
         vessel: The vessel.
-        term: The symbolic term.
+        term: A term of the symbolic regression.
 
     Returns:
         A force [N], a moment [N m] or a share of the thrust.

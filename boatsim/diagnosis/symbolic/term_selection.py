@@ -130,7 +130,7 @@ def family(term: SymbolicTerm) -> Family:
     The constants are times, wavelength and threshold.
 
     Args:
-        term: The symbolic term.
+        term: A term of the symbolic regression.
     """
     place = [getattr(term, name, "") for name in ("axis", "side", "sense")]
     return type(term), term.of, term.acts, term.run, *place
