@@ -10,9 +10,9 @@ from boatsim.recordings.table import Recording
 
 
 def check_excitation(recording: Recording, vessel: Vessel, config: ChecksConfig) -> list[Finding]:
-    """Find commands, headings and speeds that hardly vary in a recording.
+    """Find motions and commands that vary too little in a recording to identify some coefficients.
 
-    Coefficients that depend on them cannot be identified from it.
+    For example, a boat that never goes astern or turns, or that sails at one speed only.
 
     Args:
         recording: A prepared recording.

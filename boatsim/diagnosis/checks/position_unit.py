@@ -18,9 +18,10 @@ INTEGER_DEGREES = 1e-7  # [deg] unit of positions that GNSS receivers write as i
 def check_position_unit(
     recording: Recording, vessel: Vessel, config: ChecksConfig
 ) -> list[Finding]:
-    """Find recorded positions in a wrong unit, such as latitude and longitude or feet.
+    """Find recorded positions in a wrong unit: latitude and longitude, centimetres or millimetres.
 
-    The speed of the boat is then impossible in metres, but plausible in the other unit.
+    In metres the boat would hardly move or be impossibly fast; in the other unit its speed is
+    plausible.
 
     Args:
         recording: The recording as written in the file.

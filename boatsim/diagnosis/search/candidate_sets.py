@@ -126,11 +126,11 @@ class CandidateSets:
     def refit_from_assumed_disturbance(self, found: Fit) -> Fit:
         """Refit a candidate set with the latent force at its assumed level; return the better fit.
 
-        The latent force is the unmodelled force of the filter. If it may be as large as it was
-        without an effect, the effect is not required to explain all that it can.
+        The latent force is the unmodelled force that the Kalman filter estimates. If it may be as
+        large as it was without an effect, the effect is not required to explain all that it can.
 
         Args:
-            found: A fit of a set.
+            found: Fit of the vessel model with the effects of the set.
         """
         config, problem = self.config, self.problem
         if unexplained_evidence(problem, found) < config.select.unknown_gain:

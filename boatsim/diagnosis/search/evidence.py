@@ -96,7 +96,7 @@ def leading_candidates(
 
     Args:
         fits: Rough fits with one candidate added, by its name.
-        base: The fit on top of which they were added.
+        base: Fit to which the candidates were added.
         config: Settings of the selection, with the allowed distances from the best candidate.
     """
     gains = gains_over(fits, base)

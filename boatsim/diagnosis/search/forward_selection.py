@@ -77,7 +77,7 @@ def refit_from_base_levels(sets: CandidateSets, other: Fit) -> Fit:
 
     Args:
         sets: Cache of the fits of candidate sets, with the estimation problem.
-        other: A fit to the same recordings.
+        other: Fit whose effects are refitted, to the same recordings.
     """
     return sets.converged_fit(replace(other, levels=sets.base.levels, evidence=-np.inf))
 

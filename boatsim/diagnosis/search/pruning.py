@@ -240,8 +240,8 @@ def compare_rivals(
 
     Args:
         name: Name of the effect.
-        best: A fit with it.
-        without: The fit without it.
+        best: Fit with the effect.
+        without: Fit without the effect.
         rivals: Fits with other candidates in its place.
         config: Distance within which rivals are look-alikes.
     """

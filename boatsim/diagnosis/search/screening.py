@@ -135,7 +135,7 @@ def confirm_screening(problem: Problem, base: Fit, screened: Fit) -> Fit:
 
     Args:
         problem: The estimation problem: recordings, vessel model, candidate effects and priors.
-        base: The fit on top of which the candidate was screened.
+        base: Fit to which the candidate was added.
         screened: Rough fit with the candidate added.
     """
     config = problem.config.select

@@ -278,7 +278,7 @@ def neighbours(
 ) -> list[SymbolicTerm]:
     """Return variants of a term of the symbolic regression with slightly changed constants.
 
-    The constants are its times, lengths or thresholds.
+    The constants are its times, wavelength, threshold or time constant.
 
     Args:
         term: A term of the symbolic regression.
