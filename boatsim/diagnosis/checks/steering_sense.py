@@ -66,7 +66,7 @@ def steering_correlation(recording: Recording, name: str, duration: float) -> fl
         duration: Response time of the hull [s].
 
     Returns:
-        1 for a command that steers to starboard, -1 for one that steers to port.
+        Between -1 and 1; positive for a command that steers to starboard.
     """
     known = np.isfinite(recording.signals["psi_rad"])
     t = recording.t[known]

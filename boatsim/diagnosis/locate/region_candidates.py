@@ -45,7 +45,7 @@ def region_candidates(
         mapped: The mapped recording.
         states: Smoothed states (N, 2 NQ).
         damping: Damping force (N, axes) of the vessel as specified.
-        config: Settings of the regions.
+        config: Settings for locating a missing force.
     """
     axes = axes_of(mapped.program.vessel)
     return [

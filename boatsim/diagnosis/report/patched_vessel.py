@@ -35,7 +35,7 @@ def patched_vessel_text(
         vessel: The vessel of the original file.
         found: Fit of the vessel model.
         path: Where the file will be written; paths in it are relative to its folder.
-        described: Terms of formulas that generalize, by the name of their slot. Other terms of the
+        described: Terms of formulas that generalize, by the name of their placeholder. Other terms of the
             fit are events of recordings and are not written.
     """
     described = described or {}
@@ -91,7 +91,7 @@ def write_patched_vessel(
         vessel: The vessel of the original file.
         found: Fit of the vessel model.
         path: Path of the patched file.
-        described: Terms of formulas that generalize, by the name of their slot.
+        described: Terms of formulas that generalize, by the name of their placeholder.
     """
     with replace_file(path) as temporary:
         temporary.write_text(
