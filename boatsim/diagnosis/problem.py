@@ -94,7 +94,7 @@ class Fit:
     evidence: float  # log of the Laplace evidence [nats]
 
     def values(self) -> dict[tuple[str, str], float]:
-        """Return the fitted parameter values; each key is a pair of effect name and parameter name."""
+        """Return the fitted parameter values by pairs of effect name and parameter name."""
         found = {}
         for parameter, x in zip(self.free, self.theta, strict=True):
             found[parameter.effect, parameter.name] = float(x)

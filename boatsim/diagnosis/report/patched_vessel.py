@@ -35,8 +35,8 @@ def patched_vessel_text(
         vessel: The vessel of the original file.
         found: Fit of the vessel model.
         path: Where the file will be written; paths in it are relative to its folder.
-        described: Terms of formulas that generalize, by the name of their placeholder. Other terms of the
-            fit are events of recordings and are not written.
+        described: Terms of formulas that generalize, by the name of their placeholder. Other
+            terms of the fit are events of recordings and are not written.
     """
     described = described or {}
     candidates: list[Effect] = []
