@@ -25,7 +25,11 @@ REORDERED = "reordered_"
 
 
 class Placeholders(NamedTuple):
-    """Effects reserved for terms found by symbolic regression."""
+    """Name prefix and number of one kind of placeholder effect of a compiled vessel program.
+
+    A placeholder has no law of its own. If symbolic regression finds a force or a change of thrust,
+    the parameters of a placeholder are set to that term, so that nothing has to be compiled again.
+    """
 
     prefix: str  # of their names
     number: int
@@ -40,7 +44,11 @@ PLACEHOLDERS = {
 
 @dataclass(frozen=True)
 class Library:
-    """Candidate effects of one diagnosis, and those that are excluded."""
+    """Candidate effects of one diagnosis: those tested, those excluded, and the reasons.
+
+    A candidate effect is a force, actuator fault or sensor error that the vessel model may lack.
+    Each one that can act on the vessel is compiled into its program.
+    """
 
     # all candidates that can act on the vessel; they are compiled whatever is known of a run,
     # except errors of single instruments whose columns were not recorded
@@ -53,12 +61,16 @@ class Library:
 
     @property
     def compiled(self) -> tuple[Effect, ...]:
-        """All effects that a diagnosis compiles in addition to the vessel's own."""
+        """All effects compiled into the vessel program in addition to the vessel's own effects.
+
+        These are the candidate effects, excluded ones included, and the placeholders for terms
+        found by symbolic regression.
+        """
         return (*self.entries, *self.placeholders)
 
     @property
     def tested(self) -> tuple[str, ...]:
-        """Names of the candidates that are tested."""
+        """Names of the candidate effects that the diagnosis tests: all that are not excluded."""
         return tuple(e.name for e in self.entries if e.name not in self.excluded)
 
 
@@ -76,7 +88,10 @@ def library_for(
     facts: Mapping[str, object] | None = None,
     columns: Sequence[str] | None = None,
 ) -> Library:
-    """Return the candidates for a vessel.
+    """Return the candidate effects that a diagnosis may test on a vessel.
+
+    Effects that cannot act on the vessel are left out. Effects excluded by a fact, by the vessel
+    file or by a missing column are kept with the reason, but are not tested.
 
     Args:
         vessel: Vessel of the recordings.
@@ -84,6 +99,9 @@ def library_for(
         facts: Facts of the recordings in addition to the vessel's.
         columns: Recorded columns; None: unknown. Effects with `needs_columns` are candidates only
             where these columns are known to be recorded.
+
+    Returns:
+        The candidate effects with the reasons for each exclusion, and the placeholders.
 
     Raises:
         BadInput: An effect that is requested does not exist, or has no parameter to fit.
@@ -139,7 +157,9 @@ def _exclusions_by_vessel(vessel: Vessel) -> dict[str, str]:
 
 
 def placeholders(vessel: Vessel) -> tuple[Effect, ...]:
-    """Return the effects reserved for terms found by symbolic regression that can act on a vessel.
+    """Return placeholder effects that can be set to terms found by symbolic regression.
+
+    Only the kinds that can act on the vessel are returned, at zero effect.
 
     Args:
         vessel: Vessel of the recordings.
@@ -184,7 +204,10 @@ def _sources(vessel: Vessel, own: Sequence[str]) -> Iterator[_Source]:
 
 
 def has_fittable_parameter(kind: type[Effect]) -> bool:
-    """Return whether an effect has a parameter that a diagnosis may fit."""
+    """Return whether a class of effects declares a parameter that a diagnosis may fit.
+
+    Effects without such a parameter cannot be candidate effects.
+    """
     return not kind.described and any(p.fit for p in kind.params().values())
 
 
@@ -210,7 +233,9 @@ def _missing_columns(kind: type[Effect], columns: Sequence[str] | None) -> str:
 def missing_requirements(
     kind: type[Effect], vessel: Vessel, facts: Mapping[str, object], table: Mapping[str, object]
 ) -> str:
-    """Return what a vessel lacks for an effect to act on it, in words, or "".
+    """Return what a vessel lacks for an effect to act on it, in words; "" if nothing is missing.
+
+    Examples are a degree of freedom, a rudder, or a number in the vessel file.
 
     Args:
         kind: Class of the effect.
@@ -254,7 +279,10 @@ def instantiate_candidate(
     facts: Mapping[str, object],
     table: Mapping[str, object] | None = None,
 ) -> Effect:
-    """Return a candidate effect for a vessel with zero effect, and a unique name.
+    """Return a candidate effect for a vessel, at the parameters at which it has zero effect.
+
+    If the vessel already has an effect of this name, the candidate gets a prefix that makes its
+    name unique.
 
     Args:
         kind: Class of the effect.
@@ -283,7 +311,9 @@ def effect_at_zero(
     facts: Mapping[str, object] | None = None,
     given: Mapping[str, object] | None = None,
 ) -> Effect:
-    """Return an effect with the parameters at which it has zero effect.
+    """Return an instance of an effect at the parameter values at which it changes nothing.
+
+    For example, a force of size zero, or a factor of one.
 
     Args:
         kind: Class of the effect.
@@ -302,9 +332,9 @@ def effect_at_zero(
 
 
 def names_without(library: Library, without: Sequence[str]) -> tuple[str, ...]:
-    """Return the names of the tested candidates except the given ones.
+    """Return the names of the tested candidate effects except the given ones.
 
-    The others stay compiled, so that nothing has to be compiled again.
+    The excluded effects stay in the compiled program, so that nothing has to be compiled again.
 
     Args:
         library: Candidates of the diagnosis.
@@ -321,15 +351,18 @@ def names_without(library: Library, without: Sequence[str]) -> tuple[str, ...]:
 
 
 def base_name(name: str) -> str:
-    """Return the name of a candidate without the prefixes that distinguish repeated effects."""
+    """Return the name of a candidate effect without the prefixes that make repeated effects unique.
+
+    For example, `further_wind` becomes `wind`.
+    """
     return name.removeprefix(REORDERED).removeprefix(FURTHER)
 
 
 def without_excluded_effects(vessel: Vessel, facts: Mapping[str, object]) -> Vessel:
-    """Return a vessel without those of its effects that facts exclude.
+    """Return a vessel model without its own effects that facts about the recording exclude.
 
-    A measured steering angle is taken behind the steering machine: the limit of the machine acts on
-    commands, and not on the measured angle again.
+    For example, a rudder angle measured behind the steering machine already contains the rate limit
+    of that machine, so that the limit must not act on the measured angle again.
 
     Args:
         vessel: Vessel of the recordings.
@@ -341,11 +374,16 @@ def without_excluded_effects(vessel: Vessel, facts: Mapping[str, object]) -> Ves
 
 
 def with_specified_position_drift(vessel: Vessel, facts: Mapping[str, object]) -> Vessel:
-    """Return a vessel with the drift of its position fixes that facts specify.
+    """Add the drift error of position fixes to a vessel model, if facts of the run specify it.
+
+    The facts give the standard deviation and the time constant of the drift.
 
     Args:
         vessel: Vessel of the recordings.
         facts: Facts of the recordings.
+
+    Returns:
+        The vessel with an effect for the drift; the same vessel if no drift is specified.
     """
     known = {**vessel.diagnosis.facts, **facts}
     if not set(WANDER) <= set(known) or not {"surge", "sway"} <= set(vessel.dof):
@@ -358,13 +396,16 @@ def with_specified_position_drift(vessel: Vessel, facts: Mapping[str, object]) -
 
 
 def program_to_replay(vessel: Vessel) -> tuple[Program, tuple[str, ...]]:
-    """Return a vessel's program, and the names of the candidates in it that are active.
+    """Return the compiled program with which a recording of a vessel is replayed.
 
-    The program of a patched vessel is that of its diagnosis, which was compiled before. That of
-    another vessel holds its own effects only, and compiles in half the time.
+    The program of a patched vessel is that of its diagnosis, which was compiled before. For any
+    other vessel the program contains its own effects only, and compiles in half the time.
 
     Args:
         vessel: Vessel file, or a patched one.
+
+    Returns:
+        The program, and the names of the candidate effects in it that are active.
     """
     if vessel.found:
         return diagnosis_program(vessel)
@@ -372,7 +413,9 @@ def program_to_replay(vessel: Vessel) -> tuple[Program, tuple[str, ...]]:
 
 
 def program_with_candidates(vessel: Vessel, names: Collection[str]) -> Program:
-    """Return a vessel's program with the named candidates, as far as they can act on it.
+    """Return the compiled program of a vessel with the named candidate effects added.
+
+    Candidates that cannot act on the vessel are left out.
 
     Args:
         vessel: Vessel file.
@@ -382,12 +425,16 @@ def program_with_candidates(vessel: Vessel, names: Collection[str]) -> Program:
 
 
 def diagnosis_program(vessel: Vessel) -> tuple[Program, tuple[str, ...]]:
-    """Return a vessel's program with all candidates compiled in, and the names of active ones.
+    """Return the compiled program of a vessel with all candidate effects that a diagnosis tests.
 
-    A patched vessel then needs no further compilation.
+    If the vessel is a patched one, this is the program of its diagnosis, without further
+    compilation.
 
     Args:
         vessel: Vessel file, or a patched one.
+
+    Returns:
+        The program, and the names of the candidate effects in it that are active.
     """
     own, found = list[Effect](), dict[str, Effect]()
     for effect in vessel.effects:

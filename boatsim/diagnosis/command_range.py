@@ -18,7 +18,7 @@ from boatsim.physics.vessel import Vessel
 def largest_command(
     recordings: Sequence[MappedRecording], effect: Effect, config: LoadConfig = DEFAULT.load
 ) -> float:
-    """Return the largest recorded command of the channels on which a candidate acts.
+    """Return the largest recorded command of the actuators on which a candidate effect acts.
 
     Args:
         recordings: Recordings mapped to programs of one vessel.
@@ -38,11 +38,11 @@ def largest_command(
 
 
 def command_channels(vessel: Vessel, effect: Effect) -> tuple[str, ...]:
-    """Return the channels on which a candidate acts.
+    """Return the names of the command channels on which a candidate effect acts.
 
-    These are the actuators of a channel effect, or the inputs of the vessel's effects whose
-    numbers a release changes. Of several inputs those in the unit of the release's thresholds are
-    returned: the angle of a rudder and not its shaft.
+    These are the actuators of a channel effect (such as a dead band), or the inputs of those
+    effects of the vessel whose numbers the candidate changes. Of several inputs those in the unit
+    of the candidate's thresholds are returned: the angle of a rudder and not its shaft.
 
     Args:
         vessel: Vessel of the recordings.

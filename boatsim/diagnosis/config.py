@@ -25,7 +25,9 @@ def setting(
     low: float = 0.0,
     high: float = inf,
 ) -> Any:
-    """Declare a setting of a group.
+    """Declare a numerical setting of a diagnosis with its unit, reason and allowed range.
+
+    It is a field of a dataclass that holds the settings of one stage.
 
     Args:
         default: Value used unless the user gives another; its type is the type of the setting.
@@ -43,7 +45,10 @@ def setting(
 
 @dataclass(frozen=True)
 class LoadConfig:
-    """Opening recordings: rows used, prior noise and disturbance, default length of free runs."""
+    """Settings for opening recordings: rows used, prior noise and disturbance, length of free runs.
+
+    A free run is a simulation from a recorded state with the recorded commands alone.
+    """
 
     scale_tolerance: float = setting(
         0.01, "1", "Two model scales within this relative difference are the same scale."
@@ -152,7 +157,10 @@ class LoadConfig:
 
 @dataclass(frozen=True)
 class FilterConfig:
-    """Integration steps and initial states of the Kalman filter, the smoother and free runs."""
+    """Settings of the Kalman filter, the smoother and free runs: integration steps, initial states.
+
+    A free run is a simulation from a recorded state with the recorded commands alone.
+    """
 
     free_run_step: float = setting(
         0.02,
@@ -211,8 +219,9 @@ class FilterConfig:
 
 @dataclass(frozen=True)
 class ChecksConfig:
-    """Quality checks of a log, and the comparison of its reinterpretations.
+    """Thresholds of the quality checks of recordings, such as units, clock, outliers and signs.
 
+    They include the comparison of a recording with corrected versions of it on the vessel model.
     Durations for a hull of 1.2 m are scaled by Froude's law.
     """
 
@@ -594,7 +603,7 @@ class ChecksConfig:
 
 @dataclass(frozen=True)
 class LocateConfig:
-    """Where, when and along which axes a force is missing."""
+    """Settings for locating a missing force: on which axes, when and under which conditions."""
 
     band_sds: float = setting(
         2.0, "sd", "Half width of the band of the missing force; zero outside it is missing force."
@@ -656,7 +665,10 @@ class LocateConfig:
 
 @dataclass(frozen=True)
 class FitConfig:
-    """Fitting one hypothesis: parameters, noise levels, correlation time and posterior widths."""
+    """Settings for fitting one hypothesis, a vessel model with a given set of candidate effects.
+
+    They concern its parameters, noise levels, correlation time and posterior widths.
+    """
 
     refit_gain: float = setting(
         0.3, "nats", "A refit that gains less evidence than this changes nothing.", low=1e-6
@@ -848,7 +860,7 @@ class FitConfig:
 
 @dataclass(frozen=True)
 class SelectConfig:
-    """Selection of effects: evidence required, screening, forward selection and pruning."""
+    """Settings for selecting effects: evidence required, screening, forward selection, pruning."""
 
     odds: float = setting(
         2.0,
@@ -1038,13 +1050,12 @@ class SelectConfig:
 
 @dataclass(frozen=True)
 class DecideConfig:
-    """Open-set decision: the probability that an identified effect is a true cause.
+    """Weights of a logistic regression: the probability that an identified effect is a true cause.
 
-    The weights are those of a logistic regression of right and wrong names, over about 1,080
-    simulated logs with known causes, made by `validation.calibration` with the seeds 2 and 3 while
-    its shares of the kinds of logs were being chosen. `python -m validation.calibration --weights`
-    fits weights to the logs that it has diagnosed. Each multiplies a feature of
-    `boatsim.diagnosis.open_set.probability`.
+    The regression is one of right and wrong effects, over about 1,080 simulated logs with known
+    causes, made by `validation.calibration` with the seeds 2 and 3 while its shares of the kinds of
+    logs were being chosen. `python -m validation.calibration --weights` fits weights to the logs
+    that it has diagnosed. Each multiplies a feature of `boatsim.diagnosis.open_set.probability`.
     """
 
     least_probability: float = setting(
@@ -1228,7 +1239,7 @@ class DecideConfig:
 
 @dataclass(frozen=True)
 class ValidateConfig:
-    """Held-out recordings: when they refute an effect, and when they decide between effects."""
+    """Settings for held-out recordings: when they refute an effect or decide between effects."""
 
     fewest_runs: int = setting(
         3, "count", "Fewest free runs from which a standard error is estimated.", low=2
@@ -1273,7 +1284,7 @@ class ValidateConfig:
 
 @dataclass(frozen=True)
 class AnswerConfig:
-    """The answer: uncertainties and limits that are reported."""
+    """Settings of the answer of a diagnosis: which uncertainties and upper limits are reported."""
 
     law_error: float = setting(
         0.05,
@@ -1322,7 +1333,7 @@ class AnswerConfig:
 
 @dataclass(frozen=True)
 class DescribeConfig:
-    """Symbolic description of a force that no candidate explains."""
+    """Settings of the symbolic regression of a force that no candidate effect explains."""
 
     most_terms: int = setting(
         5, "count", "Largest number of terms: a longer formula would explain noise.", low=0
@@ -1435,7 +1446,7 @@ class DescribeConfig:
 
 @dataclass(frozen=True)
 class PlanConfig:
-    """Design of the next experiment."""
+    """Settings for designing the experiment to record next."""
 
     min_gain: float = setting(
         1.0,
@@ -1522,7 +1533,7 @@ class PlanConfig:
 
 @dataclass(frozen=True)
 class DiagnosisConfig:
-    """All settings of a diagnosis, one group per stage."""
+    """All settings of a diagnosis (thresholds, priors, tolerances, limits), one group per stage."""
 
     load: LoadConfig = LoadConfig()
     filter: FilterConfig = FilterConfig()
@@ -1541,7 +1552,7 @@ DEFAULT = DiagnosisConfig()
 
 
 def from_settings(settings: Mapping[str, Given]) -> DiagnosisConfig:
-    """Return the default configuration with some settings changed.
+    """Return the default configuration of a diagnosis with some settings changed.
 
     Args:
         settings: Values by dotted name, such as {"select.odds": 3.0}; text is read as a number.
@@ -1561,7 +1572,11 @@ def from_settings(settings: Mapping[str, Given]) -> DiagnosisConfig:
 
 
 def settings_by_name(config: DiagnosisConfig) -> dict[str, Plain]:
-    """Return every setting of a configuration by its dotted name; tuples become lists."""
+    """Return all settings of a diagnosis as a dictionary from dotted names to values.
+
+    For example, "select.odds" is the key of the setting `odds` in the group `select`. Tuples become
+    lists.
+    """
     plain: dict[str, Plain] = {}
     for group, one in _all_settings():
         value = getattr(getattr(config, group), one.name)

@@ -17,9 +17,9 @@ def maximize(
     enough: float,
     config: FitConfig = DEFAULT.fit,
 ) -> tuple[float, Array]:
-    """Return the highest score that is found, and where.
+    """Maximise a smooth function of a few variables without derivatives, one coordinate at a time.
 
-    A coordinate is revisited only if the score has risen by more than `enough` since its last
+    A coordinate is revisited only if the function has risen by more than `enough` since its last
     visit: most of them are at their maximum after one round. The step along each follows its last
     move.
 
@@ -29,6 +29,9 @@ def maximize(
         step: First step along every coordinate.
         enough: Smaller rises of the score are ignored.
         config: Number of rounds, and bounds of the steps.
+
+    Returns:
+        The highest value found, and its coordinates (n,).
     """
     score = _evaluated_once(score)
     best, steps, visited = score(x), np.full(len(x), step), np.full(len(x), -np.inf)

@@ -24,14 +24,17 @@ EXACT = 1e-12  # [m, rad] lower bound of an error, so that its logarithm is fini
 
 
 def with_correlation_time(problem: Problem, found: Fit) -> Problem:
-    """Return the problem with the correlation time that predicts best for a hypothesis.
+    """Return an estimation problem with the latent force's correlation time that predicts best.
+
+    The latent force is the unmodelled force that the Kalman filter estimates. Cross-validation
+    decides between correlation times, for the candidate effects of a fit.
 
     Args:
-        problem: Recordings and priors.
-        found: A converged fit.
+        problem: The estimation problem: recordings, vessel model, candidate effects and priors.
+        found: Converged fit of the vessel model with some candidate effects.
 
     Returns:
-        The same object if the correlation time stays.
+        The same object if the correlation time does not change.
     """
     seconds = correlation_time(problem, found)
     if seconds == problem.ambient.time_constant:
@@ -42,12 +45,14 @@ def with_correlation_time(problem: Problem, found: Fit) -> Problem:
 def problem_with_correlation_time(
     problem: Problem, recordings: Sequence[MappedRecording], seconds: float, horizon: float
 ) -> Problem:
-    """Return a problem on other recordings, with another correlation time and horizon.
+    """Return an estimation problem for other recordings and another correlation time.
+
+    The correlation time is that of the latent (unmodelled) force. The priors are kept.
 
     Args:
         problem: Problem with the priors.
         recordings: Recordings of the new problem.
-        seconds: Its correlation time [s].
+        seconds: Correlation time of the latent force in the new problem [s].
         horizon: Its length of free runs [s].
     """
     ambient = problem.ambient.with_time_constant(seconds)
@@ -62,10 +67,13 @@ def problem_with_correlation_time(
 
 
 def correlation_time(problem: Problem, found: Fit) -> float:
-    """Return the correlation time of the latent force for a hypothesis [s].
+    """Return the correlation time [s] of the latent (unmodelled) force that predicts best.
+
+    Half and double the usual time are tried by cross-validation, and further multiples if they
+    predict clearly better.
 
     Args:
-        problem: Recordings and priors.
+        problem: The estimation problem: recordings, vessel model, candidate effects and priors.
         found: A converged fit; without effects it attributes nothing to the latent force that
             coefficients could explain, and the usual value stays.
     """
@@ -88,7 +96,10 @@ def correlation_time(problem: Problem, found: Fit) -> float:
 def split_in_halves(
     recordings: Sequence[MappedRecording],
 ) -> tuple[list[MappedRecording], list[MappedRecording]]:
-    """Return every second recording and the others, or the halves in time of a single one.
+    """Split recordings into two halves for cross-validation.
+
+    The first half holds every second recording and the second half the others. A single recording
+    is cut in the middle of its duration.
 
     Args:
         recordings: At least one recording.
@@ -101,10 +112,10 @@ def split_in_halves(
 
 
 def slice_rows(mapped: MappedRecording, begin: int, end: int) -> MappedRecording:
-    """Return some rows of a recording.
+    """Return a mapped recording that is cut to a range of rows.
 
     Args:
-        mapped: The recording.
+        mapped: The mapped recording.
         begin: First row.
         end: Row after the last one.
     """
@@ -121,11 +132,14 @@ def slice_rows(mapped: MappedRecording, begin: int, end: int) -> MappedRecording
 
 
 def errors_clearly_fell(after: Array, before: Array, config: DiagnosisConfig = DEFAULT) -> bool:
-    """Whether errors of free runs have clearly fallen, in the mean of their logarithms.
+    """Whether the simulation errors of one model are clearly smaller than those of another.
+
+    The errors are those of free runs (simulations with the recorded commands alone). The mean of
+    the logarithms of their ratios is compared with its standard error and with a limit.
 
     Args:
-        after: (S,) errors; those over which nothing was recorded are nan and ignored.
-        before: (S,) errors to compare with.
+        after: (S,) errors of the new model; nan where nothing was recorded, which is ignored.
+        before: (S,) errors of the old model over the same free runs.
         config: Standard errors and ratio that are required.
     """
     ratio = np.log(after / before)
@@ -140,12 +154,15 @@ def errors_clearly_fell(after: Array, before: Array, config: DiagnosisConfig = D
 
 
 def cross_validation_errors(problem: Problem, start: Fit, seconds: float) -> Array:
-    """Return the error of each free run (S,) in a half, predicted by a fit to the other.
+    """Return the errors (S,) of free runs in two-fold cross-validation with a correlation time.
+
+    The vessel model is fitted to one half of the recordings and simulated over the other half, with
+    a given correlation time of the latent force.
 
     Args:
-        problem: Recordings and priors.
+        problem: The estimation problem: recordings, vessel model, candidate effects and priors.
         start: Start of the fits.
-        seconds: Correlation time [s].
+        seconds: Correlation time of the latent force [s].
 
     Returns:
         Geometric mean of the rms of position [m] and of heading or roll [rad]; nan where one was

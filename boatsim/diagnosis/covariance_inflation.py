@@ -17,11 +17,13 @@ from boatsim.diagnosis.problem import Fit, Problem, priors_of
 
 
 def inflate_covariance(problem: Problem, found: Fit) -> Fit:
-    """Return a fit with the sandwich covariance where that is larger than its own.
+    """Return a fit whose parameter covariance is inflated for correlated prediction errors.
+
+    The sandwich estimator over stretches of the recordings replaces a variance where it is larger.
 
     Args:
-        problem: Recordings and priors.
-        found: A converged fit.
+        problem: The estimation problem: recordings, vessel model, candidate effects and priors.
+        found: Converged fit of the vessel model with some candidate effects.
     """
     config = problem.config.fit
     blocks = list(blocks_of_rows(problem, config.stretch * found.levels.time_constant))
@@ -41,7 +43,10 @@ def inflate_covariance(problem: Problem, found: Fit) -> Fit:
 
 
 def blocks_of_rows(problem: Problem, seconds: float) -> Iterator[NDArray[np.intp]]:
-    """Yield the rows of the whitened errors of all recordings, stretch by stretch.
+    """Yield the indices of the whitened prediction errors that lie in each stretch of recordings.
+
+    A stretch is a short interval of given duration. Errors of different stretches count as
+    independent.
 
     Args:
         problem: Problem with the recordings.

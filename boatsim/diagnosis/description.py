@@ -10,7 +10,10 @@ from boatsim.physics.described_laws import SymbolicTerm
 
 @dataclass(frozen=True)
 class Curve:
-    """A term over the variable on which it depends: means over the bins that contain rows."""
+    """Force of a term found by symbolic regression, as a function of the variable it depends on.
+
+    Means over bins of that variable, of the term and of the force that the recordings require.
+    """
 
     over: str  # variable of the abscissa: a factor, "time" or "product"
     x: Array  # (B,) [SI]
@@ -21,7 +24,7 @@ class Curve:
 
 @dataclass(frozen=True)
 class FittedTerm:
-    """A term of a symbolic description, with its fit and its curve."""
+    """A term found by symbolic regression, with its fitted coefficient, evidence and curve."""
 
     term: SymbolicTerm  # with its coefficient
     sd: float  # of the coefficient
@@ -33,12 +36,15 @@ class FittedTerm:
 
 @dataclass(frozen=True)
 class Description:
-    """The terms, and the fit with those that hold for further recordings."""
+    """Formula that symbolic regression found for a force that no candidate effect explains.
+
+    It contains all terms, and the fit with those terms that also hold for held-out recordings.
+    """
 
     terms: tuple[FittedTerm, ...]
     fit: Fit
     left_over: float  # [nats] that a force beyond the assumed level gains in addition to all terms
 
     def effects(self) -> Mapping[str, SymbolicTerm]:
-        """Return the terms that hold for further recordings, by the names of their effects."""
+        """Return the symbolic terms that hold for held-out recordings, by name of the effect."""
         return {w.term.name: w.term for w in self.terms if w.carries}

@@ -20,7 +20,7 @@ OUTLIER = 0.99 * GATE  # [sd] least error of a row that an outlier may have
 
 @dataclass(frozen=True)
 class Divergence:
-    """The place at which the nominal model loses a recording.
+    """The time and axis at which the nominal vessel model stops following a recording.
 
     Attributes:
         run: Name of the recording.
@@ -38,11 +38,13 @@ class Divergence:
 
 
 def is_lost(problem: Problem, fit: Fit) -> bool:
-    """Return whether a fit is not finite, or does not follow the fitted recordings.
+    """Return whether a fitted vessel model cannot follow the recordings it was fitted to.
+
+    Also true if its evidence or covariance is not finite.
 
     Args:
-        problem: Recordings and priors.
-        fit: A fit.
+        problem: The estimation problem: recordings, vessel model, candidate effects and priors.
+        fit: Fit of the vessel model.
     """
     if not (np.isfinite(fit.evidence) and np.isfinite(fit.covariance).all()):
         return True
@@ -50,13 +52,14 @@ def is_lost(problem: Problem, fit: Fit) -> bool:
 
 
 def follow(problem: Problem, recordings: Sequence[MappedRecording]) -> Fit:
-    """Return the vessel as written with a latent force that is large enough to follow recordings.
+    """Return the nominal vessel model with a latent force large enough to follow recordings.
 
-    The axis whose latent force gains most likelihood is raised, step by step.
+    No parameter is fitted. The level of the latent (unmodelled) force is raised step by step, each
+    time on the axis where it gains most likelihood.
 
     Args:
-        problem: Priors and settings.
-        recordings: Recordings on the program of the problem.
+        problem: The estimation problem, with its priors and settings.
+        recordings: Recordings mapped to the vessel program of the problem.
     """
     everything = problem.on(recordings)
     fit = problem.nominal_hypothesis()
@@ -75,13 +78,14 @@ def follow(problem: Problem, recordings: Sequence[MappedRecording]) -> Fit:
 def divergences(
     problem: Problem, recordings: Sequence[MappedRecording], forces: Sequence[MissingForce]
 ) -> tuple[Divergence, ...]:
-    """Return where the nominal model loses each recording, the assumed disturbance acting.
+    """Return the time and axis at which the nominal vessel model stops following each recording.
 
-    If no recording is lost, the one with the largest errors is returned.
+    The latent force of the filter has the assumed disturbance level. If all recordings are
+    followed, the one with the largest errors is returned.
 
     Args:
-        problem: Priors and settings.
-        recordings: Recordings on the program of the problem.
+        problem: The estimation problem, with its priors and settings.
+        recordings: Recordings mapped to the vessel program of the problem.
         forces: Missing force of each recording.
     """
     passes = _passes(problem.on(recordings), problem.nominal_hypothesis()).passes
@@ -105,11 +109,11 @@ def divergences(
 
 
 def first_rows_are_finite(problem: Problem, recordings: Sequence[MappedRecording]) -> bool:
-    """Return whether the nominal model can be evaluated over the first seconds of a recording.
+    """Return whether the nominal vessel model has finite forces in the first seconds of recordings.
 
     Args:
-        problem: Priors and settings.
-        recordings: Recordings on the program of the problem.
+        problem: The estimation problem, with its priors and settings.
+        recordings: Recordings mapped to the vessel program of the problem.
     """
     passes = _passes(problem.on(recordings), problem.nominal_hypothesis()).passes
     for mapped, passed in zip(recordings, passes, strict=True):

@@ -20,7 +20,11 @@ ALONE = "alone"
 
 @dataclass(frozen=True)
 class PartErrors:
-    """Rms errors of free runs over one part of the data, for one family of signals."""
+    """Rms errors of several models' free runs over one recording, for one family of signals.
+
+    A free run is a simulation with the recorded commands alone; a family is position, heading or
+    roll.
+    """
 
     name: str  # of the recording
     fitted: bool  # else held out
@@ -30,7 +34,10 @@ class PartErrors:
 
 @dataclass(frozen=True)
 class Evaluation:
-    """Free runs over held-out recordings, errors part by part, and unexplained forces."""
+    """Result of the validation: free runs over held-out recordings, their errors, remaining forces.
+
+    The nominal, the recalibrated and the patched vessel model are compared.
+    """
 
     horizon: float  # [s] of the free runs
     free_runs: tuple[FreeRun, ...]  # over held-out recordings
@@ -44,7 +51,7 @@ class Evaluation:
 
 
 def compared_fits(ranking: Ranking) -> dict[str, Fit]:
-    """Return the fits that are compared, by the names of `MODELS`.
+    """Return the fits of the nominal, recalibrated and patched vessel model, by these names.
 
     Args:
         ranking: Result of the selection.
@@ -54,11 +61,14 @@ def compared_fits(ranking: Ranking) -> dict[str, Fit]:
 
 
 def evaluate(problem: Problem, ranking: Ranking, held_out: Sequence[MappedRecording]) -> Evaluation:
-    """Evaluate the models of a selection on all recordings.
+    """Compare the nominal, the recalibrated and the patched vessel model over all recordings.
+
+    Free runs (simulations with the recorded commands alone) give the errors, and the smoothed
+    latent force gives the force that each model leaves unexplained.
 
     Args:
-        problem: Recordings and priors.
-        ranking: Result of the selection, with its description.
+        problem: The estimation problem: recordings, vessel model, candidate effects and priors.
+        ranking: Result of the selection of effects, with the formula, if one was found.
         held_out: Held-out recordings, at least one.
     """
     horizon = free_run_horizon(problem, held_out)
@@ -81,7 +91,9 @@ def evaluate(problem: Problem, ranking: Ranking, held_out: Sequence[MappedRecord
 
 
 def in_order(recordings: Sequence[MappedRecording]) -> list[MappedRecording]:
-    """Return recordings as they were given, the thirds of a single one in order of time.
+    """Return mapped recordings in the order in which the user gave them.
+
+    The thirds of a single recording that was split are returned in order of time.
 
     Args:
         recordings: Fitted and held-out recordings.

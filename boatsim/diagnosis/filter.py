@@ -52,7 +52,11 @@ LEAST_RATE_VARIANCE = 1e-8
 
 @dataclass(frozen=True)
 class NoiseLevels:
-    """Levels of sensor noise and of the latent force, shared by all recordings."""
+    """Standard deviations of sensor noise, and rms and correlation time of the latent force.
+
+    The latent force is the stochastic, unmodelled force that the Kalman filter estimates on each
+    axis. All recordings of a diagnosis share these levels.
+    """
 
     force: Array  # (NQ,) rms of the latent force [N, N m]
     time_constant: float  # [s] correlation time of the latent force
@@ -61,7 +65,9 @@ class NoiseLevels:
     initial_force: Array = field(default_factory=lambda: np.zeros(1))
 
     def with_time_constant(self, seconds: float) -> "NoiseLevels":
-        """Return the levels with another correlation time and the same effect on slow motion.
+        """Return noise levels with another correlation time of the latent (unmodelled) force.
+
+        Its rms is changed so that its effect on slow motion stays the same.
 
         Args:
             seconds: Correlation time of the latent force [s].
@@ -72,7 +78,10 @@ class NoiseLevels:
 
 @dataclass(frozen=True)
 class InitialState:
-    """Prior of the filter's state at the first row: positions, earth-axes rates, latent forces."""
+    """Prior mean and covariance of the Kalman filter's state at the first row of a recording.
+
+    The state holds the positions, the rates in earth axes and the latent forces.
+    """
 
     mean: Array  # (3 NQ,)
     covariance: Array  # (3 NQ, 3 NQ) without sensor noise and latent forces
@@ -82,7 +91,11 @@ class InitialState:
 
 @dataclass(frozen=True, eq=False)
 class FilterPass:
-    """Result of one pass of the Kalman filter over a recording; its arrays are read-only."""
+    """Result of one pass of the extended Kalman filter over a recording.
+
+    It holds the log likelihood, the whitened prediction errors, the gains and the linearisation.
+    The arrays are read-only.
+    """
 
     log_likelihood: float
     whitened: Array  # (N C,) prediction errors in standard deviations, 0 where nothing was recorded
@@ -94,12 +107,16 @@ class FilterPass:
 
     @property
     def log_density(self) -> float:
-        """Log of the density that the pass assigned to measurements equal to its predictions."""
+        """Log density of measurements that would be equal to the filter's predictions.
+
+        It depends on the predicted covariances only, not on the prediction errors, and is known up
+        to a constant.
+        """
         return float(np.sum(np.log(self.scale[self.scale > 0.0])))
 
 
 class SmoothedStates(NamedTuple):
-    """Smoothed states of a recording and their covariances.
+    """States of a recording estimated by the Rauch-Tung-Striebel smoother, with their covariances.
 
     The errors of rows i < j have the covariance gains[i] @ ... @ gains[j - 1] @ covariances[j].
     """
@@ -110,7 +127,7 @@ class SmoothedStates(NamedTuple):
 
 
 class HullMotion(NamedTuple):
-    """Time scales of the nominal hull at rest."""
+    """Fastest decay rate of the nominal hull about rest, and the integration step it allows."""
 
     decay_rate: float  # [1/s] of the fastest motion
     largest_step: float  # [s] with which Runge-Kutta follows its oscillations
@@ -118,7 +135,10 @@ class HullMotion(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class MappedRecording:
-    """A recording mapped to a program: measurements, commands and parameter values."""
+    """A recording expressed in the signals of a compiled vessel program, ready for the filter.
+
+    It holds measurements, commands and the parameter values of the vessel model for this recording.
+    """
 
     name: str
     program: Program
@@ -149,12 +169,12 @@ class MappedRecording:
 
     @cached_property
     def initial(self) -> InitialState:
-        """Prior of the state at the first row."""
+        """Prior of the Kalman filter's state at the first row of the recording."""
         return self.specified_initial or _estimated_initial(self)
 
     @property
     def inputs(self) -> Inputs:
-        """Row times and commands, as the compiled functions take them."""
+        """Row times and commands of the recording in the form that the compiled functions take."""
         return Inputs(self.times, self.command_times, self.command_values)
 
     @cached_property
@@ -176,7 +196,10 @@ class MappedRecording:
 
     @cached_property
     def step(self) -> float:
-        """Largest integration step of the filter [s]."""
+        """Largest integration step [s] of the Kalman filter for this recording.
+
+        It is limited by the usual step, by stability and by the oscillations of the hull.
+        """
         if self.specified_step is not None:
             return self.specified_step
         config, motion = self.config, self._motion
@@ -190,21 +213,21 @@ class MappedRecording:
 
     @property
     def stiff(self) -> bool:
-        """Whether a motion of the hull decays within a sample.
+        """Whether the fastest motion of the hull decays within one sample of the recording.
 
-        The damping of such a hull influences the gains of the filter most.
+        The damping of such a hull influences the gains of the Kalman filter most.
         """
         return self._motion.decay_rate * float(np.median(np.diff(self.times))) > 1.0
 
     def filter(
         self, values: Array, on: Array, levels: NoiseLevels, about: FilterPass | None = None
     ) -> FilterPass:
-        """Return a full pass of the extended Kalman filter.
+        """Run the extended Kalman filter over the recording and return its complete result.
 
         Args:
-            values: Parameter values of the run, as `values` of the recording.
+            values: Parameter values of the vessel model, as `values` of the recording.
             on: (effects,) 1 for the effects that act, else 0.
-            levels: Levels of sensor noise and latent force.
+            levels: Levels of sensor noise and of the latent (unmodelled) force.
             about: Pass whose linearisation is used again, for other noise levels; None: linearise.
         """
         if about is not None:
@@ -242,7 +265,10 @@ class MappedRecording:
     def log_likelihood(
         self, values: Array, on: Array, levels: NoiseLevels, about: FilterPass | None = None
     ) -> float:
-        """Return the log likelihood of `filter` with the same arguments."""
+        """Return only the log likelihood of the recording by the extended Kalman filter.
+
+        It costs less than a complete pass by `filter`, which takes the same arguments.
+        """
         if about is not None:
             return self._run_filter(values, on, levels, about).log_likelihood
         key = _key_of(values, on, levels)
@@ -251,12 +277,14 @@ class MappedRecording:
     def whitened_errors(
         self, values: Array, on: Array, levels: NoiseLevels, about: FilterPass
     ) -> Array:
-        """Return the whitened prediction errors (N C,) with the gains of another pass.
+        """Return the filter's whitened prediction errors (N C,) with the gains of another pass.
+
+        Fixed gains make the errors a smooth function of the parameters, as Gauss-Newton steps need.
 
         Args:
-            values: Parameter values of the run.
+            values: Parameter values of the vessel model for this recording.
             on: (effects,) 1 for the effects that act, else 0.
-            levels: Levels of sensor noise and latent force.
+            levels: Levels of sensor noise and of the latent (unmodelled) force.
             about: Pass whose gains, scale and integration steps are used.
         """
         whitened = np.zeros(self.measured.shape)
@@ -271,12 +299,14 @@ class MappedRecording:
         return _read_only(whitened.ravel())
 
     def smooth(self, values: Array, on: Array, levels: NoiseLevels) -> SmoothedStates:
-        """Return smoothed states, linearised about the rates that are found for the first row.
+        """Return the smoothed states of the recording (Rauch-Tung-Striebel smoother).
+
+        The model is linearised about the rates that are found for the first row.
 
         Args:
-            values: Parameter values of the run.
+            values: Parameter values of the vessel model for this recording.
             on: (effects,) 1 for the effects that act, else 0.
-            levels: Levels of sensor noise and latent force.
+            levels: Levels of sensor noise and of the latent (unmodelled) force.
         """
         n, channels = self.measured.shape
         size, state, nq = self.program.module.NZ, len(self.initial.mean), self.program.module.NQ
@@ -306,15 +336,15 @@ class MappedRecording:
     def free_runs(
         self, values: Array, on: Array, levels: NoiseLevels, horizon: float
     ) -> list[tuple[int, Array]]:
-        """Return free runs, each from a smoothed state with the recorded commands alone.
+        """Simulate free runs: from states of the recording, with the recorded commands alone.
 
-        They start every horizon from the first row; a remainder shorter than the horizon is
-        omitted.
+        They start from the smoothed states at every multiple of the horizon from the first row; a
+        remainder shorter than the horizon is omitted.
 
         Args:
-            values: Parameter values of the run.
+            values: Parameter values of the vessel model for this recording.
             on: (effects,) 1 for the effects that act, else 0.
-            levels: Levels of sensor noise and latent force.
+            levels: Levels of sensor noise and of the latent (unmodelled) force.
             horizon: Length of each free run [s].
 
         Returns:
@@ -378,15 +408,16 @@ class MappedRecording:
     def latent_force_rms(
         self, values: Array, on: Array, levels: NoiseLevels
     ) -> tuple[Array, Array]:
-        """Return the rms of the latent force on a hull with these parameters.
+        """Return the rms of the latent (unmodelled) force, scaled to the inertia of a fitted hull.
 
-        It causes the same accelerations as the given level on the nominal hull. If the force itself
-        were kept, added mass would reduce the accelerations and gain evidence for that alone.
+        The force causes the same accelerations as the given level on the nominal hull. If the force
+        itself were kept, added mass would reduce the accelerations and gain evidence for that
+        alone.
 
         Args:
-            values: Parameter values of the run.
+            values: Parameter values of the vessel model for this recording.
             on: (effects,) 1 for the effects that act, else 0.
-            levels: Levels of sensor noise and latent force.
+            levels: Levels of sensor noise and of the latent (unmodelled) force.
 
         Returns:
             Rms (NQ,) [N, N m], and rms (NQ,) at the first row.
@@ -505,12 +536,17 @@ def _rates_of_change(t: Array, y: Array) -> Array:
 
 
 def rigid_body_values(values: Array) -> Array:
-    """Return mass, mass centre and inertias, the last of a run's parameter values."""
+    """Return mass, mass centre and inertias of the hull from a vessel model's parameter values.
+
+    They are the last entries of the array.
+    """
     return values[-len(BODY) :]
 
 
 def free_run_segments(times: Array, horizon: float) -> tuple[list[int], list[int]]:
-    """Return the rows at which free runs start and end.
+    """Return the first and last rows of the free runs into which a recording is divided.
+
+    A free run is a simulation from a recorded state with the recorded commands alone.
 
     Args:
         times: (N,) times of the rows [s].
@@ -530,7 +566,7 @@ def free_run_segments(times: Array, horizon: float) -> tuple[list[int], list[int
 
 
 def axes_of(vessel: Vessel) -> tuple[str, ...]:
-    """Return the degrees of freedom of a vessel in the order of the filter."""
+    """Return the degrees of freedom of a vessel in the order of the Kalman filter's state."""
     return tuple(axis for axis in AXES if axis in vessel.dof)
 
 
@@ -541,7 +577,10 @@ def map_recording(
     noise_ratio: Mapping[str, float] | None = None,
     config: DiagnosisConfig = DEFAULT,
 ) -> MappedRecording:
-    """Return a recording mapped to a program.
+    """Map a recording to a compiled vessel program, so that the Kalman filter can be run over it.
+
+    Its columns become measured channels and commands of the vessel, and its notes set parameters
+    and noise levels.
 
     Args:
         recording: Measured signals and commands.
@@ -633,7 +672,11 @@ def _check_columns(recording: Recording, vessel: Vessel, found: Sequence[Signal]
 
 
 def command_changes(times: Array, commands: Array) -> tuple[Array, Array]:
-    """Return the times (M,) [s] at which commands change, and the commands (M, K) from then on."""
+    """Reduce sampled commands to the rows at which they change.
+
+    Returns:
+        Times (M,) [s] of the changes, and the commands (M, K) from then on.
+    """
     new = np.append(True, (np.diff(commands, axis=0) != 0.0).any(axis=1))
     return np.ascontiguousarray(times[new]), np.ascontiguousarray(commands[new])
 
@@ -649,13 +692,14 @@ def _commands_at_own_times(recording: Recording, vessel: Vessel) -> tuple[Array,
 def hull_motion(
     program: Program, values: Array, command: Array, config: FilterConfig
 ) -> HullMotion:
-    """Return the time scales of the nominal hull at rest.
+    """Return the fastest decay rate and the largest integration step of the nominal hull.
 
-    The phase of Runge-Kutta is off by (w h)^5 / 120 per step.
+    The model is linearised about rest. The step keeps the phase error of Runge-Kutta, (w h)^5 / 120
+    per step, small for all oscillations.
 
     Args:
         program: Compiled effects of the vessel.
-        values: Parameter values of the run.
+        values: Parameter values of the vessel model for this recording.
         command: (K,) commands in force.
         config: Settings of the filter.
     """
@@ -682,11 +726,13 @@ def hull_motion(
 
 
 def inertia_of(program: Program, values: Array, on: Array) -> Array:
-    """Return the mass or moment of inertia (NQ,) of each degree of freedom [kg, kg m^2].
+    """Return the mass or moment of inertia (NQ,) with added mass of each degree of freedom.
+
+    The unit is kg or kg m^2.
 
     Args:
         program: Compiled effects of the vessel.
-        values: Parameter values of a run.
+        values: Parameter values of the vessel model.
         on: (effects,) 1 for the effects that act, else 0.
     """
     code = program.module
@@ -705,8 +751,9 @@ def _places(dof: tuple[str, ...]) -> list[int]:
 
 
 def parameter_values(program: Program, facts: Mapping[str, Any]) -> Array:
-    """Return the parameters of all effects, with specified facts put in, then the body's numbers.
+    """Return all parameter values of a vessel program as an array, with facts of a run put in.
 
+    The parameters of all effects come first, then mass, mass centre and inertias of the hull.
     Stochastic forces have no fixed realisation here: the filter estimates it, a free run omits it.
 
     Args:
@@ -743,9 +790,10 @@ def _drives(vessel: Vessel, command: str, actuator: str) -> bool:
 def shared_noise(
     vessel: Vessel, recordings: Sequence[Recording], config: DiagnosisConfig = DEFAULT
 ) -> dict[str, float]:
-    """Return the sensor noise that recordings share, as standard deviations by family.
+    """Return the sensor noise that all recordings share, as standard deviations by noise family.
 
-    The notes of the first recording take precedence, then the vessel file, then the data.
+    The notes of the first recording take precedence, then the vessel file, then an estimate from
+    the data.
 
     Args:
         vessel: Vessel of the recordings.
@@ -770,10 +818,10 @@ def relative_noise(
     recording: Recording,
     config: DiagnosisConfig = DEFAULT,
 ) -> dict[str, float]:
-    """Return the relative sensor noise of a recording, by family, where it differs a lot.
+    """Return the ratio of one recording's sensor noise to that of all recordings, by noise family.
 
-    An exact log and one made by a camera must not be given the same noise, because a free run
-    starts at the state that its recording shows.
+    Only families are included in which it differs a lot. An exact log and one made by a camera must
+    not be given the same noise, because a free run starts at the state that its recording shows.
 
     Args:
         vessel: Vessel of the recordings.
@@ -794,7 +842,7 @@ def relative_noise(
 
 
 def specified_noise(recording: Recording) -> dict[str, float]:
-    """Return the sensor noise that a recording's notes specify, by family.
+    """Return the sensor noise that a recording's notes specify, as standard deviations by family.
 
     Raises:
         BadInput: A level is out of range.
@@ -810,7 +858,10 @@ def specified_noise(recording: Recording) -> dict[str, float]:
 
 
 def facts_of(vessel: Vessel, recording: Recording) -> dict[str, Any]:
-    """Return the facts of a run: those of the vessel, overridden by the recording's notes."""
+    """Return the facts known about a recording: those of the vessel file, overridden by its notes.
+
+    Facts are for example the forward speed, or the walls of the tank.
+    """
     return {**vessel.diagnosis.facts, **recording.notes.facts}
 
 
@@ -822,7 +873,7 @@ def _name_of(recording: Recording) -> str:
 def prior_levels(
     vessel: Vessel, recordings: Sequence[Recording], config: DiagnosisConfig = DEFAULT
 ) -> NoiseLevels:
-    """Return the noise levels before any fit.
+    """Return the assumed levels of sensor noise and of the latent (unmodelled) force before a fit.
 
     The notes of the first recording take precedence over the rules of the configuration.
 

@@ -28,15 +28,16 @@ LOST = 1e-6  # [nats] that a step may lose by rounding
 
 
 def fit(problem: Problem, found: Fit, converged: bool = False) -> Fit:
-    """Return a hypothesis with its parameters and its noise levels fitted.
+    """Fit the parameters and the noise levels of one hypothesis to the recordings.
 
-    Parameters are fitted first, then the levels of the latent force with the spectra of stochastic
-    forces, then the parameters again.
+    A hypothesis is the vessel model with a given set of candidate effects. Parameters are fitted
+    first, then the levels of the latent force with the spectra of stochastic forces, then the
+    parameters again.
 
     Args:
-        problem: Recordings and priors.
-        found: The start.
-        converged: The parameters have been fitted to the present noise levels.
+        problem: The estimation problem: recordings, vessel model, candidate effects and priors.
+        found: Hypothesis with the values from which the fit starts.
+        converged: Whether the parameters have already been fitted to the present noise levels.
     """
     config = problem.config.fit
     variance = np.diag(found.covariance)
@@ -50,13 +51,14 @@ def fit(problem: Problem, found: Fit, converged: bool = False) -> Fit:
 
 
 def converge(problem: Problem, found: Fit) -> Fit:
-    """Return a hypothesis refitted until its parameters and its noise levels agree.
+    """Refit a hypothesis until its parameters and its noise levels no longer change.
 
-    A later gain of evidence is then not merely the gain of a refit.
+    A hypothesis is the vessel model with a given set of candidate effects. A later gain of evidence
+    is then not merely the gain of a refit.
 
     Args:
-        problem: Recordings and priors.
-        found: The start.
+        problem: The estimation problem: recordings, vessel model, candidate effects and priors.
+        found: Hypothesis with the values from which the fit starts.
     """
     config = problem.config.fit
     for i in range(config.most_refits):
@@ -70,13 +72,13 @@ def converge(problem: Problem, found: Fit) -> Fit:
 
 
 def remove_effect(problem: Problem, found: Fit, name: str) -> Fit:
-    """Return the start of a fit without one of the effects.
+    """Remove one candidate effect from a fit; the result is a starting point for a new fit.
 
-    The parameters are moved towards zero effect where the simulated boat would diverge.
+    The other parameters are moved towards zero effect where the simulated boat would diverge.
 
     Args:
-        problem: Recordings and priors.
-        found: A fit.
+        problem: The estimation problem: recordings, vessel model, candidate effects and priors.
+        found: Fit of the vessel model with some candidate effects.
         name: Name of one of its effects.
     """
     effects = tuple(n for n in found.effects if n != name)
@@ -94,26 +96,32 @@ def remove_effect(problem: Problem, found: Fit, name: str) -> Fit:
 def unfitted_hypothesis(
     effects: tuple[str, ...], free: tuple[FreeParameter, ...], theta: Array, levels: NoiseLevels
 ) -> Fit:
-    """Return a hypothesis at a starting point, with the prior covariance and no evidence yet.
+    """Return a hypothesis at given parameter values, before any fit.
+
+    A hypothesis is the vessel model with a set of candidate effects. Its covariance is that of the
+    prior, and its evidence is minus infinity.
 
     Args:
         effects: Names of the candidates that act.
         free: Its free parameters.
         theta: (F,) their values.
-        levels: Levels of sensor noise and latent force.
+        levels: Levels of sensor noise and of the latent (unmodelled) force.
     """
     covariance = np.diag([f.sd**2 for f in free])
     return Fit(effects, free, theta, covariance, levels, -np.inf)
 
 
 class ParameterSpace:
-    """Bounds and priors of free parameters, for steps in units of the prior sd."""
+    """Bounds and normal priors of the free parameters of a hypothesis, for Gauss-Newton steps.
+
+    Steps are measured in prior standard deviations.
+    """
 
     def __init__(self, free: Sequence[FreeParameter]) -> None:
         self.mean, self.sd, self.low, self.high = priors_of(free)
 
     def clip(self, theta: Array) -> Array:
-        """Return parameters (F,) within the bounds."""
+        """Return parameter values (F,) limited to their bounds."""
         return np.asarray(np.clip(theta, self.low, self.high))
 
     def damped_step(self, theta: Array, A: Array, g: Array, damping: float) -> Array:
@@ -144,7 +152,7 @@ class ParameterSpace:
         return self.clip(theta + self.sd * step)
 
     def predicted_gain(self, J: Array, g: Array, before: Array, after: Array) -> float:
-        """Return the gain of the score that the quadratic model predicts for a step.
+        """Return the gain of the log posterior that its quadratic model predicts for a step.
 
         Args:
             J: (rows, F) derivatives of the whitened errors by theta / sd.
@@ -156,12 +164,17 @@ class ParameterSpace:
         return float(g @ s - 0.5 * (s @ s + np.sum((J @ s) ** 2)))
 
     def covariance(self, information: Array) -> Array:
-        """Return the covariance (F, F) from the information (F, F) in units of the prior sd."""
+        """Return the posterior covariance (F, F) of the parameters, from their information matrix.
+
+        The information matrix (F, F) is given in units of the prior standard deviations.
+        """
         return np.asarray(np.linalg.inv(information) * np.outer(self.sd, self.sd), dtype=np.float64)
 
 
 def agrees_with_prediction(problem: Problem, gain: float, predicted: float) -> bool:
-    """Whether a step gained what the quadratic model predicted, so that the next gains little.
+    """Whether a Gauss-Newton step gained what the quadratic model of the log posterior predicted.
+
+    The next step then gains little, and the search may end.
 
     Args:
         problem: Problem whose configuration holds the tolerance.
@@ -173,9 +186,10 @@ def agrees_with_prediction(problem: Problem, gain: float, predicted: float) -> b
 
 
 def log_prior(free: Sequence[FreeParameter], theta: Array) -> float:
-    """Return the log prior density, up to a constant that all hypotheses share.
+    """Return the log prior density of the free parameters of a hypothesis.
 
-    Half of a normal distribution, of a parameter with its mean at a bound, has twice the density.
+    It is exact up to a constant that all hypotheses share. Half of a normal distribution, of a
+    parameter with its mean at a bound, has twice the density.
 
     Args:
         free: Free parameters.
@@ -188,7 +202,9 @@ def log_prior(free: Sequence[FreeParameter], theta: Array) -> float:
 
 
 def log_truncation(free: Sequence[FreeParameter], theta: Array, covariance: Array) -> float:
-    """Return the log of the share of a posterior that lies within one-sided bounds.
+    """Return the log of the share of a normal posterior that lies within one-sided bounds.
+
+    It corrects the Laplace evidence of parameters that are limited on one side.
 
     Args:
         free: Free parameters.
@@ -229,19 +245,19 @@ class _Hypothesis:
 
 
 def gauss_newton(problem: Problem, start: Fit, iterations: int, enough: float) -> Fit:
-    """Maximise prior and likelihood over the parameters of a hypothesis by Gauss-Newton steps.
+    """Maximise the posterior density of a hypothesis over its parameters by Gauss-Newton steps.
 
     Derivatives are computed at the start and then updated from each step (Broyden 1965). They are
     computed again only where a step does not gain what they predicted.
 
     Args:
-        problem: Recordings and priors.
-        start: The start; its noise levels are kept.
+        problem: The estimation problem: recordings, vessel model, candidate effects and priors.
+        start: Hypothesis with the values from which the search starts; its noise levels are kept.
         iterations: Largest number of steps.
         enough: A smaller gain ends the search [nats].
 
     Returns:
-        The fit with its covariance and its evidence.
+        The fit with its covariance and its Laplace evidence.
     """
     config = problem.config.fit
     on = problem.program.switches(start.effects)
@@ -292,7 +308,9 @@ def gauss_newton(problem: Problem, start: Fit, iterations: int, enough: float) -
 
 
 def broyden_update(J: Array, change: Array, step: Array) -> Array:
-    """Return derivatives that agree with the change over a step, and otherwise differ least from J.
+    """Return a Jacobian updated by Broyden's rank-one formula after a step.
+
+    It agrees with the change of the errors over the step, and otherwise differs least from J.
 
     Args:
         J: (rows, F) derivatives of the whitened errors by theta / sd.
@@ -354,14 +372,17 @@ def jacobian(
     white: Array | None = None,
     first: int = 0,
 ) -> Array:
-    """Return the derivative of the whitened errors by theta / sd, with the gains held.
+    """Return the Jacobian of the whitened prediction errors with respect to the free parameters.
+
+    Parameters are measured in prior standard deviations (theta / sd). The gains of the Kalman
+    filter are held fixed.
 
     Args:
-        problem: Recordings and priors.
+        problem: The estimation problem: recordings, vessel model, candidate effects and priors.
         free: Free parameters.
         theta: (F,) their values.
         on: (effects,) 1 for the effects that act, else 0.
-        levels: Levels of sensor noise and latent force.
+        levels: Levels of sensor noise and of the latent (unmodelled) force.
         about: Passes whose gains are used.
         white: (rows,) whitened errors at theta; None: those of `about`.
         first: Parameters before this one are omitted.

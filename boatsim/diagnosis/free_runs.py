@@ -18,7 +18,10 @@ FAMILIES = {
 
 @dataclass(frozen=True)
 class FreeRun:
-    """A stretch of a recording, and the simulation of each model from its first row."""
+    """A stretch of a recording, with a simulation of it by each of several vessel models.
+
+    Each simulation starts from the state at the first row and uses the recorded commands alone.
+    """
 
     run: str  # name of the recording
     start_s: float
@@ -28,7 +31,7 @@ class FreeRun:
     channels: dict[str, dict[str, Array]]
 
     def deviations(self, model: str, signals: Sequence[str]) -> list[Array]:
-        """Return the differences (M,) between a model and the recording.
+        """Return the differences (M,) between the simulation by one model and the recorded signals.
 
         Args:
             model: Name of the model.
@@ -39,7 +42,9 @@ class FreeRun:
 
 
 def free_run_horizon(problem: Problem, held_out: Sequence[MappedRecording]) -> float:
-    """Return the length of free runs [s], at most that of the longest held-out recording.
+    """Return the duration [s] of free runs, at most that of the longest held-out recording.
+
+    A free run is a simulation from a recorded state with the recorded commands alone.
 
     Args:
         problem: Problem with the usual length.
@@ -57,15 +62,19 @@ def free_runs(
     recordings: Sequence[MappedRecording],
     horizon: float,
 ) -> list[FreeRun]:
-    """Return free runs of several models over recordings.
+    """Simulate fitted models over stretches of recordings with the recorded commands alone.
 
-    Each starts at its own smoothed state, every horizon.
+    A run of each model starts at every multiple of the horizon, from the state that this model's
+    smoother estimates there.
 
     Args:
         problem: Problem with the program and the priors.
         fits: Fits by the name of the model.
         recordings: Recordings mapped to a program of the same vessel.
         horizon: Length of each free run [s].
+
+    Returns:
+        One free run per stretch, with the recorded signals and those of each model.
     """
     found = []
     for mapped in recordings:
@@ -98,7 +107,9 @@ def _free_run(
 
 
 def rms_errors(runs: Sequence[FreeRun]) -> dict[str, dict[str, float]]:
-    """Return the rms error of free runs by family of signals and model.
+    """Return the rms errors of free runs (simulations with the recorded commands alone).
+
+    The first key is the family of signals (position, heading or roll), the second one the model.
 
     Args:
         runs: Free runs with the same models.
@@ -120,7 +131,7 @@ def rms_errors(runs: Sequence[FreeRun]) -> dict[str, dict[str, float]]:
 
 
 def mean_square(off: Sequence[Array]) -> float:
-    """Return the mean square of deviations, without those that are nan; nan if there are none.
+    """Return the mean square of deviations, ignoring nan; nan if there are no deviations.
 
     Args:
         off: Arrays of deviations.

@@ -24,7 +24,7 @@ MOST_FOLDERS = 8  # in front of a file's name that may distinguish it from other
 
 @dataclass(frozen=True)
 class Request:
-    """Files and options of one diagnosis."""
+    """Files and options that the user gives to one diagnosis."""
 
     runs: Sequence[Path]  # recordings to fit
     hold_out: Sequence[Path] = ()  # recordings for validation
@@ -38,7 +38,7 @@ class Request:
 
 @dataclass(frozen=True)
 class Loaded:
-    """Recordings that are cleaned and divided into fitted and held-out ones, with their vessels."""
+    """Cleaned recordings, divided into fitted and held-out ones, with vessels and findings."""
 
     fitted: Sequence[Recording]
     held_out: Sequence[Recording]
@@ -59,12 +59,15 @@ class Loaded:
 def load(
     request: Request, report: Report = ignore_progress, config: DiagnosisConfig = DEFAULT
 ) -> Loaded:
-    """Read, check and clean the recordings of a request, and hold some of them out.
+    """Read, check and clean the recordings of a diagnosis, and hold some of them out.
 
     Args:
         request: Files and options.
         report: Receives the progress.
         config: Settings of the diagnosis.
+
+    Returns:
+        The fitted and the held-out recordings, with their vessels and the findings of the checks.
 
     Raises:
         BadInput: A file cannot be used.
@@ -114,7 +117,7 @@ def vessel_for(
     load_conditions: Sequence[str],
     config: DiagnosisConfig = DEFAULT,
 ) -> Vessel:
-    """Return the vessel of a recording.
+    """Return the vessel model that belongs to the file of a recording.
 
     Args:
         path: File of the recording.
@@ -160,13 +163,16 @@ def open_recording(
     load_conditions: Sequence[str],
     config: DiagnosisConfig = DEFAULT,
 ) -> tuple[Recording, Vessel]:
-    """Return a recording, read with the column names and command limits of its vessel.
+    """Read a recording from a file, with the column names and command limits of its vessel.
 
     Args:
         path: File of the recording.
         vessel: Name of the vessel; None: that of the recording's notes.
         load_conditions: Names of load conditions.
         config: Settings of the diagnosis.
+
+    Returns:
+        The recording and its vessel.
 
     Raises:
         BadInput: The file or its vessel cannot be used.
@@ -179,10 +185,10 @@ def open_recording(
 def split_recordings(
     recordings: Sequence[Recording], hold_out: Sequence[Recording]
 ) -> tuple[list[Recording], list[Recording], str]:
-    """Divide recordings into fitted and held-out ones.
+    """Divide recordings into those to fit and those held out for validation.
 
-    If none is specified, the last recording is held out, or the middle third of a single one: the
-    end of a decay would be nearly linear and test nothing.
+    If the user specifies none, the last recording is held out, or the middle third of a single one:
+    the end of a decay would be nearly linear and test nothing.
 
     Args:
         recordings: Recordings to fit.
@@ -212,7 +218,9 @@ def split_recordings(
 
 
 def recording_order(names: Sequence[str], starts: Sequence[float]) -> list[int]:
-    """Return the order of recordings: as given, but the thirds of a single one in order of time.
+    """Return the indices that put recordings into the order in which they were given.
+
+    A single recording that was split into thirds has its thirds in order of time.
 
     Args:
         names: Names of the recordings.
@@ -229,7 +237,7 @@ def _third_of_recording(name: str, which: str) -> str:
 
 
 def check_same_vessel(found: Sequence[Vessel]) -> None:
-    """Check that recordings are of one vessel.
+    """Check that all recordings are of one vessel.
 
     Raises:
         BadInput: They are of several ones.

@@ -31,9 +31,9 @@ def check_files(
     vessel: str | None = None,
     load_conditions: Sequence[str] = (),
 ) -> tuple[dict[Path, list[LogEntry]], list[BadInput]]:
-    """Return what is wrong with each of some files.
+    """Check files of recordings for faults, without a diagnosis of the vessel.
 
-    A file whose table is at fault is not mapped to its vessel.
+    If the table of a file is at fault, the file is not compared with the vessel model.
 
     Args:
         runs: Files of recordings.
@@ -41,7 +41,7 @@ def check_files(
         load_conditions: Names of load conditions.
 
     Returns:
-        Entries by file, and the errors of files that cannot be read.
+        Findings by file, and the errors of files that cannot be read.
 
     Raises:
         BadInput: No vessel is named, or several.
@@ -100,7 +100,7 @@ def correction_hint(
     vessel: str | None,
     load_conditions: Sequence[str],
 ) -> str:
-    """Return the correction of the first file that is refused, for an error message.
+    """Return lines that correct the first recording that cannot be read, for an error message.
 
     Args:
         runs: Files of recordings.

@@ -25,11 +25,13 @@ FEWEST_ROWS = 8  # of a signal from which its noise is estimated
 
 
 def log_force_prior(problem: Problem, levels: NoiseLevels) -> float:
-    """Return the log prior of the latent force: near the assumed level, and rather more than less.
+    """Return the log prior density of the levels of the latent (unmodelled) force.
+
+    It is highest at the assumed disturbance level, and decreases faster below it than above.
 
     Args:
         problem: Problem with the assumed levels.
-        levels: Levels of a hypothesis.
+        levels: Noise levels of a hypothesis.
     """
     config = problem.config.fit
     over = np.log(levels.force / problem.ambient.force)
@@ -67,15 +69,16 @@ def _noise_prior(problem: Problem, logs: Array, specified: Array) -> float:
 
 
 def fit_force(problem: Problem, found: Fit, enough: float | None = None) -> Fit:
-    """Return a hypothesis with the level of the latent force of each axis refitted.
+    """Refit the level of the latent (unmodelled) force on each axis; keep the other parameters.
 
-    The spectra of its stochastic forces are fitted together with it. Where the error of an
-    instrument drifts, so is the noise of the instruments, which was fitted without that error.
+    The spectra of the fit's stochastic forces are fitted together with it. If the fit contains the
+    drift of an instrument, the sensor noise is refitted too, because it was fitted without that
+    drift.
 
     Args:
-        problem: Recordings and priors.
-        found: The start.
-        enough: Accuracy [nats]; None: that of levels which are fitted again.
+        problem: The estimation problem: recordings, vessel model, candidate effects and priors.
+        found: Fit from which the search starts.
+        enough: Accuracy [nats]; None: the rough one of levels that are fitted again later.
     """
     if enough is None:
         enough = problem.config.fit.rough_gain
@@ -113,11 +116,11 @@ def fit_force(problem: Problem, found: Fit, enough: float | None = None) -> Fit:
 
 
 def fit_noise(problem: Problem, found: Fit) -> Fit:
-    """Return a hypothesis with sensor noise and latent force fitted and its parameters kept.
+    """Fit the sensor noise and the level of the latent (unmodelled) force; keep all parameters.
 
     Args:
-        problem: Recordings and priors.
-        found: The start.
+        problem: The estimation problem: recordings, vessel model, candidate effects and priors.
+        found: Fit of the vessel model whose parameters are kept.
     """
     config, prior_levels = problem.config.fit, problem.ambient
     families = _families(problem)
@@ -160,11 +163,16 @@ def fit_noise(problem: Problem, found: Fit) -> Fit:
 
 
 def fit_time_constant(problem: Problem, found: Fit) -> NoiseLevels:
-    """Return the levels of the latent force with its correlation time, which locate it in time.
+    """Fit level and correlation time of the latent (unmodelled) force; keep all parameters.
+
+    They are used to locate a missing force in time.
 
     Args:
-        problem: Recordings and priors.
-        found: A fit, whose parameters are kept.
+        problem: The estimation problem: recordings, vessel model, candidate effects and priors.
+        found: Fit of the vessel model whose parameters are kept.
+
+    Returns:
+        The noise levels with the fitted level and correlation time.
     """
     config = problem.config.fit
     on = problem.program.switches(found.effects)

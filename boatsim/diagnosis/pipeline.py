@@ -60,7 +60,10 @@ NOT_SELECTED_AGAIN = (
 
 @dataclass(frozen=True)
 class Selection:
-    """Result of the select stage: the problem with its correlation time, and the ranking."""
+    """Result of selecting effects: the ranking of candidate effects, and the estimation problem.
+
+    The problem has the correlation time of the latent force that was chosen for these effects.
+    """
 
     problem: Problem
     ranking: Ranking
@@ -68,7 +71,7 @@ class Selection:
 
 @dataclass(frozen=True)
 class Diagnosis:
-    """Result of a diagnosis: findings, and what is needed to write the patched vessel."""
+    """Result of a diagnosis: content of the report, and all data to write the patched vessel."""
 
     findings: Findings
     vessel: Vessel
@@ -80,7 +83,9 @@ class Diagnosis:
     def map_recording(
         self, recording: Recording, noise: Mapping[str, float] | None = None
     ) -> MappedRecording:
-        """Return a further recording mapped to the program, with the described terms.
+        """Map a further recording to the compiled vessel program of this diagnosis.
+
+        Terms found by symbolic regression act on it as on the diagnosed recordings.
 
         Args:
             recording: A recording of the same vessel.
@@ -107,7 +112,7 @@ def diagnose(
     report: Report = ignore_progress,
     config: DiagnosisConfig = DEFAULT,
 ) -> Diagnosis:
-    """Find the effects that a vessel's model lacks, and estimate their parameters.
+    """Diagnose files of recordings: find the effects that the vessel model lacks, and fit them.
 
     Args:
         runs: Recordings to fit.
@@ -121,6 +126,9 @@ def diagnose(
         report: Receives the progress.
         config: Settings of the diagnosis.
 
+    Returns:
+        The diagnosis with its identified effects and everything that the report shows.
+
     Raises:
         BadInput: A file, a name or a value cannot be used.
     """
@@ -132,12 +140,15 @@ def diagnose(
 def diagnose_loaded(
     loaded: Loaded, report: Report = ignore_progress, config: DiagnosisConfig = DEFAULT
 ) -> Diagnosis:
-    """Diagnose recordings that are loaded.
+    """Diagnose recordings that have been read: find and fit effects that the vessel model lacks.
 
     Args:
         loaded: Recordings, divided into fitted and held-out ones.
         report: Receives the progress.
         config: Settings of the diagnosis.
+
+    Returns:
+        The diagnosis with its identified effects and everything that the report shows.
 
     Raises:
         BadInput: The recordings cannot be used.
@@ -188,7 +199,11 @@ def _diagnose_without_fit(
 
 
 class Stages(NamedTuple):
-    """Results of the stages, of which an answer is composed."""
+    """Results of the stages of a diagnosis, from which its answer is composed.
+
+    They are the decision on effects, the ranking, the evaluation on held-out recordings and the
+    next experiment.
+    """
 
     decision: Decision
     ranking: Ranking
@@ -230,7 +245,10 @@ def _is_finite(answer: Answer) -> bool:
 
 
 def check(loaded: Loaded, question: Question) -> tuple[Finding, ...]:
-    """Return the findings of all log quality checks.
+    """Return all findings of the quality checks of the recordings.
+
+    Findings of single files are completed by faults that only a comparison with the vessel model
+    shows, such as other axes or a reversed heading.
 
     Args:
         loaded: Recordings with the findings of single files.
@@ -247,10 +265,13 @@ def check(loaded: Loaded, question: Question) -> tuple[Finding, ...]:
 
 
 def fit(question: Question) -> Baseline:
-    """Return the vessel as written, and with its own coefficients refitted.
+    """Fit the vessel model without candidate effects: as specified, and with refitted coefficients.
 
     Args:
         question: Mapped recordings and priors.
+
+    Returns:
+        Both fits; in the first one only the noise levels are fitted.
     """
     return fit_baseline(question.problem)
 
@@ -258,15 +279,15 @@ def fit(question: Question) -> Baseline:
 def select(
     question: Question, base: Baseline, loaded: Loaded, report: Report = ignore_progress
 ) -> Selection:
-    """Select the effects that the recordings require.
+    """Select the candidate effects that the recordings require.
 
-    If the notes do not specify the correlation time of the latent force, it is chosen for the
-    effects that were selected, and they are selected again. All of that has one budget. If it is
-    spent, the last finished selection is returned.
+    If the notes do not specify the correlation time of the latent (unmodelled) force, it is chosen
+    for the effects that were selected, and they are selected again. Both selections share one
+    budget of work. If it is spent, the last finished selection is returned.
 
     Args:
         question: Mapped recordings, priors and candidates.
-        base: The vessel without candidates.
+        base: Fits of the vessel without candidate effects.
         loaded: The recordings with their notes.
         report: Receives the progress.
     """
@@ -295,7 +316,7 @@ def _with_skipped(ranking: Ranking, statement: str) -> Ranking:
 
 
 def decide(question: Question, selection: Selection) -> Decision:
-    """Return the selection with the probability that each of its names is right.
+    """Decide which selected effects are stated as causes, with the probability that each is true.
 
     Args:
         question: Candidates and held-out recordings.
@@ -306,14 +327,17 @@ def decide(question: Question, selection: Selection) -> Decision:
 
 
 def describe(question: Question, decision: Decision, report: Report = ignore_progress) -> Ranking:
-    """Return the ranking with a symbolic description of a force that no candidate explains.
+    """Describe a force that no candidate effect explains by a formula, with symbolic regression.
 
-    Effects that the description replaces are removed.
+    Identified effects that the formula replaces are removed.
 
     Args:
         question: Held-out recordings.
         decision: Selected effects with their probability.
         report: Receives the progress.
+
+    Returns:
+        The ranking with the formula; the same ranking if no force remains unexplained.
     """
     problem, ranking = decision.problem, decision.ranking
     if not ranking.unknown:
@@ -340,16 +364,20 @@ def describe(question: Question, decision: Decision, report: Report = ignore_pro
 
 
 def adopt(question: Question, decision: Decision, ranking: Ranking) -> Ranking:
-    """Return the ranking with those refitted coefficients that are determined and do no harm.
+    """Decide which refitted coefficients replace those of the vessel file.
 
-    The selection has compared hypotheses with all coefficients free, so that its evidence stays
-    valid. Without effects the patched vessel is the recalibrated one. Effects and formulas stay
-    with the coefficients that they were fitted with.
+    They are adopted if the recordings determine them, and if they do not make simulations of
+    held-out recordings worse. The selection has compared hypotheses with all coefficients free, so
+    that its evidence stays valid. Without effects the patched vessel is the recalibrated one.
+    Effects and formulas stay with the coefficients that they were fitted with.
 
     Args:
         question: Held-out recordings.
         decision: The problem with its correlation time.
         ranking: Selected and described effects.
+
+    Returns:
+        The ranking with the adopted coefficients.
     """
     problem, best = decision.problem, ranking.best
     refitted = ranking.recalibrated
@@ -362,7 +390,10 @@ def adopt(question: Question, decision: Decision, ranking: Ranking) -> Ranking:
 
 
 def validate(question: Question, decision: Decision, ranking: Ranking) -> Evaluation:
-    """Return free runs of the models over held-out recordings, and the forces that remain.
+    """Compare the nominal, the recalibrated and the patched vessel model over held-out recordings.
+
+    The result contains free runs (simulations with the recorded commands alone), their errors and
+    the forces that each model leaves unexplained.
 
     Args:
         question: Held-out recordings.
@@ -373,7 +404,9 @@ def validate(question: Question, decision: Decision, ranking: Ranking) -> Evalua
 
 
 def plan(decision: Decision, ranking: Ranking) -> next_experiment.Plan | None:
-    """Return the manoeuvre that would add most evidence; None if none would add enough.
+    """Return the manoeuvre that would best decide what the diagnosis leaves open.
+
+    None is returned if no manoeuvre would add enough evidence.
 
     Args:
         decision: The problem, and the selection before the description.

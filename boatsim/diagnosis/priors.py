@@ -23,12 +23,17 @@ UNCERTAIN = ("damping", "thrust", "restoring", "wind")
 
 
 def froude_time(vessel: Vessel) -> float:
-    """Return the factor by which times are longer than on a hull of 1.2 m."""
+    """Return the factor by which times on a vessel are longer than on a hull of 1.2 m.
+
+    Times scale with the square root of the length (Froude's law).
+    """
     return float(np.sqrt(vessel.length / REFERENCE_LENGTH))
 
 
 def assumed_disturbance(vessel: Vessel, config: LoadConfig = DEFAULT.load) -> dict[str, float]:
-    """Return the assumed level (rms) of the unmodelled force by axis [N, N m].
+    """Return the assumed rms of the unmodelled force on each axis of a vessel [N, N m].
+
+    It is proportional to the weight of the vessel.
 
     Args:
         vessel: Vessel whose [diagnosis] table may override the rule.
@@ -45,7 +50,9 @@ def assumed_disturbance(vessel: Vessel, config: LoadConfig = DEFAULT.load) -> di
 
 
 def time_constant(vessel: Vessel, config: LoadConfig = DEFAULT.load) -> float:
-    """Return the correlation time of the assumed disturbance [s].
+    """Return the assumed correlation time [s] of the unmodelled force on a vessel.
+
+    It scales with the square root of the vessel's length (Froude's law).
 
     Args:
         vessel: Vessel whose length sets the scale.
@@ -55,7 +62,9 @@ def time_constant(vessel: Vessel, config: LoadConfig = DEFAULT.load) -> float:
 
 
 def default_horizon(vessel: Vessel, config: LoadConfig = DEFAULT.load) -> float:
-    """Return the usual length of a free run [s], to three digits.
+    """Return the usual duration [s] of a free run of a vessel, to three digits.
+
+    A free run is a simulation from a recorded state with the recorded commands alone.
 
     Args:
         vessel: Vessel whose [diagnosis] table may override the rule.
@@ -67,7 +76,7 @@ def default_horizon(vessel: Vessel, config: LoadConfig = DEFAULT.load) -> float:
 def used_sample_rate(
     vessel: Vessel, duration: float = 0.0, config: LoadConfig = DEFAULT.load
 ) -> float:
-    """Return the rows per second that are used of recordings [Hz].
+    """Return the rate [Hz] to which recordings are downsampled before a diagnosis.
 
     An hour is informative by its many manoeuvres, a minute by its many rows; the cost of a
     diagnosis is proportional to the rows.
@@ -83,7 +92,9 @@ def used_sample_rate(
 
 
 def coefficient_uncertainty(vessel: Vessel, config: LoadConfig = DEFAULT.load) -> dict[str, float]:
-    """Return the relative prior sd of the vessel's coefficients, by kind.
+    """Return the relative prior standard deviation of a vessel's coefficients.
+
+    It is given by kind of coefficient: damping, thrust, restoring, wind, ...
 
     Args:
         vessel: Vessel whose [diagnosis] table, or else [estimated] table, may override the rule.
@@ -110,7 +121,7 @@ def estimate_sensor_noise(
     family: str,
     config: LoadConfig = DEFAULT.load,
 ) -> float:
-    """Estimate the noise of a family of sensors from differences of their signals.
+    """Estimate the noise of a family of sensors from high-order differences of their signals.
 
     Differences of high order contain little of the motion; the order with the smallest result is
     used. The estimate is robust to outliers.
@@ -144,7 +155,10 @@ def estimate_sensor_noise(
 
 
 def noise_unit(vessel: Vessel, column: str) -> float:
-    """Return the unit of the noise of a column: the length [m] or a radian, per s for rates.
+    """Return the reference scale for the noise of a sensor column of a vessel.
+
+    It is the vessel's length [m] for distances and one radian for angles; for rates it is divided
+    by the time sqrt(length / g).
 
     Args:
         vessel: Vessel whose length sets the scale.

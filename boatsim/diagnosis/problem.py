@@ -43,10 +43,11 @@ SYMBOLS = {
 
 @dataclass(frozen=True)
 class FreeParameter:
-    """A parameter to fit, its prior, and how it changes the parameter values of a run.
+    """A parameter that a diagnosis fits, its normal prior and bounds, and the numbers it changes.
 
-    A coefficient of the nominal model scales the run's own value: `relative` is true and the prior
-    mean is 1. A release scales, shifts or sets several numbers.
+    It belongs to a candidate effect, or is a coefficient of the nominal vessel model. A coefficient
+    scales the specified value: `relative` is true and the prior mean is 1. An effect that releases
+    coefficients of the vessel scales, shifts or sets several numbers.
     """
 
     effect: str
@@ -63,10 +64,10 @@ class FreeParameter:
     weights: tuple[float, ...] = (1.0,)  # of a shift, one for each place
 
     def apply(self, values: Array, x: float) -> None:
-        """Put a value of the parameter into the parameter values of a run.
+        """Write a value of the free parameter into the array of a vessel model's parameter values.
 
         Args:
-            values: Parameter values of a run, changed in place.
+            values: Parameter values of the vessel model for one recording, changed in place.
             x: Value of this parameter.
         """
         for at, weight in zip(self.at, self.weights, strict=True):
@@ -80,7 +81,10 @@ class FreeParameter:
 
 @dataclass(frozen=True)
 class Fit:
-    """A converged hypothesis: which effects act, and the posterior of its free parameters."""
+    """A fitted hypothesis: the vessel model with a set of candidate effects, and its posterior.
+
+    It holds parameter values, their covariance, the noise levels and the log evidence.
+    """
 
     effects: tuple[str, ...]  # candidates that act, in the order in which they were added
     free: tuple[FreeParameter, ...]
@@ -90,14 +94,14 @@ class Fit:
     evidence: float  # log of the Laplace evidence [nats]
 
     def values(self) -> dict[tuple[str, str], float]:
-        """Return the fitted values by effect and name of the parameter."""
+        """Return the fitted parameter values by pairs of effect name and parameter name."""
         found = {}
         for parameter, x in zip(self.free, self.theta, strict=True):
             found[parameter.effect, parameter.name] = float(x)
         return found
 
     def value(self, effect: str, name: str) -> tuple[float, float]:
-        """Return the fitted value and the standard deviation of a parameter.
+        """Return the fitted value and the posterior standard deviation of one parameter.
 
         Args:
             effect: Name of an effect of this fit.
@@ -109,7 +113,7 @@ class Fit:
 
 
 class Priors(NamedTuple):
-    """Priors of free parameters, each array (F,)."""
+    """Prior means, standard deviations and bounds of free parameters, each an array (F,)."""
 
     mean: Array
     sd: Array
@@ -118,7 +122,7 @@ class Priors(NamedTuple):
 
 
 def priors_of(free: Sequence[FreeParameter]) -> Priors:
-    """Return the prior means, standard deviations and bounds of free parameters.
+    """Return the prior means, standard deviations and bounds of free parameters as arrays.
 
     Args:
         free: Free parameters of a hypothesis.
@@ -130,7 +134,9 @@ def priors_of(free: Sequence[FreeParameter]) -> Priors:
 def free_parameter_values(
     free: Sequence[FreeParameter], values: Mapping[tuple[str, str], float]
 ) -> Array:
-    """Return the values (F,) of free parameters; those without one have their prior mean.
+    """Return an array (F,) of parameter values from a dictionary.
+
+    Parameters that the dictionary does not contain have their prior mean.
 
     Args:
         free: Free parameters of a hypothesis.
@@ -144,28 +150,32 @@ def free_parameter_values(
 
 @dataclass(frozen=True)
 class FilterPasses:
-    """Filter passes over all recordings of a problem for one hypothesis."""
+    """Results of the Kalman filter for one hypothesis, one pass for each recording."""
 
     passes: tuple[FilterPass, ...]
 
     @cached_property
     def log_likelihood(self) -> float:
-        """Log likelihood of all recordings."""
+        """Log likelihood of all recordings together, by the extended Kalman filter."""
         return sum(one.log_likelihood for one in self.passes)
 
     @cached_property
     def whitened(self) -> Array:
-        """Whitened prediction errors of all recordings, one after the other."""
+        """Whitened prediction errors of the Kalman filter for all recordings in one array."""
         return np.concatenate([one.whitened for one in self.passes])
 
     @property
     def log_density(self) -> float:
-        """Log of the density assigned to measurements equal to the predictions."""
+        """Log density of measurements that would be equal to the filter's predictions.
+
+        The sum over all recordings depends on the predicted covariances only, and is known up to a
+        constant.
+        """
         return sum(one.log_density for one in self.passes)
 
 
 def froude_scale(unit: str, vessel: Vessel) -> float:
-    """Return how much larger a quantity is on a vessel than on the reference hull, by Froude's law.
+    """Return the factor between a quantity on a vessel and on the reference hull, by Froude's law.
 
     Args:
         unit: Unit of the quantity, such as "N s/m".
@@ -182,7 +192,9 @@ def froude_scale(unit: str, vessel: Vessel) -> float:
 
 
 def check_uncertainty(vessel: Vessel, specified: Mapping[str, float], where: str) -> None:
-    """Check that a vessel has coefficients of each kind for which an uncertainty is specified.
+    """Check that a vessel has coefficients of every kind for which an uncertainty is specified.
+
+    An example of a kind is "damping"; the uncertainty is that of the prior.
 
     Args:
         vessel: Vessel of the recordings.
@@ -211,7 +223,7 @@ def check_uncertainty(vessel: Vessel, specified: Mapping[str, float], where: str
 
 @dataclass
 class WorkCount:
-    """Count of the work that fits have done: rows filtered times degrees of freedom."""
+    """Count of the computing work that fits have done: rows filtered times degrees of freedom."""
 
     work: int = 0
 
@@ -225,7 +237,10 @@ class _Target(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Problem:
-    """Mapped recordings, a program with all candidates compiled in, and what may be fitted."""
+    """The estimation problem of a diagnosis: recordings, compiled vessel program and priors.
+
+    All candidate effects are compiled into the program; each hypothesis switches some of them on.
+    """
 
     recordings: Sequence[MappedRecording]
     ambient: NoiseLevels  # prior levels
@@ -251,7 +266,7 @@ class Problem:
         object.__setattr__(self, "links", self._inherited_places())
 
     def on(self, recordings: Sequence[MappedRecording]) -> "Problem":
-        """Return the same problem with other recordings.
+        """Return the same estimation problem for other recordings.
 
         Args:
             recordings: Recordings mapped to a program of the same vessel.
@@ -262,11 +277,14 @@ class Problem:
 
     @cached_property
     def candidates(self) -> Mapping[str, Effect]:
-        """Candidates of the program by name."""
+        """All candidate effects compiled into the vessel program, by name."""
         return {effect.name: effect for effect in self.program.candidates}
 
     def parameters(self, effects: Sequence[str]) -> tuple[FreeParameter, ...]:
-        """Return the nominal coefficients, then the parameters of effects, in their order.
+        """Return the free parameters of the vessel model with some candidate effects.
+
+        The uncertain coefficients of the vessel come first, then the parameters of the effects, in
+        the order of the effects.
 
         Args:
             effects: Names of the candidates that act.
@@ -305,10 +323,10 @@ class Problem:
         return free
 
     def values(self, mapped: MappedRecording, free: Sequence[FreeParameter], theta: Array) -> Array:
-        """Return the parameter values of a run with the free parameters put in.
+        """Return the parameter values of the vessel model for a recording, given free parameters.
 
         Args:
-            mapped: Recording of the run.
+            mapped: The mapped recording, with its nominal parameter values.
             free: Free parameters of a hypothesis.
             theta: (F,) their values.
         """
@@ -333,7 +351,7 @@ class Problem:
         return _Target(tuple(at), tuple(weights))
 
     def index_of_parameter(self, owner: str, key: str) -> int:
-        """Return the place of a number in the parameter values of a run.
+        """Return the index of a number in the array of a vessel model's parameter values.
 
         Args:
             owner: Name of an effect, or "body".
@@ -351,13 +369,15 @@ class Problem:
         levels: NoiseLevels,
         about: FilterPasses | None = None,
     ) -> FilterPasses:
-        """Return the filter passes of a hypothesis over all recordings.
+        """Run the Kalman filter over all recordings for one hypothesis.
+
+        A hypothesis is the vessel model with a set of candidate effects, at given parameter values.
 
         Args:
             free: Free parameters of the hypothesis.
             theta: (F,) their values.
             on: (effects,) 1 for the effects that act, else 0.
-            levels: Levels of sensor noise and latent force.
+            levels: Levels of sensor noise and of the latent (unmodelled) force.
             about: Passes whose linearisation is used again; None: linearise.
         """
         self._count_work()
@@ -375,7 +395,10 @@ class Problem:
         levels: NoiseLevels,
         about: FilterPasses | None = None,
     ) -> float:
-        """Return the log likelihood of `filter` with the same arguments."""
+        """Return only the log likelihood of all recordings for one hypothesis.
+
+        It costs less than complete passes by `filter`, which takes the same arguments.
+        """
         self._count_work()
         before = about.passes if about else [None] * len(self.recordings)
         found = 0.0
@@ -397,13 +420,15 @@ class Problem:
         levels: NoiseLevels,
         about: FilterPasses,
     ) -> Array:
-        """Return the whitened prediction errors of all recordings with the gains of other passes.
+        """Return the whitened prediction errors of all recordings, with the gains of other passes.
+
+        Fixed gains make the errors a smooth function of the parameters, as Gauss-Newton steps need.
 
         Args:
             free: Free parameters of the hypothesis.
             theta: (F,) their values.
             on: (effects,) 1 for the effects that act, else 0.
-            levels: Levels of sensor noise and latent force.
+            levels: Levels of sensor noise and of the latent (unmodelled) force.
             about: Passes whose gains are used.
         """
         self._count_work()
@@ -413,7 +438,7 @@ class Problem:
         return np.concatenate(found)
 
     def scale(self, effect: Effect, name: str) -> float:
-        """Return how much larger a parameter may be than on the reference hull.
+        """Return the ratio of a candidate effect's parameter to its value on the reference hull.
 
         Quantities follow Froude's law. The threshold of a command scales with the largest command
         recorded, because the full thrust of the reference hull is 1 N. The drift of an instrument
@@ -448,11 +473,11 @@ class Problem:
 
     @property
     def stiff(self) -> bool:
-        """Whether the fastest motion of the hull decays within a sample of any recording."""
+        """Whether the fastest motion of the hull decays within one sample of any recording."""
         return any(mapped.stiff for mapped in self.recordings)
 
     def nominal_hypothesis(self) -> Fit:
-        """Return the hypothesis that the vessel is as written, with nothing fitted."""
+        """Return the hypothesis that the vessel is as specified, with nothing added or fitted."""
         free = self.nominal_coefficients
         count = len(free)
         return Fit((), free, np.ones(count), np.zeros((count, count)), self.ambient, -np.inf)

@@ -34,7 +34,7 @@ from boatsim.recordings.table import Recording
 
 @dataclass(frozen=True)
 class RecordingMapper:
-    """Maps recordings to the programs of their vessels, with shared noise levels."""
+    """Maps recordings to the compiled programs of their vessels, with common noise levels."""
 
     programs: Mapping[Path | None, Program]  # by the file of a recording
     noise: Mapping[str, float]  # sensor noise that all recordings share, by family
@@ -57,7 +57,7 @@ class RecordingMapper:
 
 @dataclass(frozen=True)
 class Question:
-    """The estimation problem of a diagnosis: fitted and held-out recordings, and candidates."""
+    """A complete diagnosis task: fitted and held-out recordings, priors and candidate effects."""
 
     problem: Problem
     held_out: tuple[MappedRecording, ...]
@@ -69,7 +69,9 @@ class Question:
 def pose_question(
     loaded: Loaded, config: DiagnosisConfig = DEFAULT, *, with_candidates: bool = True
 ) -> Question:
-    """Return the estimation problem of loaded recordings.
+    """Set up the estimation problem of a diagnosis from recordings that have been read.
+
+    The vessel is compiled with its candidate effects, and the recordings are mapped to the program.
 
     Args:
         loaded: Fitted and held-out recordings with their vessels.
@@ -117,10 +119,12 @@ def _uncertainty(loaded: Loaded, vessel: Vessel, config: DiagnosisConfig) -> dic
 
 
 def compile_program(problem: Problem) -> None:
-    """Compile the program of a problem, or load it, by calling what a diagnosis calls.
+    """Compile the program of an estimation problem, or load it from the cache, before it is needed.
+
+    The functions that a diagnosis calls are called once.
 
     Args:
-        problem: Recordings and priors.
+        problem: The estimation problem: recordings, vessel model, candidate effects and priors.
     """
     nominal, on = problem.nominal_hypothesis(), problem.program.switches()
     mapped = problem.recordings[0]

@@ -23,10 +23,12 @@ WRITTEN, REFITTED = "written", "refitted"  # the vessels that are compared
 
 @dataclass(frozen=True)
 class Recalibration:
-    """The vessel with those refitted coefficients that are adopted.
+    """The vessel model with those refitted coefficients that replace the values of its file.
+
+    It also names the coefficients that the recordings do not determine.
 
     Attributes:
-        fit: The vessel as it is reported.
+        fit: Fit of the vessel model as it is reported.
         undetermined: Coefficients that the recordings do not determine, as "effect.number".
         adopted: Whether the other coefficients are adopted.
         refitted: Rms errors of free runs over held-out recordings with the refitted coefficients,
@@ -42,12 +44,15 @@ class Recalibration:
 def recalibrate(
     problem: Problem, written: Fit, refitted: Fit, held_out: Sequence[MappedRecording]
 ) -> Recalibration:
-    """Return the vessel with the refitted coefficients that are determined and do no harm.
+    """Decide which refitted coefficients of a vessel replace the values of its file.
+
+    They must be determined by the recordings, and must not make simulations of held-out recordings
+    worse.
 
     Args:
-        problem: Recordings and priors.
-        written: The vessel as written, with its noise levels fitted.
-        refitted: The vessel without candidate effects, its coefficients fitted.
+        problem: The estimation problem: recordings, vessel model, candidate effects and priors.
+        written: The vessel model as specified in its file, with its noise levels fitted.
+        refitted: The vessel model without candidate effects, its coefficients fitted.
         held_out: Held-out recordings, at least one.
     """
     kept = undetermined_coefficients(refitted, problem.config.fit)
@@ -64,14 +69,15 @@ def recalibrate(
 
 
 def keep_undetermined(problem: Problem, found: Fit) -> Fit:
-    """Return a fit in which undetermined coefficients have the value of the vessel file.
+    """Return a fit in which coefficients that the recordings do not determine are held fixed.
 
-    The other parameters are refitted. Levels and evidence stay those of the hypothesis in which all
-    coefficients are free. The covariance is that of the posterior about the new values.
+    They have the value of the vessel file, and the other parameters are refitted. Levels and
+    evidence stay those of the hypothesis in which all coefficients are free. The covariance is that
+    of the posterior about the new values.
 
     Args:
-        problem: Recordings and priors.
-        found: A converged fit.
+        problem: The estimation problem: recordings, vessel model, candidate effects and priors.
+        found: Converged fit of the vessel model with some candidate effects.
     """
     kept = undetermined_coefficients(found, problem.config.fit)
     if not kept:
@@ -91,14 +97,14 @@ def keep_undetermined(problem: Problem, found: Fit) -> Fit:
 
 
 def undetermined_coefficients(found: Fit, config: FitConfig) -> list[int]:
-    """Return the places of the coefficients that keep the value of the vessel file.
+    """Return the indices of the fitted coefficients that the recordings do not determine.
 
     The coefficient with the largest posterior sd, in prior sds, is held first. The others are then
     more certain, because the recordings may determine a combination of coefficients only, such as
     the ratio of thrust and damping.
 
     Args:
-        found: A converged fit.
+        found: Converged fit of the vessel model with some candidate effects.
         config: Largest posterior sd of a determined coefficient, in prior sds.
     """
     variance = priors_of(found.free).sd ** 2
@@ -118,11 +124,13 @@ def undetermined_coefficients(found: Fit, config: FitConfig) -> list[int]:
 
 
 def is_harmful(problem: Problem, runs: Sequence[FreeRun]) -> bool:
-    """Whether free runs are worse with the refitted coefficients than with those of the file.
+    """Whether refitted coefficients make simulations of held-out recordings worse.
+
+    Their free runs are compared with free runs of the vessel file's coefficients.
 
     Args:
         problem: Problem whose configuration holds the limit.
-        runs: Free runs of both vessels over held-out recordings.
+        runs: Free runs (simulations with recorded commands alone) of both over held-out recordings.
     """
     before = generalization.mean_square_errors(runs, WRITTEN)
     if not before:

@@ -8,7 +8,10 @@ Result = TypeVar("Result")
 
 
 class RecentResults(Generic[Result]):
-    """The last few results of a function without side effects, by its arguments."""
+    """Cache of the most recent results of a function without side effects.
+
+    Results are stored by the function's arguments, and the least recently used one is dropped.
+    """
 
     def __init__(self, most: int) -> None:
         """Start without results.
@@ -20,10 +23,10 @@ class RecentResults(Generic[Result]):
         self._kept: OrderedDict[bytes, Result] = OrderedDict()
 
     def result(self, key: bytes, compute: Callable[[], Result]) -> Result:
-        """Return a kept result, or compute it and keep it in the place of the oldest.
+        """Return a cached result, or compute and store it in place of the least recently used one.
 
         Args:
-            key: The arguments.
+            key: The function's arguments as bytes.
             compute: Computes the result, which must not be changed afterwards.
         """
         if key in self._kept:

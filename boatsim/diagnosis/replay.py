@@ -21,13 +21,18 @@ from boatsim.recordings.table import Recording
 def replay_recording(
     recording: Recording, vessel: Vessel, horizon: float, report: Report = ignore_progress
 ) -> list[FreeRun]:
-    """Return free runs with the models "simulated" and "recorded".
+    """Simulate a recording with a vessel model: free runs with the recorded commands alone.
+
+    Each run starts from the recorded state and has the given duration.
 
     Args:
         recording: Measured signals and commands.
         vessel: Vessel file, or a patched one.
         horizon: Length of each free run [s].
         report: Receives the progress.
+
+    Returns:
+        Free runs with the channels "simulated" and "recorded".
 
     Raises:
         BadInput: The recording is shorter than the horizon, or misses a column.
@@ -42,10 +47,11 @@ def replay_recording(
 
 
 def free_run_columns(runs: Sequence[FreeRun]) -> dict[str, Array]:
-    """Return free runs one after the other: t_s, the number of each run in `segment`, and the pose.
+    """Return consecutive simulations (free runs) as the columns of one table.
 
-    The time at which one ends and the next begins occurs twice: at the end of one run, and at the
-    start of the next.
+    The columns are t_s, the number of each run in `segment`, and the simulated pose. The time at
+    which one run ends and the next begins occurs twice: at the end of one run, and at the start of
+    the next.
 
     Args:
         runs: Free runs of one recording.
@@ -65,7 +71,9 @@ def free_run_columns(runs: Sequence[FreeRun]) -> dict[str, Array]:
 
 
 def join_free_runs(runs: Sequence[FreeRun]) -> Recording:
-    """Return free runs as one recording in which each time occurs once: that of the earlier run.
+    """Join consecutive simulations (free runs) to one recording, in which each time occurs once.
+
+    At the time at which one run ends and the next begins, the earlier run is kept.
 
     Args:
         runs: Free runs of one recording.
@@ -79,7 +87,7 @@ def join_free_runs(runs: Sequence[FreeRun]) -> Recording:
 def fit_noise_only(
     recording: Recording, vessel: Vessel, report: Report = ignore_progress
 ) -> tuple[Problem, Fit]:
-    """Fit only the noise levels of a vessel file to a recording.
+    """Fit only the noise levels of a vessel model to a recording, and keep all its parameters.
 
     Args:
         recording: Measured signals and commands.
@@ -87,7 +95,7 @@ def fit_noise_only(
         report: Receives the progress.
 
     Returns:
-        The problem and its fit.
+        The estimation problem of the recording, and the fit.
     """
     report("compiling, or loading what was compiled before", 0.1)
     program, acting = program_to_replay(vessel)

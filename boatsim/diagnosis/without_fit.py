@@ -22,14 +22,14 @@ LARGEST_GAIN = 1e9
 def unknown_cause(
     problem: Problem, held_out: Sequence[MappedRecording], where: str
 ) -> tuple[Ranking, Evaluation]:
-    """Return the results of a diagnosis that fits no parameter.
+    """Return the results of a diagnosis in which the fits of the vessel model diverge.
 
-    The vessel as written follows the recordings with a larger latent force, which is the missing
-    force. No candidate is ranked.
+    No parameter is fitted and no candidate effect is ranked. The vessel model as specified follows
+    the recordings with a larger latent force, which is reported as a force of unknown cause.
 
     Args:
-        problem: Recordings and priors.
-        held_out: Held-out recordings.
+        problem: The estimation problem: recordings, vessel model, candidate effects and priors.
+        held_out: Held-out recordings, which no fit has used.
         where: Name of the first recording, for the message.
 
     Raises:

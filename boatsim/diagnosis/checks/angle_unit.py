@@ -18,11 +18,13 @@ QUANTITIES = {
 
 
 def check_angle_unit(recording: Recording, _: Vessel, config: ChecksConfig) -> list[Finding]:
-    """Find headings, roll angles and their rates whose size or steps are those of degrees.
+    """Find angles and angular rates of a recording that are in degrees instead of radians.
+
+    A column is in degrees if its size or its steps are impossible in radians.
 
     Args:
         recording: The recording as written in the file.
-        config: Thresholds of the checks.
+        config: Thresholds of the quality checks.
 
     Returns:
         One finding per column in degrees.

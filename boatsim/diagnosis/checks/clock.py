@@ -12,12 +12,12 @@ from boatsim.recordings.table import Recording
 
 
 def check_clock(recording: Recording, vessel: Vessel, config: ChecksConfig) -> list[Finding]:
-    """Find rows that are not later than the row before, and time jumps without motion.
+    """Find faulty time stamps: rows not later than the row before, and time jumps without motion.
 
     Args:
         recording: The recording as written in the file.
         vessel: The vessel; its length scales the durations.
-        config: Thresholds of the checks.
+        config: Thresholds of the quality checks.
 
     Returns:
         Findings "clock_stalls" and "clock_goes_back"; without them at most one "clock_leaps".

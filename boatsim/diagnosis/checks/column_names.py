@@ -18,12 +18,14 @@ SIDES = {"port", "starboard"}
 
 
 def check_column_names(recording: Recording, vessel: Vessel, config: ChecksConfig) -> list[Finding]:
-    """Find a substitute for each missing column, if exactly one other column fits.
+    """Find required columns that a recording has under another name.
+
+    A substitute is proposed for a missing column if exactly one other column fits.
 
     Args:
         recording: The recording as written in the file.
         vessel: The vessel, which determines the required columns.
-        config: Thresholds of the checks.
+        config: Thresholds of the quality checks.
 
     Returns:
         At most one finding "column_names" for all missing columns.

@@ -21,7 +21,10 @@ FULL_RANGE = 1.0 + 5.0 * ROUNDING  # largest share of the limit, rounding in the
 
 
 class Conversion(NamedTuple):
-    """Conversion of a recorded command to the unit of the vessel."""
+    """Factor and offset that convert a recorded command to the vessel's unit.
+
+    For example, from a servo pulse in microseconds to a share of the full command.
+    """
 
     unit: str  # of the recorded command, in words
     factor: float
@@ -29,12 +32,15 @@ class Conversion(NamedTuple):
 
 
 def check_command_unit(recording: Recording, vessel: Vessel, config: ChecksConfig) -> list[Finding]:
-    """Find command channels that exceed the vessel's limits, but not in another unit.
+    """Find recorded commands in a wrong unit, such as per cent, degrees or servo pulses.
+
+    A command is in a wrong unit if it exceeds the vessel's limits, and would not do so in the other
+    unit.
 
     Args:
         recording: The recording as written in the file.
         vessel: The vessel with its command limits.
-        config: Thresholds of the checks.
+        config: Thresholds of the quality checks.
 
     Returns:
         One finding "command_unit" per conversion, with all channels that it concerns.

@@ -21,16 +21,17 @@ from boatsim.recordings.table import Recording
 def heading_offset(
     recordings: Sequence[Recording], vessel: Vessel, config: ChecksConfig = DEFAULT.checks
 ) -> float | None:
-    """Estimate the constant angle between heading and course through the water.
+    """Estimate the constant offset between the recorded heading and the course through the water.
 
     A boat whose heading is off by an angle a, in a current c, moves across its course by the
-    current only: cos a Im q - sin a Re q = Im(c e^-i(psi + a)) dt, where q is the displacement
-    over dt in the frame of the recorded heading. This holds at any speed.
+    current only: cos a Im q - sin a Re q = Im(c e^-i(psi + a)) dt, where q is the displacement over
+    dt in the frame of the recorded heading. This holds at any speed. Straight stretches ahead are
+    used.
 
     Args:
         recordings: Recordings with positions and headings.
         vessel: The vessel; its length scales the durations.
-        config: Thresholds of the checks.
+        config: Thresholds of the quality checks.
 
     Returns:
         Angle [rad] from the bow to the course, positive to starboard; None if the recordings do

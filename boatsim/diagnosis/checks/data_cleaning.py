@@ -39,12 +39,15 @@ FINDING_OF_REMARK = {
 def prepare_recording(
     recording: Recording, vessel: Vessel, config: ChecksConfig = DEFAULT.checks
 ) -> Recording:
-    """Return the used part of a recording with consistent angles, rudder signs and positions.
+    """Return the usable part of a raw recording with consistent angles, rudder signs and positions.
+
+    Wrapped angles are unwrapped, rudder angles get the sign convention of the vessel, and positions
+    that were rotated with the boat are dropped.
 
     Args:
         recording: The recording as read.
         vessel: The vessel that it is a recording of.
-        config: Thresholds of the checks.
+        config: Thresholds of the quality checks.
 
     Returns:
         The prepared recording; its remarks list each correction.
@@ -59,7 +62,7 @@ def clean_recording(
     duration: float = 0.0,
     config: DiagnosisConfig = DEFAULT,
 ) -> Recording:
-    """Reduce a prepared recording to the useful rate, without repeated values and outliers.
+    """Downsample a prepared recording to the useful rate, without repeated values and outliers.
 
     Args:
         recording: A prepared recording.
@@ -75,12 +78,15 @@ def clean_recording(
 
 
 def total_duration(recordings: Sequence[Recording]) -> float:
-    """Return the total duration [s] of recordings."""
+    """Return the sum of the durations [s] of several recordings."""
     return float(sum(np.ptp(r.t) for r in recordings))
 
 
 def cleaning_findings(recording: Recording) -> list[Finding]:
-    """Return the findings about the corrections in the remarks of a recording."""
+    """Return findings that inform the user about corrections made to a recording automatically.
+
+    The corrections are read from the remarks of the recording, such as dropped outliers.
+    """
     file = f"{recording.path or recording.name}: "
     found = []
     for remark in recording.remarks:

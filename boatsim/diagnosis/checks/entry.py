@@ -16,7 +16,7 @@ from boatsim.recordings.table import read_unchecked
 
 
 def column_sources(path: str, vessel: Vessel) -> Mapping[str, Expression]:
-    """Return the expressions that the columns of a file are computed from.
+    """Return, for each column of a recording, the expression that computes it from the raw file.
 
     Args:
         path: File of the recording.
@@ -31,7 +31,7 @@ def column_sources(path: str, vessel: Vessel) -> Mapping[str, Expression]:
 
 
 def log_entry(finding: Finding, sources: Mapping[str, Expression]) -> LogEntry:
-    """Return the entry of diagnosis.json for a finding.
+    """Return a finding about a recording in the form in which diagnosis.json contains it.
 
     Args:
         finding: The finding.
@@ -61,7 +61,11 @@ def log_entry(finding: Finding, sources: Mapping[str, Expression]) -> LogEntry:
 
 
 def entry_text(entry: LogEntry) -> list[str]:
-    """Return the lines that a command prints for an entry of diagnosis.json."""
+    """Return the lines that a command prints for one finding about a recording.
+
+    Args:
+        entry: The finding in the form of diagnosis.json.
+    """
     name = entry["name"].replace("_", " ")
     percent = 100.0 * min(entry["sure"], 0.999)
     lines = [f"{name} (probability {percent:.3g} %): {entry['evidence']}"]
@@ -79,5 +83,5 @@ def entry_text(entry: LogEntry) -> list[str]:
 
 
 def on_one_line(lines: Sequence[str]) -> str:
-    """Return lines of TOML joined to one line of text."""
+    """Return several lines of TOML joined to one line of text."""
     return " / ".join(lines)

@@ -10,12 +10,14 @@ from boatsim.recordings.table import Recording
 
 
 def check_excitation(recording: Recording, vessel: Vessel, config: ChecksConfig) -> list[Finding]:
-    """Find commands, headings and speeds that hardly vary.
+    """Find motions and commands that vary too little in a recording to identify some coefficients.
+
+    For example, a boat that never goes astern or turns, or that sails at one speed only.
 
     Args:
         recording: A prepared recording.
         vessel: The vessel with its commands.
-        config: Thresholds of the checks.
+        config: Thresholds of the quality checks.
 
     Returns:
         Findings of kind "limit", each with advice for the next log.

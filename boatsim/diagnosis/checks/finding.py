@@ -22,7 +22,7 @@ UNITS_BY_NAME = ("deg", "percent", "ms", "us", "ns", "rpm", "rev")
 
 @dataclass(frozen=True)
 class Change:
-    """A correction of one column: `column` = `source` times `factor` plus `offset`."""
+    """A correction of one recorded column: `column` = `source` times `factor` plus `offset`."""
 
     column: str
     source: str  # a column of the recording before the change
@@ -32,7 +32,9 @@ class Change:
 
 @dataclass(frozen=True)
 class Finding:
-    """One finding about a log.
+    """One result of the quality checks of a recording, with its evidence and its correction.
+
+    For example, a heading in degrees, a clock that stalls, or too little excitation.
 
     Attributes:
         name: Name of the finding in diagnosis.json.
@@ -63,27 +65,34 @@ class Finding:
 
     @property
     def description(self) -> str:
-        """Description of the fault in a clause."""
+        """Description of the fault of the recording in a clause."""
         return self.words or self.name.replace("_", " ")
 
     def invalidates_log(self, config: ChecksConfig) -> bool:
-        """Return whether a diagnosis of the uncorrected log would attribute it to the vessel."""
+        """Return whether this fault would mislead a diagnosis of the uncorrected recording.
+
+        A diagnosis would attribute the fault to the vessel. This holds for faults that are probable
+        enough.
+        """
         certain = self.probability >= config.min_verdict_probability
         return self.kind == "fault" and bool(self.changes) and certain
 
 
 def scaled(names: Iterable[str], factor: float, offset: float = 0.0) -> tuple[Change, ...]:
-    """Return the changes that multiply columns by a factor and add an offset."""
+    """Return corrections that multiply each of some recorded columns by a factor and add an offset.
+
+    For example, from degrees to radians.
+    """
     return tuple(Change(name, name, factor, offset) for name in names)
 
 
 def changed_columns(changes: Iterable[Change]) -> set[str]:
-    """Return the names of the columns that changes set."""
+    """Return the names of the recorded columns that corrections overwrite."""
     return {change.column for change in changes}
 
 
 def longest_part(t: Array, breaks: NDArray[np.int64]) -> tuple[float, float]:
-    """Return the longest interval of a time axis between breaks.
+    """Return the longest uninterrupted interval of a time axis that is cut at some rows.
 
     Args:
         t: Times (N,) [s].
@@ -99,7 +108,7 @@ def longest_part(t: Array, breaks: NDArray[np.int64]) -> tuple[float, float]:
 
 
 def apply_changes(recording: Recording, changes: Sequence[Change]) -> Recording:
-    """Return a recording with corrected columns.
+    """Return a recording with corrections applied to its columns, such as changes of unit or sign.
 
     Args:
         recording: The recording; commands at times of their own are corrected too.
@@ -122,15 +131,15 @@ def apply_changes(recording: Recording, changes: Sequence[Change]) -> Recording:
 
 
 def apply_to_all(recordings: Iterable[Recording], changes: Sequence[Change]) -> list[Recording]:
-    """Return recordings with corrected columns, see `apply_changes`."""
+    """Return several recordings, each with the same corrections applied to its columns."""
     return [apply_changes(recording, changes) for recording in recordings]
 
 
 def column_lines(changes: Sequence[Change], sources: Mapping[str, Expression]) -> list[str]:
-    """Return the lines of the table `[columns]` of recording.toml that make changes.
+    """Return the lines of the table `[columns]` of recording.toml that correct recorded columns.
 
     Args:
-        changes: The changes.
+        changes: Corrections of columns, such as another unit or sign.
         sources: Expressions from which the columns are computed so far.
     """
     lines = []
@@ -168,7 +177,7 @@ def _factor_text(factor: float) -> str:
 
 
 def recording_toml_lines(finding: Finding, sources: Mapping[str, Expression]) -> list[str]:
-    """Return the lines of recording.toml that correct a finding.
+    """Return the lines to write into recording.toml in order to correct a fault of a recording.
 
     Args:
         finding: The finding; of several alternatives the first is used.

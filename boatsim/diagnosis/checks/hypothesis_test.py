@@ -46,7 +46,10 @@ MapRecording = Callable[[Recording], MappedRecording]
 
 
 class Score(NamedTuple):
-    """How well a log fits its vessel."""
+    """How well a vessel model with refitted coefficients explains a recording.
+
+    The log evidence in nats, and the unexplained force as a share of the force of the drives.
+    """
 
     evidence: float  # [nats], coefficients refitted
     unexplained: float  # unexplained force as a share of the force of the drives
@@ -54,19 +57,31 @@ class Score(NamedTuple):
 
 @dataclass(frozen=True)
 class Comparison:
-    """The vessel, and how recordings are mapped to it."""
+    """Compares interpretations of recordings by how well a vessel model explains each of them.
+
+    An interpretation is a set of changes of columns, such as another sign of the heading. Holds the
+    vessel's estimation problem, and the function that maps a recording to the vessel's program.
+    """
 
     problem: Problem
     map_recording: MapRecording
     config: ChecksConfig
 
     def mapped(self, recordings: Sequence[Recording], changes: Sequence[Change] = ()) -> Problem:
-        """The problem with recordings whose columns are changed. Raises BadInput."""
+        """Return the estimation problem of recordings whose columns are changed.
+
+        Raises:
+            BadInput: A changed recording cannot be mapped to the vessel.
+        """
         changed = apply_to_all(recordings, changes)
         return self.problem.on(list(map(self.map_recording, changed)))
 
     def score(self, recordings: Sequence[Recording], changes: Sequence[Change]) -> Score:
-        """The score of changed recordings; minus infinity where they can not be fitted."""
+        """Return how well the vessel model explains recordings whose columns are changed.
+
+        The coefficients of the vessel are refitted. The log evidence is minus infinity if the
+        changed recordings cannot be fitted.
+        """
         try:
             problem = self.mapped(recordings, changes)
             _, recalibrated = fit_baseline(problem)
@@ -75,7 +90,11 @@ class Comparison:
         return Score(recalibrated.evidence, unexplained_force_share(problem, recalibrated))
 
     def is_explained(self, problem: Problem) -> bool:
-        """Whether the vessel as specified explains the recordings of a problem."""
+        """Whether the vessel model as specified explains the recordings of an estimation problem.
+
+        Only the noise levels are fitted. The unexplained force must be a small share of the force
+        of the drives.
+        """
         nominal = fit_noise(problem, problem.nominal_hypothesis())
         return unexplained_force_share(problem, nominal) < self.config.unexplained_max_share
 
@@ -83,7 +102,10 @@ class Comparison:
 def compare_reinterpretations(
     recordings: Sequence[Recording], map_recording: MapRecording, problem: Problem
 ) -> list[Finding]:
-    """Return the faults of a log that a comparison on the vessel reveals.
+    """Find faults of recordings by comparing how well a vessel model explains corrected versions.
+
+    Examples are other axes, a heading of opposite sense and exchanged drives. The coefficients of
+    the vessel are refitted to each version, and the log evidence decides.
 
     Args:
         recordings: Prepared and cleaned recordings.
@@ -108,14 +130,17 @@ def compare_reinterpretations(
 
 
 def unexplained_force_share(problem: Problem, fit: Fit) -> float:
-    """Return the largest share of the unexplained force over surge, sway and yaw.
+    """Return the rms of the unexplained force relative to the rms force of the drives.
+
+    The largest ratio over surge, sway and yaw is returned.
 
     Args:
         problem: The problem with its recordings.
-        fit: A fit; its rms of the latent force is the unexplained force.
+        fit: A fit of the vessel model; the rms of its latent (unmodelled) force counts as
+            unexplained.
 
     Returns:
-        The share, relative to the rms force of the drives; 0 for a vessel without drives.
+        The ratio; 0 for a vessel without drives.
     """
     vessel = problem.program.vessel
     axes = axes_of(vessel)

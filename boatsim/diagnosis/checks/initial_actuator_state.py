@@ -19,12 +19,14 @@ COMMAND_LEAD = 1.0
 def with_initial_actuators(
     recording: MappedRecording, levels: NoiseLevels, config: ChecksConfig = DEFAULT.checks
 ) -> MappedRecording:
-    """Return a recording whose actuators begin at rest, if the data show that.
+    """Return a mapped recording whose actuators start at rest, if the data show that.
+
+    Otherwise the actuators start settled to the first commands.
 
     Args:
         recording: The recording mapped to its vessel.
         levels: Noise levels.
-        config: Thresholds of the checks.
+        config: Thresholds of the quality checks.
 
     Returns:
         The recording with neutral commands before the first row, if the vessel lies still then and

@@ -17,11 +17,13 @@ MAX_DECIMALS = 7
 def check_interpolated_positions(
     recording: Recording, _: Vessel, config: ChecksConfig
 ) -> list[Finding]:
-    """Find runs of rows with equal steps, where the noise elsewhere rules them out.
+    """Find positions of a recording that were interpolated over gaps of the measurement.
+
+    They show as runs of rows with equal steps, which the noise of the other rows rules out.
 
     Args:
         recording: A prepared recording.
-        config: Thresholds of the checks.
+        config: Thresholds of the quality checks.
 
     Returns:
         At most one finding "bridged".
@@ -48,11 +50,11 @@ def check_interpolated_positions(
 
 
 def interpolated_rows(recording: Recording, config: ChecksConfig) -> NDArray[np.bool_]:
-    """Return which rows were interpolated.
+    """Return which rows of a recording are interpolated positions instead of measurements.
 
     Args:
         recording: A prepared recording.
-        config: Thresholds of the checks.
+        config: Thresholds of the quality checks.
 
     Returns:
         True (N,) for rows inside a run with equal steps in all noisy columns.

@@ -20,12 +20,12 @@ NEEDED = ("x_m", "y_m", "psi_rad", "u_mps", "v_mps")
 def drop_rotated_positions(
     recording: Recording, config: ChecksConfig = DEFAULT.checks
 ) -> Recording:
-    """Return the recording without positions that were rotated with the heading.
+    """Return a recording without positions that were wrongly rotated with the heading.
 
     Args:
         recording: The recording; it is checked only if all poses and velocities are complete,
             because a sum of velocities has no meaning over gaps.
-        config: Thresholds of the checks.
+        config: Thresholds of the quality checks.
 
     Returns:
         The recording, without x_m and y_m and with a remark if they were rotated.
@@ -48,16 +48,17 @@ def drop_rotated_positions(
 
 
 def rotated_share(recording: Recording) -> tuple[float, float]:
-    """Estimate the share k of R s in positions of the form (1 - k) integral R s' + k R s.
+    """Estimate by how much recorded positions were wrongly rotated with the heading.
 
-    R is the rotation by the heading, s the integral of (u, v). Origin, current, lever of the
-    antenna, scale of the velocities and offset of the compass are estimated together with k.
+    The positions are modelled as (1 - k) integral R s' + k R s, where R is the rotation by the
+    heading and s the integral of (u, v). Origin, current, lever of the antenna, scale of the
+    velocities and offset of the compass are estimated together with k.
 
     Args:
         recording: A recording with complete poses and velocities.
 
     Returns:
-        The share (0 for correct positions, 1 for rotated ones) and its standard deviation.
+        The estimate of k (0 for correct positions, 1 for rotated ones) and its standard deviation.
     """
     x, y, psi, u, v = itemgetter(*NEEDED)(recording.signals)
     t = recording.t - recording.t[0]

@@ -16,11 +16,13 @@ SIGNALS = (
 
 
 def check_position_jumps(recording: Recording, _: Vessel, config: ChecksConfig) -> list[Finding]:
-    """Find jumps of the position and of the heading; the longest part between two can be used.
+    """Find permanent jumps of the recorded position or heading within one row.
+
+    The longest part of the recording between two jumps can be used.
 
     Args:
         recording: A prepared recording.
-        config: Thresholds of the checks.
+        config: Thresholds of the quality checks.
 
     Returns:
         Findings "position_leaps" and "heading_leaps".
@@ -59,12 +61,17 @@ def _check_columns(
 
 
 def jump_rows(t: Array, values: Array, config: ChecksConfig = DEFAULT.checks) -> NDArray[np.int64]:
-    """Return the rows after which values jump by more than the steps and courses around allow.
+    """Return the rows of a signal after which it jumps by more than its usual steps allow.
+
+    Steps and slopes around the row determine how much is usual.
 
     Args:
         t: Times (N,) [s].
         values: Values (N, C), complete.
-        config: Thresholds of the checks.
+        config: Thresholds of the quality checks.
+
+    Returns:
+        Indices (K,) of the rows before a jump.
     """
     n = len(t)
     side = config.jump_course_rows

@@ -25,7 +25,7 @@ NOISE_FAMILIES = {
 def drop_position_outliers(
     recording: Recording, vessel: Vessel, config: DiagnosisConfig = DEFAULT
 ) -> Recording:
-    """Return the recording without outliers of positions and headings.
+    """Return a recording without outliers of its positions and headings.
 
     Args:
         recording: A prepared recording.
@@ -33,7 +33,9 @@ def drop_position_outliers(
         config: Settings; the groups `checks` and `load` are used.
 
     Returns:
-        The recording from its first row on the course; outliers are nan, and remarks count them.
+        The recording from its first row that is no outlier; outliers are nan, and remarks count
+        them.
+        them.
     """
     first = outlier_rows_at_start(recording, vessel, config)
     if first:
@@ -65,10 +67,10 @@ def drop_position_outliers(
 def outlier_rows_at_start(
     recording: Recording, vessel: Vessel, config: DiagnosisConfig = DEFAULT
 ) -> int:
-    """Return the number of rows to drop because a recording begins with an outlier.
+    """Return the number of rows to drop because a recording begins with outliers of its position.
 
-    A filter starts from the first fix and can not reject it. Each of the first fixes is compared
-    with a parabola through the fixes after it.
+    A Kalman filter starts from the first fix and can not reject it. Each of the first fixes is
+    therefore compared with a parabola through the fixes after it.
 
     Args:
         recording: A prepared recording.
@@ -105,14 +107,16 @@ def _is_off_course(t: Array, y: Array, noise: float, config: ChecksConfig) -> bo
 def outlier_rows(
     t: Array, values: Array, finest: float, duration: float, config: ChecksConfig = DEFAULT.checks
 ) -> NDArray[np.bool_]:
-    """Return the rows that leave the course of the rows before and return to it soon.
+    """Return which rows of signals are outliers: they leave the trend and return to it soon.
+
+    The trend is predicted from the rows before.
 
     Args:
         t: Times (N,) [s].
         values: Values (N, C); nan where nothing was measured.
         finest: Least sd of a prediction over one step, in the unit of the values.
         duration: Outliers last less than this time [s].
-        config: Thresholds of the checks.
+        config: Thresholds of the quality checks.
 
     Returns:
         True (N,) for outliers.

@@ -18,12 +18,15 @@ INTEGER_DEGREES = 1e-7  # [deg] unit of positions that GNSS receivers write as i
 def check_position_unit(
     recording: Recording, vessel: Vessel, config: ChecksConfig
 ) -> list[Finding]:
-    """Find positions whose speed is impossible in metres but plausible in another unit.
+    """Find recorded positions in a wrong unit: latitude and longitude, centimetres or millimetres.
+
+    In metres the boat would hardly move or be impossibly fast; in the other unit its speed is
+    plausible.
 
     Args:
         recording: The recording as written in the file.
         vessel: The vessel; its length gives the Froude number.
-        config: Thresholds of the checks.
+        config: Thresholds of the quality checks.
 
     Returns:
         At most one finding, "latitude_as_metres" or "position_unit".

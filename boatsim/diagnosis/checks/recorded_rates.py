@@ -20,12 +20,14 @@ SPEED_UNITS = ("kn", "kmh", "cmps")
 def check_recorded_rates(
     recording: Recording, vessel: Vessel, config: ChecksConfig
 ) -> list[Finding]:
-    """Compare each recorded rate with the one that follows from the poses.
+    """Find recorded velocities and turn rates that contradict the recorded positions and headings.
+
+    A rate may have another sign, unit or latency, or belong to another point of the hull.
 
     Args:
         recording: A prepared recording.
         vessel: The vessel; its length scales lengths and durations.
-        config: Thresholds of the checks.
+        config: Thresholds of the quality checks.
 
     Returns:
         Findings "velocity_sign", "velocity_unit", "velocity_late" and "velocity_elsewhere".

@@ -39,7 +39,9 @@ OTHER_SIDE = {"port": "starboard", "starboard": "port", "left": "right", "right"
 
 @dataclass(frozen=True)
 class Reinterpretation:
-    """A fault that a log may have.
+    """A possible fault in the meaning of a recording's columns, and the changes that correct it.
+
+    For example, other axes, a heading of opposite sense, or exchanged drives.
 
     Attributes:
         name: Name of the finding in diagnosis.json.
@@ -57,14 +59,15 @@ class Reinterpretation:
 def reinterpretations(
     recordings: Sequence[Recording], vessel: Vessel, config: ChecksConfig
 ) -> list[Reinterpretation]:
-    """Return the reinterpretations to be compared for a vessel.
+    """Return the possible faults in the meaning of recorded columns that are to be compared.
 
-    Two that differ only by a rotation of the earth frame are the same.
+    The vessel model is later fitted to each corrected version. Corrections that differ only by a
+    rotation of the earth frame are treated as identical.
 
     Args:
         recordings: Prepared recordings.
         vessel: The vessel that they are recordings of.
-        config: Thresholds of the checks.
+        config: Thresholds of the quality checks.
 
     Returns:
         Reinterpretations; their changes concern columns that the recordings have.
@@ -82,7 +85,10 @@ def reinterpretations(
 
 
 def rotated_heading(angle: float) -> Reinterpretation:
-    """Return the reinterpretation that adds an angle [rad] to the heading."""
+    """Return the possible fault that the recorded heading is off by a constant angle [rad].
+
+    Its correction adds the angle.
+    """
     words = f"the heading is turned by {-degrees(angle):.0f} deg"
     return Reinterpretation("heading_turned", words, (Change("psi_rad", "psi_rad", 1.0, angle),))
 
@@ -90,12 +96,14 @@ def rotated_heading(angle: float) -> Reinterpretation:
 def heading_disagrees_with_course(
     recordings: Sequence[Recording], vessel: Vessel, config: ChecksConfig
 ) -> bool:
-    """Return whether a boat does not move where its bow points, or would if it were mirrored.
+    """Return whether a boat clearly does not move in the direction of its recorded heading.
+
+    Also true if its motion agrees clearly better with the mirrored heading.
 
     Args:
         recordings: Prepared recordings.
         vessel: The vessel that they are recordings of.
-        config: Thresholds of the checks.
+        config: Thresholds of the quality checks.
     """
     if not _have_planar_poses(recordings, vessel):
         return False

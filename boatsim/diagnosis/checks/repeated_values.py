@@ -18,7 +18,9 @@ FIX_REPEATED, VALUE_REPEATED = "repeat each fix", "repeats each value"
 
 
 def drop_repeated_values(recording: Recording) -> Recording:
-    """Return the recording with repeated values of its channels replaced by nan.
+    """Return a recording in which values that the logger only repeated are replaced by nan.
+
+    A logger that writes faster than a sensor measures repeats the last value.
 
     Args:
         recording: A prepared recording.

@@ -33,12 +33,17 @@ IDENTIFIABILITY_CHECKS = (check_saturation, check_excitation)
 
 
 def check_table(path: Path, vessel: Vessel, config: ChecksConfig) -> list[Finding]:
-    """Check the units and the clock of a file, which may be too faulty to be read as a recording.
+    """Check the units and the clock of a recording's file before it is read as a recording.
+
+    A file may be too faulty to be read as a recording, but still be a table of numbers.
 
     Args:
         path: The file.
         vessel: The vessel that it is a recording of.
-        config: Thresholds of the checks.
+        config: Thresholds of the quality checks.
+
+    Returns:
+        Findings about the file.
 
     Raises:
         BadInput: The file is not a table.
@@ -59,13 +64,16 @@ def check_table(path: Path, vessel: Vessel, config: ChecksConfig) -> list[Findin
 def check_recording(
     recording: Recording, cleaned: Recording, vessel: Vessel, config: ChecksConfig
 ) -> list[Finding]:
-    """Check a prepared recording, and list what was ignored in the cleaned one.
+    """Check a prepared recording for faults, and report what cleaning has dropped from it.
 
     Args:
         recording: The prepared recording.
-        cleaned: The same recording, cleaned.
+        cleaned: The same recording without repeated values and outliers.
         vessel: The vessel that it is a recording of.
-        config: Thresholds of the checks.
+        config: Thresholds of the quality checks.
+
+    Returns:
+        Findings about the recording.
     """
     found = cleaning_findings(cleaned)
     for check in RECORDING_CHECKS:
@@ -76,12 +84,15 @@ def check_recording(
 def check_identifiability(
     recording: Recording, vessel: Vessel, config: ChecksConfig
 ) -> list[Finding]:
-    """Find coefficients that a recording can not identify, because its motions lack variety.
+    """Find coefficients of a vessel that a recording cannot identify, because it varies too little.
 
     Args:
         recording: A prepared recording.
         vessel: The vessel that it is a recording of.
-        config: Thresholds of the checks.
+        config: Thresholds of the quality checks.
+
+    Returns:
+        Findings on saturated commands and on missing excitation.
     """
     found: list[Finding] = []
     for check in IDENTIFIABILITY_CHECKS:

@@ -11,12 +11,14 @@ from boatsim.recordings.table import Recording
 
 
 def check_saturation(recording: Recording, vessel: Vessel, config: ChecksConfig) -> list[Finding]:
-    """Find commands that are at a limit in most rows, unless the limit is their neutral value.
+    """Find commands of a recording that are at a limit in most rows.
+
+    Their gain can not be identified. Limits that are the neutral value of the command do not count.
 
     Args:
         recording: A prepared recording.
         vessel: The vessel with its command limits.
-        config: Thresholds of the checks.
+        config: Thresholds of the quality checks.
 
     Returns:
         Findings "saturated" of kind "limit".

@@ -15,12 +15,15 @@ REMARK = "positive {} turns the hull to the other side; its sign is changed"
 
 
 def correct_rudder_sense(recording: Recording, vessel: Vessel, config: ChecksConfig) -> Recording:
-    """Return the recording with rudder angles in the sign convention of the vessel.
+    """Return a recording with rudder angles in the sign convention of the vessel model.
+
+    The sign of a rudder command is changed if the turns of the recorded heading show that it is
+    reversed.
 
     Args:
         recording: The recording, with unwrapped angles.
         vessel: The vessel; each rudder command specifies to which side it turns.
-        config: Thresholds of the checks.
+        config: Thresholds of the quality checks.
 
     Returns:
         The recording, with a remark for each changed sign.
@@ -43,16 +46,19 @@ def correct_rudder_sense(recording: Recording, vessel: Vessel, config: ChecksCon
 
 
 def reversed_commands(recording: Recording) -> list[str]:
-    """Return the commands whose sign `correct_rudder_sense` has changed, from the remarks."""
+    """Return the rudder commands whose sign was corrected automatically in a recording.
+
+    They are read from the remarks of the recording.
+    """
     remarks = "\n".join(recording.remarks)
     return [name for name in recording.signals if REMARK.format(name) in remarks]
 
 
 def steering_correlation(recording: Recording, name: str, duration: float) -> float:
-    """Return the correlation of a command with the turn that follows, given the turn before.
+    """Return the partial correlation of a rudder command with the turn that follows it.
 
-    The turn before must be taken into account: the rudder that checks the turn of an unstable hull
-    would otherwise seem to act backwards.
+    The turn before the command must be taken into account: the rudder that checks the turn of an
+    unstable hull would otherwise seem to act backwards.
 
     Args:
         recording: The recording with a heading.
@@ -60,7 +66,7 @@ def steering_correlation(recording: Recording, name: str, duration: float) -> fl
         duration: Response time of the hull [s].
 
     Returns:
-        1 for a command that steers to starboard, -1 for one that steers to port.
+        Between -1 and 1; positive for a command that steers to starboard.
     """
     known = np.isfinite(recording.signals["psi_rad"])
     t = recording.t[known]

@@ -13,12 +13,14 @@ TIME_UNITS = ("ms", "us", "ns")
 
 
 def check_time_unit(recording: Recording, vessel: Vessel, config: ChecksConfig) -> list[Finding]:
-    """Find rows that are too far apart in seconds, but not in a smaller unit.
+    """Find time stamps of a recording in milliseconds, microseconds or nanoseconds.
+
+    Rows are then too far apart in seconds, but not in the smaller unit.
 
     Args:
         recording: The recording as written in the file.
         vessel: The vessel; its length scales the durations.
-        config: Thresholds of the checks.
+        config: Thresholds of the quality checks.
 
     Returns:
         At most one finding "time_unit".

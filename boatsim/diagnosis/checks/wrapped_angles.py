@@ -9,7 +9,9 @@ from boatsim.recordings.table import Recording
 
 
 def unwrap_directions(recording: Recording, vessel: Vessel) -> Recording:
-    """Return the recording with measured directions that do not jump by a full turn.
+    """Return a recording whose measured directions, such as that of the wind, are unwrapped.
+
+    They no longer jump by a full turn.
 
     Args:
         recording: The recording.

@@ -17,7 +17,7 @@ Step = tuple[float, float, float, float, float]
 
 @dataclass(frozen=True)
 class Manoeuvre:
-    """Commands over time.
+    """A manoeuvre for the next experiment: commands over time, and how it starts and ends.
 
     Attributes:
         name: Name in a report.
@@ -103,7 +103,7 @@ def available_manoeuvres(
     walls: bool,
     config: PlanConfig = DEFAULT.plan,
 ) -> tuple[Manoeuvre, ...]:
-    """Return the manoeuvres that a vessel can perform.
+    """Return the manoeuvres that a vessel can perform, as candidates for the next experiment.
 
     A boat that can go astern performs manoeuvres around rest, other vessels around the speed of
     their recordings. A hull without commands is released at another roll angle.
@@ -124,7 +124,10 @@ def available_manoeuvres(
 
 
 def driven_commands(vessel: Vessel) -> tuple[str, ...]:
-    """Return the commands of a manoeuvre; a command that feeds an actuator (PWM) replaces it."""
+    """Return the names of the commands that a manoeuvre sets on a vessel.
+
+    A command that feeds an actuator, such as a PWM signal, replaces the actuator's own command.
+    """
     fed = set()
     for effect in vessel.effects:
         for target in vessel.target_actuators(effect):

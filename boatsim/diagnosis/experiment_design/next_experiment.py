@@ -40,7 +40,9 @@ NOTHING = "nothing"  # name of the rival in which no candidate acts
 
 @dataclass(frozen=True)
 class Plan:
-    """A manoeuvre to record next, with its expected evidence.
+    """The manoeuvre to record next, with the evidence that it is expected to give.
+
+    It is chosen to distinguish the best hypothesis on what the vessel model lacks from its rivals.
 
     Attributes:
         manoeuvre: Name of the manoeuvre.
@@ -62,19 +64,23 @@ class Plan:
 
     @property
     def expected_gain(self) -> float:
-        """Expected log Bayes factor against the rival that is hardest to distinguish [nats]."""
+        """Expected log Bayes factor of the manoeuvre against the closest rival hypothesis [nats].
+
+        The closest rival is the one with the smallest expected factor.
+        """
         return min(self.log_bayes_factors.values())
 
 
 def best_plan(problem: Problem, best: Fit, rivals: Mapping[str, Fit]) -> Plan | None:
-    """Return the manoeuvre with the largest worst-case expected log Bayes factor.
+    """Return the manoeuvre that is expected to distinguish rival hypotheses best.
 
+    It has the largest expected log Bayes factor against the rival that is hardest to distinguish.
     The result is deterministic. Each manoeuvre and rival takes a few tens of filter passes.
 
     Args:
-        problem: The problem.
-        best: The best hypothesis.
-        rivals: Rivals by name.
+        problem: The estimation problem.
+        best: Fit of the best hypothesis on what the vessel model lacks.
+        rivals: Fits of rival hypotheses by name.
 
     Returns:
         The plan; None without rivals, or if no manoeuvre is expected to distinguish them.
@@ -87,12 +93,15 @@ def best_plan(problem: Problem, best: Fit, rivals: Mapping[str, Fit]) -> Plan | 
 
 
 def all_plans(problem: Problem, best: Fit, rivals: Mapping[str, Fit]) -> list[Plan]:
-    """Return a plan for every manoeuvre that the vessel can perform; none without rivals.
+    """Return every feasible manoeuvre with the evidence that it is expected to give.
+
+    The evidence is the expected log Bayes factor of the best hypothesis against each rival. The
+    list is empty if there are no rivals.
 
     Args:
-        problem: The problem.
-        best: The best hypothesis.
-        rivals: Rivals by name.
+        problem: The estimation problem.
+        best: Fit of the best hypothesis on what the vessel model lacks.
+        rivals: Fits of rival hypotheses by name.
     """
     if not rivals:
         return []
@@ -132,18 +141,18 @@ def _plan(
 
 
 def open_question(ranking: Ranking, config: DiagnosisConfig) -> tuple[Fit, dict[str, Fit]]:
-    """Return what a ranking leaves undecided.
+    """Return the hypotheses that a selection of effects leaves undecided, for the next experiment.
 
-    The rivals are the alternatives of the identified effects. Without any, it is the nearest rival
-    of the least certain effect. If no effect was identified, the best candidate is compared with
-    nothing and with its own alternatives, provided that its evidence gain is large enough.
+    The rivals are the look-alikes of the identified effects. If there are none, the nearest rival
+    of the least certain effect is used. If no effect was identified, the best candidate effect is
+    compared with no effect and with its own look-alikes, if its evidence is large enough.
 
     Args:
-        ranking: The ranking.
+        ranking: Result of the selection of effects.
         config: Settings; the groups `plan` and `select` are used.
 
     Returns:
-        The best hypothesis, and its rivals by name.
+        Fit of the best hypothesis, and fits of its rivals by name.
     """
     undecided = list(filter(attrgetter("tied_with"), ranking.named))
     if not undecided:
@@ -168,7 +177,7 @@ def open_question(ranking: Ranking, config: DiagnosisConfig) -> tuple[Fit, dict[
 
 
 def plan_entry(plan: Plan | None, scenario: str) -> NextEntry:
-    """Return the entry of diagnosis.json for a plan, empty without one.
+    """Return the entry of diagnosis.json on the experiment to record next; empty without a plan.
 
     Args:
         plan: The plan.
@@ -185,7 +194,11 @@ def plan_entry(plan: Plan | None, scenario: str) -> NextEntry:
 
 
 def command_steps(plan: Plan | None) -> tuple[tuple[float, Mapping[str, float]], ...]:
-    """Return the times [s] and values of the commands of a plan, and its end without commands."""
+    """Return the commands of a planned manoeuvre as steps in time.
+
+    Each step has the time [s] from which it holds and the value of each command. The last step,
+    without commands, is the end of the manoeuvre.
+    """
     if plan is None:
         return ()
     steps = [step for step in zip(plan.times, plan.levels, strict=True) if step[1]]
@@ -195,7 +208,7 @@ def command_steps(plan: Plan | None) -> tuple[tuple[float, Mapping[str, float]],
 
 
 def scenario_text(plan: Plan, vessel: Vessel) -> str:
-    """Return the text of a scenario file that runs a plan on the vessel of the diagnosis."""
+    """Return the text of a scenario file that simulates a planned manoeuvre with the vessel."""
     step = min(float(f"{SCENARIO_STEP * froude_scale('s', vessel):.1g}"), 1.0)
     separates = ", ".join(plan.separates)
     lines = [
@@ -221,20 +234,26 @@ def scenario_text(plan: Plan, vessel: Vessel) -> str:
 
 
 def other_effects(named: IdentifiedEffect) -> list[str]:
-    """Return the rivals that are another effect, not the same one on another actuator."""
+    """Return the rivals of an identified effect that are different effects.
+
+    The same effect on another actuator does not count as a rival.
+    """
     return [rival for rival in named.rivals if base_name(rival) != base_name(named.name)]
 
 
 def expected_log_bayes_factors(
     problem: Problem, recording: MappedRecording, best: Fit, rivals: Mapping[str, Fit]
 ) -> dict[str, float]:
-    """Return the expected log Bayes factor of the best hypothesis against each rival [nats].
+    """Return the log Bayes factor [nats] that a manoeuvre is expected to give against each rival.
+
+    The best hypothesis is assumed to be true. Each rival is refitted to the motion expected under
+    it.
 
     Args:
-        problem: The problem.
+        problem: The estimation problem.
         recording: Expected motion of the best hypothesis in a manoeuvre.
-        best: The best hypothesis.
-        rivals: Rivals by name.
+        best: Fit of the best hypothesis on what the vessel model lacks.
+        rivals: Fits of rival hypotheses by name.
     """
     config = problem.config.plan
     log_posterior, U = _refit(problem, recording, best, best, 0)

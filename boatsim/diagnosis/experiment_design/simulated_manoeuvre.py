@@ -20,7 +20,10 @@ from boatsim.physics.kernel.records import Inputs, VesselNumbers
 
 @dataclass(frozen=True)
 class SimulatedManoeuvre:
-    """The expected motion in a manoeuvre, without noise and without latent force."""
+    """A manoeuvre with the motion that a fitted vessel model predicts for it, as a recording.
+
+    It contains neither sensor noise nor latent (unmodelled) force.
+    """
 
     # with the expected switching times of a zig-zag, shortened if the walls require it
     manoeuvre: Manoeuvre
@@ -31,11 +34,14 @@ class SimulatedManoeuvre:
 def simulate_manoeuvre(
     problem: Problem, fit: Fit, manoeuvre: Manoeuvre
 ) -> SimulatedManoeuvre | None:
-    """Simulate a manoeuvre with a fitted vessel.
+    """Simulate a manoeuvre with a fitted vessel model, without noise.
+
+    If the walls of a tank are known, the start is moved and the manoeuvre shortened to stay clear
+    of them.
 
     Args:
         problem: The problem; its first recording provides the sensors and the row rate.
-        fit: The fit.
+        fit: Fit of the vessel model.
         manoeuvre: The manoeuvre.
 
     Returns:
@@ -67,7 +73,7 @@ def simulate_manoeuvre(
 
 
 def wall_distances(problem: Problem) -> Array | None:
-    """Return the distances (x, y) [m] of the walls from the origin; None if there are none."""
+    """Return the distances (x, y) [m] of the tank walls from the origin; None without walls."""
     facts = problem.recordings[0].facts
     if "surge" not in problem.program.vessel.dof or "walls_m" not in facts:
         return None

@@ -16,12 +16,14 @@ from boatsim.physics.base import Array
 def mean_residual_force(
     problem: Problem, fit: Fit, recordings: Sequence[MappedRecording]
 ) -> dict[str, MeanEntry]:
-    """Return the mean over all recordings of the force that a fit leaves unexplained.
+    """Return the constant part of the force that a fitted vessel model leaves unexplained.
+
+    It is the mean of the smoothed latent force over all recordings.
 
     Args:
         problem: The problem; its settings and its assumed disturbance level are used.
-        fit: The fit.
-        recordings: Recordings on the program of the problem.
+        fit: Fit of the vessel model.
+        recordings: Recordings mapped to the vessel program of the problem.
 
     Returns:
         Mean force or moment in body axes, by axis. Only axes are included on which the mean is

@@ -31,7 +31,10 @@ FORCE_UNITS = {axis: "N m" if name.endswith("Nm") else "N" for axis, name in COM
 
 @dataclass(frozen=True)
 class MissingForce:
-    """Missing force of one run: running averages over the time constant of the disturbance."""
+    """Force over time that a vessel model leaves unexplained in one recording, with its deviation.
+
+    Both are running averages over the correlation time of the assumed disturbance, in body axes.
+    """
 
     run: str
     t: Array  # (N,) s
@@ -41,7 +44,7 @@ class MissingForce:
 
 @dataclass(frozen=True)
 class Interval:
-    """An interval of a run in which a force is missing."""
+    """A time interval of a recording in which the vessel model lacks a force along one axis."""
 
     run: str
     from_s: float
@@ -52,12 +55,15 @@ class Interval:
 def missing_force(
     problem: Problem, fit: Fit, recordings: Sequence[MappedRecording]
 ) -> list[MissingForce]:
-    """Return the force missing in the vessel as specified.
+    """Estimate the force over time that the vessel model as specified lacks in each recording.
+
+    The smoothed latent force of the Kalman filter is averaged, and its standard deviation includes
+    the uncertainty of the coefficients.
 
     Args:
-        problem: The problem.
+        problem: The estimation problem.
         fit: The recalibrated vessel: its coefficients are fitted, and no candidate acts.
-        recordings: Recordings on the program of the problem.
+        recordings: Recordings mapped to the vessel program of the problem.
 
     Returns:
         One missing force per recording.
@@ -69,12 +75,14 @@ def missing_force(
 def residual_force(
     problem: Problem, fit: Fit, recordings: Sequence[MappedRecording]
 ) -> list[MissingForce]:
-    """Return the force that a fit itself leaves unexplained, at its own force levels.
+    """Estimate the force over time that a fitted vessel model leaves unexplained in each recording.
+
+    The latent force has the level and correlation time of the fit.
 
     Args:
-        problem: The problem.
-        fit: Any fit.
-        recordings: Recordings on the program of the problem.
+        problem: The estimation problem.
+        fit: Fit of the vessel model with any candidate effects.
+        recordings: Recordings mapped to the vessel program of the problem.
 
     Returns:
         One force per recording.
@@ -145,7 +153,9 @@ def _with_disturbance(
 
 
 def intervals(problem: Problem, forces: Sequence[MissingForce]) -> list[Interval]:
-    """Return the intervals in which zero lies outside the band, by run and axis.
+    """Return the time intervals in which a missing force is significant, by recording and axis.
+
+    There zero lies outside the band of the estimated force.
 
     Args:
         problem: The problem; its settings and the correlation time of its disturbance are used.
@@ -178,7 +188,7 @@ def _merged_intervals(
 
 
 def strength(problem: Problem, forces: Sequence[MissingForce]) -> dict[str, StrengthEntry]:
-    """Return the rms of the missing force per axis over all runs, and of its standard deviation.
+    """Return the rms over all recordings of the missing force of each axis, and of its deviation.
 
     Args:
         problem: The problem, for the axes of its vessel.

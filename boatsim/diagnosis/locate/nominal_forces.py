@@ -13,10 +13,12 @@ from boatsim.physics.base import Array
 def actuator_states(
     mapped: MappedRecording, effects: Sequence[str] = (), values: Array | None = None
 ) -> Array:
-    """Return the mean actuator states from row to row, under the mean commands of each row.
+    """Simulate the actuators of a vessel over a recording, driven by the recorded commands.
+
+    The mean state from each row to the next is returned.
 
     Args:
-        mapped: The recording.
+        mapped: The mapped recording.
         effects: Candidates that act.
         values: Parameter values; None for those of the vessel as specified.
 
@@ -46,7 +48,7 @@ def body_forces(
     values: Array,
     effects: Sequence[str] = (),
 ) -> Array:
-    """Return the force of all effects that act, in body axes.
+    """Return the total force of all active effects of a vessel along a recording, in body axes.
 
     Args:
         mapped: A recording on the program.
@@ -68,7 +70,10 @@ def body_forces(
 
 
 def full_thrust(mapped: MappedRecording) -> float:
-    """Return the surge force [N] at rest with all drives at their upper limits, over neutral."""
+    """Return the surge force [N] at rest with all drives at their upper command limits.
+
+    The force at neutral commands is subtracted.
+    """
     program = mapped.program
     vessel = program.vessel
     drives = [n for n in driven_commands(vessel) if n not in vessel.angles]
@@ -91,14 +96,15 @@ def _surge_force_at_rest(mapped: MappedRecording, commands: dict[str, float]) ->
 
 
 def coefficient_forces(problem: Problem, fit: Fit, mapped: MappedRecording, states: Array) -> Array:
-    """Return the force of each fitted coefficient of the vessel at its specified value.
+    """Return the force that each fitted coefficient of the vessel exerts along a recording.
 
-    Effects are linear in the coefficients that a recalibration changes.
+    Coefficients have their specified values. Effects are linear in the coefficients that a
+    recalibration changes.
 
     Args:
-        problem: The problem.
+        problem: The estimation problem.
         fit: The recalibrated vessel.
-        mapped: The recording.
+        mapped: The mapped recording.
         states: Smoothed states (N, 2 NQ).
 
     Returns:

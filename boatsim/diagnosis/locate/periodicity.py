@@ -20,7 +20,10 @@ TINY = 1e-300  # avoids division by zero
 
 @dataclass(frozen=True)
 class Peak:
-    """The most significant peak; its p-value is corrected for the number of bands tested."""
+    """The most significant peak in the spectrum of the prediction errors: its period and p-value.
+
+    The p-value is corrected for the number of frequency bands tested.
+    """
 
     period: float  # [s]
     p_value: float
@@ -29,7 +32,9 @@ class Peak:
 def most_significant_peak(
     runs: Sequence[tuple[Array, Array]], config: LocateConfig = DEFAULT.locate
 ) -> Peak | None:
-    """Return the most significant peak in the spectra of several runs.
+    """Test for a periodic missing force: find the most significant peak of the prediction errors.
+
+    The spectra of all recordings are combined.
 
     Args:
         runs: Times (N,) [s] and whitened prediction errors (N, C) of each run.

@@ -23,7 +23,10 @@ FORWARD_SPEED = "forward_speed_mps"  # fact of a recording in which the hull onl
 
 @dataclass(frozen=True)
 class RegionCandidate:
-    """A region that may explain the missing force."""
+    """A condition under which a force may be missing, such as thrust astern or nearness to a wall.
+
+    It holds the shapes over time that such a force would have in a recording.
+    """
 
     variable: str
     shapes: tuple[Array, ...]  # each (N, axes) [N, N m per factor]
@@ -33,13 +36,16 @@ class RegionCandidate:
 def region_candidates(
     mapped: MappedRecording, states: Array, damping: Array, config: LocateConfig
 ) -> list[RegionCandidate]:
-    """Return all regions that can be tested on a recording.
+    """Return all conditions under which a force may be missing that can be tested on a recording.
+
+    Conditions are a direction in the earth frame, high speed, thrust astern, play of the rudder,
+    roll and nearness to a wall.
 
     Args:
-        mapped: The recording.
+        mapped: The mapped recording.
         states: Smoothed states (N, 2 NQ).
         damping: Damping force (N, axes) of the vessel as specified.
-        config: Settings of the regions.
+        config: Settings for locating a missing force.
     """
     axes = axes_of(mapped.program.vessel)
     return [
@@ -168,7 +174,10 @@ def _proximity(distance: Array, reach: float, config: LocateConfig) -> Array:
 
 
 def tank_walls(mapped: MappedRecording) -> tuple[float, ...] | None:
-    """Return x_low, x_high, y_low, y_high [m] of the tank; None if they are not specified."""
+    """Return the walls of the tank in a recording as x_low, x_high, y_low, y_high [m].
+
+    None is returned if the facts do not specify them.
+    """
     if "walls_m" not in mapped.facts:
         return None
     return tuple(mapped.facts["walls_m"])

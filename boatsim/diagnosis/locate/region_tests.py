@@ -15,7 +15,7 @@ MIN_INFORMATION_SHARE = 1e-9
 
 @dataclass(frozen=True)
 class ScoreTest:
-    """Result of the test of one candidate."""
+    """Result of a score test: is a force of given shapes missing in the vessel model?"""
 
     factors: Array  # (S,) of its shapes
     p_value: float  # of all factors together
@@ -24,7 +24,11 @@ class ScoreTest:
 
 @dataclass(frozen=True)
 class ScoreStatistics:
-    """Information of recordings about the factors of shapes."""
+    """Fisher information and score of recordings about the factors of given force shapes.
+
+    A shape is a force over time, such as that of a constant wind. Its factor is the size of the
+    missing force of this shape.
+    """
 
     columns: Mapping[str, tuple[int, ...]]  # indices of the shapes of each candidate
     information: Array  # (S, S)
@@ -34,7 +38,9 @@ class ScoreStatistics:
 
     @classmethod
     def of(cls, shapes: Mapping[str, Sequence[Array]], force: LatentForce) -> "ScoreStatistics":
-        """Return the statistics of one recording.
+        """Compute the score statistics of one recording from its smoothed latent force.
+
+        The shapes of all candidates are forces over time that may be missing in the vessel model.
 
         Args:
             shapes: Shapes (N, axes) of every candidate.
@@ -49,11 +55,11 @@ class ScoreStatistics:
         return cls(columns, information, score, np.einsum("nka,nkb->kab", S, S), len(force.times))
 
     def is_informative(self, name: str) -> bool:
-        """Return whether the shapes of a candidate are not zero in the recordings."""
+        """Return whether the force shapes of a candidate differ from zero in the recordings."""
         return bool(np.diag(self.information)[list(self.columns[name])].any())
 
     def subset(self, names: Sequence[str]) -> "ScoreStatistics":
-        """Return the statistics of some candidates alone, in the given order."""
+        """Return the score statistics of some candidates only, in the given order."""
         kept = self.indices(names)
         columns = _consecutive(dict(zip(names, map(self.columns.__getitem__, names), strict=True)))
         return ScoreStatistics(
@@ -65,14 +71,16 @@ class ScoreStatistics:
         )
 
     def indices(self, names: Sequence[str]) -> list[int]:
-        """Return the indices of the shapes of some candidates."""
+        """Return the positions of some candidates' force shapes in the information matrix."""
         found: list[int] = []
         for name in names:
             found += self.columns[name]
         return found
 
     def test(self, name: str, others: Sequence[str]) -> ScoreTest:
-        """Test a candidate in addition to others, whose factors are free.
+        """Test whether a candidate force is missing in addition to other candidates (score test).
+
+        The factors of the other candidates are estimated together with it.
 
         Args:
             name: The candidate.
@@ -99,7 +107,7 @@ class ScoreStatistics:
 
 
 def combined(statistics: Sequence[ScoreStatistics], names: Sequence[str]) -> ScoreStatistics:
-    """Return the statistics of several independent recordings together.
+    """Return the sum of the score statistics of several independent recordings.
 
     Args:
         statistics: Statistics of each recording.

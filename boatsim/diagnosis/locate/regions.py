@@ -24,7 +24,7 @@ Sentence = Callable[[Array], str]
 
 @dataclass(frozen=True)
 class Region:
-    """A region of the state in which a force is missing."""
+    """A condition under which a force is significantly missing, such as thrust astern."""
 
     variable: str
     statement: str
@@ -32,14 +32,17 @@ class Region:
 
 
 def regions(problem: Problem, fit: Fit) -> list[Region]:
-    """Return the regions that explain the missing force of the fitted runs.
+    """Find the conditions under which the vessel model lacks a force, such as thrust astern.
+
+    Conditions are added one by one by score tests of the smoothed latent force; a test for a
+    periodic force completes them.
 
     Args:
-        problem: The problem.
+        problem: The estimation problem.
         fit: The recalibrated vessel: its coefficients are fitted, and no candidate acts.
 
     Returns:
-        Significant regions, the most significant first.
+        Significant conditions, the most significant first.
     """
     statistics, sentences = _score_statistics(problem, fit)
     tests = 1  # the test for a period

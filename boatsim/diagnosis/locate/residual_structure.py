@@ -36,12 +36,14 @@ PLACES = {
 
 @dataclass(frozen=True)
 class Structure:
-    """The feature that explains the residual force best.
+    """The quantity that correlates most with the force that a fitted model leaves unexplained.
+
+    Quantities are motions, commands, places and time.
 
     Attributes:
         axis: Axis of the force.
-        goes_with: The feature, in words.
-        gain: Largest gain in log likelihood by a force that is proportional to it [nats].
+        goes_with: The quantity, in words.
+        gain: Largest gain in log likelihood by a force that is proportional to the quantity [nats].
         p_value: Corrected for the number of tests.
         tested: Number of tests.
         significant: Whether the p-value is below its limit.
@@ -56,18 +58,21 @@ class Structure:
 
     @property
     def is_effect(self) -> bool:
-        """Whether it depends on motion, commands or heading, not only on place or time."""
+        """Whether the unexplained force varies with motion, commands or heading.
+
+        False if it varies with place or time only.
+        """
         return not self.goes_with.startswith((CONSTANT, SINCE_START, WITHIN, *PLACES.values()))
 
 
 def find_structure(problem: Problem, fit: Fit) -> Structure:
-    """Return the feature that explains the residual force of a fit best.
+    """Return the quantity with which the force that a fit leaves unexplained correlates most.
 
-    The level of the residual force is limited to a multiple of the assumed disturbance.
+    The level of that force is limited to a multiple of the assumed disturbance.
 
     Args:
-        problem: The problem.
-        fit: The fit.
+        problem: The estimation problem.
+        fit: Fit of the vessel model.
     """
     config = problem.config.locate
     limit = config.disturbance_factor * problem.ambient.force
@@ -104,16 +109,18 @@ def find_structure(problem: Problem, fit: Fit) -> Structure:
 def features(
     mapped: MappedRecording, states: Array, time_constant: float, config: LocateConfig
 ) -> Iterator[tuple[str, Array]]:
-    """Yield the features on which a force may depend.
+    """Yield the quantities with which an unexplained force may correlate in a recording.
+
+    Quantities are motions, commands, places and time.
 
     Args:
-        mapped: The recording.
+        mapped: The mapped recording.
         states: Smoothed states (N, 2 NQ).
         time_constant: Time constant of the latent force [s].
         config: Settings of the features.
 
     Yields:
-        The feature in words and its values (N,), scaled to rms 1.
+        The quantity in words and its values (N,), scaled to rms 1.
     """
     for source in (
         _speed_features(mapped, states),

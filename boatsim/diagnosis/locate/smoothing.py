@@ -16,9 +16,10 @@ from boatsim.physics.base import Array
 
 @dataclass(frozen=True)
 class LatentForce:
-    """Smoothed latent force of a recording, as a part of the smoothed state, and its prior.
+    """Smoothed latent (unmodelled) force of a recording, and the parameters of its prior.
 
-    The prior is an Ornstein-Uhlenbeck process for each of the k axes.
+    The force is part of the smoothed state. The prior is an Ornstein-Uhlenbeck process for each of
+    the k axes.
     """
 
     times: Array  # (N,) s
@@ -32,25 +33,25 @@ class LatentForce:
 
     @property
     def mean(self) -> Array:
-        """(N, k) smoothed force."""
+        """Smoothed latent (unmodelled) force (N, k) [N, N m]."""
         return self.means[:, self.part]
 
     @property
     def states(self) -> Array:
-        """(N, 2 k) smoothed positions and rates."""
+        """Smoothed positions and rates (N, 2 k) of the hull."""
         return self.means[:, : self.part.start]
 
 
 def latent_force(
     problem: Problem, fit: Fit, mapped: MappedRecording, levels: NoiseLevels
 ) -> LatentForce:
-    """Return the smoothed latent force of a fit in a recording.
+    """Return the latent (unmodelled) force that a fitted model's smoother finds in a recording.
 
     Args:
-        problem: The problem.
-        fit: The fit.
-        mapped: The recording.
-        levels: Levels of noise and force of the filter.
+        problem: The estimation problem.
+        fit: Fit of the vessel model.
+        mapped: The mapped recording.
+        levels: Levels of sensor noise and latent force that the filter uses.
     """
     nq = problem.program.module.NQ
     on = problem.program.switches(fit.effects)
@@ -64,12 +65,17 @@ def latent_force(
 
 
 def averaged_rows(times: Array, span: float) -> int:
-    """Return the number of rows, at least 1, of an average over `span` s of times (N,) [s]."""
+    """Return how many rows a running average over a given duration contains, at least 1.
+
+    Args:
+        times: Times (N,) of the rows [s].
+        span: Duration of the average [s].
+    """
     return max(1, min(len(times), round(span / float(np.median(np.diff(times))))))
 
 
 def running_average(values: Array, rows: int) -> Array:
-    """Return the average over `rows` rows around each row.
+    """Return the running average of signals over a number of rows around each row.
 
     Args:
         values: Values (N, ...).
@@ -83,14 +89,15 @@ def running_average(values: Array, rows: int) -> Array:
 
 
 def variance_of_average(covariances: Array, gains: Array, part: slice, rows: int) -> Array:
-    """Return the variance of the `running_average` of a part of the smoothed state.
+    """Return the variance of the running average of components of a smoothed state.
 
-    With D_w(i) = cov(z_i, z_i + ... + z_i+w-1), D_w(i) = P_i + G_i D_w-1(i + 1).
+    The correlation of the errors of neighbouring rows is included. With D_w(i) = cov(z_i, z_i + ...
+    + z_i+w-1), D_w(i) = P_i + G_i D_w-1(i + 1).
 
     Args:
         covariances: Covariances (N, n, n) of the smoothed states.
         gains: Gains (N, n, n) of the smoother.
-        part: Part of the state with k components.
+        part: Components of the state that are averaged, k of them.
         rows: Number of rows of the average.
 
     Returns:
@@ -109,12 +116,14 @@ def variance_of_average(covariances: Array, gains: Array, part: slice, rows: int
 
 
 def variance_of_mean(covariances: Array, gains: Array, part: slice) -> Array:
-    """Return the variance (k,) of the mean over all rows of a part of the smoothed state.
+    """Return the variance (k,) of the mean over all rows of components of a smoothed state.
+
+    The correlation of the errors of different rows is included.
 
     Args:
         covariances: Covariances (N, n, n) of the smoothed states.
         gains: Gains (N, n, n) of the smoother.
-        part: Part of the state with k components.
+        part: Components of the state that are averaged, k of them.
     """
     own = covariances[:, :, part]
     with_later = own[-1]
@@ -131,7 +140,7 @@ def _first_rows(n: int, rows: int) -> NDArray[np.int64]:
 
 
 def joint_information(shapes: Array, force: LatentForce) -> tuple[Array, Array]:
-    """Return Fisher information and score of the factors of force shapes.
+    """Return Fisher information and score of the factors of given shapes of a missing force.
 
     The latent force was smoothed without these shapes. Its prior covariance C is that of an
     Ornstein-Uhlenbeck process, so C^-1 is tridiagonal. If a force s acts, the smoothed force is K s
@@ -153,7 +162,9 @@ def joint_information(shapes: Array, force: LatentForce) -> tuple[Array, Array]:
 
 
 def separate_information(shapes: Array, force: LatentForce) -> tuple[Array, Array]:
-    """Return information and score of each factor as if it were the only one.
+    """Return Fisher information and score of each shape of a missing force, taken alone.
+
+    Each factor is treated as if it were the only one.
 
     Args:
         shapes: Shapes (N, k, S).

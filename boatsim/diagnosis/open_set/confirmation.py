@@ -25,7 +25,10 @@ Outcome = Literal["confirmed", "open", "unconfirmed"]
 
 
 class Errors(NamedTuple):
-    """Rms errors of free runs over held-out recordings, for one family of signals [m or rad]."""
+    """Rms errors without and with one effect, of simulations over held-out recordings.
+
+    The errors are those of one family of signals: position [m], heading or roll [rad].
+    """
 
     without: float  # all other effects act
     with_effect: float
@@ -37,13 +40,16 @@ def errors_of_each(
     without_each: Mapping[str, Fit],
     held_out: Sequence[MappedRecording],
 ) -> dict[str, dict[str, Errors]]:
-    """Return the errors of free runs without and with each effect, by its name and by family.
+    """Return how far each identified effect changes the simulation errors on held-out recordings.
+
+    The errors are rms errors of free runs (simulations with the recorded commands alone) without
+    and with the effect, by name of the effect and by family of signals (position, heading, roll).
 
     Args:
-        problem: Recordings and priors.
-        best: A fit.
+        problem: The estimation problem: recordings, vessel model, candidate effects and priors.
+        best: Fit of the vessel model with some candidate effects.
         without_each: Fits without one of the effects, by the name of that effect.
-        held_out: Held-out recordings.
+        held_out: Held-out recordings, which no fit has used.
     """
     if not held_out:
         return {name: {} for name in without_each}
@@ -61,10 +67,12 @@ def errors_of_each(
 def outcome_of(
     effect: Effect, errors: Mapping[str, Errors], signs: Consistency, config: DecideConfig
 ) -> Outcome:
-    """Return what held-out recordings show of an effect.
+    """Return whether held-out recordings confirm an identified effect.
 
-    An effect that releases coefficients of the vessel is never unconfirmed. Without it the same
-    coefficients are refitted, only far outside of their stated uncertainty, and predict the same.
+    "confirmed" if they are simulated better or are more likely with it, "unconfirmed" if they could
+    have shown it but do not, "open" if they do not determine its size. An effect that releases
+    coefficients of the vessel is never unconfirmed: without it the same coefficients are refitted,
+    only far outside of their stated uncertainty, and predict the same.
 
     Args:
         effect: The effect.
@@ -80,9 +88,9 @@ def outcome_of(
 
 
 def mean_ratio(errors: Mapping[str, Errors]) -> float:
-    """Return the geometric mean over the families of the ratio of errors with and without.
+    """Return the ratio of simulation errors with an effect to those without it.
 
-    It is 1 where nothing was recorded.
+    It is the geometric mean over position, heading and roll, and 1 where nothing was recorded.
 
     Args:
         errors: Errors of free runs without and with an effect, by family.

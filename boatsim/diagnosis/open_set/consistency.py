@@ -30,20 +30,26 @@ UNDETERMINED = 1e6  # sd of a factor that the data do not determine
 
 @dataclass(frozen=True)
 class Factor:
-    """Size of an effect on a part of the data, as a factor of the fitted size."""
+    """Size of an identified effect on a part of the data, relative to its fitted size.
+
+    The size on all data is 1. A true effect has about the same size in every recording.
+    """
 
     value: float
     sd: float
 
     @property
     def significance(self) -> float:
-        """Distance from zero effect in standard deviations."""
+        """Size of the effect on this part of the data, in standard deviations from zero."""
         return self.value / self.sd
 
 
 @dataclass(frozen=True)
 class Variation:
-    """Variation of the size of an effect between parts of the data."""
+    """How much the size of an identified effect varies between parts of the data.
+
+    A true effect has the same size everywhere.
+    """
 
     excess: float  # sd between the parts beyond their own sd, as a share of the fitted size
     chi_square: float  # of the hypothesis that the size is the same
@@ -51,17 +57,23 @@ class Variation:
 
     @property
     def ratio(self) -> float:
-        """Chi-square per degree of freedom, 1 on average if the size is the same."""
+        """Chi-square per degree of freedom of the hypothesis that the effect's size is constant.
+
+        It is 1 on average if the size is the same on all parts of the data.
+        """
         return self.chi_square / self.dof if self.dof else 1.0
 
 
 @dataclass(frozen=True)
 class Consistency:
-    """Signs of one identified effect by which true effects differ from stand-ins.
+    """Statistics of one identified effect that tell a true cause from a stand-in.
+
+    A stand-in is an effect that only imitates an unmodelled cause. Its size varies between
+    recordings, times and conditions, and it does not improve predictions of held-out recordings.
 
     Attributes:
-        recordings: Factor on each fitted recording.
-        held_out: Factor on the held-out recordings.
+        recordings: Size on each fitted recording, relative to the fitted size.
+        held_out: Size on the held-out recordings, relative to the fitted size.
         between_times: Variation between parts in time.
         between_ranges: Largest variation between ranges of a speed, a command or the heading.
         quantity: That quantity, in words.
@@ -103,13 +115,19 @@ def consistency_of(
     without_each: Mapping[str, Fit],
     held_out: Sequence[MappedRecording],
 ) -> dict[str, Consistency]:
-    """Return the signs of each effect of a fit, by name.
+    """Return statistics of each identified effect that tell a true cause from a stand-in.
+
+    They compare the effect's size between recordings, times and conditions, and its gain on
+    held-out recordings.
 
     Args:
-        problem: Recordings and priors.
-        best: A converged fit.
+        problem: The estimation problem: recordings, vessel model, candidate effects and priors.
+        best: Converged fit of the vessel model with some candidate effects.
         without_each: Fits without one of the effects, by the name of that effect.
-        held_out: Held-out recordings.
+        held_out: Held-out recordings, which no fit has used.
+
+    Returns:
+        Statistics by name of the effect.
     """
     if not best.effects:
         return {}

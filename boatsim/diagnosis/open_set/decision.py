@@ -17,12 +17,12 @@ from boatsim.physics.base import RandomForce
 
 @dataclass(frozen=True)
 class Judgement:
-    """Signs of an identified effect, and the probability that follows from them.
+    """Whether an identified effect is stated as a cause: its statistics and probability.
 
     Attributes:
         effect: The effect with its statistics among the candidates.
         stochastic: Whether it is a stochastic force.
-        signs: Signs by which true effects differ from stand-ins.
+        signs: Statistics that tell a true cause from a stand-in for another one.
         probability: Probability that it, or one of its look-alikes, is a true cause.
         alone: Errors of free runs over held-out recordings without and with it, by family.
         outcome: What held-out recordings show of it.
@@ -38,14 +38,14 @@ class Judgement:
 
 @dataclass(frozen=True)
 class Decision:
-    """Result of the decide stage.
+    """Result of deciding which identified effects are stated as causes, and how probable they are.
 
     Attributes:
         problem: The problem with its correlation time.
         ranking: The selection; its `named` effects are stated as causes, with their probability,
             and its `doubtful` ones are only possible.
-        judgements: Signs and probability of all these effects.
-        log: Signs of the log.
+        judgements: Statistics and probability of all these effects.
+        log: Statistics of the recordings as a whole that indicate an unmodelled cause.
     """
 
     problem: Problem
@@ -54,10 +54,10 @@ class Decision:
     log: LogSigns
 
     def judgement(self, name: str) -> Judgement:
-        """Return the judgement of an effect.
+        """Return the statistics and probability of one identified effect.
 
         Args:
-            name: Name of the candidate.
+            name: Name of the effect.
         """
         return next(one for one in self.judgements if one.effect.name == name)
 
@@ -65,16 +65,16 @@ class Decision:
 def decide(
     problem: Problem, ranking: Ranking, held_out: Sequence[MappedRecording], candidates: int
 ) -> Decision:
-    """Return a selection whose names are stated only as surely as they are right.
+    """Decide which selected effects are stated as causes, with their probabilities.
 
-    An effect that is probably a stand-in, or that held-out recordings do not confirm, is not named.
-    It stays in the patched vessel, because it describes the data, and if it explains much the cause
-    is reported as unknown.
+    An effect that is probably a stand-in for another cause, or that held-out recordings do not
+    confirm, is not stated as a cause. It stays in the patched vessel, because it describes the
+    data, and if it explains much the cause is reported as unknown.
 
     Args:
-        problem: Recordings and priors.
-        ranking: Identified effects.
-        held_out: Held-out recordings.
+        problem: The estimation problem: recordings, vessel model, candidate effects and priors.
+        ranking: Result of the selection of effects.
+        held_out: Held-out recordings, which no fit has used.
         candidates: Number of candidates that were tested.
     """
     config = problem.config
@@ -103,11 +103,11 @@ def decide(
 
 
 def undecided(problem: Problem, ranking: Ranking) -> Decision:
-    """Return the decision where nothing was fitted, so that no effect is identified.
+    """Return the decision for recordings that no model could be fitted to: no effect is identified.
 
     Args:
-        problem: Recordings and priors.
-        ranking: Result without identified effects.
+        problem: The estimation problem: recordings, vessel model, candidate effects and priors.
+        ranking: Result of the selection, without identified effects.
     """
     return Decision(problem, ranking, (), NO_SIGNS)
 

@@ -11,7 +11,7 @@ from boatsim.diagnosis.search.ranking import Ranking
 
 @dataclass(frozen=True)
 class LogSigns:
-    """Signs of a selection that some cause is not described by its effects.
+    """Statistics of the recordings as a whole that indicate a cause outside the candidate effects.
 
     Attributes:
         coefficient_shift: Rms distance of the nominal coefficients from the vessel file, in prior
@@ -38,11 +38,13 @@ NO_SIGNS = LogSigns(0.0, 1.0, 0.0, 0.0, 0.0, 0)
 
 
 def log_signs(problem: Problem, ranking: Ranking) -> LogSigns:
-    """Return the signs of a selection.
+    """Return statistics that indicate a cause which no candidate effect describes.
+
+    They are computed from the recordings as a whole, after the selection of effects.
 
     Args:
-        problem: Recordings and priors.
-        ranking: Identified effects.
+        problem: The estimation problem: recordings, vessel model, candidate effects and priors.
+        ranking: Result of the selection of effects.
     """
     best = ranking.best
     return LogSigns(

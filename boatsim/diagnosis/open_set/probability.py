@@ -28,13 +28,15 @@ def features(
     log_signs: LogSigns,
     config: DecideConfig,
 ) -> dict[str, float]:
-    """Return the numbers whose weighted sum is the log of the odds that a name is right.
+    """Return the features of a logistic regression: is an identified effect a true cause?
+
+    Their weighted sum is the log of the odds that the effect, or one of its look-alikes, is true.
 
     Args:
         effect: The effect with its evidence and its look-alikes.
         stochastic: Whether it is a stochastic force.
-        consistency: Signs of the effect.
-        log_signs: Signs of the log.
+        consistency: Statistics of the effect that tell a true cause from a stand-in.
+        log_signs: Statistics of the recordings as a whole.
         config: Settings of the decision.
 
     Returns:
@@ -66,7 +68,9 @@ def features(
 
 
 def probability_of_true_cause(found: dict[str, float], config: DecideConfig) -> float:
-    """Return the probability that an effect, or one of its look-alikes, is a true cause.
+    """Return the probability that an identified effect, or one of its look-alikes, is a true cause.
+
+    It is the result of a logistic regression.
 
     Args:
         found: Features of the effect.
@@ -79,10 +83,13 @@ def probability_of_true_cause(found: dict[str, float], config: DecideConfig) -> 
 
 
 def exceeds_range(consistency: Consistency, config: DecideConfig) -> bool:
-    """Whether a parameter is at a bound of its range, and a recording requires more than that.
+    """Whether the recordings require a larger effect than its allowed range of parameters permits.
+
+    A parameter is then at a bound of its range, and one recording requires more than the fitted
+    size.
 
     Args:
-        consistency: Signs of an effect.
+        consistency: Statistics of the effect over the recordings.
         config: Settings of the decision.
     """
     sizes = [factor.value for factor in consistency.recordings]

@@ -20,7 +20,10 @@ Outline = list[tuple[float, float]]
 
 
 class Boat(TypedDict):
-    """A boat of the animation, frame by frame; None where nothing was recorded."""
+    """A boat drawn in the animation of a report: its position and rotation in each frame.
+
+    Values are None where nothing was recorded.
+    """
 
     look: str  # class of the style sheet
     x: list[float | None]
@@ -29,7 +32,10 @@ class Boat(TypedDict):
 
 
 class Animation(TypedDict):
-    """Data of the animation."""
+    """Data of the report's animation, which the script of the HTML page plays.
+
+    It shows the recorded and the simulated motion of the vessel over time.
+    """
 
     t: list[float]  # [s]; two equal times where a new free run starts
     start: int  # first frame shown
@@ -48,11 +54,11 @@ def animation_frames(
     outline: Outline,
     start: float,
 ) -> Animation:
-    """Return the frames of consecutive free runs.
+    """Return the frames of the report's animation of recorded and simulated motion.
 
     Args:
-        runs: Free runs over one recording.
-        models: Models to show in addition to the recording.
+        runs: Consecutive free runs (simulations with recorded commands alone) over one recording.
+        models: Names of the vessel models to show in addition to the recording.
         signal: Signal to show over time; None for a view from above.
         height: Range of the vertical axis, which sets the rounding of the frames.
         outline: Outline of a boat.
@@ -121,7 +127,7 @@ def _playback_speed(seconds: float) -> int:
 
 
 def fill_short_gaps(t: Array, values: Array) -> Array:
-    """Return values with short gaps between measurements filled linearly.
+    """Fill short gaps of a measured signal by linear interpolation.
 
     Args:
         t: Times (N,) [s].

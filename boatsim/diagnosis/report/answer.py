@@ -67,7 +67,7 @@ def compose_answer(
     plan: next_experiment.Plan | None,
     seconds: float,
 ) -> Answer:
-    """Return the content of diagnosis.json.
+    """Compose the content of diagnosis.json, the answer of a diagnosis, from all its results.
 
     Args:
         loaded: Recordings and vessels.
@@ -228,11 +228,13 @@ def _with_log_first(
 
 
 def effect_meanings(candidates: Iterable[Effect], vessel: Vessel) -> dict[str, str]:
-    """Return the meaning of each candidate by name, and of its parameters by "effect.parameter".
+    """Return the meaning in words of candidate effects and of their parameters.
+
+    Keys are the name of the effect, and "effect.parameter".
 
     Args:
         candidates: Candidate effects.
-        vessel: Vessel whose numbers some ratios refer to.
+        vessel: Vessel to whose numbers the values of some parameters are relative.
     """
     found, parameters = dict[str, str](), dict[str, str]()
     for effect in candidates:

@@ -13,7 +13,7 @@ BY_USER = "--without"  # reason for a candidate that the user excluded
 
 
 def excluded_candidates(question: Question) -> list[LeftOutEntry]:
-    """Return the candidates that were not tested, with the reasons.
+    """Return the candidate effects that were not tested, with the reasons, for diagnosis.json.
 
     Args:
         question: The candidates of the diagnosis.
@@ -29,10 +29,13 @@ def excluded_candidates(question: Question) -> list[LeftOutEntry]:
 
 
 def rules_entry(problem: Problem, tested: int) -> RulesEntry:
-    """Return the numbers that were assumed before the data.
+    """Return the assumptions made before any data were evaluated, for diagnosis.json.
+
+    They are the disturbance level, its correlation time, the length of free runs, the required
+    evidence and what the vessel file overrides.
 
     Args:
-        problem: Recordings and priors.
+        problem: The estimation problem: recordings, vessel model, candidate effects and priors.
         tested: Number of candidates that were tested.
     """
     vessel, levels = problem.program.vessel, problem.ambient

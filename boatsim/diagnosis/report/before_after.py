@@ -23,7 +23,10 @@ class _Unit(NamedTuple):
 
 
 def error_table(evaluation: Evaluation) -> Table | None:
-    """Return the errors of free runs over every part of the data; None if there are none.
+    """Return the report's table of simulation errors before and after the diagnosis.
+
+    It compares the nominal, the recalibrated and the patched vessel model over every recording.
+    None is returned if there are no errors.
 
     Args:
         evaluation: Free runs of the models.
@@ -54,11 +57,14 @@ def error_table(evaluation: Evaluation) -> Table | None:
 def limitation_sentences(
     problem: Problem, ranking: Ranking, evaluation: Evaluation
 ) -> tuple[str, ...]:
-    """Return sentences on what the recordings cannot show.
+    """Return sentences of the report on limits of a diagnosis.
+
+    They concern errors that the patched vessel does not reduce, force that remains unexplained, and
+    recordings that the nominal vessel model explains as well.
 
     Args:
-        problem: Recordings and priors.
-        ranking: Result of the selection, with its description.
+        problem: The estimation problem: recordings, vessel model, candidate effects and priors.
+        ranking: Result of the selection of effects, with the formula, if one was found.
         evaluation: Free runs of the models.
     """
     return (

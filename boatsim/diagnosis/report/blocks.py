@@ -7,7 +7,7 @@ from typing import ClassVar
 
 @dataclass(frozen=True)
 class Text:
-    """A paragraph."""
+    """A paragraph of a report."""
 
     kind: ClassVar[str] = "text"
     words: str
@@ -15,7 +15,7 @@ class Text:
 
 @dataclass(frozen=True)
 class Heading:
-    """A heading within a section, with a line of facts below it."""
+    """A heading within a section of a report, with a line of facts below it."""
 
     kind: ClassVar[str] = "heading"
     words: str
@@ -24,7 +24,7 @@ class Heading:
 
 @dataclass(frozen=True)
 class Items:
-    """A list of pairs: a term and its meaning, or "" and a line."""
+    """A list in a report: pairs of a term and its meaning, or of "" and a line of text."""
 
     kind: ClassVar[str] = "items"
     lines: tuple[tuple[str, str], ...]
@@ -32,7 +32,7 @@ class Items:
 
 @dataclass(frozen=True)
 class Table:
-    """A table.
+    """A table of a report: its caption, header and cells, and how the HTML page shows it.
 
     Attributes:
         caption: Title of the table.
@@ -55,7 +55,7 @@ class Table:
 
 
 def without_empty_columns(table: Table) -> Table:
-    """Return a table without the prose columns that are empty in every row.
+    """Return a table without its columns of words that are empty in every row.
 
     Args:
         table: The table.
@@ -79,7 +79,7 @@ def _select_columns(row: list[str], columns: list[int]) -> list[str]:
 
 @dataclass(frozen=True)
 class Figures:
-    """Figures of the page; the Markdown text has the tables only."""
+    """Figures of a report's HTML page; the Markdown version contains the tables only."""
 
     kind: ClassVar[str] = "figures"
     legend: str
@@ -91,7 +91,7 @@ Block = Text | Heading | Items | Table | Figures
 
 @dataclass(frozen=True)
 class Section:
-    """A section of the report; `key` is its anchor on the page."""
+    """A section of a report: its title and its blocks; `key` is its anchor on the HTML page."""
 
     key: str
     title: str
@@ -99,13 +99,13 @@ class Section:
 
 
 def escape_markup(words: str) -> str:
-    """Return words in which names from files are not read as mark-up."""
+    """Escape characters in text from files that a browser or Markdown would read as mark-up."""
     words = words.replace("&", "&amp;").replace("<", "&lt;").replace("\n", " ")
     return re.sub(r"([|*`]|(?<=\])\()", r"\\\1", words)
 
 
 def markdown_lines(block: Block) -> list[str]:
-    """Return the lines of a block in Markdown; figures have none.
+    """Return the Markdown lines of one block of a report, such as a table; figures have none.
 
     Args:
         block: The block.

@@ -20,10 +20,12 @@ OPEN = (
 
 
 def alone_entry(errors: Mapping[str, Errors]) -> dict[Family, AloneEntry]:
-    """Return the errors on held-out recordings without and with an effect, for diagnosis.json.
+    """Return errors on held-out recordings without and with an effect, as in diagnosis.json.
+
+    The errors are those of simulations with the recorded commands alone.
 
     Args:
-        errors: Errors by family of signals.
+        errors: Rms errors by family of signals (position, heading or roll).
     """
     found: dict[Family, AloneEntry] = {}
     for family in FAMILIES:
@@ -34,7 +36,9 @@ def alone_entry(errors: Mapping[str, Errors]) -> dict[Family, AloneEntry]:
 
 
 def effect_sentences(effect: EffectEntry) -> list[str]:
-    """Return how adding an effect changes the errors on held-out data, and whether they confirm it.
+    """Return sentences on how an identified effect changes the errors on held-out recordings.
+
+    They also say whether these recordings confirm the effect.
 
     Args:
         effect: Entry of an identified effect.
@@ -73,10 +77,10 @@ def _changes(alone: Mapping[Family, AloneEntry]) -> list[str]:
 
 
 def reason_unconfirmed(judged: Judgement) -> str:
-    """Return the reason why an effect is not confirmed, in words.
+    """Return the reason, in words, why held-out recordings do not confirm an effect.
 
     Args:
-        judged: Judgement of the effect.
+        judged: Statistics and probability of the effect.
     """
     reason = "held-out recordings, which could show it, are explained as well without it"
     changes = join_words(_changes(alone_entry(judged.alone)))
@@ -86,7 +90,7 @@ def reason_unconfirmed(judged: Judgement) -> str:
 
 
 def recalibration_sentences(f: Findings) -> list[str]:
-    """Return sentences on coefficients that keep the values of the vessel file.
+    """Return sentences on the coefficients that keep the values of the vessel file.
 
     Args:
         f: Findings of a diagnosis.

@@ -48,14 +48,15 @@ FADED = 37  # [%] what remains of a fading term after one time span: exp(-1)
 
 
 def described_entries(description: Description | None, vessel: Vessel) -> list[DescribedEntry]:
-    """Return the formulas of a description as entries of the answer.
+    """Return the formulas found by symbolic regression in the form used in diagnosis.json.
 
     Args:
         description: Terms found by symbolic regression; None if there are none.
         vessel: The vessel, for the units of its commands.
 
     Returns:
-        One entry for each axis, recording of events, and whether it generalizes; those with most
+        One entry for each axis, recording of events, and whether it holds for held-out recordings;
+        those with most evidence first.
         evidence first.
     """
     if description is None:
@@ -76,19 +77,22 @@ def _group(w: FittedTerm) -> tuple[str, bool, str]:
 
 
 def term_axis(term: SymbolicTerm) -> str:
-    """Return the axis of a term; "thrust" if it changes the thrust of the drives."""
+    """Return the axis of the force of a term found by symbolic regression.
+
+    It is "thrust" if the term changes the thrust of the drives.
+    """
     if isinstance(term, DescribedForce):
         return term.axis
     return "thrust"
 
 
 def effect_of_axis(axis: str) -> str:
-    """Return what a formula of an axis describes, such as "a side force"."""
+    """Return words for what a formula describes, by its axis, such as "a side force"."""
     return FORCES.get(axis, "a change of thrust")
 
 
 def abscissa_label(over: str) -> str:
-    """Return the label of the axis over which a curve is drawn, with its unit.
+    """Return the label and unit of the variable over which a symbolic term's curve is drawn.
 
     Args:
         over: Name of a factor, "time" or "product".
@@ -121,7 +125,10 @@ def _recent_words(how: str, signal: str) -> str:
 
 
 def term_unit(term: SymbolicTerm) -> str:
-    """Return the unit of a term: "N", "N m", or "" for a share of the thrust."""
+    """Return the unit of the force of a term found by symbolic regression.
+
+    It is "N", "N m", or "" for a share of the thrust.
+    """
     axis = term_axis(term)
     if axis == "thrust":
         return ""
@@ -221,7 +228,10 @@ def _activity_condition(term: SymbolicTerm) -> str:
 
 
 def factors_in_words(term: SymbolicTerm) -> str:
-    """Return the product of the factors of a term in words; "" if it is constant."""
+    """Return in words what a term found by symbolic regression is proportional to.
+
+    The text is empty if the term is constant.
+    """
     parts = []
     for name, power in Counter(term.of).items():
         if name.startswith("abs_") and name.removeprefix("abs_") in term.of:
@@ -261,10 +271,10 @@ def _factor(name: str, term: SymbolicTerm) -> str:
 
 
 def coefficient_unit(term: SymbolicTerm, vessel: Vessel) -> str:
-    """Return the unit of the coefficient of a term.
+    """Return the unit of the coefficient of a term found by symbolic regression.
 
     Args:
-        term: The term.
+        term: A term of the symbolic regression.
         vessel: The vessel, for the units of its commands.
 
     Returns:

@@ -31,12 +31,15 @@ Intervals = Sequence[IntervalEntry]
 def missing_figures(
     runs: Sequence[MissingForceCurve], intervals: Intervals, shared: Sequence[MissingForceCurve]
 ) -> list[str]:
-    """Return one figure per recording with its missing force by axis over time.
+    """Draw the force that the vessel model does not explain over time, one figure per recording.
 
     Args:
         runs: Missing force of the recordings to draw.
         intervals: Flagged intervals of all recordings.
         shared: Missing force of the recordings that share one scale per axis.
+
+    Returns:
+        Figures as SVG.
     """
     scales = {}
     for axis in shared[0].force:
@@ -87,10 +90,13 @@ def _missing_panel(
 
 
 def free_run_figures(runs: Sequence[FreeRun]) -> list[str]:
-    """Return the figures of one held-out recording: paths, roll, and the errors over time.
+    """Draw the simulations of one held-out recording: paths, roll, and the errors over time.
 
     Args:
-        runs: Consecutive free runs over the recording.
+        runs: Consecutive free runs (simulations with recorded commands alone) over the recording.
+
+    Returns:
+        Figures as SVG.
     """
     signals, name = runs[0].channels["recorded"].keys(), runs[0].run
     plan = {"x_m", "y_m"} <= signals
@@ -128,10 +134,12 @@ def _span(run: FreeRun) -> str:
 
 
 def part_with_largest_error(run: FreeRun, signal: str) -> FreeRun:
-    """Return the few oscillations around the largest error of the recalibrated vessel.
+    """Return the part of a simulation around the largest error of the recalibrated vessel model.
+
+    It contains a few oscillations of a signal; more could not be distinguished in a figure.
 
     Args:
-        run: A free run; more oscillations than these could not be distinguished in a figure.
+        run: A free run (simulation with recorded commands alone).
         signal: The oscillating signal.
     """
     recorded = np.nan_to_num(run.channels["recorded"][signal])
@@ -151,10 +159,13 @@ def part_with_largest_error(run: FreeRun, signal: str) -> FreeRun:
 
 
 def term_figure(written: FittedTerm) -> str:
-    """Return the figure of a term over what it varies with, and of the recorded means.
+    """Draw the force of a symbolic term over the variable it depends on, with the recorded means.
 
     Args:
         written: A term that has a curve.
+
+    Returns:
+        The figure as SVG.
     """
     c = written.curve
     assert c is not None
@@ -180,20 +191,20 @@ def term_figure(written: FittedTerm) -> str:
 
 
 def group_by_recording(free_runs: Sequence[FreeRun]) -> list[list[FreeRun]]:
-    """Return consecutive free runs grouped by their recording."""
+    """Group consecutive free runs (simulations with recorded commands alone) by their recording."""
     return [list(group) for _, group in groupby(free_runs, key=lambda r: r.run)]
 
 
 def models_in(run: FreeRun) -> list[str]:
-    """Return the models of a free run in drawing order."""
+    """Return the names of the vessel models that a free run simulates, in drawing order."""
     return [m for m in MODELS if m in run.channels]
 
 
 def model_error(run: FreeRun, model: str, signal: str) -> Array:
-    """Return the error of a model in a free run.
+    """Return the error over time of a vessel model's simulation of a recording.
 
     Args:
-        run: The free run.
+        run: Free run (simulation with recorded commands alone).
         model: Its model.
         signal: Name of a signal, or "position" for the distance from the recording.
 
@@ -207,7 +218,7 @@ def model_error(run: FreeRun, model: str, signal: str) -> Array:
 
 
 def plan_view(runs: Sequence[FreeRun], models: Sequence[str] = ()) -> Panel:
-    """Return the paths seen from above, x up and y to the right, to one scale.
+    """Draw the recorded and the simulated paths seen from above, x up and y to the right, to scale.
 
     Args:
         runs: Free runs over one recording.
@@ -268,7 +279,7 @@ def _error_panel(runs: Sequence[FreeRun], signal: str) -> Panel:
 
 
 def signal_panel(runs: Sequence[FreeRun], signal: str, models: Sequence[str] = ()) -> Panel:
-    """Return a signal over time.
+    """Draw a recorded signal and its simulations over time.
 
     Args:
         runs: Free runs over one recording.
@@ -293,7 +304,9 @@ def signal_panel(runs: Sequence[FreeRun], signal: str, models: Sequence[str] = (
 
 
 def unit_for_signal(signal: str, runs: Sequence[FreeRun]) -> tuple[str, float]:
-    """Return a convenient unit for the recorded values of a signal, and the factor to it from SI.
+    """Return a convenient unit in which to draw a signal, and the factor to it from the SI unit.
+
+    It suits the size of the recorded values.
 
     Args:
         signal: The signal.

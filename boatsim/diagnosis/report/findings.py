@@ -24,7 +24,7 @@ def setting_of(answer: Answer, name: str) -> float:
 
 @dataclass(frozen=True)
 class MissingForceCurve:
-    """The missing force of a recording over time: what the vessel model does not explain.
+    """The force over time in a recording that the vessel model does not explain, for the report.
 
     Attributes:
         run: Name of the recording.
@@ -45,7 +45,7 @@ class MissingForceCurve:
 
 @dataclass(frozen=True)
 class Findings:
-    """The result of a diagnosis as the report shows it.
+    """All results of a diagnosis that the report shows: content of diagnosis.json and its curves.
 
     Attributes:
         answer: Content of diagnosis.json.
@@ -82,7 +82,7 @@ class Findings:
 
     @property
     def has_added_effects(self) -> bool:
-        """Whether the patched vessel has any effect that the recalibrated one does not have."""
+        """Whether the patched vessel has any effect in addition to those of the vessel file."""
         if self.answer["effects"]:
             return True
         for entry in self.answer.get("refined", ()):
@@ -91,5 +91,8 @@ class Findings:
         return any(law["carries_over"] for law in self.answer["described"])
 
     def setting(self, name: str) -> float:
-        """Return the value of a setting that the diagnosis used, such as "select.alike"."""
+        """Return the value of a setting that the diagnosis used, by its name.
+
+        An example of a name is "select.alike".
+        """
         return setting_of(self.answer, name)

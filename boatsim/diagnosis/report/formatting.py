@@ -24,12 +24,12 @@ SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 def words_of_name(name: str) -> str:
-    """Return a name of a file or key as words: `weak_reverse` -> weak reverse."""
+    """Return a name from a file as words, without underscores: `weak_reverse` -> weak reverse."""
     return name.replace("_", " ")
 
 
 def join_words(words: Iterable[str], last: str = "and") -> str:
-    """Return words as a list in prose: A, B and C."""
+    """Join words to a list in prose: A, B and C."""
     *head, tail = list(words) or [""]
     if not head:
         return tail
@@ -37,7 +37,7 @@ def join_words(words: Iterable[str], last: str = "and") -> str:
 
 
 def capitalize(words: str) -> str:
-    """Return words with a capital first letter and the rest unchanged."""
+    """Return text with its first letter capitalised and the rest unchanged."""
     return words[:1].upper() + words[1:]
 
 
@@ -49,7 +49,7 @@ def _decimals(size: float, digits: int) -> int:
 
 
 def format_number(value: float, digits: int = 3) -> str:
-    """Return a number with significant digits.
+    """Format a number with a given count of significant digits.
 
     Args:
         value: The number; nan is written as "none".
@@ -77,7 +77,7 @@ def _power_of_ten(power: int) -> str:
 
 
 def format_nats(log_bayes_factor: float) -> str:
-    """Return evidence in nats, to tenths below 100."""
+    """Format log evidence in nats, to tenths below 100."""
     decimals = 1
     if abs(log_bayes_factor) >= 100.0:
         decimals = 0
@@ -103,7 +103,7 @@ def format_odds(log_bayes_factor: float) -> str:
 
 
 def format_evidence(log_bayes_factor: float) -> str:
-    """Return evidence in nats with its odds.
+    """Format log evidence in nats together with the odds that the better fit is chance.
 
     Args:
         log_bayes_factor: Evidence [nats].
@@ -115,7 +115,10 @@ def format_evidence(log_bayes_factor: float) -> str:
 
 
 def format_with_sd(value: float, sd: float) -> str:
-    """Return value ± standard deviation, to the digits that the deviation allows: 0.694 ± 0.012."""
+    """Format a value ± standard deviation with as many digits as the deviation allows.
+
+    For example, 0.694 ± 0.012.
+    """
     if not (math.isfinite(value) and math.isfinite(sd) and sd > 0.0):
         return format_number(value)
     largest = max(abs(value), sd)
@@ -132,14 +135,14 @@ def format_with_sd(value: float, sd: float) -> str:
 
 
 def format_unit(unit: str) -> str:
-    """Return a unit as printed: N s^2/m^2 -> N s²/m²."""
+    """Format a unit of measurement for print: N s^2/m^2 -> N s²/m²."""
     for digit in "234":
         unit = unit.replace(f"^{digit}", digit.translate(SUPERSCRIPTS))
     return unit
 
 
 def format_quantity(value: float, unit: str, sd: float = 0.0, digits: int = 3) -> str:
-    """Return a quantity in a convenient unit.
+    """Format a quantity with its standard deviation in a convenient unit.
 
     Args:
         value: The value [unit].
@@ -168,7 +171,9 @@ def _largest(values: Sequence[float]) -> float:
 
 
 def format_parameter(key: str, value: float, unit: str = "", sd: float = 0.0) -> tuple[str, str]:
-    """Return the name and the value ± deviation of a parameter, fractions in per cent.
+    """Format the name and the value ± standard deviation of a fitted parameter for the report.
+
+    Fractions are in per cent.
 
     Args:
         key: Key of the parameter in diagnosis.json.
@@ -191,7 +196,7 @@ def format_parameter(key: str, value: float, unit: str = "", sd: float = 0.0) ->
 
 
 def format_upper_limit(key: str, value: float) -> tuple[str, str]:
-    """Return the name and the upper limit of a parameter: 3.9 mm/s; factors and fractions in %."""
+    """Format the name and the upper limit of a parameter: 3.9 mm/s; factors and fractions in %."""
     name, unit = name_and_unit(key)
     if not unit and name.endswith(("factor", "fraction")):
         return _fraction(name), f"{format_number(100.0 * value, 2)} %"
@@ -203,7 +208,10 @@ def _fraction(name: str) -> str:
 
 
 def format_sentence(words: str) -> str:
-    """Return a sentence of the answer with degree signs and without the p-value at its end."""
+    """Return a sentence of diagnosis.json as the report prints it.
+
+    It has degree signs, and not the p-value at its end.
+    """
     words = re.sub(
         r"([\d.]+) rad(?![/\w])", lambda found: f"{float(found[1]) * DEGREE:.2g}°", words
     )
@@ -211,7 +219,10 @@ def format_sentence(words: str) -> str:
 
 
 def name_and_unit(key: str, unit: str = "") -> tuple[str, str]:
-    """Return the name in words and the unit of a parameter key: `toward_rad` -> (toward, rad)."""
+    """Split the key of a parameter in diagnosis.json into its name in words and its unit.
+
+    For example, `toward_rad` becomes (toward, rad).
+    """
     compact = unit.replace("1/", "per").replace("/", "p").replace("^", "").replace(" ", "")
     if compact and key.endswith(f"_{compact}"):
         return words_of_name(key.removesuffix(f"_{compact}")), unit
@@ -242,7 +253,7 @@ def _product(compact: str) -> str:
 
 
 def format_probability(share: float) -> str:
-    """Return a probability in per cent; never 0 or 100 %."""
+    """Format a probability in per cent; never as 0 or 100 %."""
     if share > 0.999:
         return "> 99.9 %"
     if share < 0.001:
@@ -253,7 +264,7 @@ def format_probability(share: float) -> str:
 
 
 def format_cause_probability(probability: float) -> str:
-    """Return the probability that an effect is a true cause, in words.
+    """Return words for the probability that an identified effect is a true cause.
 
     Args:
         probability: Between 0 and 1.
@@ -262,7 +273,9 @@ def format_cause_probability(probability: float) -> str:
 
 
 def convenient_unit(unit: str, largest: float) -> tuple[str, float]:
-    """Return the printed unit and the factor from SI for numbers up to this size: N -> (kN, 1e-3).
+    """Return a convenient unit for numbers up to a given size, and the factor to it.
+
+    For example, N becomes kN with the factor 1e-3.
 
     Args:
         unit: SI unit.
@@ -281,7 +294,7 @@ def convenient_unit(unit: str, largest: float) -> tuple[str, float]:
 
 
 def format_in_one_unit(values: Sequence[float], unit: str) -> list[str]:
-    """Return several values of one SI unit, all in the same convenient unit."""
+    """Format several values of one SI unit, all in the same convenient unit."""
     name, factor = convenient_unit(unit, _largest(values))
     if not name.startswith("°"):
         name = f" {name}"

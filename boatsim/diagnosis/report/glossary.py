@@ -4,7 +4,9 @@ from boatsim.diagnosis.report.findings import Findings
 
 
 def glossary(f: Findings) -> tuple[tuple[str, str], ...]:
-    """Return the terms of the report and their meaning, with the thresholds of this diagnosis.
+    """Return the glossary of a report: its statistical terms with their meaning.
+
+    The thresholds of this diagnosis are included.
 
     Args:
         f: Findings of a diagnosis.

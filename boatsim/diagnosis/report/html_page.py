@@ -8,7 +8,7 @@ TEMPLATES = Path(__file__).parent / "templates"
 
 
 def render_template(template: Path, **values: object) -> str:
-    """Return the page of a template; a browser fetches nothing to show it.
+    """Return a self-contained HTML page from a template; a browser fetches nothing to show it.
 
     Args:
         template: Jinja template, which may include any template of `TEMPLATES`.

@@ -18,7 +18,11 @@ INERTIA_UNIT = "kg m^2"
 
 
 class Layers(NamedTuple):
-    """The identified effects of an answer, separated."""
+    """Identified effects of a diagnosis in three groups, as diagnosis.json has them.
+
+    They are missing physics or measurement errors, refined numbers of the vessel file, and effects
+    that are only possible.
+    """
 
     effects: list[EffectEntry]  # missing physics and errors of the measurement
     refined: list[RefinedEntry]

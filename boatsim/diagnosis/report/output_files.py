@@ -25,7 +25,7 @@ BAND = 2.0  # [sd] half width of the band of a missing force
 
 
 def write_diagnosis(found: Diagnosis, out: Path) -> None:
-    """Write all files of a diagnosis, or none.
+    """Write all output files of a diagnosis (report, diagnosis.json, patched vessel), or none.
 
     Args:
         found: The diagnosis.
@@ -59,11 +59,11 @@ def write_diagnosis(found: Diagnosis, out: Path) -> None:
 
 
 def write_overlay(found: Diagnosis, path: Path) -> None:
-    """Write diagnosis.rrd: recording and free runs of the first held-out recording in one scene.
+    """Write diagnosis.rrd, a rerun scene of the first held-out recording with its simulations.
 
     Args:
         found: The diagnosis.
-        path: The file.
+        path: Path of the file diagnosis.rrd.
     """
     from boatsim.view import rerun_log, water
 

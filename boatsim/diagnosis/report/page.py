@@ -35,7 +35,7 @@ LONGEST_HEADLINE = 200  # characters; a longer sentence is not used as the headl
 
 
 def write_report(findings: Findings, folder: Path) -> None:
-    """Write report.html (one page that fetches nothing) and report.md (the same text).
+    """Write the report of a diagnosis as report.html (one self-contained page) and as report.md.
 
     Args:
         findings: Findings of a diagnosis.
@@ -55,11 +55,11 @@ def write_report(findings: Findings, folder: Path) -> None:
 
 
 def report_html(findings: Findings, sections: Sequence[Section]) -> str:
-    """Return the HTML page.
+    """Return the report of a diagnosis as an HTML page.
 
     Args:
         findings: Findings of a diagnosis.
-        sections: Its sections that have content.
+        sections: Sections of the report that have content.
     """
     return render_template(
         TEMPLATES / "report.html.j2",
@@ -77,11 +77,11 @@ def report_html(findings: Findings, sections: Sequence[Section]) -> str:
 
 
 def report_markdown(findings: Findings, sections: Sequence[Section]) -> str:
-    """Return the report as Markdown.
+    """Return the report of a diagnosis as Markdown text.
 
     Args:
         findings: Findings of a diagnosis.
-        sections: Its sections that have content.
+        sections: Sections of the report that have content.
     """
     headline, whole = _headline(findings), _sentence(findings)
     lines = [f"# {escape_markup(headline)}", ""]

@@ -8,7 +8,9 @@ from boatsim.physics.base import Effect
 
 
 def parameter_key(name: str, unit: str) -> str:
-    """Return the key of a parameter: force in N is force_N, north in m/s is north_mps.
+    """Return the key under which diagnosis.json has a parameter, its name and its unit.
+
+    For example, `force` in N is force_N and `north` in m/s is north_mps.
 
     Args:
         name: Name of the parameter.
@@ -21,13 +23,15 @@ def parameter_key(name: str, unit: str) -> str:
 
 
 def reported_sd(best: Fit, effect: Effect, name: str, config: AnswerConfig) -> float:
-    """Return the standard deviation of a parameter, with the error of a law that is nearly right.
+    """Return the standard deviation of an effect's fitted parameter that diagnosis.json reports.
+
+    It is larger than that of the fit, because a law is only nearly right.
 
     Args:
-        best: A fit.
-        effect: One of its effects.
+        best: Fit of the vessel model with the effect.
+        effect: The effect.
         name: Name of the parameter.
-        config: Size of that error.
+        config: Settings of the answer, with the size of that error.
     """
     kind = type(effect)
     value, sd = best.value(effect.name, name)

@@ -26,15 +26,17 @@ def patched_vessel_text(
     path: Path,
     described: Mapping[str, Effect] | None = None,
 ) -> str:
-    """Return the text of a patched vessel file.
+    """Return the text of the patched vessel file, with refitted coefficients and added effects.
+
+    The original file with its comments is edited.
 
     Args:
         problem: The estimation problem.
         vessel: The vessel of the original file.
-        found: The fit.
-        path: Where the file will be; its own paths are relative to it.
-        described: Terms of formulas that generalize, by the name of their slot. Other terms of the
-            fit are events of recordings and are not written.
+        found: Fit of the vessel model.
+        path: Where the file will be written; paths in it are relative to its folder.
+        described: Terms of formulas that generalize, by the name of their placeholder. Other
+            terms of the fit are events of recordings and are not written.
     """
     described = described or {}
     candidates: list[Effect] = []
@@ -82,14 +84,14 @@ def write_patched_vessel(
     path: Path,
     described: Mapping[str, Effect] | None = None,
 ) -> None:
-    """Write a patched vessel file.
+    """Write the patched vessel file: the original with refitted coefficients and effects added.
 
     Args:
         problem: The estimation problem.
         vessel: The vessel of the original file.
-        found: The fit.
-        path: The file.
-        described: Terms of formulas that generalize, by the name of their slot.
+        found: Fit of the vessel model.
+        path: Path of the patched file.
+        described: Terms of formulas that generalize, by the name of their placeholder.
     """
     with replace_file(path) as temporary:
         temporary.write_text(

@@ -35,7 +35,10 @@ MARK = tuple((0.5 * cos(k * pi / 4), 0.5 * sin(k * pi / 4)) for k in range(8))
 
 @dataclass(frozen=True)
 class Replay:
-    """Figure and animation; `legend` and `picture` are mark-up."""
+    """The animated figure of a report and its data; `legend` and `picture` are mark-up.
+
+    It shows recorded and simulated paths over held-out data.
+    """
 
     title: str
     about: str
@@ -45,7 +48,7 @@ class Replay:
 
 
 def animated_replay(f: Findings) -> Replay | None:
-    """Return the animated figure of the first held-out recording.
+    """Return the animated figure of recorded and simulated motion in the first held-out recording.
 
     Args:
         f: Findings of a diagnosis.

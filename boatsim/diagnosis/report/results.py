@@ -27,14 +27,14 @@ def findings_of(
     evaluation: Evaluation,
     plan: next_experiment.Plan | None,
 ) -> Findings:
-    """Return what the report shows: the answer and the curves behind it.
+    """Collect all results of a diagnosis that the report shows: the answer and its curves.
 
     Args:
         answer: Content of diagnosis.json.
         loaded: Recordings and vessels.
         question: Held-out recordings.
-        problem: Recordings and priors.
-        ranking: Result of the selection, with its description.
+        problem: The estimation problem: recordings, vessel model, candidate effects and priors.
+        ranking: Result of the selection of effects, with the formula, if one was found.
         evaluation: Free runs and unexplained forces.
         plan: The next experiment.
     """

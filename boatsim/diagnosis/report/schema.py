@@ -9,7 +9,7 @@ Family = Literal["position_rms_m", "heading_rms_rad", "roll_rms_rad"]
 
 
 class ParameterEntry(TypedDict):
-    """A fitted parameter of an identified effect."""
+    """Fitted value, standard deviation and unit of an effect's parameter, in diagnosis.json."""
 
     value: float
     sd: float
@@ -22,13 +22,16 @@ AloneEntry = TypedDict("AloneEntry", {"without": float, "with": float})
 
 
 class Acting(TypedDict, total=False):
-    """The signals on which an effect acts, if it specifies any."""
+    """Names of the signals on which an effect acts, in diagnosis.json, if it specifies any."""
 
     on: list[str]
 
 
 class EffectEntry(Acting):
-    """An identified effect."""
+    """An effect identified by the diagnosis, with its evidence, probability and parameters.
+
+    It is one entry of `effects` in diagnosis.json.
+    """
 
     name: str
     kind: str  # "physics" or "measurement"
@@ -44,7 +47,7 @@ class EffectEntry(Acting):
 
 
 class RefinedEntry(Acting):
-    """A better value of a number that the vessel file calls an estimate.
+    """A better value of a number that the vessel file calls an estimate, in diagnosis.json.
 
     It comes from an identified effect, whose keys it has too, or from a refitted coefficient. An
     effect that refines several numbers has an entry for each.
@@ -68,7 +71,7 @@ class RefinedEntry(Acting):
 
 
 class PossibleEntry(TypedDict):
-    """An effect that may act, but that these recordings do not confirm."""
+    """An effect that may act, but that these recordings do not confirm, in diagnosis.json."""
 
     name: str
     probability: float
@@ -81,14 +84,14 @@ class PossibleEntry(TypedDict):
 
 
 class FactorEntry(TypedDict):
-    """Size of an effect on a part of the data, as a factor of the fitted size."""
+    """Size of an effect on a part of the data relative to its fitted size, in diagnosis.json."""
 
     value: float
     sd: float
 
 
 class VariationEntry(TypedDict):
-    """Variation of the size of an effect between parts of the data."""
+    """How much the size of an effect varies between parts of the data, in diagnosis.json."""
 
     excess: float  # sd between the parts beyond their own sd, as a share of the fitted size
     chi_square: float  # of the hypothesis that the size is the same
@@ -96,7 +99,10 @@ class VariationEntry(TypedDict):
 
 
 class ConsistencyEntry(TypedDict):
-    """Signs by which true effects differ from stand-ins."""
+    """Statistics of an effect that tell a true cause from a stand-in, in diagnosis.json.
+
+    A stand-in is an effect that only imitates an unmodelled cause.
+    """
 
     recordings: list[FactorEntry]  # on each fitted recording
     held_out: FactorEntry
@@ -111,7 +117,10 @@ class ConsistencyEntry(TypedDict):
 
 
 class EffectSignsEntry(TypedDict):
-    """Signs of an identified effect, and the probability that follows from them."""
+    """Statistics and resulting probability that an identified effect is a true cause.
+
+    It is an entry of diagnosis.json.
+    """
 
     name: str
     gain_nats: float
@@ -122,7 +131,10 @@ class EffectSignsEntry(TypedDict):
 
 
 class LogSignsEntry(TypedDict):
-    """Signs of a log that some cause is not described by the identified effects."""
+    """Statistics of the recordings that indicate a cause outside the candidate effects.
+
+    It is an entry of diagnosis.json.
+    """
 
     coefficient_shift: float  # rms, in prior sds
     force_ratio: float  # of the fitted to the assumed level of the latent force
@@ -133,14 +145,17 @@ class LogSignsEntry(TypedDict):
 
 
 class SignsEntry(TypedDict):
-    """Signs from which the probability of each name is computed."""
+    """All statistics from which the probabilities of identified effects are computed.
+
+    It is the table `signs` of diagnosis.json.
+    """
 
     effects: list[EffectSignsEntry]
     log: LogSignsEntry
 
 
 class TermEntry(TypedDict):
-    """One term of a formula."""
+    """One term of a formula that symbolic regression found, in diagnosis.json."""
 
     of: str  # what it varies with, in words
     value: float
@@ -151,7 +166,7 @@ class TermEntry(TypedDict):
 
 
 class DescribedEntry(TypedDict):
-    """A formula along one axis for a force that no candidate effect explains."""
+    """A formula for a force along one axis that no candidate effect explains, in diagnosis.json."""
 
     axis: str  # "surge" ... "yaw", "north", "east", or "thrust"
     statement: str
@@ -160,7 +175,7 @@ class DescribedEntry(TypedDict):
 
 
 class StructureEntry(TypedDict):
-    """The quantity that the unexplained force varies with."""
+    """The quantity that the unexplained force correlates with most, in diagnosis.json."""
 
     axis: str
     goes_with: str  # in words
@@ -170,7 +185,7 @@ class StructureEntry(TypedDict):
 
 
 class DivergenceEntry(TypedDict):
-    """The place at which the vessel's model can no longer follow a recording."""
+    """Time and axis at which the vessel model stops following a recording, in diagnosis.json."""
 
     run: str
     from_s: float
@@ -180,7 +195,10 @@ class DivergenceEntry(TypedDict):
 
 
 class UnknownEntry(TypedDict):
-    """Whether a force is missing that no candidate effect explains."""
+    """Whether a force is missing that no candidate effect explains, with its evidence.
+
+    It is the table `unknown` of diagnosis.json.
+    """
 
     flag: bool
     gain_nats: float
@@ -194,7 +212,7 @@ class UnknownEntry(TypedDict):
 
 
 class CandidateEntry(TypedDict):
-    """A candidate effect tested alone."""
+    """Evidence and probability of one candidate effect tested alone, in diagnosis.json."""
 
     name: str
     gain_nats: float
@@ -202,7 +220,7 @@ class CandidateEntry(TypedDict):
 
 
 class StrengthEntry(TypedDict):
-    """The missing force of one axis over all recordings."""
+    """Rms of the missing force of one axis over all recordings, in diagnosis.json."""
 
     rms: float
     sd: float
@@ -210,7 +228,10 @@ class StrengthEntry(TypedDict):
 
 
 class MeanEntry(TypedDict):
-    """The mean force along one axis of the hull that remains in the patched vessel."""
+    """The mean force along one body axis that the patched vessel leaves unexplained.
+
+    It is an entry of diagnosis.json.
+    """
 
     mean: float
     sd: float
@@ -219,7 +240,10 @@ class MeanEntry(TypedDict):
 
 
 class IntervalEntry(TypedDict):
-    """An interval of a recording in which a force is missing along an axis."""
+    """A time interval of a recording in which the vessel model lacks a force along an axis.
+
+    It is an entry of diagnosis.json.
+    """
 
     run: str
     from_s: float
@@ -228,7 +252,7 @@ class IntervalEntry(TypedDict):
 
 
 class RegionEntry(TypedDict):
-    """A range of a variable in which a force is missing."""
+    """A condition under which a force is missing, such as thrust astern, in diagnosis.json."""
 
     variable: str
     statement: str
@@ -236,7 +260,10 @@ class RegionEntry(TypedDict):
 
 
 class WhereEntry(TypedDict):
-    """Along which axes, when, and under which conditions a force is missing."""
+    """Along which axes, when and under which conditions the vessel model lacks a force.
+
+    It is the table `where` of diagnosis.json.
+    """
 
     axes: dict[str, StrengthEntry]
     intervals: list[IntervalEntry]
@@ -244,7 +271,10 @@ class WhereEntry(TypedDict):
 
 
 class FitEntry(TypedDict):
-    """Rms error of free runs over held-out recordings, by model, of each family of signals."""
+    """Rms errors of simulations of held-out recordings, by family of signals and by model.
+
+    It is the table `fit` of diagnosis.json. The simulations use the recorded commands alone.
+    """
 
     horizon_s: float
     held_out: list[str]
@@ -254,7 +284,7 @@ class FitEntry(TypedDict):
 
 
 class RecalibrationEntry(TypedDict):
-    """Which refitted coefficients the recalibrated vessel has."""
+    """Which refitted coefficients of the vessel model were adopted, in diagnosis.json."""
 
     adopted: bool  # else all coefficients have the value of the vessel file
     undetermined: list[str]  # "effect.number" of those that keep that value in any case
@@ -262,7 +292,7 @@ class RecalibrationEntry(TypedDict):
 
 
 class NextEntry(TypedDict, total=False):
-    """The next experiment; empty if no manoeuvre adds evidence."""
+    """The manoeuvre to record next, in diagnosis.json; empty if none would add evidence."""
 
     manoeuvre: str
     scenario: str
@@ -271,14 +301,14 @@ class NextEntry(TypedDict, total=False):
 
 
 class LeftOutEntry(TypedDict):
-    """A candidate effect that was excluded."""
+    """A candidate effect that was not tested, with the reason, in diagnosis.json."""
 
     name: str
     reason: str  # a fact, a missing column, or the vessel's own reason
 
 
 class AmbientEntry(TypedDict):
-    """The assumed disturbance level of one axis."""
+    """The assumed disturbance level (rms force) of one axis, in diagnosis.json."""
 
     rms: float
     unit: str
@@ -286,7 +316,10 @@ class AmbientEntry(TypedDict):
 
 
 class RulesEntry(TypedDict):
-    """The assumptions made before any recording was evaluated, by rules or by the vessel file."""
+    """Assumptions made before any recording was evaluated, by rules or by the vessel file.
+
+    It is the table `rules` of diagnosis.json.
+    """
 
     ambient: dict[str, AmbientEntry]
     time_constant_s: float
@@ -296,14 +329,14 @@ class RulesEntry(TypedDict):
 
 
 class OtherwiseEntry(TypedDict):
-    """Another explanation of a problem of a recording."""
+    """An alternative correction of a fault of a recording, in diagnosis.json."""
 
     words: str
     lines: list[str]
 
 
 class LogEntry(TypedDict):
-    """A problem of a recording."""
+    """One finding of the quality checks of a recording, in diagnosis.json."""
 
     run: str  # file
     name: str
@@ -319,7 +352,7 @@ class LogEntry(TypedDict):
 
 
 class Answer(TypedDict):
-    """The content of diagnosis.json."""
+    """The complete content of diagnosis.json, the machine-readable result of a diagnosis."""
 
     verdict: str  # "named", "ambiguous", "described", "unknown" or "nothing_missing"
     sentence: str

@@ -67,7 +67,7 @@ FREE_RUN_SIGNALS = {"position": "position", "heading": "psi_rad", "roll": "phi_r
 
 
 def sections_of(f: Findings) -> list[Section]:
-    """Return all sections of the report in order.
+    """Return all sections of the report of a diagnosis, in their order.
 
     Args:
         f: Findings of a diagnosis.

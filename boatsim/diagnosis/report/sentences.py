@@ -58,17 +58,23 @@ NOT_IN_FILE = "not in the file"  # change of a number that the vessel file does 
 
 
 def effect_description(effect_words: str) -> str:
-    """Return the description of an effect without the remark that it is not physics."""
+    """Return an effect's description without the remark that it is an error of the measurement.
+
+    The remark is "(not physics)".
+    """
     return effect_words.removesuffix(" (not physics)")
 
 
 def any_tested(answer: Answer) -> bool:
-    """Return whether any candidate effect was tested."""
+    """Return whether a diagnosis tested any candidate effect."""
     return bool(answer["candidates"])
 
 
 def only_measurement_errors(answer: Answer) -> bool:
-    """Return whether measurement errors explain everything, so that no physics is missing."""
+    """Return whether a diagnosis explains the mismatch by measurement errors alone.
+
+    No physics is then missing in the vessel model.
+    """
     for effect in answer["effects"]:
         if effect["kind"] != "measurement":
             return False
@@ -76,7 +82,7 @@ def only_measurement_errors(answer: Answer) -> bool:
 
 
 def verdict_sentences(answer: Answer, words: Mapping[str, str] | None = None) -> str:
-    """Return the verdict of a diagnosis in a few sentences.
+    """Return the verdict of a diagnosis in a few sentences: what the vessel model lacks.
 
     Args:
         answer: Content of diagnosis.json; its own sentence is not read.
@@ -105,7 +111,7 @@ def verdict_sentences(answer: Answer, words: Mapping[str, str] | None = None) ->
 
 
 def none_tested_reason(answer: Answer) -> str:
-    """Return why no candidate effect was tested.
+    """Return the reason, in words, why a diagnosis tested no candidate effect.
 
     Args:
         answer: Content of diagnosis.json, without candidates.
@@ -215,7 +221,9 @@ def _refined_numbers(answer: Answer) -> str:
 
 
 def refined_rows(answer: Answer) -> list[list[str]]:
-    """Return the rows of the table of refined numbers.
+    """Return the rows of the report's table of refined numbers of the vessel file.
+
+    A refined number is an estimate of the vessel file to which the recordings give a better value.
 
     Args:
         answer: Content of diagnosis.json.
@@ -237,7 +245,7 @@ def refined_rows(answer: Answer) -> list[list[str]]:
 
 
 def count_in_words(count: int, noun: str) -> str:
-    """Return a number of things, in words up to six: two effects."""
+    """Return a count of things in words, with numbers up to six spelt out: two effects."""
     number_words = str(count)
     if count < len(COUNTS):
         number_words = COUNTS[count]
@@ -305,7 +313,7 @@ def _clauses(clauses: Sequence[str]) -> str:
 
 
 def fitted_values(effect: EffectEntry, words: Mapping[str, str]) -> str:
-    """Return the first fitted numbers of an effect, without those that may be zero.
+    """Return the main fitted parameter values of an effect as text, without those that may be zero.
 
     Args:
         effect: An identified effect.
@@ -328,7 +336,10 @@ def fitted_values(effect: EffectEntry, words: Mapping[str, str]) -> str:
 
 
 def improvement_on_held_out(f: Findings) -> str:
-    """Return how much the errors on held-out recordings decrease with the patched vessel."""
+    """Return a sentence on how much the patched vessel reduces errors on held-out recordings.
+
+    The errors are those of simulations with the recorded commands alone.
+    """
     fit = f.answer["fit"]
     errors, compared, gains = [], [], []
     for key, (words, unit) in FAMILIES.items():
@@ -363,7 +374,7 @@ def _improvement_factor(gain: float) -> str:
 
 
 def mean_force_paragraph(answer: Answer, patched: bool) -> list[str]:
-    """Return a paragraph on the mean force that remains in the patched vessel, if there is one.
+    """Return a paragraph on the constant force that the patched vessel model does not explain.
 
     Args:
         answer: Content of diagnosis.json.
@@ -399,7 +410,9 @@ def _of_thrust(entry: MeanEntry | AmbientEntry) -> str:
 
 
 def assumption_sentences(answer: Answer) -> list[str]:
-    """Return the candidates tested and excluded, and the assumptions of a diagnosis.
+    """Return lines on the candidate effects tested and excluded, and on assumptions made.
+
+    They are part of the report of a diagnosis.
 
     Args:
         answer: Content of diagnosis.json.
@@ -434,7 +447,7 @@ def _exclusions(excluded: Sequence[LeftOutEntry]) -> str:
 
 
 def console_lines(f: Findings) -> list[str]:
-    """Return the lines that `boatsim diagnose` prints.
+    """Return the lines of a diagnosis's summary that `boatsim diagnose` prints on the console.
 
     Args:
         f: Findings of a diagnosis.
@@ -465,7 +478,7 @@ def console_lines(f: Findings) -> list[str]:
 
 
 def effects_of_kind(answer: Answer, kind: str) -> list[EffectEntry]:
-    """Return the identified effects of a kind.
+    """Return the identified effects that are missing physics, or those that are measurement errors.
 
     Args:
         answer: Content of diagnosis.json.

@@ -16,10 +16,12 @@ from boatsim.diagnosis.report.schema import (
 
 
 def signs_entry(decision: Decision) -> SignsEntry:
-    """Return the signs of all identified effects and of the log.
+    """Return the statistics behind the probability of each identified effect, for diagnosis.json.
+
+    They tell a true cause from a stand-in that only imitates an unmodelled cause.
 
     Args:
-        decision: Result of the decide stage.
+        decision: Decision on the identified effects, with their statistics.
     """
     effects: list[EffectSignsEntry] = []
     for one in decision.judgements:
@@ -48,11 +50,13 @@ def signs_entry(decision: Decision) -> SignsEntry:
 
 
 def reason_for_doubt(signs: Consistency, log: LogSigns, config: DecideConfig) -> str:
-    """Return the clearest sign, in words, that an effect is a stand-in for another cause.
+    """Return the clearest reason, in words, to doubt that an effect is a true cause.
+
+    The effect may be a stand-in that only imitates another, unmodelled cause.
 
     Args:
-        signs: Signs of the effect.
-        log: Signs of the log.
+        signs: Statistics of the effect over the recordings.
+        log: Statistics of the recordings as a whole.
         config: Settings of the decision.
     """
     held_out = signs.held_out

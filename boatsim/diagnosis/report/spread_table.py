@@ -14,11 +14,13 @@ DIGITS = 6  # significant
 
 
 def uncertainty_table(problem: Problem, found: Fit, removed: Collection[str] = ()) -> Table | None:
-    """Return the table of the uncertainty of the fitted numbers.
+    """Return the table `[spread]` of the patched vessel file: uncertainty of its fitted numbers.
+
+    It contains standard deviations and correlations.
 
     Args:
         problem: The estimation problem.
-        found: The fit.
+        found: Fit of the vessel model.
         removed: Effects of the fit that the patched file does not have.
 
     Returns:

@@ -26,7 +26,7 @@ TIMES, SQUARE = 3.2, 1.25  # ratio of width to height of a plot over time and of
 
 @dataclass(frozen=True)
 class Line:
-    """One curve.
+    """One curve of a plot.
 
     Attributes:
         look: Class of the style sheet.
@@ -45,7 +45,10 @@ class Line:
 
 @dataclass(frozen=True)
 class Box:
-    """A box plot: 5, 25, 50, 75 and 95 % of the values at `x` are below `below`."""
+    """A box of a box plot, drawn at the abscissa `x`.
+
+    The array `below` holds the 5, 25, 50, 75 and 95 % quantiles of the values.
+    """
 
     look: str
     x: float
@@ -55,7 +58,7 @@ class Box:
 
 @dataclass(frozen=True)
 class Panel:
-    """One set of axes.
+    """One set of axes of an SVG plot, with its curves, points, bands and labels.
 
     Attributes:
         title: Label of the ordinate.
@@ -87,10 +90,10 @@ class Panel:
 
 
 def legend(looks: Mapping[str, str]) -> str:
-    """Return the legend of figures.
+    """Return the legend of a report's figures as mark-up.
 
     Args:
-        looks: Words by class of the style sheet.
+        looks: Words of the legend by class of the style sheet.
     """
     items = []
     for look, words in looks.items():
@@ -103,7 +106,7 @@ def legend(looks: Mapping[str, str]) -> str:
 
 
 def figure(panels: Sequence[Panel], title: str, wide: bool = False) -> str:
-    """Return a figure of panels below each other, which share their abscissa.
+    """Return a titled SVG figure of panels below each other, which share their abscissa.
 
     Args:
         panels: The panels; the last one has the numbers of the abscissa.
@@ -116,7 +119,7 @@ def figure(panels: Sequence[Panel], title: str, wide: bool = False) -> str:
 
 
 def stack_panels(panels: Sequence[Panel]) -> str:
-    """Return panels below each other without a title."""
+    """Return plot panels below each other as SVG, without a title."""
     return "".join(_panel(p, p is panels[-1]) for p in panels)
 
 
@@ -264,7 +267,9 @@ def _shaded_interval(p: Panel, begin: float, end: float) -> str:
 
 
 def rows_of_extremes(y: Array, most: int = POINTS) -> NDArray[np.int64]:
-    """Return rows that keep the shape of a long curve: the extremes of equal intervals.
+    """Return indices that thin out a long curve for drawing but keep its extremes.
+
+    Minimum and maximum of equal intervals are kept.
 
     Args:
         y: Ordinates (N,).
@@ -281,12 +286,12 @@ def rows_of_extremes(y: Array, most: int = POINTS) -> NDArray[np.int64]:
 
 
 def evenly_spaced_rows(rows: int, most: int) -> NDArray[np.int64]:
-    """Return about `most` of the rows at equal distances, with the last one."""
+    """Return about `most` evenly spaced row indices, the last row included."""
     return np.unique(np.append(np.arange(0, rows, 1 + rows // most), max(rows - 1, 0)))[:rows]
 
 
 def round_ticks(low: float, high: float, most: int) -> list[float]:
-    """Return about `most` round numbers within limits."""
+    """Return about `most` round numbers between two limits, as ticks of an axis."""
     rough = (high - low) / most
     power = 10.0 ** np.floor(np.log10(rough))
     step = float(10.0 * power)
@@ -305,7 +310,7 @@ def _tick(value: float) -> str:
 
 
 def axis_limits(values: Sequence[Array], zero: bool = True) -> tuple[float, float]:
-    """Return limits with a margin around the finite values.
+    """Return the limits of a plot axis: the range of the finite values with a margin.
 
     Args:
         values: Values of any shape.

@@ -13,11 +13,18 @@ from boatsim.diagnosis.problem import WorkCount
 
 
 class BudgetSpentError(Exception):
-    """A search that has to be complete has spent its budget."""
+    """A search for candidate effects has spent its budget of computing work before its end.
+
+    It is raised only in searches that have to be complete.
+    """
 
 
 class SearchBudget:
-    """Remaining work that a search may do, and a list of what it has not tried."""
+    """Limit of the computing work of a search for candidate effects, and a list of skipped trials.
+
+    Work is counted in rows filtered times degrees of freedom, so that the result does not depend on
+    the speed of the machine.
+    """
 
     def __init__(self, count: WorkCount, work: int, *, complete: bool = False) -> None:
         """Start with the whole budget.
@@ -35,17 +42,17 @@ class SearchBudget:
 
     @property
     def remaining_work(self) -> int:
-        """Work that may still be done, at least 0 [rows x dof]."""
+        """Computing work that the search may still do, at least 0 [rows x dof]."""
         return max(self._last - self._count.work, 0)
 
     @property
     def spent(self) -> bool:
-        """Whether nothing of the budget is left."""
+        """Whether the search has used its whole budget of computing work."""
         return self.remaining_work == 0
 
     @property
     def skipped(self) -> tuple[str, ...]:
-        """Statements of what was not tried."""
+        """Sentences on candidate effects that the search skipped because its budget was spent."""
         found = []
         for how, number in self._omitted.items():
             candidates = "1 candidate was" if number == 1 else f"{number} candidates were"
@@ -53,7 +60,9 @@ class SearchBudget:
         return (*found, *self._statements)
 
     def omit(self, number: int, how: str) -> None:
-        """Record candidates that are not tried; a later record of the same trial replaces it.
+        """Record that the search skipped some candidate effects because its budget is spent.
+
+        A later record of the same kind of trial replaces an earlier one.
 
         Args:
             number: Number of candidates; 0 records nothing.
@@ -69,7 +78,7 @@ class SearchBudget:
         self._omitted[how] = number
 
     def state(self, what: str) -> None:
-        """Record something else that is not tried.
+        """Record a statement on a trial that the search skipped because its budget is spent.
 
         Args:
             what: A clause, such as "wind was not added".
@@ -84,7 +93,7 @@ class SearchBudget:
 
 
 def addition_to(effects: Iterable[str]) -> str:
-    """Return the words "in addition to ..." for a set of effects.
+    """Return the words "in addition to wind, current" for a set of effects; "alone" for none.
 
     Args:
         effects: Names of the effects of a set.

@@ -37,7 +37,11 @@ Recordings = Sequence[MappedRecording]
 
 
 class CandidateSets:
-    """Cache of the fits of candidate sets, and what has been decided about single candidates."""
+    """Cache of the fits of candidate sets, each computed once, during a search for effects.
+
+    A candidate set is a set of candidate effects added to the vessel model. The cache also records
+    which candidates were refuted or screened.
+    """
 
     def __init__(
         self,
@@ -50,7 +54,7 @@ class CandidateSets:
         """Create an empty cache.
 
         Args:
-            problem: Recordings and priors.
+            problem: The estimation problem: recordings, vessel model, candidate effects and priors.
             candidates: Names of the candidates that are tested.
             base: The recalibrated vessel without candidates.
             report: Receives the progress.
@@ -84,12 +88,12 @@ class CandidateSets:
         self.required_gain = required_gain(len(candidates), self.config.select)
 
     def explained_evidence(self, best: Fit) -> float:
-        """Return the evidence of the deterministic effects of a set [nats].
+        """Return the evidence that a fit's deterministic effects gain over the vessel alone [nats].
 
-        Stochastic forces and errors are not counted.
+        Stochastic forces and drifts of instruments are not counted.
 
         Args:
-            best: A fit.
+            best: Fit of the vessel model with some candidate effects.
         """
         laws = best
         for name in best.effects:
@@ -98,10 +102,12 @@ class CandidateSets:
         return float(laws.evidence - self.base.evidence)
 
     def converged_fit(self, start: Fit) -> Fit:
-        """Return the converged fit of a set, from the cache unless this start is better.
+        """Return the converged fit of a candidate set, from the cache or by fitting it.
+
+        It is fitted again if the given start is better than the cached fit.
 
         Args:
-            start: Start of the fit.
+            start: Unconverged fit of the set, from which the fit starts.
         """
         key = frozenset(start.effects)
         known, promised = self.fits.get(key), self.promised.get(key, -np.inf)
@@ -118,13 +124,13 @@ class CandidateSets:
         return found
 
     def refit_from_assumed_disturbance(self, found: Fit) -> Fit:
-        """Return the better of a fit and its refit from the assumed disturbance levels.
+        """Refit a candidate set with the latent force at its assumed level; return the better fit.
 
-        If the latent force may be as large as it was without an effect, the effect is not required
-        to explain all that it can.
+        The latent force is the unmodelled force that the Kalman filter estimates. If it may be as
+        large as it was without an effect, the effect is not required to explain all that it can.
 
         Args:
-            found: A fit of a set.
+            found: Fit of the vessel model with the effects of the set.
         """
         config, problem = self.config, self.problem
         if unexplained_evidence(problem, found) < config.select.unknown_gain:
@@ -143,7 +149,9 @@ class CandidateSets:
         return other
 
     def forget_screenings(self, key: Set) -> None:
-        """Discard cached screenings on top of a set whose fit has since improved.
+        """Discard cached first estimates of candidate effects that would be added to a given set.
+
+        They are out of date if the fit of the set has since improved.
 
         Args:
             key: Names of the effects of the set.
@@ -153,10 +161,10 @@ class CandidateSets:
         self.fitted_in_full = {pair for pair in self.fitted_in_full if pair[0] != key}
 
     def fit_without(self, best: Fit, name: str) -> Fit:
-        """Return the fit of a set without one of its effects.
+        """Return the converged fit of a candidate set with one of its effects removed.
 
         Args:
-            best: A fit.
+            best: Fit of the vessel model with some candidate effects.
             name: Name of one of its effects.
         """
         known = self.fits.get(frozenset(best.effects) - {name})
@@ -165,14 +173,17 @@ class CandidateSets:
         return self.converged_fit(remove_effect(self.problem, best, name))
 
     def screen_unrefuted(self, best: Fit, among: Sequence[str] = ()) -> dict[str, Fit]:
-        """Return `screen_candidates` without candidates that were refuted."""
+        """Estimate the evidence of adding each candidate effect to a fit, except refuted ones.
+
+        The result is that of `screen_candidates`.
+        """
         return self._unrefuted_fits(self.screen_candidates(best, among))
 
     def fits_without_each(self, best: Fit) -> dict[str, Fit]:
-        """Return the fits of a set without one of its effects, by the name of that effect.
+        """Return, for each effect of a fit, the converged fit with this effect removed.
 
         Args:
-            best: A fit.
+            best: Fit of the vessel model with some candidate effects.
         """
         return {name: self.fit_without(best, name) for name in best.effects}
 
@@ -181,12 +192,13 @@ class CandidateSets:
         return {name: found for name, found in fits.items() if name not in self.banned}
 
     def screen_candidates(self, best: Fit, among: Sequence[str] = ()) -> dict[str, Fit]:
-        """Return the screenings of other candidates on top of a set, the best ones fitted in full.
+        """Estimate the evidence of adding each other candidate effect to a fit (screening).
 
-        When the budget is spent, only the candidates alone are still screened.
+        Each candidate gets a rough fit, and the most promising ones are fitted in full. When the
+        budget is spent, only additions to the vessel alone are still screened.
 
         Args:
-            best: A fit.
+            best: Fit of the vessel model with some candidate effects.
             among: Names of candidates; none: all of them.
 
         Returns:
@@ -265,14 +277,15 @@ class CandidateSets:
         return refitted
 
     def fit_in_full(self, best: Fit, name: str, screening: Fit) -> Fit:
-        """Return a candidate on top of a set fitted in full.
+        """Add a candidate effect to a fit and fit all parameters and noise levels.
 
-        Where that leaves much unexplained, the best of its starting points is used.
+        The fit starts from the rough fit of the screening. Where that leaves much unexplained, the
+        best of the candidate's starting points is used.
 
         Args:
-            best: A fit.
+            best: Fit of the vessel model with some candidate effects.
             name: Name of the candidate.
-            screening: Its screening.
+            screening: Rough fit with the candidate added.
         """
         problem = self.problem
         found = fit(problem, screening)
@@ -288,13 +301,13 @@ class CandidateSets:
         return max(found, fit(problem, other), key=lambda f: f.evidence)
 
     def promising_candidates(self, best: Fit) -> list[str]:
-        """Return the candidates that may gain on top of a set.
+        """Return the candidate effects that may gain evidence if they are added to a fit.
 
-        They are those that gained on top of a set which it contains. None are returned where no
-        such set was screened; all candidates are screened then.
+        They are those that gained evidence in addition to a subset of its effects. The list is
+        empty if no subset was screened; all candidates are screened then.
 
         Args:
-            best: A fit.
+            best: Fit of the vessel model with some candidate effects.
         """
         key = frozenset(best.effects)
         gained = set[str]()

@@ -12,21 +12,23 @@ from boatsim.diagnosis.search.candidate_sets import CandidateSets
 
 
 def oscillating_force(sets: CandidateSets, best: Fit) -> str:
-    """Return the name of the oscillating force of a fit, or "".
+    """Return the name of the oscillating stochastic force of a fit, such as waves; "" without one.
 
     Args:
-        sets: Fits of candidate sets.
-        best: A fit.
+        sets: Cache of the fits of candidate sets, with the estimation problem.
+        best: Fit of the vessel model with some candidate effects.
     """
     return next((name for name in best.effects if name in sets.unsteady), "")
 
 
 def braking_force(sets: CandidateSets, best: Fit) -> str:
-    """Return the name of the oscillating force of a fit if it brakes the hull, or "".
+    """Return the name of a fit's oscillating force if that force takes energy from the hull, or "".
+
+    Waves give energy to a hull. A force that brakes it only imitates a missing damping law.
 
     Args:
-        sets: Fits of candidate sets.
-        best: A fit.
+        sets: Cache of the fits of candidate sets, with the estimation problem.
+        best: Fit of the vessel model with some candidate effects.
     """
     name = oscillating_force(sets, best)
     if name and _share_of_power(sets, best) < sets.config.select.braking_share:

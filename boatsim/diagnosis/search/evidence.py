@@ -10,13 +10,14 @@ from boatsim.diagnosis.problem import Fit, Problem, priors_of
 
 
 def required_gain(number: int, config: SelectConfig = DEFAULT.select) -> float:
-    """Return the evidence that an effect must gain, together with its look-alikes [nats].
+    """Return the log evidence that an effect must gain to be identified [nats].
 
-    Before the data each candidate is as likely as another, and one of them as likely as none.
+    Before the data each candidate is as likely as another, and one of them as likely as none. The
+    gain is that of the effect together with its look-alikes.
 
     Args:
         number: Number of candidates that are tested.
-        config: Odds that are required.
+        config: Settings of the selection, with the required log odds.
     """
     return config.odds + float(np.log(max(number, 1)))
 
@@ -24,19 +25,22 @@ def required_gain(number: int, config: SelectConfig = DEFAULT.select) -> float:
 def unknown_threshold(
     config: SelectConfig, explained: float, model_error: float | None = None
 ) -> float:
-    """Return the unexplained evidence from which a cause outside the candidates is reported [nats].
+    """Return the evidence of unexplained force from which an unknown cause is reported [nats].
+
+    An unknown cause is one that no candidate effect describes. The threshold increases with the
+    evidence that the identified effects explain, because their laws are approximate.
 
     Args:
         config: Settings of the selection.
         explained: Evidence that identified effects explain [nats].
-        model_error: Share of it that their laws may be off by; None: the usual one.
+        model_error: Share of that evidence by which their laws may be wrong; None: the usual one.
     """
     share = config.model_error if model_error is None else model_error
     return config.unknown_gain + share * max(explained, 0.0)
 
 
 def combined_gain(gains: Sequence[float]) -> float:
-    """Return the evidence that any of several effects acts [nats].
+    """Return the log evidence that any one of several effects acts [nats].
 
     Args:
         gains: Evidence of each [nats].
@@ -45,13 +49,14 @@ def combined_gain(gains: Sequence[float]) -> float:
 
 
 def gain_by_curvature(best: Fit, name: str) -> float:
-    """Return the evidence of an effect by the curvature at a fit [nats].
+    """Return a quadratic approximation of the evidence that an effect gains in a fit [nats].
 
-    This is half the squared distance from zero effect in standard deviations. It is far too large
-    where the latent force may replace the effect, which a curvature does not show.
+    This is half the squared distance of its parameters from zero effect in standard deviations. It
+    is far too large where the latent (unmodelled) force may replace the effect, which a curvature
+    does not show.
 
     Args:
-        best: A fit.
+        best: Fit of the vessel model with some candidate effects.
         name: Name of one of its effects.
     """
     own = [i for i, f in enumerate(best.free) if f.effect == name and not f.relative]
@@ -62,7 +67,7 @@ def gain_by_curvature(best: Fit, name: str) -> float:
 
 
 def gains_over(fits: Mapping[str, Fit], base: Fit) -> dict[str, float]:
-    """Return the evidence that each of several fits gains over another one [nats].
+    """Return the log evidence of each of several fits minus that of a reference fit [nats].
 
     Args:
         fits: Fits by name.
@@ -72,7 +77,7 @@ def gains_over(fits: Mapping[str, Fit], base: Fit) -> dict[str, float]:
 
 
 def fits_with_evidence_above(fits: Mapping[str, Fit], least: float) -> dict[str, Fit]:
-    """Return the fits with more evidence than a limit.
+    """Return those of several fits whose log evidence exceeds a limit.
 
     Args:
         fits: Fits by name.
@@ -84,14 +89,15 @@ def fits_with_evidence_above(fits: Mapping[str, Fit], least: float) -> dict[str,
 def leading_candidates(
     fits: Mapping[str, Fit], base: Fit, config: SelectConfig = DEFAULT.select
 ) -> list[str]:
-    """Return the candidates that a full fit may still show to be the best, the best first.
+    """Return the candidate effects that are near enough to the best one to be fitted in full.
 
-    A screening omits what a refit of the noise levels changes.
+    Their rough fits (screenings) omit what a refit of the noise levels changes, so that the order
+    may still change. The best is first.
 
     Args:
-        fits: Fits of candidates by name.
-        base: The fit on top of which they were added.
-        config: Distances from the best candidate.
+        fits: Rough fits with one candidate added, by its name.
+        base: Fit to which the candidates were added.
+        config: Settings of the selection, with the allowed distances from the best candidate.
     """
     gains = gains_over(fits, base)
     order = sorted(gains, key=lambda n: -gains[n])
@@ -103,11 +109,13 @@ def leading_candidates(
 
 
 def unexplained_evidence(problem: Problem, best: Fit) -> float:
-    """Return the evidence that the latent force gains beyond the assumed level [nats].
+    """Return the evidence for an unmodelled force beyond the assumed disturbance level [nats].
+
+    It is the log likelihood that a fit loses if its latent force is limited to that level.
 
     Args:
-        problem: Recordings and priors.
-        best: A fit.
+        problem: The estimation problem: recordings, vessel model, candidate effects and priors.
+        best: Fit of the vessel model with some candidate effects.
     """
     factor = problem.config.locate.disturbance_factor
     on = problem.program.switches(best.effects)

@@ -19,14 +19,17 @@ REMAINS = 0.7
 
 
 def select_forward(sets: CandidateSets, best: Fit) -> Fit:
-    """Add candidates to a set one by one and return the resulting fit.
+    """Add candidate effects to a fit one by one, each time the one that gains most evidence.
 
-    Earlier effects that a newer one makes unnecessary are removed. When the budget of the search is
-    spent, no further candidate is added.
+    The selection ends when no candidate gains enough. Earlier effects that a newer one makes
+    unnecessary are removed. When the budget of the search is spent, no further candidate is added.
 
     Args:
-        sets: Fits of candidate sets.
-        best: The start.
+        sets: Cache of the fits of candidate sets, with the estimation problem.
+        best: Fit from which the selection starts.
+
+    Returns:
+        The converged fit with the selected effects.
     """
     config = sets.config.select
     for _ in range(2 * config.most_effects):  # additions and removals
@@ -70,11 +73,11 @@ def _report(sets: CandidateSets, best: Fit) -> None:
 
 
 def refit_from_base_levels(sets: CandidateSets, other: Fit) -> Fit:
-    """Refit the effects of a fit, starting from the noise levels of the base fit.
+    """Refit the effects of a fit, starting from the noise levels of the vessel without effects.
 
     Args:
-        sets: Fits of candidate sets.
-        other: A fit to the same recordings.
+        sets: Cache of the fits of candidate sets, with the estimation problem.
+        other: Fit whose effects are refitted, to the same recordings.
     """
     return sets.converged_fit(replace(other, levels=sets.base.levels, evidence=-np.inf))
 

@@ -11,7 +11,9 @@ Squares = Mapping[str, Sequence[float]]  # mean square error of each free run by
 
 
 def mean_square_errors(runs: Sequence[FreeRun], model: str) -> dict[str, list[float]]:
-    """Return the mean square error of each free run, by family of signals.
+    """Return the mean square error of each simulation (free run) over held-out recordings.
+
+    The key is the family of signals: position, heading or roll.
 
     Args:
         runs: Free runs; those over which nothing was recorded are omitted.
@@ -31,7 +33,9 @@ def mean_square_errors(runs: Sequence[FreeRun], model: str) -> dict[str, list[fl
 def errors_grew(
     before: Squares, after: Squares, sure: float, config: ValidateConfig = DEFAULT.validate
 ) -> bool:
-    """Whether the error of any family of signals has grown.
+    """Whether simulations of held-out recordings by one model are clearly worse than by another.
+
+    The errors of position, heading and roll are compared; one that has grown suffices.
 
     Args:
         before: Mean square errors of a model.
@@ -52,7 +56,9 @@ def errors_grew(
 
 
 def error_ratio(found: Squares, reference: Squares) -> float:
-    """Return the geometric mean over the families of the ratio of mean square errors.
+    """Return the ratio of the mean square simulation errors of two models.
+
+    It is the geometric mean over position, heading and roll.
 
     Args:
         found: Mean square errors of a model.

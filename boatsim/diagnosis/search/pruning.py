@@ -24,7 +24,10 @@ MOST_TIED = 3  # look-alikes that are reported of an effect
 
 @dataclass(frozen=True)
 class IdentifiedEffect:
-    """An effect that the recordings require, and the rivals that could take its place."""
+    """An effect that the recordings require, with its evidence, probability and rivals.
+
+    Rivals are fits with another candidate effect in its place.
+    """
 
     name: str
     gain: float  # [nats] on top of the other effects
@@ -35,17 +38,17 @@ class IdentifiedEffect:
 
 
 def prune(sets: CandidateSets, best: Fit) -> tuple[Fit, tuple[IdentifiedEffect, ...]]:
-    """Remove effects with insufficient evidence.
+    """Remove effects with insufficient evidence from a fit.
 
     An effect in whose place another one is better is replaced, unless that leads back to a set that
     was examined before, or the budget of the search is spent.
 
     Args:
-        sets: Fits of candidate sets.
-        best: A fit.
+        sets: Cache of the fits of candidate sets, with the estimation problem.
+        best: Fit of the vessel model with some candidate effects.
 
     Returns:
-        The pruned set, and its effects with their statistics.
+        The fit with the remaining effects, and the statistics of these effects.
     """
     examined = set()
     while True:
@@ -160,7 +163,7 @@ def _improves_prediction(sets: CandidateSets, best: Fit, named: IdentifiedEffect
 
 
 def differs_from_zero(sets: CandidateSets, best: Fit, name: str) -> bool:
-    """Whether an effect is clearly away from zero effect.
+    """Whether the size of an effect in a fit is significantly different from zero.
 
     A stochastic force must be further away: its size is positive, so that a search finds some in
     pure noise. An effect acts, too, if the recordings determine one of its parameters that has no
@@ -168,8 +171,8 @@ def differs_from_zero(sets: CandidateSets, best: Fit, name: str) -> bool:
     but not that speed. (The frequency of a stochastic force is determined by any trace of it.)
 
     Args:
-        sets: Fits of candidate sets.
-        best: A fit.
+        sets: Cache of the fits of candidate sets, with the estimation problem.
+        best: Fit of the vessel model with some candidate effects.
         name: Name of one of its effects.
     """
     config = sets.config.select
@@ -231,12 +234,14 @@ def compare_rivals(
     rivals: Mapping[str, Fit],
     config: SelectConfig = DEFAULT.select,
 ) -> IdentifiedEffect:
-    """Return the statistics of an effect.
+    """Compare an effect with rival candidates: return its evidence, probability and look-alikes.
+
+    Look-alikes are rivals whose evidence is nearly as large.
 
     Args:
         name: Name of the effect.
-        best: A fit with it.
-        without: The fit without it.
+        best: Fit with the effect.
+        without: Fit without the effect.
         rivals: Fits with other candidates in its place.
         config: Distance within which rivals are look-alikes.
     """

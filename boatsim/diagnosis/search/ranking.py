@@ -34,7 +34,11 @@ JUDGING = 0.8  # share of the work, by experience, that is done when held-out re
 
 
 class Baseline(NamedTuple):
-    """The vessel as written, and with its own coefficients refitted."""
+    """Fits of the vessel model without candidate effects.
+
+    One is the model as specified, with its noise levels fitted, the other one has refitted
+    coefficients.
+    """
 
     nominal: Fit  # with noise and force levels fitted
     recalibrated: Fit
@@ -42,7 +46,10 @@ class Baseline(NamedTuple):
 
 @dataclass(frozen=True)
 class Ranking:
-    """Result of the selection: identified effects, and the evidence of all candidates."""
+    """Result of the selection: the identified effects, and the evidence of all candidate effects.
+
+    It also holds the fits of the nominal and recalibrated vessel, and what remains unexplained.
+    """
 
     nominal: Fit  # the vessel as written, noise and force levels fitted
     recalibrated: Fit  # the nominal structure with its own coefficients refitted
@@ -68,23 +75,26 @@ class Ranking:
 
     @property
     def adds_effects(self) -> bool:
-        """Whether the best fit adds anything to the vessel."""
+        """Whether the selection adds an effect or a formula to the vessel model."""
         return bool(self.named) or bool(self.doubtful) or bool(self.described_terms)
 
     @property
     def described_terms(self) -> Mapping[str, SymbolicTerm]:
-        """Described terms that the best fit adds, by name."""
+        """Terms found by symbolic regression that the selected model contains, by name."""
         return self.description.effects() if self.description else {}
 
     @property
     def unknown(self) -> bool:
-        """Whether something remains that no candidate explains."""
+        """Whether a force or a cause remains that no candidate effect explains."""
         described = self.description is not None or bool(self.divergences)
         return described or self.remains or self.stands_in
 
     @property
     def remains(self) -> bool:
-        """Whether a force remains that is too large for, or not alike, the assumed disturbance."""
+        """Whether the unexplained force is larger than, or unlike, the assumed random disturbance.
+
+        Unlike means that it clearly correlates with motion, commands, place or time.
+        """
         return bool(self.left_over > self.told_from) or self.structured
 
 
@@ -97,7 +107,7 @@ def rank(
     base: Baseline | None = None,
     budget: SearchBudget | None = None,
 ) -> Ranking:
-    """Select the candidates that the recordings require.
+    """Select the candidate effects that the recordings require, and rank all candidates.
 
     Candidates are added one by one, each time after the present set has converged, and members are
     exchanged. An effect is removed if far more remains unexplained than it explains, if free runs
@@ -105,10 +115,10 @@ def rank(
     decide between look-alikes.
 
     Args:
-        problem: Recordings and priors.
+        problem: The estimation problem: recordings, vessel model, candidate effects and priors.
         candidates: Names of the candidates that are tested.
-        held_out: Held-out recordings.
-        begin: Fit whose effects are the start; None: start without effects.
+        held_out: Held-out recordings, which no fit has used.
+        begin: Fit whose effects the search starts with; None: start without effects.
         report: Receives the progress.
         base: Fits of the vessel without candidates; None: fit them.
         budget: Work that the search may do; None: that of the configuration. When it is spent, no
@@ -222,11 +232,14 @@ def _clearly_correlates(
 
 
 def select_effects(problem: Problem, candidates: tuple[str, ...]) -> tuple[Fit, Fit]:
-    """Return the recalibrated vessel and the best set on top of it, for cross-validation.
+    """Select candidate effects by forward selection alone, for cross-validation.
 
     Args:
-        problem: Recordings and priors.
+        problem: The estimation problem: recordings, vessel model, candidate effects and priors.
         candidates: Names of the candidates that are tested.
+
+    Returns:
+        The fit of the vessel with refitted coefficients, and the fit with the selected effects.
     """
     _, recalibrated = fit_baseline(problem)
     return recalibrated, select_forward(
@@ -235,10 +248,12 @@ def select_effects(problem: Problem, candidates: tuple[str, ...]) -> tuple[Fit, 
 
 
 def fit_baseline(problem: Problem) -> Baseline:
-    """Return the vessel as written with its noise levels fitted, and recalibrated.
+    """Fit the vessel model without candidate effects: as specified, and with refitted coefficients.
+
+    In the first fit only the noise levels are fitted.
 
     Args:
-        problem: Recordings and priors.
+        problem: The estimation problem: recordings, vessel model, candidate effects and priors.
     """
     config = problem.config.fit
     nominal = fit_noise(problem, problem.nominal_hypothesis())

@@ -27,7 +27,11 @@ from boatsim.physics.base import Array, Effect, RandomForce
 
 @dataclass(frozen=True)
 class Linearisation:
-    """The fit on top of which candidates are screened, linearised with the gains held."""
+    """A linearised fit, from which gains of evidence by further effects are estimated.
+
+    It holds the whitened prediction errors and their derivatives by the parameters, with the gains
+    of the Kalman filter held.
+    """
 
     columns: Array  # (rows, F) derivatives of the whitened errors by its parameters
     slope: Array  # (F,) gradient that the held gains show at its maximum, where there is none
@@ -38,22 +42,26 @@ class Linearisation:
 
     @property
     def white(self) -> Array:
-        """(rows,) whitened errors."""
+        """Whitened prediction errors (rows,) of the linearised fit."""
         return self.passes.whitened
 
     @cached_property
     def half_log_determinant(self) -> float:
-        """Half the log determinant of the information, which the score of a fit loses."""
+        """Half the log determinant of the information matrix of the linearised fit's parameters.
+
+        It is the term of the Laplace evidence that penalises free parameters.
+        """
         count = self.columns.shape[1]
         return _half_log_determinant(np.eye(count) + self.columns.T @ self.columns)
 
     def predicted_gain(self, white: Array) -> float:
-        """Return the evidence that some multiple of a change of the errors gains [nats].
+        """Predict how much evidence an effect gains from its change of the prediction errors.
 
-        The parameters of the fit itself are free, too.
+        The gain is in nats. The best multiple of that change is used, and the parameters of the
+        linearised fit are free, too.
 
         Args:
-            white: (rows,) whitened errors after the change.
+            white: (rows,) whitened errors with the effect at a starting point.
         """
         change = white - self.white
         with np.errstate(over="ignore", invalid="ignore"):  # the simulated boat may diverge
@@ -65,11 +73,11 @@ class Linearisation:
 
 
 def linearise(problem: Problem, base: Fit) -> Linearisation:
-    """Return a fit linearised with the gains of the filter held.
+    """Linearise a fit about its parameters, with the gains of the Kalman filter held.
 
     Args:
-        problem: Recordings and priors.
-        base: A converged fit.
+        problem: The estimation problem: recordings, vessel model, candidate effects and priors.
+        base: Converged fit to which candidate effects are to be added.
     """
     on = problem.program.switches(base.effects)
     passes = problem.filter(base.free, base.theta, on, base.levels)
@@ -90,17 +98,20 @@ def screen(
     report: Callable[[float], None] | None = None,
     about: Linearisation | None = None,
 ) -> dict[str, Fit]:
-    """Return a rough fit of each candidate on top of a fit.
+    """Estimate the evidence of each candidate effect by a rough fit in addition to a fit.
 
     Its parameters are near the best ones, and its evidence is accurate enough to choose the
     candidates that are fitted in full.
 
     Args:
-        problem: Recordings and priors.
-        base: A converged fit.
+        problem: The estimation problem: recordings, vessel model, candidate effects and priors.
+        base: Converged fit to which candidate effects are to be added.
         candidates: Names of the candidates.
         report: Receives the share of the candidates that have been screened.
-        about: The fit linearised; None: linearise it.
+        about: The given fit linearised; None: linearise it.
+
+    Returns:
+        Rough fits by the name of the candidate.
     """
     about = about or linearise(problem, base)
     effects = problem.candidates
@@ -116,15 +127,16 @@ def screen(
 
 
 def confirm_screening(problem: Problem, base: Fit, screened: Fit) -> Fit:
-    """Return a screening if the full filter confirms it, else a fit from the best smaller step.
+    """Check the rough fit of a candidate effect with the full Kalman filter; refit it if it fails.
 
-    A screening may fail where the held gains no longer suit the hull, for example where much mass
-    is missing. What seems little at a point that the filter confirms may still gain most.
+    A rough fit may fail where the held gains no longer suit the hull, for example where much mass
+    is missing. It is then refitted from the best smaller step. What seems little at a point that
+    the filter confirms may still gain most.
 
     Args:
-        problem: Recordings and priors.
-        base: The fit on top of which the candidate was screened.
-        screened: The screening.
+        problem: The estimation problem: recordings, vessel model, candidate effects and priors.
+        base: Fit to which the candidate was added.
+        screened: Rough fit with the candidate added.
     """
     config = problem.config.select
     on = problem.program.switches(screened.effects)
@@ -152,14 +164,14 @@ def _half_log_determinant(information: Array) -> float:
 
 
 def starting_points(problem: Problem, effect: Effect) -> list[dict[str, float]]:
-    """Return the starting points of a candidate's parameters.
+    """Return parameter values from which the fit of a candidate effect starts.
 
-    They are those of the effect, scaled by Froude's law, and shares of the largest command
-    recorded; a small value where there are none.
+    They are those that the effect declares, scaled by Froude's law, and shares of the largest
+    command recorded; a small value where there are none.
 
     Args:
-        problem: Recordings and priors.
-        effect: The candidate.
+        problem: The estimation problem: recordings, vessel model, candidate effects and priors.
+        effect: The candidate effect.
     """
     kind = type(effect)
     default = {}
@@ -182,13 +194,13 @@ def starting_points(problem: Problem, effect: Effect) -> list[dict[str, float]]:
 
 
 def add_effect(problem: Problem, base: Fit, name: str, start: Mapping[str, float]) -> Fit:
-    """Return a fit with one more effect at a starting point, without evidence yet.
+    """Add a candidate effect to a fit at given parameter values; nothing is fitted yet.
 
     Args:
-        problem: Recordings and priors.
-        base: A fit.
+        problem: The estimation problem: recordings, vessel model, candidate effects and priors.
+        base: Fit to which the candidate effect is added.
         name: Name of the candidate that is added.
-        start: Its parameters by name.
+        start: Parameter values of the candidate by name.
     """
     effects = (*base.effects, name)
     free = problem.parameters(effects)
@@ -199,13 +211,13 @@ def add_effect(problem: Problem, base: Fit, name: str, start: Mapping[str, float
 
 
 def hand_over_coefficient(start: Fit, effect: Effect) -> Fit:
-    """Return a start in which an effect's factor takes over the change of a coefficient.
+    """Transfer the change of a coefficient to the factor of an added effect that scales it.
 
     The recordings determine only the product of both: straight steps along the curve on which it is
     constant would lead nowhere.
 
     Args:
-        start: A start with the effect.
+        start: Fit to which the effect was added, not yet refitted.
         effect: The candidate that was added.
     """
     theta = start.theta.copy()
@@ -220,12 +232,12 @@ def hand_over_coefficient(start: Fit, effect: Effect) -> Fit:
 
 
 def starting_fits(problem: Problem, base: Fit, effect: Effect) -> list[Fit]:
-    """Return a fit with a candidate added, at each of the candidate's starting points.
+    """Add a candidate effect to a fit at each of its starting points; nothing is fitted yet.
 
     Args:
-        problem: Recordings and priors.
-        base: A fit.
-        effect: The candidate.
+        problem: The estimation problem: recordings, vessel model, candidate effects and priors.
+        base: Fit to which the candidate effect is added.
+        effect: The candidate effect.
     """
     points = starting_points(problem, effect)
     return [
@@ -366,16 +378,16 @@ def _at_assumed_disturbance(problem: Problem, at: Fit, base: Fit) -> Fit:
 
 
 def stochastic_starting_fits(problem: Problem, base: Fit, effect: Effect) -> list[Fit]:
-    """Return the starts of a stochastic force, or of the drift of an instrument.
+    """Add a stochastic force, or the drift of an instrument, to a fit at its starting points.
 
-    A stochastic force starts with a share of the latent force. The drift of an instrument starts
-    with the assumed levels, because force and noise that were fitted without it have absorbed part
-    of it.
+    A stochastic force starts with a share of the latent (unmodelled) force. The drift of an
+    instrument starts with the assumed noise levels, because force and noise that were fitted
+    without it have absorbed part of it.
 
     Args:
-        problem: Recordings and priors.
-        base: A fit.
-        effect: The candidate.
+        problem: The estimation problem: recordings, vessel model, candidate effects and priors.
+        base: Fit to which the candidate effect is added.
+        effect: The candidate effect.
     """
     shared = problem.config.select.swell_share * base.levels.force
     if isinstance(effect, RandomForce):

@@ -16,12 +16,15 @@ from boatsim.diagnosis.search.pruning import IdentifiedEffect, compare_rivals
 
 
 def misleading_effect(sets: CandidateSets, best: Fit, held_out: Recordings) -> str:
-    """Return the effect to remove if free runs are clearly worse with all effects than with none.
+    """Return the effect to remove from a fit that simulates held-out recordings badly.
+
+    It is sought only if free runs (simulations with the recorded commands alone) are clearly worse
+    with all effects of the fit than with none.
 
     Args:
-        sets: Fits of candidate sets.
-        best: A fit.
-        held_out: Held-out recordings.
+        sets: Cache of the fits of candidate sets, with the estimation problem.
+        best: Fit of the vessel model with some candidate effects.
+        held_out: Held-out recordings, which no fit has used.
 
     Returns:
         Name of the effect without which they are best, or "".
@@ -48,7 +51,7 @@ def misleading_effect(sets: CandidateSets, best: Fit, held_out: Recordings) -> s
 def refuted_effect(
     sets: CandidateSets, best: Fit, named: Sequence[IdentifiedEffect], held_out: Recordings
 ) -> str:
-    """Return an effect that does not hold for held-out recordings, or "".
+    """Return the name of an effect that held-out recordings refute, or "".
 
     Either these become clearly less likely by it, or all recordings together gain less by it and
     its look-alikes than is required and than the laws of the other effects may be off by. The
@@ -56,10 +59,10 @@ def refuted_effect(
     require the effect all the same, as they may where these go beyond the fitted ones.
 
     Args:
-        sets: Fits of candidate sets.
-        best: A fit.
-        named: Its effects.
-        held_out: Held-out recordings.
+        sets: Cache of the fits of candidate sets, with the estimation problem.
+        best: Fit of the vessel model with some candidate effects.
+        named: Identified effects of the fit, with their statistics.
+        held_out: Held-out recordings, which no fit has used.
     """
     if not held_out:
         return ""
@@ -94,13 +97,13 @@ def refuted_effect(
 
 
 def generalizes_worse(sets: CandidateSets, before: Fit, after: Fit, held_out: Recordings) -> bool:
-    """Whether free runs over held-out recordings are worse by one fit than by another.
+    """Whether one fit simulates held-out recordings clearly worse than another.
 
     Args:
-        sets: Fits of candidate sets.
-        before: The fit that they are compared with.
+        sets: Cache of the fits of candidate sets, with the estimation problem.
+        before: The fit that serves as reference.
         after: The fit that replaces it.
-        held_out: Held-out recordings.
+        held_out: Held-out recordings, which no fit has used.
     """
     runs = _free_runs(sets, {"before": before, "after": after}, held_out)
     old = generalization.mean_square_errors(runs, "before")
@@ -111,14 +114,14 @@ def generalizes_worse(sets: CandidateSets, before: Fit, after: Fit, held_out: Re
 
 
 def predictive_log_likelihood(sets: CandidateSets, found: Fit, held_out: Recordings) -> float:
-    """Return the log likelihood of held-out recordings by a fit to others [nats].
+    """Return the log likelihood of held-out recordings under a fit to other recordings [nats].
 
-    The level of the latent force is fitted to them.
+    Only the level of the latent (unmodelled) force is refitted to them.
 
     Args:
-        sets: Fits of candidate sets.
-        found: A fit.
-        held_out: Held-out recordings.
+        sets: Cache of the fits of candidate sets, with the estimation problem.
+        found: Fit of the vessel model with some candidate effects.
+        held_out: Held-out recordings, which no fit has used.
     """
     key = (id(found), id(held_out))
     if key not in sets.predictions:
@@ -134,13 +137,15 @@ def predictive_log_likelihood(sets: CandidateSets, found: Fit, held_out: Recordi
 def evaluate_rivals_on_all(
     sets: CandidateSets, best: Fit, rivals: Mapping[str, Fit], held_out: Recordings
 ) -> dict[str, Fit]:
-    """Return rivals of an effect with their evidence on all recordings, held-out ones included.
+    """Return rivals of an effect with their evidence on fitted and held-out recordings together.
+
+    A rival is a fit with another candidate effect in its place.
 
     Args:
-        sets: Fits of candidate sets.
+        sets: Cache of the fits of candidate sets, with the estimation problem.
         best: The fit with the effect.
-        rivals: Fits with other candidates in its place.
-        held_out: Held-out recordings.
+        rivals: Fits with other candidates in the effect's place, by name.
+        held_out: Held-out recordings, which no fit has used.
     """
     own = predictive_log_likelihood(sets, best, held_out)
     if not np.isfinite(own):  # the simulated boat diverges
@@ -155,16 +160,16 @@ def evaluate_rivals_on_all(
 def deterministic_replacement(
     sets: CandidateSets, best: Fit, named: Sequence[IdentifiedEffect], held_out: Recordings
 ) -> Fit | None:
-    """Replace a stochastic force by a deterministic effect if held-out data prefer it.
+    """Replace a stochastic force by a deterministic effect if held-out recordings prefer it.
 
-    Free runs over held-out recordings must get clearly better by it, or all recordings together
-    must become clearly more likely.
+    Simulations (free runs) of held-out recordings must get clearly better by it, or all recordings
+    together must become clearly more likely.
 
     Args:
         sets: Fits of candidate sets; an effect that is replaced is added to those refuted.
-        best: A fit.
-        named: Its effects.
-        held_out: Held-out recordings.
+        best: Fit of the vessel model with some candidate effects.
+        named: Identified effects of the fit, with their statistics.
+        held_out: Held-out recordings, which no fit has used.
 
     Returns:
         The fit with the replacement; None if there is none.
@@ -200,15 +205,19 @@ def deterministic_replacement(
 def remove_refuted_rivals(
     sets: CandidateSets, best: Fit, named: Sequence[IdentifiedEffect], held_out: Recordings
 ) -> tuple[IdentifiedEffect, ...]:
-    """Return identified effects with only those rivals that held-out recordings do not refute.
+    """Remove, from identified effects, the rivals that held-out recordings refute.
 
-    Rivals are refuted by their evidence on all recordings, and by free runs that get clearly worse.
+    A rival is another candidate effect in the effect's place. It is refuted by its evidence on all
+    recordings, or by simulations (free runs) that get clearly worse.
 
     Args:
-        sets: Fits of candidate sets.
-        best: A fit.
-        named: Its effects.
-        held_out: Held-out recordings.
+        sets: Cache of the fits of candidate sets, with the estimation problem.
+        best: Fit of the vessel model with some candidate effects.
+        named: Identified effects of the fit, with their statistics.
+        held_out: Held-out recordings, which no fit has used.
+
+    Returns:
+        The identified effects with their remaining rivals.
     """
     fewest, found = sets.config.validate.fewest_runs, []
     least = best.evidence - sets.config.select.alike
@@ -233,18 +242,18 @@ def remove_refuted_rivals(
 
 
 def remove_dwarfed_effects(sets: CandidateSets, best: Fit, held_out: Recordings) -> Fit:
-    """Remove effects that may only explain a small part of a force that remains unexplained.
+    """Remove effects that only absorb a small part of a much larger unexplained force.
 
-    Much remains, they reduce the latent force by almost nothing, and free runs over held-out
+    They reduce the latent (unmodelled) force by almost nothing, and simulations of held-out
     recordings get no worse without any of them.
 
     Args:
         sets: Fits of candidate sets; effects that are removed are added to those refuted.
-        best: A fit.
-        held_out: Held-out recordings.
+        best: Fit of the vessel model with some candidate effects.
+        held_out: Held-out recordings, which no fit has used.
 
     Returns:
-        The same object if no effect is removed.
+        The fit without them; the same object if no effect is removed.
     """
     config = sets.config.validate
     whole: dict[str, list[float]] = {}

@@ -17,7 +17,9 @@ FEWEST_ROWS = 3  # of a bin that is drawn; fewer show noise only
 def curve(
     recordings: Sequence[FittedRecording], term: SymbolicTerm, coefficient: float, sd: float
 ) -> Curve | None:
-    """Return the curve of a fitted term.
+    """Return the force of a fitted symbolic term as a curve over the variable it depends on.
+
+    The force that the recordings require there is returned with it.
 
     Args:
         recordings: The recordings as the fit explains them.

@@ -32,7 +32,7 @@ QUARTER = 0.25  # of a period or wavelength: a cosine and a sine are tested
 
 @dataclass(frozen=True)
 class Course:
-    """When a term acts.
+    """When a term of the symbolic regression acts: within an interval, rising, fading or swinging.
 
     Attributes:
         run: Name of the recording of an event; "" for all recordings.
@@ -54,7 +54,10 @@ def terms(
     commands: Sequence[str],
     config: DescribeConfig,
 ) -> Iterator[SymbolicTerm]:
-    """Yield all terms that are tested.
+    """Yield all terms that the symbolic regression of an unexplained force tests.
+
+    A term is a force along an axis, or a change of thrust, as a product of speeds, commands,
+    angles, places or functions of time.
 
     Args:
         vessel: The vessel.
@@ -273,10 +276,12 @@ def _time_range(recordings: Recordings) -> tuple[float, float]:
 def neighbours(
     term: SymbolicTerm, recordings: Recordings, step: float, config: DescribeConfig
 ) -> list[SymbolicTerm]:
-    """Return the terms that differ from a term by a small change of its times or lengths.
+    """Return variants of a term of the symbolic regression with slightly changed constants.
+
+    The constants are its times, wavelength, threshold or time constant.
 
     Args:
-        term: The term.
+        term: A term of the symbolic regression.
         recordings: The fitted recordings.
         step: Size of the change, relative to the step of the grammar.
         config: Settings of the symbolic regression.

@@ -24,7 +24,7 @@ def describe(
     held_out: Sequence[MappedRecording],
     report: Report = ignore_progress,
 ) -> Description | None:
-    """Describe the force that a fit leaves unexplained by a formula.
+    """Describe the force that a fit leaves unexplained by a formula, with symbolic regression.
 
     Args:
         problem: The estimation problem.

@@ -13,15 +13,17 @@ NEVER = {"course": float(COURSES.index("within")), "begin": 0.0, "end": 0.0}
 
 
 def free_slot(problem: Problem, kind: type[SymbolicTerm], used: Sequence[str]) -> str:
-    """Return the name of a slot that has no term yet.
+    """Return the name of a placeholder effect that has not been set to a symbolic term yet.
+
+    Placeholders are compiled into the vessel program, so that a term needs no further compilation.
 
     Args:
         problem: The estimation problem.
         kind: Kind of the term: a force or a change of thrust.
-        used: Names of the slots that have a term.
+        used: Names of the placeholders that have a term.
 
     Returns:
-        Name of the slot; "" if all are used.
+        Name of the placeholder; "" if all are used.
     """
     for effect in problem.program.candidates:
         if type(effect) is kind and effect.name not in used:
@@ -32,12 +34,12 @@ def free_slot(problem: Problem, kind: type[SymbolicTerm], used: Sequence[str]) -
 def write_term(
     problem: Problem, slot: str, term: SymbolicTerm, recordings: Sequence[MappedRecording]
 ) -> None:
-    """Write the parameters of a term into a slot.
+    """Set a placeholder effect of the compiled vessel program to a term of the symbolic regression.
 
     Args:
         problem: The estimation problem.
-        slot: Name of the slot.
-        term: The term.
+        slot: Name of the placeholder.
+        term: A term of the symbolic regression.
         recordings: Recordings whose parameter values are changed.
     """
     parameters = term.with_all_parameters(problem.program.vessel).law_parameters()

@@ -24,7 +24,7 @@ RATES = dict(zip(AXES, "uvwpqr", strict=True))
 
 
 def lagged(signals: Array, times: Array, time_constant: float) -> Array:
-    """Return the mean of a first-order lag of signals over each row.
+    """Filter signals by a first-order lag and return the mean over each row.
 
     Args:
         signals: Signals (K, N), constant from row to row.
@@ -47,12 +47,14 @@ def lagged(signals: Array, times: Array, time_constant: float) -> Array:
 
 @dataclass(frozen=True)
 class FittedRecording:
-    """A recording as a fit explains it.
+    """A recording with the states and the unexplained force that a fit's smoother finds in it.
+
+    It evaluates the forces that terms of the symbolic regression would have along the recording.
 
     Attributes:
         problem: The estimation problem.
         recording: The recording.
-        fit: The fit.
+        fit: Fit of the vessel model.
         states: Smoothed states (N, 2 NQ).
         residual: Force (N, axes) [N, N m] that the fit does not explain.
         smoother: Covariances (N, n, n) of the smoothed states, and gains (N, n, n) of the smoother.
@@ -67,7 +69,7 @@ class FittedRecording:
 
     @cached_property
     def motion(self) -> Motion:
-        """Motion of all rows; each field has the shape (N,)."""
+        """Smoothed motion of the hull at all rows; each field has the shape (N,)."""
         program, rows = self.problem.program, len(self.states)
         axes, nq = axes_of(program.vessel), program.module.NQ
         fields: dict[str, Any] = dict.fromkeys(Motion._fields, np.zeros(rows))
@@ -87,17 +89,17 @@ class FittedRecording:
 
     @cached_property
     def values(self) -> Array:
-        """Parameter values of the fitted vessel."""
+        """Parameter values of the fitted vessel model for this recording."""
         return self.problem.values(self.recording, self.fit.free, self.fit.theta)
 
     @cached_property
     def on(self) -> Array:
-        """Switches of the effects that act."""
+        """Array (effects,) with 1 for the effects that act in the fit, else 0."""
         return self.problem.program.switches(self.fit.effects)
 
     @cached_property
     def held(self) -> Array:
-        """Actuator signals (K, N)."""
+        """Actuator signals (K, N) simulated from the recorded commands."""
         return nominal_forces.actuator_states(self.recording, self.fit.effects, self.values).T
 
     @cached_property
@@ -113,10 +115,12 @@ class FittedRecording:
         return {}
 
     def force(self, term: SymbolicTerm) -> Array:
-        """Return the force of a term with a coefficient of 1.
+        """Return the force along the recording of a term of the symbolic regression.
+
+        The coefficient of the term is taken as 1.
 
         Args:
-            term: The term.
+            term: A term of the symbolic regression.
 
         Returns:
             Force (N, axes) [N, N m]; zero for an event of another recording.
@@ -140,10 +144,13 @@ class FittedRecording:
         return out
 
     def size(self, term: SymbolicTerm) -> Array:
-        """Return the product (N,) of the factors of a term and of its course over time.
+        """Return the value (N,) along the recording of a term of the symbolic regression.
+
+        It is the product of the term's factors and of its course over time, without its
+        coefficient.
 
         Args:
-            term: The term.
+            term: A term of the symbolic regression.
         """
         vessel = self.problem.program.vessel
         acts = float(terms.COURSES.index(term.acts))
@@ -164,7 +171,9 @@ class FittedRecording:
         return size
 
     def factor(self, code: float, detail: terms.Detail, average: Average = NO_AVERAGE) -> Array:
-        """Return one factor (N,).
+        """Return one factor (N,) of a term of the symbolic regression, for example a speed.
+
+        It is evaluated at all rows of the recording.
 
         Args:
             code: Code of the factor, by `terms.factor_codes`.
@@ -181,7 +190,9 @@ class FittedRecording:
         return self._factors[key]
 
     def averaged(self, looks_at: float, deviation: float, time_constant: float) -> Array:
-        """Return the average over the past of an actuator signal or its size, or the deviation.
+        """Return the average over the past of an actuator signal or its size, along the recording.
+
+        The deviation of the signal from that average may be returned instead.
 
         Args:
             looks_at: Code of the signal, by `terms.history_codes`.
@@ -202,7 +213,7 @@ class FittedRecording:
         return np.asarray(average)
 
     def thrust(self, side: str, sense: str) -> Array:
-        """Return the force of the drives on one side while they push in one sense.
+        """Return the force of the drives on one side of the hull while they push in one direction.
 
         Args:
             side: "port", "starboard" or "all".
@@ -229,7 +240,7 @@ class FittedRecording:
 
 
 def fitted_recordings(problem: Problem, fit: Fit) -> list[FittedRecording]:
-    """Return the recordings of a problem as a fit explains them.
+    """Return the recordings of a problem with the states and unexplained forces that a fit finds.
 
     Args:
         problem: The estimation problem.

@@ -31,10 +31,10 @@ SPEED_FIELDS = ("ur", "vr", "wr", "p", "q", "r")  # fields of a motion, by axis
 
 @dataclass(frozen=True)
 class ScoredTerm:
-    """A term and its approximate fit.
+    """A term of the symbolic regression with its approximate evidence and coefficient.
 
     Attributes:
-        term: The term.
+        term: A term of the symbolic regression.
         gain: Log Bayes factor [nats] in addition to the fit.
         coefficient: Its coefficient.
         spread: Prior standard deviation of the coefficient.
@@ -49,7 +49,9 @@ class ScoredTerm:
 def score_terms(
     recordings: Sequence[FittedRecording], terms: Sequence[SymbolicTerm]
 ) -> list[ScoredTerm]:
-    """Return the approximate evidence of each term alone in addition to a fit.
+    """Return the approximate evidence of each symbolic term, added alone to a fit.
+
+    It follows from the force that the fit leaves unexplained, without a refit.
 
     Args:
         recordings: The recordings as the fit explains them.
@@ -108,11 +110,13 @@ def _size(fitted: FittedRecording, term: SymbolicTerm) -> Array:
 
 
 def strength(vessel: Vessel, term: SymbolicTerm) -> float:
-    """Return the prior standard deviation of a term where it acts.
+    """Return the prior standard deviation of the force that a symbolic term exerts on a vessel.
+
+    It is that of the force where the term acts, and scales with the vessel's size by Froude's law.
 
     Args:
         vessel: The vessel.
-        term: The term.
+        term: A term of the symbolic regression.
 
     Returns:
         A force [N], a moment [N m] or a share of the thrust.
@@ -127,7 +131,7 @@ def strength(vessel: Vessel, term: SymbolicTerm) -> float:
 def varying_signals(
     recordings: Sequence[FittedRecording],
 ) -> tuple[dict[str, Array], list[str]]:
-    """Return the speeds and actuator signals that vary along the recordings.
+    """Return the speeds and actuator signals that vary, of which symbolic terms can be made.
 
     Args:
         recordings: The recordings as a fit explains them.

@@ -27,11 +27,11 @@ Family = tuple[object, ...]  # what terms share that differ in their times or le
 
 @dataclass(frozen=True)
 class Formula:
-    """A fit with terms.
+    """A fit of the vessel model with the terms that symbolic regression has added to it.
 
     Attributes:
-        fit: The fit.
-        terms: Terms by the name of their slot, in the order in which they were added.
+        fit: Fit of the vessel model.
+        terms: Terms by the name of their placeholder effect, in the order in which they were added.
     """
 
     fit: Fit
@@ -50,12 +50,14 @@ class _Trial:
 def select_terms(
     problem: Problem, best: Fit, held_out: Recordings, report: Report = ignore_progress
 ) -> Formula:
-    """Add terms to a fit, each time the one with most evidence, while it has enough.
+    """Build a formula for an unexplained force: add symbolic terms one by one, by evidence.
+
+    The selection ends when no term gains enough evidence.
 
     Args:
         problem: The estimation problem.
         best: The fit of the identified effects.
-        held_out: Held-out recordings, whose slots receive the terms as well.
+        held_out: Held-out recordings, whose placeholder effects receive the terms as well.
         report: Receives the progress.
 
     Returns:
@@ -123,17 +125,21 @@ def _trials(
 
 
 def family(term: SymbolicTerm) -> Family:
-    """Return what terms share that differ in their times, wavelength or threshold only.
+    """Return a key that is equal for symbolic terms which differ only in their constants.
+
+    The constants are times, wavelength and threshold.
 
     Args:
-        term: The term.
+        term: A term of the symbolic regression.
     """
     place = [getattr(term, name, "") for name in ("axis", "side", "sense")]
     return type(term), term.of, term.acts, term.run, *place
 
 
 def best_of_each(ordered: Sequence[ScoredTerm]) -> list[ScoredTerm]:
-    """Return the best term of each family.
+    """Return the symbolic term with most evidence of each family.
+
+    Terms of a family differ only in their times, wavelength or threshold.
 
     Args:
         ordered: Terms, those with most evidence first.
@@ -287,12 +293,12 @@ def _pruned(problem: Problem, formula: Formula) -> Formula:
 
 
 def without_term(problem: Problem, formula: Formula, name: str) -> Formula:
-    """Return a formula fitted without one of its terms or effects.
+    """Refit a formula without one of its symbolic terms or effects.
 
     Args:
         problem: The estimation problem.
         formula: The formula.
-        name: Name of the slot of the term, or of the effect.
+        name: Name of the term's placeholder effect, or of the effect.
     """
     found = converge(problem, remove_effect(problem, formula.fit, name))
     kept = {slot: term for slot, term in formula.terms.items() if slot != name}

@@ -693,7 +693,7 @@ def test_a_diagnosis_with_nothing_to_try_says_so(verdict: str, begins: str) -> N
 
 def test_the_setting_of_the_answer_decides_what_is_stated_as_probable():
     answer = planar_answer([])
-    answer["candidates"] = []
+    answer["signs"] = {"effects": [{"name": "weak_reverse", "probability": 0.85}]}
     for sure, probable in ((0.8, False), (0.9, True)):
         answer["config"] = {"decide.sure_probability": sure}
         assert ("probably" in verdict_sentences(answer)) == probable
