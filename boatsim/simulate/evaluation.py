@@ -26,7 +26,7 @@ NO_TOLERANCE = "no tolerance stated"
 
 
 class MetricEntry(TypedDict):
-    """One metric in norms.json: a `Metric` with its verdict."""
+    """One metric as stored in norms.json: value, published value, regression band and verdict."""
 
     value: float | None
     unit: str
@@ -42,7 +42,7 @@ class MetricEntry(TypedDict):
 
 
 class RunEntry(TypedDict):
-    """Content of norms.json."""
+    """Content of norms.json: the metrics of a run and what was run."""
 
     scenario: str
     controller: str
@@ -85,7 +85,7 @@ class Metric:
 
     @property
     def verdict(self) -> str | None:
-        """Whether the published value is reproduced, sign included; None without one."""
+        """Whether a metric reproduces its published value, sign included; None without one."""
         if self.published is None:
             return None
         if self.tolerance is None:
@@ -95,7 +95,7 @@ class Metric:
         return MISSED
 
     def to_json(self) -> MetricEntry:
-        """Return the metric's entry in norms.json."""
+        """Return a metric as it is stored in norms.json."""
         ends = None
         if self.band is not None:
             ends = [end if isfinite(end) else None for end in self.band]
@@ -115,12 +115,12 @@ class Metric:
 
 
 def within_tolerance(value: float, published: float, tolerance: float) -> bool:
-    """Return whether a value differs from a published one by at most the tolerance."""
+    """Return whether a metric differs from its published value by at most the tolerance."""
     return abs(value - published) <= tolerance * (1 + 1e-9)
 
 
 def requested_metrics(run: Run) -> dict[str, Metric]:
-    """Return the metrics that the scenario requests.
+    """Return the metrics of a run that its scenario requests.
 
     Args:
         run: A run, which may have been interrupted.
@@ -151,7 +151,9 @@ def requested_metrics(run: Run) -> dict[str, Metric]:
 
 
 def all_metrics(run: Run) -> dict[str, Metric]:
-    """Return the requested metrics and those of the tracking errors, which are always computed.
+    """Return all metrics of a run: those its scenario requests, and tracking errors of its goals.
+
+    Tracking errors are always computed.
 
     Args:
         run: A run, which may have been interrupted.
@@ -225,7 +227,7 @@ def _metrics_without_values(run: Run, metric_set: MetricSet | None) -> dict[str,
 
 
 def to_json(run: Run, metrics: Mapping[str, Metric]) -> RunEntry:
-    """Return the content of norms.json.
+    """Return the content of norms.json for a run: its metrics, seed, steps and saturated commands.
 
     Args:
         run: The run.
