@@ -45,7 +45,7 @@ class OneLineGroup(TyperGroup):
         *_: object,
         **__: object,
     ) -> NoReturn:
-        """Run the program and exit with its exit code.
+        """Run the command line of boatsim and exit with its exit code.
 
         Args:
             args: Command-line arguments; None for those of the process.
@@ -823,7 +823,7 @@ def _split_loads(options: list[str] | None) -> list[str]:
 
 
 def main() -> None:
-    """Run the program and exit with its exit code.
+    """Run the command line of boatsim and exit with its exit code.
 
     SIGTERM and SIGHUP end it in the same way as Ctrl-C.
     """

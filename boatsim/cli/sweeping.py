@@ -25,7 +25,7 @@ MOST_REASONS = 5  # of failed runs that are printed, the most frequent first
 
 @dataclass(frozen=True)
 class SweepOptions:
-    """Varied and sampled quantities of a sweep.
+    """Command-line options of a sweep: varied and sampled quantities, design and seed.
 
     Attributes:
         vary: Axes of the grid, `KEY=VALUES`.

@@ -11,10 +11,10 @@ from boatsim.physics.cache import cache_folder
 
 
 def import_warp() -> Any:
-    """Import Warp and return it.
+    """Import NVIDIA's library Warp and return its module.
 
     Raises:
-        BadInput: It is not installed.
+        BadInput: Warp is not installed.
     """
     try:
         import warp as wp
@@ -29,7 +29,7 @@ def import_warp() -> Any:
 
 
 def find_device(name: str) -> Any:
-    """Return a device.
+    """Return the Warp device of a name.
 
     Args:
         name: "cpu" or "cuda:0", for example.
