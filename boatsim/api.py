@@ -155,7 +155,9 @@ class Diagnosis:
         return skill
 
     def write(self, folder: Name) -> None:
-        """Write report.html, report.md, diagnosis.json, patched.toml and diagnosis.rrd.
+        """Write the results of the diagnosis to files in a folder.
+
+        They are report.html, report.md, diagnosis.json, patched.toml and diagnosis.rrd.
 
         Args:
             folder: Folder of the files; it is created if needed.
@@ -179,9 +181,9 @@ class Sweep:
 
     @property
     def columns(self) -> dict[str, Sequence[Any]]:
-        """Columns of sweep.parquet with one row per run: varied and sampled keys, and metrics.
+        """Columns of the sweep's table, sweep.parquet, with one row per run.
 
-        None where missing.
+        They are varied and sampled keys, and metrics; None where a value is missing.
         """
         return self.results.columns()
 
@@ -355,7 +357,7 @@ def diagnose(
     horizon: float | None = None,
     settings: Mapping[str, Given] | None = None,
 ) -> Diagnosis:
-    """Identify the physics that a vessel lacks, from recordings.
+    """Identify the physical effects that the model of a vessel lacks, from recordings.
 
     Args:
         runs: Recordings that are fitted.
@@ -444,7 +446,7 @@ def sweep(
     norms: Names = (),
     report: Report = ignore_progress,
 ) -> Sweep:
-    """Run scenarios at every point of a grid, with the same random samples at each point.
+    """Run scenarios at every point of a parameter grid, with equal random samples at each point.
 
     A sweep that was interrupted is continued in its folder.
 

@@ -9,7 +9,7 @@ NEAREST_LISTED = 5  # number of nearest names that are listed then
 
 
 class BoatsimError(Exception):
-    """Base class of all errors raised by boatsim.
+    """Base class of all exceptions that boatsim raises.
 
     The command line prints the message as one line.
     """

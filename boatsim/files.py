@@ -184,7 +184,7 @@ class AppendedFile:
         self._whole -= count
 
     def close(self) -> None:
-        """Close the file."""
+        """Close the file to which data were appended."""
         self._file.close()
 
 

@@ -36,7 +36,7 @@ MOST_SPEED = 1e6  # times real time; a larger value is a mistake
 
 
 class OneLineGroup(TyperGroup):
-    """Command group that reports usage errors in one line and prints the help by default."""
+    """Group of boatsim's commands; reports usage errors in one line, prints help by default."""
 
     def main(
         self,

@@ -45,7 +45,7 @@ class Entry:
 
 
 def class_entry(kind: str, name: str) -> Entry:
-    """Return the description of an effect, controller, measure or sensor.
+    """Return the description of an effect, controller, measure or sensor for `boatsim show`.
 
     Args:
         kind: One of CLASSES.

@@ -38,7 +38,7 @@ def one_line(error: BaseException) -> str:
 
 
 def print_error(message: str) -> None:
-    """Print an error in one line to stderr.
+    """Print the message of an error to the user in one line to stderr.
 
     Args:
         message: What is wrong.
@@ -76,7 +76,7 @@ def print_lines(lines: Iterable[str]) -> None:
 
 
 def escape_unencodable() -> None:
-    """Let stdout and stderr write characters that their encoding lacks as escapes."""
+    """Make stdout and stderr print characters that their encoding lacks as escape sequences."""
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")

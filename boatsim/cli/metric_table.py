@@ -108,7 +108,7 @@ def explain_name_endings(metrics: Mapping[str, "MetricEntry"]) -> list[str]:
 
 
 def explain_missing_values(metrics: Mapping[str, "MetricEntry"]) -> list[str]:
-    """Return a line for each reason why metrics have no value.
+    """Return the reasons why metrics of a run have no value, one line each.
 
     Args:
         metrics: Entries of norms.json by name.

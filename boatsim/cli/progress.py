@@ -83,7 +83,7 @@ def report_campaign() -> Iterator[Report]:
 
 
 def print_progress(line: str) -> None:
-    """Print a line of progress to stderr.
+    """Print a line about the progress of a command to stderr.
 
     Args:
         line: The line.
@@ -138,7 +138,7 @@ def _activate(bars: "Progress") -> Iterator[None]:
 
 @contextmanager
 def pause_progress() -> Iterator[None]:
-    """Remove the progress bar, if there is one, within the block."""
+    """Hide the progress bar on the terminal, if there is one, within the block."""
     bars = _active
     if bars:
         bars.stop()

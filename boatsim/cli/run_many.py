@@ -114,7 +114,7 @@ def run_all(
     controllers: Sequence[str] = (),
     side_by_side: bool = False,
 ) -> int:
-    """Run scenarios with each of the controllers and print their metrics.
+    """Run scenarios, each with all given controllers, and print the metrics of the runs.
 
     All scenarios are loaded before the first one runs.
 
@@ -178,7 +178,7 @@ def _print_outcomes(outcomes: Sequence[Outcome], side_by_side: bool) -> None:
 
 @contextmanager
 def open_viewer(serve: bool) -> Iterator[str | None]:
-    """Open a viewer for the block; print an error if it cannot be shown.
+    """Open a rerun viewer for the block; print an error if it cannot be shown.
 
     Args:
         serve: Whether to show it in a browser, not in a window.
@@ -203,7 +203,7 @@ def open_viewer(serve: bool) -> Iterator[str | None]:
 
 
 def run_manoeuvre(scenario: Scenario, folder: Path) -> int:
-    """Run a standard manoeuvre and print its figures with the IMO limits.
+    """Run a standard ship manoeuvre and print its metrics with the IMO limits.
 
     A missed limit does not change the exit code: the limits are for large ships.
 
@@ -229,7 +229,7 @@ def run_manoeuvre(scenario: Scenario, folder: Path) -> int:
 
 
 def report_saturation(content: RunEntry) -> None:
-    """Print one line if commands were limited to the range of their channels.
+    """Print a warning if commands of a run were limited to the range of their channels.
 
     Args:
         content: Content of norms.json.
@@ -245,7 +245,7 @@ def report_saturation(content: RunEntry) -> None:
 def plan_runs(
     names: Sequence[str], out: Path | None, seed: int | None, controllers: Sequence[str] = ()
 ) -> list[PlannedRun]:
-    """Load scenarios and return the runs to perform.
+    """Load scenarios and return the runs to perform, with their output folders.
 
     Args:
         names: Scenarios as the user wrote them.

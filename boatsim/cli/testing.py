@@ -71,7 +71,7 @@ class Case:
 
 
 def run_regression(folder: Path, pin: bool, seeds: int, junit: Path | None, as_json: bool) -> int:
-    """Run all scenarios of a folder and compare their metrics with baselines, or write these.
+    """Run all scenarios of a folder and compare their metrics with stored baselines, or store them.
 
     Args:
         folder: Folder with scenarios.

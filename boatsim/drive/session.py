@@ -79,7 +79,7 @@ class Session:
             raise KeyboardInterrupt
 
     def is_finished(self) -> bool:
-        """Return whether the driver has ended the run."""
+        """Return whether the driver has ended the run from the page."""
         return self.server.ended
 
     def goal_at(self, t: float) -> Mapping[str, float]:

@@ -59,7 +59,7 @@ def check_memory(path: Path, needed: float) -> None:
 
 
 def free_memory() -> float:
-    """Return the free memory of machine and container [bytes]; infinity where it is unknown."""
+    """Return the free memory of the machine or its container [bytes]; infinity where unknown."""
     found = [float("inf")]
     with suppress(OSError, ValueError):
         lines = Path("/proc/meminfo").read_text(encoding="ascii").splitlines()

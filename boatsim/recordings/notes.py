@@ -82,7 +82,9 @@ class Ambient(TypedDict, total=False):
 
 @dataclass(frozen=True)
 class Notes:
-    """Facts about a recording from its `recording.toml`; all empty without the file.
+    """Notes on a recording from its `recording.toml`: vessel, load, noise and other known facts.
+
+    All fields are empty without the file.
 
     Attributes:
         vessel: Name or path of the vessel.

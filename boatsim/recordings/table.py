@@ -101,7 +101,7 @@ class Recording:
         return self.signals[name]
 
     def unit(self, name: str) -> str:
-        """Return the unit of a signal by the suffix of its name; "" for a plain number."""
+        """Return the unit of a signal by its name's suffix; "" for a number without a unit."""
         return unit_of(name)
 
     def between(self, from_s: float, to_s: float) -> "Recording":

@@ -57,7 +57,7 @@ class Camera(CheckedParameters):
 
     @cached_property
     def mark_positions(self) -> Array:
-        """Complex positions (M,) of the marks on the hull [m]."""
+        """Positions (M,) of the camera's marks in hull axes, ahead + i starboard [m]."""
         return np.array([complex(*place) for place in self.marks.values()])
 
     @cached_property
@@ -151,7 +151,7 @@ class Camera(CheckedParameters):
 
 
 def make_camera(vessel: Vessel, settings: Mapping[str, object]) -> Camera:
-    """Return the camera of a scenario.
+    """Return the overhead camera of a scenario, which measures a vessel by marks on its hull.
 
     Args:
         vessel: The vessel; its marks are used unless the settings replace them. Without any mark

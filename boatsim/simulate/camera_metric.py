@@ -111,7 +111,7 @@ class CameraMetricSet(MetricSet):
         return sums.get(metric.rpartition("_")[2]) or super().kind(metric)
 
     def noise_floor(self, frames: int, camera: Camera) -> dict[str, float]:
-        """Return the mean of each metric that the noise of the marks alone causes.
+        """Return the mean value that camera noise alone gives to each metric of ideal motion.
 
         Args:
             frames: Number of frames.

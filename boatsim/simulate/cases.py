@@ -29,7 +29,7 @@ OTHERS = ("vessel.toml", "patched.toml", "recording.toml", "pins.toml")
 
 @dataclass(frozen=True)
 class ScenarioLocation:
-    """A scenario file and one of its cases.
+    """Where a scenario is stored: a file, and the name of a case if the file has several.
 
     Attributes:
         path: The file.
@@ -79,7 +79,7 @@ def read_scenario(given: str) -> tuple[dict[str, Value], ScenarioLocation]:
 
 
 def find_scenarios(given: str) -> list[str]:
-    """Return the scenarios that an argument of the command line stands for.
+    """Find all scenarios that an argument of the command line denotes, such as a folder or pattern.
 
     Args:
         given: A name, a folder, a pattern with * and ?, or a file, which stands for its cases.
@@ -117,7 +117,7 @@ def find_scenarios(given: str) -> list[str]:
 
 
 def scenario_files(folder: Path) -> list[Path]:
-    """Return the scenario files in a folder, sorted by name.
+    """Return the paths of the scenario files in a folder, sorted by name.
 
     Raises:
         BadInput: If there is none.

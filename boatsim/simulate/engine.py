@@ -197,7 +197,7 @@ def python_callback(
 
 
 class installed_callback:  # noqa: N801
-    """Install a passive-force callback for a block; MuJoCo's callbacks are global to the process.
+    """Context manager that installs a passive-force callback of MuJoCo, for the whole process.
 
     MuJoCo's warnings are dropped in the block; it would write them to a file in the working folder,
     and a diverging motion is reported as an error. It is a class because that takes a tenth of the

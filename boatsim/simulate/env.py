@@ -106,7 +106,7 @@ class BoatPhysics(Physics):
             super().forward()
 
     def reset(self, keyframe_id: int | None = None) -> None:
-        """Put the vessel at the origin, at rest.
+        """Put the simulated vessel at the origin, at rest.
 
         Raises:
             ValueError: If a keyframe is given; a vessel has none.

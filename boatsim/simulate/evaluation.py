@@ -26,7 +26,7 @@ NO_TOLERANCE = "no tolerance stated"
 
 
 class MetricEntry(TypedDict):
-    """One metric as stored in norms.json: value, published value, regression band and verdict."""
+    """Entry of one metric in norms.json: value, published value, regression band and verdict."""
 
     value: float | None
     unit: str
@@ -55,7 +55,7 @@ class RunEntry(TypedDict):
 
 @dataclass(frozen=True)
 class Metric:
-    """One metric of a run with the published value and the regression band.
+    """Value of one metric of a run, with published value and regression band for comparison.
 
     Attributes:
         value: The value; None if the run did not reach the metric's condition.
@@ -95,7 +95,7 @@ class Metric:
         return MISSED
 
     def to_json(self) -> MetricEntry:
-        """Return a metric as it is stored in norms.json."""
+        """Return the entry of a metric in norms.json."""
         ends = None
         if self.band is not None:
             ends = [end if isfinite(end) else None for end in self.band]
@@ -175,7 +175,7 @@ def all_metrics(run: Run) -> dict[str, Metric]:
 
 
 def metric_names(scenario: Scenario) -> set[str]:
-    """Return the names of all metrics that a run of a scenario can have."""
+    """Return the names of all metrics that runs of a scenario can have."""
     found = set(tracking_errors.error_units(scenario.goal_keys))
     found |= {f"{check.signal}_{check.norm}" for check in scenario.file.check}
     if scenario.measure:
@@ -245,7 +245,7 @@ def to_json(run: Run, metrics: Mapping[str, Metric]) -> RunEntry:
 
 
 def camera_metrics(run: Run, metric_set: CameraMetricSet, rate: float) -> dict[str, float]:
-    """Compute the metrics of the camera frames of a run at a lower frame rate.
+    """Compute the metrics of a run from its camera frames, at a lower frame rate.
 
     Args:
         run: The run.
@@ -264,7 +264,9 @@ def camera_metrics(run: Run, metric_set: CameraMetricSet, rate: float) -> dict[s
 
 
 def signal_norm(t: Array, x: Array, kind: str) -> float:
-    """Compute a norm of a logged signal over the time T of the log, ignoring rows without a value.
+    """Compute a norm of a logged signal over the duration T of the log.
+
+    Rows without a value are ignored.
 
     Args:
         t: Times (N,) [s].

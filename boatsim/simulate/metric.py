@@ -46,7 +46,9 @@ class MetricSet(CheckedParameters):
         return type(self).units[metric]
 
     def kind(self, metric: str) -> str:
-        """Return how a metric summarises its signal, such as "rms"; "" if it is none of `KINDS`.
+        """Return how a metric summarises its signal over a run, such as "rms" or "largest".
+
+        The result is "" for metrics that are none of `KINDS`.
 
         Args:
             metric: Name of one of the metrics.
@@ -54,7 +56,7 @@ class MetricSet(CheckedParameters):
         return KINDS.get(metric.rpartition("_")[2], "")
 
     def explain_missing_value(self, metric: str, log: Recording) -> str:
-        """Explain in a few words why a run has no value of a metric; "" if unknown.
+        """Explain in a few words why a run has no value of a metric; "" if the reason is unknown.
 
         Args:
             metric: Name of the metric without a value.
@@ -63,7 +65,7 @@ class MetricSet(CheckedParameters):
         return ""
 
     def values(self, log: Recording) -> dict[str, float]:
-        """Compute the metrics of a run.
+        """Compute all metrics of this set from the log of a run.
 
         Args:
             log: The log of the run.

@@ -104,7 +104,7 @@ def run_into_folder(
     *,
     in_memory: bool = False,
 ) -> RecordedRun:
-    """Run a scenario and write its files into a folder, all of them or none.
+    """Run a scenario and write recordings, notes and metrics into a folder, all files or none.
 
     An interruption ends the run; what was logged is kept, with its metrics so far. With `steering`,
     files are written in a separate thread and norms.json only at the end, so that neither delays
@@ -278,7 +278,7 @@ class CsvFile:
 
 
 def notes_toml(scenario: Scenario, seed: int, complete: bool, facts: Mapping[str, object]) -> str:
-    """Return the content of recording.toml: what a diagnosis of the run may know.
+    """Return the text of a simulated run's recording.toml: all that a later diagnosis may know.
 
     Effects that the scenario adds are not part of it, since a diagnosis has to find them.
 

@@ -148,7 +148,7 @@ class ScenarioFile(Table):
 
     @property
     def is_compiled(self) -> bool:
-        """Whether the scenario runs on the compiled engine instead of MuJoCo."""
+        """Whether the scenario is simulated by the compiled engine instead of MuJoCo."""
         return self.engine != "mujoco"
 
 
@@ -170,7 +170,7 @@ class Scenario:
     def from_settings(
         cls, *, vessel: Vessel, name: str = "scenario", **settings: object
     ) -> "Scenario":
-        """Build a scenario in Python, without a file.
+        """Build a scenario from Python values of the keys of a scenario file.
 
         Args:
             vessel: The vessel.

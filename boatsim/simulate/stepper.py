@@ -162,7 +162,7 @@ class Stepper(ABC):
         return dict(zip(self.vessel.commands, self._commands.tolist(), strict=False))
 
     def commands_in_force(self) -> list[float]:
-        """Return the commands in force, in the order of the vessel's inputs."""
+        """Return the vessel's commands in force, in the order of its inputs."""
         return self._commands.tolist()
 
     def advance(self, steps: int = 1, length: float | None = None) -> None:

@@ -122,7 +122,7 @@ class Plan:
         return []
 
     def point_values(self, number: int) -> tuple[Value, ...]:
-        """Return the values of a grid point in the columns `differing_columns`.
+        """Return the varied values of a grid point of the sweep, in `differing_columns`.
 
         Args:
             number: Number of the grid point.
@@ -186,7 +186,10 @@ class Plan:
         return metrics
 
     def definition(self) -> dict[str, Any]:
-        """Return the definition of the sweep with digests of its files, for the journal."""
+        """Return the definition of the sweep with digests of its files.
+
+        It is stored in the journal, so that only the same sweep can continue there.
+        """
         return {
             "boatsim": version(),
             "scenarios": list(self.scenarios),

@@ -40,7 +40,7 @@ class Results:
 
     @cached_property
     def units(self) -> dict[str, str]:
-        """Unit of each metric, in the order in which runs have them."""
+        """Unit of each metric of the sweep's runs, in the order in which runs have the metrics."""
         found: dict[str, str] = {}
         for entry in self.entries.values():
             for name, (_, unit) in entry.get("norms", {}).items():

@@ -171,7 +171,9 @@ def log_overlay(
     intervals: Sequence[Flagged],
     scene: Scene,
 ) -> None:
-    """Write diagnosis.rrd: recording and models in one scene, and the missing force per axis.
+    """Write the 3D log of a diagnosis, diagnosis.rrd: recording, models and missing force.
+
+    Recording and models are drawn in one scene; the missing force is plotted per axis.
 
     Args:
         path: The file.

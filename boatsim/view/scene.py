@@ -89,7 +89,7 @@ class Scene:
         )
 
     def outline(self) -> Array:
-        """Return the closed outline (V, 2) [m] of the drawn hull from above, its convex hull."""
+        """Return the outline of the drawn hull from above, a closed convex polygon (V, 2) [m]."""
         points = np.concatenate([s.vertices[:, :2] for s in self.solids if s.part == "hull"])
         corners = ConvexHull(points).vertices
         return np.asarray(points[np.append(corners, corners[0])], dtype=float)

@@ -74,7 +74,7 @@ class MujocoMotion:
         self._recorded = -1
 
     def assign_vessels(self, numbers: NDArray[np.int64]) -> None:
-        """Assign vessels to boats: each world gets the mass, inertia and joints of its hull.
+        """Assign vessels to boats of a batch: each world gets mass, inertia and joints of its hull.
 
         Args:
             numbers: (n,) number of each boat's vessel.

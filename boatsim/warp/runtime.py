@@ -47,7 +47,7 @@ def find_device(name: str) -> Any:
 
 @contextmanager
 def discard_standard_error() -> Iterator[None]:
-    """Discard the standard error: Warp's library reports there that a computer has no GPU."""
+    """Discard standard error in a block: Warp reports there that a computer has no GPU."""
     sys.stderr.flush()
     kept, nowhere = os.dup(2), os.open(os.devnull, os.O_WRONLY)
     try:
