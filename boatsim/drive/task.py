@@ -36,7 +36,7 @@ Goals = Sequence[tuple[float, Mapping[str, float] | None]]
 
 
 class Task:
-    """Vessel, scenario and controller of a run that a driver steers.
+    """Scenario of a run that a driver steers, with its vessel and the mapping of the sticks.
 
     Attributes:
         vessel: The vessel.

@@ -65,7 +65,7 @@ def format_number(value: float) -> str:
 
 
 def toml_line(key: str, value: float, unit: str, rule: str) -> str:
-    """Return one entry of a vessel.toml as the line `key = value # [unit] rule`.
+    """Return one entry of a vessel.toml as the line `key = value  # [unit] rule`.
 
     Args:
         key: Name of the entry.

@@ -232,8 +232,8 @@ def _orient_helm_to_starboard(vessel: Vessel) -> ManoeuvringTable:
 def approach_speed(vessel: Vessel, speed: float | None = None) -> float:
     """Return the speed [m/s] at which a vessel approaches a manoeuvre.
 
-    It is the steady speed straight ahead under the vessel's approach commands, unless a speed is
-    given.
+    It is the given speed, else that in the [manoeuvring] table of the vessel's file, else the
+    steady speed straight ahead under the vessel's approach commands.
 
     Args:
         vessel: The vessel.

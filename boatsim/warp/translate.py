@@ -104,7 +104,7 @@ class Translation:
         return found
 
     def translate_function(self, function: Any, kinds: Sequence[Kind]) -> tuple[str, Kind]:
-        """Translate a Python function to Warp; return its name and the kind of its result.
+        """Translate a Python function to Warp; return its name and the Warp type of its result.
 
         Args:
             function: A Python or compiled function.
@@ -311,7 +311,7 @@ class Body:
         return own
 
     def new_variables(self, kind: Kind) -> Value:
-        """Return new variables of a kind for the translated source, with unused names."""
+        """Return new variables of a Warp type for the translated source, with unused names."""
         self.temporaries += 1
         return make_variable(kind, f"_{self.temporaries}")
 
@@ -494,7 +494,7 @@ class Body:
         return own
 
     def convert_to_same_kind(self, a: Value, b: Value) -> tuple[Value, Value]:
-        """Convert two translated values to the same kind: floats if either is a float."""
+        """Convert two translated values to the same Warp type: floats if either is a float."""
         if a.parts and len(a.parts) == len(b.parts):
             pairs = [self.convert_to_same_kind(x, y) for x, y in zip(a.parts, b.parts, strict=True)]
             return make_tuple([x for x, _ in pairs]), make_tuple([y for _, y in pairs])
@@ -585,7 +585,7 @@ class Body:
         return Value(WHOLE if whole else REAL, f"{name}({', '.join(texts)})")
 
     def convert_kind(self, kind: Kind, value: Value) -> Value:
-        """Convert a translated value to another kind, such as an integer to a float."""
+        """Convert a translated value to another Warp type, such as an integer to a float."""
         if kind == REAL:
             return convert_to_float(value)
         if value.kind == kind:

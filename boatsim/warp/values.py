@@ -11,7 +11,7 @@ REAL, WHOLE, BITS, TRUTH, ROW, NOTHING = "T", "int", "wp.uint64", "bool", "wp.ar
 
 @dataclass(frozen=True)
 class Record:
-    """Kind of a named tuple of floats, which is translated to a Warp struct."""
+    """Warp type of a named tuple of floats, which is translated to a struct."""
 
     name: str
     fields: tuple[str, ...]
@@ -23,7 +23,7 @@ Kind: TypeAlias = "str | Record | tuple[Kind, ...]"
 
 @dataclass(frozen=True)
 class Value:
-    """Translated expression in Warp: its kind, and its source text or, for a tuple, its parts."""
+    """Translated expression in Warp: its type, and its source text or, for a tuple, its parts."""
 
     kind: Kind
     text: str = ""
@@ -61,7 +61,7 @@ def flatten_tuple(value: Value) -> list[Value]:
 
 
 def make_variable(kind: Kind, name: str) -> Value:
-    """Return the translated value of a variable of a kind, for use in Warp source.
+    """Return the translated value of a variable of a Warp type, for use in Warp source.
 
     Args:
         kind: Its kind.
@@ -121,7 +121,7 @@ def convert_to_bool(value: Value) -> Value:
 
 
 def annotation_of(kind: Kind) -> str:
-    """Return the type annotation, in Warp source, of a function argument of a kind."""
+    """Return the type annotation of a function argument in Warp source."""
     assert not isinstance(kind, tuple)
     if isinstance(kind, Record):
         return kind.name
