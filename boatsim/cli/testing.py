@@ -41,7 +41,7 @@ class Case:
 
     @property
     def metrics(self) -> Mapping[str, Metric]:
-        """Metrics of the run with the scenario's own seed."""
+        """Metrics of the tested scenario's run with its own random seed."""
         if not self.runs:
             return {}
         return self.runs[0]

@@ -168,7 +168,7 @@ class Batch:
         commands: ArrayLike | Mapping[str, float] | None = None,
         boats: ArrayLike | None = None,
     ) -> None:
-        """Set the state of some or all vessels at t = 0, with actuators settled at given commands.
+        """Set the state of some or all simulated vessels at t = 0, with actuators settled.
 
         Args:
             states: State (2 NQ,) or states (k, 2 NQ); default: at rest at the origin.

@@ -38,7 +38,7 @@ class MetricSet(CheckedParameters):
     units: ClassVar[Mapping[str, str]] = {}  # metric -> its unit
 
     def unit(self, metric: str) -> str:
-        """Return the unit of a metric; metrics of any signal have the unit of the signal.
+        """Return the unit of a metric; in sets that work on any signal it may be the signal's unit.
 
         Args:
             metric: Name of one of the metrics.

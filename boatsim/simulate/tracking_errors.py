@@ -44,7 +44,10 @@ class TrackingErrorSums:
         self._last = replace(log, t=log.t[-1:], signals=last)
 
     def metrics(self) -> dict[str, float]:
-        """Return the tracking errors of the rows so far, by metric, in units of `error_units`."""
+        """Return the tracking errors of all log rows so far: metric -> value.
+
+        The units are those of `error_units`.
+        """
         found: dict[str, float] = {}
         for key, _, names in _tracked_goals(self._sums):
             sums = self._sums[key]

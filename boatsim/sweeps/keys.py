@@ -56,7 +56,7 @@ class Target:
 
     @property
     def name(self) -> str:
-        """Name of the column of this quantity in the table of the sweep."""
+        """Name of the changed scenario keys, as a column of the sweep's table."""
         return f"{','.join(self.keys)}{self.operation}"
 
 

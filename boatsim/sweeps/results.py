@@ -101,7 +101,7 @@ class Results:
         return dict(Counter(filter(None, self._failures)).most_common())
 
     def columns(self) -> dict[str, Sequence[Any]]:
-        """Return all columns of sweep.parquet."""
+        """Return all columns of a sweep's table, from varied values to metrics and failures."""
         columns: dict[str, Sequence[Any]] = {
             "run": self.numbers,
             "point": self.point_numbers.tolist(),

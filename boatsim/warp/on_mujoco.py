@@ -92,7 +92,7 @@ class MujocoMotion:
                 b.reallocations += 1
 
     def set_states(self, y: Array) -> None:
-        """Set the states of all boats.
+        """Set joint coordinates and rates of all simulated boats.
 
         Args:
             y: (n, 2 NQ) joint coordinates and rates.

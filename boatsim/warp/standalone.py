@@ -22,7 +22,7 @@ class StandaloneMotion:
         """Assign vessels to boats; does nothing, since the device already holds their masses."""
 
     def set_states(self, y: Array) -> None:
-        """Set the states of all boats.
+        """Set joint coordinates and rates of all simulated boats.
 
         Args:
             y: (n, 2 NQ) joint coordinates and rates.
