@@ -4,7 +4,7 @@ from boatsim.quiet import exit_on_signals
 
 
 def main() -> None:
-    """Run the command line; during the imports Ctrl-C ends the program without a message."""
+    """Run boatsim's command line; during the imports Ctrl-C ends the program without a message."""
     exit_on_signals()
     from boatsim.cli import main as run_command_line
 

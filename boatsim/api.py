@@ -50,7 +50,7 @@ Names = Name | Sequence[Name]
 
 @dataclass(frozen=True)
 class Run:
-    """The results of a run.
+    """The results of a run of a scenario.
 
     Attributes:
         scenario: Name of the scenario.
@@ -72,12 +72,12 @@ class Run:
 
     @property
     def ok(self) -> bool:
-        """Whether every regression band is met."""
+        """Whether every metric of the run lies within its regression band."""
         return all(metric.ok is not False for metric in self.metrics.values())
 
 
 class Parameter(NamedTuple):
-    """An identified parameter.
+    """A parameter of an effect, identified from recordings by a diagnosis.
 
     Attributes:
         value: Estimate, in the parameter's unit.
@@ -90,7 +90,7 @@ class Parameter(NamedTuple):
 
 @dataclass(frozen=True)
 class Diagnosis:
-    """The physics that a vessel lacks, identified from recordings by `diagnose`.
+    """Result of a diagnosis: the physics that a vessel's model lacks, identified from recordings.
 
     Attributes:
         result: All results of the stages of the diagnosis, with the curves of the report.
@@ -100,27 +100,33 @@ class Diagnosis:
 
     @property
     def answer(self) -> Answer:
-        """The content of diagnosis.json."""
+        """Content of diagnosis.json, the result of the diagnosis."""
         return self.result.findings.answer
 
     @property
     def verdict(self) -> str:
-        """Verdict: "named", "ambiguous", "described", "unknown" or "nothing_missing"."""
+        """Verdict of the diagnosis.
+
+        It is "named", "ambiguous", "described", "unknown" or "nothing_missing".
+        """
         return self.answer["verdict"]
 
     @property
     def sentence(self) -> str:
-        """The verdict in words, with its numbers."""
+        """Verdict of the diagnosis in words, with its numbers."""
         return self.answer["sentence"]
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Names of the identified effects, the most certain first."""
+        """Names of the effects that the diagnosis identified, the most certain first."""
         return tuple(effect["name"] for effect in self.answer["effects"])
 
     @property
     def parameters(self) -> dict[str, dict[str, Parameter]]:
-        """Parameters of the identified effects: effect -> parameter -> value and sd."""
+        """Parameters of the effects that the diagnosis identified.
+
+        They are nested: effect -> parameter -> value and standard deviation.
+        """
         found: dict[str, dict[str, Parameter]] = {}
         for effect in self.answer["effects"]:
             parameters: dict[str, Parameter] = {}
@@ -131,10 +137,10 @@ class Diagnosis:
 
     @property
     def skill(self) -> dict[str, float]:
-        """Reduction of the error on held-out data, for "position", "heading" and "roll".
+        """Reduction of the simulation error on held-out data by the diagnosis.
 
-        It is 1 - rms of the patched vessel / rms of the recalibrated one: 0 is no improvement, 1 a
-        perfect model.
+        The keys are "position", "heading" and "roll". It is 1 - rms of the patched vessel / rms of
+        the recalibrated one: 0 is no improvement, 1 a perfect model.
         """
         fit = self.answer["fit"]
         errors = {
@@ -149,7 +155,9 @@ class Diagnosis:
         return skill
 
     def write(self, folder: Name) -> None:
-        """Write report.html, report.md, diagnosis.json, patched.toml and diagnosis.rrd.
+        """Write the results of the diagnosis to files in a folder.
+
+        They are report.html, report.md, diagnosis.json, patched.toml and diagnosis.rrd.
 
         Args:
             folder: Folder of the files; it is created if needed.
@@ -159,7 +167,7 @@ class Diagnosis:
 
 @dataclass(frozen=True)
 class Sweep:
-    """The runs of a sweep.
+    """The results of a sweep: runs over a parameter grid and random samples.
 
     Attributes:
         results: All runs, with their plan.
@@ -173,15 +181,15 @@ class Sweep:
 
     @property
     def columns(self) -> dict[str, Sequence[Any]]:
-        """Columns of sweep.parquet with one row per run: varied and sampled keys, and metrics.
+        """Columns of the sweep's table, sweep.parquet, with one row per run.
 
-        None where missing.
+        They are varied and sampled keys, and metrics; None where a value is missing.
         """
         return self.results.columns()
 
     @property
     def spreads(self) -> list[Spread]:
-        """Mean and quantiles of each metric at each point of the grid."""
+        """Mean and quantiles of each metric at each point of the sweep's parameter grid."""
         return metric_spreads(self.results)
 
     @property
@@ -191,17 +199,17 @@ class Sweep:
 
     @property
     def indices(self) -> list[Index]:
-        """Sobol indices, where the design was "sobol"."""
+        """Sobol sensitivity indices of the metrics, where the design of the sweep was "sobol"."""
         return sensitivity_indices(self.results)
 
     @property
     def failures(self) -> dict[str, int]:
-        """Reasons of failed runs -> number of runs."""
+        """Reasons for which runs of the sweep failed -> number of runs."""
         return self.results.failure_counts
 
 
 def load_vessel(name: Name, load: Names = ()) -> Vessel:
-    """Return a vessel.
+    """Load a vessel by its name or from its file.
 
     Args:
         name: Name of a shipped vessel, its folder or its file.
@@ -224,7 +232,7 @@ def load_scenario(
     controller: Name | None = None,
     **changes: object,
 ) -> Scenario:
-    """Return a scenario that `run`, `Fleet` and the environments of `boatsim.simulate.env` use.
+    """Load a scenario, as `run`, `Fleet` and the environments of `boatsim.simulate.env` use it.
 
     Args:
         name: Name or file of a scenario, as for `boatsim run`.
@@ -251,7 +259,7 @@ def run(
     out: Name | None = None,
     vessel: Vessel | None = None,
 ) -> Run:
-    """Run a scenario.
+    """Run a scenario: simulate its vessel under its controller, and return recording and metrics.
 
     An interruption ends the run and keeps what was reached.
 
@@ -316,7 +324,7 @@ def _resolve_scenario(
 
 
 def read(path: Name, vessel: Name | None = None, load: Names = ()) -> Recording:
-    """Return a checked recording with the notes of its recording.toml.
+    """Read and check a recording from a file, with the notes of its recording.toml.
 
     Args:
         path: A .csv, .parquet or .rrd file.
@@ -349,7 +357,7 @@ def diagnose(
     horizon: float | None = None,
     settings: Mapping[str, Given] | None = None,
 ) -> Diagnosis:
-    """Identify the physics that a vessel lacks, from recordings.
+    """Identify the physical effects that the model of a vessel lacks, from recordings.
 
     Args:
         runs: Recordings that are fitted.
@@ -438,7 +446,7 @@ def sweep(
     norms: Names = (),
     report: Report = ignore_progress,
 ) -> Sweep:
-    """Run scenarios at every point of a grid, with the same random samples at each point.
+    """Run scenarios at every point of a parameter grid, with equal random samples at each point.
 
     A sweep that was interrupted is continued in its folder.
 

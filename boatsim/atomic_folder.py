@@ -15,9 +15,10 @@ PART = ".part-"  # in the name of a folder that is being filled
 
 @contextmanager
 def atomic_folder(folder: Path, keep: str | None = None) -> Iterator[Path]:
-    """Yield a new folder `folder.part-...`, whose files move into `folder` when the block ends.
+    """Write the files of a folder so that either all of them appear there or none.
 
-    The new folder remains if the process is killed.
+    Yields a new folder `folder.part-...`, whose files move into `folder` when the block ends. The
+    new folder remains if the process is killed.
 
     Args:
         folder: Where the files go; files that are already there are replaced.

@@ -9,25 +9,25 @@ NEAREST_LISTED = 5  # number of nearest names that are listed then
 
 
 class BoatsimError(Exception):
-    """Base class of all errors raised by boatsim.
+    """Base class of all exceptions that boatsim raises.
 
     The command line prints the message as one line.
     """
 
 
 class BadInput(BoatsimError):
-    """Input that can not be used (a file, key, value or name).
+    """Raised for input of a user that cannot be used: a file, key, value or name.
 
     The message states what is allowed.
     """
 
 
 class BadPhysics(BoatsimError):
-    """A model that can not be simulated: its mass matrix or its state is not valid."""
+    """Raised for a model that cannot be simulated: its mass matrix or its state is not valid."""
 
 
 def unknown_name(what: str, found: str, allowed: Iterable[str]) -> str:
-    """Return the message for a name that does not exist, with the nearest valid name.
+    """Return the error message for a name that does not exist, with the nearest valid name.
 
     Args:
         what: Kind of name, such as "vessel".
@@ -64,7 +64,10 @@ def _nearest(found: str, names: list[str]) -> str | None:
 
 
 def nearest_hint(found: str, allowed: Iterable[str]) -> str:
-    """Return "; did you mean NAME?" with the most similar of the allowed names; "" without one."""
+    """Return the end of an error message, "; did you mean NAME?", with the most similar valid name.
+
+    The result is "" if no valid name is similar.
+    """
     near = get_close_matches(found, list(allowed), n=1, cutoff=0.5)
     if near:
         return f"; did you mean {near[0]!r}?"
@@ -72,7 +75,7 @@ def nearest_hint(found: str, allowed: Iterable[str]) -> str:
 
 
 def printable(text: str, longest: int | None = None) -> str:
-    """Return text for a terminal: control and direction characters are written as escapes.
+    """Return a text for a terminal, with control and direction characters written as escapes.
 
     Args:
         text: Text from files of others.

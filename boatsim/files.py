@@ -29,7 +29,7 @@ DOTTED = re.compile(
 
 
 class Table(BaseModel):
-    """Base of the tables of files: unknown keys and numbers that are not finite are refused."""
+    """Base class of the models of TOML tables, which reject unknown keys and non-finite numbers."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
 
@@ -38,7 +38,7 @@ T = TypeVar("T", bound=Table)
 
 
 def read_toml(path: Path) -> dict[str, Value]:
-    """Return the content of a TOML file.
+    """Read a TOML file and return its content.
 
     Raises:
         BadInput: With line and column of a syntax error, or for a file that is too large or too
@@ -90,10 +90,10 @@ def _check_sizes(content: Mapping[str, Value]) -> None:
 
 
 def validate_table(model: type[T], data: Mapping[str, object], file: str) -> T:
-    """Return the table of a file as its model.
+    """Check the content of a TOML file against a pydantic model; return the model's instance.
 
     Args:
-        model: Model of the table.
+        model: Pydantic model of the table.
         data: The table.
         file: Name of the file in messages.
 
@@ -107,7 +107,7 @@ def validate_table(model: type[T], data: Mapping[str, object], file: str) -> T:
 
 
 def array_of_tables(value: object) -> list[dict[str, Value]]:
-    """Return the tables of an array of tables such as [[effect]]; none if the value is no array."""
+    """Return the tables of a TOML array of tables such as [[effect]]; none if it is no array."""
     if not isinstance(value, list):
         return []
     return [table for table in value if isinstance(table, dict)]
@@ -149,7 +149,7 @@ def _allowed_keys(model: type[BaseModel], place: tuple[int | str, ...]) -> list[
 
 
 class AppendedFile:
-    """A file to which pieces are appended.
+    """A file to which pieces of data are appended, each of them completely or not at all.
 
     A piece that can not be written, as on a full disk, leaves no trace.
     """
@@ -165,7 +165,7 @@ class AppendedFile:
         self._file, self._path, self._whole = file, path, whole
 
     def add(self, data: bytes) -> None:
-        """Append a piece. Raises OSError with the name of the file."""
+        """Append a piece of data to the file. Raises OSError with the name of the file."""
         rest = memoryview(data)
         try:
             self._file.seek(self._whole)
@@ -180,16 +180,16 @@ class AppendedFile:
         self._whole += len(data)
 
     def discard_end(self, count: int) -> None:
-        """Discard the last `count` bytes: the next piece replaces them."""
+        """Discard the last `count` bytes of the file: the next piece replaces them."""
         self._whole -= count
 
     def close(self) -> None:
-        """Close the file."""
+        """Close the file to which data were appended."""
         self._file.close()
 
 
 def toml_value(value: object) -> str:
-    """Return a text, number, truth value or list of them in TOML.
+    """Return a text, number, truth value or list of these as TOML text.
 
     Args:
         value: The value; characters of a text that are not printable are escaped.
@@ -209,7 +209,7 @@ def toml_value(value: object) -> str:
 
 
 def toml_key(name: str) -> str:
-    """Return a key in TOML, in quotation marks where it needs them."""
+    """Return a key as TOML text, in quotation marks where it needs them."""
     if re.fullmatch(r"[A-Za-z0-9_-]+", name):
         return name
     return toml_value(name)
@@ -217,9 +217,10 @@ def toml_key(name: str) -> str:
 
 @contextmanager
 def replace_file(path: Path | str) -> Iterator[Path]:
-    """Replace a file when the block has written its new content, unless the block raises.
+    """Replace a file only after its new content is completely written.
 
-    A process that is killed may leave a temporary file such as `run.part-1234.csv`.
+    Yields a temporary file, which replaces the file when the block ends, unless the block raises. A
+    process that is killed may leave a temporary file such as `run.part-1234.csv`.
 
     Args:
         path: The file.
@@ -239,7 +240,7 @@ def replace_file(path: Path | str) -> Iterator[Path]:
 
 
 def home_folder() -> Path | None:
-    """Return the resolved home folder of the user; None where it is unknown."""
+    """Return the home folder of the user as an absolute path; None where it is unknown."""
     try:
         return Path.home().resolve()
     except (RuntimeError, OSError):

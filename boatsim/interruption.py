@@ -20,7 +20,9 @@ RETRY_DELAY = 0.05  # [s] until a KeyboardInterrupt lost in native code is raise
 
 
 class Stop:
-    """Request to stop within a block of `deferred_signals`; the block calls it at every step.
+    """Shows whether a signal such as Ctrl-C has asked the program to stop.
+
+    A block of `deferred_signals` calls the object at every step; True is a request to stop.
 
     Attributes:
         requested: Whether a signal has arrived.
@@ -36,7 +38,7 @@ class Stop:
         return self.requested
 
     def record(self, *_: object) -> None:
-        """Record a signal.
+        """Record that a signal to stop the program has arrived.
 
         Raises:
             KeyboardInterrupt: On a second signal, if the block did not react to the first, as with
@@ -51,7 +53,7 @@ class Stop:
 
 @contextmanager
 def deferred_signals() -> Iterator[Stop]:
-    """Defer signals until the block exits, so that a run stops after a complete step.
+    """Defer Ctrl-C and kill signals until the block exits; a run then stops after a complete step.
 
     The block sets `stop.finishing = True` when it stops calling `stop`. A nested block is a part of
     the outer one. Outside the main thread nothing changes.
@@ -73,7 +75,7 @@ def deferred_signals() -> Iterator[Stop]:
 
 @contextmanager
 def ignored_signals() -> Iterator[None]:
-    """Ignore signals within the block; processes started there inherit that."""
+    """Ignore Ctrl-C and kill signals within the block; processes started there inherit that."""
     with _install_handler(signal.SIG_IGN):
         yield
 
@@ -95,7 +97,7 @@ def _install_handler(handler: Handler) -> Iterator[None]:
 
 
 def raise_on_signals() -> None:
-    """Raise KeyboardInterrupt on every signal from now on, and forget earlier ones."""
+    """Raise KeyboardInterrupt on each Ctrl-C or kill signal from now on; forget earlier ones."""
     global _received
     _received = False
     for number in SIGNALS:
@@ -105,7 +107,7 @@ def raise_on_signals() -> None:
 
 
 def signal_received() -> bool:
-    """Return whether a signal has arrived, also if a library caught its KeyboardInterrupt."""
+    """Return whether Ctrl-C or a kill signal has arrived, even if a library caught it."""
     return _received
 
 

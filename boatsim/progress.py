@@ -7,7 +7,7 @@ from typing import Protocol
 
 
 class Report(Protocol):
-    """Callback that receives the progress of long work."""
+    """Type of callbacks that receive the progress of long work: stage, fraction done, detail."""
 
     def __call__(self, stage: str, share: float = 0.0, detail: str = "") -> None:
         """Receive the progress.
@@ -20,16 +20,16 @@ class Report(Protocol):
 
 
 def ignore_progress(stage: str, share: float = 0.0, detail: str = "") -> None:
-    """Ignore the progress."""
+    """Do nothing: the progress callback that ignores all reports."""
 
 
 def report_part_of(report: Report, begin: float, end: float) -> Report:
-    """Return the report of a part of the work.
+    """Return a progress callback for a part of the work, which reports to that of the whole work.
 
     Args:
-        report: Report of the whole work.
-        begin: Share of the whole at which the part begins.
-        end: Share of the whole at which it ends.
+        report: Progress callback of the whole work.
+        begin: Fraction of the whole work, 0 to 1, at which the part begins.
+        end: Fraction of the whole work at which the part ends.
     """
 
     def report_part(stage: str, share: float = 0.0, detail: str = "") -> None:

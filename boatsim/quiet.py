@@ -14,7 +14,7 @@ CODE = 130  # exit code of an interrupted program by the convention of shells: 1
 
 
 def exit_on_signals() -> None:
-    """End the program without a message on each of SIGNALS from now on."""
+    """End the program without a message on Ctrl-C and similar signals from now on."""
     for number in SIGNALS:
         # A signal that is ignored stays ignored: nohup and shells that run jobs in the background
         # rely on it

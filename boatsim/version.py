@@ -5,7 +5,7 @@ from importlib.metadata import version as installed
 
 
 def version() -> str:
-    """Return the version of the package; "0+unknown" for a source tree that is not installed."""
+    """Return the version of the installed package boatsim; "0+unknown" for a source tree."""
     try:
         return installed("boatsim")
     except PackageNotFoundError:

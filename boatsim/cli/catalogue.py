@@ -20,7 +20,9 @@ LISTED_KINDS = ("vessels", "controllers", "effects", "sensors", "measures", "sce
 
 
 def list_content(kind: str | None, like: str | None = None) -> list[str]:
-    """Return the lines of `boatsim list`: a heading per kind, then a name and its description.
+    """Return the output of `boatsim list`: names and descriptions of vessels, effects and so on.
+
+    Each kind has a heading.
 
     Args:
         kind: One of LISTED_KINDS; None for all of them.
@@ -71,7 +73,7 @@ def _summarise_item(kind: str, name: str) -> str:
 
 
 def describe(name: str) -> list[str]:
-    """Return the lines of `boatsim show`: all items of a name, or the item of a file or folder.
+    """Return the output of `boatsim show`: the description of each item of a name, file or folder.
 
     Args:
         name: Name of an item, a .py or .toml file, or the folder of a vessel.

@@ -13,7 +13,7 @@ NO_FINDINGS = "the checks found nothing wrong with this recording"
 
 
 def print_checks(runs: list[Path], vessel: str | None, load: list[str]) -> int:
-    """Check recordings and print the findings of each.
+    """Check the quality of recordings and print the findings of each.
 
     Args:
         runs: Recordings.

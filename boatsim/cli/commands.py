@@ -36,7 +36,7 @@ MOST_SPEED = 1e6  # times real time; a larger value is a mistake
 
 
 class OneLineGroup(TyperGroup):
-    """Command group that reports usage errors in one line and prints the help by default."""
+    """Group of boatsim's commands; reports usage errors in one line, prints help by default."""
 
     def main(
         self,
@@ -45,7 +45,7 @@ class OneLineGroup(TyperGroup):
         *_: object,
         **__: object,
     ) -> NoReturn:
-        """Run the program and exit with its exit code.
+        """Run the command line of boatsim and exit with its exit code.
 
         Args:
             args: Command-line arguments; None for those of the process.
@@ -823,7 +823,7 @@ def _split_loads(options: list[str] | None) -> list[str]:
 
 
 def main() -> None:
-    """Run the program and exit with its exit code.
+    """Run the command line of boatsim and exit with its exit code.
 
     SIGTERM and SIGHUP end it in the same way as Ctrl-C.
     """

@@ -22,7 +22,7 @@ BEST, MISSED = "*", "!"  # marks behind a value
 
 @dataclass(frozen=True)
 class FinishedRun:
-    """A run that is finished.
+    """A finished run of a scenario, for a comparison of several runs.
 
     Attributes:
         scenario: Scenario as the user wrote it.
@@ -38,7 +38,9 @@ class FinishedRun:
 
 
 def compare_runs(runs: Sequence[FinishedRun]) -> None:
-    """Print one table of all runs and write compare.rrd into their innermost common folder.
+    """Print one table with the metrics of several runs, and write compare.rrd.
+
+    The file is written into the innermost common folder of the runs.
 
     Args:
         runs: Finished runs.

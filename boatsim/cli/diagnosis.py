@@ -35,7 +35,7 @@ FREE_RUN = 0.8
 
 
 def diagnose(runs: list[Path], options: DiagnosisOptions, out: Path) -> int:
-    """Diagnose recordings together; write the report and print a summary.
+    """Diagnose recordings together: identify missing effects, write the report, print a summary.
 
     Args:
         runs: Recordings.
@@ -91,7 +91,7 @@ def diagnose(runs: list[Path], options: DiagnosisOptions, out: Path) -> int:
 
 
 def replay(run: Path, vessel: str | None, load: list[str], horizon: float, out: Path) -> int:
-    """Simulate a recording in free runs; write replay.csv and print the rms errors.
+    """Compare a recording with free runs of its vessel; write replay.csv and print rms errors.
 
     Args:
         run: Recording.

@@ -22,7 +22,7 @@ from boatsim.view.viewer import has_display
 def drive_vessel(
     task: Task, out: Path | None, browser: bool | None, port: int, viewer: ViewerOptions | None
 ) -> int:
-    """Drive a vessel until the user stops, then print metrics and timing.
+    """Let a user drive a vessel from a web page until the user stops; print metrics and timing.
 
     Args:
         task: Vessel, scenario and controller.

@@ -24,11 +24,11 @@ OPEN_ENDED = -1e9  # lower bound of a parameter whose range has no lower limit
 
 @dataclass(frozen=True)
 class Entry:
-    """Description of one class of content.
+    """Description of one effect, controller, measure or sensor, for `boatsim show`.
 
     Attributes:
         name: Name by which files refer to it.
-        words: One line about it.
+        words: One line of description.
         doc: Lines of its docstring, if it holds more than `words`.
         facts: Label and text of further facts: source, metrics, channels, what excludes it.
         parameters: Rows of a table: parameter, default, range, whether it is fitted (of an effect),
@@ -45,7 +45,7 @@ class Entry:
 
 
 def class_entry(kind: str, name: str) -> Entry:
-    """Return the description of an effect, controller, measure or sensor.
+    """Return the description of an effect, controller, measure or sensor for `boatsim show`.
 
     Args:
         kind: One of CLASSES.

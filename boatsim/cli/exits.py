@@ -12,7 +12,7 @@ LONGEST = 300  # characters of a printed error or note; the middle of a longer o
 
 
 class Exit(IntEnum):
-    """Exit codes of a command; several runs exit with the highest of theirs."""
+    """Exit codes of a command of boatsim; several runs exit with the highest of theirs."""
 
     MET = 0  # finished, all regression bands met
     MISSED = 1  # a metric lies outside its band, or a check found something
@@ -25,7 +25,7 @@ FAULTS = (BoatsimError, OSError)
 
 
 def one_line(error: BaseException) -> str:
-    """Return the message of an error in one line.
+    """Return the message of an exception in one line.
 
     Args:
         error: An instance of one of FAULTS.
@@ -38,7 +38,7 @@ def one_line(error: BaseException) -> str:
 
 
 def print_error(message: str) -> None:
-    """Print an error in one line to stderr.
+    """Print the message of an error to the user in one line to stderr.
 
     Args:
         message: What is wrong.
@@ -47,7 +47,7 @@ def print_error(message: str) -> None:
 
 
 def print_note(message: str) -> None:
-    """Print a note in one line to stderr, such as input that was ignored.
+    """Print a note to the user in one line to stderr, such as input that was ignored.
 
     Args:
         message: The note.
@@ -56,7 +56,7 @@ def print_note(message: str) -> None:
 
 
 def print_notes(messages: Iterable[str]) -> None:
-    """Print notes, one line each.
+    """Print notes to the user on stderr, one line each.
 
     Args:
         messages: The notes.
@@ -66,7 +66,7 @@ def print_notes(messages: Iterable[str]) -> None:
 
 
 def print_lines(lines: Iterable[str]) -> None:
-    """Print lines of a result to stdout.
+    """Print lines of a command's result to stdout.
 
     Args:
         lines: Lines, in which control characters are escaped.
@@ -76,7 +76,7 @@ def print_lines(lines: Iterable[str]) -> None:
 
 
 def escape_unencodable() -> None:
-    """Let stdout and stderr write characters that their encoding lacks as escapes."""
+    """Make stdout and stderr print characters that their encoding lacks as escape sequences."""
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")

@@ -27,7 +27,7 @@ def import_log(
     vessel: str | None,
     load: Sequence[str],
 ) -> int:
-    """List the signals of a log and propose a map, or convert the log with a map.
+    """List the signals of a log and propose a map, or convert the log to a recording with a map.
 
     Args:
         log: Log of an autopilot, a ROS recording, ...

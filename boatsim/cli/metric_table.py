@@ -15,7 +15,7 @@ UNLIMITED_WIDTH = 10_000  # [columns] more than any table needs
 
 
 def print_metrics(run: "RunEntry", folder: Path) -> None:
-    """Print the metrics of a run, the meaning of their names, and why some have no value.
+    """Print a table of a run's metrics, the meaning of their names, and why some have no value.
 
     Args:
         run: Content of norms.json.
@@ -77,7 +77,7 @@ def _format_cells(metric: "MetricEntry") -> dict[str, str]:
 
 
 def format_value(metric: "MetricEntry") -> str:
-    """Return the value of a metric with its unit, or in two words why it has none.
+    """Return the value of a metric with its unit as text, or in two words why it has none.
 
     Args:
         metric: Entry of norms.json.
@@ -89,7 +89,7 @@ def format_value(metric: "MetricEntry") -> str:
 
 
 def explain_name_endings(metrics: Mapping[str, "MetricEntry"]) -> list[str]:
-    """Return a line that explains the endings of metric names that do not explain themselves.
+    """Return a line that explains endings of metric names, such as "_inf", that need explanation.
 
     Args:
         metrics: Entries of norms.json by name.
@@ -108,7 +108,7 @@ def explain_name_endings(metrics: Mapping[str, "MetricEntry"]) -> list[str]:
 
 
 def explain_missing_values(metrics: Mapping[str, "MetricEntry"]) -> list[str]:
-    """Return a line for each reason why metrics have no value.
+    """Return the reasons why metrics of a run have no value, one line each.
 
     Args:
         metrics: Entries of norms.json by name.
@@ -132,7 +132,7 @@ def _format_band(band: Sequence[float | None] | None) -> str:
 
 
 def print_rows(title: str, head: Sequence[str], rows: Sequence[Sequence[str]], left: int) -> None:
-    """Print a table of text.
+    """Print a table of text on the terminal.
 
     Args:
         title: Title above the table.
@@ -153,7 +153,7 @@ def print_rows(title: str, head: Sequence[str], rows: Sequence[Sequence[str]], l
 
 
 def print_table(table: "Table") -> None:
-    """Print a table; in a file no cell is cut, however wide the table is.
+    """Print a table of the library rich; in a file no cell is cut, however wide the table is.
 
     Args:
         table: Table of rich.

@@ -11,7 +11,7 @@ from boatsim.newboat.write import VESSEL, boat_files
 
 
 def create_boat(folder: Path, boat: Particulars, logs: list[Path], force: bool) -> int:
-    """Write vessel.toml, hull.xml and turn.toml into a folder, all of them or none.
+    """Create the folder of a new vessel with vessel.toml, hull.xml and turn.toml, or none of them.
 
     Args:
         folder: New folder.

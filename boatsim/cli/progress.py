@@ -23,10 +23,10 @@ _active: "Progress | None" = None  # bar on the terminal, which a question inter
 
 @contextmanager
 def report_stages() -> Iterator[Report]:
-    """Show the stages of a computation within the block: a bar, or one line per stage.
+    """Show the progress of one computation within the block: a bar, or one line per stage.
 
     Yields:
-        Function to call with the stage, the share of the work done, and a detail.
+        Function to call with the stage, the fraction of the work done, and a detail.
     """
     if sys.stderr.isatty():
         with _show_bar() as report:
@@ -59,7 +59,7 @@ def report_campaign() -> Iterator[Report]:
     """Show the progress of many tasks within the block: a bar, or a line every few seconds.
 
     Yields:
-        Function to call with the stage, the share of the tasks done, and a detail.
+        Function to call with the stage, the fraction of the tasks done, and a detail.
     """
     if sys.stderr.isatty():
         with _show_bar() as bar:
@@ -83,7 +83,7 @@ def report_campaign() -> Iterator[Report]:
 
 
 def print_progress(line: str) -> None:
-    """Print a line of progress to stderr.
+    """Print a line about the progress of a command to stderr.
 
     Args:
         line: The line.
@@ -138,7 +138,7 @@ def _activate(bars: "Progress") -> Iterator[None]:
 
 @contextmanager
 def pause_progress() -> Iterator[None]:
-    """Remove the progress bar, if there is one, within the block."""
+    """Hide the progress bar on the terminal, if there is one, within the block."""
     bars = _active
     if bars:
         bars.stop()
@@ -150,11 +150,13 @@ def pause_progress() -> Iterator[None]:
 
 
 def time_left(elapsed: float, share: float) -> str:
-    """Return the estimated time left in words, or "" where an estimate is unreliable.
+    """Return the estimated remaining time of a computation in words.
+
+    The result is "" where an estimate is unreliable.
 
     Args:
-        elapsed: Time that the share of the work has taken [s].
-        share: Share of the work done, 0 to 1.
+        elapsed: Time that the work has taken so far [s].
+        share: Fraction of the work done, 0 to 1.
     """
     if share < SMALLEST_SHARE or elapsed < SHORTEST_TIME:
         return ""
@@ -168,7 +170,7 @@ def time_left(elapsed: float, share: float) -> str:
 
 @contextmanager
 def report_runs(tasks: Sequence[tuple[str, float]], several: bool = True) -> Iterator[RunReport]:
-    """Show the progress of runs within the block: bars, or one line as each run starts.
+    """Show the progress of several runs within the block: bars, or one line as each run starts.
 
     Args:
         tasks: Name and simulated duration [s] of each run.

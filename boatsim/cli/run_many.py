@@ -35,7 +35,9 @@ SAVE_TIMEOUT = 60.0  # [s] for a worker to save its run after the parent process
 
 @dataclass(frozen=True)
 class Task:
-    """One scenario to run; it holds plain values, so that it can be sent to a process.
+    """Task to run one scenario, with seed, controller and output folder.
+
+    It holds plain values, so that it can be sent to a process.
 
     Attributes:
         address: Name or path of the scenario.
@@ -55,7 +57,7 @@ class Task:
 
 
 class PlannedRun(NamedTuple):
-    """A task with its scenario, which a run in this process need not load again."""
+    """A task to run a scenario, with the scenario already loaded, for a run in this process."""
 
     task: Task
     scenario: Scenario
@@ -63,7 +65,7 @@ class PlannedRun(NamedTuple):
 
 @dataclass(frozen=True)
 class ViewerOptions:
-    """How a run is shown while it is simulated.
+    """Options of the live viewer: how a run is shown while it is simulated.
 
     Attributes:
         serve: Whether it is shown in a browser, not in a window.
@@ -76,7 +78,7 @@ class ViewerOptions:
 
 @dataclass(frozen=True)
 class Outcome:
-    """Result of a task.
+    """Result of a task to run one scenario: its metrics, or why it failed.
 
     Attributes:
         task: The task.
@@ -90,7 +92,7 @@ class Outcome:
 
     @property
     def code(self) -> Exit:
-        """Exit code."""
+        """Exit code of the command for this run."""
         if self.content is None:
             if self.error:
                 return Exit.BAD_INPUT
@@ -112,7 +114,7 @@ def run_all(
     controllers: Sequence[str] = (),
     side_by_side: bool = False,
 ) -> int:
-    """Run scenarios with each of the controllers and print their metrics.
+    """Run scenarios, each with all given controllers, and print the metrics of the runs.
 
     All scenarios are loaded before the first one runs.
 
@@ -176,7 +178,7 @@ def _print_outcomes(outcomes: Sequence[Outcome], side_by_side: bool) -> None:
 
 @contextmanager
 def open_viewer(serve: bool) -> Iterator[str | None]:
-    """Open a viewer for the block; print an error if it cannot be shown.
+    """Open a rerun viewer for the block; print an error if it cannot be shown.
 
     Args:
         serve: Whether to show it in a browser, not in a window.
@@ -201,7 +203,7 @@ def open_viewer(serve: bool) -> Iterator[str | None]:
 
 
 def run_manoeuvre(scenario: Scenario, folder: Path) -> int:
-    """Run a standard manoeuvre and print its figures with the IMO limits.
+    """Run a standard ship manoeuvre and print its metrics with the IMO limits.
 
     A missed limit does not change the exit code: the limits are for large ships.
 
@@ -227,7 +229,7 @@ def run_manoeuvre(scenario: Scenario, folder: Path) -> int:
 
 
 def report_saturation(content: RunEntry) -> None:
-    """Print one line if commands were limited to the range of their channels.
+    """Print a warning if commands of a run were limited to the range of their channels.
 
     Args:
         content: Content of norms.json.
@@ -243,7 +245,7 @@ def report_saturation(content: RunEntry) -> None:
 def plan_runs(
     names: Sequence[str], out: Path | None, seed: int | None, controllers: Sequence[str] = ()
 ) -> list[PlannedRun]:
-    """Load scenarios and return the runs to perform.
+    """Load scenarios and return the runs to perform, with their output folders.
 
     Args:
         names: Scenarios as the user wrote them.
@@ -299,7 +301,7 @@ def run_task(
     viewer: str | None = None,
     speed: float = 0.0,
 ) -> Outcome:
-    """Run one task and write its files.
+    """Run the scenario of one task and write the files of the run.
 
     Args:
         task: The task.

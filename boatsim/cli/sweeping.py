@@ -25,7 +25,7 @@ MOST_REASONS = 5  # of failed runs that are printed, the most frequent first
 
 @dataclass(frozen=True)
 class SweepOptions:
-    """Varied and sampled quantities of a sweep.
+    """Command-line options of a sweep: varied and sampled quantities, design and seed.
 
     Attributes:
         vary: Axes of the grid, `KEY=VALUES`.
@@ -50,7 +50,7 @@ def run_sweep(
     ray: str | None,
     metrics: Sequence[str] = (),
 ) -> int:
-    """Start or continue a sweep and print its statistics.
+    """Start or continue a sweep of runs and print the statistics of its metrics.
 
     Args:
         scenarios: Scenarios as the user wrote them.
@@ -98,7 +98,9 @@ def diagnose_each(
     jobs: int | None,
     ray: str | None,
 ) -> int:
-    """Start or continue separate diagnoses of recordings and print the result of each.
+    """Diagnose each of several recordings separately and print the result of each.
+
+    Finished diagnoses of an interrupted call are kept.
 
     Args:
         inputs: Recordings, and folders of recordings.

@@ -23,7 +23,7 @@ from boatsim.simulate.scenario import Scenario, load
 
 @dataclass(frozen=True)
 class Case:
-    """Result of one scenario.
+    """Result of the regression test of one scenario: its metrics and their stored baselines.
 
     Attributes:
         name: `file`, or `file:case`.
@@ -41,14 +41,14 @@ class Case:
 
     @property
     def metrics(self) -> Mapping[str, Metric]:
-        """Metrics with the scenario's own seed."""
+        """Metrics of the tested scenario's run with its own random seed."""
         if not self.runs:
             return {}
         return self.runs[0]
 
     @property
     def failures(self) -> list[str]:
-        """A line for each metric that misses its band or differs from its baseline."""
+        """Messages for the metrics that miss their regression band or differ from the baseline."""
         if self.error:
             return []
         lines = []
@@ -62,7 +62,7 @@ class Case:
 
     @property
     def code(self) -> Exit:
-        """Exit code."""
+        """Exit code of the regression test of this scenario."""
         if self.error:
             return Exit.BAD_INPUT
         if self.failures:
@@ -71,7 +71,7 @@ class Case:
 
 
 def run_regression(folder: Path, pin: bool, seeds: int, junit: Path | None, as_json: bool) -> int:
-    """Run all scenarios of a folder and compare their metrics with baselines, or write these.
+    """Run all scenarios of a folder and compare their metrics with stored baselines, or store them.
 
     Args:
         folder: Folder with scenarios.

@@ -15,7 +15,7 @@ def trusted_content(
     trust: bool = False,
     arguments: Sequence[str | Path | None] = (),
 ) -> Iterator[None]:
-    """Add the content folders of the user, and trust their Python files within the block.
+    """Make the user's content folders available, and trust their Python files, within the block.
 
     For Python files in any other folder the user is asked once on a terminal; without a terminal
     they are refused.

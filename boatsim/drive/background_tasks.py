@@ -11,9 +11,10 @@ from boatsim.simulate.run_options import Listener
 
 @contextmanager
 def background_listener(listen: Listener, interval: float) -> Iterator[Listener]:
-    """Call a listener in a thread at intervals, the last time at the end of the block.
+    """Call a listener of log rows in a thread at intervals, the last time at the end of the block.
 
-    An error of the listener is raised when the next rows arrive, or at the end of the block.
+    Rows that arrive in between are joined. An error of the listener is raised when the next rows
+    arrive, or at the end of the block.
 
     Args:
         listen: Listener that is called in the thread.

@@ -11,7 +11,7 @@ LATE = 0.5
 
 
 class Clock(Pace):
-    """Pace of real time for a controller.
+    """Real-time clock of a run with a driver, with statistics of control periods that start late.
 
     Attributes:
         period: Control period [s].
@@ -36,7 +36,7 @@ class Clock(Pace):
         self._due = period  # The first control step comes before the clock starts.
 
     def wait_until(self, t: float, stop: Callable[[], bool] = bool) -> None:
-        """Wait until a simulated time is due, and measure the delay of a control step due then.
+        """Wait until a simulated time is due in real time; measure how late a control step starts.
 
         Args:
             t: Simulated time [s].

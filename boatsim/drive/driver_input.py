@@ -11,7 +11,7 @@ STEPS = 100  # resolution of a stick to one side, so that a hand at rest keeps i
 
 
 class Sticks(NamedTuple):
-    """Stick deflections from -1 to 1.
+    """Deflections of a driver's joysticks, each from -1 to 1.
 
     Attributes:
         surge: Positive ahead.
@@ -35,7 +35,7 @@ class _Message(NamedTuple):
 
 
 class DriverInput:
-    """The latest stick positions, written by the thread of the server and read by the simulation.
+    """Latest stick positions of a driver, shared by the web server's thread and the simulation.
 
     Sticks that were released count again only after they have been in the middle, so that no boat
     starts unexpectedly.
@@ -52,7 +52,7 @@ class DriverInput:
         self._away = "no driver has taken the sticks"
 
     def store_sticks(self, sticks: Sticks, moved: float) -> None:
-        """Store a message of the page.
+        """Store stick deflections that the web page has sent.
 
         Args:
             sticks: Stick deflections.
@@ -63,34 +63,34 @@ class DriverInput:
             self._away = ""
 
     def release(self, why: str) -> None:
-        """Note that the driver has released the sticks.
+        """Record that the driver has released the sticks, and why.
 
         Args:
-            why: The reason; a reason deferred_signals earlier is kept.
+            why: The reason; a reason given earlier is kept.
         """
         self._away = self._away or why
 
     @property
     def release_reason(self) -> str:
-        """Why no driver holds the sticks; "" while one does."""
+        """Reason why no driver holds the sticks; "" while one does."""
         if not self._away and self._clock() - self._message.received > PATIENCE:
             self.release(f"no message for {PATIENCE:g} s")
         return self._away
 
     @property
     def last_moved_time(self) -> float:
-        """Time at which the sticks were last moved, by the clock of the page [s since 1970]."""
+        """Time at which the driver last moved the sticks, by the page's clock [s since 1970]."""
         return self._message.moved
 
     def sticks(self) -> Sticks | None:
-        """Return the deflections beyond the dead zone; None while no driver holds the sticks."""
+        """Return the stick deflections beyond the dead zone; None if no driver holds the sticks."""
         if self.release_reason:
             return None
         return Sticks(*map(beyond_dead_zone, self._message.sticks))
 
 
 def beyond_dead_zone(deflection: float) -> float:
-    """Return a deflection measured from the end of the dead zone, rounded to STEPS.
+    """Return a stick deflection measured from the end of the dead zone, rounded to STEPS.
 
     Args:
         deflection: Deflection from -1 to 1.

@@ -28,7 +28,7 @@ NEEDED = 'driving needs the package websockets: pip install "boatsim[drive]"'
 
 
 class Server:
-    """Serves the page within a `with` block.
+    """Web server of the page on which a driver steers a run, within a `with` block.
 
     Attributes:
         hands: Receives the stick positions.
@@ -81,11 +81,11 @@ class Server:
 
     @property
     def address(self) -> str:
-        """Address of the page."""
+        """Address of the page on which the driver steers."""
         return f"http://{HERE}:{self.port}/{self._token}/"
 
     def send_initial_data(self, hello: Mapping[str, object]) -> None:
-        """Send what does not change during the run.
+        """Send the data that do not change during the run to the driver's page.
 
         Args:
             hello: Vessel, basin and dials.
@@ -94,7 +94,9 @@ class Server:
         self._notify_sender()
 
     def send_frame(self, frame: Mapping[str, object]) -> None:
-        """Send the latest state; a slow page receives only some of the states.
+        """Send the latest state of the vessel to the driver's page.
+
+        A slow page receives only some of the states.
 
         Args:
             frame: The state.
@@ -103,7 +105,7 @@ class Server:
         self._notify_sender()
 
     def send_result(self, last: Mapping[str, object]) -> None:
-        """Send the result of the run.
+        """Send the result of the run to the driver's page.
 
         Args:
             last: Output folder, or the error.

@@ -23,7 +23,7 @@ NO_DRIVER: Mapping[str, float] = {OFF: 1.0}  # goal while no driver holds the st
 
 
 class Session:
-    """Steers a run from the page and shows it there.
+    """One run that a driver steers from a web page: goals from the sticks, states to the page.
 
     Attributes:
         task: The task.
@@ -62,7 +62,7 @@ class Session:
         self.latencies: list[float] = []
 
     def prepare_run(self, engine: Engine | OpenWater, stop: Callable[[], bool]) -> None:
-        """Show the vessel and wait until a driver has taken the sticks.
+        """Show the vessel on the page and wait until a driver has taken the sticks.
 
         Args:
             engine: Engine of the run.
@@ -79,11 +79,13 @@ class Session:
             raise KeyboardInterrupt
 
     def is_finished(self) -> bool:
-        """Return whether the driver has ended the run."""
+        """Return whether the driver has ended the run from the page."""
         return self.server.ended
 
     def goal_at(self, t: float) -> Mapping[str, float]:
-        """Return the goals at a time; a repeated call returns the same goals.
+        """Return the controller's goals at a time, from the driver's sticks.
+
+        A repeated call returns the same goals.
 
         Args:
             t: Simulated time [s].
@@ -95,7 +97,7 @@ class Session:
 
     @contextmanager
     def wrap_listener(self, listen: Listener) -> Iterator[Listener]:
-        """Show log rows on the page and pass them to a slow listener in a thread.
+        """Show log rows on the driver's page and pass them to a slow listener in a thread.
 
         Args:
             listen: Listener that writes files.
@@ -119,7 +121,7 @@ class Session:
             yield show
 
     def recording_facts(self) -> Mapping[str, object]:
-        """Return facts for recording.toml that the log does not hold."""
+        """Return facts about the driven run for recording.toml, such as delays and late periods."""
         return {
             "driven": True,
             "sticks_let_go": self._away,
@@ -131,7 +133,7 @@ class Session:
         }
 
     def extra_files(self) -> Mapping[str, str]:
-        """Return the files that repeat the run so far without a driver: name -> text."""
+        """Return files that repeat the run so far without a driver: file name -> text."""
         end = self._end or self.task.scenario.file.duration
         whole = self.task.scenario_toml(self._goals, end)
         self.replayable = whole is not None
@@ -139,7 +141,7 @@ class Session:
 
     @property
     def latency(self) -> float | None:
-        """Delay from the last stick movement to the log [s]; None before the first."""
+        """Delay from the driver's last stick movement to the log [s]; None before the first."""
         if not self.latencies:
             return None
         return self.latencies[-1]
@@ -169,7 +171,7 @@ class Session:
 
 
 def folder_name(vessel: str, now: float) -> Path:
-    """Return the output folder of a run, named after the local time to be unique.
+    """Return the output folder of a driven run, named after the local time to be unique.
 
     Args:
         vessel: Name of the vessel.

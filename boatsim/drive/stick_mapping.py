@@ -27,7 +27,7 @@ HEADING = "psi_rad"
 
 
 class StickMapping(NamedTuple):
-    """Effect of one stick on one goal or channel.
+    """Effect of one stick on one goal of the controller or one command channel.
 
     Attributes:
         key: Goal or channel.
@@ -42,7 +42,7 @@ class StickMapping(NamedTuple):
     high: float
 
     def contribution(self, sticks: Sticks) -> float:
-        """Return the value added to the neutral value.
+        """Return what a stick's deflection adds to the neutral value of its goal or channel.
 
         Args:
             sticks: Stick deflections.
@@ -55,7 +55,7 @@ class StickMapping(NamedTuple):
 
 @dataclass
 class StickMappings:
-    """All goals and channels that the sticks set.
+    """Mapping from a driver's sticks to all goals and command channels that they set.
 
     The dial of a heading sets its rate of change [rad/s].
 
@@ -72,11 +72,11 @@ class StickMappings:
 
     @property
     def keys(self) -> list[str]:
-        """Names of the goals and channels."""
+        """Names of the goals and command channels that the sticks set."""
         return list(self.neutral)
 
     def goal_from_sticks(self, sticks: Sticks, dt: float, heading: float) -> dict[str, float]:
-        """Return the goals of stick deflections.
+        """Return the goals and commands that a driver sets by stick deflections.
 
         Args:
             sticks: Stick deflections.
@@ -96,12 +96,12 @@ class StickMappings:
         return found
 
     def reset_heading(self) -> None:
-        """Start the next heading goal from the heading of the vessel at that time."""
+        """Forget the heading goal, so that the next one starts from the vessel's heading."""
         self._heading = None
 
 
 def stick_mappings_for(vessel: Vessel, controller: Controller, name: str) -> StickMappings:
-    """Return the dials of a vessel under a controller.
+    """Return the mapping from sticks to goals and commands for a vessel under a controller.
 
     Args:
         vessel: The vessel.

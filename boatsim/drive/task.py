@@ -36,7 +36,7 @@ Goals = Sequence[tuple[float, Mapping[str, float] | None]]
 
 
 class Task:
-    """A scenario to drive.
+    """Scenario of a run that a driver steers, with its vessel and the mapping of the sticks.
 
     Attributes:
         vessel: The vessel.
@@ -85,7 +85,7 @@ class Task:
         )
 
     def scenario_in_folder(self, folder: Path) -> Scenario:
-        """Return the scenario with the address of its file in an output folder.
+        """Return the driven scenario with the address of its file in an output folder.
 
         Args:
             folder: Output folder.
@@ -93,7 +93,7 @@ class Task:
         return replace(self.scenario, address=str(folder.resolve() / FILE))
 
     def scenario_toml(self, goals: Goals, duration: float) -> str | None:
-        """Return the text of a scenario file that repeats a run.
+        """Return the text of a scenario file that repeats a driven run without the driver.
 
         Args:
             goals: Goals of the run.

@@ -20,7 +20,7 @@ MOTION = ("x_m", "y_m", "psi_rad", "u_mps", "v_mps", "r_radps")
 
 
 class PageData:
-    """Converts rows of the log of a run into the data of its page."""
+    """Converts rows of a run's log into the data that the driver's page shows."""
 
     def __init__(
         self, engine: Engine | OpenWater, dials: StickMappings, scenario: Scenario
@@ -36,7 +36,7 @@ class PageData:
         self._dials, self._scenario = dials, scenario
 
     def initial_data(self) -> dict[str, object]:
-        """Return what does not change during the run."""
+        """Return the page's data that do not change during the run: vessel, basin and dials."""
         scene, file = self._scene, self._scenario.file
         return {
             "vessel": scene.vessel,
@@ -78,7 +78,7 @@ class PageData:
         hands: DriverInput,
         latency: float | None,
     ) -> dict[str, object]:
-        """Return the state at the end of rows of the log.
+        """Return the data of the driver's page for the last of some rows of the run's log.
 
         Args:
             rows: Rows of the log.

@@ -14,7 +14,11 @@ from boatsim.simulate.metric import MetricSet, rows_between
 
 @dataclass(frozen=True)
 class Activity(MetricSet):
-    """Evaluates rows from `since` on; the rate is that between rows, so a coarse log lowers it."""
+    """Metric set of a command channel: its largest absolute value and the rms of its rate.
+
+    Rows of the log from the time `since` on are evaluated. The rate is the difference between
+    successive rows, so a coarse log lowers it.
+    """
 
     words: ClassVar[str] = "largest value of a command and rms of its rate"
     units: ClassVar = {"peak": "", "rate_rms": ""}
@@ -23,12 +27,16 @@ class Activity(MetricSet):
     since: float = param(0.0, low=0.0, high=1e6, unit="s", words="start of the evaluated interval")
 
     def unit(self, metric: str) -> str:
-        """Return the unit of the signal, with degrees for angles; of the rate per second."""
+        """Return the unit of a metric of a command channel.
+
+        The largest value has the unit of the command, with degrees for angles, and the rms rate has
+        that unit per second.
+        """
         own = unit_of(self.signal).replace("rad", "deg")
         return own if metric == "peak" else f"{own or '1'}/s"
 
     def values(self, log: Recording) -> dict[str, float]:
-        """Return peak and rms rate over the same rows."""
+        """Return the largest absolute value of a command in a log and the rms of its rate."""
         rows = rows_between(log, self.since, least=2)
         y = (degrees(1.0) if unit_of(self.signal) == "rad" else 1.0) * log[self.signal][rows]
         rate = np.diff(y) / np.diff(log.t[rows])

@@ -12,7 +12,7 @@ from boatsim.simulate.metric import MetricSet, first_crossing, rows_between, sur
 
 @dataclass(frozen=True)
 class Arrival(MetricSet):
-    """Evaluates a boat that travels to one point."""
+    """Metric set of a boat that travels to a point: time, distance and closest approach."""
 
     words: ClassVar[str] = "time and distance to a point, and the closest approach"
     units: ClassVar = {
@@ -33,7 +33,7 @@ class Arrival(MetricSet):
     y_signal: str = "y_m"
 
     def explain_missing_value(self, metric: str, log: Recording) -> str:
-        """Return the closest approach, in words."""
+        """Explain in words that a boat never arrived at its target point, and how close it came."""
         away = np.hypot(self.x - log[self.x_signal], self.y - log[self.y_signal])
         closest = "its position was not recorded"
         if np.isfinite(away).any():
@@ -41,9 +41,11 @@ class Arrival(MetricSet):
         return f"never within {self.radius:.4g} m of the point: {closest}"
 
     def values(self, log: Recording) -> dict[str, float]:
-        """Return time, integral of the surge speed and straight-line distance up to the arrival.
+        """Return the metrics of a boat's arrival at a target point, computed from the log of a run.
 
-        The closest approach and the last position are those of the whole run.
+        They are the time until the arrival, the integral of the surge speed and the straight-line
+        distance from the start up to the arrival, and the closest approach and the last position of
+        the whole run.
 
         Args:
             log: Log of the run.

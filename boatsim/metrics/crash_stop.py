@@ -12,7 +12,10 @@ from boatsim.simulate.metric import MetricSet, path_length, value_at
 
 @dataclass(frozen=True)
 class CrashStop(MetricSet):
-    """Evaluates the time until the surge speed is zero; distances are in ship lengths."""
+    """Metric set of a crash stop: time and distances until the surge speed is zero.
+
+    Distances are in ship lengths.
+    """
 
     words: ClassVar[str] = "track, head and side reach and time of a crash stop"
     units: ClassVar = {
@@ -26,13 +29,16 @@ class CrashStop(MetricSet):
     length: float = param(1.0, low=0.001, high=1e3, unit="m", words="length of the ship")
 
     def explain_missing_value(self, metric: str, log: Recording) -> str:
-        """Return the lowest speed that was reached, in words."""
+        """Explain in words that a ship did not stop in a crash stop, with its lowest speed."""
         u = log["u_mps"]
         slowest = u[log.t > self.execute].min(initial=u[-1])
         return f"never stopped: lowest speed {slowest:.4g} m/s ahead"
 
     def values(self, log: Recording) -> dict[str, float]:
-        """Return the stopping distances and time; none if the ship never stopped."""
+        """Return track, head and side reach and time of a crash stop from the log of a run.
+
+        The result is empty if the ship never stopped.
+        """
         stopped = np.flatnonzero((log.t > self.execute) & (log["u_mps"] <= 0.0))
         if not len(stopped):
             return {}

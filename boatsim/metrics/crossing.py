@@ -13,7 +13,10 @@ from boatsim.simulate.metric import MetricSet, describe_closest_value
 
 @dataclass(frozen=True)
 class Crossing(MetricSet):
-    """Evaluates the first crossing after `since`, up or down; the time counts from there."""
+    """Metric set with one time: when a signal first crosses a level, upwards or downwards.
+
+    The search starts at the time `since`, from which the result counts.
+    """
 
     words: ClassVar[str] = "time until a signal first passes a level"
     units: ClassVar = {"time": "s"}
@@ -25,13 +28,16 @@ class Crossing(MetricSet):
     )
 
     def explain_missing_value(self, metric: str, log: Recording) -> str:
-        """Return how close the signal came to the level, in words."""
+        """Explain in words that a signal never crossed its level, with its closest value."""
         return describe_closest_value(
             log[self.signal][log.t >= self.since - 1e-9], self.level, unit_of(self.signal)
         )
 
     def values(self, log: Recording) -> dict[str, float]:
-        """Return the time, interpolated between rows; none without a crossing."""
+        """Return the time at which a signal of the log crosses a level, interpolated between rows.
+
+        The result is empty if the signal never crosses the level.
+        """
         seen = log.t >= self.since - 1e-9
         t, above = log.t[seen] - self.since, log[self.signal][seen] - self.level
         passed = np.nonzero(above[:-1] * above[1:] <= 0.0)[0]

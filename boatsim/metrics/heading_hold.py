@@ -13,7 +13,10 @@ from boatsim.simulate.metric import MetricSet, rows_between
 
 @dataclass(frozen=True)
 class HeadingHold(MetricSet):
-    """Evaluates rows from `since` on: heading against `target`, steering about its mean."""
+    """Metric set of course keeping: errors of the heading against a target, and steering activity.
+
+    Rows of the log from the time `since` on are evaluated.
+    """
 
     words: ClassVar[str] = (
         "mean, rms and largest heading error, rms of steering angle and of its rate"
@@ -33,7 +36,11 @@ class HeadingHold(MetricSet):
     since: float = param(0.0, low=0.0, high=1e6, unit="s", words="start of the evaluated interval")
 
     def values(self, log: Recording) -> dict[str, float]:
-        """Return the metrics; each rms is about the mean, rates are central differences of rows."""
+        """Return heading errors (mean, rms, largest) and steering (mean, rms, rms rate) of a log.
+
+        The rms of the heading and of the steering angle are about their means. Rates are central
+        differences of the rows of the log.
+        """
         rows = rows_between(log, self.since, least=2)
         off, angle = log["psi_rad"][rows] - self.target, log[self.steering][rows]
         rate = np.gradient(angle, log.t[rows])

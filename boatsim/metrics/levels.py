@@ -13,7 +13,10 @@ MOST_LEVELS = 12
 
 @dataclass(frozen=True)
 class Levels(MetricSet):
-    """Evaluates the signal at the end of every interval of `every` s."""
+    """Metric set with the values of a signal at the ends of consecutive intervals of equal length.
+
+    The length of an interval is `every` [s].
+    """
 
     words: ClassVar[str] = "value of a signal at the end of each interval"
     units: ClassVar = {f"level_{i}": "" for i in range(1, MOST_LEVELS + 1)}
@@ -22,16 +25,16 @@ class Levels(MetricSet):
     every: float = param(10.0, low=1e-3, high=1e6, unit="s", words="length of an interval")
 
     def unit(self, metric: str) -> str:
-        """Return the unit of the signal."""
+        """Return the unit of the sampled signal, which all metrics of this set have."""
         return unit_of(self.signal)
 
     def explain_missing_value(self, metric: str, log: Recording) -> str:
-        """Return the number of complete intervals, in words."""
+        """Explain in words that a run ended early: its end and its number of complete intervals."""
         complete = int((log.t[-1] + 1e-6) / self.every)
         return f"the run ends at {log.t[-1]:.4g} s, after {complete} intervals"
 
     def values(self, log: Recording) -> dict[str, float]:
-        """Return the level of each complete interval."""
+        """Return the value of a signal of the log at the end of each complete interval."""
         rows_between(log)
         found = {}
         for i in range(1, MOST_LEVELS + 1):

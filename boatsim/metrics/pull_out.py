@@ -16,7 +16,11 @@ PARTS = ("first_turn", "after_first", "second_turn", "after_second")
 
 @dataclass(frozen=True)
 class PullOut(MetricSet):
-    """Evaluates the rate of turn at the end of each of the four parts, positive to starboard."""
+    """Metric set of a pull-out test: rates of turn before and after the helm is put midships.
+
+    The rate of turn is read at the end of each of the four parts of the test (a turn and the time
+    after it, to one side and then to the other). It is positive to starboard.
+    """
 
     words: ClassVar[str] = "rates of turn before and after the helm is put midships, both ways"
     units: ClassVar = {
@@ -25,13 +29,16 @@ class PullOut(MetricSet):
     }
 
     def explain_missing_value(self, metric: str, log: Recording) -> str:
-        """Return the number of helm changes, in words."""
+        """Explain in words that a pull-out test is incomplete: the helm changed too few times."""
         helm = log["reference_helm_rad"]
         changes = int(np.count_nonzero(np.diff(helm)))
         return f"the helm changed {changes} times; the four parts need 4 changes"
 
     def values(self, log: Recording) -> dict[str, float]:
-        """Return the rates of the parts that the run reached."""
+        """Return the rate of turn at the end of each part of a pull-out test that the run reached.
+
+        A complete test also gives the difference between the residual rates after the two turns.
+        """
         helm = log["reference_helm_rad"]
         if not helm.any():
             return {}

@@ -17,9 +17,10 @@ SMALLEST_PEAK = 0.02
 
 @dataclass(frozen=True)
 class RollDecay(MetricSet):
-    """Evaluates peaks to both sides, half a cycle apart.
+    """Metric set of a free roll decay: period and damping ratio from the peaks of the roll angle.
 
-    The logarithmic decrement of half a cycle is pi zeta / sqrt(1 - zeta^2).
+    Peaks to both sides are used, half a cycle apart. The logarithmic decrement of half a cycle is
+    pi zeta / sqrt(1 - zeta^2).
     """
 
     words: ClassVar[str] = (
@@ -28,7 +29,7 @@ class RollDecay(MetricSet):
     units: ClassVar = {"period": "s", "damping_first": "", "damping_mean": "", "damping_last": ""}
 
     def explain_missing_value(self, metric: str, log: Recording) -> str:
-        """Return what prevents the evaluation, in words."""
+        """Explain in words why a roll decay has no metrics: no heel at the start or few peaks."""
         if not log["phi_rad"][0]:
             return "it was not heeled at the start"
         release = degrees(log["phi_rad"][0])
@@ -36,7 +37,10 @@ class RollDecay(MetricSet):
         return f"fewer than 2 peaks beyond {share:g} % of the release of {release:.3g} deg"
 
     def values(self, log: Recording) -> dict[str, float]:
-        """Return the metrics; none for a hull that does not oscillate or was not heeled."""
+        """Return period and damping ratios of a roll decay, computed from the log of a run.
+
+        The result is empty for a hull that does not oscillate or was not heeled at the start.
+        """
         rows_between(log, least=3)
         t, phi = log.t, log["phi_rad"]
         inner = phi[1:-1]

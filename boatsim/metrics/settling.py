@@ -15,10 +15,11 @@ from boatsim.simulate.metric import MetricSet, describe_closest_value, rows_betw
 
 @dataclass(frozen=True)
 class Settling(MetricSet):
-    """Evaluates an angle after an offset or an impulse, as in Martin (1993), appendix VI.
+    """Metric set of an angle that settles after an offset or an impulse.
 
-    The final angle is the mean over the time after `late`: the source prints final angles near zero
-    also for limit cycles of 20 deg and more, whose last values would differ from zero.
+    It follows Martin (1993), appendix VI. The final angle is the mean over the time after `late`:
+    the source prints final angles near zero also for limit cycles of 20 deg and more, whose last
+    values would differ from zero.
     """
 
     words: ClassVar[str] = "first crossing, settling time, end and late extremes of an angle"
@@ -38,14 +39,22 @@ class Settling(MetricSet):
     late: float = param(300.0, low=0.0, high=86400.0, unit="s", words="start of the final interval")
 
     def explain_missing_value(self, metric: str, log: Recording) -> str:
-        """Return where the run ends, or how close the angle came to the target, in words."""
+        """Explain in words why an angle has no settling metrics: a short run, or a missed target.
+
+        For an angle that never crossed its target the text contains the closest value.
+        """
         if log.t[-1] - log.t[0] < self.late:
             end = log.t[-1] - log.t[0]
             return f"the run ends at {end:.4g} s, before the final interval from {self.late:g} s"
         return describe_closest_value(log[self.signal], self.target, unit_of(self.signal))
 
     def values(self, log: Recording) -> dict[str, float]:
-        """Return first crossing, last time outside the band, final angle, and extremes about it."""
+        """Return how an angle settles in a log: crossing, settling time and final oscillation.
+
+        The metrics are the time of the first crossing of the target, the time after which the angle
+        stays in a band about its final mean, that mean relative to the target, and the lowest and
+        highest deviation from it in the final interval.
+        """
         if self.signal not in log.signals:
             raise BadInput(unknown_name("settling: signal", self.signal, log.signals))
         rows_between(log)

@@ -18,7 +18,7 @@ from boatsim.simulate.metric import (
 
 @dataclass(frozen=True)
 class SpeedReached(MetricSet):
-    """Evaluates a boat that starts below the target speed."""
+    """Metric set of an acceleration: time and distance until a target surge speed is reached."""
 
     words: ClassVar[str] = "time and distance to a surge speed, and the top speed"
     units: ClassVar = {"time": "s", "distance": "m", "straight_line": "m", "top_speed": "m/s"}
@@ -26,11 +26,15 @@ class SpeedReached(MetricSet):
     speed: float = param(1.0, low=0.0, high=100.0, unit="m/s", words="target surge speed")
 
     def explain_missing_value(self, metric: str, log: Recording) -> str:
-        """Return the largest speed, in words."""
+        """Explain in words that a boat never reached its target speed, and how close it came."""
         return describe_closest_value(log["u_mps"], self.speed, "m/s")
 
     def values(self, log: Recording) -> dict[str, float]:
-        """Return time, integral of the surge speed, straight-line distance, and top speed."""
+        """Return the metrics of an acceleration to a target surge speed, computed from a log.
+
+        They are the time until the speed is reached, the integral of the surge speed and the
+        straight-line distance up to then, and the top speed of the whole run.
+        """
         rows_between(log)
         found, u = {"top_speed": float(log["u_mps"].max())}, log["u_mps"]
         time = first_crossing(log.t, u - self.speed)

@@ -16,7 +16,7 @@ SAME_ANGLE = 1e-6  # [rad] difference of two helm angles that count as equal; ro
 
 @dataclass(frozen=True)
 class Spiral(MetricSet):
-    """Evaluates the loop of rate of turn over helm angle."""
+    """Metric set of a spiral test: the hysteresis loop of rate of turn over helm angle."""
 
     words: ClassVar[str] = (
         "height and width of the loop in the curve of rate of turn over helm angle"
@@ -29,15 +29,17 @@ class Spiral(MetricSet):
     }
 
     def explain_missing_value(self, metric: str, log: Recording) -> str:
-        """Return the last helm angle, in words."""
+        """Explain in words that a spiral test is incomplete, with its last helm angle."""
         last = np.degrees(log["reference_helm_rad"][-1])
         return f"the helm did not come back to its first angle: it ends at {last:.3g} deg"
 
     def values(self, log: Recording) -> dict[str, float]:
-        """Return loop height at midships, loop width, and two rates of turn.
+        """Return height and width of the hysteresis loop of a spiral test, and two rates of turn.
 
-        The width spans the angles at which the two rates have opposite signs. There are no metrics
-        unless the helm returned to its first angle.
+        The height is that at midships. The width spans the helm angles at which the rates of turn
+        of outward and return sweep have opposite signs. The two rates of turn are those at the
+        first helm angle and at midships. The result is empty unless the helm returned to its first
+        angle.
 
         Args:
             log: Log of the run.

@@ -16,9 +16,10 @@ MOST_STEPS = 8
 
 @dataclass(frozen=True)
 class Staircase(MetricSet):
-    """Evaluates steps of `height` every `every` s from `bottom`, the first at `since`.
+    """Metric set of a signal that shall follow a staircase of equal steps; each step has metrics.
 
-    Each step is measured from the nominal end of the previous one.
+    The steps have the height `height` and begin every `every` seconds, the first at the time
+    `since` from the value `bottom`. Each step is measured from the nominal end of the previous one.
     """
 
     words: ClassVar[str] = (
@@ -42,11 +43,15 @@ class Staircase(MetricSet):
     every: float = param(10.0, low=1e-3, high=1e6, unit="s", words="time between two steps")
 
     def unit(self, metric: str) -> str:
-        """Return s for times, the unit of the signal for errors."""
+        """Return the unit of a metric of a staircase: s for times, the signal's unit for errors."""
         return self.units[metric] or unit_of(self.signal)
 
     def explain_missing_value(self, metric: str, log: Recording) -> str:
-        """Return whether the run contains the step and which share of it was reached, in words."""
+        """Explain in words why a staircase step lacks a metric, with the percentage it reached.
+
+        The reason may also be that the run ends before the step is over or that nothing was
+        recorded.
+        """
         number = int(metric.rpartition("_")[2]) if metric[-1].isdigit() else 1
         begin = self.since + (number - 1) * self.every
         rows = (log.t >= begin - 1e-9) & (log.t < begin + self.every - 1e-9)
@@ -59,7 +64,10 @@ class Staircase(MetricSet):
         return f"made at most {100.0 * done.max():.3g} % of step {number}"
 
     def values(self, log: Recording) -> dict[str, float]:
-        """Return the metrics of each complete step; times that are not reached are missing."""
+        """Return response times of the steps of a staircase, worst overshoot and worst end error.
+
+        Only complete steps count. Times that a step does not reach are missing.
+        """
         rows_between(log, self.since)
         count = min(MOST_STEPS, int((log.t[-1] - self.since) / self.every + 1e-6))
         if count < 1:

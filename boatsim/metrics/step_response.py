@@ -16,7 +16,11 @@ BAND = 0.05  # share of the step within which a signal counts as settled, the us
 
 @dataclass(frozen=True)
 class StepResponse(MetricSet):
-    """Evaluates `since` to `until`; the step leads from the value at `since` to `target`."""
+    """Metric set of the step response of a signal: response times, overshoot and final error.
+
+    The step leads from the value at the time `since` to the value `target`. Rows of the log from
+    `since` to `until` are evaluated.
+    """
 
     words: ClassVar[str] = "times of a step response, its overshoot and its end error"
     units: ClassVar = {
@@ -41,11 +45,11 @@ class StepResponse(MetricSet):
     )
 
     def unit(self, metric: str) -> str:
-        """Return the unit of a metric; the final value has that of the signal."""
+        """Return the unit of a step-response metric; the final value has the unit of the signal."""
         return unit_of(self.signal) if metric == "end" else self.units[metric]
 
     def explain_missing_value(self, metric: str, log: Recording) -> str:
-        """Return which share of the step was reached, in words."""
+        """Explain in words why a step response lacks a metric, with the percentage it reached."""
         y = log[self.signal][rows_between(log, self.since, self.until or inf, least=2)]
         if y[0] == self.target:
             target = f"{self.target:.4g} {unit_of(self.signal)}".rstrip()
@@ -57,9 +61,11 @@ class StepResponse(MetricSet):
         return f"made at most {100.0 * done.max():.3g} % of the step"
 
     def values(self, log: Recording) -> dict[str, float]:
-        """Return times from the step on, interpolated between rows, and errors in % of the step.
+        """Return response times, overshoot and final error of a signal's step response in a log.
 
-        `rise` is the time from 10 to 90 %.
+        Times count from the step and are interpolated between rows; overshoot and error are in % of
+        the step. `rise` is the time from 10 to 90 %, `settle` that until the signal stays within 5
+        %.
 
         Args:
             log: Log of the run.
@@ -85,12 +91,14 @@ class StepResponse(MetricSet):
 
 
 def time_of_share(t: Array, done: Array, share: float) -> float | None:
-    """Return the time at which a signal first reaches a share of its step; None if it never does.
+    """Return the time at which a step response first reaches a given fraction of the step.
+
+    None if it never does.
 
     Args:
         t: Times (N,) since the step [s].
-        done: Share of the step (N,) reached at these times.
-        share: The share.
+        done: Fraction of the step (N,) reached at these times.
+        share: The fraction, such as 0.9.
     """
     beyond = np.nonzero(done >= share)[0]
     if len(beyond) == 0:
@@ -100,11 +108,13 @@ def time_of_share(t: Array, done: Array, share: float) -> float | None:
 
 
 def rise_time(t: Array, done: Array) -> float | None:
-    """Return the time from 10 to 90 % of a step; None if the signal does not reach 90 %.
+    """Return the rise time of a step response, from 10 to 90 % of the step.
+
+    None if the signal does not reach 90 %.
 
     Args:
         t: Times (N,) since the step [s].
-        done: Share of the step (N,) reached at these times.
+        done: Fraction of the step (N,) reached at these times.
     """
     tenth = time_of_share(t, done, 0.1)
     most = time_of_share(t, done, 0.9)
@@ -114,11 +124,11 @@ def rise_time(t: Array, done: Array) -> float | None:
 
 
 def settling_time(t: Array, done: Array) -> float | None:
-    """Return the time from which a signal stays in the band about its target; None if it does not.
+    """Return the time from which a step response stays within 5 % of its target, or None.
 
     Args:
         t: Times (N,) since the step [s].
-        done: Share of the step (N,) reached at these times.
+        done: Fraction of the step (N,) reached at these times.
     """
     outside = np.nonzero(abs(done - 1.0) > BAND)[0]
     if len(outside) == 0:

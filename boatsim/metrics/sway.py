@@ -21,7 +21,10 @@ FEWEST_AVERAGES = 3  # moving averages without which no rms is meaningful
 
 @dataclass(frozen=True)
 class Sway(CameraMetricSet):
-    """Evaluates the start to the first frame `distance` to starboard; the target is no yaw."""
+    """Metric set of a boat that shall move sideways without yaw, computed from camera frames.
+
+    Frames from the start to the first one at the distance `distance` to starboard are evaluated.
+    """
 
     words: ClassVar[str] = (
         "yaw rate, heading and surge while a boat moves sideways, from camera frames"
@@ -44,13 +47,16 @@ class Sway(CameraMetricSet):
     )
 
     def explain_missing_value(self, metric: str, log: Recording) -> str:
-        """Return the distance to starboard that was reached, in words."""
+        """Explain in words that a boat moved too little to starboard, with the distance reached."""
         psi, dx, dy = log["psi_rad"][0], log["x_m"] - log["x_m"][0], log["y_m"] - log["y_m"][0]
         aside = np.cos(psi) * dy - np.sin(psi) * dx
         return f"{describe_closest_value(aside, self.distance, 'm')} to starboard"
 
     def values_from_frames(self, frames: CameraFrames) -> dict[str, float]:
-        """Return yaw rates and heading from the camera, other metrics from the simulation.
+        """Return the metrics of a sideways motion: yaw rate, heading change, surge offset and time.
+
+        Yaw rates and heading are measured by the camera; surge offset and time come from the true
+        motion.
 
         Args:
             frames: Frames of the camera with the true motion.
@@ -69,7 +75,7 @@ class Sway(CameraMetricSet):
         }
 
     def values_from_noise(self, frames: int, camera: Camera) -> dict[str, Array]:
-        """Return the metrics of a constant heading with camera noise.
+        """Return the yaw-rate metrics that camera noise alone causes at a constant heading.
 
         Args:
             frames: Number of frames.
@@ -84,7 +90,10 @@ class Sway(CameraMetricSet):
         )
 
     def yaw_rate_metrics(self, psi: Array, dt: float) -> dict[str, Array]:
-        """Return the metrics of the smoothed yaw rate e.
+        """Return norms of the yaw rate of a sequence of headings, and the heading change over it.
+
+        The yaw rate e is smoothed by a moving average. The norms are max|e|, sqrt(sum e^2),
+        sqrt(mean e^2) and sum|e|.
 
         Args:
             psi: Headings (..., n) [rad].

@@ -12,7 +12,10 @@ from boatsim.simulate.metric import MetricSet, rows_between
 
 @dataclass(frozen=True)
 class SwayHold(MetricSet):
-    """Evaluates a boat that moves sideways without turning; its second half counts as settled."""
+    """Metric set of a boat that shall move sideways without turning, computed from the log.
+
+    The second half of the run counts as settled.
+    """
 
     words: ClassVar[str] = (
         "yaw rate and heading during a sway, and the neutral steering angle found"
@@ -27,7 +30,11 @@ class SwayHold(MetricSet):
     angle: str = "steer_port_rad"
 
     def values(self, log: Recording) -> dict[str, float]:
-        """Return extremes of the run, and rms yaw rate and mean angle of its second half."""
+        """Return yaw rates, heading change and steering angle of a boat that moves sideways.
+
+        The largest yaw rate and heading change are those of the whole run. The rms yaw rate and the
+        mean steering angle are those of its second half.
+        """
         rows_between(log)
         last = log.t >= 0.5 * (log.t[0] + log.t[-1])
         r, psi = np.degrees(log["r_radps"]), np.degrees(log["psi_rad"] - log["psi_rad"][0])

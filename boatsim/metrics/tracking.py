@@ -14,7 +14,10 @@ from boatsim.simulate.metric import MetricSet, rows_between
 
 @dataclass(frozen=True)
 class Tracking(MetricSet):
-    """Evaluates `since` to `until`; `reference` is another signal of the log, 0 if empty."""
+    """Metric set of the error between a signal and its reference, which is another signal or zero.
+
+    Rows of the log from the time `since` to `until` are evaluated.
+    """
 
     words: ClassVar[str] = "rms and largest error of a signal against its reference"
     units: ClassVar = {"rms": "", "max": "", "rms_goal": "", "goal_error": ""}
@@ -29,15 +32,19 @@ class Tracking(MetricSet):
     )
 
     def unit(self, metric: str) -> str:
-        """Return the unit of the signal, with degrees for angles."""
+        """Return the unit of a tracking error: that of the signal, with degrees for angles."""
         return unit_of(self.signal).replace("rad", "deg")
 
     def explain_missing_value(self, metric: str, log: Recording) -> str:
-        """Return why there are no errors against a goal."""
+        """Explain in words that a metric set has no goal, so no error; "" if it has one."""
         return "" if self.goal else "the measure names no goal"
 
     def values(self, log: Recording) -> dict[str, float]:
-        """Return rms and largest error; against the goal rms and mean of the last second."""
+        """Return rms and largest error of a signal against its reference in the log of a run.
+
+        If a goal is specified, the rms error against the goal and the mean error of the last second
+        are returned too.
+        """
         rows = rows_between(log, self.since, self.until or inf)
         scale = degrees(1.0) if unit_of(self.signal).startswith("rad") else 1.0
 

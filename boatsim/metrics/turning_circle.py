@@ -13,9 +13,10 @@ from boatsim.simulate.metric import MetricSet, rows_between, value_at
 
 @dataclass(frozen=True)
 class TurningCircle(MetricSet):
-    """Evaluates distances in ship lengths along and across the approach course.
+    """Metric set of a turning circle: advance, transfer, tactical diameter and steady turn.
 
-    They count from the position at which the helm was put over.
+    Distances are in ship lengths, along and across the approach course, from the position at which
+    the helm was put over.
     """
 
     words: ClassVar[str] = (
@@ -45,14 +46,18 @@ class TurningCircle(MetricSet):
     length: float = param(1.0, low=0.001, high=1e3, unit="m", words="length of the ship")
 
     def explain_missing_value(self, metric: str, log: Recording) -> str:
-        """Return the largest heading change, in words."""
+        """Explain in words that a turning circle is incomplete, with its largest heading change."""
         needed = 90 if metric in ("advance", "transfer", "time_to_90") else 180
         line = self.execute if self.course < 0.0 else self.course
         turned = np.degrees(np.abs(log["psi_rad"] - value_at(log, line, "psi_rad")).max())
         return f"never turned {needed} deg: at most {turned:.3g}"
 
     def values(self, log: Recording) -> dict[str, float]:
-        """Return the metrics that the turn reached."""
+        """Return the metrics of a turning circle, as far as the turn got, from the log of a run.
+
+        Advance and transfer need a heading change of 90 degrees, the tactical diameter and the
+        steady turn one of 180 degrees.
+        """
         rows_between(log)
         line = self.execute if self.course < 0.0 else self.course
         psi0 = value_at(log, line, "psi_rad")

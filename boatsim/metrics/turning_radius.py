@@ -11,7 +11,7 @@ from boatsim.simulate.metric import MetricSet
 
 @dataclass(frozen=True)
 class TurningRadius(MetricSet):
-    """Evaluates a turn while a signal is not zero."""
+    """Metric set of the radius of a turn, evaluated while a signal such as thrust is not zero."""
 
     words: ClassVar[str] = "radius of the tightest turn"
     units: ClassVar = {"radius": "m", "half_width": "m", "time": "s"}
@@ -19,11 +19,15 @@ class TurningRadius(MetricSet):
     while_on: str = "thrust_N"  # signal that is not zero during the turn
 
     def explain_missing_value(self, metric: str, log: Recording) -> str:
-        """Return why there is no turn, in words."""
+        """Explain in words why there is no turn to measure: no thrust, or no rate of turn."""
         return f"{self.while_on} is always zero, or the boat does not turn"
 
     def values(self, log: Recording) -> dict[str, float]:
-        """Return median of speed over yaw rate, half the extent of the track in y, and time."""
+        """Return radius, half width and end time of a turn, computed from the log of a run.
+
+        The radius is the median of speed over yaw rate; the half width is half the extent of the
+        track in y.
+        """
         on = (log[self.while_on] != 0.0) & (log["r_radps"] != 0.0)
         if not on.any():
             return {}

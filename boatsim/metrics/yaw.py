@@ -20,7 +20,10 @@ from boatsim.simulate.camera_metric import (
 
 @dataclass(frozen=True)
 class Yaw(CameraMetricSet):
-    """Evaluates the start to the first frame after a full turn to either side."""
+    """Metric set of a full turn on the spot: deviation of a mark on the hull from its ideal circle.
+
+    Camera frames from the start to the first one after a full turn to either side are evaluated.
+    """
 
     words: ClassVar[str] = (
         "deviation of a mark from its circle in a full turn on the spot, from camera frames"
@@ -40,25 +43,28 @@ class Yaw(CameraMetricSet):
     )
 
     def check_camera(self, camera: Camera) -> None:
-        """Check the camera and that it follows the mark.
+        """Check that the camera has the frame rate and the mark that this metric set needs.
 
         Args:
             camera: The camera.
 
         Raises:
-            BadInput: The camera does not follow the mark.
+            BadInput: The frame rate does not fit, or the camera does not follow the mark.
         """
         super().check_camera(camera)
         if self.mark not in camera.marks:
             raise BadInput(unknown_name("yaw: mark", self.mark, camera.marks))
 
     def explain_missing_value(self, metric: str, log: Recording) -> str:
-        """Return the largest heading change, in words."""
+        """Explain in words that a full turn is incomplete, with the largest heading change."""
         turned = np.degrees(np.abs(log["psi_rad"] - log["psi_rad"][0]).max())
         return f"never turned 360 deg: at most {turned:.3g}"
 
     def values_from_frames(self, frames: CameraFrames) -> dict[str, float]:
-        """Return deviations of the mark from the camera, other metrics from the simulation.
+        """Return the metrics of a full turn on the spot: deviations of a mark, time, excursion.
+
+        The deviations of the mark from its circle are measured by the camera; turn time and the
+        largest excursion of the CG come from the true motion.
 
         Args:
             frames: Frames of the camera with the true motion.
@@ -79,7 +85,9 @@ class Yaw(CameraMetricSet):
         }
 
     def values_from_noise(self, frames: int, camera: Camera) -> dict[str, Array]:
-        """Return the metrics of an ideal turn with camera noise.
+        """Return the deviations of a mark from its circle that camera noise alone causes.
+
+        The noise is that of an ideal turn on the spot.
 
         Args:
             frames: Number of frames.
@@ -92,10 +100,11 @@ class Yaw(CameraMetricSet):
         )
 
     def deviation_metrics(self, mark: Array, turn: float) -> dict[str, Array]:
-        """Return the metrics of the distance e of a mark to one on the ideal circle.
+        """Return norms of the distance e between a mark on the hull and its ideal circular path.
 
-        The first position of the mark lies straight ahead of the centre of the circle. The ideal
-        mark moves once around it at a constant rate.
+        The norms are max e, sqrt(mean e^2) and sum e; the distance between first and last position
+        is returned too. The first position of the mark lies straight ahead of the centre of the
+        circle. The ideal mark moves once around it at a constant rate.
 
         Args:
             mark: Positions (..., n, 2) of the mark [m].

@@ -14,7 +14,11 @@ COUNT = ("first", "second", "third")
 
 @dataclass(frozen=True)
 class Zigzag(MetricSet):
-    """Evaluates overshoots: the largest heading after a reversal minus the reversal heading."""
+    """Metric set of a zig-zag test: overshoot angles, and time and track to the first reversal.
+
+    An overshoot is the largest heading change after a helm reversal minus the heading change at
+    which the helm is reversed.
+    """
 
     words: ClassVar[str] = "overshoots of a zig-zag and the track to the first reversal"
     units: ClassVar = {
@@ -33,14 +37,18 @@ class Zigzag(MetricSet):
     length: float = param(1.0, low=0.001, high=1e3, unit="m", words="length of the ship")
 
     def explain_missing_value(self, metric: str, log: Recording) -> str:
-        """Return the number of reversals and the largest heading change, in words."""
+        """Explain in words that a zig-zag is incomplete: its reversals and heading change."""
         count = int((np.diff(np.sign(log["reference_helm_rad"])) != 0.0).sum()) - 1
         turned = np.degrees(np.abs(log["psi_rad"] - log["psi_rad"][0]).max())
         reversals = f"{max(count, 0)} reversals of the helm"
         return f"{reversals}; the heading changed by at most {turned:.3g} deg"
 
     def values(self, log: Recording) -> dict[str, float]:
-        """Return the overshoot of each completed reversal, and the time and track to the first."""
+        """Return the overshoots of a zig-zag test after each completed helm reversal.
+
+        The times of the overshoots, and the time and track up to the first reversal are returned
+        too.
+        """
         rows_between(log)
         helm, psi = log["reference_helm_rad"], log["psi_rad"] - log["psi_rad"][0]
         reversals = 1 + np.flatnonzero(np.sign(helm[1:]) * np.sign(helm[:-1]) < 0.0)

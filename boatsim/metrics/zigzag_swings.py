@@ -15,7 +15,10 @@ REVERSALS = 4
 
 @dataclass(frozen=True)
 class ZigzagSwings(MetricSet):
-    """Evaluates the reversals of command channel `signal`; roll needs a craft that rolls."""
+    """Metric set of a zig-zag with large heading changes: reversal times and motion extremes.
+
+    Reversals are those of the command channel `signal`. The largest roll needs a vessel that rolls.
+    """
 
     words: ClassVar[str] = (
         "times of helm reversals and largest heading, yaw rate, roll, sway and speed of a zig-zag"
@@ -34,14 +37,18 @@ class ZigzagSwings(MetricSet):
     since: float = param(0.0, low=0.0, high=1e6, unit="s", words="start of the evaluated interval")
 
     def explain_missing_value(self, metric: str, log: Recording) -> str:
-        """Return the number of reversals, in words."""
+        """Explain in words why a zig-zag metric is missing: few reversals, or no such motion."""
         if metric in ("roll", "heading", "yaw_rate"):
             return "this craft has no such motion"
         count = int((np.diff(np.sign(log[self.signal][rows_between(log, self.since)])) != 0).sum())
         return f"{count} reversals of {self.signal}"
 
     def values(self, log: Recording) -> dict[str, float]:
-        """Return times of the reversals, the mean period after the first one, and extremes."""
+        """Return reversal times and period of a zig-zag, and extremes of its motion, from a log.
+
+        The period is the mean from the first reversal to the last. The extremes are those of
+        heading, yaw rate, roll, sway and surge speed.
+        """
         rows = rows_between(log, self.since)
         t, helm = log.t[rows], log[self.signal][rows]
         at = t[1:][np.diff(np.sign(helm)) != 0] - self.since

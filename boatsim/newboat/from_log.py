@@ -53,7 +53,7 @@ LONG_NUMBER = re.compile(
 
 @dataclass(frozen=True)
 class FittedBoat:
-    """A boat fitted to logs, with its errors on held-out data.
+    """Vessel whose coefficients were fitted to logs, with its errors on held-out data.
 
     Attributes:
         boat: The boat before the fit.
@@ -73,7 +73,7 @@ class FittedBoat:
 
     @property
     def reduces_error(self) -> bool:
-        """Whether the fit reduces the error on held-out data.
+        """Whether the fit of the coefficients reduces the errors on held-out data.
 
         A log with a fault gives wrong numbers.
         """
@@ -86,7 +86,7 @@ def fit_boat(
     held_out: Sequence[Path] = (),
     report: Report = ignore_progress,
 ) -> FittedBoat:
-    """Return the vessel of a file with its coefficients fitted to logs.
+    """Fit the coefficients of a vessel to logs and validate the fit on held-out data.
 
     Args:
         vessel_file: The vessel.toml.
@@ -125,7 +125,7 @@ def fit_boat(
 
 
 def fit_report_lines(found: FittedBoat) -> list[str]:
-    """Return lines that report the fitted effects and the errors on held-out data.
+    """Return lines of text that report a vessel's fitted effects and the errors on held-out data.
 
     Args:
         found: The fit.
@@ -134,7 +134,7 @@ def fit_report_lines(found: FittedBoat) -> list[str]:
 
 
 def fitted_vessel_text(found: FittedBoat, logs: Sequence[Path]) -> str:
-    """Return the text of the vessel file with the fitted numbers of the boat.
+    """Return the text of a vessel.toml with the fitted coefficients in place of the previous ones.
 
     Args:
         found: The fit.

@@ -10,9 +10,9 @@ COMMENT = "Drawn by boatsim new from the boat's sizes; forces and masses are in 
 
 
 def hull_xml(boat: Particulars) -> str:
-    """Return the MJCF of a boat, with the origin at the transom in the water surface.
+    """Return the hull drawing of a new boat as MJCF text (MuJoCo's XML format).
 
-    The axes are x forward, y to port and z up.
+    The origin is at the transom in the water surface. The axes are x forward, y to port and z up.
 
     Args:
         boat: Particulars of the boat.

@@ -13,7 +13,7 @@ NAME = re.compile(r"[A-Za-z0-9][\w.+-]{0,59}")
 
 @dataclass(frozen=True)
 class Mount:
-    """A thruster.
+    """A thruster of a new boat: position and largest thrust.
 
     Attributes:
         x: Position ahead of the mass centre [m].
@@ -30,7 +30,7 @@ class Mount:
     turns: bool = False
 
     def largest_astern(self, ahead: float) -> float:
-        """Return the largest thrust astern [N]; that ahead if it is unknown.
+        """Return the largest thrust of a thruster astern [N]; that ahead if it is unknown.
 
         Args:
             ahead: Largest thrust ahead [N].
@@ -42,7 +42,7 @@ class Mount:
 
 @dataclass(frozen=True)
 class Rudder:
-    """A rudder.
+    """A rudder of a new boat: position and area.
 
     Attributes:
         x: Position ahead of the mass centre [m].
@@ -55,7 +55,7 @@ class Rudder:
 
 @dataclass(frozen=True)
 class Particulars:
-    """Particulars of a boat.
+    """Main particulars of a new boat as its owner gives them: dimensions, mass, speed, thrusters.
 
     Attributes:
         name: Name of the boat.
@@ -74,7 +74,7 @@ class Particulars:
     rudder: Rudder | None = None
 
     def named_thrusters(self) -> list[tuple[str, Mount]]:
-        """Return the thrusters with names by side, numbered if a side has several.
+        """Return the thrusters of the boat with names by side, numbered if a side has several.
 
         A single one is `motor`.
         """
@@ -111,7 +111,7 @@ def parse_particulars(
     speed: float | None = None,
     thrust: float | None = None,
 ) -> Particulars:
-    """Return the checked particulars of a boat.
+    """Check the main particulars of a new boat from the command line and return them.
 
     Args:
         name: Name of the boat.

@@ -19,7 +19,7 @@ HELM = 0.35  # [rad] 20 deg
 
 
 def turn_text(boat: Particulars) -> str:
-    """Return the text of turn.toml.
+    """Return the text of turn.toml, the first scenario of a new boat: straight runs and turns.
 
     Args:
         boat: Particulars of the boat.

@@ -33,7 +33,7 @@ UNKNOWN_SD = 1.0  # numbers that the file sets to zero for want of anything bett
 
 
 def vessel_text(boat: Particulars) -> str:
-    """Return the text of vessel.toml.
+    """Return the text of vessel.toml for a new boat, with coefficients estimated from particulars.
 
     Args:
         boat: Particulars of the boat.
@@ -53,7 +53,7 @@ def vessel_text(boat: Particulars) -> str:
 
 
 def format_number(value: float) -> str:
-    """Return a number with four digits as a TOML float.
+    """Return a number as TOML text, as a float with four digits.
 
     Args:
         value: The number.
@@ -65,7 +65,7 @@ def format_number(value: float) -> str:
 
 
 def toml_line(key: str, value: float, unit: str, rule: str) -> str:
-    """Return the line `key = value  # [unit] rule`.
+    """Return one entry of a vessel.toml as the line `key = value  # [unit] rule`.
 
     Args:
         key: Name of the entry.
@@ -85,7 +85,7 @@ def _estimate_line(key: str, found: Estimate, unit: str) -> str:
 
 
 def full_thrust(boat: Particulars) -> tuple[list[float], bool]:
-    """Return the largest thrust of each thruster [N], and whether the owner gave all.
+    """Return the largest thrust of each thruster of a new boat [N], and whether its owner gave all.
 
     Args:
         boat: Particulars of the boat.
@@ -103,7 +103,7 @@ def full_thrust(boat: Particulars) -> tuple[list[float], bool]:
 
 
 def thrust_channel(name: str) -> str:
-    """Return the name of the thrust command of a thruster.
+    """Return the name of the command channel for the thrust of a thruster.
 
     Args:
         name: Name of the thruster.
@@ -112,7 +112,7 @@ def thrust_channel(name: str) -> str:
 
 
 def steer_channel(name: str) -> str:
-    """Return the name of the angle command of a thruster that turns.
+    """Return the name of the command channel for the angle of a thruster that turns.
 
     Args:
         name: Name of the thruster.
@@ -222,7 +222,9 @@ def _effect_lines(boat: Particulars) -> Iterator[str]:
 
 
 def rudder_design_speed(boat: Particulars) -> float:
-    """Return the speed of the rudder coefficients [m/s]: service speed, at most top speed.
+    """Return the speed for which a new boat's rudder coefficients are estimated [m/s].
+
+    It is the service speed, at most the top speed.
 
     Args:
         boat: Particulars of the boat.
@@ -234,7 +236,7 @@ def rudder_design_speed(boat: Particulars) -> float:
 
 
 def given_thrust(boat: Particulars) -> float | None:
-    """Return the full thrust of all thrusters [N]; None if the owner did not give all.
+    """Return the total full thrust of a new boat [N]; None if its owner did not give all thrusts.
 
     Args:
         boat: Particulars of the boat.
@@ -303,7 +305,7 @@ def _thruster_ahead_of_rudder(boat: Particulars, blade: Rudder) -> str:
 
 
 def approach_thrust_share(boat: Particulars) -> float:
-    """Return the part of full thrust at the approach of manoeuvres.
+    """Return the fraction of full thrust with which a new boat approaches standard manoeuvres.
 
     Args:
         boat: Particulars of the boat.
@@ -337,7 +339,9 @@ def _manoeuvring_lines(boat: Particulars) -> Iterator[str]:
 
 
 def steering_commands(boat: Particulars) -> dict[str, float]:
-    """Return the commands per rad of helm: of rudder, turned thrusters or differential thrust.
+    """Return the commands per rad of helm that steer a new boat.
+
+    They are commands of the rudder, of turned thrusters or of differential thrust.
 
     Args:
         boat: Particulars of the boat.

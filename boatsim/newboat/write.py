@@ -9,7 +9,7 @@ VESSEL = "vessel.toml"
 
 
 def boat_files(boat: Particulars) -> dict[str, str]:
-    """Return the texts of the files of a boat's folder by file name.
+    """Return the files of a new boat's folder: file name -> text.
 
     Args:
         boat: Particulars of the boat.

@@ -32,7 +32,7 @@ MAX_FACTORS = 6
 
 @dataclass(frozen=True)
 class Expression:
-    """A signal times a factor plus an offset.
+    """Formula for a column of a recording: a signal of a log times a factor plus an offset.
 
     Attributes:
         signal: Name of the signal in a log or table.
@@ -45,12 +45,12 @@ class Expression:
     offset: float = 0.0
 
     def of(self, values: Array) -> Array:
-        """Return the column (N,) of the signal's values (N,)."""
+        """Apply the formula to the signal's values (N,); return the values (N,) of the column."""
         return values * self.factor + self.offset
 
 
 def parse(text: str, known: Collection[str] = ()) -> Expression:
-    """Return the expression of a text.
+    """Parse the text of a formula for a column, such as "-delta" or "heading_deg * deg".
 
     Args:
         text: The text.

@@ -24,10 +24,7 @@ CGROUP_LIMITS = (
 
 
 def check_file(path: Path) -> None:
-    """Check the size of a file.
-
-    Raises BadInput if it is too large or does not fit into the free memory.
-    """
+    """Check that a recording's file is small enough to be read into memory."""
     size = path.stat().st_size
     if size > MAX_FILE_BYTES:
         raise file_error(
@@ -37,7 +34,9 @@ def check_file(path: Path) -> None:
 
 
 def check_shape(path: Path, columns: int, cells: int = 0) -> None:
-    """Check the shape of a table; `cells` is 0 where it is not known yet.
+    """Check that a table has few enough columns and cells to be read into memory.
+
+    `cells` is 0 where the number of cells is not known yet.
 
     Raises:
         BadInput: If it is too large or does not fit into the free memory.
@@ -50,7 +49,7 @@ def check_shape(path: Path, columns: int, cells: int = 0) -> None:
 
 
 def check_memory(path: Path, needed: float) -> None:
-    """Check that memory [bytes] is free. Raises BadInput if it is not."""
+    """Check that the memory needed to read a file [bytes] is free. Raises BadInput if it is not."""
     free = free_memory()
     if needed > free:
         raise file_error(
@@ -60,7 +59,7 @@ def check_memory(path: Path, needed: float) -> None:
 
 
 def free_memory() -> float:
-    """Return the free memory of machine and container [bytes]; infinity where it is unknown."""
+    """Return the free memory of the machine or its container [bytes]; infinity where unknown."""
     found = [float("inf")]
     with suppress(OSError, ValueError):
         lines = Path("/proc/meminfo").read_text(encoding="ascii").splitlines()

@@ -54,9 +54,9 @@ UNITS = {
 
 
 def unit_of(name: str) -> str:
-    """Return the unit by the suffix of a column or key: `r_radps` -> "rad/s".
+    """Return the unit of a signal by the suffix of its name, such as "rad/s" for `r_radps`.
 
-    "" where it has none.
+    The result is "" for a name without a known suffix.
     """
     for bound in ("_low", "_high"):  # bounds of an adaptive estimate have the unit of the estimate
         name = name.removesuffix(bound)
@@ -67,7 +67,7 @@ def unit_of(name: str) -> str:
 
 
 class Ambient(TypedDict, total=False):
-    """The [ambient] table: the unmodelled disturbance.
+    """The [ambient] table of a recording.toml: the known level of the unmodelled disturbance force.
 
     Attributes:
         axes: Axes to which the list `force_rms` belongs.
@@ -82,7 +82,9 @@ class Ambient(TypedDict, total=False):
 
 @dataclass(frozen=True)
 class Notes:
-    """Facts about a recording from its `recording.toml`; all empty without the file.
+    """Notes on a recording from its `recording.toml`: vessel, load, noise and other known facts.
+
+    All fields are empty without the file.
 
     Attributes:
         vessel: Name or path of the vessel.
@@ -109,7 +111,7 @@ class Notes:
 
 @dataclass(frozen=True)
 class NotesFile:
-    """A `recording.toml` as it applies to one recording.
+    """Content of a `recording.toml` as it applies to one recording.
 
     Attributes:
         notes: The notes.
@@ -125,7 +127,7 @@ class NotesFile:
 
 
 def notes_for(recording: Path) -> NotesFile:
-    """Return the notes of a recording, from the nearest `recording.toml` above it.
+    """Return the notes on a recording from the nearest `recording.toml` in or above its folder.
 
     Args:
         recording: File of the recording.
@@ -370,6 +372,6 @@ def _with_hint(key: str, allowed: tuple[str, ...]) -> str:
 
 
 def join_mistakes(mistakes: Sequence[str], file: Path) -> str:
-    """Return one message of several that begin with the name of one file."""
+    """Join several error messages that begin with the same file name into one message."""
     first, *others = mistakes
     return "; ".join([first, *(one.removeprefix(f"{file}: ") for one in others)])

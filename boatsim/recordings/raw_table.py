@@ -14,7 +14,7 @@ from boatsim.physics.base import Array
 
 @dataclass(frozen=True)
 class Raw:
-    """A table as a reader returns it.
+    """Unchecked table of numbers as a file reader returns it, with the cells that are not numbers.
 
     Attributes:
         path: The file.
@@ -32,7 +32,7 @@ class Raw:
 def select_rows(
     columns: Mapping[str, Array], rows: "slice | NDArray[np.bool_] | NDArray[np.int64]"
 ) -> dict[str, Array]:
-    """Return some rows of a table.
+    """Return the columns of a table with a selection of its rows.
 
     Args:
         columns: Name -> values (N,).
@@ -47,7 +47,7 @@ def select_rows(
 def file_error(
     path: Path, message: str, row: int | None = None, column: str | None = None
 ) -> BadInput:
-    """Return the error for a recording that can not be used.
+    """Return the exception for a recording that cannot be used, with file, row and column.
 
     Args:
         path: The file.
@@ -67,14 +67,14 @@ def file_error(
 
 
 def check_unique_names(path: Path, header: list[str]) -> None:
-    """Check that no two columns have one name. Raises BadInput."""
+    """Check that the columns of a file have different names. Raises BadInput."""
     for name, count in Counter(header).items():
         if count > 1:
             raise file_error(path, "there are two columns of this name", 1, name or "(no name)")
 
 
 def parse_numbers(raw: Raw, name: str, cells: Sequence[object]) -> Array:
-    """Return the numbers (N,) of the cells of a column.
+    """Convert the text cells of one column of a table to numbers (N,).
 
     Args:
         raw: The table; its `text` gets the first cell that is not a number.

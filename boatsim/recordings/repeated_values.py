@@ -9,7 +9,10 @@ MIN_REGULAR_SHARE = 0.8
 
 
 def repeated_rows(fixes: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """Return the rows (N,) that repeat values (N, C), if new values come at a regular period."""
+    """Return a mask (N,) of the rows in which a logger repeated measured values (N, C).
+
+    Rows count as repeated only if new values come at a regular period.
+    """
     new = np.append(True, (np.diff(fixes, axis=0) != 0.0).any(axis=1))
     gaps = np.diff(np.flatnonzero(new))
     none = np.zeros(len(fixes), dtype=np.bool_)

@@ -44,12 +44,12 @@ ROUNDING = 1e-3
 
 
 class SignalMissing(BadInput):
-    """A requested signal is not in the recording."""
+    """Raised if a requested signal is not in a recording."""
 
 
 @dataclass(frozen=True)
 class TimedCommands:
-    """Commands at their own times; each is in force until the next.
+    """Recorded commands at their own times; each command is in force until the next.
 
     Attributes:
         t: Times (K,) [s].
@@ -60,7 +60,7 @@ class TimedCommands:
     signals: Mapping[str, Array]
 
     def between(self, from_s: float, to_s: float) -> "TimedCommands":
-        """Return the commands that are in force between two times [s]."""
+        """Return the recorded commands that are in force between two times [s]."""
         begin = max(int(np.searchsorted(self.t, from_s + 1e-9, side="right")) - 1, 0)
         end = int(np.searchsorted(self.t, to_s + 1e-9, side="right"))
         return TimedCommands(self.t[begin:end], select_rows(self.signals, slice(begin, end)))
@@ -68,10 +68,10 @@ class TimedCommands:
 
 @dataclass(frozen=True)
 class Recording:
-    """One run of a vessel, in SI units and SNAME axes. A command is in force until the next row.
+    """Recording of one run of a vessel, simulated or real, in SI units and SNAME axes.
 
-    Headings are unwrapped. `boatsim.read` returns the recording of a file; `recording["psi_rad"]`
-    is a signal.
+    A command is in force until the next row. Headings are unwrapped. `boatsim.read` returns the
+    recording of a file; `recording["psi_rad"]` is a signal.
 
     Attributes:
         name: Name of the recording.
@@ -101,13 +101,13 @@ class Recording:
         return self.signals[name]
 
     def unit(self, name: str) -> str:
-        """Return the unit of a signal by the suffix of its name; "" for a plain number."""
+        """Return the unit of a signal by its name's suffix; "" for a number without a unit."""
         return unit_of(name)
 
     def between(self, from_s: float, to_s: float) -> "Recording":
-        """Return the rows with from_s <= t <= to_s [s]; times are not shifted.
+        """Return the part of a recording with from_s <= t <= to_s [s]; times are not shifted.
 
-        Raises BadInput if there are none.
+        Raises BadInput if it has no rows.
         """
         inside = (self.t >= from_s - 1e-9) & (self.t <= to_s + 1e-9)
         if not inside.any():
@@ -122,7 +122,7 @@ class Recording:
         return replace(self, t=self.t[inside], signals=signals, orders=orders)
 
     def thinned(self, rate: float) -> "Recording":
-        """Return every n-th row, with the mean command until the next of these rows.
+        """Return a recording with fewer rows: every n-th row, with mean commands in between.
 
         Poses and rates that are not measured in every row keep every n-th of their own samples.
         `orders` of the result are all commands.
@@ -179,7 +179,7 @@ class Recording:
         )
 
     def used(self) -> "Recording":
-        """Return the part that `use` of the notes selects, or the whole recording."""
+        """Return the part of a recording that its notes select by `use`, or the whole recording."""
         if self.notes.use:
             return self.between(*self.notes.use)
         return self
@@ -201,7 +201,7 @@ def read(
     channels: Mapping[str, tuple[float, float]] | None = None,
     columns: Mapping[str, str] | None = None,
 ) -> Recording:
-    """Return a recording with the notes of the nearest `recording.toml`.
+    """Read a recording from a file, with checks and the notes of the nearest `recording.toml`.
 
     Args:
         path: File of the recording.
@@ -246,7 +246,7 @@ def read(
 def read_unchecked(
     path: Path, columns: Mapping[str, str] | None = None
 ) -> tuple[Recording, Mapping[str, Expression]]:
-    """Return a recording without checks of its values; angles may be in degrees.
+    """Read a recording from a file without checks of its values; angles may be in degrees.
 
     Args:
         path: File of the recording.
@@ -269,9 +269,9 @@ def read_unchecked(
 
 
 def write_csv(recording: Recording, path: Path | str) -> None:
-    """Write all signals with 12 digits, t_s first; equal recordings give equal files.
+    """Write all signals of a recording to a CSV file, with time first and 12 digits.
 
-    Raises OSError.
+    Equal recordings give equal files. Raises OSError.
     """
     with replace_file(path) as temporary, temporary.open("w", encoding="utf-8", newline="") as file:
         file.write(csv_header(recording))
@@ -280,7 +280,7 @@ def write_csv(recording: Recording, path: Path | str) -> None:
 
 
 def join_recordings(pieces: Sequence[Recording]) -> Recording:
-    """Return one recording of consecutive pieces of a log."""
+    """Join consecutive pieces of a log into one recording."""
     first = pieces[0]
     if len(pieces) == 1:
         return first
@@ -291,12 +291,12 @@ def join_recordings(pieces: Sequence[Recording]) -> Recording:
 
 
 def csv_header(recording: Recording) -> str:
-    """Return the first line of the CSV of a recording."""
+    """Return the header line of a recording's CSV file."""
     return ",".join(["t_s", *recording.signals]) + "\n"
 
 
 def csv_rows(recording: Recording, start: int = 0, end: int | None = None) -> str:
-    """Return the lines of the CSV of the rows `start` to `end`; nan is an empty cell."""
+    """Return the rows `start` to `end` of a recording as lines of CSV; nan is an empty cell."""
     columns = [recording.t, *recording.signals.values()]
     line = ",".join(["%.12g"] * len(columns)) + "\n"
     part = np.column_stack([c[start:end] for c in columns]) + 0.0  # -0 becomes 0
@@ -375,7 +375,7 @@ def _rename_columns(
 
 
 def is_command(name: str) -> bool:
-    """Return whether a name is usual for a command channel."""
+    """Return whether the name of a column is usual for a command channel, such as a thrust."""
     return COMMAND.match(name) is not None
 
 
@@ -421,7 +421,7 @@ def _check_cells(raw: Raw, needed: list[str]) -> None:
 def allowed_gaps(
     columns: Mapping[str, Array],
 ) -> dict[str, "np.ndarray[tuple[int], np.dtype[np.bool_]]"]:
-    """Return the rows (N,) in which each pose and rate may be empty.
+    """Return the rows (N,) in which each pose and rate of a table may be empty.
 
     A signal that is empty in many rows is measured less often than rows are written. Other signals
     may be empty in the rows that exist for such a signal. Any other empty cell is a mistake in the

@@ -33,15 +33,15 @@ ANGLES = {"r_radps": "psi_rad", "p_radps": "phi_rad"}  # rate -> its integral
 
 
 def columns_in_degrees(columns: Mapping[str, Array]) -> dict[str, int]:
-    """Return the columns that are in degrees instead of radians.
+    """Return the columns of a table that hold degrees although their names promise radians.
 
-    Rows at which time does not increase are ignored.
+    The motion decides. Rows at which time does not increase are ignored.
 
     Args:
         columns: Columns (N,) of a table with `t_s`.
 
     Returns:
-        Column -> a row that shows it.
+        Column -> number of a row that shows that it is in degrees.
     """
     forward = np.flatnonzero(
         np.append(True, columns["t_s"][1:] > np.maximum.accumulate(columns["t_s"])[:-1])
@@ -82,7 +82,7 @@ def _rows_with_values(
 
 
 def heading_in_degrees(t: Array, psi: Array, signals: Mapping[str, Array]) -> int | None:
-    """Return the row that shows that a heading is in degrees, None if it is in radians.
+    """Return a row that shows that a recorded heading is in degrees, None if it is in radians.
 
     Recorded rates and the course made good decide by their ratio to the changes of the heading.
     Without them, steps, scatter and turning that no vessel and no compass has in radians decide.
@@ -130,7 +130,10 @@ def _is_wrapped_in_radians(psi: Array, steps: Array) -> bool:
 
 
 def rate_in_degrees(t: Array, rate: Array, angle: Array | None) -> int | None:
-    """Return a row that shows that a rate (N,) is in degrees per second, else None."""
+    """Decide whether a recorded angular rate (N,) is in degrees per second.
+
+    Returns a row that shows it, None for radians per second.
+    """
     largest = int(np.argmax(np.abs(rate)))
     if angle is not None:
         ratio = _ratio(np.unwrap(angle), integral(t, rate))
@@ -144,7 +147,10 @@ def rate_in_degrees(t: Array, rate: Array, angle: Array | None) -> int | None:
 
 
 def roll_in_degrees(t: Array, phi: Array, rate: Array | None) -> int | None:
-    """Return a row that shows that a roll (N,) is in degrees, None if it is in radians."""
+    """Decide whether a recorded roll angle (N,) is in degrees.
+
+    Returns a row that shows it, None for radians.
+    """
     largest = int(np.argmax(np.abs(phi)))
     if abs(phi[largest]) > MAX_ROLL:
         return largest
@@ -154,7 +160,7 @@ def roll_in_degrees(t: Array, phi: Array, rate: Array | None) -> int | None:
 
 
 def integral(t: Array, rate: Array) -> Array:
-    """Return the integral (N,) of a rate from the first row on, by the trapezoidal rule.
+    """Return the time integral (N,) of a rate from the first row on, by the trapezoidal rule.
 
     Args:
         t: Times (N,) [s].

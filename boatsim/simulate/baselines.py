@@ -23,7 +23,7 @@ NOTHING = 1e-9  # absolute tolerance, for metrics that are zero
 
 
 class Baseline(Table):
-    """The stored value of a metric."""
+    """Stored value of one metric in pins.toml, with unit and tolerance, for regression tests."""
 
     value: float | None = None  # None: the run did not reach the metric's condition
     unit: str = ""
@@ -31,14 +31,14 @@ class Baseline(Table):
 
 
 class BaselinesFile(Table):
-    """The content of a pins.toml."""
+    """Content of a pins.toml: stored metrics of the scenarios of a folder, for regression tests."""
 
     seeds: int = Field(default=1, ge=1)  # number of seeds behind the tolerances
     scenario: dict[str, dict[str, Baseline]] = {}  # by file, or file:case
 
 
 def values_agree(old: float | str | None, new: float | str | None, tolerance: float) -> bool:
-    """Return whether two values agree.
+    """Return whether the new value of a metric agrees with its stored value.
 
     Args:
         old: Stored value.
@@ -54,12 +54,15 @@ def values_agree(old: float | str | None, new: float | str | None, tolerance: fl
 
 
 def round_to_nine_digits(value: float | None) -> float | None:
-    """Round a value to nine digits, which is finer than the tolerance."""
+    """Round the value of a metric to nine digits; None, for a metric without a value, stays None.
+
+    Nine digits are finer than the tolerance of the comparison with stored values.
+    """
     return None if value is None else float(f"{value:.9g}")
 
 
 def read_baselines(folder: Path) -> BaselinesFile | None:
-    """Read the baselines of a folder.
+    """Read the stored metrics of the scenarios of a folder from its pins.toml.
 
     Args:
         folder: Folder of scenarios.
@@ -75,7 +78,7 @@ def read_baselines(folder: Path) -> BaselinesFile | None:
 
 
 def make_baselines(runs: Sequence[Mapping[str, Metric]]) -> dict[str, Baseline]:
-    """Return the baselines of one scenario.
+    """Return the metrics of one scenario as baselines, to be stored for regression tests.
 
     Args:
         runs: Metrics of runs with different seeds; the first run has the scenario's own seed.
@@ -100,7 +103,7 @@ def make_baselines(runs: Sequence[Mapping[str, Metric]]) -> dict[str, Baseline]:
 def compare_with_baselines(
     baselines: Mapping[str, Baseline], metrics: Mapping[str, Metric]
 ) -> list[str]:
-    """Compare the metrics of a run with their baselines.
+    """Compare the metrics of a run with their stored baselines.
 
     Args:
         baselines: Baseline by metric.
@@ -136,7 +139,10 @@ def _format_value(value: float | None, lacking: str | None) -> str:
 
 
 def to_toml(baselines: BaselinesFile) -> str:
-    """Return the content of a pins.toml, with one line per metric so that diffs are readable."""
+    """Return stored metrics as the text of a pins.toml, with one line per metric.
+
+    One line per metric keeps differences between two versions of the file readable.
+    """
     lines = [
         "# Baselines of the metrics of these scenarios, with each scenario's own seed.",
         "# `boatsim test FOLDER` compares with them, `boatsim test FOLDER --pin` writes this file.",

@@ -34,7 +34,9 @@ TURN = 256  # vessels that a thread steps at a time, so that their data stay in 
 
 
 class Batch:
-    """Vessels in open water. `advance` steps them; the actuators keep their memory between calls.
+    """Many vessels in open water, simulated together by compiled code on all cores.
+
+    `advance` steps them; the actuators keep their memory between calls.
 
     States are SNAME [m, rad, m/s, rad/s]: the coordinates (x, y, z, phi, theta, psi) and the body
     rates over ground (u, v, w, p, q, r) of the degrees of freedom of the vessel, (x, y, psi, u, v,
@@ -107,7 +109,10 @@ class Batch:
 
     @property
     def fleet(self) -> FleetArrays:
-        """States and parameters as compiled functions take them: views, not copies."""
+        """Arrays with the states and parameters of all vessels, as compiled functions take them.
+
+        The arrays are views of the batch, not copies.
+        """
         return FleetArrays(
             self.t,
             self._y,
@@ -122,7 +127,7 @@ class Batch:
 
     @property
     def bytes_per_boat(self) -> int:
-        """Memory per vessel [bytes]."""
+        """Memory that the batch uses per simulated vessel [bytes]."""
         held = (
             self.t,
             self._y,
@@ -138,23 +143,23 @@ class Batch:
 
     @property
     def states(self) -> Array:
-        """Present states (n, 2 NQ)."""
+        """Present states of all vessels (n, 2 NQ): coordinates and body rates over ground."""
         return self.program.body_rates(self._y)
 
     @property
     def actuators(self) -> Array:
-        """Present actuators (n, A), in the order of `vessel.actuators`."""
+        """Present actuator positions of all vessels (n, A), in the order of `vessel.actuators`."""
         last = 2 * self.code.HELD
         return self._act[:, last : last + len(self.vessels[0].actuators)].copy()
 
     @property
     def commands(self) -> Array:
-        """Commands in force (n, C), in the order of `vessel.inputs`."""
+        """Commands in force for all vessels (n, C), in the order of `vessel.inputs`."""
         return self._commands.copy()
 
     @property
     def lost(self) -> NDArray[np.bool_]:
-        """Whether the motion of each vessel (n,) has diverged; the others are unaffected."""
+        """Whether the motion of each vessel (n,) has diverged; other vessels are unaffected."""
         return np.asarray(~np.isfinite(self._y).all(axis=1))
 
     def reset(
@@ -163,7 +168,7 @@ class Batch:
         commands: ArrayLike | Mapping[str, float] | None = None,
         boats: ArrayLike | None = None,
     ) -> None:
-        """Set the state of vessels at t = 0, with actuators settled at commands.
+        """Set the state of some or all simulated vessels at t = 0, with actuators settled.
 
         Args:
             states: State (2 NQ,) or states (k, 2 NQ); default: at rest at the origin.
@@ -186,7 +191,7 @@ class Batch:
     def advance(
         self, commands: ArrayLike | Mapping[str, float] | None = None, steps: int = 1
     ) -> None:
-        """Take steps of all vessels with the commands held.
+        """Integrate the motion of all vessels over some steps with constant commands.
 
         Args:
             commands: Commands by channel, (C,) or (n, C), which act within their ranges; without
@@ -202,7 +207,9 @@ class Batch:
         self.run_on_threads(lambda some: self._step_boats(some, steps))
 
     def set(self, parameter: str, values: ArrayLike, boats: ArrayLike | None = None) -> None:
-        """Change a parameter of vessels, but no parameters that a vessel file derives from it.
+        """Change one model parameter of some or all vessels.
+
+        Parameters that a vessel file derives from the changed one keep their values.
 
         Args:
             parameter: "effect.parameter" or "body.mass".
@@ -222,7 +229,7 @@ class Batch:
         self._update_masses(chosen)
 
     def get(self, parameter: str) -> Array:
-        """Return the values (n,) of "effect.parameter".
+        """Return the value of one model parameter, "effect.parameter", of each vessel (n,).
 
         Raises:
             BadInput: If the name is unknown.
@@ -231,10 +238,10 @@ class Batch:
         return rows[:, place].copy()
 
     def assign(self, vessel: ArrayLike, boats: ArrayLike | None = None) -> None:
-        """Give vessels all parameters of one of the different vessels.
+        """Give simulated vessels all model parameters of one of the different vessels of the batch.
 
         Args:
-            vessel: Its number, or numbers (k,).
+            vessel: Number of the different vessel, or numbers (k,).
             boats: Numbers (k,) or a mask (n,) of the vessels that change; default: all.
 
         Raises:
@@ -259,7 +266,9 @@ class Batch:
         values: Array | None = None,
         t0: float = 0.0,
     ) -> Array:
-        """Compute a free run of the first vessel without changing the state of the batch.
+        """Simulate the first vessel from a given state under a sequence of commands.
+
+        The state of the batch does not change.
 
         Args:
             start: State (2 NQ,).
@@ -292,7 +301,9 @@ class Batch:
     def hold_commands(
         self, start: Sequence[float], commands: Mapping[str, float], steps: int
     ) -> Array:
-        """Compute the state of the first vessel after steps with constant commands.
+        """Return the state of the first vessel after some steps with constant commands.
+
+        The state of the batch does not change.
 
         Args:
             start: State (2 NQ,).
@@ -331,11 +342,11 @@ class Batch:
         self.code.compute_mass_constants_of_boats(boats, self._body, self._p, self._on, self._k)
 
     def run_on_threads(self, work: Callable[[Boats], None], boats: Boats | None = None) -> None:
-        """Work on vessels on all threads.
+        """Call a function for groups of vessels in parallel, on all threads of the batch.
 
         Args:
-            work: Works on the vessels of these numbers.
-            boats: Numbers of the vessels; default: all.
+            work: Function that is called with the numbers of a group of vessels.
+            boats: Numbers of the vessels that are divided into groups; default: all.
         """
         chosen = np.arange(self.n) if boats is None else boats
         turns = [chosen[i : i + TURN] for i in range(0, len(chosen), TURN)]
@@ -347,7 +358,7 @@ class Batch:
             pass
 
     def sense(self, felt: Array) -> None:
-        """Write the readings of sensors without noise.
+        """Compute the error-free readings of the instruments of all vessels, in place.
 
         Args:
             felt: Rows (n, 11) in the order of `control.compiled.SENSE_FIELDS`; they are changed.
@@ -440,7 +451,7 @@ class Batch:
 
 @cache
 def shared_thread_pool(threads: int, process: int) -> ThreadPoolExecutor:
-    """Return the threads that all batches of a process share.
+    """Return the pool of threads that all batches of a process share.
 
     Args:
         threads: Number of threads.

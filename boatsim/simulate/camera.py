@@ -16,7 +16,7 @@ CAMERA_POSE = ("x_m", "y_m", "psi_rad")  # columns of the pose that a frame give
 
 
 class Frame(NamedTuple):
-    """One camera frame: the positions of the marks and the pose that fits them."""
+    """One frame of the overhead camera: measured positions of hull marks, and the fitted pose."""
 
     t: float  # [s]
     x: float  # [m] CG
@@ -27,11 +27,12 @@ class Frame(NamedTuple):
 
 @dataclass(frozen=True)
 class Camera(CheckedParameters):
-    """A camera whose pictures are evaluated by hand: the user marks points of the hull.
+    """Overhead camera that measures the pose of a vessel by marks on its hull, with marking noise.
 
-    Positions in the plane of the water are complex numbers, north + i east, on the hull ahead +
-    i starboard. Heading and CG are those of the least-squares fit of the marks' pattern to the
-    marked points; the scale of the pattern is free, as that of a picture is.
+    Its pictures are evaluated by hand: the user marks points of the hull. Positions in the plane of
+    the water are complex numbers, north + i east, on the hull ahead + i starboard. Heading and CG
+    are those of the least-squares fit of the marks' pattern to the marked points; the scale of the
+    pattern is free, as that of a picture is.
     """
 
     rate: float = param(6.0, low=0.1, high=240.0, unit="Hz", words="frames evaluated per second")
@@ -56,7 +57,7 @@ class Camera(CheckedParameters):
 
     @cached_property
     def mark_positions(self) -> Array:
-        """Complex positions (M,) of the marks on the hull [m]."""
+        """Positions (M,) of the camera's marks in hull axes, ahead + i starboard [m]."""
         return np.array([complex(*place) for place in self.marks.values()])
 
     @cached_property
@@ -67,7 +68,7 @@ class Camera(CheckedParameters):
         return 1.0 / len(off) - self.mark_positions.mean() * turn, turn
 
     def measure_marks(self, place: Array, psi: Array, noise: Array) -> Array:
-        """Return the measured positions of the marks.
+        """Return the positions of the hull marks that the camera measures, with noise.
 
         Args:
             place: Complex position (...) of the CG [m].
@@ -85,7 +86,7 @@ class Camera(CheckedParameters):
         )
 
     def fit_pose(self, seen: Array) -> tuple[Array, Array]:
-        """Return the pose that fits measured marks.
+        """Return the pose of the vessel that fits measured positions of its hull marks best.
 
         Args:
             seen: Complex positions (..., M) of the marks [m].
@@ -97,12 +98,15 @@ class Camera(CheckedParameters):
         return seen @ centre, np.angle(seen @ turn)
 
     def pose_noise(self) -> dict[str, float]:
-        """Return the standard deviations of the pose, by their key in a recording's notes."""
+        """Return the standard deviations of a pose measured by the camera.
+
+        They are keyed as in the noise table of a recording's notes.
+        """
         centre, turn = (float(np.sqrt((np.abs(w) ** 2).sum())) for w in self._weights)
         return {"position_sd_m": self.mark_sd * centre, "heading_sd_rad": self.mark_sd * turn}
 
     def take_frame(self, t: float, pose: Pose, noise: Array) -> Frame:
-        """Take one frame.
+        """Take one camera frame of a vessel: noisy positions of the marks and the fitted pose.
 
         Args:
             t: Time [s].
@@ -118,19 +122,21 @@ class Camera(CheckedParameters):
         )
 
     def is_frame_due(self, number: int, t: float) -> bool:
-        """Return whether frame `number` is due by the time t [s]."""
+        """Return whether the camera frame with this number is due by the time t [s]."""
         return number / self.rate <= t + 1e-9
 
     def take_frames_between(
         self, t0: float, before: Pose, t1: float, after: Pose, first: int, rng: np.random.Generator
     ) -> Iterator[Frame]:
-        """Take the frames that fall into a step, with the pose interpolated between its ends.
+        """Take the camera frames that fall into one step of a simulation.
+
+        The true pose is interpolated between the ends of the step.
 
         Args:
-            t0: Begin of the step [s].
-            before: True pose then.
-            t1: End of the step [s].
-            after: True pose then.
+            t0: Time at the begin of the step [s].
+            before: True pose at the begin.
+            t1: Time at the end of the step [s].
+            after: True pose at the end.
             first: Number of the first frame that was not taken yet.
             rng: Random generator of the marking noise.
         """
@@ -145,7 +151,7 @@ class Camera(CheckedParameters):
 
 
 def make_camera(vessel: Vessel, settings: Mapping[str, object]) -> Camera:
-    """Return the camera of a scenario.
+    """Return the overhead camera of a scenario, which measures a vessel by marks on its hull.
 
     Args:
         vessel: The vessel; its marks are used unless the settings replace them. Without any mark

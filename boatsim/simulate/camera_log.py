@@ -10,7 +10,7 @@ from boatsim.simulate.stepper import State
 
 
 class CameraLog:
-    """Logs the frames, each with the mean of the commands from it to the next frame.
+    """Takes and logs the camera frames of a run, with the mean commands between two frames.
 
     Attributes:
         table: The frames.
@@ -42,15 +42,20 @@ class CameraLog:
 
     @property
     def next_frame_time(self) -> float:
-        """Time of the next frame [s]."""
+        """Time at which the next camera frame is due [s]."""
         return self._number / self._camera.rate
 
     def add_interval(self, commands: list[float], seconds: float) -> None:
-        """Note that commands, in the order of the channels, act for `seconds`."""
+        """Record for how many seconds commands were in force.
+
+        Their mean between two camera frames is logged.
+
+        The commands are in the order of the channels.
+        """
         self._intervals.append((commands, seconds))
 
     def take_frames(self, before: State, after: State, commands: list[float]) -> list[Frame]:
-        """Take and log the frames that fall into a step.
+        """Take and log the camera frames that fall into one step of the simulation.
 
         Args:
             before: State at the begin of the step.
@@ -86,7 +91,7 @@ class CameraLog:
         self._intervals.clear()
 
     def recording(self, notes: Notes, start: int = 0, end: int | None = None) -> Recording:
-        """Return the frames from `start` up to but not including `end`.
+        """Return camera frames as a recording, from number `start` up to but not including `end`.
 
         Args:
             notes: Notes of the recording.
@@ -97,5 +102,5 @@ class CameraLog:
 
 
 def mark_columns(camera: Camera) -> list[str]:
-    """Return the columns of the marks that a camera sees."""
+    """Return the names of the log columns with the measured positions of hull marks of a camera."""
     return [f"camera_{mark}_{axis}_m" for mark in camera.marks for axis in "xy"]

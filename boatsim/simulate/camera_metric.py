@@ -17,7 +17,9 @@ NOISE_SAMPLES = 200  # of the camera's noise; they give the noise floor to about
 
 @dataclass(frozen=True)
 class CameraFrames:
-    """Measured marks and true pose at the frames, in axes with origin and heading of the start.
+    """Measured hull marks and headings and true poses at the times of camera frames.
+
+    The axes have origin and heading of the start.
 
     Attributes:
         t: Times (n,) [s].
@@ -34,7 +36,7 @@ class CameraFrames:
     psi: Array
 
     def until(self, frame: int) -> "CameraFrames":
-        """Return the frames up to and including number `frame`."""
+        """Return the camera frames up to and including the given frame number."""
         n = frame + 1
         marks = {name: positions[:n] for name, positions in self.marks.items()}
         return CameraFrames(self.t[:n], self.heading[:n], marks, self.place[:n], self.psi[:n])
@@ -42,9 +44,10 @@ class CameraFrames:
 
 @dataclass(frozen=True)
 class CameraMetricSet(MetricSet):
-    """Base class of metric sets on camera frames, at a scored rate and at a second, reported rate.
+    """Base class of metric sets that are computed from camera frames instead of the log of a run.
 
-    Times and positions count from `begin`; earlier frames, as of preparations, are ignored.
+    Metrics are computed at a scored frame rate and at a second, reported one. Times and positions
+    count from `begin`; earlier frames, as of preparations, are ignored.
     """
 
     scored: float = param(
@@ -56,7 +59,7 @@ class CameraMetricSet(MetricSet):
     begin: float = param(0.0, low=0.0, high=1e6, unit="s", words="when what is measured begins")
 
     def check_camera(self, camera: Camera) -> None:
-        """Check that the camera can deliver the frames.
+        """Check that a camera can deliver the frames that this metric set needs.
 
         Args:
             camera: The scenario's camera.
@@ -73,7 +76,7 @@ class CameraMetricSet(MetricSet):
                 )
 
     def values_from_frames(self, frames: CameraFrames) -> dict[str, float]:
-        """Compute the metrics of camera frames.
+        """Compute the metrics of a run from its camera frames.
 
         Args:
             frames: The frames.
@@ -85,7 +88,7 @@ class CameraMetricSet(MetricSet):
         raise NotImplementedError
 
     def values_from_noise(self, frames: int, camera: Camera) -> dict[str, Array]:
-        """Compute the metrics of error-free motion under a camera with noisy marks.
+        """Compute the metrics that camera noise alone causes for an ideal motion.
 
         Args:
             frames: Number of frames.
@@ -97,7 +100,9 @@ class CameraMetricSet(MetricSet):
         raise NotImplementedError
 
     def kind(self, metric: str) -> str:
-        """Return how a metric summarises its signal; sums are over frames, whatever the rate.
+        """Return how a metric on camera frames summarises its signal, such as "rms" or "largest".
+
+        Sums are over frames, whatever the frame rate.
 
         Args:
             metric: Name of one of the metrics.
@@ -106,7 +111,7 @@ class CameraMetricSet(MetricSet):
         return sums.get(metric.rpartition("_")[2]) or super().kind(metric)
 
     def noise_floor(self, frames: int, camera: Camera) -> dict[str, float]:
-        """Return the mean of each metric that the noise of the marks alone causes.
+        """Return the mean value that camera noise alone gives to each metric of ideal motion.
 
         Args:
             frames: Number of frames.
@@ -121,7 +126,7 @@ class CameraMetricSet(MetricSet):
 def select_camera_frames(
     camera: Recording, truth: Recording, start: Pose, every: int, begin: float = 0.0
 ) -> CameraFrames:
-    """Select camera frames and the true pose at their times.
+    """Select camera frames of a run and the true pose at their times, relative to the start.
 
     Args:
         camera: Recording of the camera.
@@ -165,9 +170,7 @@ def select_camera_frames(
 
 
 def sample_mark_noise(frames: int, camera: Camera) -> Array:
-    """Return standard normal samples for all coordinates of the marks.
-
-    The samples are the same for every seed, so that a noise floor depends on the frames alone.
+    """Return standard normal samples for the noise of all hull marks in all camera frames.
 
     Args:
         frames: Number of frames.
@@ -181,7 +184,7 @@ def sample_mark_noise(frames: int, camera: Camera) -> Array:
 
 
 def first_frame_where(reached: NDArray[np.bool_], least: int = 0) -> int | None:
-    """Return the number of the first frame at which a condition holds.
+    """Return the number of the first camera frame at which a condition holds.
 
     Args:
         reached: Whether the condition holds, (n,).

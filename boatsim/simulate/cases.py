@@ -29,7 +29,7 @@ OTHERS = ("vessel.toml", "patched.toml", "recording.toml", "pins.toml")
 
 @dataclass(frozen=True)
 class ScenarioLocation:
-    """A scenario file and one of its cases.
+    """Where a scenario is stored: a file, and the name of a case if the file has several.
 
     Attributes:
         path: The file.
@@ -41,12 +41,12 @@ class ScenarioLocation:
 
     @property
     def label(self) -> str:
-        """Name in error messages."""
+        """Name of a scenario in error messages: file name, and case if it has one."""
         return f"{self.path.name}: {self.case}" if self.case else self.path.name
 
     @property
     def name(self) -> str:
-        """Vessel/case for shipped scenarios; the case or the file's stem for a file of the user."""
+        """Name of a scenario: "vessel/case" if it is shipped, else its case or file name."""
         own = self.case or self.path.stem
         for home in (content_root(), *trust.user_content_folders()):
             if self.path.parent.parent == home / "scenarios":
@@ -55,7 +55,7 @@ class ScenarioLocation:
 
     @property
     def address(self) -> str:
-        """Name by which it is found again: vessel/case, or the path of a file with its case."""
+        """Address by which a scenario can be loaded again: "vessel/case", or path and case."""
         if "/" in self.name or not self.path.is_file():
             return self.name
         path = str(self.path.resolve())
@@ -63,7 +63,7 @@ class ScenarioLocation:
 
 
 def read_scenario(given: str) -> tuple[dict[str, Value], ScenarioLocation]:
-    """Read a scenario.
+    """Read the content of a scenario file, merged with the scenarios on which it is based.
 
     Args:
         given: Name or path, as for `find_scenario`.
@@ -79,7 +79,7 @@ def read_scenario(given: str) -> tuple[dict[str, Value], ScenarioLocation]:
 
 
 def find_scenarios(given: str) -> list[str]:
-    """Return the scenarios that an argument of the command line stands for.
+    """Find all scenarios that an argument of the command line denotes, such as a folder or pattern.
 
     Args:
         given: A name, a folder, a pattern with * and ?, or a file, which stands for its cases.
@@ -117,7 +117,7 @@ def find_scenarios(given: str) -> list[str]:
 
 
 def scenario_files(folder: Path) -> list[Path]:
-    """Return the scenario files in a folder, sorted by name.
+    """Return the paths of the scenario files in a folder, sorted by name.
 
     Raises:
         BadInput: If there is none.
@@ -129,7 +129,7 @@ def scenario_files(folder: Path) -> list[Path]:
 
 
 def case_names(path: Path) -> list[str]:
-    """Return the names of a file's cases; none if it is one scenario.
+    """Return the names of the [[case]] tables of a scenario file; none if it is a single scenario.
 
     Raises:
         BadInput: If the file is not valid, a case has no name or two have the same.
@@ -153,7 +153,7 @@ def case_names(path: Path) -> list[str]:
 
 
 def find_scenario(given: str, base_folder: Path | None = None) -> ScenarioLocation:
-    """Find a scenario.
+    """Find a scenario by its name or path; return its file and case.
 
     Args:
         given: Name, or path of a file, or `file.toml:case`.
@@ -180,7 +180,10 @@ def find_scenario(given: str, base_folder: Path | None = None) -> ScenarioLocati
 
 
 def merge_tables(base: Mapping[str, Value], over: Mapping[str, Value]) -> dict[str, Value]:
-    """Merge a table into a base table; see the module for the rule.
+    """Merge the table of a scenario file into the table of the scenario on which it is based.
+
+    Tables within both are merged recursively, unless the overriding one has the key `use`; all
+    other values of the overriding table replace those of the base.
 
     Args:
         base: The base.

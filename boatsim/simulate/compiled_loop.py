@@ -19,7 +19,7 @@ from boatsim.simulate.sensing import add_sensor_errors
 
 
 class Periods(NamedTuple):
-    """The control periods of one call."""
+    """Number, length and order of the control periods in one call of the compiled loop."""
 
     law_first: bool  # each period begins with the law; else it ends with it
     number: int
@@ -28,7 +28,7 @@ class Periods(NamedTuple):
 
 
 class Control(NamedTuple):
-    """Records of the controllers, one for each vessel."""
+    """Arrays of records with settings, memory, inputs and outputs of each vessel's controller."""
 
     settings: Any
     memory: Any
@@ -38,7 +38,7 @@ class Control(NamedTuple):
 
 
 class Sensing(NamedTuple):
-    """Readings of the instruments."""
+    """Arrays for simulated instruments: true readings, parameters of sensor errors, and noise."""
 
     felt: Array  # (n, 11) numbers of the records `sense`
     sensors: Array  # `Sensors.error_parameters`
@@ -46,14 +46,14 @@ class Sensing(NamedTuple):
 
 
 class Goals(NamedTuple):
-    """Goals of the controllers."""
+    """Arrays with the goals that controllers follow: the present ones, and those of each period."""
 
     wanted: Array  # (n, G) numbers of the records `goal`
     values: Array  # (periods, G) the same for all vessels
 
 
 class Orders(NamedTuple):
-    """Arrays with the commands that the controllers of n boats send, and their limits."""
+    """Arrays with the commands that the controllers of n vessels send, and their limits."""
 
     values: Array  # (n, orders) numbers of the records `sent`
     places: Any  # (orders,) input of the vessel that each order is for
@@ -64,7 +64,7 @@ class Orders(NamedTuple):
 
 
 class Loop(NamedTuple):
-    """Inputs of the closed loop that come from the controllers."""
+    """Arrays of the compiled closed loop: controllers, sensors, goals and commands of vessels."""
 
     control: Control
     sensing: Sensing
@@ -85,14 +85,20 @@ PERIODS = types.NamedTuple([types.boolean, types.int64, types.int64, types.float
 def add_sensor_errors_to_boats(
     boats: Any, felt: Array, sensors: Array, noise: Array, i: int
 ) -> None:
-    """Add the errors of the sensors to true readings; noise (boats, periods, 7) of period i."""
+    """Add sensor errors to the true readings of vessels, in place.
+
+    The errors are those of control period i; `noise` has the shape (boats, periods, 7).
+    """
     for j in range(len(boats)):
         add_sensor_errors(felt[boats[j]], sensors, noise[j, i])
 
 
 @merged
 def accumulate_commands(boats: Any, commands: Array, orders: Orders, steps: int, dt: float) -> None:
-    """Add up the commands in force over some steps, and the steps in which more was ordered."""
+    """Add the commands in force over some steps to their time integrals, and count saturated steps.
+
+    A step is saturated if the controller ordered more than the range of the channel allows.
+    """
     low, high = orders.low, orders.high
     for b in boats:
         for j in range(len(orders.places)):
@@ -105,7 +111,10 @@ def accumulate_commands(boats: Any, commands: Array, orders: Orders, steps: int,
 def run_periods(
     law: Any, feel: Any, advance: Any, boats: Any, periods: Periods, fleet: FleetArrays, loop: Loop
 ) -> None:
-    """Run control periods in place.
+    """Simulate vessels with their controllers over control periods, in place.
+
+    In each period the sensors are read, the control law computes commands, and the physics is
+    integrated.
 
     Args:
         law: Law of the controllers.
@@ -141,7 +150,9 @@ def run_periods(
 def function_pointers(
     law: Any, feel: Any, advance: Any, records: tuple[Any, ...]
 ) -> tuple[Any, ...]:
-    """Return the first three arguments of `run_periods`.
+    """Return control law, sensing and physics as the function arguments of `run_periods`.
+
+    They are pointers to the compiled functions, in debugging mode the functions.
 
     Args:
         law: Law of the controllers.
@@ -160,13 +171,14 @@ def function_pointers(
 
 @cache
 def compiled_loop(kinds: tuple[Any, ...], loop: Any) -> Any:
-    """Return `run_periods` compiled for pointers of these types and this type of `Loop`.
+    """Return the compiled simulation of control periods, `run_periods`, for given argument types.
 
-    Each has its own function: numba would try every call on the types of the others too.
+    Each combination of types has its own function: numba would try every call on the types of the
+    others too.
 
     Args:
-        kinds: Types of the three pointers.
-        loop: Type of the record.
+        kinds: Types of the pointers to control law, sensing and physics.
+        loop: Type of the record `Loop`.
     """
     own: Any = unlocked(run_periods)
     own.compile((*kinds, Boats, PERIODS, FLEET, loop))

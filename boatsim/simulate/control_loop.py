@@ -23,7 +23,7 @@ TIME_TOLERANCE = 1e-9  # [s] by which rounding may shift the time at which somet
 
 
 class ControlLoop:
-    """Senses and controls once per control period and advances the physics in between.
+    """Closed loop of one run: sensors and controller act once per period, the physics in between.
 
     Attributes:
         scenario: The scenario.
@@ -83,7 +83,7 @@ class ControlLoop:
 
     @contextmanager
     def name_controller_in_errors(self) -> Iterator[Controller]:
-        """Yield the controller; an error in the block names it and the time.
+        """Yield the controller to a block; an error there is raised with its name and time.
 
         Raises:
             BadInput: If anything in the block fails.
@@ -97,7 +97,7 @@ class ControlLoop:
             raise BadInput(f"{where}: {controller_error(error, controller)}") from error
 
     def advance(self, on_early_command: Callable[[], None]) -> None:
-        """Advance by one step of physics with the commands held.
+        """Advance the run by one step of physics with constant commands.
 
         The step is cut where the controller acts within its period.
 
@@ -124,7 +124,7 @@ class ControlLoop:
             self._advance_physics(self.engine.step)
 
     def control_if_due(self) -> None:
-        """Sense and control if a control period begins now.
+        """Read the sensors and run the controller if a control period begins now.
 
         Raises:
             BadInput: If the controller fails.
@@ -134,10 +134,10 @@ class ControlLoop:
             self._sense_and_control()
 
     def advance_periods(self, until: float) -> None:
-        """Advance over whole control periods in one compiled call, if scenario and engine allow it.
+        """Advance the run over whole control periods in one compiled call, where that is possible.
 
-        Nothing happens unless a period has just begun and several periods end at least a step
-        before `until` [s].
+        Nothing happens unless scenario and engine allow it, a period has just begun and several
+        periods end at least a step before `until` [s].
 
         Raises:
             BadInput: If the controller or the physics fails.
@@ -158,7 +158,7 @@ class ControlLoop:
         self._store_sent_commands()
 
     def commands_in_force(self) -> list[float]:
-        """Return the commands that act, in the order of `channels`."""
+        """Return the commands that act on the vessel, in the order of `channels`."""
         commands = self.engine.commands_in_force()
         return [commands[place] for place in self._places]
 
@@ -200,10 +200,10 @@ class ControlLoop:
 
 
 def controller_error(error: Exception, controller: Controller) -> str:
-    """Describe an error of a controller in one line.
+    """Describe an exception that a controller raised in one line.
 
     Args:
-        error: What was raised.
+        error: The exception.
         controller: The controller.
 
     Returns:

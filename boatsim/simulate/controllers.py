@@ -18,7 +18,7 @@ def load_with_controller(
     vessel: Vessel | None = None,
     changes: Mapping[str, object] | None = None,
 ) -> Scenario:
-    """Return a scenario with its own controller or with another one.
+    """Load a scenario with its own controller or with another one in its place.
 
     Args:
         given: Name or path of the scenario.
@@ -47,7 +47,9 @@ def load_with_controller(
 
 
 def controller_table(controller: str, own: object) -> Mapping[str, Any]:
-    """Return the [controller] table of a controller with its defaults, or the scenario's own one.
+    """Return the table [controller] of a scenario file for a controller with default settings.
+
+    The scenario's own table is returned if it is of this controller.
 
     Args:
         controller: Name of a controller, or path of its .py, which may run because the user names

@@ -26,7 +26,7 @@ SAME = 1e-12
 
 
 class ModelOptions(TypedDict, total=False):
-    """Options of `world.build_model`."""
+    """Options for building the MuJoCo model of a vessel in a tank, see `world.build_model`."""
 
     show: bool
     wall_solref: tuple[float, float] | None
@@ -34,7 +34,7 @@ class ModelOptions(TypedDict, total=False):
 
 
 class Engine(Stepper):
-    """One vessel in one tank.
+    """Simulation of one vessel in one tank on MuJoCo.
 
     Attributes:
         tank: The tank.
@@ -86,7 +86,7 @@ class Engine(Stepper):
 
     @property
     def t(self) -> float:
-        """Time [s]."""
+        """Simulated time [s]."""
         return float(self.data.time)
 
     def _set_joint_state(self, t: float, state: Array) -> None:
@@ -96,12 +96,12 @@ class Engine(Stepper):
         self.data.qvel[self._place] = self._sign * state[self.code.NQ :]
 
     def settle_actuators(self) -> None:
-        """Set the actuators to the steady state of their commands."""
+        """Set the actuators of the vessel to the steady state of their commands."""
         super().settle_actuators()
         self._write_userdata()
 
     def advance(self, steps: int = 1, length: float | None = None) -> None:
-        """Take steps with the commands held.
+        """Integrate the motion of the vessel over some steps with constant commands.
 
         Args:
             steps: Number of steps.
@@ -121,7 +121,7 @@ class Engine(Stepper):
         mujoco.mj_step(self.model, self.data)
 
     def advance_without_actuators(self, steps: int) -> None:
-        """Take steps in MuJoCo's own loop with fixed actuators, for benchmarks."""
+        """Take steps in MuJoCo's own loop with actuators held in place, for benchmarks."""
         with installed_callback(self.callback):
             mujoco.mj_step(self.model, self.data, nstep=steps)
 
@@ -131,11 +131,11 @@ class Engine(Stepper):
 
     @property
     def contacts(self) -> int:
-        """Number of contacts of the hull."""
+        """Number of contacts of the hull with walls, as MuJoCo detects them."""
         return int(self.data.ncon)
 
     def acceleration(self) -> tuple[float, float]:
-        """Return the acceleration of the origin over ground along body x and y [m/s^2]."""
+        """Return the acceleration over ground of the vessel's origin along body x, y [m/s^2]."""
         J = self.program.jacobian(self._joint_state().tolist())
         moving = [k for k, i in enumerate(self.code.FREE) if i < 3]
         ahead, aside, _ = J[:3, moving] @ (self._sign * self.data.qacc[self._place])[moving]
@@ -177,7 +177,9 @@ class Engine(Stepper):
 def python_callback(
     code: CompiledProgram, size: int
 ) -> Callable[[mujoco.MjModel, mujoco.MjData], None]:
-    """Return the callback in Python: the same compiled functions, called by the interpreter.
+    """Return a vessel's passive-force callback for MuJoCo as a Python function.
+
+    It calls the same compiled functions as the native callback, through the interpreter.
 
     Args:
         code: The vessel's compiled program.
@@ -195,7 +197,7 @@ def python_callback(
 
 
 class installed_callback:  # noqa: N801
-    """Install a passive-force callback for a block; MuJoCo's callbacks are global to the process.
+    """Context manager that installs a passive-force callback of MuJoCo, for the whole process.
 
     MuJoCo's warnings are dropped in the block; it would write them to a file in the working folder,
     and a diverging motion is reported as an error. It is a class because that takes a tenth of the
@@ -226,7 +228,10 @@ def _ignore_warning(_: str) -> None:
 
 @contextmanager
 def no_callback() -> Iterator[None]:
-    """Remove the callback for a block; a callback in Python prevents the compilation of models."""
+    """Remove MuJoCo's passive-force callback within a `with` block.
+
+    A callback in Python prevents the compilation of models.
+    """
     saved = mujoco.get_mjcb_passive()
     mujoco.set_mjcb_passive(None)
     try:

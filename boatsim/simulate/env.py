@@ -56,7 +56,7 @@ OUTBOARDS = {-1: "outboard_port", 0: "outboard", 1: "outboard_starboard"}
 
 
 class BoatPhysics(Physics):
-    """An engine's model and data behind dm_control's interface; `step` and `forward` use forces.
+    """Physics of dm_control for a simulated vessel, with its forces in `step` and `forward`.
 
     `named.data`, cameras and contacts are MuJoCo's, z up; `engine.state` and the observations of
     the environment are SNAME. Controls are the vessel's commands.
@@ -82,7 +82,7 @@ class BoatPhysics(Physics):
         super().__init__(wrapper.MjData(engine.data))
 
     def step(self, nstep: int = 1) -> None:
-        """Take steps of `timestep()` with the commands held.
+        """Integrate the motion of the vessel over steps of `timestep()` with constant commands.
 
         Args:
             nstep: Number of steps.
@@ -99,14 +99,14 @@ class BoatPhysics(Physics):
                     mujoco.mj_step1(self.engine.model, self.engine.data)
 
     def forward(self) -> None:
-        """Recompute all quantities that follow from the state, including forces."""
+        """Recompute all quantities of the MuJoCo model that follow from the state, also forces."""
         self.engine._write_userdata()
         self._turn_outboards()
         with installed_callback(self.engine.callback):
             super().forward()
 
     def reset(self, keyframe_id: int | None = None) -> None:
-        """Put the vessel at the origin, at rest.
+        """Put the simulated vessel at the origin, at rest.
 
         Raises:
             ValueError: If a keyframe is given; a vessel has none.
@@ -120,7 +120,7 @@ class BoatPhysics(Physics):
         self.forward()
 
     def set_control(self, control: ArrayLike) -> None:
-        """Send commands, which act within their ranges.
+        """Send commands to the vessel's actuators; they are limited to their ranges.
 
         Args:
             control: Commands (C,) in the vessel's order.
@@ -137,11 +137,14 @@ class BoatPhysics(Physics):
         self.engine.command(dict(zip(names, values.tolist(), strict=True)))
 
     def control(self) -> Array:
-        """Return the commands in force (C,)."""
+        """Return the vessel's commands in force (C,)."""
         return self.engine._commands[: len(self.engine.vessel.commands)].copy()
 
     def copy(self, share_model: bool = False) -> "BoatPhysics":
-        """Return a copy in the same state; it always has its own model, in which outboards turn."""
+        """Return a copy of the simulated vessel in the same state.
+
+        It always has its own MuJoCo model, since outboards turn within the model.
+        """
         restore, arguments = self.__reduce__()
         return restore(*arguments)
 
@@ -188,11 +191,12 @@ def _restore_physics(
 
 
 class BoatTask(control.Task):
-    """Follow the scenario's goals `surge_mps`, `sway_mps` and `yaw_radps`; missing goals are zero.
+    """Reinforcement-learning task of dm_control: follow the velocity goals of a scenario.
 
-    The reward of a control step is minus the squared velocity error at its end [m^2/s^2], with the
-    yaw rate as the speed of bow and stern: -((u - u*)^2 + (v - v*)^2 + (L/2 (r - r*))^2). Episodes
-    end at a time only; the discount is 1.
+    The goals are `surge_mps`, `sway_mps` and `yaw_radps`; missing goals are zero. The reward of a
+    control step is minus the squared velocity error at its end [m^2/s^2], with the yaw rate as the
+    speed of bow and stern: -((u - u*)^2 + (v - v*)^2 + (L/2 (r - r*))^2). Episodes end at a time
+    only; the discount is 1.
 
     Attributes:
         scenario: The scenario.
@@ -216,7 +220,7 @@ class BoatTask(control.Task):
         self._random = np.random.default_rng(seed)
 
     def initialize_episode(self, physics: BoatPhysics) -> None:
-        """Put the vessel at the start, with actuators settled at the initial commands."""
+        """Put the vessel at the start of an episode, with actuators settled at its commands."""
         start, length = self.scenario.file.start, self.scenario.vessel.length
         x, y, psi = self._random.uniform(-self.scatter, self.scatter, 3) * (length, length, 1.0)
         scattered = {"x": start.x + x, "y": start.y + y, "psi": start.psi + psi}
@@ -226,20 +230,23 @@ class BoatTask(control.Task):
         )
 
     def before_step(self, action: ArrayLike, physics: BoatPhysics) -> None:
-        """Send the action to the actuators, which follow with their dynamics and limits."""
+        """Send an agent's action to the actuators, which follow with their dynamics and limits."""
         physics.set_control(action)
 
     def action_spec(self, physics: BoatPhysics) -> specs.BoundedArray:
-        """Return the lower and upper limits of the C commands; its name lists the commands."""
+        """Return the specification of an action: lower and upper limits of the vessel's C commands.
+
+        Its name lists the commands.
+        """
         channels = self.scenario.vessel.commands
         limits = [(channel.low, channel.high) for channel in channels.values()]
         low, high = np.array(limits, dtype=float).reshape(-1, 2).T
         return specs.BoundedArray(low.shape, float, low, high, name="\t".join(channels))
 
     def get_observation(self, physics: BoatPhysics) -> OrderedDict[str, np.float64]:
-        """Return true pose in start axes, velocities in body axes, actuators and goals.
+        """Return an agent's observation: true pose and velocities, actuators and goals.
 
-        Units are part of the names.
+        The pose is in start axes, velocities are in body axes. Units are part of the names.
         """
         state, actual, goal = physics.engine.state, physics.engine.actuators, self._goal(physics)
         values = {s.column: getattr(state, s.symbol) for s in signals_of(self.scenario.vessel.dof)}
@@ -248,7 +255,7 @@ class BoatTask(control.Task):
         return OrderedDict((name, np.float64(value)) for name, value in values.items())
 
     def get_reward(self, physics: BoatPhysics) -> float:
-        """Return minus the squared velocity error [m^2/s^2]."""
+        """Return the reward of a control step: minus the squared velocity error [m^2/s^2]."""
         s, (surge, sway, yaw) = physics.engine.state, self._goal(physics)
         swing = 0.5 * self.scenario.vessel.length * (s.r - yaw)
         return -float((s.u - surge) ** 2 + (s.v - sway) ** 2 + swing**2)
@@ -265,7 +272,9 @@ def load(
     scatter: float = 0.0,
     flat_observation: bool = False,
 ) -> control.Environment:
-    """Return an environment whose actions replace the scenario's controller, with its period.
+    """Return a dm_control environment of a scenario, whose actions replace its controller.
+
+    A control step is one period of the scenario's controller.
 
     Args:
         scenario: Name of a scenario, or a scenario.

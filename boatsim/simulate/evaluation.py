@@ -26,7 +26,7 @@ NO_TOLERANCE = "no tolerance stated"
 
 
 class MetricEntry(TypedDict):
-    """One metric in norms.json: a `Metric` with its verdict."""
+    """Entry of one metric in norms.json: value, published value, regression band and verdict."""
 
     value: float | None
     unit: str
@@ -42,7 +42,7 @@ class MetricEntry(TypedDict):
 
 
 class RunEntry(TypedDict):
-    """Content of norms.json."""
+    """Content of norms.json: the metrics of a run and what was run."""
 
     scenario: str
     controller: str
@@ -55,7 +55,7 @@ class RunEntry(TypedDict):
 
 @dataclass(frozen=True)
 class Metric:
-    """One metric of a run with the published value and the regression band.
+    """Value of one metric of a run, with published value and regression band for comparison.
 
     Attributes:
         value: The value; None if the run did not reach the metric's condition.
@@ -85,7 +85,7 @@ class Metric:
 
     @property
     def verdict(self) -> str | None:
-        """Whether the published value is reproduced, sign included; None without one."""
+        """Whether a metric reproduces its published value, sign included; None without one."""
         if self.published is None:
             return None
         if self.tolerance is None:
@@ -95,7 +95,7 @@ class Metric:
         return MISSED
 
     def to_json(self) -> MetricEntry:
-        """Return the metric's entry in norms.json."""
+        """Return the entry of a metric in norms.json."""
         ends = None
         if self.band is not None:
             ends = [end if isfinite(end) else None for end in self.band]
@@ -115,12 +115,12 @@ class Metric:
 
 
 def within_tolerance(value: float, published: float, tolerance: float) -> bool:
-    """Return whether a value differs from a published one by at most the tolerance."""
+    """Return whether a metric differs from its published value by at most the tolerance."""
     return abs(value - published) <= tolerance * (1 + 1e-9)
 
 
 def requested_metrics(run: Run) -> dict[str, Metric]:
-    """Return the metrics that the scenario requests.
+    """Return the metrics of a run that its scenario requests.
 
     Args:
         run: A run, which may have been interrupted.
@@ -151,7 +151,9 @@ def requested_metrics(run: Run) -> dict[str, Metric]:
 
 
 def all_metrics(run: Run) -> dict[str, Metric]:
-    """Return the requested metrics and those of the tracking errors, which are always computed.
+    """Return all metrics of a run: those its scenario requests, and tracking errors of its goals.
+
+    Tracking errors are always computed.
 
     Args:
         run: A run, which may have been interrupted.
@@ -173,7 +175,7 @@ def all_metrics(run: Run) -> dict[str, Metric]:
 
 
 def metric_names(scenario: Scenario) -> set[str]:
-    """Return the names of all metrics that a run of a scenario can have."""
+    """Return the names of all metrics that runs of a scenario can have."""
     found = set(tracking_errors.error_units(scenario.goal_keys))
     found |= {f"{check.signal}_{check.norm}" for check in scenario.file.check}
     if scenario.measure:
@@ -225,7 +227,7 @@ def _metrics_without_values(run: Run, metric_set: MetricSet | None) -> dict[str,
 
 
 def to_json(run: Run, metrics: Mapping[str, Metric]) -> RunEntry:
-    """Return the content of norms.json.
+    """Return the content of norms.json for a run: its metrics, seed, steps and saturated commands.
 
     Args:
         run: The run.
@@ -243,7 +245,7 @@ def to_json(run: Run, metrics: Mapping[str, Metric]) -> RunEntry:
 
 
 def camera_metrics(run: Run, metric_set: CameraMetricSet, rate: float) -> dict[str, float]:
-    """Compute the metrics of the camera frames of a run at a lower frame rate.
+    """Compute the metrics of a run from its camera frames, at a lower frame rate.
 
     Args:
         run: The run.
@@ -262,7 +264,9 @@ def camera_metrics(run: Run, metric_set: CameraMetricSet, rate: float) -> dict[s
 
 
 def signal_norm(t: Array, x: Array, kind: str) -> float:
-    """Compute a norm of a logged signal over the time T of the log, ignoring rows without a value.
+    """Compute a norm of a logged signal over the duration T of the log.
+
+    Rows without a value are ignored.
 
     Args:
         t: Times (N,) [s].

@@ -32,7 +32,7 @@ AHEAD = 64  # [periods] for which noise is sampled at a time
 
 @dataclass(frozen=True)
 class FleetLog:
-    """States and commands of all vessels at N times.
+    """Log of a fleet simulation: states and commands of all n vessels at N times.
 
     Attributes:
         t: Times (N,) [s].
@@ -56,7 +56,9 @@ class FleetLog:
 
 
 class Fleet:
-    """Vessels of a scenario; the motion of each depends on its vessel, start and seed only.
+    """Closed-loop simulation of many vessels in one scenario, without interaction between them.
+
+    The motion of each depends on its vessel, start and seed only.
 
     Attributes:
         scenario: The scenario.
@@ -123,7 +125,7 @@ class Fleet:
         self.reset()
 
     def reset(self, starts: ArrayLike | None = None) -> None:
-        """Put the vessels at a start, with the noise from its beginning.
+        """Put all vessels of the fleet at a start and restart their noise.
 
         Args:
             starts: State (2 NQ,) or states (n, 2 NQ); default: the scenario's start.
@@ -144,18 +146,18 @@ class Fleet:
 
     @property
     def saturated(self) -> Array:
-        """Steps (n, inputs) in which a command exceeded its range."""
+        """Number of steps (n, inputs) in which a command of a vessel exceeded its range."""
         return self._aboard.saturated.copy()
 
     def run(self, seconds: float | None = None, log: float = inf) -> FleetLog:
-        """Continue the run.
+        """Continue the simulation of all vessels and log their states and commands.
 
         Args:
             seconds: Simulated time [s]; default: the scenario's duration.
             log: Time between two logged rows [s], rounded to control periods.
 
         Returns:
-            The rows, with the first and the last state.
+            The log, with the first and the last state.
         """
         if seconds is None:
             seconds = self.scenario.file.duration

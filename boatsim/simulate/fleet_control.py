@@ -23,7 +23,7 @@ Vectorised: TypeAlias = Callable[[Records, Mapping[str, float]], Mapping[str, Ar
 
 @dataclass
 class FleetControl:
-    """Base class of all kinds of control.
+    """Base class of the ways to control a fleet: goals, a function, or compiled controllers.
 
     Attributes:
         batch: The vessels.
@@ -46,14 +46,14 @@ class FleetControl:
 
     @property
     def limits(self) -> tuple[Array, Array]:
-        """Smallest and largest value of each input (inputs,)."""
+        """Smallest and largest value of each input of a vessel, two arrays (inputs,)."""
         low, high = (
             np.array(list(self.batch.vessels[0].limits().values()), dtype=float).reshape(-1, 2).T
         )
         return np.ascontiguousarray(low), np.ascontiguousarray(high)
 
     def next_noise(self, boats: Boats, periods: int) -> Array:
-        """Return the next numbers (boats, periods, 7) of the noise of each vessel."""
+        """Return the next random numbers (boats, periods, 7) of the sensor noise of each vessel."""
         samples = np.zeros((len(boats), periods, NOISES))
         if not self.sensors.ideal:
             for row, b in zip(samples, boats, strict=True):
@@ -61,7 +61,9 @@ class FleetControl:
         return samples
 
     def send_commands(self, orders: Array, steps: int) -> None:
-        """Advance all vessels under orders and count the steps with commands beyond their range.
+        """Integrate the motion of all vessels under commands and count saturated steps.
+
+        A step is saturated if a command exceeds its range.
 
         Args:
             orders: Commands (n, inputs) or (inputs,).
@@ -73,33 +75,33 @@ class FleetControl:
 
 
 class GoalsAsCommands:
-    """Sends the goals as commands of their channels."""
+    """Controls a fleet by sending the goals of its scenario directly as commands."""
 
     def __init__(self, aboard: FleetControl) -> None:
         self.aboard = aboard
 
     def reset(self) -> None:
-        """Do nothing: there is no memory."""
+        """Do nothing, since goals that are sent as commands need no memory."""
 
     def advance(self, goals: Sequence[Mapping[str, float]]) -> None:
-        """Advance by one control period per goal."""
+        """Advance the fleet by one control period per goal, with the goals as commands."""
         for goal, same in groupby(goals):
             steps = len(list(same)) * self.aboard.steps
             self.aboard.send_commands(command_row(self.aboard.batch.vessels[0], goal), steps)
 
 
 class FunctionControl:
-    """Sends the commands that a function computes from the sensors of all vessels and the goals."""
+    """Controls a fleet by a function that computes commands from all sensors and the goals."""
 
     def __init__(self, aboard: FleetControl, function: Vectorised) -> None:
         self.aboard, self.function = aboard, function
         self._sense = np.zeros(len(aboard.batch), SENSE)
 
     def reset(self) -> None:
-        """Do nothing: the function has its own memory."""
+        """Do nothing, since a function that controls a fleet has its own memory."""
 
     def advance(self, goals: Sequence[Mapping[str, float]]) -> None:
-        """Advance by one control period per goal.
+        """Advance the fleet by one control period per goal, with the commands of the function.
 
         Raises:
             BadInput: If the function returns a channel that does not exist.
@@ -121,7 +123,10 @@ class FunctionControl:
 
 
 class CompiledControl:
-    """Compiled controllers of one kind; each vessel has its own settings and memory."""
+    """Controls a fleet by compiled controllers of one kind, one for each vessel.
+
+    Each vessel's controller has its own settings and memory.
+    """
 
     def __init__(
         self,
@@ -159,11 +164,11 @@ class CompiledControl:
         self._compile()
 
     def reset(self) -> None:
-        """Clear the memory of all controllers."""
+        """Clear the memory of the controllers of all vessels of a fleet."""
         self._memory[:] = np.zeros(1, self.kind.memory_type)
 
     def advance(self, goals: Sequence[Mapping[str, float]], begins: bool = True) -> None:
-        """Advance by one control period per goal.
+        """Advance the fleet by one control period per goal, under its compiled controllers.
 
         Args:
             goals: Goals of each period.

@@ -15,7 +15,7 @@ PIECE = 500  # [rows] of a table in a file that are held in memory
 
 
 class GrowingTable:
-    """A table of floats that is filled by rows and stored by columns."""
+    """Table of floats in memory to which rows are appended, stored by columns."""
 
     def __init__(self, names: list[str], expected: int) -> None:
         """Create an empty table.
@@ -29,24 +29,24 @@ class GrowingTable:
         self._columns = np.empty((len(names), expected))
 
     def add(self, row: list[float]) -> None:
-        """Append a row with one value per column."""
+        """Append a row with one value per column to the table."""
         if self.count == self._columns.shape[1]:
             self._columns = np.concatenate([self._columns, np.empty_like(self._columns)], axis=1)
         self._columns[:, self.count] = row
         self.count += 1
 
     def replace_last_values(self, first: int, values: Array) -> None:
-        """Replace the values of the last row from column number `first` on."""
+        """Replace the values of the table's last row from column number `first` on."""
         self._columns[first:, self.count - 1] = values
 
     def rows(self, start: int, end: int) -> Array:
-        """Return the rows from `start` up to but not including `end`, (columns, rows)."""
+        """Return table rows from `start` up to, not including, `end`; shape (columns, rows)."""
         return self._columns[:, start:end]
 
     def recording(
         self, name: str, notes: Notes, start: int = 0, end: int | None = None
     ) -> Recording:
-        """Return rows as a recording whose time is the first column.
+        """Return rows of the table as a recording, whose time is the first column.
 
         Args:
             name: Name of the recording.
@@ -59,7 +59,7 @@ class GrowingTable:
 
 
 class FileTable(GrowingTable):
-    """A table in an unnamed temporary file, which is mapped into memory for reading."""
+    """Growing table in an unnamed temporary file, which is mapped into memory for reading."""
 
     def __init__(self, names: list[str], folder: Path) -> None:
         """Create an empty table.
@@ -74,7 +74,7 @@ class FileTable(GrowingTable):
         self._written = 0  # [rows] in the file
 
     def add(self, row: list[float]) -> None:
-        """Append a row with one value per column.
+        """Append a row with one value per column to the table in the file.
 
         Raises:
             OSError: If the disk is full.
@@ -87,11 +87,11 @@ class FileTable(GrowingTable):
         self.count += 1
 
     def replace_last_values(self, first: int, values: Array) -> None:
-        """Replace the values of the last row, which is always in memory, from `first` on."""
+        """Replace values of the table's last row, which is always in memory, from `first` on."""
         self._columns[first:, self.count - self._written - 1] = values
 
     def rows(self, start: int, end: int) -> Array:
-        """Return rows (columns, rows) as a view of the file, or as a copy if all are in memory."""
+        """Return table rows (columns, rows), a view of the file or a copy if all are in memory."""
         width = len(self.names)
         if start >= self._written:
             return self._columns[:, start - self._written : end - self._written].copy()

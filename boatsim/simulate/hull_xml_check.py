@@ -23,7 +23,7 @@ LARGEST = 1 << 24  # [bytes] of a file; meshes are separate files
 
 
 def check_hull_file(path: Path) -> None:
-    """Check a hull and the files that it includes.
+    """Check a hull drawing in MuJoCo's XML format, and the files that it includes.
 
     Args:
         path: The XML file.

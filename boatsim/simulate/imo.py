@@ -14,9 +14,10 @@ TRACK_REACH = 15.0  # [L] full astern stopping test; an administration may allow
 
 
 class OvershootLimit(NamedTuple):
-    """Limit of an overshoot angle by the ratio of length and speed L/V.
+    """IMO limit of a zig-zag overshoot angle, a function of ship length over speed L/V.
 
-    It is `short` below L/V = 10 s, `long` from 30 s on, and `offset` + `slope` L/V in between.
+    The limit is `short` below L/V = 10 s, `long` from 30 s on, and `offset` + `slope` L/V in
+    between.
     """
 
     short: float  # [deg]
@@ -25,7 +26,7 @@ class OvershootLimit(NamedTuple):
     slope: float  # [deg/s]
 
     def limit_angle(self, length: float, speed: float) -> float:
-        """Return the limit [deg] of a ship of `length` [m] at `speed` [m/s]."""
+        """Return the IMO limit of an overshoot [deg] for a ship's length [m], speed [m/s]."""
         ratio = length / speed
         if ratio < 10.0:
             return self.short
@@ -39,7 +40,7 @@ SECOND_OVERSHOOT_10 = OvershootLimit(25.0, 40.0, 17.5, 0.75)
 
 
 def imo_limits(manoeuvre: str, angle: float, length: float, speed: float) -> dict[str, float]:
-    """Return the limits of a manoeuvre.
+    """Return the limits of IMO resolution MSC.137(76) for the metrics of a ship manoeuvre.
 
     Args:
         manoeuvre: Name of the manoeuvre.

@@ -52,7 +52,7 @@ def manoeuvre_scenario(
     speed: float | None = None,
     heading: float | None = None,
 ) -> Scenario:
-    """Return the scenario of a manoeuvre.
+    """Return the scenario of a standard manoeuvre, such as a turning circle, for a vessel.
 
     Args:
         manoeuvre: Name of the manoeuvre.
@@ -118,7 +118,9 @@ def _check_heading(manoeuvre: str, heading: float | None) -> None:
 
 
 def complete_manoeuvring_table(vessel: Vessel) -> ManoeuvringTable:
-    """Return the vessel's [manoeuvring] table, completed from its channels.
+    """Return a vessel's [manoeuvring] table, with missing entries derived from its channels.
+
+    The table holds the commands for going ahead and astern and the commands per rad of helm.
 
     Args:
         vessel: The vessel.
@@ -160,13 +162,13 @@ def complete_manoeuvring_table(vessel: Vessel) -> ManoeuvringTable:
 
 
 def transverse_thrusters(vessel: Vessel) -> dict[str, float]:
-    """Return the thrusters at a fixed angle that do not drive ahead, such as bow tunnels.
+    """Return the thrusters of a vessel that act sideways at a fixed angle, such as bow tunnels.
 
     Args:
         vessel: The vessel.
 
     Returns:
-        Channel of the thrust -> share of it that acts to starboard.
+        Channel of the thrust -> fraction of the thrust that acts to starboard, negative to port.
     """
     found: dict[str, float] = {}
     for effect in vessel.effects:
@@ -179,7 +181,10 @@ def transverse_thrusters(vessel: Vessel) -> dict[str, float]:
 
 
 def largest_helm(vessel: Vessel) -> float:
-    """Return the largest helm [deg] to both sides within the ranges of all channels."""
+    """Return the largest helm angle [deg] that a vessel can apply to both sides.
+
+    The ranges of all steering channels limit it.
+    """
     table = vessel.manoeuvring
     largest: list[float] = []  # [rad]
     for name, per_rad in table.steer.items():
@@ -225,11 +230,14 @@ def _orient_helm_to_starboard(vessel: Vessel) -> ManoeuvringTable:
 
 
 def approach_speed(vessel: Vessel, speed: float | None = None) -> float:
-    """Return the speed [m/s] at which the vessel goes straight ahead under its approach commands.
+    """Return the speed [m/s] at which a vessel approaches a manoeuvre.
+
+    It is the given speed, else that in the [manoeuvring] table of the vessel's file, else the
+    steady speed straight ahead under the vessel's approach commands.
 
     Args:
         vessel: The vessel.
-        speed: Initial speed that is returned instead.
+        speed: Approach speed that is returned instead [m/s]; None to compute it.
 
     Raises:
         BadInput: If the vessel does not move ahead or the given speed is not valid.

@@ -27,22 +27,18 @@ TIME_TOLERANCE = 1e-9  # [s] by which the time of a row may differ from a limit 
 
 
 class TooShort(BoatsimError):
-    """A log ends before the data that a metric set needs, as after an interruption."""
+    """Raised if a log ends before the data that a metric set needs, as after an interruption."""
 
 
 @dataclass(frozen=True)
 class MetricSet(CheckedParameters):
-    """Base class of metric sets.
-
-    `measure = { use = "arrival", x = 20.0 }` in a scenario creates one and calls `values` after the
-    run. Angles in metrics are in degrees; the unit of each metric states it.
-    """
+    """Base class of metric sets, which compute named numbers from the log of a run."""
 
     words: ClassVar[str] = ""  # one line for `boatsim list`
     units: ClassVar[Mapping[str, str]] = {}  # metric -> its unit
 
     def unit(self, metric: str) -> str:
-        """Return the unit of a metric; sets that work on any signal use the signal's unit.
+        """Return the unit of a metric; in sets that work on any signal it may be the signal's unit.
 
         Args:
             metric: Name of one of the metrics.
@@ -50,7 +46,9 @@ class MetricSet(CheckedParameters):
         return type(self).units[metric]
 
     def kind(self, metric: str) -> str:
-        """Return how a metric summarises its signal, such as "rms"; "" if it is none of `KINDS`.
+        """Return how a metric summarises its signal over a run, such as "rms" or "largest".
+
+        The result is "" for metrics that are none of `KINDS`.
 
         Args:
             metric: Name of one of the metrics.
@@ -58,7 +56,7 @@ class MetricSet(CheckedParameters):
         return KINDS.get(metric.rpartition("_")[2], "")
 
     def explain_missing_value(self, metric: str, log: Recording) -> str:
-        """Explain in a few words why a run has no value of a metric; "" if unknown.
+        """Explain in a few words why a run has no value of a metric; "" if the reason is unknown.
 
         Args:
             metric: Name of the metric without a value.
@@ -67,7 +65,7 @@ class MetricSet(CheckedParameters):
         return ""
 
     def values(self, log: Recording) -> dict[str, float]:
-        """Compute the metrics of a run.
+        """Compute all metrics of this set from the log of a run.
 
         Args:
             log: The log of the run.
@@ -84,7 +82,7 @@ class MetricSet(CheckedParameters):
 def rows_between(
     log: Recording, since: float = -inf, until: float = inf, least: int = 1
 ) -> NDArray[np.bool_]:
-    """Return which rows of a log lie between two times.
+    """Return a mask of the rows of a log that lie between two times.
 
     Args:
         log: Log with N rows.
@@ -106,7 +104,7 @@ def rows_between(
 
 
 def describe_closest_value(x: Array, level: float, unit: str = "") -> str:
-    """Describe how close a signal came to a level that it did not cross.
+    """Describe in words how close a signal came to a level that it did not cross.
 
     Args:
         x: Signal (N,).
@@ -123,7 +121,7 @@ def describe_closest_value(x: Array, level: float, unit: str = "") -> str:
 
 
 def first_crossing(t: Array, above: Array) -> float | None:
-    """Return the first time [s] at which a signal is not negative, interpolated between rows.
+    """Return the first time [s] at which a signal is zero or positive, interpolated between rows.
 
     Args:
         t: Times (N,) [s].
@@ -142,16 +140,19 @@ def first_crossing(t: Array, above: Array) -> float | None:
 
 
 def surge_distance(log: Recording) -> Array:
-    """Return the integral (N,) of the surge speed since the first row [m], by trapezoids."""
+    """Return the time integral of the surge speed (N,) from the first row of a log on [m].
+
+    It is computed by the trapezoidal rule.
+    """
     u = log["u_mps"]
     return np.concatenate(([0.0], np.cumsum(0.5 * (u[1:] + u[:-1]) * np.diff(log.t))))
 
 
 def value_at(log: Recording, time: float, name: str) -> float:
-    """Return a column's value at a time [s] by linear interpolation."""
+    """Return the value of a column of a log at a time [s], by linear interpolation."""
     return float(np.interp(time, log.t, log[name]))
 
 
 def path_length(log: Recording) -> Array:
-    """Return the length of the path up to each row, (N,) [m]."""
+    """Return the distance travelled along the path up to each row of a log, (N,) [m]."""
     return np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(log["x_m"]), np.diff(log["y_m"])))])

@@ -17,7 +17,7 @@ FEWEST_PERIODS = 2  # in one call; a call for less costs more time than it saves
 
 @dataclass(frozen=True)
 class PeriodsDone:
-    """The result of several control periods.
+    """Result of several control periods that were simulated in one call.
 
     Attributes:
         steps: Number of physics steps.
@@ -33,7 +33,9 @@ class PeriodsDone:
 
 
 class MultiPeriodStep:
-    """Steps controller and vessel together, period by period, with the results of `ControlLoop`.
+    """Simulates several control periods of controller and vessel in one compiled call.
+
+    The results equal those of `ControlLoop`, which simulates one step after another.
 
     Attributes:
         period: Control period [s].
@@ -65,10 +67,10 @@ class MultiPeriodStep:
     def if_possible(
         cls, scenario: Scenario, engine: Stepper, imu: np.random.Generator
     ) -> "MultiPeriodStep | None":
-        """Return the stepper of a run, or None if its periods can not be taken together.
+        """Return an object that simulates several control periods of a run in one call, or None.
 
-        They can if a compiled controller steers all the time and acts once per period, in open
-        water, with the usual sensors, and nothing but time ends the run.
+        It is possible if a compiled controller steers all the time and acts once per period, in
+        open water, with the usual sensors, and nothing but time ends the run.
 
         Args:
             scenario: The scenario.
@@ -90,7 +92,7 @@ class MultiPeriodStep:
         return cls(scenario, engine, law, imu)
 
     def complete_periods(self, t: float, until: float) -> int:
-        """Return how many periods from time t [s] end at least a step before `until` [s].
+        """Return how many control periods from time t [s] end at least a step before `until` [s].
 
         Returns:
             The number of whole periods; 0 if there are too few of them to save time.
@@ -101,7 +103,7 @@ class MultiPeriodStep:
     def advance(
         self, t: float, periods: int, goal_at: Callable[[float], Mapping[str, float]]
     ) -> PeriodsDone:
-        """Advance the engine over periods, each of which ends with the controller.
+        """Simulate vessel and controller over control periods; the controller acts at each end.
 
         Args:
             t: Time now [s]; the commands in force are the controller's last ones.
@@ -109,7 +111,7 @@ class MultiPeriodStep:
             goal_at: Goals in force at a time [s].
 
         Returns:
-            What happened.
+            Numbers of steps and saturated steps, time and mean commands.
         """
         law, aboard, engine = self._law, self._aboard, self._engine
         law.orders[0] = [engine.sent[place] for place in law.places]

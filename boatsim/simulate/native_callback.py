@@ -15,11 +15,11 @@ from boatsim.physics.compiler_internals import load_mujoco_symbols, mujoco_layou
 
 
 class SlowCallbackWarning(UserWarning):
-    """The forces of a vessel are computed by a callback in Python."""
+    """Warning that the forces of a vessel are computed by a slow callback in Python, not in C."""
 
 
 def compile_native(code: CompiledProgram, size: int) -> Any:
-    """Compile the passive-force callback of a vessel.
+    """Compile the passive-force callback of a vessel to a C function that MuJoCo calls.
 
     Args:
         code: The vessel's compiled program.
@@ -41,7 +41,7 @@ def compile_native(code: CompiledProgram, size: int) -> Any:
 
 @cache
 def warn_of_slow_callback(reason: str) -> None:
-    """Warn once in a process that the callback in Python is used.
+    """Warn once in a process that the slow force callback in Python is used.
 
     Args:
         reason: Why the native callback is not used.

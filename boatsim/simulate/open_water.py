@@ -14,7 +14,9 @@ from boatsim.simulate.world import Model, Tank
 
 
 class OpenWater(Stepper):
-    """A batch of one vessel with the interface of a stepper; its arrays are the batch's.
+    """Simulation of one vessel in open water by compiled code, without MuJoCo.
+
+    It is a batch of one vessel with the interface of `Stepper`; its arrays are the batch's.
 
     Attributes:
         batch: The batch.
@@ -38,17 +40,17 @@ class OpenWater(Stepper):
 
     @cached_property
     def tank(self) -> Tank:
-        """The water, for pictures."""
+        """The water without walls in which the vessel is drawn."""
         return world.open_water(self.vessel)
 
     @cached_property
     def model(self) -> Model:
-        """The model of MuJoCo, for pictures."""
+        """MuJoCo model of the vessel, used only for drawing it."""
         return world.build_model(self.vessel, self.tank, self.step)
 
     @property
     def t(self) -> float:
-        """Time [s]."""
+        """Simulated time [s]."""
         return float(self.batch.t[0])
 
     def _set_joint_state(self, t: float, state: Array) -> None:
@@ -65,7 +67,7 @@ class OpenWater(Stepper):
         self.batch.t[0] += dt
 
     def acceleration(self) -> tuple[float, float]:
-        """Return the acceleration of the origin over ground along body x and y [m/s^2]."""
+        """Return the acceleration over ground of the vessel's origin along body x, y [m/s^2]."""
         self.code.read_instruments_of_boats(ONE, self.batch.fleet, self._sensed)
         ahead, starboard = self._sensed[0, 3:5].tolist()
         return ahead, starboard

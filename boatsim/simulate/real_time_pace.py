@@ -9,10 +9,10 @@ NAP = 0.05  # [s] of sleep at most before `stop` is asked again
 
 
 class Pace:
-    """Waits until a clock has reached the simulated time, at a multiple of real time.
+    """Slows a simulation down to a clock, at a multiple of real time.
 
     Attributes:
-        speed: Simulated time by real time.
+        speed: Ratio of simulated time and real time.
     """
 
     def __init__(
@@ -32,13 +32,16 @@ class Pace:
         self._begin: float | None = None  # real time [s] of the simulated time 0
 
     def delay(self, t: float) -> float:
-        """Return how long ago the simulated time `t` [s] was due [s]; 0 before the first wait."""
+        """Return by how much a simulation is behind the clock at the simulated time `t` [s], in s.
+
+        The result is 0 before the first wait.
+        """
         if self._begin is None:
             return 0.0
         return self._clock() - self._begin - t / self.speed
 
     def wait_until(self, t: float, stop: Callable[[], bool] = bool) -> None:
-        """Wait until a simulated time is due.
+        """Wait until the clock reaches a simulated time.
 
         Args:
             t: The simulated time [s].

@@ -27,7 +27,7 @@ STILL = 50  # [rows] of the log of a vessel at rest on which a metric set is tes
 
 @dataclass(frozen=True)
 class Run:
-    """The result of a run.
+    """Result of a run of a scenario: recordings of the true motion and of the camera.
 
     Attributes:
         scenario: The scenario.
@@ -49,10 +49,10 @@ class Run:
 
 
 class Simulation:
-    """One run of a scenario.
+    """One run of a scenario in progress: closed loop, log and camera.
 
     Attributes:
-        engine: What steps the vessel.
+        engine: The engine that integrates the vessel's motion.
     """
 
     def __init__(
@@ -96,11 +96,11 @@ class Simulation:
 
     @property
     def time(self) -> float:
-        """The simulated time reached [s]."""
+        """Simulated time that the run has reached [s]."""
         return self._loop.state.t
 
     def run(self) -> Run:
-        """Run to the end or to an interruption, which keeps what was logged.
+        """Simulate the scenario to its end or to an interruption, which keeps what was logged.
 
         Returns:
             The run.
@@ -132,7 +132,7 @@ class Simulation:
         return self.partial_result(complete)
 
     def partial_result(self, complete: bool = False) -> Run:
-        """Return the run up to the present; a listener may call this.
+        """Return the result of the run up to the present; a listener may call this.
 
         Args:
             complete: Whether the run has reached its end.
@@ -230,12 +230,14 @@ class Simulation:
 
 
 def seed_or_default(scenario: Scenario, seed: int | None) -> int:
-    """Return the given seed, or the scenario's if there is none."""
+    """Return the given random seed, or the scenario's seed if it is None."""
     return scenario.file.seed if seed is None else seed
 
 
 def build_engine(scenario: Scenario, seed: int | None = None) -> Engine | OpenWater:
-    """Build the engine that a scenario names, with its vessel's parameters sampled by a seed.
+    """Build the simulation engine that a scenario specifies, MuJoCo or compiled.
+
+    Random parameters of the vessel's effects are sampled by the seed.
 
     Args:
         scenario: The scenario.
@@ -258,7 +260,10 @@ def build_engine(scenario: Scenario, seed: int | None = None) -> Engine | OpenWa
 
 
 def recording_notes(scenario: Scenario) -> Notes:
-    """Return what a diagnosis of a run may know: vessel, load, settings, noise of the camera."""
+    """Return the notes of a simulated recording: all that a later diagnosis may know of the run.
+
+    They are vessel, load conditions, settings and noise of the camera.
+    """
     file = scenario.file
     return Notes(
         vessel=file.vessel,
@@ -273,7 +278,7 @@ def run(
     seed: int | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> Run:
-    """Run a scenario in memory; the same scenario and seed give the same numbers.
+    """Run a scenario without writing files; equal scenario and seed give equal numbers.
 
     Args:
         scenario: The scenario.

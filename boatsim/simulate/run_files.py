@@ -37,13 +37,13 @@ METRICS_SHARE = 0.03  # largest share of the time of a run that these updates ma
 
 
 class RunObserver(Protocol):
-    """Follows a run while it goes, as a rerun log does."""
+    """Interface of objects that follow a run in progress, such as a 3D log."""
 
     def add_rows(self, rows: Recording) -> None:
-        """Receive the rows of the log that follow those received before."""
+        """Receive the new rows of the log of a run in progress."""
 
     def finish(self, metrics: Mapping[str, MetricEntry]) -> None:
-        """Receive the metrics at the end of the run."""
+        """Receive the metrics of a run at its end."""
 
 
 # starts to observe a run of an engine; files of the observer go into the folder
@@ -51,47 +51,47 @@ StartObserver: TypeAlias = Callable[[Path, Engine | OpenWater], AbstractContextM
 
 
 class Steering(Protocol):
-    """Steers a run in place of its scenario's goals, as a driver does."""
+    """Interface of objects that steer a run in place of its scenario's goals, as a driver does."""
 
     @property
     def pace(self) -> Pace:
-        """Object that delays the run to the pace of a clock."""
+        """Object that slows the run down to a clock."""
 
     @property
     def refresh(self) -> float:
-        """Wall time between two deliveries of rows [s]."""
+        """Wall time between two deliveries of log rows to listeners [s]."""
 
     def goal_at(self, t: float, /) -> Mapping[str, float]:
-        """Return the goals at a time [s]."""
+        """Return the goals of the controller at a simulated time [s]."""
 
     def is_finished(self) -> bool:
-        """Return whether the run shall end."""
+        """Return whether the driver has ended the run."""
 
     def prepare_run(self, engine: Engine | OpenWater, stop: Callable[[], bool]) -> None:
-        """Prepare for a run of an engine.
+        """Prepare the steering of a run before the run starts.
 
         Raises:
             KeyboardInterrupt: If `stop` returns True before the run begins.
         """
 
     def wrap_listener(self, listener: Listener) -> AbstractContextManager[Listener]:
-        """Yield a listener for the time of the run that passes the rows on to another one."""
+        """Yield a listener of log rows that passes the rows of a run on to the given listener."""
 
     def recording_facts(self) -> Mapping[str, object]:
-        """Return entries for the table [facts] of recording.toml."""
+        """Return the entries that the driver adds to the table [facts] of recording.toml."""
 
     def extra_files(self) -> Mapping[str, str]:
-        """Return further files of the run up to the present, text by name."""
+        """Return further files of the run up to the present: file name -> text."""
 
 
 class RecordedRun(NamedTuple):
-    """A run and its metrics."""
+    """Result of a run, with its metrics."""
 
     run: Run
     metrics: Mapping[str, Metric]
 
     def to_json(self) -> RunEntry:
-        """Return the content of norms.json."""
+        """Return the content of norms.json for the run."""
         return evaluation.to_json(self.run, self.metrics)
 
 
@@ -104,7 +104,7 @@ def run_into_folder(
     *,
     in_memory: bool = False,
 ) -> RecordedRun:
-    """Run a scenario and write its files into a folder, all of them or none.
+    """Run a scenario and write recordings, notes and metrics into a folder, all files or none.
 
     An interruption ends the run; what was logged is kept, with its metrics so far. With `steering`,
     files are written in a separate thread and norms.json only at the end, so that neither delays
@@ -193,7 +193,7 @@ def _write_description(
 
 
 def write_metrics(path: Path, content: RunEntry) -> None:
-    """Write norms.json, replacing an existing one.
+    """Write the metrics of a run to norms.json, replacing an existing file.
 
     Args:
         path: The file.
@@ -207,7 +207,7 @@ def write_metrics(path: Path, content: RunEntry) -> None:
 
 
 class MetricsSoFar:
-    """Updates norms.json during a run, for the case that the run is killed or the disk is full."""
+    """Writes preliminary metrics to norms.json during a run, in case the run is killed."""
 
     def __init__(self, path: Path) -> None:
         """Prepare the first update.
@@ -219,9 +219,7 @@ class MetricsSoFar:
         self._due = monotonic() + METRICS_INTERVAL
 
     def update(self, so_far: Callable[[], Run]) -> None:
-        """Write the metrics so far if an update is due.
-
-        Updates are rare enough not to delay a long run, whose evaluation takes long.
+        """Write the metrics of the run so far to norms.json if an update is due.
 
         Args:
             so_far: Returns the run up to the present.
@@ -242,7 +240,10 @@ class MetricsSoFar:
 
 
 class CsvFile:
-    """A CSV file of a recording that arrives in pieces; it contains whole rows at any time."""
+    """CSV file of a recording in progress, to which rows are appended.
+
+    The file contains whole rows at any time.
+    """
 
     def __init__(self, path: Path) -> None:
         """Create the file.
@@ -257,7 +258,7 @@ class CsvFile:
         self._has_header = False
 
     def add(self, rows: Recording) -> None:
-        """Append rows.
+        """Append the next rows of a recording to its CSV file.
 
         Args:
             rows: The rows that follow.
@@ -277,7 +278,7 @@ class CsvFile:
 
 
 def notes_toml(scenario: Scenario, seed: int, complete: bool, facts: Mapping[str, object]) -> str:
-    """Return the content of recording.toml: what a diagnosis of the run may know.
+    """Return the text of a simulated run's recording.toml: all that a later diagnosis may know.
 
     Effects that the scenario adds are not part of it, since a diagnosis has to find them.
 

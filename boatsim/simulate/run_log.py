@@ -20,7 +20,7 @@ REFERENCE = "reference_"  # prefix of estimates that are reference signals of a 
 
 
 class RunLog:
-    """Writes the state of a control loop into a table.
+    """Log of a run: writes the state of the closed loop into a table at regular times.
 
     The columns are the motion, the commands in force and groups with a prefix. `sent_` is a command
     as the controller sent it, before its range limits it; `goal_` is a goal, nan where none is in
@@ -86,11 +86,11 @@ class RunLog:
         return columns
 
     def is_due(self) -> bool:
-        """Return whether a row is due now."""
+        """Return whether the log shall get a row at the present simulated time."""
         return self._loop.state.t >= self.due - TIME_TOLERANCE
 
     def add_row(self, frames: Sequence[Frame]) -> None:
-        """Append the present state of the loop.
+        """Append a row with the present state of the closed loop to the log.
 
         Args:
             frames: Camera frames since the last row; the row holds the last of them.
@@ -146,7 +146,7 @@ class RunLog:
         return total
 
     def recording(self, notes: Notes, start: int = 0) -> Recording:
-        """Return the rows from `start` on.
+        """Return the log from row `start` on as a recording.
 
         Args:
             notes: Notes of the recording.

@@ -18,7 +18,7 @@ LIVE_REFRESH = 0.1  # [s] the same while a viewer shows the run
 
 @dataclass(frozen=True)
 class RunOptions:
-    """How a scenario is run.
+    """Options of a run of a scenario: seed, listeners, pace, source of goals and stop conditions.
 
     Attributes:
         seed: Seed of parameters and sensor noise; None: the scenario's.
@@ -29,8 +29,8 @@ class RunOptions:
         pace: Holds the run back to the pace of a clock; None: as fast as possible.
         refresh: Wall time between two deliveries to the listeners [s].
         goal_source: Goals by time [s] in place of the scenario's.
-        finish: Asked after every step; True ends the run as complete.
-        stop: Asked before every step; True interrupts the run, which then is incomplete.
+        finish: Called after every step; True ends the run as complete.
+        stop: Called before every step; True interrupts the run, which then is incomplete.
         progress: Receives the simulated time [s] every 100 steps.
     """
 

@@ -35,7 +35,7 @@ End = Annotated[float, Field(allow_inf_nan=True)]
 
 
 class TankTable(Table):
-    """Water with walls; without this table the water is open."""
+    """Table [tank] of a scenario file: water with walls; without this table the water is open."""
 
     length: float = Field(gt=0)  # [m] along the start heading
     width: float = Field(gt=0)  # [m]
@@ -44,7 +44,7 @@ class TankTable(Table):
 
 
 class StartTable(Table):
-    """Pose and velocities at the start, SNAME."""
+    """Table [start] of a scenario file: pose, velocities and commands at the start, SNAME."""
 
     x: float = 0.0  # [m]
     y: float = 0.0  # [m]
@@ -62,19 +62,19 @@ class StartTable(Table):
     commands: dict[str, float] = {}
 
     def state_values(self) -> dict[str, float]:
-        """Return pose and velocities by their symbol in the engine's state."""
+        """Return pose and velocities at the start, keyed by their symbols in the engine's state."""
         return {s.symbol: float(getattr(self, s.symbol)) for s in STATE}
 
 
 class UntilTable(Table):
-    """The run ends early once one of these is reached."""
+    """Table [until] of a scenario file: conditions that end the run early once one is reached."""
 
     starboard: float | None = Field(default=None, gt=0)  # [m] travelled to starboard of the start
     turned: float | None = Field(default=None, gt=0)  # [rad] turned either way
 
 
 class MetricTable(Table):
-    """Published value of a metric, and the regression band around the present value."""
+    """Published value of a metric in a scenario file, and the regression band around its value."""
 
     published: float | None = None
     # of the published value, to either side, as the publication states it
@@ -93,7 +93,7 @@ class MetricTable(Table):
 
 
 class CheckTable(Table):
-    """Table [[check]]: a bound that the norm of a logged signal must stay below."""
+    """Table [[check]] of a scenario file: an upper bound of the norm of a logged signal."""
 
     signal: str
     norm: Literal["inf", "rms", "l2", "l1"]
@@ -102,9 +102,9 @@ class CheckTable(Table):
 
 
 class CourseTable(Table):
-    """A goal that changes with the time tau [s] since it began.
+    """Goal in a scenario file that changes with the time tau [s] since it began.
 
-    It is mean + slope tau + amplitude sin(2 pi tau / period).
+    The goal is mean + slope tau + amplitude sin(2 pi tau / period).
     """
 
     mean: float = 0.0
@@ -113,12 +113,12 @@ class CourseTable(Table):
     period: float = Field(default=1.0, gt=0)  # [s]
 
     def goal_value(self, tau: float) -> float:
-        """Return the goal at the time tau [s]."""
+        """Return the value of a time-varying goal at the time tau [s] since it began."""
         return self.mean + self.slope * tau + self.amplitude * sin(2.0 * pi * tau / self.period)
 
 
 class ScenarioFile(Table):
-    """The content of a scenario .toml."""
+    """Validated content of a scenario file (TOML), with the defaults of all keys."""
 
     about: str = ""
     vessel: str
@@ -148,13 +148,13 @@ class ScenarioFile(Table):
 
     @property
     def is_compiled(self) -> bool:
-        """Whether the scenario runs on the compiled engine instead of MuJoCo."""
+        """Whether the scenario is simulated by the compiled engine instead of MuJoCo."""
         return self.engine != "mujoco"
 
 
 @dataclass(frozen=True)
 class Scenario:
-    """A scenario ready to run."""
+    """A scenario ready to run: its file, vessel, controller, sensors, camera and metric set."""
 
     name: str
     file: ScenarioFile
@@ -170,7 +170,7 @@ class Scenario:
     def from_settings(
         cls, *, vessel: Vessel, name: str = "scenario", **settings: object
     ) -> "Scenario":
-        """Build a scenario in Python, without a file.
+        """Build a scenario from Python values of the keys of a scenario file.
 
         Args:
             vessel: The vessel.
@@ -203,7 +203,7 @@ class Scenario:
 
     @property
     def goal_keys(self) -> list[str]:
-        """Keys of all goals, in the order of the file."""
+        """Keys of all goals of the scenario, such as `u_mps`, in the order of the file."""
         keys: list[str] = []
         for goal in self.file.goal:
             keys += [key for key in goal if key not in RESERVED]
@@ -211,11 +211,11 @@ class Scenario:
 
     @property
     def has_off_goal(self) -> bool:
-        """Whether the vessel is not steered for some of the time."""
+        """Whether the controller is off during a part of the scenario, by a goal `off = true`."""
         return any(goal.get(OFF) for goal in self.file.goal)
 
     def goal_at(self, t: float) -> Mapping[str, float]:
-        """Return the goals at time t [s]: those of the last [[goal]] that has begun."""
+        """Return the controller's goals at time t [s], from the last [[goal]] that has begun."""
         at = bisect_right(self._goal_begin_times, t + 1e-9) - 1
         if at < 0:
             return {}
@@ -229,7 +229,7 @@ class Scenario:
 def load(
     name: str, overrides: Mapping[str, object] | None = None, vessel: Vessel | None = None
 ) -> Scenario:
-    """Return a scenario.
+    """Load a scenario from its file, with optional changes.
 
     Args:
         name: Name ("vessel/case") or path ("my.toml", "my.toml:case").
@@ -246,7 +246,7 @@ def load(
 def from_table(
     raw: Mapping[str, object], place: ScenarioLocation, vessel: Vessel | None = None
 ) -> Scenario:
-    """Return the scenario of the content of a scenario file.
+    """Return a scenario that is ready to run from the content of a scenario file.
 
     Args:
         raw: Content of the file.

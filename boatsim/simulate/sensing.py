@@ -21,12 +21,12 @@ NOISES = 7  # standard normal numbers per sample
 
 @lean
 def add_sensor_errors(felt: Array, sensors: Array, noise: Array) -> None:
-    """Turn true values into measurements, in place.
+    """Turn the true readings of a vessel's sensors into measurements with bias and noise, in place.
 
     Args:
         felt: True values (t, psi, r, ax, ay, u, v, x, y, phi, p), which become measurements; nan
             where there is no sensor.
-        sensors: `Sensors.error_parameters`.
+        sensors: Sizes of the errors, as in `Sensors.error_parameters`.
         noise: Standard normal numbers (7,).
     """
     if sensors[0] != 0.0:
@@ -51,10 +51,11 @@ def add_sensor_errors(felt: Array, sensors: Array, noise: Array) -> None:
 
 @dataclass(frozen=True)
 class Sensors(CheckedParameters):
-    """The usual sensors: a BNO055 inertial unit, and a speed log if `speed_sd` is not negative.
+    """Standard sensors of a vessel: an inertial unit, and optionally speed log and position fix.
 
-    One sample of the unit's sensor fusion (100 Hz) holds for a whole control step, since readings
-    some milliseconds apart return the same sample.
+    The inertial unit is a BNO055; there is a speed log if `speed_sd` is not negative. One sample of
+    the unit's sensor fusion (100 Hz) holds for a whole control step, since readings some
+    milliseconds apart return the same sample.
     """
 
     heading_sd: float = param(
@@ -87,7 +88,7 @@ class Sensors(CheckedParameters):
         rng: np.random.Generator,
         roll: tuple[float, float] = (nan, nan),
     ) -> Sense:
-        """Return a sample.
+        """Return one measurement of all standard sensors at a true state of the vessel.
 
         Args:
             t: Time [s].
@@ -116,14 +117,17 @@ class Sensors(CheckedParameters):
 
     @cached_property
     def error_parameters(self) -> Array:
-        """Arguments of `add_sensor_errors`: whether the sensors are ideal, then the parameters."""
+        """Array with the parameters of the sensor errors, as `add_sensor_errors` takes it.
+
+        The first entry is 1 if the sensors are ideal; standard deviations and biases follow.
+        """
         values = [float(getattr(self, name)) for name in type(self).params()]
         return np.array([float(self.ideal), *values])
 
 
 @dataclass(frozen=True)
 class Sensor(CheckedParameters):
-    """Base class of further sensors; `[[sensor]]` with `use = "inclinometer"` adds one.
+    """Base class of sensors that a scenario adds, as by `[[sensor]]` with `use = "inclinometer"`.
 
     A reading with the name of a field of `Sense` fills that field; others are in `sense.more`.
     """
@@ -133,7 +137,7 @@ class Sensor(CheckedParameters):
     columns: ClassVar[Mapping[str, str]] = {}
 
     def read(self, engine: Stepper, rng: np.random.Generator) -> Mapping[str, float]:
-        """Return a sample of all readings in `columns`.
+        """Return one measurement of this sensor: the values of all readings in `columns`.
 
         Args:
             engine: The engine, whose vessel is measured.
@@ -145,13 +149,13 @@ class Sensor(CheckedParameters):
 def add_further_readings(
     base: Sense, sensors: Sequence[Sensor], engine: Stepper, rngs: Sequence[np.random.Generator]
 ) -> Sense:
-    """Add the readings of further sensors to a sample of the usual ones.
+    """Add the readings of a scenario's additional sensors to those of the standard sensors.
 
     Args:
-        base: Sample of the usual sensors.
-        sensors: The further sensors.
+        base: Sample of the standard sensors.
+        sensors: The additional sensors.
         engine: The engine, whose vessel is measured.
-        rngs: Random generator of each further sensor.
+        rngs: Random generator of each additional sensor.
     """
     if not sensors:
         return base

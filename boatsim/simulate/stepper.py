@@ -18,7 +18,7 @@ from boatsim.physics.vessel import Vessel
 
 
 class State(NamedTuple):
-    """State of a vessel, SNAME: pose in start axes, velocities over ground in body axes."""
+    """State of a vessel, SNAME: time, pose in start axes, velocities over ground in body axes."""
 
     t: float = 0.0  # [s]
     x: float = 0.0  # [m]
@@ -36,7 +36,9 @@ class State(NamedTuple):
 
 
 class Stepper(ABC):
-    """One vessel. `command` sends commands to the actuators, `advance` steps.
+    """Base class of engines that simulate one vessel.
+
+    `command` sends commands to the actuators, `advance` integrates the motion.
 
     Attributes:
         vessel: The vessel.
@@ -73,7 +75,7 @@ class Stepper(ABC):
     @property
     @abstractmethod
     def t(self) -> float:
-        """Time [s]."""
+        """Simulated time [s]."""
 
     @abstractmethod
     def _set_joint_state(self, t: float, state: Array) -> None:
@@ -89,17 +91,17 @@ class Stepper(ABC):
 
     @abstractmethod
     def acceleration(self) -> tuple[float, float]:
-        """Return the acceleration of the origin over ground along body x and y [m/s^2]."""
+        """Return the acceleration over ground of the vessel's origin along body x, y [m/s^2]."""
 
     @property
     def contacts(self) -> int:
-        """Number of contacts of the hull."""
+        """Number of contacts of the hull with walls; 0 in open water."""
         return 0
 
     def reset(
         self, state: State | None = None, commands: Mapping[str, float] | None = None
     ) -> None:
-        """Set the state, with actuators settled at commands.
+        """Set the state of the vessel, with actuators settled at commands.
 
         Args:
             state: The state; default: at the origin, at rest, t = 0.
@@ -117,12 +119,14 @@ class Stepper(ABC):
         self.settle_actuators()
 
     def settle_actuators(self) -> None:
-        """Set the actuators to the steady state of their commands."""
+        """Set the actuators of the vessel to the steady state of their commands."""
         self.code.settle_actuators(self._commands, self._memory, self._values, self._on, self._act)
         self._mean[:] = self._mean_actuators()
 
     def command(self, commands: Mapping[str, float]) -> None:
-        """Send commands to the actuators; they act within their ranges until the next ones.
+        """Send commands to the vessel's actuators, which stay in force until the next ones.
+
+        Commands are limited to the ranges of their channels.
 
         Args:
             commands: Commands by channel; others are neutral.
@@ -146,23 +150,23 @@ class Stepper(ABC):
 
     @property
     def channels_beyond_range(self) -> list[str]:
-        """Channels whose command exceeded its range."""
+        """Names of the command channels whose last command exceeded its range."""
         if self._commands.tolist() == self.sent:
             return []
         return saturated_channels(self.vessel, np.array(self.sent))
 
     @property
     def commands(self) -> dict[str, float]:
-        """Commands in force, by channel."""
+        """Commands in force after limitation to their ranges: channel -> value."""
         # measured inputs come after the commands
         return dict(zip(self.vessel.commands, self._commands.tolist(), strict=False))
 
     def commands_in_force(self) -> list[float]:
-        """Return the commands in force, in the order of the vessel's inputs."""
+        """Return the vessel's commands in force, in the order of its inputs."""
         return self._commands.tolist()
 
     def advance(self, steps: int = 1, length: float | None = None) -> None:
-        """Take steps with the commands held.
+        """Integrate the motion of the vessel over some steps with constant commands.
 
         Args:
             steps: Number of steps.
@@ -206,16 +210,19 @@ class Stepper(ABC):
 
     @property
     def state(self) -> State:
-        """The present state."""
+        """Present state of the vessel: time, pose and velocities."""
         return State(self.t, *self.program.pose_and_velocities(self._joint_state().tolist()))
 
     @property
     def actuators(self) -> dict[str, float]:
-        """Mean of each actuator over the last step, by name."""
+        """Mean position of each actuator over the last step: actuator -> value."""
         return dict(zip(self._actuators, self._mean.tolist(), strict=True))
 
     def wrench(self) -> Wrench:
-        """Return the sum of all effects in body axes [N, N m]; fixed degrees of freedom have 0."""
+        """Return the sum of the forces of all effects on the vessel, in body axes [N, N m].
+
+        Degrees of freedom that the vessel lacks have 0.
+        """
         last = np.int64(2 * self.code.HELD)  # the actuators at the end of the last step
         found = self.code.total_body_force(
             self.t, self._joint_state(), self._act, last, self._values, self._on

@@ -17,7 +17,7 @@ ENDINGS = ("rms", "largest", "integral")  # of a metric's name
 
 
 class TrackingErrorSums:
-    """Tracking errors of a log that arrives in pieces.
+    """Accumulates the tracking errors of a run whose log arrives in pieces.
 
     With the error e between goal and signal while the goal is in force, rms is sqrt(mean e^2),
     largest is max|e| and integral is the time integral of |e|, which does not depend on the log's
@@ -30,7 +30,7 @@ class TrackingErrorSums:
         self._last: Recording | None = None  # last row, which holds until the next one
 
     def add(self, log: Recording) -> None:
-        """Add the rows that follow."""
+        """Include the next rows of the log in the tracking errors."""
         if self._last:
             log = join_recordings([self._last, log])
         goals = [name.removeprefix(GOAL) for name in log.signals if name.startswith(GOAL)]
@@ -44,7 +44,10 @@ class TrackingErrorSums:
         self._last = replace(log, t=log.t[-1:], signals=last)
 
     def metrics(self) -> dict[str, float]:
-        """Return the metrics by name, in the units of `error_units`."""
+        """Return the tracking errors of all log rows so far: metric -> value.
+
+        The units are those of `error_units`.
+        """
         found: dict[str, float] = {}
         for key, _, names in _tracked_goals(self._sums):
             sums = self._sums[key]
@@ -55,7 +58,10 @@ class TrackingErrorSums:
 
 
 class ErrorSums(NamedTuple):
-    """Sums of the error |e| of one goal over the time in which the goal is in force."""
+    """Sums from which rms, largest value and time integral of one goal's tracking error follow.
+
+    They cover the time in which the goal is in force.
+    """
 
     squares: float = 0.0  # time integral of e^2
     time: float = 0.0  # [s]
@@ -63,7 +69,7 @@ class ErrorSums(NamedTuple):
     integral: float = 0.0
 
     def with_rows(self, error: Array, durations: Array) -> "ErrorSums":
-        """Return the sums with further rows.
+        """Return the sums of a tracking error with the errors of further log rows added.
 
         Args:
             error: |e| of the rows (N,), nan where no goal is in force.
@@ -80,14 +86,14 @@ class ErrorSums(NamedTuple):
 
 
 def compute_errors(log: Recording) -> dict[str, float]:
-    """Return the tracking errors of a complete log, by the metric's name."""
+    """Return the tracking errors of all goals in a complete log: metric -> value."""
     tally = TrackingErrorSums()
     tally.add(log)
     return tally.metrics()
 
 
 def error_units(goals: Iterable[str]) -> dict[str, str]:
-    """Return the names of the tracking errors of goals, with their units; angles are in degrees.
+    """Return names and units of the tracking-error metrics of goals; angles are in degrees.
 
     Args:
         goals: Keys of the goals.
@@ -100,7 +106,7 @@ def error_units(goals: Iterable[str]) -> dict[str, str]:
 
 
 def time_integral_unit(unit: str) -> str:
-    """Return the unit of a time integral: m for m/s, m s for m."""
+    """Return the unit of a quantity's time integral, such as "m" for "m/s" and "m s" for "m"."""
     if unit.endswith("/s"):
         return unit.removesuffix("/s")
     return f"{unit} s".strip()

@@ -38,7 +38,10 @@ HALF_TURN = (0.0, 1.0, 0.0, 0.0)  # about x, exact in floating point
 
 @dataclass(frozen=True)
 class Tank:
-    """Rectangular water in start axes, SNAME: `length` along x, `width` along y."""
+    """Rectangular water in which a vessel is simulated and drawn, in start axes, SNAME.
+
+    `length` is along x, `width` along y.
+    """
 
     length: float  # [m]
     width: float  # [m]
@@ -56,7 +59,7 @@ class Tank:
 
 
 def open_water(vessel: Vessel) -> Tank:
-    """Return water without walls, drawn with a size of ten lengths of the vessel."""
+    """Return the water of a simulation without walls, drawn with a size of ten vessel lengths."""
     return Tank(10.0 * vessel.length, 10.0 * vessel.length, vessel.length, walls=False)
 
 
@@ -70,9 +73,9 @@ def build_model(
     wall_solref: tuple[float, float] | None = None,
     friction: float = 0.0,
 ) -> mujoco.MjModel:
-    """Compile the model of a vessel in a tank, with a joint per degree of freedom and no forces.
+    """Compile the MuJoCo model of a vessel in a tank, with a joint per degree of freedom.
 
-    There is no gravity: buoyancy and restoring effects include it.
+    The model has no forces and no gravity: buoyancy and restoring effects include it.
 
     Args:
         vessel: The vessel.
@@ -118,7 +121,7 @@ def build_model(
 
 
 def size_tank(spec: mujoco.MjSpec, tank: Tank, vessel: Vessel) -> None:
-    """Set size and position of water, walls, fan and cameras."""
+    """Set size and position of water, walls, fan and cameras in a MuJoCo specification."""
     a, b, d = tank.length / 2, tank.width / 2, tank.depth
     middle, high = (RIM - d) / 2, (RIM + d) / 2  # walls stand on the floor and rise above the water
     boxes = {
@@ -151,7 +154,7 @@ def size_tank(spec: mujoco.MjSpec, tank: Tank, vessel: Vessel) -> None:
 
 
 def aim_cameras(spec: mujoco.MjSpec, tank: Tank, vessel: Vessel) -> None:
-    """Show the tank, at most six lengths of the vessel around the start."""
+    """Aim the cameras of a MuJoCo model at the tank, at most six vessel lengths about the start."""
     most = 6 * vessel.length
     long, wide = min(tank.length, most), min(tank.width, most)
     x = tank.centre[0] if tank.length <= most else 0.0
@@ -166,7 +169,10 @@ def aim_cameras(spec: mujoco.MjSpec, tank: Tank, vessel: Vessel) -> None:
 
 
 def camera_axes(eye: Array, target: Array) -> Array:
-    """Return MuJoCo's `xyaxes` (6,) of a camera at `eye` that looks at `target`, horizon level."""
+    """Return the axes (6,), MuJoCo's `xyaxes`, of a camera at `eye` that looks at `target`.
+
+    The horizon is level.
+    """
     forward = (target - eye) / np.linalg.norm(target - eye)
     right = np.cross(forward, (0, 0, 1))
     right = right / np.linalg.norm(right)
@@ -174,7 +180,10 @@ def camera_axes(eye: Array, target: Array) -> Array:
 
 
 def add_hull(spec: mujoco.MjSpec, vessel: Vessel) -> mujoco.MjsBody:
-    """Attach the hull at its length and draught, with the origin at the CG; return its body."""
+    """Add the hull of a vessel to a MuJoCo specification; return its body.
+
+    The drawing is scaled to the vessel's length and draught, with the origin at the CG.
+    """
     drawing, (length, draught) = read_drawing(Path(vessel.path) / vessel.hull, vessel)
     stretch = vessel.length / length
     for mesh in drawing.meshes:
@@ -192,14 +201,15 @@ def add_hull(spec: mujoco.MjSpec, vessel: Vessel) -> mujoco.MjsBody:
 
 
 def read_drawing(path: Path, vessel: Vessel) -> tuple[mujoco.MjSpec, tuple[float, float]]:
-    """Read a hull file.
+    """Read the drawing of a vessel's hull, a MuJoCo XML file.
 
     Args:
         path: The file.
         vessel: The vessel.
 
     Returns:
-        Its content, and the length and draught [m] it was drawn for, by default the vessel's.
+        The specification of the drawing, and the length and draught [m] it was drawn for, by
+        default the vessel's.
 
     Raises:
         BadInput: If MuJoCo can not read it or it has no hull.
@@ -240,7 +250,7 @@ def place_fittings(
     marks: Mapping[str, tuple[float, float]],
     shift: Array,
 ) -> None:
-    """Move outboards, mount, ballast and marks to their place in this load condition."""
+    """Move outboards, mount, ballast and marks of a hull drawing to the places of a load."""
     for side, name in ((1, "outboard_port"), (-1, "outboard_starboard")):
         body = drawing.body(name)
         if body is not None and "motor_half_spacing" in at:
@@ -273,7 +283,7 @@ def _required_value(geometry: Mapping[str, float], key: str) -> float:
 
 
 def set_inertia(hull: mujoco.MjsBody, vessel: Vessel) -> None:
-    """Set mass and inertia at the centre of mass.
+    """Set mass, centre of mass and inertia of a vessel's body in a MuJoCo specification.
 
     The inertial frame is turned by 180 deg about x, which changes no number: MuJoCo stores only the
     diagonal of the mass matrix of a body whose inertial frame is its own, and added mass needs the
@@ -289,13 +299,16 @@ def set_inertia(hull: mujoco.MjsBody, vessel: Vessel) -> None:
 
 
 def origin_height(vessel: Vessel) -> float:
-    """Return the height of the origin of motion above the water [m]; 0 if it is not specified."""
+    """Return the height of the vessel's origin of motion above the water [m], 0 by default."""
     above_keel = vessel.geometry.get("cg_above_keel")
     return 0.0 if above_keel is None else above_keel - vessel.draught
 
 
 def add_joints(hull: mujoco.MjsBody, vessel: Vessel) -> None:
-    """Add a joint per degree of freedom; roll and pitch axes pass through the origin of motion."""
+    """Add a MuJoCo joint to the hull for each degree of freedom of the vessel.
+
+    Roll and pitch axes pass through the origin of motion.
+    """
     for axis_name, (name, kind, axis) in JOINTS.items():
         if axis_name in vessel.dof:
             height = origin_height(vessel) if axis_name in ("roll", "pitch") else 0
@@ -304,7 +317,10 @@ def add_joints(hull: mujoco.MjsBody, vessel: Vessel) -> None:
 
 
 def add_contacts(spec: mujoco.MjSpec, solref: tuple[float, float], friction: float) -> None:
-    """Add contacts of the hull with the four walls; explicit pairs are faster than bit masks."""
+    """Add contacts of the hull with the four walls of the tank to a MuJoCo specification.
+
+    Explicit pairs are faster than bit masks.
+    """
     touching = [g.name for g in spec.body("hull").geoms if g.name.startswith("collision")]
     for geom in touching:
         for wall in ("wall_ahead", "wall_astern", "wall_port", "wall_starboard"):
@@ -315,7 +331,10 @@ def add_contacts(spec: mujoco.MjSpec, solref: tuple[float, float], friction: flo
 
 
 def remove_visual_parts(spec: mujoco.MjSpec) -> None:
-    """Delete all parts without contacts: drawn geoms, marks, outboards, fan, cameras, lights."""
+    """Delete all parts of a MuJoCo specification that have no contacts and are only drawn.
+
+    These are drawn geoms, marks, outboards, fan, cameras and lights.
+    """
     in_contact = {name for pair in spec.pairs for name in (pair.geomname1, pair.geomname2)}
     for geom in [g for g in spec.geoms if g.name not in in_contact]:
         spec.delete(geom)
@@ -326,7 +345,7 @@ def remove_visual_parts(spec: mujoco.MjSpec) -> None:
 
 
 def check_mass_matrix(model: mujoco.MjModel, vessel: Vessel) -> None:
-    """Check that MuJoCo stores the lower triangle of the mass matrix, which added mass needs."""
+    """Check that MuJoCo stores the mass matrix's lower triangle, which added mass needs."""
     stored, needed = model.M_rownnz.tolist(), list(range(1, model.nv + 1))
     if stored != needed:
         raise BadPhysics(

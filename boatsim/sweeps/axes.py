@@ -15,10 +15,10 @@ SIGNIFICANT_DIGITS = 12  # of a value, so that 0.1 is not written as 0.100000000
 
 @dataclass(frozen=True)
 class Axis:
-    """One axis of the grid.
+    """One axis of the parameter grid of a sweep: a scenario key and its values.
 
     Attributes:
-        target: Key or keys that it changes.
+        target: Key or keys of a scenario that the axis changes.
         values: Values along the axis.
     """
 
@@ -27,12 +27,12 @@ class Axis:
 
     @property
     def is_numeric(self) -> bool:
-        """Whether all values are numbers."""
+        """Whether all values of the grid axis are numbers."""
         return all(map(is_number, self.values))
 
 
 def is_number(value: object) -> bool:
-    """Return whether a value is a number and not a truth value.
+    """Return whether a value is a number; True and False do not count as numbers.
 
     Args:
         value: Any value.
@@ -41,7 +41,7 @@ def is_number(value: object) -> bool:
 
 
 def parse_axis(text: str) -> Axis:
-    """Return the axis of a command-line option.
+    """Parse a command-line option KEY=VALUES as an axis of the parameter grid of a sweep.
 
     Args:
         text: `KEY=VALUES`.
@@ -59,7 +59,7 @@ def parse_axis(text: str) -> Axis:
 
 
 def make_axis(key: str, values: str | Sequence[Value]) -> Axis:
-    """Return the axis of a key.
+    """Return an axis of the parameter grid of a sweep for a scenario key and its values.
 
     Args:
         key: Key or keys, as `parse_target` takes them.
@@ -79,7 +79,7 @@ def make_axis(key: str, values: str | Sequence[Value]) -> Axis:
 
 
 def parse_values(text: str) -> list[Value]:
-    """Return values separated by commas.
+    """Parse a comma-separated text of a command-line option as numbers, truth values and texts.
 
     Args:
         text: Values; each is true, false, a number, or else a text.

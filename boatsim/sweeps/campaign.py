@@ -16,7 +16,7 @@ KILLED = "its process was killed (out of memory?)"
 
 @dataclass(frozen=True)
 class Outcome:
-    """Result of a campaign.
+    """Results of the finished tasks of a campaign, such as a sweep of runs.
 
     Attributes:
         entries: Result of each finished task, by the number of the task in ascending order.
@@ -28,13 +28,13 @@ class Outcome:
 
     @property
     def failed(self) -> int:
-        """Number of tasks that failed."""
+        """Number of tasks of the campaign that failed."""
         return sum(entry["failure"] is not None for entry in self.entries.values())
 
 
 @dataclass(frozen=True)
 class Campaign:
-    """Tasks of one folder.
+    """Many similar tasks, such as the runs of a sweep, whose results are stored in one folder.
 
     Attributes:
         folder: Folder with the journal of finished tasks.
@@ -54,9 +54,7 @@ class Campaign:
 
 
 def run_campaign(campaign: Campaign, backend: Backend, report: Report = ignore_progress) -> Outcome:
-    """Perform the tasks of a campaign that are not finished yet.
-
-    After an interruption the results of all finished tasks are kept.
+    """Perform the tasks of a campaign that are not finished yet, and return all results.
 
     Args:
         campaign: The campaign.

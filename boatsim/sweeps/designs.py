@@ -18,7 +18,9 @@ Design = Literal["random", "latin", "sobol"]
 
 
 def design_matrix(design: Design, names: Sequence[str], runs: int, seed: int) -> Array:
-    """Return the probabilities (N, D) at which quantities are sampled.
+    """Return the sampling design of a sweep: probabilities (N, D) for N samples of D quantities.
+
+    A value of a quantity is the quantile of its distribution at such a probability.
 
     Args:
         design: Sampling design.
@@ -67,7 +69,7 @@ def _saltelli(count: int, runs: int, seed: int) -> Array:
 
 
 def noise_seed(design: Design, seed: int, number: int) -> int:
-    """Return the seed of the noise of a run: the same at every grid point.
+    """Return the seed of the sensor noise of a run of a sweep; it is the same at every grid point.
 
     It differs between samples, except in Saltelli's design, which compares runs that differ in one
     quantity only.

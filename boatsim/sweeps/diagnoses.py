@@ -31,7 +31,7 @@ FAMILIES = ("position_rms_m", "heading_rms_rad", "roll_rms_rad")
 
 @dataclass(frozen=True)
 class DiagnosisOptions:
-    """Options of `boatsim diagnose`.
+    """Options of a diagnosis of recordings, as in the command `boatsim diagnose`.
 
     Attributes:
         hold_out: Recordings used only for validation.
@@ -53,7 +53,10 @@ class DiagnosisOptions:
 
 
 class DiagnosisTask(NamedTuple):
-    """One diagnosis; it holds plain values, so that it can be sent to a process or a node."""
+    """Task to diagnose one recording.
+
+    It holds plain values, so that it can be sent to a process or a node.
+    """
 
     recording: str
     options: DiagnosisOptions
@@ -61,7 +64,7 @@ class DiagnosisTask(NamedTuple):
 
 
 def find_recordings(inputs: Sequence[Path]) -> list[Path]:
-    """Return the given files, and the recordings in the given folders.
+    """Return the paths of recordings: given files, and the recordings in given folders.
 
     Args:
         inputs: Files, and folders with boatsim runs (camera.csv) or other recordings.
@@ -96,7 +99,7 @@ def diagnose_all(
     backend: Backend,
     report: Report = ignore_progress,
 ) -> Outcome:
-    """Start or continue the diagnoses of recordings; write diagnoses.parquet.
+    """Diagnose many recordings separately, or continue to do so; write diagnoses.parquet.
 
     Args:
         paths: Recordings.
@@ -130,7 +133,7 @@ def diagnose_all(
 
 
 def output_folders(paths: Sequence[Path]) -> list[str]:
-    """Return a folder for the files of each diagnosis, named after the recording.
+    """Return an output folder for the diagnosis of each recording, named after the recording.
 
     Args:
         paths: Recordings; the folders repeat their structure below their common folder.
@@ -155,7 +158,7 @@ def _without_suffix(path: Path) -> str:
 
 
 def diagnose_task(task: DiagnosisTask) -> Entry:
-    """Diagnose one recording and write its files.
+    """Diagnose one recording of a campaign and write the files of the diagnosis.
 
     Args:
         task: Recording, options and output folder.
@@ -209,7 +212,7 @@ def _joined_causes(entry: Entry) -> str | None:
 
 
 def table_columns(done: Outcome, paths: Sequence[str]) -> dict[str, list[Any]]:
-    """Return all columns of the table, a row for each finished recording.
+    """Return the columns of diagnoses.parquet, which has a row for each finished diagnosis.
 
     Args:
         done: Result of the campaign.

@@ -27,7 +27,7 @@ def run_plan(
     metrics: Sequence[str] = (),
     report: Report = ignore_progress,
 ) -> tuple[Results, bool]:
-    """Perform the runs of a plan; write sweep.parquet and report.html.
+    """Perform the runs of a sweep's plan; write sweep.parquet and report.html.
 
     Args:
         plan: The plan.
@@ -58,7 +58,9 @@ def run_plan(
 
 
 def choose_backend(jobs: int | None, ray: str | None) -> Backend:
-    """Return what performs the tasks: a cluster, processes, or this process.
+    """Return the backend that performs the tasks of a campaign.
+
+    It is a Ray cluster, several processes, or this process.
 
     Args:
         jobs: Parallel processes; None for one per processor.

@@ -20,7 +20,7 @@ LOW, HIGH = 0.025, 0.975  # quantiles of the bootstrap that bound the 95 % inter
 
 
 class Index(NamedTuple):
-    """Sensitivity of one metric to one quantity at one grid point.
+    """Sobol sensitivity indices of one metric to one sampled quantity at one grid point of a sweep.
 
     Attributes:
         point: Values of the grid point.
@@ -48,7 +48,9 @@ class Index(NamedTuple):
 
 
 def sobol_indices(blocks: Array) -> tuple[Array, Array]:
-    """Return first-order and total indices (D,) each; nan where the values do not vary.
+    """Return the Sobol indices of a metric, first-order and total, (D,) each.
+
+    They are nan where the values do not vary.
 
     Args:
         blocks: Values (D + 2, N) of a metric in the order of the design: A, B, then for each
@@ -64,7 +66,7 @@ def sobol_indices(blocks: Array) -> tuple[Array, Array]:
 
 
 def bootstrap_intervals(blocks: Array, seed: int) -> tuple[Array, Array]:
-    """Return 95 % intervals (2, D) of the first-order and of the total indices.
+    """Return 95 % bootstrap intervals (2, D) of first-order and of total Sobol indices.
 
     Args:
         blocks: Values (D + 2, N), as of `sobol_indices`; rows of the design are resampled.
@@ -78,7 +80,7 @@ def bootstrap_intervals(blocks: Array, seed: int) -> tuple[Array, Array]:
 
 
 def sensitivity_indices(results: Results) -> list[Index]:
-    """Return the indices of every metric at every grid point.
+    """Return the Sobol indices of every metric at every grid point of a sweep.
 
     Args:
         results: Results of a sweep.

@@ -19,7 +19,9 @@ Entry = Mapping[str, Any]  # result of a task, as JSON holds it
 
 
 class Journal:
-    """Journal of one folder.
+    """File of a campaign to which the result of each finished task is appended.
+
+    An interrupted campaign continues from it.
 
     Attributes:
         done: Result of each finished task, by its number.
@@ -54,7 +56,7 @@ class Journal:
             self._growing.add(_encode_line(about))
 
     def add(self, number: int, entry: Entry) -> None:
-        """Append the result of a task; it is on the disk when this returns.
+        """Append the result of a task to the journal; it is on the disk when this returns.
 
         Args:
             number: Number of the task.

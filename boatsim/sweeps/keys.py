@@ -31,7 +31,7 @@ NOT_VARIED = ("about", "norms", "noise_widens_guards", "check")
 
 
 class Slot(NamedTuple):
-    """One value of a scenario.
+    """Place of one value in the table of a scenario, for a sweep that changes the value.
 
     Attributes:
         path: Keys and indices that lead to it.
@@ -44,7 +44,7 @@ class Slot(NamedTuple):
 
 @dataclass(frozen=True)
 class Target:
-    """Keys that an axis or a sampled quantity changes.
+    """Scenario keys that one axis or one sampled quantity of a sweep changes, and how it does so.
 
     Attributes:
         keys: One key, or several that get the same value.
@@ -56,12 +56,12 @@ class Target:
 
     @property
     def name(self) -> str:
-        """Name of its column in the table."""
+        """Name of the changed scenario keys, as a column of the sweep's table."""
         return f"{','.join(self.keys)}{self.operation}"
 
 
 def parse_target(text: str) -> Target:
-    """Return the target of a text.
+    """Parse the text that names the scenario keys that a sweep changes.
 
     Args:
         text: `fan_wind.speed`, `port.x,starboard.x+` (value is added) or `body.mass*` (multiplied).
@@ -86,7 +86,7 @@ def parse_target(text: str) -> Target:
 def find_slots(
     table: ScenarioTable, place: ScenarioLocation, target: Target
 ) -> tuple[ScenarioTable, list[Slot]]:
-    """Return the values of a scenario that a target changes.
+    """Find the values in a scenario's table that an axis or a sampled quantity of a sweep changes.
 
     Args:
         table: The scenario.
@@ -117,7 +117,9 @@ def set_values(
     operation: Operation,
     value: Value,
 ) -> ScenarioTable:
-    """Return a scenario with other values.
+    """Return the table of a scenario in which a sweep's value is set at some places.
+
+    The value replaces the specified one, is added to it, or multiplies it.
 
     Args:
         table: The scenario.

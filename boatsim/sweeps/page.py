@@ -19,7 +19,7 @@ MOST_VALUES = 6  # of an axis that are listed; of more the first two and the las
 
 
 def write_report(results: Results, folder: Path) -> None:
-    """Write report.html, one page that loads nothing from elsewhere.
+    """Write report.html of a sweep, one page that loads nothing from elsewhere.
 
     Args:
         results: Results of a sweep.

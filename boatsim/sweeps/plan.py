@@ -32,7 +32,7 @@ REHEARSED_STEPS = 2  # steps of a run that show whether it can start
 
 
 class Point(NamedTuple):
-    """A point of the grid.
+    """One point of the parameter grid of a sweep: a scenario with values of all axes.
 
     Attributes:
         scenario: Name of the scenario.
@@ -51,7 +51,7 @@ class Point(NamedTuple):
 
 @dataclass(frozen=True)
 class Plan:
-    """All that decides what a sweep computes.
+    """Definition of a sweep: scenarios, grid, sampled quantities, number of samples, seed, design.
 
     Attributes:
         scenarios: Addresses of the scenarios.
@@ -71,19 +71,22 @@ class Plan:
 
     @cached_property
     def points(self) -> tuple[Point, ...]:
-        """Grid points by scenario, the last axis fastest; raises BadInput for wrong keys."""
+        """Points of the parameter grid, scenario by scenario, the last axis fastest.
+
+        Raises BadInput for wrong keys.
+        """
         grid = product(*map(attrgetter("values"), self.axes))
         return tuple(starmap(self._make_point, product(self.scenarios, grid)))
 
     @cached_property
     def probabilities(self) -> Array:
-        """Probabilities (N, D) at which the D distributions are inverted for the N samples."""
+        """Probabilities (N, D) at which the D sampled distributions are inverted for N samples."""
         names = list(map(attrgetter("target.name"), self.sampled))
         return design_matrix(self.design, names, self.runs, self.seed)
 
     @cached_property
     def samples(self) -> list[tuple[Value, ...]]:
-        """Values of the sampled quantities in each of the N samples."""
+        """Values of the sampled quantities in each of the N samples of the sweep."""
         if not self.sampled:
             return [()] * self.runs
         columns = []
@@ -93,22 +96,22 @@ class Plan:
 
     @property
     def run_count(self) -> int:
-        """Number of runs."""
+        """Number of runs of the sweep: grid points times samples."""
         return len(self.points) * len(self.samples)
 
     @property
     def targets(self) -> list[Target]:
-        """Targets of the axes, then of the sampled quantities."""
+        """Scenario keys that the sweep changes: those of the axes, then the sampled ones."""
         return list(map(attrgetter("target"), chain(self.axes, self.sampled)))
 
     @property
     def columns(self) -> list[str]:
-        """Names of the columns of varied and sampled values."""
+        """Names of the table columns with the varied and sampled values of each run."""
         return [*self._scenario_column, *map(attrgetter("name"), self.targets)]
 
     @cached_property
     def differing_columns(self) -> list[str]:
-        """Names of the columns in which grid points differ."""
+        """Names of the table columns in which the grid points of the sweep differ."""
         axes = [axis.target.name for axis in self.axes if len(axis.values) > 1]
         return [*self._scenario_column, *axes]
 
@@ -119,7 +122,7 @@ class Plan:
         return []
 
     def point_values(self, number: int) -> tuple[Value, ...]:
-        """Return the values of a grid point in the columns `differing_columns`.
+        """Return the varied values of a grid point of the sweep, in `differing_columns`.
 
         Args:
             number: Number of the grid point.
@@ -129,7 +132,7 @@ class Plan:
         return tuple(compress((point.scenario, *point.values), several))
 
     def run_values(self, number: int) -> tuple[Value, ...]:
-        """Return the values of a run in `columns`.
+        """Return the varied and sampled values of a run of the sweep, in the order of `columns`.
 
         Args:
             number: Number of the run.
@@ -140,7 +143,9 @@ class Plan:
         return (*scenario, *point.values, *sample)
 
     def seed_of(self, number: int) -> int | None:
-        """Return the noise seed of a run; None where the seed itself is varied or sampled.
+        """Return the noise seed of a run of the sweep.
+
+        The result is None where the seed itself is varied or sampled.
 
         Args:
             number: Number of the run.
@@ -150,14 +155,14 @@ class Plan:
         return noise_seed(self.design, self.seed, number % len(self.samples))
 
     def tasks(self) -> Iterator[tuple[int, RunTask]]:
-        """Yield the number and the task of every run."""
+        """Yield the number and the task of every run of the sweep."""
         for number in range(self.run_count):
             point = self.points[number // len(self.samples)]
             table = self._apply_sample(point, self.samples[number % len(self.samples)])
             yield number, RunTask(table, point.place, self.seed_of(number))
 
     def run_corners_briefly(self) -> set[str]:
-        """Start a run at each corner of the grid, with all sampled quantities at their medians.
+        """Start a short run at each corner of the grid, with sampled quantities at their medians.
 
         This finds mistakes in keys and values, and compiles the vessels, before the sweep begins.
 
@@ -181,7 +186,10 @@ class Plan:
         return metrics
 
     def definition(self) -> dict[str, Any]:
-        """Return the definition of the sweep with digests of its files, for the journal."""
+        """Return the definition of the sweep with digests of its files.
+
+        It is stored in the journal, so that only the same sweep can continue there.
+        """
         return {
             "boatsim": version(),
             "scenarios": list(self.scenarios),
@@ -225,7 +233,7 @@ def make_plan(
     seed: int,
     design: Design = "random",
 ) -> Plan:
-    """Return the plan of a sweep.
+    """Return the plan of a sweep after checks of its scenarios, keys and number of runs.
 
     Args:
         scenarios: Scenarios as a user writes them.

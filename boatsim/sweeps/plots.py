@@ -23,7 +23,7 @@ BOX_WIDTH = 0.7  # share of the distance between two values of a list
 
 @dataclass(frozen=True)
 class Group:
-    """Runs of one controller, or all runs.
+    """Runs of a sweep that are plotted in one style: those of one controller, or all.
 
     Attributes:
         name: Name of the controller; "" for all runs.
@@ -46,7 +46,10 @@ class _Metric(NamedTuple):
 
 
 def group_by_controller(results: Results, rows: Array) -> list[Group]:
-    """Return the runs by controller if several were varied, at most as many as there are styles.
+    """Divide the runs of a sweep into one group per controller, for plots.
+
+    There is one group of all runs if the controller was not varied, and at most one group per
+    style.
 
     Args:
         results: Results of a sweep.
@@ -63,7 +66,7 @@ def group_by_controller(results: Results, rows: Array) -> list[Group]:
 
 
 def controller_legend(found: Sequence[Group]) -> str:
-    """Return the legend of the controllers as SVG; "" for one group.
+    """Return the legend of a sweep's plots, which names the controllers, as SVG; "" for one group.
 
     Args:
         found: Groups of runs.
@@ -74,7 +77,7 @@ def controller_legend(found: Sequence[Group]) -> str:
 
 
 def plot_metric(results: Results, name: str, rows: Array) -> list[str]:
-    """Return the plots of a metric against every axis and the most correlated sampled quantities.
+    """Return plots of a metric of a sweep against axes and the most correlated sampled quantities.
 
     Args:
         results: Results of a sweep.

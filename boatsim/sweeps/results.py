@@ -21,7 +21,7 @@ NAME = "sweep.parquet"
 
 @dataclass(frozen=True)
 class Results:
-    """The R finished runs of a plan, in the order of their numbers.
+    """Results of the R finished runs of a sweep, in the order of their numbers.
 
     Attributes:
         plan: The plan.
@@ -35,12 +35,12 @@ class Results:
 
     @cached_property
     def numbers(self) -> list[int]:
-        """Numbers of the runs."""
+        """Numbers of the finished runs in the sweep's plan."""
         return list(self.entries)
 
     @cached_property
     def units(self) -> dict[str, str]:
-        """Unit of each metric, in the order in which runs have them."""
+        """Unit of each metric of the sweep's runs, in the order in which runs have the metrics."""
         found: dict[str, str] = {}
         for entry in self.entries.values():
             for name, (_, unit) in entry.get("norms", {}).items():
@@ -49,29 +49,32 @@ class Results:
 
     @property
     def displayed_metrics(self) -> list[str]:
-        """Metrics to show; the table holds all."""
+        """Names of the metrics to show in the report; sweep.parquet holds all metrics."""
         if not self.selection:
             return list(self.units)
         return [name for name in self.units if name in self.selection]
 
     @cached_property
     def point_numbers(self) -> Array:
-        """Number of the grid point of each run (R,)."""
+        """Number of the grid point of each finished run (R,)."""
         return np.array(self.numbers, dtype=int) // len(self.plan.samples)
 
     @cached_property
     def sample_numbers(self) -> Array:
-        """Number of the sample of each run (R,); runs with the same number share all samples."""
+        """Number of the random sample of each finished run (R,).
+
+        Runs with the same number have the same sampled values.
+        """
         return np.array(self.numbers, dtype=int) % len(self.plan.samples)
 
     @cached_property
     def is_failed(self) -> Array:
-        """Whether each run failed (R,)."""
+        """Whether each run of the sweep failed (R,)."""
         return np.array([reason is not None for reason in self._failures], dtype=bool)
 
     @cached_property
     def metrics(self) -> dict[str, Array]:
-        """Values (R,) of each metric, nan where a run has none."""
+        """Values (R,) of each metric over the runs of the sweep, nan where a run has none."""
         # A float array holds None as nan.
         return {name: np.array(self._metric_values(name), dtype=float) for name in self.units}
 
@@ -84,7 +87,7 @@ class Results:
         return [entry.get("norms", {}).get(metric, (None,))[0] for entry in self.entries.values()]
 
     def column_values(self, name: str) -> list[Any]:
-        """Return the values (R,) of a column of the plan.
+        """Return the values (R,) of a varied or sampled quantity, by its column in the table.
 
         Args:
             name: Name of the column.
@@ -94,11 +97,11 @@ class Results:
 
     @property
     def failure_counts(self) -> dict[str, int]:
-        """Reasons of failed runs with their numbers, the most frequent first."""
+        """Reasons for which runs failed, with numbers of runs, the most frequent first."""
         return dict(Counter(filter(None, self._failures)).most_common())
 
     def columns(self) -> dict[str, Sequence[Any]]:
-        """Return all columns of the table."""
+        """Return all columns of a sweep's table, from varied values to metrics and failures."""
         columns: dict[str, Sequence[Any]] = {
             "run": self.numbers,
             "point": self.point_numbers.tolist(),
@@ -116,7 +119,7 @@ class Results:
         return columns
 
     def write(self, folder: Path) -> None:
-        """Write sweep.parquet.
+        """Write the results of the sweep to sweep.parquet.
 
         Args:
             folder: Output folder.

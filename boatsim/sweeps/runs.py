@@ -16,7 +16,9 @@ LONGEST_REASON = 300  # characters
 
 
 class RunTask(NamedTuple):
-    """One run; it holds plain values, so that it can be sent to a process or a node.
+    """Task to run one scenario of a sweep.
+
+    It holds plain values, so that it can be sent to a process or a node.
 
     Attributes:
         table: The scenario.
@@ -30,7 +32,7 @@ class RunTask(NamedTuple):
 
 
 def perform_run(task: RunTask) -> Entry:
-    """Perform a run.
+    """Perform one run of a sweep and return its metrics.
 
     Args:
         task: The run.
@@ -69,7 +71,7 @@ def _stop_if_interrupted(t: float) -> None:
 
 
 def failure_entry(reason: str) -> Entry:
-    """Return the entry of a task that failed.
+    """Return the journal entry of a task of a campaign that failed.
 
     Args:
         reason: Why; it is stored in one line and cut if it is long.

@@ -17,7 +17,7 @@ CALL = re.compile(r"(\w+)\s*\((.*)\)")
 
 
 class Distribution(NamedTuple):
-    """A distribution.
+    """A kind of probability distribution that a sweep can sample, with checks of its parameters.
 
     Attributes:
         numbers: Names of its parameters.
@@ -94,10 +94,10 @@ CHOICE = "choice"
 
 @dataclass(frozen=True)
 class SampledKey:
-    """A quantity that is sampled for each run.
+    """Quantity of a scenario that a sweep samples from a distribution for each run.
 
     Attributes:
-        target: Key or keys that it changes.
+        target: Key or keys of a scenario that get the sampled value.
         distribution: Name of the distribution, or CHOICE.
         numbers: Parameters of the distribution; of a choice its values.
     """
@@ -110,7 +110,7 @@ class SampledKey:
         return f"{self.distribution}({', '.join(map(str, self.numbers))})"
 
     def quantiles(self, probabilities: Array) -> list[Value]:
-        """Return the quantiles of the distribution.
+        """Return the quantiles of the sampled quantity's distribution at given probabilities.
 
         Args:
             probabilities: Probabilities (N,) from 0 to 1.
@@ -127,7 +127,7 @@ class SampledKey:
 
 
 def parse_sampled_key(text: str) -> SampledKey:
-    """Return the sampled quantity of a command-line option.
+    """Parse a command-line option KEY=DISTRIBUTION(NUMBERS) as a quantity that a sweep samples.
 
     Args:
         text: `KEY=DISTRIBUTION(NUMBERS)`.
@@ -145,7 +145,7 @@ def parse_sampled_key(text: str) -> SampledKey:
 
 
 def make_sampled_key(key: str, call: str) -> SampledKey:
-    """Return the sampled quantity of a key and a distribution.
+    """Return a quantity that a sweep samples, from a scenario key and the text of a distribution.
 
     Args:
         key: Key or keys, as `parse_target` takes them.

@@ -16,7 +16,7 @@ TWO_SIDED_95 = 1.96
 
 
 class Spread(NamedTuple):
-    """Distribution of one metric at one grid point.
+    """Mean and quantiles of one metric over the runs at one grid point of a sweep.
 
     Attributes:
         point: Values of the grid point.
@@ -44,7 +44,9 @@ class Spread(NamedTuple):
 
 
 class Pair(NamedTuple):
-    """One metric of two controllers on the same samples, over runs in which both have a value.
+    """Comparison of one metric of two controllers on the same random samples of a sweep.
+
+    Only runs in which both controllers have a value count.
 
     Attributes:
         point: Values of the grid point, without the controller.
@@ -76,7 +78,7 @@ class Pair(NamedTuple):
 
 
 def metric_spreads(results: Results) -> list[Spread]:
-    """Return the spread of every metric at every grid point where a run has a value of it.
+    """Return mean and quantiles of every metric at every grid point of a sweep where it has values.
 
     Args:
         results: Results of a sweep.
@@ -97,7 +99,7 @@ def metric_spreads(results: Results) -> list[Spread]:
 
 
 def compare_controllers(results: Results) -> list[Pair]:
-    """Return the comparison of each controller with the first one, sample by sample.
+    """Compare the metrics of each controller of a sweep with those of the first, sample by sample.
 
     Args:
         results: Results of a sweep.

@@ -13,7 +13,7 @@ Columns = Mapping[str, Sequence[Any]]
 
 
 def write_parquet(columns: Columns, units: Mapping[str, str], about: str, path: Path) -> None:
-    """Write a Parquet file.
+    """Write the table of a campaign, such as a sweep, to a Parquet file.
 
     Args:
         columns: Columns of numbers, texts or truth values; None where a value is missing.

@@ -11,7 +11,7 @@ from boatsim.sweeps.results import Results
 
 @dataclass(frozen=True)
 class TextTable:
-    """A table of text.
+    """A table of text with the results of a sweep, for the terminal and for report.html.
 
     Attributes:
         key: Identifier of its section in the report.
@@ -29,7 +29,9 @@ class TextTable:
 
 
 def result_tables(results: Results) -> list[TextTable]:
-    """Return the tables that have rows: spread of metrics, pairs of controllers, Sobol indices.
+    """Return the tables with the results of a sweep; tables without rows are omitted.
+
+    They hold the spread of metrics, comparisons of controllers, and Sobol indices.
 
     Args:
         results: Results of a sweep.
@@ -95,7 +97,7 @@ def _index_table(names: Sequence[str], found: Sequence[indices.Index]) -> TextTa
 
 
 def blank_repeats(table: TextTable) -> list[list[str]]:
-    """Return the rows of a table, with the words that repeat the row above left blank.
+    """Return the rows of a table of text, with words that repeat the row above left blank.
 
     Args:
         table: The table.
@@ -114,7 +116,7 @@ def blank_repeats(table: TextTable) -> list[list[str]]:
 
 
 def format_number(value: float) -> str:
-    """Return a number as all tables print it.
+    """Return a number as text, in the format of all tables of a sweep.
 
     Args:
         value: The number.
@@ -123,7 +125,7 @@ def format_number(value: float) -> str:
 
 
 def format_values(values: Sequence[Value]) -> list[str]:
-    """Return the texts of varied values.
+    """Return the values of varied scenario keys as texts.
 
     Args:
         values: Numbers, texts or truth values.

@@ -45,7 +45,7 @@ FIXED: dict[str, Colour] = {
 def curve_style(
     name: str, number: int, boat: str = "", colour: Colour | None = None
 ) -> rr.SeriesLines:
-    """Return the style of a curve.
+    """Return the style of a signal's curve in rerun's viewer: colour, width and legend.
 
     Args:
         name: Column of the signal.
@@ -61,12 +61,21 @@ def curve_style(
 
 
 def sample_style(boat: str, colour: Colour) -> rr.SeriesPoints:
-    """Return the style of recorded samples: dots, which do not hide the curves of models."""
+    """Return the style of recorded samples in rerun's viewer: dots, which do not hide curves."""
     return rr.SeriesPoints(colors=[colour], markers=["circle"], marker_sizes=[2.0], names=[boat])
 
 
 def band_style(name: str, flagged: Colour) -> rr.SeriesLines:
-    """Return the style of a missing force, its band, or its flagged part."""
+    """Return the style of a curve of a missing force, of its band, or of its flagged part.
+
+    Args:
+        name: Column of the curve; its ending distinguishes the three.
+        flagged: Colour of the flagged part.
+
+    Args:
+        name: Column of the curve; its ending distinguishes the three.
+        flagged: Colour of the flagged part.
+    """
     for end, (label, colour, width) in {
         "_flagged": ("flagged", flagged, 4.0),
         "_low": ("- 2 sd", GREY, 1.0),
@@ -78,7 +87,7 @@ def band_style(name: str, flagged: Colour) -> rr.SeriesLines:
 
 
 def legend_text(name: str) -> str:
-    """Return the legend of a column: `actual_thrust_port_N` -> "actual thrust port [N]"."""
+    """Return a signal's text in a legend: "actual thrust port [N]" for `actual_thrust_port_N`."""
     end = ""
     for bound in ("_low", "_high"):
         if name.endswith(bound):
@@ -91,7 +100,7 @@ def legend_text(name: str) -> str:
 
 
 def run_layout(scene: Scene, names: Sequence[str]) -> rrb.Blueprint:
-    """Return the layout of a run: scene, velocities with their references, tabs of other signals.
+    """Return the layout of rerun's viewer for a run: scene, velocities and tabs of other signals.
 
     Args:
         scene: What is drawn.
@@ -115,7 +124,7 @@ def run_layout(scene: Scene, names: Sequence[str]) -> rrb.Blueprint:
 
 
 def select_signals_and_goals(signals: Sequence[str], names: Iterable[str]) -> list[str]:
-    """Return the names that are one of some signals, or a goal for one of them."""
+    """Select from column names those of given signals and of goals for these signals."""
     found: list[str] = []
     for name in names:
         is_goal = (
@@ -133,7 +142,9 @@ def diagnosis_layout(
     missing: Mapping[str, object],
     span: tuple[float, float],
 ) -> rrb.Blueprint:
-    """Return the layout of a diagnosis: view from above, motion in tabs, missing force per axis.
+    """Return the layout of rerun's viewer for a diagnosis.
+
+    It shows the view from above, the motion in tabs, and the missing force of each axis.
 
     Args:
         scene: What is drawn.
@@ -166,7 +177,9 @@ def diagnosis_layout(
 
 
 def comparison_layout(scene: Scene, boats: Mapping[str, Sequence[str]]) -> rrb.Blueprint:
-    """Return the layout of several runs: the scene above their metrics, and a plot per signal.
+    """Return the layout of rerun's viewer for a comparison of several runs.
+
+    It shows the scene above the metrics, and a plot per signal.
 
     Args:
         scene: What is drawn.
@@ -299,6 +312,6 @@ def _curve_colour(name: str, number: int) -> Colour:
 
 
 def lighten_colour(colour: Colour) -> Colour:
-    """Return a colour halfway to white, for a goal next to its signal."""
+    """Return a colour halfway to white, in which a goal is drawn next to its signal."""
     red, green, blue = colour
     return (red + 255) // 2, (green + 255) // 2, (blue + 255) // 2

@@ -59,7 +59,7 @@ PARTING = 1e-9
 
 
 class Flagged(TypedDict):
-    """An interval of diagnosis.json in which the missing force of an axis is flagged."""
+    """Interval of a diagnosis.json in which the missing force of an axis is significant."""
 
     axis: str
     from_s: float
@@ -67,7 +67,10 @@ class Flagged(TypedDict):
 
 
 class RerunLog:
-    """The log of a run in progress; leaving its `with` block writes the rest."""
+    """3D log of a run in progress, written to a rerun file, a viewer or both.
+
+    Leaving its `with` block writes the rest.
+    """
 
     def __init__(self, path: Path | str | None, scene: Scene, viewer: str | None = None) -> None:
         """Open the log.
@@ -95,10 +98,10 @@ class RerunLog:
             self.stream.flush()
 
     def add_rows(self, rows: Recording) -> None:
-        """Log the rows that follow those logged before.
+        """Add the next rows of a run's log to the 3D log.
 
         Args:
-            rows: The rows.
+            rows: Rows that follow those added before.
         """
         if len(rows) and self.stream.has_receiver:
             self._waiting.append(rows)
@@ -110,7 +113,7 @@ class RerunLog:
             self._write()
 
     def finish(self, metrics: Mapping[str, MetricEntry]) -> None:
-        """Add the table of metrics.
+        """Add the table of the run's metrics to the 3D log.
 
         Args:
             metrics: Metrics by name, as in norms.json.
@@ -120,7 +123,7 @@ class RerunLog:
             self._write_text(metrics_table(metrics))
 
     def close(self) -> None:
-        """Write the rest and close the file."""
+        """Write the remaining rows of the 3D log and close its file."""
         try:
             self._write()
         finally:
@@ -168,7 +171,9 @@ def log_overlay(
     intervals: Sequence[Flagged],
     scene: Scene,
 ) -> None:
-    """Write diagnosis.rrd: recording and models in one scene, and the missing force per axis.
+    """Write the 3D log of a diagnosis, diagnosis.rrd: recording, models and missing force.
+
+    Recording and models are drawn in one scene; the missing force is plotted per axis.
 
     Args:
         path: The file.
@@ -224,7 +229,7 @@ def log_overlay(
 
 
 class Boat(NamedTuple):
-    """One of several runs in a log.
+    """One of several runs that are drawn together in a 3D log.
 
     Attributes:
         recording: The run.
@@ -287,7 +292,7 @@ def _send_axes(stream: Stream) -> None:
 
 
 def metrics_table(metrics: Mapping[str, MetricEntry]) -> str:
-    """Return the metrics of a run as a table in Markdown.
+    """Return the metrics of a run as a Markdown table.
 
     Args:
         metrics: Metrics by name, as in norms.json.

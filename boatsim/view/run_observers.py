@@ -14,10 +14,7 @@ FILE = "run.rrd"
 
 
 def rerun_observers(viewer: str | None = None) -> list[StartObserver]:
-    """Return the observers of a run.
-
-    The file and the viewer are separate: pieces small enough for a viewer would make the file ten
-    times as large.
+    """Return the observers of a run that write its 3D log to run.rrd and show it in a viewer.
 
     Args:
         viewer: Address of a rerun viewer that shows the run; None: only the file is written.

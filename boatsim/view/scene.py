@@ -35,7 +35,7 @@ GRAVITY = 9.81  # [m/s^2]
 
 
 class Solid(NamedTuple):
-    """A coloured shape of a part: "hull", "outboard_port" ..., or "tank"."""
+    """Coloured shape of the hull, an outboard or the tank in a 3D log, made of triangles."""
 
     part: str
     name: str
@@ -45,7 +45,7 @@ class Solid(NamedTuple):
 
 
 class Thruster(NamedTuple):
-    """Position and signals of an arrow of thrust."""
+    """Position of a thruster's arrow in a 3D log, and the signals for its length and direction."""
 
     name: str  # "port"
     x: float  # [m] forward of the CG
@@ -56,7 +56,7 @@ class Thruster(NamedTuple):
 
 @dataclass(frozen=True)
 class Scene:
-    """Boat, tank and arrows of a 3D log."""
+    """Shapes of vessel and tank and positions of thrust arrows for a 3D log."""
 
     vessel: str
     length: float  # [m]
@@ -69,7 +69,7 @@ class Scene:
     times: float = 1.0  # drawn size of vessels by their true size
 
     def enlarge_vessels(self, times: float) -> "Scene":
-        """Return the scene with vessels enlarged; water and paths do not change.
+        """Return the scene with vessels drawn larger; water and paths do not change.
 
         Args:
             times: Factor of the size.
@@ -89,14 +89,14 @@ class Scene:
         )
 
     def outline(self) -> Array:
-        """Return the closed outline (V, 2) [m] of the drawn hull from above, its convex hull."""
+        """Return the outline of the drawn hull from above, a closed convex polygon (V, 2) [m]."""
         points = np.concatenate([s.vertices[:, :2] for s in self.solids if s.part == "hull"])
         corners = ConvexHull(points).vertices
         return np.asarray(points[np.append(corners, corners[0])], dtype=float)
 
 
 def scene_from(model: "Model", vessel: "Vessel", tank: "Tank") -> Scene:
-    """Return the scene of a model.
+    """Return the scene of a 3D log for a vessel in a tank, with the shapes of its MuJoCo model.
 
     Args:
         model: The compiled model.
@@ -116,7 +116,7 @@ def scene_from(model: "Model", vessel: "Vessel", tank: "Tank") -> Scene:
 
 
 def plain_scene(length: float, beam: float, tank: tuple[float, float, float, float]) -> Scene:
-    """Return a scene without a model: a box with a pointed bow.
+    """Return the scene of a 3D log for a vessel without a model: a box with a pointed bow.
 
     Args:
         length: Length of the vessel [m].

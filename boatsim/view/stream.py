@@ -19,7 +19,7 @@ PATIENCE = 10.0  # [s] for a viewer to receive the rest at the end of a run
 
 
 class Stream:
-    """Messages to a file and a viewer.
+    """Sends the messages of a rerun log to a file, to a viewer or to both.
 
     Attributes:
         has_receiver: False if there is neither; then nothing needs to be logged.
@@ -52,25 +52,25 @@ class Stream:
         self.has_receiver = bool(self._streams)
 
     def log(self, entity: str, what: rr.AsComponents, static: bool = False) -> None:
-        """Log an entity; see `rerun.RecordingStream.log`."""
+        """Log an entity to file and viewer; see `rerun.RecordingStream.log`."""
         for stream in self._streams:
             stream.log(entity, what, static=static)
 
     def send_columns(
         self, entity: str, indexes: Iterable[rr.TimeColumn], columns: Iterable[rr.ComponentColumn]
     ) -> None:
-        """Log rows of an entity; see `rerun.RecordingStream.send_columns`."""
+        """Log rows of an entity to file and viewer; see `rerun.RecordingStream.send_columns`."""
         indexes, columns = list(indexes), list(columns)
         for stream in self._streams:
             stream.send_columns(entity, indexes, columns)
 
     def send_blueprint(self, layout: rr.blueprint.Blueprint) -> None:
-        """Set the layout of the viewer."""
+        """Set the layout of rerun's viewer for this log."""
         for stream in self._streams:
             stream.send_blueprint(layout)
 
     def flush(self) -> None:
-        """Write everything that was logged to the file.
+        """Write all messages that were logged so far to the file.
 
         Raises:
             OSError: If the disk is full; then the file is as it was before.
@@ -80,7 +80,7 @@ class Stream:
             self._has_header = True
 
     def close(self) -> None:
-        """Write the rest and close the file.
+        """Write the remaining messages, close the file and disconnect from the viewer.
 
         Raises:
             OSError: If the disk is full.

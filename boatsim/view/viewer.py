@@ -27,10 +27,10 @@ SETTLED = 0.3  # [s] after which a viewer has all its ports, or has ended becaus
 
 @dataclass(frozen=True)
 class Viewer:
-    """A running viewer.
+    """A running rerun viewer to which runs can be sent.
 
     Attributes:
-        address: Where messages are sent.
+        address: Address to which messages are sent.
         page: Address of its page; "" for a viewer with a window.
     """
 
@@ -40,7 +40,7 @@ class Viewer:
 
 @contextmanager
 def viewer_for(serve: bool) -> Iterator[Viewer | None]:
-    """Provide a viewer for a block.
+    """Start or find a rerun viewer for a block.
 
     Args:
         serve: Whether to start rerun's web viewer, which ends with the block, instead of a window.
@@ -61,7 +61,7 @@ def viewer_for(serve: bool) -> Iterator[Viewer | None]:
 
 
 def has_display() -> bool:
-    """Return whether a window can be opened."""
+    """Return whether the computer has a display on which a window can be opened."""
     if sys.platform in ("darwin", "win32"):
         return True
     return bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))

@@ -17,7 +17,9 @@ BEYOND = 4.0  # size of the water by the size of the view
 
 
 def open_water_scene(vessel: Vessel, runs: Mapping[str, Sequence[Recording]]) -> Scene:
-    """Return the scene of an overlay of runs.
+    """Return the scene in which several runs are drawn together, with water around all their paths.
+
+    Vessels are enlarged where the paths are long.
 
     Args:
         vessel: The vessel that is drawn.

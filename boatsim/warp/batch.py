@@ -17,7 +17,7 @@ MOST_EXACT = 2**24  # integers up to this one are exact in single precision
 
 
 class Batch(batch.Batch):
-    """Boats in open water on a device.
+    """Many vessels in open water, simulated on a GPU or on Warp's CPU device.
 
     Arrays are copied to and from the device when they are needed.
 
@@ -71,7 +71,7 @@ class Batch(batch.Batch):
         commands: ArrayLike | Mapping[str, float] | None = None,
         boats: ArrayLike | None = None,
     ) -> None:
-        """Put boats at states, see `boatsim.simulate.batch.Batch.reset`."""
+        """Set the state of some or all vessels, see `boatsim.simulate.batch.Batch.reset`."""
         self._read_from_device()
         super().reset(states, commands, boats)
         self._changed = True
@@ -79,7 +79,7 @@ class Batch(batch.Batch):
     def advance(
         self, commands: ArrayLike | Mapping[str, float] | None = None, steps: int = 1
     ) -> None:
-        """Integrate all boats, see `boatsim.simulate.batch.Batch.advance`."""
+        """Integrate the motion of all vessels, see `boatsim.simulate.batch.Batch.advance`."""
         if commands is not None:
             self._commands[:] = self._clip(commands, np.arange(self.n))
         self.send()
@@ -88,14 +88,14 @@ class Batch(batch.Batch):
         self._ahead = True
 
     def set(self, parameter: str, values: ArrayLike, boats: ArrayLike | None = None) -> None:
-        """Set a parameter, see `boatsim.simulate.batch.Batch.set`."""
+        """Change a model parameter of vessels, see `boatsim.simulate.batch.Batch.set`."""
         self._read_from_device()
         super().set(parameter, values, boats)
         self._check_courses()
         self._changed = True
 
     def assign(self, vessel: ArrayLike, boats: ArrayLike | None = None) -> None:
-        """Assign vessels to boats, see `boatsim.simulate.batch.Batch.assign`."""
+        """Give vessels the parameters of another, see `boatsim.simulate.batch.Batch.assign`."""
         self._read_from_device()
         super().assign(vessel, boats)
         if boats is None:
@@ -106,29 +106,29 @@ class Batch(batch.Batch):
 
     @property
     def states(self) -> Array:
-        """(n, 2 NQ) present states, body rates over ground."""
+        """Present states of all vessels (n, 2 NQ), with body rates over ground."""
         self._read_from_device()
         return super().states
 
     @property
     def actuators(self) -> Array:
-        """(n, A) actuators now, in the order of `vessel.actuators`."""
+        """Present actuator positions of all vessels (n, A), in the order of `vessel.actuators`."""
         self._read_from_device()
         return super().actuators
 
     @property
     def lost(self) -> NDArray[np.bool_]:
-        """(n,) whether the motion of a boat is no longer finite; other boats are unaffected."""
+        """Whether the motion of each vessel (n,) has diverged; other vessels are unaffected."""
         self._read_from_device()
         return super().lost
 
     def sense(self, felt: Array) -> None:
-        """Write readings without noise, see `boatsim.simulate.batch.Batch.sense`."""
+        """Compute error-free instrument readings, see `boatsim.simulate.batch.Batch.sense`."""
         self._read_from_device()
         super().sense(felt)
 
     def send(self) -> None:
-        """Copy commands and times to the device, and all other arrays if they have changed."""
+        """Copy commands and times to the Warp device, and all other arrays if they changed."""
         self._there.commands.assign(self._commands)
         self._there.t.assign(self.t)
         if self._changed:

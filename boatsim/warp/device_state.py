@@ -12,7 +12,10 @@ from boatsim.warp.runtime import find_device, import_warp
 
 
 class Boats:
-    """Arrays on a device, one row for each boat, and the program that works on them."""
+    """Arrays of a batch of boats on a Warp device, with the program whose kernels use them.
+
+    Each array has one row for each boat.
+    """
 
     def __init__(self, program: Program, n: int, step: float, on: str, real: str) -> None:
         """Allocate the arrays.
@@ -36,7 +39,9 @@ class Boats:
         self.p = self.k = self.copy_to_device(np.zeros((0, 0)))
 
     def copy_parameters(self, p: Array, k: Array) -> None:
-        """Copy parameters and masses to the device; one row of each if all boats are equal.
+        """Copy model parameters and masses of all boats to the device.
+
+        Only one row of each is copied if all boats are equal.
 
         Args:
             p: (n, P) parameters.
@@ -52,11 +57,11 @@ class Boats:
             self.reallocations += 1
 
     def zeros(self, *shape: int) -> Any:
-        """Return an array (n, ...) of zeros on the device."""
+        """Return an array (n, ...) of zeros on the device, with a row for each boat."""
         return self.copy_to_device(np.zeros((self.n, *shape)))
 
     def copy_to_device(self, values: Array, kind: Any = None) -> Any:
-        """Return a copy of an array on the device.
+        """Return a copy of a numpy array in the memory of the device.
 
         Args:
             values: The numbers.
@@ -65,10 +70,10 @@ class Boats:
         return self.wp.array(values, dtype=kind or self.real, device=self.device)
 
     def launch(self, kernel: str, *inputs: Any) -> None:
-        """Run a kernel of the program with one thread for each boat.
+        """Run a kernel of the program on the device, with one thread for each boat.
 
         Args:
-            kernel: Its name.
+            kernel: Name of the kernel.
             inputs: Its arguments.
         """
         self.wp.launch(getattr(self.kernels, kernel), dim=self.n, inputs=inputs, device=self.device)

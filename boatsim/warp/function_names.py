@@ -72,5 +72,5 @@ RESERVED = ("T", "wp", "int", "float", "bool", "range", "lambda")
 
 
 def unreserved_name(name: str) -> str:
-    """Return a name for a variable that is not reserved in Warp."""
+    """Return a variable's name with an underscore appended if the name is reserved in Warp."""
     return f"{name}_" if name in RESERVED else name

@@ -31,7 +31,7 @@ IDLE = (
 
 
 class MujocoMotion:
-    """All boats as the worlds of one model in open water."""
+    """Motion of a batch of boats on mujoco_warp: each boat is a world of one MuJoCo model."""
 
     def __init__(self, boats: Boats, vessels: Sequence[Vessel]) -> None:
         """Build the models.
@@ -74,7 +74,7 @@ class MujocoMotion:
         self._recorded = -1
 
     def assign_vessels(self, numbers: NDArray[np.int64]) -> None:
-        """Assign vessels to boats: each world gets the mass, inertia and joints of its hull.
+        """Assign vessels to boats of a batch: each world gets mass, inertia and joints of its hull.
 
         Args:
             numbers: (n,) number of each boat's vessel.
@@ -92,7 +92,7 @@ class MujocoMotion:
                 b.reallocations += 1
 
     def set_states(self, y: Array) -> None:
-        """Set the states.
+        """Set joint coordinates and rates of all simulated boats.
 
         Args:
             y: (n, 2 NQ) joint coordinates and rates.
@@ -104,19 +104,19 @@ class MujocoMotion:
             where.assign(turned)
 
     def states(self) -> Array:
-        """Return joint coordinates and rates (n, 2 NQ)."""
+        """Return joint coordinates and rates of all boats (n, 2 NQ)."""
         q, qd = self.data.qpos.numpy()[:, self._place], self.data.qvel.numpy()[:, self._place]
         return np.hstack([self._sign * q, self._sign * qd]).astype(float)
 
     def accelerations(self) -> Array:
-        """Return the accelerations of the joint coordinates (n, NQ) in the present state."""
+        """Return the present accelerations of the joint coordinates of all boats (n, NQ)."""
         self._stage = 0
         with self.boats.wp.ScopedDevice(self.boats.device):
             self._mjw.forward(self.model, self.data)
         return np.asarray(self._sign * self.data.qacc.numpy()[:, self._place], dtype=float)
 
     def advance(self, steps: int) -> None:
-        """Integrate all boats under their commands, until the last one has finished its steps.
+        """Integrate the motion of all boats under their commands until the last one has finished.
 
         Args:
             steps: Number of steps.

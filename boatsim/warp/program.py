@@ -21,7 +21,7 @@ ENTRIES: dict[str, tuple[Kind, ...]] = {
 
 
 def translated_source(program: Program, real: str) -> str:
-    """Return the text of the translated module.
+    """Return the source of a vessel's compiled program, translated to Warp's dialect of Python.
 
     Args:
         program: The vessel's program.
@@ -48,7 +48,7 @@ def translated_source(program: Program, real: str) -> str:
 
 
 def import_program(program: Program, real: str = "float32") -> ModuleType:
-    """Return the translated program with the kernels of `boatsim.warp.kernels`.
+    """Translate a vessel's program for Warp and import it as a module, with the kernels of a batch.
 
     Args:
         program: The vessel's program.
@@ -58,7 +58,9 @@ def import_program(program: Program, real: str = "float32") -> ModuleType:
 
 
 def import_text(text: str) -> ModuleType:
-    """Import a text from a file in the cache: Warp reads the source of what it compiles.
+    """Write the source of a Python module to the cache folder and import it.
+
+    Warp needs a file, since it reads the source of what it compiles.
 
     Args:
         text: Source of the module.

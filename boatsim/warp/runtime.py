@@ -11,10 +11,10 @@ from boatsim.physics.cache import cache_folder
 
 
 def import_warp() -> Any:
-    """Import Warp and return it.
+    """Import NVIDIA's library Warp and return its module.
 
     Raises:
-        BadInput: It is not installed.
+        BadInput: Warp is not installed.
     """
     try:
         import warp as wp
@@ -29,7 +29,7 @@ def import_warp() -> Any:
 
 
 def find_device(name: str) -> Any:
-    """Return a device.
+    """Return the Warp device of a name.
 
     Args:
         name: "cpu" or "cuda:0", for example.
@@ -47,7 +47,7 @@ def find_device(name: str) -> Any:
 
 @contextmanager
 def discard_standard_error() -> Iterator[None]:
-    """Discard the standard error: Warp's library reports there that a computer has no GPU."""
+    """Discard standard error in a block: Warp reports there that a computer has no GPU."""
     sys.stderr.flush()
     kept, nowhere = os.dup(2), os.open(os.devnull, os.O_WRONLY)
     try:

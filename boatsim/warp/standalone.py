@@ -8,7 +8,10 @@ from boatsim.warp.device_state import Boats
 
 
 class StandaloneMotion:
-    """Joint coordinates and rates of all boats, and their integration."""
+    """Motion of a batch of boats, integrated in one Warp kernel without MuJoCo.
+
+    It holds joint coordinates and rates of all boats.
+    """
 
     def __init__(self, boats: Boats) -> None:
         self.boats = boats
@@ -16,10 +19,10 @@ class StandaloneMotion:
         self._none = boats.copy_to_device(np.zeros(boats.code.NQ))
 
     def assign_vessels(self, numbers: NDArray[np.int64]) -> None:
-        """Assign vessels to boats: nothing to do, the arrays of the device hold their masses."""
+        """Assign vessels to boats; does nothing, since the device already holds their masses."""
 
     def set_states(self, y: Array) -> None:
-        """Set the states.
+        """Set joint coordinates and rates of all simulated boats.
 
         Args:
             y: (n, 2 NQ) joint coordinates and rates.
@@ -27,11 +30,11 @@ class StandaloneMotion:
         self._y.assign(y)
 
     def states(self) -> Array:
-        """Return joint coordinates and rates (n, 2 NQ)."""
+        """Return joint coordinates and rates of all boats (n, 2 NQ)."""
         return np.asarray(self._y.numpy(), dtype=float)
 
     def advance(self, steps: int) -> None:
-        """Integrate all boats under their commands.
+        """Integrate the motion of all boats under their commands.
 
         Args:
             steps: Number of steps.

@@ -48,13 +48,13 @@ from boatsim.warp.values import (
 
 
 class NotTranslatable(BadInput):
-    """Code that Warp, or this translation, does not support."""
+    """Raised for Python code that cannot be translated to Warp's dialect."""
 
 
 class Translation:
-    """The functions of one program, translated when a call is found.
+    """Translates the functions of a vessel's program to Warp's dialect of Python.
 
-    Called functions come first.
+    A function is translated when a call of it is found; called functions come first in the text.
     """
 
     def __init__(self) -> None:
@@ -66,15 +66,15 @@ class Translation:
 
     @property
     def text(self) -> str:
-        """Source of all structs and functions."""
+        """Translated source of all structs and functions."""
         return "\n\n".join([*self.structs, *self.functions])
 
     def struct_of(self, kind: Any, name: str) -> Record:
-        """Return the struct of a type of named tuples.
+        """Return the Warp struct into which a type of named tuples is translated.
 
         Args:
-            kind: The type.
-            name: Its name where it is first used.
+            kind: The type of named tuples.
+            name: Name of the type where it is first used.
         """
         if kind not in self._records:
             found = Record(self.unused_name(name), tuple(kind._fields))
@@ -92,7 +92,7 @@ class Translation:
         return self._records[kind]
 
     def unused_name(self, name: str) -> str:
-        """Return a name that no other function or struct has.
+        """Return a name for a translated function or struct that no other one has.
 
         Args:
             name: The wanted name.
@@ -104,7 +104,7 @@ class Translation:
         return found
 
     def translate_function(self, function: Any, kinds: Sequence[Kind]) -> tuple[str, Kind]:
-        """Translate a function; return its name and the kind of its result.
+        """Translate a Python function to Warp; return its name and the Warp type of its result.
 
         Args:
             function: A Python or compiled function.
@@ -120,7 +120,7 @@ class Translation:
 
 
 class Body:
-    """Translation of one function."""
+    """Translates the body of one Python function to Warp's dialect, statement by statement."""
 
     def __init__(
         self, program: Translation, function: Callable[..., Any], kinds: Sequence[Kind]
@@ -146,7 +146,7 @@ class Body:
         self.variables: dict[str, Value] = dict(self.arguments)
 
     def text(self) -> str:
-        """Return the function in Warp's dialect."""
+        """Return the source of the translated function in Warp's dialect."""
         self.translate_block(self.tree.body)
         taken = ", ".join(
             f"{v.text}: {annotation_of(v.kind)}"
@@ -160,16 +160,16 @@ class Body:
     # ------------------------------------------------------------------------------------------
 
     def add_line(self, line: str) -> None:
-        """Append a line at the present indentation."""
+        """Append a line to the translated source, at the present indentation."""
         self.lines.append("    " * self.depth + line)
 
     def unsupported_error(self, node: ast.AST, what: str) -> NotTranslatable:
-        """Return the error for a node that cannot be translated."""
+        """Return the exception for a node of the syntax tree that cannot be translated to Warp."""
         line = self.first + getattr(node, "lineno", 1) - 1
         return NotTranslatable(f"{self.file}:{line}: {what} has no Warp form")
 
     def translate_block(self, statements: Sequence[ast.stmt]) -> bool:
-        """Translate statements; return whether they end with a return."""
+        """Translate a list of Python statements to Warp; return whether they end with a return."""
         for statement in statements:
             written_by = getattr(self, f"statement_{type(statement).__name__}", None)
             if written_by is None:
@@ -181,20 +181,20 @@ class Body:
         return False
 
     def statement_Pass(self, node: ast.Pass) -> None:
-        """Translate `pass`."""
+        """Translate the Python statement `pass` to Warp: nothing is written."""
 
     def statement_Break(self, node: ast.Break) -> None:
-        """Translate `break`."""
+        """Translate the Python statement `break` to Warp."""
         self.add_line("break")
 
     def statement_Expr(self, node: ast.Expr) -> None:
-        """Translate a call without a result; omit docstrings."""
+        """Translate a statement that only calls a function to Warp; omit docstrings."""
         if isinstance(node.value, ast.Constant):
             return
         self.add_line(self.translate_expression(node.value).text)
 
     def statement_Return(self, node: ast.Return) -> None:
-        """Translate `return`, with the parts of a tuple as separate values."""
+        """Translate a Python `return` to Warp, with the parts of a tuple as separate values."""
         value = self.translate_expression(node.value) if node.value else NONE
         declared = str(self.python.__annotations__.get("return", ""))
         if "float" in declared:
@@ -209,7 +209,7 @@ class Body:
         self.add_line(f"return {', '.join(v.text for v in flatten_tuple(value))}".rstrip())
 
     def statement_Assign(self, node: ast.Assign) -> None:
-        """Translate an assignment to names, tuples of names or entries of rows."""
+        """Translate a Python assignment to names, tuples of names or array entries to Warp."""
         value = self.translate_expression(node.value)
         read = {n.id for n in ast.walk(node.value) if isinstance(n, ast.Name)}
         set_ = {n.id for t in node.targets for n in ast.walk(t) if isinstance(n, ast.Name)}
@@ -221,7 +221,7 @@ class Body:
             self.translate_assignment(target, value)
 
     def statement_AugAssign(self, node: ast.AugAssign) -> None:
-        """Translate `+=` and so on to an assignment: those of Warp are atomic."""
+        """Translate `+=` and similar statements to plain assignments, since Warp's are atomic."""
         before = ast.parse(ast.unparse(node.target), mode="eval").body
         self.translate_assignment(
             node.target,
@@ -231,7 +231,7 @@ class Body:
         )
 
     def translate_assignment(self, target: ast.expr, value: Value) -> None:
-        """Assign a value to a target."""
+        """Write the Warp source that assigns a translated value to a Python assignment target."""
         if isinstance(target, ast.Tuple):
             if len(target.elts) != len(value.parts):
                 raise self.unsupported_error(target, f"'{ast.unparse(target)} = ...'")
@@ -260,7 +260,7 @@ class Body:
             raise self.unsupported_error(target, f"'{ast.unparse(target)} = ...'")
 
     def statement_If(self, node: ast.If) -> bool:
-        """Translate a branch; if its test is constant, only the side that is taken."""
+        """Translate a Python `if` to Warp; only one branch if its test is constant."""
         test = convert_to_bool(self.translate_expression(node.test))
         if test.fixed is not None:
             return self.translate_block(node.body if test.fixed else node.orelse)
@@ -272,7 +272,7 @@ class Body:
         return False
 
     def statement_For(self, node: ast.For) -> None:
-        """Translate a loop over a range."""
+        """Translate a Python `for` loop over a range to Warp."""
         call = node.iter
         if not (
             isinstance(call, ast.Call)
@@ -286,7 +286,7 @@ class Body:
         self.translate_indented(node.body)
 
     def statement_While(self, node: ast.While) -> None:
-        """Translate a `while` loop."""
+        """Translate a Python `while` loop to Warp."""
         before = len(self.lines)
         test = convert_to_bool(self.translate_expression(node.test))
         if len(self.lines) != before:
@@ -295,7 +295,7 @@ class Body:
         self.translate_indented(node.body)
 
     def translate_indented(self, statements: Sequence[ast.stmt]) -> None:
-        """Translate an indented block."""
+        """Translate the statements of an indented Python block to Warp."""
         self.depth += 1
         before = len(self.lines)
         self.translate_block(statements)
@@ -304,14 +304,14 @@ class Body:
         self.depth -= 1
 
     def copy_to_variables(self, value: Value) -> Value:
-        """Copy a value to new variables."""
+        """Write Warp source that copies a value to new variables; return the variables."""
         own = self.new_variables(value.kind)
         for to, of in zip(flatten_tuple(own), flatten_tuple(value), strict=True):
             self.add_line(f"{to.text} = {of.text}")
         return own
 
     def new_variables(self, kind: Kind) -> Value:
-        """Return new variables."""
+        """Return new variables of a Warp type for the translated source, with unused names."""
         self.temporaries += 1
         return make_variable(kind, f"_{self.temporaries}")
 
@@ -319,7 +319,7 @@ class Body:
     # ------------------------------------------------------------------------------------------
 
     def translate_expression(self, node: ast.expr, store: bool = False) -> Value:
-        """Translate an expression; lines that must precede it are added first."""
+        """Translate a Python expression to Warp; lines that must precede it are added first."""
         if isinstance(node, ast.Subscript):
             return self.translate_subscript(node, store)
         written_by = getattr(self, f"of_{type(node).__name__}", None)
@@ -329,19 +329,19 @@ class Body:
         return found
 
     def of_Constant(self, node: ast.Constant) -> Value:
-        """Translate a constant."""
+        """Translate a constant in a Python expression to Warp."""
         if not isinstance(node.value, bool | int | float):
             raise self.unsupported_error(node, f"'{ast.unparse(node)}'")
         return make_constant(node.value)
 
     def of_Name(self, node: ast.Name) -> Value:
-        """Translate a variable, or a constant of the module."""
+        """Translate a name in a Python expression, a variable or module constant, to Warp."""
         if node.id in self.variables:
             return self.variables[node.id]
         return self.module_constant(node)
 
     def module_constant(self, node: ast.expr) -> Value:
-        """Translate a constant of the module or of one that it imports."""
+        """Translate a constant of the function's module, or of one that it imports, to Warp."""
         found = self.resolve_object(node)
         if isinstance(found, tuple) and all(isinstance(x, bool | int | float) for x in found):
             return make_tuple([make_constant(x) for x in found])
@@ -350,7 +350,10 @@ class Body:
         return make_constant(found)
 
     def resolve_object(self, node: ast.expr) -> Any:
-        """Return the object of a name or of an attribute of a module, None if it is a variable."""
+        """Return the Python object to which a name or an attribute of a module refers.
+
+        The result is None if the name is a variable.
+        """
         if isinstance(node, ast.Attribute):
             return getattr(self.resolve_object(node.value), node.attr, None)
         if not isinstance(node, ast.Name) or node.id in self.variables:
@@ -358,7 +361,7 @@ class Body:
         return self.python.__globals__.get(node.id, getattr(builtins, node.id, None))
 
     def of_Attribute(self, node: ast.Attribute) -> Value:
-        """Translate a field of a record or a constant of a module."""
+        """Translate an attribute, a field of a record or a constant of a module, to Warp."""
         if isinstance(node.value, ast.Name) and node.value.id not in self.variables:
             return self.module_constant(node)
         owner = self.translate_expression(node.value)
@@ -369,7 +372,7 @@ class Body:
         return Value(REAL, f"{owner.text}.{node.attr}")
 
     def translate_subscript(self, node: ast.Subscript, store: bool) -> Value:
-        """Translate an entry of a row, tuple or record."""
+        """Translate a Python subscript, an entry of an array row, tuple or record, to Warp."""
         owner, index = self.translate_expression(node.value), self.translate_expression(node.slice)
         if owner.kind == ROW and index.kind == WHOLE:
             return Value(REAL, f"{owner.text}[{index.text}]")
@@ -386,11 +389,11 @@ class Body:
         raise self.unsupported_error(node, f"'{ast.unparse(node)}'")
 
     def of_Tuple(self, node: ast.Tuple) -> Value:
-        """Translate a tuple."""
+        """Translate a Python tuple to Warp."""
         return make_tuple([self.translate_expression(e) for e in node.elts])
 
     def of_UnaryOp(self, node: ast.UnaryOp) -> Value:
-        """Translate a sign or `not`."""
+        """Translate a sign or `not` in a Python expression to Warp."""
         of = self.translate_expression(node.operand)
         if isinstance(node.op, ast.USub) and isinstance(of.fixed, int | float):
             return make_constant(-of.fixed)
@@ -401,7 +404,7 @@ class Body:
         return Value(of.kind, f"({self.operator_text(node.op)}{of.text})")
 
     def of_BinOp(self, node: ast.BinOp) -> Value:
-        """Translate arithmetic.
+        """Translate a binary arithmetic operation in Python to Warp.
 
         Integers become floats if the other operand is one, and in divisions.
         """
@@ -425,7 +428,10 @@ class Body:
         return Value(a.kind, f"({a.text} {op} {b.text})")
 
     def translate_power(self, base: Value, exponent: Value) -> Value:
-        """Translate a power; small integer powers become products, whose base may be negative."""
+        """Translate a Python power to Warp; small integer powers become products.
+
+        The base of a product may be negative.
+        """
         if isinstance(exponent.fixed, int) and 2 <= exponent.fixed <= 4:
             return Value(REAL, f"power_{exponent.fixed}_({convert_to_float(base).text})")
         return Value(
@@ -433,7 +439,7 @@ class Body:
         )
 
     def of_Compare(self, node: ast.Compare) -> Value:
-        """Translate one comparison or a chain."""
+        """Translate a Python comparison, or a chain of comparisons, to Warp."""
         ends, parts = [self.translate_expression(e) for e in (node.left, *node.comparators)], []
         for op, a, b in zip(node.ops, ends, ends[1:], strict=False):
             if REAL in (a.kind, b.kind):
@@ -446,7 +452,7 @@ class Body:
         return Value(TRUTH, f"({' and '.join(parts)})")
 
     def of_BoolOp(self, node: ast.BoolOp) -> Value:
-        """Translate `and` and `or`, without constant operands."""
+        """Translate Python's `and` and `or` to Warp, without constant operands."""
         before = len(self.lines)
         parts = [convert_to_bool(self.translate_expression(v)) for v in node.values]
         if len(self.lines) != before:
@@ -460,7 +466,10 @@ class Body:
         return Value(TRUTH, f"({f' {self.operator_text(node.op)} '.join(p.text for p in parts)})")
 
     def of_IfExp(self, node: ast.IfExp) -> Value:
-        """Translate a conditional expression, or a branch if a side needs lines before it."""
+        """Translate a Python conditional expression to Warp.
+
+        It becomes a branch if a side needs lines before it.
+        """
         test = convert_to_bool(self.translate_expression(node.test))
         if test.fixed is not None:
             return self.translate_expression(node.body if test.fixed else node.orelse)
@@ -485,7 +494,7 @@ class Body:
         return own
 
     def convert_to_same_kind(self, a: Value, b: Value) -> tuple[Value, Value]:
-        """Return two values of the same kind, floats if either is one."""
+        """Convert two translated values to the same Warp type: floats if either is a float."""
         if a.parts and len(a.parts) == len(b.parts):
             pairs = [self.convert_to_same_kind(x, y) for x, y in zip(a.parts, b.parts, strict=True)]
             return make_tuple([x for x, _ in pairs]), make_tuple([y for _, y in pairs])
@@ -494,7 +503,7 @@ class Body:
         return convert_to_float(a), convert_to_float(b)
 
     def operator_text(self, op: ast.AST) -> str:
-        """Return the text of an operator."""
+        """Return the Warp source text of a Python operator."""
         if type(op) not in OPERATORS:
             raise self.unsupported_error(op, type(op).__name__)
         return OPERATORS[type(op)]
@@ -503,7 +512,7 @@ class Body:
     # ------------------------------------------------------------------------------------------
 
     def of_Call(self, node: ast.Call) -> Value:
-        """Translate a call of a function, a constructor of a named tuple or a conversion."""
+        """Translate a Python call to Warp: of a function, a named tuple or a conversion."""
         what = self.resolve_object(node.func)
         if isinstance(what, type) and issubclass(what, tuple) and hasattr(what, "_fields"):
             name = ast.unparse(node.func).rpartition(".")[2]
@@ -526,7 +535,10 @@ class Body:
         raise self.unsupported_error(node, f"'{ast.unparse(node.func)}'")
 
     def bind_arguments(self, node: ast.Call, python: Any, skip: int = 0) -> list[Value]:
-        """Return the arguments of a call in the order of the function, with its defaults."""
+        """Return the translated arguments of a Python call in the order of its parameters.
+
+        Missing ones have the default values.
+        """
         parameters = list(inspect.signature(python).parameters.values())[skip:]
         given = {
             p.name: self.translate_expression(a)
@@ -539,7 +551,7 @@ class Body:
         return [given[parameter.name] for parameter in parameters]
 
     def translate_call(self, what: Any, given: Sequence[Value]) -> Value:
-        """Translate a call of a translated function.
+        """Translate a call of a function that is itself translated to Warp.
 
         A tuple that it returns is assigned to variables.
         """
@@ -561,7 +573,10 @@ class Body:
         return own
 
     def translate_math_call(self, what: Any, given: Sequence[Value]) -> Value:
-        """Translate a mathematical function; `min` and `max` of many arguments are nested."""
+        """Translate a call of a mathematical function to Warp.
+
+        `min` and `max` of many arguments are nested.
+        """
         name = MATH[what]
         whole = name in OF_WHOLE and all(v.kind == WHOLE for v in given)
         texts = [v.text if whole else convert_to_float(v).text for v in given]
@@ -570,7 +585,7 @@ class Body:
         return Value(WHOLE if whole else REAL, f"{name}({', '.join(texts)})")
 
     def convert_kind(self, kind: Kind, value: Value) -> Value:
-        """Convert a value to another kind."""
+        """Convert a translated value to another Warp type, such as an integer to a float."""
         if kind == REAL:
             return convert_to_float(value)
         if value.kind == kind:

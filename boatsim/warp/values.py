@@ -11,7 +11,7 @@ REAL, WHOLE, BITS, TRUTH, ROW, NOTHING = "T", "int", "wp.uint64", "bool", "wp.ar
 
 @dataclass(frozen=True)
 class Record:
-    """A named tuple of floats, which is a struct in Warp."""
+    """Warp type of a named tuple of floats, which is translated to a struct."""
 
     name: str
     fields: tuple[str, ...]
@@ -23,7 +23,7 @@ Kind: TypeAlias = "str | Record | tuple[Kind, ...]"
 
 @dataclass(frozen=True)
 class Value:
-    """An expression: its kind, and its text or, for a tuple, its parts."""
+    """Translated expression in Warp: its type, and its source text or, for a tuple, its parts."""
 
     kind: Kind
     text: str = ""
@@ -35,7 +35,7 @@ NONE = Value(NOTHING)
 
 
 def make_tuple(parts: Sequence[Value]) -> Value:
-    """Return a tuple of values; no values are nothing.
+    """Combine translated values to the value of a tuple; no values give the value of nothing.
 
     Args:
         parts: The values.
@@ -46,7 +46,9 @@ def make_tuple(parts: Sequence[Value]) -> Value:
 
 
 def flatten_tuple(value: Value) -> list[Value]:
-    """Return the parts of a value that are no tuples; none for nothing.
+    """Return the parts of a translated, possibly nested tuple value that are no tuples.
+
+    The list is empty for the value of nothing.
 
     Args:
         value: The value.
@@ -59,7 +61,7 @@ def flatten_tuple(value: Value) -> list[Value]:
 
 
 def make_variable(kind: Kind, name: str) -> Value:
-    """Return a variable.
+    """Return the translated value of a variable of a Warp type, for use in Warp source.
 
     Args:
         kind: Its kind.
@@ -73,7 +75,7 @@ def make_variable(kind: Kind, name: str) -> Value:
 
 
 def make_constant(number: object) -> Value:
-    """Return a constant.
+    """Return the translated value of a Python number, for use in Warp source.
 
     Args:
         number: A bool, int or float.
@@ -90,7 +92,7 @@ def make_constant(number: object) -> Value:
 
 
 def convert_to_float(value: Value) -> Value:
-    """Convert a value to a float.
+    """Convert a translated value to a float in Warp source.
 
     Args:
         value: A number.
@@ -105,7 +107,7 @@ def convert_to_float(value: Value) -> Value:
 
 
 def convert_to_bool(value: Value) -> Value:
-    """Convert a value to a bool: whether it is not zero.
+    """Convert a translated value to a bool in Warp source: whether it is not zero.
 
     Args:
         value: A number.
@@ -119,7 +121,7 @@ def convert_to_bool(value: Value) -> Value:
 
 
 def annotation_of(kind: Kind) -> str:
-    """Return the annotation of an argument of a kind."""
+    """Return the type annotation of a function argument in Warp source."""
     assert not isinstance(kind, tuple)
     if isinstance(kind, Record):
         return kind.name
