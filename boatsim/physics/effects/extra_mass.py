@@ -23,7 +23,7 @@ from boatsim.physics.particulars import GRAVITY
 
 @njit(inline="always")
 def inertia(q: Any) -> MassMatrix:
-    """Return the inertia of a point mass on the centreline.
+    """Return the mass matrix of a point mass fixed to the hull on its centreline.
 
     Args:
         q: Parameters of the effect, with the names and units of its class.
@@ -140,7 +140,7 @@ class Payload(CoefficientRelease):
     )
 
     def changes(self, vessel: Boat) -> list[CoefficientChange]:
-        """Return the changes of mass and of the inertias that the vessel specifies.
+        """Return by how much a payload changes the vessel's mass and its specified inertias.
 
         Args:
             vessel: Vessel on which the effect acts.
@@ -148,7 +148,7 @@ class Payload(CoefficientRelease):
         return [c for c in super().changes(vessel) if getattr(vessel.body, c.key) is not None]
 
     def shift_weights(self, vessel: Boat) -> dict[str, float]:
-        """Return the inertia per mass [m^2] of each axis.
+        """Return by how much each moment of inertia changes per unit of added mass [m^2].
 
         The radii of gyration do not change.
 
@@ -163,7 +163,7 @@ class Payload(CoefficientRelease):
         return {place: inertia / body.mass for place, inertia in inertias if inertia is not None}
 
     def identifiable_ratios(self, vessel: Boat) -> dict[str, tuple[float, str]]:
-        """Return the ratio of force to mass, the only quantity that the motion identifies.
+        """Return force over mass, the only quantity that the motion identifies about a payload.
 
         Args:
             vessel: Vessel on which the effect acts.
