@@ -14,7 +14,10 @@ from boatsim.physics.base import CheckedParameters, param
 
 @dataclass(frozen=True)
 class Sense:
-    """Sensor readings at one control step in SNAME axes; nan for missing sensors."""
+    """Sensor readings that a controller receives at one step, in SNAME axes.
+
+    Missing sensors are nan.
+    """
 
     t: float  # [s] since the start
     psi: float  # [rad] heading, compass (magnetometer)
@@ -32,7 +35,7 @@ class Sense:
 
 
 class Estimate(NamedTuple):
-    """Adaptive estimate with its bounds, for the log."""
+    """One adaptive estimate of a controller with its bounds, for the log of a run."""
 
     value: float
     low: float
@@ -54,14 +57,14 @@ class Controller(CheckedParameters):
     )
 
     def reset(self) -> None:
-        """Reset all states; called before each run."""
+        """Reset all internal states of the controller; called before each run."""
 
     def initial_commands(self) -> dict[str, float]:
-        """Return the commands before the first step; missing ones are neutral."""
+        """Return the controller's commands before its first step; missing ones are neutral."""
         return {}
 
     def step(self, sense: Sense, goal: Mapping[str, float]) -> dict[str, float]:
-        """Return the commands for the next period by name of channel.
+        """Return the controller's commands for the next period by name of channel.
 
         Args:
             sense: Sensor readings.
@@ -82,7 +85,10 @@ class Controller(CheckedParameters):
         return {}
 
     def largest_goals(self) -> Mapping[str, float]:
-        """Return the largest set points of the design; others follow from the vessel."""
+        """Return the largest set points for which the controller is designed, by name.
+
+        Others follow from the vessel.
+        """
         return {}
 
     @property
@@ -113,11 +119,13 @@ class Steered(Controller):
         self._helm, self._course = 0.0, nan
 
     def initial_commands(self) -> dict[str, float]:
-        """Return the commands of the approach."""
+        """Return the commands of the approach ahead, which precedes a standard manoeuvre."""
         return self.commands_at_helm(0.0)
 
     def step(self, sense: Sense, goal: Mapping[str, float]) -> dict[str, float]:
-        """Return the commands of the approach until `execute`, then those of the manoeuvre.
+        """Return the commands of a standard manoeuvre for the next period.
+
+        Until the time `execute` they are those of the approach ahead.
 
         Args:
             sense: Sensor readings.
@@ -131,7 +139,7 @@ class Steered(Controller):
         return self.commands_at_helm(self._helm)
 
     def helm(self, sense: Sense) -> float:
-        """Return the present helm angle of the manoeuvre [rad].
+        """Return the present helm angle of a standard manoeuvre [rad].
 
         Args:
             sense: Sensor readings.
@@ -150,7 +158,7 @@ class Steered(Controller):
         return commands
 
     def estimates(self) -> dict[str, Estimate]:
-        """Return the helm angle for the log."""
+        """Return the helm angle of the manoeuvre, for the log of a run."""
         return {"reference_helm_rad": Estimate(self._helm, nan, nan)}
 
 
@@ -186,7 +194,7 @@ class LowPass:
     state: float = 0.0
 
     def step(self, value: float, dt: float) -> float:
-        """Return the output at the end of a step.
+        """Return the output of the low-pass filter at the end of a step.
 
         Args:
             value: Input, held over the step.

@@ -10,7 +10,7 @@ from boatsim.physics.kinds.effect import Effect
 
 
 def effect_from_table(table: Mapping[str, object], label: str, folder: Path) -> Effect:
-    """Return the effect of an [[effect]] table.
+    """Return the effect that an [[effect]] table of a vessel or scenario file describes.
 
     Args:
         table: The table; `use` names the type of the effect.
@@ -38,9 +38,10 @@ def effect_name(table: Mapping[str, object]) -> str:
 
 
 def effect_table(effect: Effect) -> dict[str, object]:
-    """Return the [[effect]] table of an effect: its type and all values that are not defaults.
+    """Return the [[effect]] table that describes an effect in a vessel file.
 
-    Parameters in `effect.filled` are left out: a rule computes them when the vessel is loaded.
+    It contains the effect's type and all values that are not defaults. Parameters in
+    `effect.filled` are left out: a rule computes them when the vessel is loaded.
     """
     table: dict[str, object] = {"use": effect_address(type(effect))}
     if effect.name != type(effect).type_name():

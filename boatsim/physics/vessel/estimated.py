@@ -15,10 +15,12 @@ from boatsim.physics.vessel.schema import Body
 
 
 def check_estimated(estimated: Iterable[str], vessel: ChannelBindings, label: str) -> None:
-    """Check that every key of [estimated] is a group of numbers or one number.
+    """Check the keys of the table [estimated] of a vessel file.
+
+    Each key must be a group of numbers ("damping") or one number of the vessel.
 
     Args:
-        estimated: The keys.
+        estimated: The table: key -> relative standard deviation.
         vessel: The vessel with its effects.
         label: Name of the file in messages.
 
