@@ -38,7 +38,7 @@ LONG_PERIOD = 0.1  # [s] our estimate: 70 ms of serial text at 9600 baud, five r
 
 
 def push_sample(history: list[float], value: float) -> None:
-    """Shift a history [now, one ago, two ago] by one sample.
+    """Shift a history of samples [now, one ago, two ago] by one and insert a new sample.
 
     Args:
         history: Samples, newest first; changed in place.
@@ -48,7 +48,7 @@ def push_sample(history: list[float], value: float) -> None:
 
 
 def filter_output(u: list[float], r: list[float], pole: float) -> float:
-    """Return the output of the sampled control law D(s) of the listing.
+    """Return the output of the published sampled control law D(s) from past inputs and outputs.
 
     D(s) = 1.07 (s + 17.7) / (s (s + 50)).
 
@@ -120,7 +120,10 @@ class L1JoystickAsPublished(Controller):
         self.reset()
 
     def reset(self) -> None:
-        """Reset to the state after `setup()`: global arrays are zero, the servos parked."""
+        """Reset to the state of the published program after `setup()`.
+
+        Global arrays are zero and the servos parked.
+        """
         self.estimate = (
             dict(FIRST) if self.start_values else {n: clip(v, *BOUNDS[n]) for n, v in FIRST.items()}
         )
@@ -136,7 +139,7 @@ class L1JoystickAsPublished(Controller):
         return self._commands(0.0, 0.0, *((PARKED, PARKED) if self.parked_inward else (0.0, 0.0)))
 
     def step(self, sense: Sense, goal: Mapping[str, float]) -> dict[str, float]:
-        """Execute one pass of `loop()` and return the commands.
+        """Execute one pass of the published program's `loop()` and return its commands.
 
         Args:
             sense: Sensor readings.
@@ -149,7 +152,10 @@ class L1JoystickAsPublished(Controller):
         return self._actuate()
 
     def estimates(self) -> dict[str, Estimate]:
-        """Return the seven estimates with their bounds, and the model states (no velocities)."""
+        """Return the seven adaptive estimates with their bounds, and the model states.
+
+        Velocities are not among them.
+        """
         logged = {name: Estimate(self.estimate[name], *BOUNDS[name]) for name in BOUNDS}
         model = {"m_surge": self._m_surge[0], "m_sway": self._m_sway[0], "m_yaw": self._m_yaw[0]}
         return logged | {name: Estimate(state, nan, nan) for name, state in model.items()}

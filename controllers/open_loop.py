@@ -15,7 +15,7 @@ class OpenLoop(Controller):
     passes_on: ClassVar[bool] = True
 
     def step(self, sense: Sense, goal: Mapping[str, float]) -> dict[str, float]:
-        """Return the goal as commands.
+        """Return the goals unchanged as commands of the channels with the same names.
 
         Args:
             sense: Not used.

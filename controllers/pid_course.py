@@ -33,7 +33,7 @@ class PidCourse(Helm):
         self._wish = self._once = self._twice = 0.0
 
     def rudder_demand(self) -> float:
-        """Return the previous demand plus its increment."""
+        """Return the wanted rudder angle: the previous demand plus the increment of the PID law."""
         lead, y = self.derivative / self.period, self.psi[0]
         change = (
             (1.0 + lead) * y

@@ -10,7 +10,9 @@ from boatsim.physics.base import Array, param
 
 
 def ackermann_gains(a: Array, b: Array, wanted: Array) -> Array | None:
-    """Return the gains (n,) of Ackermann's formula, or None if (A, B) is not controllable.
+    """Return the state feedback gains (n,) that give a wanted characteristic polynomial.
+
+    Ackermann's formula is used. None if (A, B) is not controllable.
 
     Args:
         a: A (n, n).
@@ -46,7 +48,7 @@ class PolePlacement(LearningHelm):
     )
 
     def reset(self) -> None:
-        """Reset the gains and the identification to the nominal ship."""
+        """Reset the feedback gains and the identification of the ship to the nominal ship."""
         super().reset()
         self._gains = np.zeros(4 if self.roll_reduction else 2)
         self._wanted: Array = np.array(
@@ -57,7 +59,10 @@ class PolePlacement(LearningHelm):
             self._wanted = np.convolve(self._wanted, roll)
 
     def rudder_demand(self) -> float:
-        """Return the feedback; gains are kept while the identified rudder has no effect."""
+        """Return the rudder angle of the state feedback.
+
+        The gains are kept while the identified rudder has no effect.
+        """
         n = len(self._gains)
         a, b = self.ship.matrices()
         found = ackermann_gains(a[:n, :n], b[:n], self._wanted)

@@ -16,7 +16,10 @@ from boatsim.physics.base import Array, param
 def prediction_matrices(
     a: Array, b: Array, periods: int, outputs: list[int]
 ) -> tuple[Array, Array]:
-    """Return forced response H (rows,) and matrix of the free response (rows, n), period by period.
+    """Return the matrices that predict future outputs of a linear system, period by period.
+
+    They are the forced response H (rows,) to a change of the input and the matrix (rows, n) of the
+    free response.
 
     Args:
         a: A (n, n).
@@ -49,7 +52,7 @@ class Predictive(LearningHelm):
     sign_as_published: bool = False  # the thesis prints du = +(H'H)^-1 H' Psi0
 
     def rudder_demand(self) -> float:
-        """Return the rudder angle after the best movement."""
+        """Return the rudder angle after the movement that predictive control finds best."""
         periods = round(self.horizon) or (10 if self.roll_reduction else 11)
         forced, free = prediction_matrices(
             *append_rudder_state(*self.ship.matrices()),

@@ -20,7 +20,7 @@ class PullOut(Steered):
     )
 
     def helm(self, sense: Sense) -> float:
-        """Return the helm angle of the present part [rad].
+        """Return the helm angle of the present part of a pull-out manoeuvre [rad].
 
         Args:
             sense: Sensor readings.

@@ -13,7 +13,7 @@ class TurningCircle(Steered):
     words: ClassVar[str] = "standard manoeuvre: puts the helm over and holds it"
 
     def helm(self, sense: Sense) -> float:
-        """Return the helm angle [rad].
+        """Return the constant helm angle of a turning circle [rad].
 
         Args:
             sense: Not used.

@@ -28,12 +28,12 @@ class Zigzag(Steered):
     _reversed: int = field(default=0, init=False)
 
     def reset(self) -> None:
-        """Reset the manoeuvre to its first execute."""
+        """Reset the zig-zag manoeuvre to its first execute."""
         super().reset()
         self._side, self._reversed = copysign(1.0, self.angle), 0
 
     def helm(self, sense: Sense) -> float:
-        """Return the helm angle [rad], reversed when the heading has been reached.
+        """Return the helm angle of a zig-zag [rad], reversed when the execute heading is reached.
 
         Args:
             sense: Sensor readings.
@@ -43,7 +43,9 @@ class Zigzag(Steered):
         return self._side * abs(self.angle)
 
     def time_to_extra_step(self, sense: Sense) -> float:
-        """Return the predicted time [s] until the heading is reached; repeated calls refine it.
+        """Return the predicted time [s] until a zig-zag reaches the heading of its next reversal.
+
+        Repeated calls refine it.
 
         Args:
             sense: Sensor readings.
@@ -57,5 +59,5 @@ class Zigzag(Steered):
 
     @property
     def done(self) -> bool:
-        """Whether all reversals are done."""
+        """Whether all reversals of the zig-zag manoeuvre are complete."""
         return self._reversed >= self.reversals

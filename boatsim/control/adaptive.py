@@ -474,10 +474,12 @@ class LoopChannel:
         return HIGHEST
 
     def open_loop_response(self, gain: float) -> Loop:
-        """Return L(s), broken at the plant input.
+        """Return the open-loop frequency response L(s) of a continuous feedback loop.
+
+        The loop is broken at the plant input.
 
         Args:
-            gain: True over assumed input gain.
+            gain: Ratio of the true to the assumed input gain of the plant.
         """
 
         def response(s: Complex) -> Complex:
@@ -534,14 +536,19 @@ class SampledChannel:
 
     @property
     def highest_frequency(self) -> float:
-        """Highest frequency of the analysis [rad/s]: half the sampling rate."""
+        """Highest frequency [rad/s] at which the sampled loop is analysed.
+
+        It is half the sampling rate.
+        """
         return pi / self.period
 
     def open_loop_response(self, gain: float) -> Loop:
-        """Return L(s) with z = e^(sT), broken at the plant input.
+        """Return the open-loop frequency response L(s) of a sampled feedback loop, z = e^(sT).
+
+        The loop is broken at the plant input.
 
         Args:
-            gain: True over assumed input gain.
+            gain: Ratio of the true to the assumed input gain of the plant.
         """
         decay = exp(-self.damping * self.period)
         # F and g of the plant over one period, zero-order hold

@@ -388,7 +388,7 @@ class Outboards(CheckedParameters):
         return sway_difference(self.nominal, sway)
 
     def largest_goals(self) -> Mapping[str, float]:
-        """Return the sway demand [m/s] that needs the largest thrust difference."""
+        """Return the largest sway demand [m/s], which needs the largest thrust difference."""
         return {"sway_mps": self.rated_sway * self.largest_difference / self.sway_thrust}
 
     def moment_arm(self, angle: float) -> float:
@@ -400,7 +400,7 @@ class Outboards(CheckedParameters):
         return moment_arm(self.nominal, angle)
 
     def neutral_angle(self) -> float:
-        """Return the inward angle [rad] at which the motors give sway without a moment."""
+        """Return the inward angle [rad] at which the outboards give sway without yaw moment."""
         return atan2(self.half_spacing, self.arm)
 
     def allocate(self, surge: float, difference: float, moment: float, room: float = 0.0) -> Drive:

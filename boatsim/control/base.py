@@ -73,7 +73,9 @@ class Controller(CheckedParameters):
         raise NotImplementedError
 
     def time_to_extra_step(self, sense: Sense) -> float:
-        """Return the time [s] until an extra step within the period; infinite for none.
+        """Return the time [s] until the controller needs an additional step within its period.
+
+        It is infinite if none is needed.
 
         Args:
             sense: Sensor readings.
@@ -81,7 +83,7 @@ class Controller(CheckedParameters):
         return inf
 
     def estimates(self) -> dict[str, Estimate]:
-        """Return adaptive estimates with their bounds, and reference model states, for the log."""
+        """Return the controller's adaptive estimates and reference model states, for the log."""
         return {}
 
     def largest_goals(self) -> Mapping[str, float]:
@@ -93,7 +95,7 @@ class Controller(CheckedParameters):
 
     @property
     def done(self) -> bool:
-        """Whether the manoeuvre is complete, so that the run may end."""
+        """Whether the controller's manoeuvre is complete, so that the run may end."""
         return False
 
 

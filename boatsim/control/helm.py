@@ -96,7 +96,10 @@ class Helm(Controller):
         return False
 
     def rudder_demand(self) -> float:
-        """Return the wanted rudder angle [rad]."""
+        """Return the rudder angle [rad] that the autopilot wants.
+
+        The limits of the steering machine are applied to it later.
+        """
         raise NotImplementedError
 
     @property
@@ -150,7 +153,7 @@ class LearningHelm(Forgetting, Helm):
         self.ship.update(self.psi, self.phi, self.rudder)
 
     def estimates(self) -> dict[str, Estimate]:
-        """Return the identified coefficients."""
+        """Return the identified coefficients of the ship's difference equations, for the log."""
         return {
             name: Estimate(value, nan, nan) for name, value in self.ship.named_estimates().items()
         }

@@ -144,7 +144,7 @@ class AdaptiveJoystick(Outboards, CompiledController):
     )
 
     def estimates(self) -> dict[str, Estimate]:
-        """Return the estimated disturbance of each channel, and the reference motion."""
+        """Return the estimated disturbances of yaw and surge, and the reference motion."""
         yaw, surge = self.memory_record["yaw"], self.memory_record["surge"]
         return {
             "sigma_yaw_Nm": Estimate(float(yaw["sigma"]), nan, nan),
@@ -158,7 +158,7 @@ class AdaptiveJoystick(Outboards, CompiledController):
         return {**super().largest_goals(), "yaw_radps": self.rated_yaw}
 
     def loop_channels(self) -> tuple[LoopChannel, ...]:
-        """Return the feedback loops for margins.
+        """Return the controller's yaw and surge feedback loops, for stability margins.
 
         The true thrust over inertia is 0.5 to 1.8 times the assumed one.
         """

@@ -32,7 +32,7 @@ class Pulse(NamedTuple):
 
 
 class Drift(NamedTuple):
-    """Effect of sideways drift on the yaw rate of a turning boat, proportional to yaw rate squared.
+    """Effect of sideways drift on a boat that turns: yaw and surge per yaw rate squared.
 
     A motor check accounts for it: it has the same sign for thrust ahead and astern and would
     otherwise appear as a difference of the motors.
