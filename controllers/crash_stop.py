@@ -8,7 +8,7 @@ from boatsim.control.base import Sense, Steered
 
 @dataclass
 class CrashStop(Steered):
-    """Commands the engines astern until the ship has stopped."""
+    """Crash stop manoeuvre: commands the engines astern until the ship has stopped."""
 
     words: ClassVar[str] = "standard manoeuvre: engines astern until the ship has stopped"
 

@@ -41,9 +41,10 @@ def law(boats: Any, settings: Any, memory: Any, sense: Any, goal: Any, sent: Any
 
 @dataclass
 class FeedForwardSpeed(CompiledController):
-    """Thrust per mass = drag at the wanted speed + gain (wanted speed - speed).
+    """Speed control by a feed-forward of the assumed drag and proportional feedback.
 
-    Goals: `u_mps`, and `jet_rad`, which is passed on.
+    Thrust per mass = drag at the wanted speed + gain (wanted speed - speed). Goals: `u_mps`, and
+    `jet_rad`, which is passed on.
     """
 
     words: ClassVar[str] = "speed of a water-jet craft on its throttle: known drag and a fixed gain"

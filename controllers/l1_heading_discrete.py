@@ -20,13 +20,14 @@ PRINTED_LEAD = 0.2754  # k_H, Table B.1
 
 @dataclass
 class L1HeadingDiscrete(Controller):
-    """Controller of Theisen, Galeazzi and Blanke (2013) at 10 Hz; its misprints are switches.
+    """Heading controller of Theisen, Galeazzi and Blanke (2013) at 10 Hz: PD, wave filter and L1.
 
-    The control input is the yaw acceleration u; the nozzle angle is u / (N_delta / (I_z - N_r')),
-    where N_delta contains cos 2 beta. Near beta = 45 deg, where the jet has no moment, the nozzle
-    stays straight. The predictor uses u after saturation. The adaptation gain is as printed: the
-    estimate of a constant disturbance is f22 times its value, so that 1 - f22 = 5.8 % of the
-    disturbance remains. Goals: `psi_rad`, `elevator_rad`.
+    Switches select the printed form of formulas with misprints. The control input is the yaw
+    acceleration u; the nozzle angle is u / (N_delta / (I_z - N_r')), where N_delta contains cos 2
+    beta. Near beta = 45 deg, where the jet has no moment, the nozzle stays straight. The predictor
+    uses u after saturation. The adaptation gain is as printed: the estimate of a constant
+    disturbance is f22 times its value, so that 1 - f22 = 5.8 % of the disturbance remains. Goals:
+    `psi_rad`, `elevator_rad`.
     """
 
     words: ClassVar[str] = (

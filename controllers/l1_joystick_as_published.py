@@ -62,12 +62,13 @@ def filter_output(u: list[float], r: list[float], pole: float) -> float:
 
 @dataclass
 class L1JoystickAsPublished(Controller):
-    """Listing of Appendix H in float64; a switch set to False corrects one defect.
+    """Controller program of a thesis (Bayless 2017, Appendix H), statement by statement in float64.
 
-    Item numbers are those of the review of the thesis. The goal is ignored: as in the thesis each
-    manoeuvre is a separate program, set by r_1, r_2 and r_3. The yaw program is not published; here
-    it is this one with r_2 = 0, r_3 = -0.56 and the seeded heading. `sense.psi` counts from the
-    start heading; the five readings of a loop lie within one 10 ms sample of the sensor.
+    A switch set to False corrects one defect. Item numbers are those of the review of the thesis.
+    The goal is ignored: as in the thesis each manoeuvre is a separate program, set by r_1, r_2 and
+    r_3. The yaw program is not published; here it is this one with r_2 = 0, r_3 = -0.56 and the
+    seeded heading. `sense.psi` counts from the start heading; the five readings of a loop lie
+    within one 10 ms sample of the sensor.
     """
 
     words: ClassVar[str] = "the thesis' Arduino program, defects included"
@@ -135,7 +136,7 @@ class L1JoystickAsPublished(Controller):
         self._eta = [[0.0] * 3 for _ in range(3)]
 
     def initial_commands(self) -> dict[str, float]:
-        """Return the commands of servos and motors before the first step."""
+        """Return the servo and motor commands before the published program's first pass."""
         return self._commands(0.0, 0.0, *((PARKED, PARKED) if self.parked_inward else (0.0, 0.0)))
 
     def step(self, sense: Sense, goal: Mapping[str, float]) -> dict[str, float]:

@@ -108,7 +108,7 @@ class L1JoystickBlind(AdaptiveJoystick):
         return self._corrected_commands(sense, goal)
 
     def estimates(self) -> dict[str, Estimate]:
-        """Return the base estimates, the result of the check and the reckoned motion."""
+        """Return the base class's estimates, the motor check's result and the reckoned motion."""
         found = {
             "trim_astern": self._check.astern if self._check else self._astern,
             "trim_angle_rad": self._angle,

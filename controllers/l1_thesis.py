@@ -137,9 +137,9 @@ def law(boats: Any, settings: Any, memory: Any, sense: Any, goal: Any, sent: Any
 
 @dataclass
 class L1Thesis(CompiledController):
-    """Sway at constant nominal power, with the yaw rate kept zero by the steering.
+    """L1 adaptive controller that moves a boat sideways and keeps its yaw rate zero by steering.
 
-    The neutral angle of the steering is unknown.
+    The sway thrust has a constant nominal power. The neutral angle of the steering is unknown.
 
     Equation E37 with a plus sign throughout. Sway is open loop, so that the actual sway speed is
     the demanded one, and the feed-forward is -A_m: v alone demands no rotation.

@@ -27,7 +27,7 @@ class PidCourse(Helm):
     forgets_wish: bool = False  # True: the next change is added to the angle the rudder reached
 
     def reset(self) -> None:
-        """Reset the demand and the past heading errors to zero."""
+        """Reset the autopilot's rudder demand and past heading errors to zero."""
         super().reset()
         # [rad] wish; heading errors one period ago and two
         self._wish = self._once = self._twice = 0.0

@@ -32,7 +32,10 @@ def ackermann_gains(a: Array, b: Array, wanted: Array) -> Array | None:
 
 @dataclass
 class PolePlacement(LearningHelm):
-    """Pole placement of Martin (1993), section 2.8: u = -K x on heading, and on roll."""
+    """Autopilot by adaptive pole placement of Martin (1993), section 2.8.
+
+    The rudder angle is the state feedback u = -K x on heading, and on roll, of the identified ship.
+    """
 
     words: ClassVar[str] = "adaptive pole placement, with or without roll reduction"
     nominal_yaw: ClassVar = (0.8, 0.03, 0.0)  # Martin's nominal ship, section 3.2

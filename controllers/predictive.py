@@ -37,7 +37,10 @@ def prediction_matrices(
 
 @dataclass
 class Predictive(LearningHelm):
-    """GPC of Martin (1993), section 2.6 and appendix II, bang-bang or rate-limited."""
+    """Autopilot by generalised predictive control (GPC) of Martin (1993), section 2.6, appendix II.
+
+    The rudder movement is bang-bang or rate-limited.
+    """
 
     words: ClassVar[str] = (
         "adaptive GPC, bang-bang or rate-constrained, with or without roll reduction"

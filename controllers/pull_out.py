@@ -9,7 +9,10 @@ from boatsim.physics.base import param
 
 @dataclass
 class PullOut(Steered):
-    """Helm to one side, midships, to the other side, midships, each held for the same time."""
+    """Pull-out manoeuvre: helm to one side, midships, to the other side, midships.
+
+    Each part is held for the same time.
+    """
 
     words: ClassVar[str] = (
         "standard manoeuvre: steady turns to both sides, each followed by helm midships"

@@ -68,10 +68,11 @@ def nominal_ship(roll_reduction: bool) -> tuple[Array, Array]:
 
 @dataclass
 class Sliding(Helm):
-    """Variable structure control of Martin (1993), section 2.7: du = -swing sign(S).
+    """Autopilot by sliding mode control of Martin (1993), section 2.7: du = -swing sign(S).
 
-    No movement where |S| is inside the boundary layer. Angles in S are radians: only then does the
-    boundary layer contain the headings at which the printed runs come to rest.
+    u is the rudder angle and S the switching function. There is no movement where |S| is inside the
+    boundary layer. Angles in S are radians: only then does the boundary layer contain the headings
+    at which the printed runs come to rest.
     """
 
     words: ClassVar[str] = "three-way relay on a switching surface, with or without roll reduction"

@@ -8,7 +8,7 @@ from boatsim.control.base import Sense, Steered
 
 @dataclass
 class TurningCircle(Steered):
-    """Holds the helm angle to the end of the run."""
+    """Turning circle manoeuvre: holds a helm angle to the end of the run."""
 
     words: ClassVar[str] = "standard manoeuvre: puts the helm over and holds it"
 

@@ -13,7 +13,7 @@ Place = tuple[float, float]  # [m] x, y in start axes
 
 @dataclass
 class Waypoint(Controller):
-    """Steers to the points given as goals one after another.
+    """Waypoint navigation: steers to the points given as goals one after another.
 
     `position_replay` reproduces equation 1 of the paper: positions are integrals of u and v,
     rotated by the present heading.

@@ -12,7 +12,10 @@ REACHED = 1e-7  # [rad] tolerance with which a heading counts as reached
 
 @dataclass
 class Zigzag(Steered):
-    """Kempf's zig-zag about the heading at the start; a positive angle begins to starboard."""
+    """Kempf's zig-zag manoeuvre about the heading at the start.
+
+    A positive angle begins to starboard.
+    """
 
     words: ClassVar[str] = (
         "standard manoeuvre: reverses the helm each time the heading has reached an angle"

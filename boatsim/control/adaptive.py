@@ -245,7 +245,10 @@ def matrix_exp(a: Array) -> Array:
 
 @dataclass(frozen=True)
 class LinearSystem:
-    """Linear system x' = A x + B v, y = C x: A (n, n), B (n, inputs), C (outputs, n)."""
+    """State-space model of a linear system, x' = A x + B v, y = C x.
+
+    The matrices are A (n, n), B (n, inputs), C (outputs, n).
+    """
 
     a: Array
     b: Array
@@ -253,10 +256,11 @@ class LinearSystem:
 
 
 def unfiltered_system(am: ArrayLike, b: ArrayLike, bandwidth: float) -> LinearSystem:
-    """Return (sI - Am)^-1 b (1 - C(s)) with the low-pass filter C = bandwidth / (s + bandwidth).
+    """Return the linear system from an uncertainty to the state of an L1 adaptive loop.
 
-    It is the response to the part of an uncertainty that the filter does not cancel; its L1 norm
-    enters the L1-norm condition. The outputs are the n states.
+    It is (sI - Am)^-1 b (1 - C(s)) with the low-pass filter C = bandwidth / (s + bandwidth): the
+    response to the part of an uncertainty that the filter does not cancel. Its L1 norm enters the
+    L1-norm condition. The outputs are the n states.
 
     Args:
         am: Am (n, n) [1/s].
@@ -271,7 +275,7 @@ def unfiltered_system(am: ArrayLike, b: ArrayLike, bandwidth: float) -> LinearSy
 
 
 def step_response(system: LinearSystem, dt: float, steps: int) -> Array:
-    """Return the response of the outputs to a unit step of the first input, from rest, exact.
+    """Return the response of a linear system to a unit step of its first input, from rest, exact.
 
     Args:
         system: Linear system.
@@ -448,7 +452,7 @@ def _is_stable(omega: Array, response: Complex) -> bool:
 
 @dataclass(frozen=True)
 class LoopChannel:
-    """Feedback channel of a continuous controller for the loop analysis.
+    """Feedback loop of one axis with a continuous controller, for an analysis of its margins.
 
     The plant is x' = -damping x + (input gain) tau / I0; the position is the integral of x. tau
     passes a zero-order hold of mean delay `hold_s` (half a sample time) and a lag `servo_lag_s`.
@@ -519,7 +523,7 @@ class LoopChannel:
 
 @dataclass(frozen=True)
 class SampledChannel:
-    """Feedback channel of a sampled controller for the loop analysis, exact.
+    """Feedback loop of one axis with a sampled controller, for an exact analysis of its margins.
 
     The plant is x' = -damping x + (input gain) a with a held input; the position is the integral of
     x. The controller is a = -(position law(z)[0] + rate law(z)[1]) with its inner loops closed.

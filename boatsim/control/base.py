@@ -44,7 +44,10 @@ class Estimate(NamedTuple):
 
 @dataclass
 class Controller(CheckedParameters):
-    """Base of controllers: call `reset` before a run, then `step` once every `period` seconds."""
+    """Base class of controllers of a vessel, which turn sensor readings and goals into commands.
+
+    Call `reset` before a run, then `step` once every `period` seconds.
+    """
 
     words: ClassVar[str] = ""  # one line for `boatsim list`
     commands: ClassVar[tuple[str, ...]] = ()  # command channels it sets; empty: any
@@ -101,7 +104,7 @@ class Controller(CheckedParameters):
 
 @dataclass
 class Steered(Controller):
-    """Base of standard manoeuvres: an approach ahead, then helm angles.
+    """Base class of controllers for standard manoeuvres: an approach ahead, then helm angles.
 
     `ahead` are the commands of the approach, `steer` the commands per rad of helm (positive turns
     to starboard). The helm angle is logged as `reference_helm_rad`.
@@ -117,7 +120,7 @@ class Steered(Controller):
     _course: float = field(default=nan, init=False)  # [rad] heading at the start of the run
 
     def reset(self) -> None:
-        """Set the helm midships."""
+        """Set the helm of a standard manoeuvre midships, before a run."""
         self._helm, self._course = 0.0, nan
 
     def initial_commands(self) -> dict[str, float]:
@@ -149,7 +152,7 @@ class Steered(Controller):
         raise NotImplementedError
 
     def commands_at_helm(self, helm: float) -> dict[str, float]:
-        """Return the commands for going ahead at a helm angle.
+        """Return the vessel's commands for going ahead at a helm angle of a standard manoeuvre.
 
         Args:
             helm: Helm angle [rad].
@@ -190,7 +193,7 @@ def wrap(angle: float) -> float:
 
 @dataclass
 class LowPass:
-    """First-order low-pass wc / (s + wc), exact for an input held over each step."""
+    """First-order low-pass filter wc / (s + wc), exact for an input held over each step."""
 
     cutoff: float  # [rad/s]
     state: float = 0.0

@@ -24,11 +24,11 @@ def push_sample(history: list[float], value: float) -> None:
 
 @dataclass
 class Helm(Controller):
-    """Base of autopilots; a subclass returns the wanted rudder angle in `rudder_demand`.
+    """Base class of autopilots with one rudder, which a steering machine turns.
 
-    The steering machine has a rate limit and a range. The command is the angle that it reaches
-    after a period, as in Martin's simulation. Positive rudder turns the bow to starboard. Goal:
-    `psi_rad`.
+    A subclass returns the wanted rudder angle in `rudder_demand`. The steering machine has a rate
+    limit and a range. The command is the angle that it reaches after a period, as in Martin's
+    simulation. Positive rudder turns the bow to starboard. Goal: `psi_rad`.
     """
 
     commands: ClassVar[tuple[str, ...]] = ("rudder_rad",)
@@ -119,14 +119,17 @@ class Helm(Controller):
         return clip(near, -self.rudder_limit, self.rudder_limit)
 
     def possible_rudder_angles(self) -> list[float]:
-        """Return the rudder angles [rad] of a three-way steering machine: stop, port, starboard."""
+        """Return the rudder angles [rad] that a three-way steering machine can reach in one period.
+
+        They are those after a stop and after a movement to port or to starboard.
+        """
         swung = (self.rudder - self.largest_rudder_step, self.rudder + self.largest_rudder_step)
         return [self.rudder, *(u for u in swung if abs(u) <= self.rudder_limit + 1e-9)]
 
 
 @dataclass
 class LearningHelm(Forgetting, Helm):
-    """Base of autopilots that identify the ship online, from a nominal ship."""
+    """Base class of autopilots that identify the ship's response online, from a nominal ship."""
 
     nominal_yaw: ClassVar[tuple[float, float, float]]  # a2y, b1y, b2y of `Ship`
     nominal_roll: ClassVar[tuple[float, float, float, float]]  # a1r, a2r, b1r, b2r

@@ -38,7 +38,7 @@ class Forgetting(CheckedParameters):
 
 @dataclass
 class Estimator:
-    """Recursive estimate of theta in y = x'theta + noise.
+    """Recursive least-squares estimator of theta in y = x'theta + noise, with forgetting.
 
     P(t+1) = P / lambda - alpha P x x' P / (1 + x'P x) + beta I - delta P^2
     theta(t+1) = theta + alpha P x (y - x'theta) / (1 + x'P x)
@@ -52,11 +52,11 @@ class Estimator:
         self.p = self.law.covariance * np.eye(len(self.theta))
 
     def update(self, x: Array, y: float) -> float:
-        """Update the estimate by one sample and return the residual of the new estimate.
+        """Update the least-squares estimate by one sample; return the residual after the update.
 
         Args:
             x: Regressor (n,).
-            y: Output.
+            y: Measured output.
         """
         law, p = self.law, self.p
         px = p @ x

@@ -32,7 +32,7 @@ class BoatVecEnv(VecEnv):
         self._empty_infos: list[dict[str, Any]] = [{} for _ in range(boats.num_envs)]
 
     def reset(self) -> NDArray[np.float32]:
-        """Begin episodes of all boats.
+        """Begin new episodes of all boats.
 
         Returns:
             Observations (n, S).
@@ -80,7 +80,7 @@ class BoatVecEnv(VecEnv):
         return observations, reward.astype(np.float32), over, infos
 
     def close(self) -> None:
-        """Close the wrapped environment."""
+        """Close the wrapped vector environment and free its resources."""
         self.boats.close()
 
     def get_attr(self, attr_name: str, indices: Any = None) -> list[Any]:

@@ -76,7 +76,7 @@ class BoatVectorEnv(VectorEnv[Observations, NDArray[np.float32], Array]):
     def reset(
         self, *, seed: int | list[int | None] | None = None, options: dict[str, Any] | None = None
     ) -> tuple[Observations, dict[str, Any]]:
-        """Begin episodes of all boats, or of those in `options["reset_mask"]`.
+        """Begin new episodes of all boats, or of those in `options["reset_mask"]`.
 
         Args:
             seed: Seed of boat 0, which the others count on from; or a seed for each boat, where

@@ -293,7 +293,7 @@ def _offset_of_nuserdata() -> int:
 
 @cache
 def load_mujoco_symbols() -> None:
-    """Let compiled code call functions of MuJoCo's own library by name.
+    """Load MuJoCo's shared library, so that compiled code can call its functions by name.
 
     Raises:
         BadPhysics: The package of MuJoCo holds no library.

@@ -219,7 +219,7 @@ def _cases(path: Path, _modified_ns: int) -> tuple[str, ...]:
 
 
 def import_module_file(path: Path, name: str) -> ModuleType:
-    """Import a file under a module name, or return the module of that name.
+    """Import a Python file as a module of a given name; a module imported before is returned.
 
     Args:
         path: The Python file.
@@ -253,12 +253,12 @@ def _line_of(error: BaseException, path: Path) -> str:
 
 
 def camel_case(name: str) -> str:
-    """Return the class name of a file name: fan_wind -> FanWind."""
+    """Return the Python class name that belongs to a file name: fan_wind -> FanWind."""
     return "".join(word.capitalize() for word in name.split("_"))
 
 
 def snake_case(name: str) -> str:
-    """Return the name in files of a class: FanWind -> fan_wind."""
+    """Return the file name that belongs to a Python class name: FanWind -> fan_wind."""
     return re.sub(r"(?<!^)(?=[A-Z])", "_", name).lower()
 
 

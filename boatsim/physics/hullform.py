@@ -167,7 +167,7 @@ def ruled_surface(a: Array, b: Array, rows: int) -> Array:
 
 
 def curve_points(x: Array, y: Array | float, z: Array | float) -> Array:
-    """Return the points (n, 3) of a curve from their coordinates, (n,) or scalar."""
+    """Return an array (n, 3) of the points of a curve, from coordinates that are (n,) or scalar."""
     return np.stack(np.broadcast_arrays(x, y, z), axis=-1).astype(float)
 
 
@@ -331,7 +331,10 @@ def propeller_blade(turn: float) -> Array:
 
 
 def collision_mesh(hull: DeepV) -> Mesh:
-    """Return a convex prism of few vertices around the deck edge, for contacts with walls."""
+    """Return a mesh for contacts with walls: a convex prism around the deck edge of a hull.
+
+    It has few vertices.
+    """
     s = np.array([0.0, 0.4, 0.6, 0.75, 0.87, 0.95, 1.0])
     half, _ = hull.sheer_points(s)
     plan = np.vstack(

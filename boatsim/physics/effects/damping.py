@@ -45,9 +45,10 @@ def speed_power(speed: float, exponent: float, equal: float) -> float:
 
 @njit(inline="always")
 def law(m: Any, q: Any) -> Wrench:
-    """Return the damping force -D nu_r, each speed raised to the exponent of its axis.
+    """Return the hydrodynamic damping force on the hull, -D nu_r with a power law in each axis.
 
-    The sway damping acts on the cross flow at its own place, v_r + sway_at r.
+    Each speed is raised to the exponent of its axis. The sway damping acts on the cross flow at its
+    own place, v_r + sway_at r.
 
     Args:
         m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].

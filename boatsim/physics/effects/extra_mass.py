@@ -46,9 +46,10 @@ def inertia(q: Any) -> MassMatrix:
 
 @njit(inline="always")
 def law(m: Any, q: Any) -> Wrench:
-    """Return the Coriolis and centripetal force of the point mass over ground, and its weight.
+    """Return the force on the hull of a point mass that it carries.
 
-    The weight sinks and trims the hull.
+    It consists of the Coriolis and centripetal force of the motion over ground, and the weight,
+    which sinks and trims the hull.
 
     Args:
         m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].

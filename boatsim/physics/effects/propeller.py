@@ -24,7 +24,7 @@ def propeller_thrust(n: float, q: Any) -> float:
 
 @njit(inline="always")
 def law(m: Any, q: Any, s: Any) -> Wrench:
-    """Return the thrust along the axis of the propeller, at its mount.
+    """Return force and moment on the hull of a propeller's thrust along its axis, at its mount.
 
     Args:
         m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].

@@ -126,7 +126,11 @@ Gust = preset_effect(
 
 @dataclass(frozen=True)
 class GustOffCentre(CoefficientRelease):
-    """Yaw moment proportional to the side force of the vessel's own gust."""
+    """Yaw moment proportional to the side force of the vessel's own gust.
+
+    A diagnosis tests with it whether a gust, modelled as a `push`, acts ahead of or behind the
+    origin.
+    """
 
     words: ClassVar[str] = (
         "the known disturbance also turns the boat: it acts away from the mass centre"

@@ -36,5 +36,5 @@ class HullParticulars(NamedTuple):
 
     @property
     def hull_spacing(self) -> float:
-        """Distance between the centrelines of two hulls [m]; 0 for one hull."""
+        """Distance between the centrelines of a catamaran's two hulls [m]; 0 for one hull."""
         return self.beam - self.breadth if self.hulls == 2 else 0.0

@@ -56,7 +56,7 @@ class FleetArrays(NamedTuple):
 
 
 class Inputs(NamedTuple):
-    """Row times of a recording and the commands that act on it."""
+    """Row times of a recording and the commands that act on the vessel during it."""
 
     times: Array  # (N,) [s]
     change_times: Array  # (M,) [s]
@@ -64,7 +64,7 @@ class Inputs(NamedTuple):
 
 
 class Measurements(NamedTuple):
-    """Measured channels of a recording."""
+    """Measured values of a recording's channels, with the noise variances of their sensors."""
 
     values: Array  # (N, C), nan where missing
     codes: Any  # (C,) 0 .. NQ - 1: a position; NQ .. 2 NQ - 1: a body-axes rate
@@ -72,7 +72,10 @@ class Measurements(NamedTuple):
 
 
 class LatentForce(NamedTuple):
-    """Force of unmodelled effects: an Ornstein-Uhlenbeck process per axis."""
+    """Model of the force of unmodelled effects in the Kalman filter.
+
+    It is an Ornstein-Uhlenbeck process per axis.
+    """
 
     variances: Array  # (NQ,) [N^2, N^2 m^2]
     time_constant: float  # [s]

@@ -139,7 +139,7 @@ class ChannelBindings:
         return tuple(name for name in self.actuators if self.roles[name] in roles)
 
     def side(self, channel: str) -> int:
-        """Return the side of the hull on which the device of a channel is mounted.
+        """Return the side of the hull on which the thruster or rudder of a command is mounted.
 
         Args:
             channel: Name of a command; one that feeds an actuator has the side of that actuator.
@@ -255,7 +255,7 @@ def _with_cosine_and_sine(angles: tuple[str, ...]) -> list[str]:
 
 
 def check_bindings(vessel: ChannelBindings, label: str) -> None:
-    """Check that every effect has a unique name and that all channels and effects it names exist.
+    """Check that a vessel's effects have unique names and refer to existing channels and effects.
 
     Args:
         vessel: The vessel.

@@ -33,7 +33,7 @@ def effect_from_table(table: Mapping[str, object], label: str, folder: Path) -> 
 
 
 def effect_name(table: Mapping[str, object]) -> str:
-    """Return the name of the effect that an [[effect]] table describes."""
+    """Return the instance name of the effect that an [[effect]] table of a file describes."""
     return str(table.get("name", table.get("use")))
 
 

@@ -60,7 +60,7 @@ def _numbers_of(owner: str, vessel: ChannelBindings) -> list[str]:
 def sd_of_refined_numbers(
     effect: Effect, vessel: ChannelBindings, estimated: Mapping[str, float]
 ) -> float | None:
-    """Return the relative standard deviation of the estimated numbers that an effect refines.
+    """Return the relative standard deviation of the estimated numbers that an effect corrects.
 
     Args:
         effect: An effect that a diagnosis identified.
@@ -87,7 +87,7 @@ def sd_of_refined_numbers(
 def number_sd(
     owner: str, key: str, vessel: ChannelBindings, estimated: Mapping[str, float]
 ) -> float | None:
-    """Return the relative standard deviation of one number of a vessel that is an estimate.
+    """Return the relative standard deviation of one number of a vessel that is only an estimate.
 
     Args:
         owner: Name or type of an effect of the vessel, or "body".

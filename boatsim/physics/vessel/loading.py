@@ -93,7 +93,7 @@ def merge_load_conditions(
 def with_effect_tables(
     vessel: Vessel, tables: Sequence[Mapping[str, object]], folder: Path, label: str
 ) -> Vessel:
-    """Return the vessel with the effects of [[effect]] tables added in their order.
+    """Return a copy of a vessel with the effects of [[effect]] tables added in their order.
 
     Args:
         vessel: The vessel.

@@ -136,7 +136,9 @@ class Vessel(ChannelBindings):
 
     @classmethod
     def from_file(cls, content: VesselFile, name: str, file: Path, folder: Path) -> Self:
-        """Return the vessel of a checked vessel.toml, without its effects and in no load condition.
+        """Create a vessel from the checked content of a vessel.toml, still without its effects.
+
+        It is in no load condition.
 
         Args:
             content: Content of the file.
@@ -370,7 +372,7 @@ class Vessel(ChannelBindings):
         return [effect.name for effect in self.effects]
 
     def check(self, label: str) -> None:
-        """Check the bindings of all effects, and that the rigid body suits the degrees of freedom.
+        """Check the channel bindings of all effects, and that the rigid body suits the free axes.
 
         Args:
             label: Name of the file in messages.
@@ -403,7 +405,7 @@ class Vessel(ChannelBindings):
         return limits | dict.fromkeys(self.measured, (-inf, inf))
 
     def save(self, folder: Path | str) -> Self:
-        """Write the vessel in its present load condition as a vessel.toml.
+        """Write the vessel in its present load condition to a vessel.toml file.
 
         A vessel from a file keeps the hull of its folder by `based_on`. For a vessel without a hull
         file a plain hull.xml is written, unless the folder has one. Load conditions of the file are

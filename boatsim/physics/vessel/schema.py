@@ -146,7 +146,9 @@ class DiagnosisTable(Table):
 
 
 class ManoeuvringTable(Table):
-    """Commands of the standard manoeuvres. Missing values are derived from the vessel's channels.
+    """Table of a vessel file with the commands of the standard manoeuvres.
+
+    Missing values are derived from the vessel's channels.
 
     Attributes:
         ahead: Commands of the approach.
