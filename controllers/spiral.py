@@ -9,7 +9,10 @@ from boatsim.physics.base import param
 
 @dataclass
 class Spiral(Steered):
-    """Dieudonne's spiral, which shows whether a ship has two rates of turn at one helm angle."""
+    """Dieudonne's spiral manoeuvre: the helm moves in steps from side to side and back.
+
+    It shows whether a ship has two rates of turn at one helm angle.
+    """
 
     words: ClassVar[str] = (
         "standard manoeuvre: helm in steps from side to side and back (Dieudonne)"

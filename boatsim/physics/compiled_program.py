@@ -258,5 +258,5 @@ class CompiledProgram(Protocol):
     ) -> None:
         """Add the vessel's passive force and added inertia J' M J to MuJoCo's arrays.
 
-        `force` and `M` are those of MuJoCo; of J' M J the lower triangle is added.
+        `force` and `M` are arrays of MuJoCo. Only the lower triangle of J' M J is added.
         """

@@ -79,5 +79,5 @@ def add_force_and_inertia_to_mujoco(
 ) -> None:
     """Add the vessel's passive force and added inertia J' M J to MuJoCo's arrays.
 
-    Of J' M J the lower triangle is added, in MuJoCo's coordinates.
+    Only the lower triangle of J' M J is added. Both are in MuJoCo's coordinates.
     """
