@@ -8,7 +8,7 @@ from boatsim.control.base import Sense, Steered
 
 @dataclass
 class CrashStop(Steered):
-    """Commands the engines astern until the ship has stopped."""
+    """Crash stop manoeuvre: commands the engines astern until the ship has stopped."""
 
     words: ClassVar[str] = "standard manoeuvre: engines astern until the ship has stopped"
 
@@ -17,12 +17,12 @@ class CrashStop(Steered):
     _begun: bool = field(default=False, init=False)
 
     def reset(self) -> None:
-        """Reset the manoeuvre to its approach ahead."""
+        """Reset the crash stop to its approach ahead."""
         super().reset()
         self._stopped = self._begun = False
 
     def helm(self, sense: Sense) -> float:
-        """Keep the helm midships and detect the end of the manoeuvre, u <= 0.
+        """Keep the helm midships and detect the end of the crash stop (no speed ahead).
 
         Args:
             sense: Sensor readings.
@@ -32,7 +32,7 @@ class CrashStop(Steered):
         return 0.0
 
     def commands_at_helm(self, helm: float) -> dict[str, float]:
-        """Return the commands of the approach, or astern once the manoeuvre has begun.
+        """Return the commands of the approach ahead or, once the crash stop has begun, of astern.
 
         Args:
             helm: Helm angle [rad].
@@ -41,5 +41,5 @@ class CrashStop(Steered):
 
     @property
     def done(self) -> bool:
-        """Whether the ship has stopped."""
+        """Whether the crash stop is complete: the ship has stopped."""
         return self._stopped

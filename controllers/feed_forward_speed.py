@@ -15,11 +15,13 @@ from boatsim.physics.base import param
 
 @unlocked
 def law(boats: Any, settings: Any, memory: Any, sense: Any, goal: Any, sent: Any) -> None:
-    """Set the throttle for the next period; the reference speed starts at the present speed.
+    """Compute the throttle for the next period from wanted speed, assumed drag and speed error.
+
+    The reference speed starts at the present speed.
 
     Args:
-        boats: Rows to process.
-        settings: Parameters of each boat.
+        boats: Row numbers of the boats to process.
+        settings: Parameters of each controller.
         memory: State of each controller.
         sense: Sensor readings of each boat.
         goal: Set points of each boat.
@@ -39,9 +41,10 @@ def law(boats: Any, settings: Any, memory: Any, sense: Any, goal: Any, sent: Any
 
 @dataclass
 class FeedForwardSpeed(CompiledController):
-    """Thrust per mass = drag at the wanted speed + gain (wanted speed - speed).
+    """Speed control by a feed-forward of the assumed drag and proportional feedback.
 
-    Goals: `u_mps`, and `jet_rad`, which is passed on.
+    Thrust per mass = drag at the wanted speed + gain (wanted speed - speed). Goals: `u_mps`, and
+    `jet_rad`, which is passed on.
     """
 
     words: ClassVar[str] = "speed of a water-jet craft on its throttle: known drag and a fixed gain"
@@ -61,7 +64,7 @@ class FeedForwardSpeed(CompiledController):
     quadratic: float = param(0.0035, low=0.0, high=10.0, unit="1/m", words="assumed drag, Table 3")
 
     def estimates(self) -> dict[str, Estimate]:
-        """Return the set point and the reference speed."""
+        """Return the set point of the speed and the reference speed, for the log of a run."""
         return {
             "reference_goal_mps": Estimate(float(self.memory_record["goal"]), nan, nan),
             "reference_u_mps": Estimate(float(self.memory_record["model"]), nan, nan),

@@ -38,11 +38,11 @@ NO_LIMIT = 1e9  # [m/s^3] of the thrust's rate
 
 @unlocked
 def law(boats: Any, settings: Any, memory: Any, sense: Any, goal: Any, sent: Any) -> None:
-    """Set the throttle for the next period.
+    """Compute the throttle of a water-jet craft for the next period, by L1 adaptive speed control.
 
     Args:
-        boats: Rows to process.
-        settings: Parameters of each boat.
+        boats: Row numbers of the boats to process.
+        settings: Parameters of each controller.
         memory: State of each controller.
         sense: Sensor readings of each boat.
         goal: Set points of each boat.
@@ -112,7 +112,7 @@ class L1Cruise(CompiledController):
     )
 
     def settings(self, count: int = 1) -> Records:
-        """Return the parameters and the design of the adaptive loop as records.
+        """Return the controller's parameters and L1 loop design as records for its compiled law.
 
         Args:
             count: Number of equal controllers.
@@ -131,7 +131,10 @@ class L1Cruise(CompiledController):
         return add_nested_records(super().settings(count), loop=loop)
 
     def estimates(self) -> dict[str, Estimate]:
-        """Return theta, sigma and omega with their bounds, and the reference speed."""
+        """Return the adaptive estimates with their bounds, and the reference speed, for the log.
+
+        They are theta, sigma and omega of the model of the class.
+        """
         m = self.memory_record
         theta, sigma, omega = m["loop"]["estimates"].tolist()
         return {
@@ -143,17 +146,17 @@ class L1Cruise(CompiledController):
         }
 
     def filtered_uncertainty(self) -> LinearSystem:
-        """Return the response to an uncertainty, less the part that the low-pass cancels.
+        """Return the linear system from an uncertainty to the speed error of the L1 loop.
 
-        The input gain is the lowest one.
-
-        Its L1 norm is that of the published design.
+        The part of the uncertainty that the low-pass filter cancels is subtracted. The input gain
+        is the lowest one. The system's L1 norm is that of the published design.
         """
         return unfiltered_system([[-self.pole]], [1.0], OMEGA[0] * self.bandwidth)
 
     def l1_condition(self) -> float:
-        """Return the L1 norm times the largest slope of the uncertainty.
+        """Return the left side of the L1-norm stability condition of the speed loop.
 
-        Below 1 the loop is bounded (Fig. 8).
+        It is the L1 norm times the largest slope of the uncertainty. Below 1 the loop is bounded
+        (Fig. 8).
         """
         return l1_norm(self.filtered_uncertainty()) * THETA[1]

@@ -39,12 +39,13 @@ wrapped = lean(wrap)
 
 @merged
 def adapt_over_period(q: Any, m: Any, s: Any, change: float) -> None:
-    """Adapt over the last period, in which the reference changed steadily or jumps at its end.
+    """Update the adaptive estimates of an L1 heading controller over the last period.
 
-    The reference model is advanced by the midpoint rule.
+    The reference heading changed steadily in the period or jumps at its end. The reference model is
+    advanced by the midpoint rule.
 
     Args:
-        q: Parameters.
+        q: Parameters of the controller.
         m: State of the controller.
         s: Sensor readings.
         change: Change of the reference heading [rad].
@@ -66,11 +67,11 @@ def adapt_over_period(q: Any, m: Any, s: Any, change: float) -> None:
 
 @unlocked
 def law(boats: Any, settings: Any, memory: Any, sense: Any, goal: Any, sent: Any) -> None:
-    """Set the jet deflection for the next period.
+    """Compute the jet angle of a water-jet craft for the next period, by L1 heading control.
 
     Args:
-        boats: Rows to process.
-        settings: Parameters of each boat.
+        boats: Row numbers of the boats to process.
+        settings: Parameters of each controller.
         memory: State of each controller.
         sense: Sensor readings of each boat.
         goal: Set points of each boat.
@@ -150,7 +151,7 @@ class L1Heading(CompiledController):
     )
 
     def settings(self, count: int = 1) -> Records:
-        """Return the parameters and the design of the adaptive loop as records.
+        """Return the controller's parameters and L1 loop design as records for its compiled law.
 
         Args:
             count: Number of equal controllers.
@@ -172,7 +173,10 @@ class L1Heading(CompiledController):
         return add_nested_records(super().settings(count), loop=loop)
 
     def estimates(self) -> dict[str, Estimate]:
-        """Return theta, sigma, omega with bounds, the set point and the reference heading."""
+        """Return the adaptive estimates with their bounds, the set point and the reference heading.
+
+        The estimates are theta, sigma and omega of the model of the class.
+        """
         m = self.memory_record
         theta_1, theta_2, sigma, omega = m["loop"]["estimates"].tolist()
         return {

@@ -20,13 +20,14 @@ PRINTED_LEAD = 0.2754  # k_H, Table B.1
 
 @dataclass
 class L1HeadingDiscrete(Controller):
-    """Controller of Theisen, Galeazzi and Blanke (2013) at 10 Hz; its misprints are switches.
+    """Heading controller of Theisen, Galeazzi and Blanke (2013) at 10 Hz: PD, wave filter and L1.
 
-    The control input is the yaw acceleration u; the nozzle angle is u / (N_delta / (I_z - N_r')),
-    where N_delta contains cos 2 beta. Near beta = 45 deg, where the jet has no moment, the nozzle
-    stays straight. The predictor uses u after saturation. The adaptation gain is as printed: the
-    estimate of a constant disturbance is f22 times its value, so that 1 - f22 = 5.8 % of the
-    disturbance remains. Goals: `psi_rad`, `elevator_rad`.
+    Switches select the printed form of formulas with misprints. The control input is the yaw
+    acceleration u; the nozzle angle is u / (N_delta / (I_z - N_r')), where N_delta contains cos 2
+    beta. Near beta = 45 deg, where the jet has no moment, the nozzle stays straight. The predictor
+    uses u after saturation. The adaptation gain is as printed: the estimate of a constant
+    disturbance is f22 times its value, so that 1 - f22 = 5.8 % of the disturbance remains. Goals:
+    `psi_rad`, `elevator_rad`.
     """
 
     words: ClassVar[str] = (
@@ -84,7 +85,7 @@ class L1HeadingDiscrete(Controller):
         self.reset()
 
     def reset(self) -> None:
-        """Reset filters and estimates."""
+        """Reset the controller's wave filter, low-pass filter and adaptive estimate."""
         self._filter, self._low_pass = self.make_wave_filter(), self.make_low_pass()
         self._decay = exp(-self.period / self.time_constant)  # f22
         self._gain = self.time_constant * (1.0 - self._decay)  # g2
@@ -92,11 +93,14 @@ class L1HeadingDiscrete(Controller):
         self._sigma, self._elevator = 0.0, self.elevator_start
 
     def initial_commands(self) -> dict[str, float]:
-        """Return idle throttle and a straight nozzle."""
+        """Return the commands before the first step: idle throttle and a straight nozzle."""
         return {"throttle": IDLE, "jet_rad": 0.0, "elevator_rad": self.elevator_start}
 
     def make_wave_filter(self) -> DiscreteFilter:
-        """Return the wave filter H_f: notch at omega_1, roll-off at omega_2, static gain 1."""
+        """Return the filter that removes wave frequencies from the PD control signal.
+
+        It is H_f of the source: notch at omega_1, roll-off at omega_2, static gain 1.
+        """
         w1, w2 = self.omega_1, self.omega_2
         notch = [1.0, 2.0 * self.zeta * w1, w1 * w1]
         poles = np.poly([-self.alpha * w1, -w1 / self.alpha, -w2])
@@ -106,12 +110,16 @@ class L1HeadingDiscrete(Controller):
         return zero_order_hold([w2 * b for b in notch], poles.tolist(), self.period)
 
     def make_low_pass(self) -> DiscreteFilter:
-        """Return C = k D / (1 + k D), D = k_1 (z + z_1) / ((z - 1)(z - p_1)); eqs 22 to 24."""
+        """Return the low-pass filter C through which the estimated disturbance is cancelled.
+
+        C = k D / (1 + k D), D = k_1 (z + z_1) / ((z - 1)(z - p_1)); equations 22 to 24 of the
+        source.
+        """
         g = self.k * self.k_1
         return DiscreteFilter([g, g * self.z_1], [1.0, g - self.p_1 - 1.0, self.p_1 + g * self.z_1])
 
     def step(self, sense: Sense, goal: Mapping[str, float]) -> dict[str, float]:
-        """Return the commands for the next period.
+        """Return the bucket and nozzle commands of a water jet for the next period.
 
         The bucket is rate-limited; the nozzle follows from heading and gyro.
 
@@ -132,11 +140,14 @@ class L1HeadingDiscrete(Controller):
         return {"throttle": IDLE, "jet_rad": jet, "elevator_rad": self._elevator}
 
     def estimates(self) -> dict[str, Estimate]:
-        """Return the estimated disturbance, a yaw acceleration."""
+        """Return the estimated disturbance of the yaw motion, an acceleration, for the log."""
         return {"sigma_radps2": Estimate(self._sigma, nan, nan)}
 
     def loop_channels(self) -> tuple[SampledChannel, ...]:
-        """Return the feedback loop, broken at the yaw acceleration."""
+        """Return the controller's feedback loop for an analysis of stability margins.
+
+        It is broken at the yaw acceleration.
+        """
         pole = 1.0 / self.time_constant
         return (
             SampledChannel(

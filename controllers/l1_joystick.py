@@ -8,7 +8,10 @@ from boatsim.control.joystick import AdaptiveJoystick
 
 @dataclass
 class L1Joystick(AdaptiveJoystick):
-    """L1 control of yaw (gyro) and surge (speed sensor, if present); sway in open loop."""
+    """L1 adaptive joystick controller of a boat with two outboards.
+
+    Yaw is controlled by the gyro and surge by a speed sensor, if present; sway is in open loop.
+    """
 
     words: ClassVar[str] = (
         "L1 adaptive joystick, corrected: surge, sway and yaw commands at the same time"

@@ -38,7 +38,7 @@ LONG_PERIOD = 0.1  # [s] our estimate: 70 ms of serial text at 9600 baud, five r
 
 
 def push_sample(history: list[float], value: float) -> None:
-    """Shift a history [now, one ago, two ago] by one sample.
+    """Shift a history of samples [now, one ago, two ago] by one and insert a new sample.
 
     Args:
         history: Samples, newest first; changed in place.
@@ -48,7 +48,7 @@ def push_sample(history: list[float], value: float) -> None:
 
 
 def filter_output(u: list[float], r: list[float], pole: float) -> float:
-    """Return the output of the sampled control law D(s) of the listing.
+    """Return the output of the published sampled control law D(s) from past inputs and outputs.
 
     D(s) = 1.07 (s + 17.7) / (s (s + 50)).
 
@@ -62,12 +62,13 @@ def filter_output(u: list[float], r: list[float], pole: float) -> float:
 
 @dataclass
 class L1JoystickAsPublished(Controller):
-    """Listing of Appendix H in float64; a switch set to False corrects one defect.
+    """Controller program of a thesis (Bayless 2017, Appendix H), statement by statement in float64.
 
-    Item numbers are those of the review of the thesis. The goal is ignored: as in the thesis each
-    manoeuvre is a separate program, set by r_1, r_2 and r_3. The yaw program is not published; here
-    it is this one with r_2 = 0, r_3 = -0.56 and the seeded heading. `sense.psi` counts from the
-    start heading; the five readings of a loop lie within one 10 ms sample of the sensor.
+    A switch set to False corrects one defect. Item numbers are those of the review of the thesis.
+    The goal is ignored: as in the thesis each manoeuvre is a separate program, set by r_1, r_2 and
+    r_3. The yaw program is not published; here it is this one with r_2 = 0, r_3 = -0.56 and the
+    seeded heading. `sense.psi` counts from the start heading; the five readings of a loop lie
+    within one 10 ms sample of the sensor.
     """
 
     words: ClassVar[str] = "the thesis' Arduino program, defects included"
@@ -120,7 +121,10 @@ class L1JoystickAsPublished(Controller):
         self.reset()
 
     def reset(self) -> None:
-        """Reset to the state after `setup()`: global arrays are zero, the servos parked."""
+        """Reset to the state of the published program after `setup()`.
+
+        Global arrays are zero and the servos parked.
+        """
         self.estimate = (
             dict(FIRST) if self.start_values else {n: clip(v, *BOUNDS[n]) for n, v in FIRST.items()}
         )
@@ -132,11 +136,11 @@ class L1JoystickAsPublished(Controller):
         self._eta = [[0.0] * 3 for _ in range(3)]
 
     def initial_commands(self) -> dict[str, float]:
-        """Return the commands of servos and motors before the first step."""
+        """Return the servo and motor commands before the published program's first pass."""
         return self._commands(0.0, 0.0, *((PARKED, PARKED) if self.parked_inward else (0.0, 0.0)))
 
     def step(self, sense: Sense, goal: Mapping[str, float]) -> dict[str, float]:
-        """Execute one pass of `loop()` and return the commands.
+        """Execute one pass of the published program's `loop()` and return its commands.
 
         Args:
             sense: Sensor readings.
@@ -149,7 +153,10 @@ class L1JoystickAsPublished(Controller):
         return self._actuate()
 
     def estimates(self) -> dict[str, Estimate]:
-        """Return the seven estimates with their bounds, and the model states (no velocities)."""
+        """Return the seven adaptive estimates with their bounds, and the model states.
+
+        Velocities are not among them.
+        """
         logged = {name: Estimate(self.estimate[name], *BOUNDS[name]) for name in BOUNDS}
         model = {"m_surge": self._m_surge[0], "m_sway": self._m_sway[0], "m_yaw": self._m_yaw[0]}
         return logged | {name: Estimate(state, nan, nan) for name, state in model.items()}

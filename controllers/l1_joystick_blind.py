@@ -75,7 +75,10 @@ class L1JoystickBlind(AdaptiveJoystick):
     )
 
     def reset(self) -> None:
-        """Reset to rest; the motors are to be checked unless they are known."""
+        """Reset the controller to a boat at rest.
+
+        The motors are checked again unless their properties are given as parameters.
+        """
         super().reset()
         self._check = None if self.known_astern else self._make_motor_check()
         self._astern = self.known_astern or 1.0
@@ -86,7 +89,9 @@ class L1JoystickBlind(AdaptiveJoystick):
         self._u = self._x = 0.0  # [m/s], [m] reckoned speed, and distance relative to the demand
 
     def step(self, sense: Sense, goal: Mapping[str, float]) -> dict[str, float]:
-        """Return pulses until the motors are known, then the corrected commands of the base class.
+        """Return test pulses of the motors until they are known, then joystick commands.
+
+        The commands are those of the base class, corrected by the result of the test.
 
         Args:
             sense: Sensor readings.
@@ -103,7 +108,7 @@ class L1JoystickBlind(AdaptiveJoystick):
         return self._corrected_commands(sense, goal)
 
     def estimates(self) -> dict[str, Estimate]:
-        """Return the base estimates, the result of the check and the reckoned motion."""
+        """Return the base class's estimates, the motor check's result and the reckoned motion."""
         found = {
             "trim_astern": self._check.astern if self._check else self._astern,
             "trim_angle_rad": self._angle,
@@ -118,11 +123,17 @@ class L1JoystickBlind(AdaptiveJoystick):
 
     @property
     def check_result(self) -> tuple[float, float, float] | None:
-        """Result for `known_astern`, `known_angle` and `known_scale`; None during the check."""
+        """Result of the motor check, for `known_astern`, `known_angle` and `known_scale`.
+
+        None while the check is running.
+        """
         return None if self._check else (self._astern, self._angle, self._scale)
 
     def loop_channels(self) -> tuple[LoopChannel, ...]:
-        """Return the yaw loop only, because no measurement closes the surge loop."""
+        """Return the yaw feedback loop for an analysis of stability margins.
+
+        There is no surge loop, because no measurement closes it.
+        """
         return tuple(channel for channel in super().loop_channels() if channel.name == "yaw")
 
     def _make_motor_check(self) -> MotorCheck:

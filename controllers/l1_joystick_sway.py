@@ -16,14 +16,13 @@ from boatsim.physics.base import param
 
 @merged
 def sway_thrust_difference(q: Any, m: Any, s: Any, wanted: float) -> float:
-    """Return the thrust difference [N] for a demanded sway speed.
+    """Return the thrust difference [N] of two outboards for a demanded sway speed.
 
-    Without a sensor it is that of the open loop.
-
-    It has the sign of the stick and a lower limit, so that the motors can always steer.
+    Without a sensor it is that of the open loop. It has the sign of the stick and a lower limit, so
+    that the motors can always steer.
 
     Args:
-        q: Parameters.
+        q: Parameters of the controller.
         m: State of the controller.
         s: Sensor readings.
         wanted: Demanded sway speed [m/s].
@@ -51,11 +50,11 @@ def sway_thrust_difference(q: Any, m: Any, s: Any, wanted: float) -> float:
 
 @unlocked
 def law(boats: Any, settings: Any, memory: Any, sense: Any, goal: Any, sent: Any) -> None:
-    """Set the commands for the next period from gyro, measured speeds and stick.
+    """Compute the outboard commands of a joystick controller from gyro, measured speeds and stick.
 
     Args:
-        boats: Rows to process.
-        settings: Parameters of each boat.
+        boats: Row numbers of the boats to process.
+        settings: Parameters of each controller.
         memory: State of each controller.
         sense: Sensor readings of each boat.
         goal: Demands of each boat.
@@ -102,7 +101,7 @@ class L1JoystickSway(AdaptiveJoystick):
     )
 
     def estimates(self) -> dict[str, Estimate]:
-        """Return the estimates of the base class and those of sway."""
+        """Return the estimated disturbances of yaw, surge and sway, and the reference motion."""
         sway = self.memory_record["sway"]
         return {
             **super().estimates(),
@@ -111,7 +110,7 @@ class L1JoystickSway(AdaptiveJoystick):
         }
 
     def loop_channels(self) -> tuple[LoopChannel, ...]:
-        """Return the loops of the base class and that of sway."""
+        """Return the yaw, surge and sway feedback loops for an analysis of stability margins."""
         delayed = partial(
             LoopChannel, hold_s=0.5 * self.period, servo_lag_s=SERVO_LAG, input_gain=(0.5, 1.0, 1.8)
         )

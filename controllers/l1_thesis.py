@@ -28,10 +28,10 @@ BOUNDS = {"omega": OMEGA, "theta_v": OTHERS, "theta_r": OTHERS, "sigma": OTHERS}
 
 @merged
 def estimated_acceleration(row: Any, v: float, r: float) -> float:
-    """Return the acceleration that the estimates assign to input and states.
+    """Return the acceleration that the adaptive estimates predict from input and states.
 
     Args:
-        row: Estimates of one state.
+        row: Adaptive estimates of one state equation (sway or yaw).
         v: Sway velocity [m/s].
         r: Yaw rate [rad/s].
     """
@@ -42,7 +42,7 @@ def estimated_acceleration(row: Any, v: float, r: float) -> float:
 def step_estimate(
     value: float, regressor: float, error: float, low: float, high: float, gain: float, dt: float
 ) -> float:
-    """Return an estimate after one Euler step of the projected gradient law.
+    """Return an adaptive estimate after one Euler step of the projected gradient law.
 
     Args:
         value: Estimate.
@@ -61,10 +61,10 @@ def step_estimate(
 def adapt_state_estimates(
     row: Any, error: float, v: float, r: float, gain: float, dt: float
 ) -> None:
-    """Adapt the estimates of one state, equations E34 to E36.
+    """Update the adaptive estimates of one state equation, equations E34 to E36 of the thesis.
 
     Args:
-        row: Estimates of the state, changed in place.
+        row: Estimates of the state equation (sway or yaw), changed in place.
         error: Entry of (xh - x)' P of the state.
         v: Sway velocity [m/s].
         r: Yaw rate [rad/s].
@@ -79,10 +79,12 @@ def adapt_state_estimates(
 
 @merged
 def set_steering_angle(q: Any, m: Any, v: float, r: float) -> float:
-    """Set the steering angle by the filtered law and return the power for it [N].
+    """Set the outboards' steering angle by the filtered control law; return the thrust [N].
+
+    The angle keeps the yaw rate zero while the boat moves sideways.
 
     Args:
-        q: Parameters.
+        q: Parameters of the controller.
         m: State of the controller.
         v: Sway velocity [m/s].
         r: Yaw rate [rad/s].
@@ -101,11 +103,11 @@ def set_steering_angle(q: Any, m: Any, v: float, r: float) -> float:
 
 @unlocked
 def law(boats: Any, settings: Any, memory: Any, sense: Any, goal: Any, sent: Any) -> None:
-    """Set thrusts and angles from the measured sway velocity and yaw rate.
+    """Compute thrusts and steering angles from the measured sway velocity and yaw rate.
 
     Args:
-        boats: Rows to process.
-        settings: Parameters of each boat.
+        boats: Row numbers of the boats to process.
+        settings: Parameters of each controller.
         memory: State of each controller.
         sense: Sensor readings of each boat.
         goal: Not used.
@@ -135,9 +137,9 @@ def law(boats: Any, settings: Any, memory: Any, sense: Any, goal: Any, sent: Any
 
 @dataclass
 class L1Thesis(CompiledController):
-    """Sway at constant nominal power, with the yaw rate kept zero by the steering.
+    """L1 adaptive controller that moves a boat sideways and keeps its yaw rate zero by steering.
 
-    The neutral angle of the steering is unknown.
+    The sway thrust has a constant nominal power. The neutral angle of the steering is unknown.
 
     Equation E37 with a plus sign throughout. Sway is open loop, so that the actual sway speed is
     the demanded one, and the feed-forward is -A_m: v alone demands no rotation.
@@ -180,7 +182,10 @@ class L1Thesis(CompiledController):
     feed_forward_as_published: bool = False
 
     def estimates(self) -> dict[str, Estimate]:
-        """Return all estimates with their bounds, and the predicted states."""
+        """Return all adaptive estimates with their bounds, and the predicted states.
+
+        The states are sway velocity and yaw rate.
+        """
         _, vh, rh, *_, sway, yaw = self.memory_record.item()
         found = {
             f"{name}_{axis}": Estimate(value, *bounds)

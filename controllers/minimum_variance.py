@@ -41,7 +41,7 @@ class MinimumVariance(LearningHelm):
     weighs_angle: bool = False  # rho weighs the rudder angle instead of its swing
 
     def rudder_demand(self) -> float:
-        """Return the angle after the rudder movement with the lowest cost."""
+        """Return the rudder angle after that of three possible movements with the lowest cost."""
         yaw, roll = self._predict_with_stopped_rudder()
         b_yaw, b_roll = self.ship.yaw_coefficients[1], self.ship.roll_coefficients[2]
         weight = self.roll_weight if self.roll_reduction else 0.0

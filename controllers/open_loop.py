@@ -9,13 +9,16 @@ from boatsim.control.base import Controller, Sense
 
 @dataclass
 class OpenLoop(Controller):
-    """Each goal is the command of the channel of the same name; sensors are not used."""
+    """Open-loop controller: each goal is the command of the channel of the same name.
+
+    Sensors are not used.
+    """
 
     words: ClassVar[str] = "plays the commands given as goals, channel by channel"
     passes_on: ClassVar[bool] = True
 
     def step(self, sense: Sense, goal: Mapping[str, float]) -> dict[str, float]:
-        """Return the goal as commands.
+        """Return the goals unchanged as commands of the channels with the same names.
 
         Args:
             sense: Not used.

@@ -17,12 +17,12 @@ wrapped = lean(wrap)
 
 @merged
 def advance_reference_model(q: Any, m: Any, s: Any, wanted: float) -> None:
-    """Advance the reference model by one period with the midpoint rule.
+    """Advance the reference model of a heading controller by one period, by the midpoint rule.
 
-    It starts at the present state.
+    The model starts at the present state.
 
     Args:
-        q: Parameters.
+        q: Parameters of the controller.
         m: State of the controller.
         s: Sensor readings.
         wanted: Reference heading [rad].
@@ -40,11 +40,11 @@ def advance_reference_model(q: Any, m: Any, s: Any, wanted: float) -> None:
 
 @unlocked
 def law(boats: Any, settings: Any, memory: Any, sense: Any, goal: Any, sent: Any) -> None:
-    """Set the jet deflection for the next period.
+    """Compute the jet angle of a water-jet craft for the next period, by PD heading control.
 
     Args:
-        boats: Rows to process.
-        settings: Parameters of each boat.
+        boats: Row numbers of the boats to process.
+        settings: Parameters of each controller.
         memory: State of each controller.
         sense: Sensor readings of each boat.
         goal: Set points of each boat.
@@ -91,7 +91,7 @@ class PdHeading(CompiledController):
     )
 
     def estimates(self) -> dict[str, Estimate]:
-        """Return the set point and the reference heading."""
+        """Return the set point of the heading and the reference heading, for the log of a run."""
         goal, error = float(self.memory_record["goal"]), float(self.memory_record["error"])
         return {
             "reference_goal_rad": Estimate(goal, nan, nan),

@@ -30,21 +30,23 @@ REMEMBERS = record_type(
 
 @merged
 def unmet_demand(wanted: float, given: float) -> float:
-    """Return the difference between demand and output of saturated outboards.
+    """Return the part of a demand that saturated outboards do not deliver.
+
+    Differences by rounding count as zero.
 
     Args:
-        wanted: Demand.
-        given: Output.
+        wanted: Demanded force or moment.
+        given: Delivered force or moment.
     """
     return wanted - given if abs(wanted - given) > ROUNDING else 0.0
 
 
 @merged
 def yaw_moment(q: Any, m: Any, s: Any, wanted: float) -> float:
-    """Return the yaw moment [N m] of the PID.
+    """Return the yaw moment [N m] by which a PID controller follows a demanded yaw rate.
 
     Args:
-        q: Parameters.
+        q: Parameters of the controller.
         m: State of the controller.
         s: Sensor readings.
         wanted: Demanded yaw rate [rad/s].
@@ -59,10 +61,12 @@ def yaw_moment(q: Any, m: Any, s: Any, wanted: float) -> float:
 
 @merged
 def surge_force(q: Any, m: Any, s: Any, wanted: float) -> float:
-    """Return the surge force [N] of the PI; without a speed sensor a feed-forward only.
+    """Return the surge force [N] by which a PI controller follows a demanded speed.
+
+    Without a speed sensor it is a feed-forward only.
 
     Args:
-        q: Parameters.
+        q: Parameters of the controller.
         m: State of the controller.
         s: Sensor readings.
         wanted: Demanded speed [m/s].
@@ -77,11 +81,13 @@ def surge_force(q: Any, m: Any, s: Any, wanted: float) -> float:
 
 @unlocked
 def law(boats: Any, settings: Any, memory: Any, sense: Any, goal: Any, sent: Any) -> None:
-    """Set the commands for the next period from gyro, surge speed if measured, and stick.
+    """Compute the outboard commands of PID controllers for the next period.
+
+    The inputs are gyro, surge speed if measured, and stick demands.
 
     Args:
-        boats: Rows to process.
-        settings: Parameters of each boat.
+        boats: Row numbers of the boats to process.
+        settings: Parameters of each controller.
         memory: State of each controller.
         sense: Sensor readings of each boat.
         goal: Demands of each boat.
@@ -149,7 +155,10 @@ class PidAutopilot(Outboards, CompiledController):
     )
 
     def loop_channels(self) -> tuple[LoopChannel, ...]:
-        """Return the feedback loops for margins; PI on a speed is PD on its integral."""
+        """Return the heading and speed feedback loops for an analysis of stability margins.
+
+        PI control of a speed is PD control of its integral.
+        """
         delayed = partial(
             LoopChannel, hold_s=0.5 * self.period, servo_lag_s=SERVO_LAG, input_gain=(0.5, 1.0, 1.8)
         )

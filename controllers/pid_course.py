@@ -27,13 +27,13 @@ class PidCourse(Helm):
     forgets_wish: bool = False  # True: the next change is added to the angle the rudder reached
 
     def reset(self) -> None:
-        """Reset the demand and the past heading errors to zero."""
+        """Reset the autopilot's rudder demand and past heading errors to zero."""
         super().reset()
         # [rad] wish; heading errors one period ago and two
         self._wish = self._once = self._twice = 0.0
 
     def rudder_demand(self) -> float:
-        """Return the previous demand plus its increment."""
+        """Return the wanted rudder angle: the previous demand plus the increment of the PID law."""
         lead, y = self.derivative / self.period, self.psi[0]
         change = (
             (1.0 + lead) * y

@@ -10,7 +10,9 @@ from boatsim.physics.base import Array, param
 
 
 def ackermann_gains(a: Array, b: Array, wanted: Array) -> Array | None:
-    """Return the gains (n,) of Ackermann's formula, or None if (A, B) is not controllable.
+    """Return the state feedback gains (n,) that give a wanted characteristic polynomial.
+
+    Ackermann's formula is used. None if (A, B) is not controllable.
 
     Args:
         a: A (n, n).
@@ -30,7 +32,10 @@ def ackermann_gains(a: Array, b: Array, wanted: Array) -> Array | None:
 
 @dataclass
 class PolePlacement(LearningHelm):
-    """Pole placement of Martin (1993), section 2.8: u = -K x on heading, and on roll."""
+    """Autopilot by adaptive pole placement of Martin (1993), section 2.8.
+
+    The rudder angle is the state feedback u = -K x on heading, and on roll, of the identified ship.
+    """
 
     words: ClassVar[str] = "adaptive pole placement, with or without roll reduction"
     nominal_yaw: ClassVar = (0.8, 0.03, 0.0)  # Martin's nominal ship, section 3.2
@@ -46,7 +51,7 @@ class PolePlacement(LearningHelm):
     )
 
     def reset(self) -> None:
-        """Reset the gains and the identification to the nominal ship."""
+        """Reset the feedback gains and the identification of the ship to the nominal ship."""
         super().reset()
         self._gains = np.zeros(4 if self.roll_reduction else 2)
         self._wanted: Array = np.array(
@@ -57,7 +62,10 @@ class PolePlacement(LearningHelm):
             self._wanted = np.convolve(self._wanted, roll)
 
     def rudder_demand(self) -> float:
-        """Return the feedback; gains are kept while the identified rudder has no effect."""
+        """Return the rudder angle of the state feedback.
+
+        The gains are kept while the identified rudder has no effect.
+        """
         n = len(self._gains)
         a, b = self.ship.matrices()
         found = ackermann_gains(a[:n, :n], b[:n], self._wanted)

@@ -16,7 +16,10 @@ from boatsim.physics.base import Array, param
 def prediction_matrices(
     a: Array, b: Array, periods: int, outputs: list[int]
 ) -> tuple[Array, Array]:
-    """Return forced response H (rows,) and matrix of the free response (rows, n), period by period.
+    """Return the matrices that predict future outputs of a linear system, period by period.
+
+    They are the forced response H (rows,) to a change of the input and the matrix (rows, n) of the
+    free response.
 
     Args:
         a: A (n, n).
@@ -34,7 +37,10 @@ def prediction_matrices(
 
 @dataclass
 class Predictive(LearningHelm):
-    """GPC of Martin (1993), section 2.6 and appendix II, bang-bang or rate-limited."""
+    """Autopilot by generalised predictive control (GPC) of Martin (1993), section 2.6, appendix II.
+
+    The rudder movement is bang-bang or rate-limited.
+    """
 
     words: ClassVar[str] = (
         "adaptive GPC, bang-bang or rate-constrained, with or without roll reduction"
@@ -49,7 +55,7 @@ class Predictive(LearningHelm):
     sign_as_published: bool = False  # the thesis prints du = +(H'H)^-1 H' Psi0
 
     def rudder_demand(self) -> float:
-        """Return the rudder angle after the best movement."""
+        """Return the rudder angle after the movement that predictive control finds best."""
         periods = round(self.horizon) or (10 if self.roll_reduction else 11)
         forced, free = prediction_matrices(
             *append_rudder_state(*self.ship.matrices()),

@@ -9,7 +9,10 @@ from boatsim.physics.base import param
 
 @dataclass
 class PullOut(Steered):
-    """Helm to one side, midships, to the other side, midships, each held for the same time."""
+    """Pull-out manoeuvre: helm to one side, midships, to the other side, midships.
+
+    Each part is held for the same time.
+    """
 
     words: ClassVar[str] = (
         "standard manoeuvre: steady turns to both sides, each followed by helm midships"
@@ -20,7 +23,7 @@ class PullOut(Steered):
     )
 
     def helm(self, sense: Sense) -> float:
-        """Return the helm angle of the present part [rad].
+        """Return the helm angle of the present part of a pull-out manoeuvre [rad].
 
         Args:
             sense: Sensor readings.

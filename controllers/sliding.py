@@ -26,7 +26,9 @@ WEIGHTS = {  # diagonal of Q, not printed: found so that the iteration gives the
 
 
 def switching_surface(a: Array, b: Array, weights: Array, swing: float) -> Array:
-    """Return G = B'P of P = Q + (A - B F)' P (A - B F), F = swing B'P, by iteration (appendix III).
+    """Return the gains G = B'P of a sliding mode controller's switching function.
+
+    P solves P = Q + (A - B F)' P (A - B F), F = swing B'P, by iteration (appendix III).
 
     Args:
         a: A (n, n).
@@ -52,7 +54,7 @@ def switching_surface(a: Array, b: Array, weights: Array, swing: float) -> Array
 
 
 def nominal_ship(roll_reduction: bool) -> tuple[Array, Array]:
-    """Return A and B of the nominal ship of the switching functions.
+    """Return the matrices A and B of the nominal ship for which switching functions are designed.
 
     Args:
         roll_reduction: State (psi, psi-1, phi, phi-1, u-1) if true, else (psi-2, psi-1, psi).
@@ -66,10 +68,11 @@ def nominal_ship(roll_reduction: bool) -> tuple[Array, Array]:
 
 @dataclass
 class Sliding(Helm):
-    """Variable structure control of Martin (1993), section 2.7: du = -swing sign(S).
+    """Autopilot by sliding mode control of Martin (1993), section 2.7: du = -swing sign(S).
 
-    No movement where |S| is inside the boundary layer. Angles in S are radians: only then does the
-    boundary layer contain the headings at which the printed runs come to rest.
+    u is the rudder angle and S the switching function. There is no movement where |S| is inside the
+    boundary layer. Angles in S are radians: only then does the boundary layer contain the headings
+    at which the printed runs come to rest.
     """
 
     words: ClassVar[str] = "three-way relay on a switching surface, with or without roll reduction"
@@ -86,16 +89,19 @@ class Sliding(Helm):
     in_degrees: bool = False  # angles in S in degrees, as the thesis states angles elsewhere
 
     def reset(self) -> None:
-        """Reset the histories and set the switching function."""
+        """Reset the histories of the controller and compute its switching function."""
         super().reset()
         self._surface = self.switching_gains()
 
     def needs_roll(self) -> bool:
-        """Return whether roll reduction is on."""
+        """Return whether the controller reduces roll and so needs a measured roll angle."""
         return bool(self.roll_reduction)
 
     def switching_gains(self) -> tuple[float, ...]:
-        """Return G for the state (psi, psi-1, phi, phi-1, u-1) or (psi-2, psi-1, psi)."""
+        """Return the gains G of the switching function.
+
+        The state is (psi, psi-1, phi, phi-1, u-1) with roll reduction, else (psi-2, psi-1, psi).
+        """
         key = (bool(self.roll_reduction), self.roll_reduction and self.design_rate > FAST)
         if self.printed:
             return PRINTED[key]
@@ -107,7 +113,7 @@ class Sliding(Helm):
         return tuple(found.tolist())
 
     def switching_function(self) -> float:
-        """Return the switching function S = G x."""
+        """Return the present value of the switching function S = G x, which should become zero."""
         x = (
             (*self.psi[:2], *self.phi[:2], self.rudder)
             if self.roll_reduction
@@ -119,7 +125,10 @@ class Sliding(Helm):
         )
 
     def rudder_demand(self) -> float:
-        """Return the angle after a rudder movement against the sign of S, or the present angle."""
+        """Return the rudder angle after a movement against the sign of the switching function S.
+
+        Inside the boundary layer it is the present angle.
+        """
         side = self.switching_function()
         if abs(side) < self.boundary:
             return self.rudder

@@ -9,7 +9,10 @@ from boatsim.physics.base import param
 
 @dataclass
 class Spiral(Steered):
-    """Dieudonne's spiral, which shows whether a ship has two rates of turn at one helm angle."""
+    """Dieudonne's spiral manoeuvre: the helm moves in steps from side to side and back.
+
+    It shows whether a ship has two rates of turn at one helm angle.
+    """
 
     words: ClassVar[str] = (
         "standard manoeuvre: helm in steps from side to side and back (Dieudonne)"
@@ -21,7 +24,7 @@ class Spiral(Steered):
     steps: int = param(4, low=1, high=50, unit="", words="from midships to the largest angle")
 
     def helm(self, sense: Sense) -> float:
-        """Return the helm angle of the present step [rad].
+        """Return the helm angle of the present step of a spiral manoeuvre [rad].
 
         Args:
             sense: Sensor readings.

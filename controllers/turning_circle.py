@@ -8,12 +8,12 @@ from boatsim.control.base import Sense, Steered
 
 @dataclass
 class TurningCircle(Steered):
-    """Holds the helm angle to the end of the run."""
+    """Turning circle manoeuvre: holds a helm angle to the end of the run."""
 
     words: ClassVar[str] = "standard manoeuvre: puts the helm over and holds it"
 
     def helm(self, sense: Sense) -> float:
-        """Return the helm angle [rad].
+        """Return the constant helm angle of a turning circle [rad].
 
         Args:
             sense: Not used.

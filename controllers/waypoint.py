@@ -13,7 +13,7 @@ Place = tuple[float, float]  # [m] x, y in start axes
 
 @dataclass
 class Waypoint(Controller):
-    """Steers to the points given as goals one after another.
+    """Waypoint navigation: steers to the points given as goals one after another.
 
     `position_replay` reproduces equation 1 of the paper: positions are integrals of u and v,
     rotated by the present heading.
@@ -51,7 +51,7 @@ class Waypoint(Controller):
         self.reset()
 
     def reset(self) -> None:
-        """Clear the points and restart dead reckoning."""
+        """Clear the list of waypoints and restart dead reckoning."""
         self._ahead: list[Place] = []
         self._given: Place | None = None
         self._travelled = (0.0, 0.0)  # [m] integrals of u and v
@@ -59,7 +59,7 @@ class Waypoint(Controller):
         self._believed = (nan, nan)
 
     def step(self, sense: Sense, goal: Mapping[str, float]) -> dict[str, float]:
-        """Return thrust and azimuth towards the next point.
+        """Return thrust and azimuth angle that drive the boat towards its next waypoint.
 
         Args:
             sense: Sensor readings.
@@ -81,7 +81,7 @@ class Waypoint(Controller):
         return self._commands_towards(hypot(north, east), wrap(atan2(east, north) - sense.psi))
 
     def estimates(self) -> dict[str, Estimate]:
-        """Return the position that the navigation uses."""
+        """Return the position that the navigation assumes (dead reckoning), for the log."""
         x, y = self._believed
         return {"x_m": Estimate(x, nan, nan), "y_m": Estimate(y, nan, nan)}
 

@@ -12,7 +12,10 @@ REACHED = 1e-7  # [rad] tolerance with which a heading counts as reached
 
 @dataclass
 class Zigzag(Steered):
-    """Kempf's zig-zag about the heading at the start; a positive angle begins to starboard."""
+    """Kempf's zig-zag manoeuvre about the heading at the start.
+
+    A positive angle begins to starboard.
+    """
 
     words: ClassVar[str] = (
         "standard manoeuvre: reverses the helm each time the heading has reached an angle"
@@ -28,12 +31,12 @@ class Zigzag(Steered):
     _reversed: int = field(default=0, init=False)
 
     def reset(self) -> None:
-        """Reset the manoeuvre to its first execute."""
+        """Reset the zig-zag manoeuvre to its first execute."""
         super().reset()
         self._side, self._reversed = copysign(1.0, self.angle), 0
 
     def helm(self, sense: Sense) -> float:
-        """Return the helm angle [rad], reversed when the heading has been reached.
+        """Return the helm angle of a zig-zag [rad], reversed when the execute heading is reached.
 
         Args:
             sense: Sensor readings.
@@ -43,7 +46,9 @@ class Zigzag(Steered):
         return self._side * abs(self.angle)
 
     def time_to_extra_step(self, sense: Sense) -> float:
-        """Return the predicted time [s] until the heading is reached; repeated calls refine it.
+        """Return the predicted time [s] until a zig-zag reaches the heading of its next reversal.
+
+        Repeated calls refine it.
 
         Args:
             sense: Sensor readings.
@@ -57,5 +62,5 @@ class Zigzag(Steered):
 
     @property
     def done(self) -> bool:
-        """Whether all reversals are done."""
+        """Whether all reversals of the zig-zag manoeuvre are complete."""
         return self._reversed >= self.reversals

@@ -22,11 +22,11 @@ HIGHEST = 1e3  # [rad/s] highest crossover of a continuous loop
 
 
 def projection_share(square: float, along: float, radius: float, tolerance: float) -> float:
-    """Return the share of theta that the projection operator subtracts from its rate y.
+    """Return the factor by which the projection operator of adaptive control corrects a rate.
 
-    The convex function is f = ((1 + tolerance) theta'theta - radius^2) / (tolerance radius^2): 0 on
-    the inner ball of radius / sqrt(1 + tolerance), 1 on the outer one, where all outward motion is
-    removed.
+    The projected rate of the estimate theta is y less this factor times theta. The convex function
+    is f = ((1 + tolerance) theta'theta - radius^2) / (tolerance radius^2): 0 on the inner ball of
+    radius / sqrt(1 + tolerance), 1 on the outer one, where all outward motion is removed.
 
     Args:
         square: theta'theta.
@@ -41,11 +41,13 @@ def projection_share(square: float, along: float, radius: float, tolerance: floa
 
 
 def project_interval(value: float, rate: float, low: float, high: float, tolerance: float) -> float:
-    """Return the rate of a scalar after projection on [low, high], the ball about its middle.
+    """Return the rate of a scalar adaptive estimate after projection on the interval [low, high].
+
+    The interval is the ball of the projection operator about its middle.
 
     Args:
         value: Estimate.
-        rate: Its rate [1/s].
+        rate: Rate of the estimate before projection [1/s].
         low: Lower bound.
         high: Upper bound.
         tolerance: Projection tolerance.
@@ -71,7 +73,7 @@ class Gradient:
     tolerance: float = 0.1
 
     def projected_rate(self, regressor: float, error: float) -> float:
-        """Return the time derivative of the estimate [1/s].
+        """Return the time derivative [1/s] of the adaptive estimate by its gradient law.
 
         Args:
             regressor: State, input or 1.
@@ -82,7 +84,7 @@ class Gradient:
         )
 
     def step(self, regressor: float, error: float, dt: float) -> float:
-        """Advance the estimate by one Euler step and return it, limited to its bounds.
+        """Advance the adaptive estimate by one Euler step and return it, limited to its bounds.
 
         Args:
             regressor: State, input or 1.
@@ -114,7 +116,7 @@ class Predictor:
         self.gain = self.b0 * (1.0 - self.decay) / self.a
 
     def predict(self, drive: float) -> float:
-        """Advance the prediction by one period and return it.
+        """Advance the state predictor by one period and return the predicted state.
 
         Args:
             drive: Input held over the period.
@@ -136,7 +138,9 @@ class PiecewiseConstant(Predictor):
     sig: float = 0.0  # lumped uncertainty in the unit of the input
 
     def predict(self, drive: float) -> float:
-        """Advance the prediction by one period and return it; sigma acts in addition to the input.
+        """Advance the state predictor by one period and return the predicted state.
+
+        The estimated disturbance sigma acts in addition to the input.
 
         Args:
             drive: Input applied over the period.
@@ -144,7 +148,9 @@ class PiecewiseConstant(Predictor):
         return super().predict(drive + self.sig)
 
     def adapt(self, measured: float) -> float:
-        """Set sigma so that it cancels the prediction error over one period; return sigma.
+        """Estimate the unknown input sigma from the prediction error of a period, and return it.
+
+        Sigma is the constant input that cancels the error over one period.
 
         Args:
             measured: Measured state.
@@ -169,7 +175,7 @@ class DiscreteFilter:
         self.state = [0.0] * (n - 1)
 
     def step(self, value: float) -> float:
-        """Return the output of this period.
+        """Advance the filter by one period and return its output.
 
         Args:
             value: Input of this period; it acts without delay if both polynomials have the same
@@ -182,7 +188,7 @@ class DiscreteFilter:
         return out
 
     def evaluate(self, z: Complex) -> Complex:
-        """Return the value of the transfer function for complex z; z = 1 gives the static gain.
+        """Return the filter's transfer function at complex z; z = 1 gives the static gain.
 
         Args:
             z: Complex frequencies.
@@ -193,7 +199,9 @@ class DiscreteFilter:
 def zero_order_hold(
     numerator: Sequence[float], denominator: Sequence[float], period: float
 ) -> DiscreteFilter:
-    """Return the exact zero-order-hold equivalent of a strictly proper transfer function.
+    """Return the discrete transfer function equivalent to a continuous one with a held input.
+
+    The zero-order-hold equivalent is exact; the transfer function must be strictly proper.
 
     Args:
         numerator: Coefficients of falling powers of s.
@@ -211,7 +219,7 @@ def zero_order_hold(
 
 
 def solve_lyapunov(am: ArrayLike, q: ArrayLike | None = None) -> Array:
-    """Return P (n, n) of Am'P + P Am = -Q.
+    """Solve the Lyapunov equation Am'P + P Am = -Q for P (n, n).
 
     Args:
         am: Stable matrix (n, n) [1/s].
@@ -237,7 +245,10 @@ def matrix_exp(a: Array) -> Array:
 
 @dataclass(frozen=True)
 class LinearSystem:
-    """Linear system x' = A x + B v, y = C x: A (n, n), B (n, inputs), C (outputs, n)."""
+    """State-space model of a linear system, x' = A x + B v, y = C x.
+
+    The matrices are A (n, n), B (n, inputs), C (outputs, n).
+    """
 
     a: Array
     b: Array
@@ -245,10 +256,11 @@ class LinearSystem:
 
 
 def unfiltered_system(am: ArrayLike, b: ArrayLike, bandwidth: float) -> LinearSystem:
-    """Return (sI - Am)^-1 b (1 - C(s)) with the low-pass filter C = bandwidth / (s + bandwidth).
+    """Return the linear system from an uncertainty to the state of an L1 adaptive loop.
 
-    It is the response to the part of an uncertainty that the filter does not cancel; its L1 norm
-    enters the L1-norm condition. The outputs are the n states.
+    It is (sI - Am)^-1 b (1 - C(s)) with the low-pass filter C = bandwidth / (s + bandwidth): the
+    response to the part of an uncertainty that the filter does not cancel. Its L1 norm enters the
+    L1-norm condition. The outputs are the n states.
 
     Args:
         am: Am (n, n) [1/s].
@@ -263,7 +275,7 @@ def unfiltered_system(am: ArrayLike, b: ArrayLike, bandwidth: float) -> LinearSy
 
 
 def step_response(system: LinearSystem, dt: float, steps: int) -> Array:
-    """Return the response of the outputs to a unit step of the first input, from rest, exact.
+    """Return the response of a linear system to a unit step of its first input, from rest, exact.
 
     Args:
         system: Linear system.
@@ -280,9 +292,9 @@ def step_response(system: LinearSystem, dt: float, steps: int) -> Array:
 
 
 def l1_norm_of_outputs(system: LinearSystem) -> Array:
-    """Return the L1 norm of each row of the transfer matrix, (outputs,).
+    """Return the L1 norm (outputs,) of each output of a linear system.
 
-    It is the sum over the inputs of the integrals of |h(t)|.
+    It is the sum over the inputs of the integrals of |h(t)|, the impulse response.
 
     Args:
         system: Stable linear system.
@@ -295,7 +307,7 @@ def l1_norm_of_outputs(system: LinearSystem) -> Array:
 
 
 def l1_norm(system: LinearSystem) -> float:
-    """Return the L1 norm of a stable transfer matrix.
+    """Return the L1 norm of a stable linear system.
 
     It is the largest gain from bounded input to bounded output.
 
@@ -306,7 +318,9 @@ def l1_norm(system: LinearSystem) -> float:
 
 
 def l1_condition(norm: float, slope: float) -> float:
-    """Return norm times slope; below 1 the loop is bounded for uncertainties of at most this slope.
+    """Return the left side of the L1-norm stability condition: the norm times a slope.
+
+    Below 1 the adaptive loop is bounded for uncertainties of at most this slope.
 
     Args:
         norm: L1 norm [s].
@@ -375,7 +389,7 @@ def _bisect_zero_crossing(halves: list[Array], x: Array, c: Array) -> Array:
 
 @dataclass(frozen=True)
 class LoopMargins:
-    """Stability margins of a loop.
+    """Crossover frequency, phase margin and delay margin of a feedback loop.
 
     Of several crossovers it is the one that allows the least extra delay.
     """
@@ -438,7 +452,7 @@ def _is_stable(omega: Array, response: Complex) -> bool:
 
 @dataclass(frozen=True)
 class LoopChannel:
-    """Feedback channel of a continuous controller for the loop analysis.
+    """Feedback loop of one axis with a continuous controller, for an analysis of its margins.
 
     The plant is x' = -damping x + (input gain) tau / I0; the position is the integral of x. tau
     passes a zero-order hold of mean delay `hold_s` (half a sample time) and a lag `servo_lag_s`.
@@ -460,14 +474,16 @@ class LoopChannel:
 
     @property
     def highest_frequency(self) -> float:
-        """Highest frequency of the analysis [rad/s]."""
+        """Highest frequency [rad/s] at which the continuous feedback loop is analysed."""
         return HIGHEST
 
     def open_loop_response(self, gain: float) -> Loop:
-        """Return L(s), broken at the plant input.
+        """Return the open-loop frequency response L(s) of a continuous feedback loop.
+
+        The loop is broken at the plant input.
 
         Args:
-            gain: True over assumed input gain.
+            gain: Ratio of the true to the assumed input gain of the plant.
         """
 
         def response(s: Complex) -> Complex:
@@ -492,10 +508,13 @@ class LoopChannel:
         )
 
     def l1_norm(self, gain: float) -> float | None:
-        """Return the L1 norm [s] of (1 - C) / (s + pole); None for a PID.
+        """Return the L1 norm [s] of (1 - C) / (s + pole), which bounds an L1 adaptive loop.
+
+        C is the low-pass filter. None for a PID.
 
         Args:
-            gain: True over assumed input gain; C = gain bandwidth / (s + gain bandwidth).
+            gain: Ratio of the true to the assumed input gain; C = gain bandwidth / (s + gain
+                bandwidth).
         """
         if self.pid is not None:
             return None
@@ -504,7 +523,7 @@ class LoopChannel:
 
 @dataclass(frozen=True)
 class SampledChannel:
-    """Feedback channel of a sampled controller for the loop analysis, exact.
+    """Feedback loop of one axis with a sampled controller, for an exact analysis of its margins.
 
     The plant is x' = -damping x + (input gain) a with a held input; the position is the integral of
     x. The controller is a = -(position law(z)[0] + rate law(z)[1]) with its inner loops closed.
@@ -521,14 +540,19 @@ class SampledChannel:
 
     @property
     def highest_frequency(self) -> float:
-        """Highest frequency of the analysis [rad/s]: half the sampling rate."""
+        """Highest frequency [rad/s] at which the sampled loop is analysed.
+
+        It is half the sampling rate.
+        """
         return pi / self.period
 
     def open_loop_response(self, gain: float) -> Loop:
-        """Return L(s) with z = e^(sT), broken at the plant input.
+        """Return the open-loop frequency response L(s) of a sampled feedback loop, z = e^(sT).
+
+        The loop is broken at the plant input.
 
         Args:
-            gain: True over assumed input gain.
+            gain: Ratio of the true to the assumed input gain of the plant.
         """
         decay = exp(-self.damping * self.period)
         # F and g of the plant over one period, zero-order hold
@@ -545,9 +569,9 @@ class SampledChannel:
         return response
 
     def l1_norm(self, gain: float) -> float | None:
-        """Return None, because the L1-norm condition applies to continuous loops.
+        """Return None: the L1-norm condition applies to continuous loops, and this one is sampled.
 
         Args:
-            gain: True over assumed input gain.
+            gain: Ratio of the true to the assumed input gain of the plant.
         """
         return None

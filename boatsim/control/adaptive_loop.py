@@ -20,11 +20,13 @@ TOLERANCE = 0.1
 
 @lean
 def project_rate(value: float, rate: float, low: float, high: float) -> float:
-    """Return the projected rate of an estimate in [low, high]; `project_interval`, compiled.
+    """Return the rate of an adaptive estimate after projection on [low, high], compiled.
+
+    It is the compiled form of `project_interval`.
 
     Args:
         value: Estimate.
-        rate: Its rate [1/s].
+        rate: Rate of the estimate before projection [1/s].
         low: Lower bound.
         high: Upper bound.
     """
@@ -54,10 +56,11 @@ def adapt_estimates(
     regressors: Array,
     slope: Array,
 ) -> None:
-    """Advance predictor and estimates in place over one period between two measured states.
+    """Advance state predictor and adaptive estimates over one period, in place.
 
-    The input acts on the last state. Regressors are (x1 ... xn, 1, input). Each sub-step advances
-    the predictor first and then the estimates (semi-implicit Euler).
+    The period lies between two measured states. The input acts on the last state. Regressors are
+    (x1 ... xn, 1, input). Each sub-step advances the predictor first and then the estimates
+    (semi-implicit Euler).
 
     Args:
         predicted: Predicted state (n,).
@@ -112,9 +115,10 @@ def filter_input(
     period: float,
     steps: int,
 ) -> tuple[float, float]:
-    """Return mean and final value of the low-pass filtered input.
+    """Return mean and final value of a control input that is low-pass filtered over one period.
 
-    The filter is input' = -bandwidth (gain input + known) within the limits of value and rate.
+    The filter of the L1 adaptive law is input' = -bandwidth (gain input + known) within the limits
+    of value and rate.
 
     Args:
         value: Input at the begin.
@@ -137,10 +141,10 @@ def filter_input(
 
 
 def loop_memory_type(n: int) -> np.dtype[np.void]:
-    """Return the record type of the memory of a loop with n states.
+    """Return the record type that holds the states of an L1 adaptive loop with n plant states.
 
     Args:
-        n: Number of states.
+        n: Number of states of the plant.
     """
     states, all_ = (n,), (n + 2,)
     return np.dtype(
@@ -158,10 +162,10 @@ def loop_memory_type(n: int) -> np.dtype[np.void]:
 
 
 def loop_design_type(n: int) -> np.dtype[np.void]:
-    """Return the record type of the design of a loop with n states.
+    """Return the record type that holds the design constants of an L1 loop with n plant states.
 
     Args:
-        n: Number of states.
+        n: Number of states of the plant.
     """
     states, all_ = (n,), (n + 2,)
     return np.dtype(
@@ -191,7 +195,9 @@ def make_loop_design(
     period: float,
     step: float,
 ) -> Records:
-    """Return a loop design (1,) in which each estimate is driven by its own regressor.
+    """Return the design constants of an L1 adaptive loop as one record (1,).
+
+    Each estimate is driven by its own regressor.
 
     Args:
         am: A_m of the predictor (n, n) [1/s].
@@ -219,12 +225,12 @@ def make_loop_design(
 
 @merged
 def initialise_loop(a: Any, d: Any, value: float) -> None:
-    """Initialise the loop at the state in `a.after` with a settled input.
+    """Initialise an L1 adaptive loop at the measured state `a.after`, with a settled input.
 
     Args:
         a: Memory of the loop.
         d: Design of the loop.
-        value: Input.
+        value: Control input.
     """
     for i in range(len(d.first)):
         a.estimates[i] = d.first[i]
@@ -235,7 +241,9 @@ def initialise_loop(a: Any, d: Any, value: float) -> None:
 
 @merged
 def adapt_loop(a: Any, d: Any, applied: float) -> None:
-    """Adapt over the period that ends with the state in `a.after`.
+    """Update predictor and estimates of an L1 adaptive loop over the last period.
+
+    The period ends with the measured state in `a.after`.
 
     Args:
         a: Memory of the loop.
@@ -266,12 +274,15 @@ def adapt_loop(a: Any, d: Any, applied: float) -> None:
 
 @merged
 def shift_loop_reference(a: Any, jump: float, known: float) -> None:
-    """Shift the first state, and the known share of the prediction, by a jump of the reference.
+    """Shift the state of an L1 adaptive loop when its reference jumps.
+
+    The first state is an error from the reference and so shifts by the jump; the prediction shifts
+    by a part of it.
 
     Args:
         a: Memory of the loop.
         jump: Jump of the reference.
-        known: Share of the jump that the prediction follows, 0 to 1.
+        known: Part of the jump that the prediction follows, 0 to 1.
     """
     a.predicted[0] += known * jump
     a.before[0] += jump
@@ -281,7 +292,7 @@ def shift_loop_reference(a: Any, jump: float, known: float) -> None:
 def compute_loop_input(
     a: Any, d: Any, wanted: float, low: float, high: float, rate: float
 ) -> float:
-    """Return the mean input of the next period.
+    """Return the mean control input of an L1 adaptive loop over the next period.
 
     Args:
         a: Memory of the loop.

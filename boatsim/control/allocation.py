@@ -31,7 +31,7 @@ SURGE_RESERVE = 0.3
 
 
 class Stick(NamedTuple):
-    """Demands of the operator."""
+    """Demands of the operator at a joystick: surge, sway and yaw."""
 
     surge: float  # [m/s] ahead
     sway: float  # [m/s] to starboard
@@ -39,7 +39,7 @@ class Stick(NamedTuple):
 
     @classmethod
     def from_goal(cls, goal: Mapping[str, float]) -> "Stick":
-        """Return the demands of a goal; missing ones are zero.
+        """Return joystick demands from a controller's goal; missing ones are zero.
 
         Args:
             goal: Mapping with `surge_mps`, `sway_mps` and `yaw_radps`.
@@ -58,7 +58,9 @@ HEADING = record_type("own", "wanted")
 def integrate_heading(
     h: Any, rate: float, compass: float, stick: float, dt: float, trust: float
 ) -> None:
-    """Integrate the gyro and the yaw demand over one period, with full turns counted.
+    """Integrate measured yaw rate and demanded yaw rate to two headings over one period.
+
+    Full turns are counted. A compass may correct the drift of the gyro.
 
     Args:
         h: `HEADING` record, advanced in place.
@@ -76,7 +78,10 @@ def integrate_heading(
 
 
 class Drive(NamedTuple):
-    """Thrust of each motor, astern negative, and the inward angle of both."""
+    """Thrusts and steering angle of two mirrored outboard motors.
+
+    Thrust astern is negative; the angle is the inward angle of both motors.
+    """
 
     port: float  # [N]
     starboard: float  # [N]
@@ -84,7 +89,7 @@ class Drive(NamedTuple):
 
 
 class Push(NamedTuple):
-    """Force on the hull in body axes and moment about the origin of the nominal arm."""
+    """Surge force, sway force and yaw moment of two outboards on the hull."""
 
     X: float  # [N]
     Y: float  # [N]
@@ -92,14 +97,17 @@ class Push(NamedTuple):
 
 
 class Setting(NamedTuple):
-    """Drive in the units of servos and motor controllers: integer PWM and integer degrees."""
+    """Commands of two outboards: integer PWM of the motors and integer degrees of the servos."""
 
     pwm_port: int
     pwm_starboard: int
     degrees: int
 
     def commands(self) -> dict[str, float]:
-        """Return the commands by channel; the starboard angle mirrors the port one."""
+        """Return the outboard commands by name of channel.
+
+        The starboard angle mirrors the port one.
+        """
         angle = radians(self.degrees)
         return {
             "pwm_port": float(self.pwm_port),
@@ -110,7 +118,10 @@ class Setting(NamedTuple):
 
 
 class Nominal(NamedTuple):
-    """Nominal properties of two outboards; a record with these fields may be used too."""
+    """Nominal properties of two outboards, such as spacing, lever arm and rated thrust.
+
+    A record with these fields may be used too.
+    """
 
     half_spacing: float  # [m]
     arm: float  # [m]
@@ -142,7 +153,9 @@ def limit(value: float, low: float, high: float) -> float:
 
 @lean
 def sway_difference(q: Any, sway: float) -> float:
-    """Return the thrust difference D [N] for a sway demand.
+    """Return the thrust difference D [N] of two outboards that meets a sway demand.
+
+    Sway is an open-loop thrust.
 
     Args:
         q: Nominal outboards.
@@ -155,7 +168,9 @@ def sway_difference(q: Any, sway: float) -> float:
 
 @lean
 def moment_arm(q: Any, angle: float) -> float:
-    """Return the moment over thrust difference [m], B cos d - L sin d.
+    """Return the yaw moment per thrust difference [m] of two outboards turned inward by d.
+
+    It is B cos d - L sin d with half spacing B and lever arm L.
 
     Args:
         q: Nominal outboards.
@@ -166,7 +181,7 @@ def moment_arm(q: Any, angle: float) -> float:
 
 @lean
 def thrust_at(q: Any, pwm: float) -> float:
-    """Return the nominal thrust [N] at a signed PWM value.
+    """Return the nominal thrust [N] of an outboard at a signed PWM value.
 
     Args:
         q: Nominal outboards.
@@ -179,7 +194,7 @@ def thrust_at(q: Any, pwm: float) -> float:
 
 @lean
 def pwm_for_thrust(q: Any, thrust: float) -> float:
-    """Return the signed integer PWM value with the nominal thrust nearest to the given one.
+    """Return the signed integer PWM value at which an outboard has nearly a given thrust.
 
     Args:
         q: Nominal outboards.
@@ -198,11 +213,11 @@ def pwm_for_thrust(q: Any, thrust: float) -> float:
 def allocate(
     q: Any, surge: float, difference: float, moment: float, room: float
 ) -> tuple[float, float, float]:
-    """Return port thrust [N], starboard thrust [N] and inward angle [rad].
+    """Distribute surge, sway and yaw demands to two outboards with a common inward angle.
 
-    Yaw has priority over sway and sway over surge. The motors swap direction only where
-    `difference` changes its sign or, if it is zero, where `moment` does; otherwise the result is
-    continuous.
+    Returns port thrust [N], starboard thrust [N] and inward angle [rad]. Yaw has priority over sway
+    and sway over surge. The motors swap direction only where `difference` changes its sign or, if
+    it is zero, where `moment` does; otherwise the result is continuous.
 
     Args:
         q: Nominal outboards.
@@ -223,7 +238,9 @@ def allocate(
 
 @lean
 def steering_for_sway(q: Any, difference: float, moment: float) -> tuple[float, float]:
-    """Return angle [rad] and D [N] for sway; D is increased if no angle gives the moment otherwise.
+    """Return inward angle [rad] and thrust difference D [N] of two outboards for a sway demand.
+
+    D is increased if no angle gives the demanded yaw moment otherwise.
 
     Args:
         q: Nominal outboards.
@@ -241,14 +258,14 @@ def steering_for_sway(q: Any, difference: float, moment: float) -> tuple[float, 
 
 @lean
 def split_thrust(q: Any, total: float, spread: float, bound: float) -> tuple[float, float]:
-    """Return both thrusts [N] from S and D, within the limits of the motors.
+    """Return port and starboard thrust [N] from their sum S and difference D, within limits.
 
     If a motor would exceed its limit, S is reduced to its reserve first, then D.
 
     Args:
         q: Nominal outboards.
-        total: S [N].
-        spread: D [N].
+        total: Sum of thrusts S [N].
+        spread: Thrust difference D [N].
         bound: Limit of |S| [N].
     """
     ahead, astern = thrust_at(q, PWM_MAX), -thrust_at(q, -PWM_MAX)
@@ -263,9 +280,9 @@ def split_thrust(q: Any, total: float, spread: float, bound: float) -> tuple[flo
 def command_outboards(
     q: Any, surge: float, difference: float, moment: float, room: float, sent: Any
 ) -> tuple[float, float, float]:
-    """Allocate, send the commands and return the nominal X, Y [N] and N [N m] of the commands sent.
+    """Allocate demands to two outboards and write the commands; return the nominal force they give.
 
-    The returned values are the input for a state predictor.
+    The force consists of X, Y [N] and N [N m] and is the input for a state predictor.
 
     Args:
         q: Nominal outboards.
@@ -284,10 +301,10 @@ def command_outboards(
 
 @lean
 def write_outboard_commands(q: Any, port: float, starboard: float, angle: float, sent: Any) -> None:
-    """Write a drive, rounded to integer PWM and degrees, to a record of commands.
+    """Write thrusts and angle of two outboards to a record of commands.
 
-    Its fields are `pwm_port`, `pwm_starboard`, `steer_port_rad` and, mirrored,
-    `steer_starboard_rad`.
+    They are rounded to integer PWM and degrees. The fields are `pwm_port`, `pwm_starboard`,
+    `steer_port_rad` and, mirrored, `steer_starboard_rad`.
 
     Args:
         q: Nominal outboards.
@@ -305,7 +322,7 @@ def write_outboard_commands(q: Any, port: float, starboard: float, angle: float,
 def nominal_wrench(
     q: Any, port: float, starboard: float, angle: float
 ) -> tuple[float, float, float]:
-    """Return the nominal force X, Y [N] and moment N [N m].
+    """Return the nominal force X, Y [N] and yaw moment N [N m] of two outboards on the hull.
 
     Args:
         q: Nominal outboards.
@@ -319,7 +336,7 @@ def nominal_wrench(
 
 @dataclass
 class Outboards(CheckedParameters):
-    """Nominal properties of two outboards, and the allocation that uses them."""
+    """Nominal properties of two mirrored outboards, and the control allocation that uses them."""
 
     half_spacing: float = param(
         0.235, low=0.05, high=0.4, unit="m", words="assumed motor to centreline"
@@ -357,11 +374,13 @@ class Outboards(CheckedParameters):
 
     @property
     def nominal(self) -> Nominal:
-        """Nominal properties in the form of the compiled laws."""
+        """Nominal properties of the outboards as a record for compiled functions."""
         return Nominal(*(getattr(self, name) for name in Nominal._fields))
 
     def sway_difference(self, sway: float) -> float:
-        """Return the thrust difference D [N] for a sway demand; sway is controlled in open loop.
+        """Return the thrust difference D [N] of two outboards for a sway demand.
+
+        Sway is controlled in open loop.
 
         Args:
             sway: Sway demand [m/s].
@@ -369,11 +388,11 @@ class Outboards(CheckedParameters):
         return sway_difference(self.nominal, sway)
 
     def largest_goals(self) -> Mapping[str, float]:
-        """Return the sway demand [m/s] that needs the largest thrust difference."""
+        """Return the largest sway demand [m/s], which needs the largest thrust difference."""
         return {"sway_mps": self.rated_sway * self.largest_difference / self.sway_thrust}
 
     def moment_arm(self, angle: float) -> float:
-        """Return the moment over thrust difference [m].
+        """Return the yaw moment per thrust difference [m] of the outboards at an inward angle.
 
         Args:
             angle: Inward angle of both motors [rad].
@@ -381,11 +400,13 @@ class Outboards(CheckedParameters):
         return moment_arm(self.nominal, angle)
 
     def neutral_angle(self) -> float:
-        """Return the inward angle [rad] at which the motors give sway without a moment."""
+        """Return the inward angle [rad] at which the outboards give sway without yaw moment."""
         return atan2(self.half_spacing, self.arm)
 
     def allocate(self, surge: float, difference: float, moment: float, room: float = 0.0) -> Drive:
-        """Return the drive for surge force, sway thrust difference and moment; see `allocate`.
+        """Return thrusts and angle of the outboards for demanded surge force, sway and yaw moment.
+
+        The function `allocate` explains the priorities.
 
         Args:
             surge: Surge force [N].
@@ -396,7 +417,7 @@ class Outboards(CheckedParameters):
         return Drive(*allocate(self.nominal, surge, difference, moment, room))
 
     def pwm_for_thrust(self, thrust: float) -> int:
-        """Return the signed integer PWM value with the nominal thrust nearest to the given one.
+        """Return the signed integer PWM value at which an outboard has nearly a given thrust.
 
         Args:
             thrust: Thrust [N].
@@ -404,7 +425,7 @@ class Outboards(CheckedParameters):
         return round(pwm_for_thrust(self.nominal, thrust))
 
     def thrust(self, pwm: float) -> float:
-        """Return the nominal thrust [N].
+        """Return the nominal thrust [N] of an outboard at a signed PWM value.
 
         Args:
             pwm: Signed PWM value.
@@ -412,10 +433,12 @@ class Outboards(CheckedParameters):
         return thrust_at(self.nominal, pwm)
 
     def to_setting(self, drive: Drive) -> Setting:
-        """Return the drive rounded and limited to what motors and servos accept.
+        """Return the PWM and servo commands for thrusts and angle of the outboards.
+
+        They are rounded, and limited to what motors and servos accept.
 
         Args:
-            drive: Thrusts and angle.
+            drive: Thrusts and angle of the outboards.
         """
         return Setting(
             self.pwm_for_thrust(drive.port),
@@ -424,18 +447,20 @@ class Outboards(CheckedParameters):
         )
 
     def nominal_wrench(self, drive: Drive) -> Push:
-        """Return the nominal force and moment of a drive.
+        """Return the nominal force and yaw moment of the outboards at given thrusts and angle.
 
         Args:
-            drive: Thrusts and angle.
+            drive: Thrusts and angle of the outboards.
         """
         return Push(*nominal_wrench(self.nominal, drive.port, drive.starboard, drive.angle))
 
     def wrench_of_setting(self, setting: Setting) -> Push:
-        """Return the nominal force and moment of a setting, the input of a predictor.
+        """Return the nominal force and yaw moment of the outboards under given commands.
+
+        They are the input of a state predictor.
 
         Args:
-            setting: Setting of the motors and servos.
+            setting: PWM and servo commands of the outboards.
         """
         angle = radians(setting.degrees)
         return self.nominal_wrench(

@@ -10,10 +10,11 @@ from boatsim.physics.base import CheckedParameters, param
 
 @dataclass
 class Approach(CheckedParameters):
-    """Approach to a berth: first to a point abeam of it, then sideways, with integral action.
+    """Outer control loop that berths a boat: first to a point abeam of the berth, then sideways.
 
-    Poses are relative to the berth: x along its heading, y to starboard. The gains suit a boat of
-    1.2 m. The sway demand sets a thrust, so that the sway loop is damped by the hull.
+    The loop has integral action. Poses are relative to the berth: x along its heading, y to
+    starboard. The gains suit a boat of 1.2 m. The sway demand sets a thrust, so that the sway loop
+    is damped by the hull.
     """
 
     beside: float = param(
@@ -59,7 +60,7 @@ class Approach(CheckedParameters):
     _lasting: float = field(default=0.0, init=False)  # [m/s] of the sway stick
 
     def step(self, pose: tuple[float, float, float], v: float, dt: float) -> Stick:
-        """Return the demands for the next period.
+        """Return the joystick demands that move a boat towards its berth in the next period.
 
         Args:
             pose: x, y [m] and psi [rad] relative to the berth.

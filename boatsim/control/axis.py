@@ -25,10 +25,11 @@ def filtered_disturbance(
     bandwidth: float,
     period: float,
 ) -> float:
-    """Return the low-pass filtered force or moment that acts in addition to the applied one.
+    """Return the estimated disturbance force or moment on one axis of a boat, low-pass filtered.
 
-    `a.model` is the reference model x' = -pole (x - reference). A constant disturbance appears in
-    `a.sigma` multiplied by e^(-aT), so it is divided by that factor.
+    It acts in addition to the applied force. `a.model` is the reference model x' = -pole (x -
+    reference). A constant disturbance appears in `a.sigma` multiplied by e^(-aT), so it is divided
+    by that factor.
 
     Args:
         a: `AXIS` record, advanced in place.

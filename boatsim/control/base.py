@@ -14,7 +14,10 @@ from boatsim.physics.base import CheckedParameters, param
 
 @dataclass(frozen=True)
 class Sense:
-    """Sensor readings at one control step in SNAME axes; nan for missing sensors."""
+    """Sensor readings that a controller receives at one step, in SNAME axes.
+
+    Missing sensors are nan.
+    """
 
     t: float  # [s] since the start
     psi: float  # [rad] heading, compass (magnetometer)
@@ -32,7 +35,7 @@ class Sense:
 
 
 class Estimate(NamedTuple):
-    """Adaptive estimate with its bounds, for the log."""
+    """One adaptive estimate of a controller with its bounds, for the log of a run."""
 
     value: float
     low: float
@@ -41,7 +44,10 @@ class Estimate(NamedTuple):
 
 @dataclass
 class Controller(CheckedParameters):
-    """Base of controllers: call `reset` before a run, then `step` once every `period` seconds."""
+    """Base class of controllers of a vessel, which turn sensor readings and goals into commands.
+
+    Call `reset` before a run, then `step` once every `period` seconds.
+    """
 
     words: ClassVar[str] = ""  # one line for `boatsim list`
     commands: ClassVar[tuple[str, ...]] = ()  # command channels it sets; empty: any
@@ -54,14 +60,14 @@ class Controller(CheckedParameters):
     )
 
     def reset(self) -> None:
-        """Reset all states; called before each run."""
+        """Reset all internal states of the controller; called before each run."""
 
     def initial_commands(self) -> dict[str, float]:
-        """Return the commands before the first step; missing ones are neutral."""
+        """Return the controller's commands before its first step; missing ones are neutral."""
         return {}
 
     def step(self, sense: Sense, goal: Mapping[str, float]) -> dict[str, float]:
-        """Return the commands for the next period by name of channel.
+        """Return the controller's commands for the next period by name of channel.
 
         Args:
             sense: Sensor readings.
@@ -70,7 +76,9 @@ class Controller(CheckedParameters):
         raise NotImplementedError
 
     def time_to_extra_step(self, sense: Sense) -> float:
-        """Return the time [s] until an extra step within the period; infinite for none.
+        """Return the time [s] until the controller needs an additional step within its period.
+
+        It is infinite if none is needed.
 
         Args:
             sense: Sensor readings.
@@ -78,22 +86,25 @@ class Controller(CheckedParameters):
         return inf
 
     def estimates(self) -> dict[str, Estimate]:
-        """Return adaptive estimates with their bounds, and reference model states, for the log."""
+        """Return the controller's adaptive estimates and reference model states, for the log."""
         return {}
 
     def largest_goals(self) -> Mapping[str, float]:
-        """Return the largest set points of the design; others follow from the vessel."""
+        """Return the largest set points for which the controller is designed, by name.
+
+        Others follow from the vessel.
+        """
         return {}
 
     @property
     def done(self) -> bool:
-        """Whether the manoeuvre is complete, so that the run may end."""
+        """Whether the controller's manoeuvre is complete, so that the run may end."""
         return False
 
 
 @dataclass
 class Steered(Controller):
-    """Base of standard manoeuvres: an approach ahead, then helm angles.
+    """Base class of controllers for standard manoeuvres: an approach ahead, then helm angles.
 
     `ahead` are the commands of the approach, `steer` the commands per rad of helm (positive turns
     to starboard). The helm angle is logged as `reference_helm_rad`.
@@ -109,15 +120,17 @@ class Steered(Controller):
     _course: float = field(default=nan, init=False)  # [rad] heading at the start of the run
 
     def reset(self) -> None:
-        """Set the helm midships."""
+        """Set the helm of a standard manoeuvre midships, before a run."""
         self._helm, self._course = 0.0, nan
 
     def initial_commands(self) -> dict[str, float]:
-        """Return the commands of the approach."""
+        """Return the commands of the approach ahead, which precedes a standard manoeuvre."""
         return self.commands_at_helm(0.0)
 
     def step(self, sense: Sense, goal: Mapping[str, float]) -> dict[str, float]:
-        """Return the commands of the approach until `execute`, then those of the manoeuvre.
+        """Return the commands of a standard manoeuvre for the next period.
+
+        Until the time `execute` they are those of the approach ahead.
 
         Args:
             sense: Sensor readings.
@@ -131,7 +144,7 @@ class Steered(Controller):
         return self.commands_at_helm(self._helm)
 
     def helm(self, sense: Sense) -> float:
-        """Return the present helm angle of the manoeuvre [rad].
+        """Return the present helm angle of a standard manoeuvre [rad].
 
         Args:
             sense: Sensor readings.
@@ -139,7 +152,7 @@ class Steered(Controller):
         raise NotImplementedError
 
     def commands_at_helm(self, helm: float) -> dict[str, float]:
-        """Return the commands for going ahead at a helm angle.
+        """Return the vessel's commands for going ahead at a helm angle of a standard manoeuvre.
 
         Args:
             helm: Helm angle [rad].
@@ -150,7 +163,7 @@ class Steered(Controller):
         return commands
 
     def estimates(self) -> dict[str, Estimate]:
-        """Return the helm angle for the log."""
+        """Return the helm angle of the manoeuvre, for the log of a run."""
         return {"reference_helm_rad": Estimate(self._helm, nan, nan)}
 
 
@@ -180,13 +193,13 @@ def wrap(angle: float) -> float:
 
 @dataclass
 class LowPass:
-    """First-order low-pass wc / (s + wc), exact for an input held over each step."""
+    """First-order low-pass filter wc / (s + wc), exact for an input held over each step."""
 
     cutoff: float  # [rad/s]
     state: float = 0.0
 
     def step(self, value: float, dt: float) -> float:
-        """Return the output at the end of a step.
+        """Return the output of the low-pass filter at the end of a step.
 
         Args:
             value: Input, held over the step.

@@ -42,7 +42,7 @@ ONE = np.zeros(1, dtype=np.int64)  # row of the boat in a single run
 
 
 def record_type(*names: str, **parts: np.dtype[np.void]) -> np.dtype[np.void]:
-    """Return a record type of numbers and of nested records.
+    """Return a numpy record type of numbers and of nested records.
 
     Args:
         names: Names of the numbers.
@@ -52,7 +52,7 @@ def record_type(*names: str, **parts: np.dtype[np.void]) -> np.dtype[np.void]:
 
 
 def add_nested_records(records: Records, **parts: Records) -> Records:
-    """Return records with further nested records, one for each or one for all.
+    """Return a record array with further nested records, one for each or one for all.
 
     Args:
         records: Records (n,).
@@ -72,9 +72,10 @@ SENSE = record_type(*SENSE_FIELDS)
 
 
 class CompiledController(Controller):
-    """Base of controllers with a law compiled by `unlocked`.
+    """Base of controllers whose control law is compiled, to control one boat or many at once.
 
-    Its signature is `law(boats, settings, memory, sense, goal, sent)`.
+    The law is compiled by `unlocked` and has the signature `law(boats, settings, memory, sense,
+    goal, sent)`.
 
     `boats` are the rows to process. `settings` contains the parameters by name, `memory` is of the
     type `memory_type` and zero at the start; `sense` has the fields of `Sense`, `goal` those of
@@ -90,14 +91,14 @@ class CompiledController(Controller):
         self.reset()
 
     def reset(self) -> None:
-        """Reset all states."""
+        """Reset all internal states of the controller."""
         self._settings, self._memory = self.settings(), np.zeros(1, type(self).memory_type)
         self._sense, self._goal, self._sent = (
             np.zeros(1, t) for t in (SENSE, *self.record_types())
         )
 
     def settings(self, count: int = 1) -> Records:
-        """Return the parameters as records.
+        """Return the controller's parameters as an array of equal records for its compiled law.
 
         Args:
             count: Number of equal controllers.
@@ -108,12 +109,12 @@ class CompiledController(Controller):
 
     @classmethod
     def record_types(cls) -> tuple[np.dtype[np.void], np.dtype[np.void]]:
-        """Return the record types of goals and commands."""
+        """Return the numpy record types of the controller's goals and of its commands."""
         return record_type(*cls.goals), record_type(*cls.commands)
 
     @classmethod
     def goal_values(cls, goal: Mapping[str, float]) -> tuple[float, ...]:
-        """Return the values of a goal in the order of `goals`.
+        """Return the values of given set points as a tuple in the order of the compiled law.
 
         Args:
             goal: Set points by name.
@@ -124,7 +125,7 @@ class CompiledController(Controller):
         return tuple([goal[n] if n in goal else cls.default_goals[n] for n in cls.goals])
 
     def step(self, sense: Sense, goal: Mapping[str, float]) -> dict[str, float]:
-        """Return the commands for the next period.
+        """Return the controller's commands for the next period, by name of channel.
 
         Args:
             sense: Sensor readings.
@@ -142,17 +143,20 @@ class CompiledController(Controller):
 
     @property
     def only_evaluates_law(self) -> bool:
-        """Whether the controller only evaluates its law and has no other `step`."""
+        """Whether a step of the controller does nothing but evaluate its compiled law.
+
+        A subclass with another `step` has to be called from Python.
+        """
         return type(self).step is CompiledController.step
 
     @property
     def memory_record(self) -> Any:
-        """State of the controller as one record."""
+        """State of the controller as a single record."""
         return self._memory[0]
 
 
 def as_table(records: Records) -> Array:
-    """Return the numbers of records as a view, one row for each record.
+    """Return a record array of numbers as a plain array (a view), one row for each record.
 
     Args:
         records: Records (n,) of numbers.
@@ -165,7 +169,7 @@ def as_table(records: Records) -> Array:
 
 
 def indices_of_names(names: Sequence[str], among: Sequence[str]) -> NDArray[np.int64]:
-    """Return the indices of names in a sequence.
+    """Return the index of each given name in a sequence of names.
 
     Args:
         names: Names.

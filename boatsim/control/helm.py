@@ -12,7 +12,7 @@ from boatsim.physics.base import param
 
 
 def push_sample(history: list[float], value: float) -> None:
-    """Shift a history [now, one period ago, ...] by one sample.
+    """Shift a history of samples [now, one period ago, ...] by one period and insert a new sample.
 
     Args:
         history: Samples, newest first; changed in place.
@@ -24,11 +24,11 @@ def push_sample(history: list[float], value: float) -> None:
 
 @dataclass
 class Helm(Controller):
-    """Base of autopilots; a subclass returns the wanted rudder angle in `rudder_demand`.
+    """Base class of autopilots with one rudder, which a steering machine turns.
 
-    The steering machine has a rate limit and a range. The command is the angle that it reaches
-    after a period, as in Martin's simulation. Positive rudder turns the bow to starboard. Goal:
-    `psi_rad`.
+    A subclass returns the wanted rudder angle in `rudder_demand`. The steering machine has a rate
+    limit and a range. The command is the angle that it reaches after a period, as in Martin's
+    simulation. Positive rudder turns the bow to starboard. Goal: `psi_rad`.
     """
 
     commands: ClassVar[tuple[str, ...]] = ("rudder_rad",)
@@ -49,7 +49,7 @@ class Helm(Controller):
         self.reset()
 
     def reset(self) -> None:
-        """Set the rudder amidships and clear the histories."""
+        """Set the rudder amidships and clear the autopilot's histories of heading and roll."""
         self.rudder = 0.0  # [rad] in force
         self.psi: list[
             float
@@ -57,7 +57,7 @@ class Helm(Controller):
         self.phi: list[float] = []  # [rad] roll, likewise
 
     def step(self, sense: Sense, goal: Mapping[str, float]) -> dict[str, float]:
-        """Return the rudder angle for the next period.
+        """Return the autopilot's rudder angle command for the next period.
 
         Args:
             sense: Sensor readings.
@@ -68,10 +68,10 @@ class Helm(Controller):
         return {"rudder_rad": self.rudder}
 
     def add_sample(self, psi: float, phi: float) -> None:
-        """Append heading relative to the course, and roll, to the histories.
+        """Append heading error and roll to the autopilot's histories.
 
-        Before the first sample the values are assumed constant; full turns are counted. Without a
-        roll sensor the roll is zero.
+        The heading is relative to the course. Before the first sample the values are assumed
+        constant; full turns are counted. Without a roll sensor the roll is zero.
 
         Args:
             psi: Heading relative to the course [rad].
@@ -92,20 +92,23 @@ class Helm(Controller):
         push_sample(self.phi, phi)
 
     def needs_roll(self) -> bool:
-        """Return whether the controller needs the roll angle."""
+        """Return whether the autopilot needs a measured roll angle."""
         return False
 
     def rudder_demand(self) -> float:
-        """Return the wanted rudder angle [rad]."""
+        """Return the rudder angle [rad] that the autopilot wants.
+
+        The limits of the steering machine are applied to it later.
+        """
         raise NotImplementedError
 
     @property
     def largest_rudder_step(self) -> float:
-        """Angle [rad] that the rudder can turn in one period."""
+        """Largest angle [rad] that the steering machine can turn the rudder in one period."""
         return self.rudder_rate * self.period
 
     def rudder_after_period(self, demand: float) -> float:
-        """Return the angle [rad] of the steering machine after a period.
+        """Return the rudder angle [rad] that the steering machine reaches after a period.
 
         Args:
             demand: Wanted angle [rad].
@@ -116,14 +119,17 @@ class Helm(Controller):
         return clip(near, -self.rudder_limit, self.rudder_limit)
 
     def possible_rudder_angles(self) -> list[float]:
-        """Return the rudder angles [rad] of a three-way steering machine: stop, port, starboard."""
+        """Return the rudder angles [rad] that a three-way steering machine can reach in one period.
+
+        They are those after a stop and after a movement to port or to starboard.
+        """
         swung = (self.rudder - self.largest_rudder_step, self.rudder + self.largest_rudder_step)
         return [self.rudder, *(u for u in swung if abs(u) <= self.rudder_limit + 1e-9)]
 
 
 @dataclass
 class LearningHelm(Forgetting, Helm):
-    """Base of autopilots that identify the ship online, from a nominal ship."""
+    """Base class of autopilots that identify the ship's response online, from a nominal ship."""
 
     nominal_yaw: ClassVar[tuple[float, float, float]]  # a2y, b1y, b2y of `Ship`
     nominal_roll: ClassVar[tuple[float, float, float, float]]  # a1r, a2r, b1r, b2r
@@ -131,16 +137,16 @@ class LearningHelm(Forgetting, Helm):
     roll_reduction: bool = False
 
     def reset(self) -> None:
-        """Reset the identification to the nominal ship."""
+        """Reset the autopilot's identification to the nominal ship."""
         super().reset()
         self.ship = Ship(self, self.nominal_yaw, self.nominal_roll)
 
     def needs_roll(self) -> bool:
-        """Return whether roll reduction is on."""
+        """Return whether the autopilot reduces roll and so needs a measured roll angle."""
         return bool(self.roll_reduction)
 
     def add_sample(self, psi: float, phi: float) -> None:
-        """Append a sample to the histories and update the identification.
+        """Append heading error and roll to the histories and update the identification of the ship.
 
         Args:
             psi: Heading relative to the course [rad].
@@ -150,7 +156,7 @@ class LearningHelm(Forgetting, Helm):
         self.ship.update(self.psi, self.phi, self.rudder)
 
     def estimates(self) -> dict[str, Estimate]:
-        """Return the identified coefficients."""
+        """Return the identified coefficients of the ship's difference equations, for the log."""
         return {
             name: Estimate(value, nan, nan) for name, value in self.ship.named_estimates().items()
         }

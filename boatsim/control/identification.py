@@ -16,7 +16,7 @@ from boatsim.physics.base import Array, CheckedParameters, param
 
 @dataclass
 class Forgetting(CheckedParameters):
-    """Constants of exponential forgetting and resetting.
+    """Constants of exponential forgetting and resetting in recursive least squares.
 
     Martin (1993) does not print his constants; these are chosen.
     """
@@ -38,7 +38,7 @@ class Forgetting(CheckedParameters):
 
 @dataclass
 class Estimator:
-    """Recursive estimate of theta in y = x'theta + noise.
+    """Recursive least-squares estimator of theta in y = x'theta + noise, with forgetting.
 
     P(t+1) = P / lambda - alpha P x x' P / (1 + x'P x) + beta I - delta P^2
     theta(t+1) = theta + alpha P x (y - x'theta) / (1 + x'P x)
@@ -52,11 +52,11 @@ class Estimator:
         self.p = self.law.covariance * np.eye(len(self.theta))
 
     def update(self, x: Array, y: float) -> float:
-        """Update the estimate by one sample and return the residual of the new estimate.
+        """Update the least-squares estimate by one sample; return the residual after the update.
 
         Args:
             x: Regressor (n,).
-            y: Output.
+            y: Measured output.
         """
         law, p = self.law, self.p
         px = p @ x
@@ -94,16 +94,16 @@ class Ship:
 
     @property
     def yaw_coefficients(self) -> tuple[float, ...]:
-        """a2y, b1y, b2y."""
+        """Coefficients a2y, b1y, b2y of the ship's difference equation of yaw."""
         return tuple(self._yaw.theta.tolist())
 
     @property
     def roll_coefficients(self) -> tuple[float, ...]:
-        """a1r, a2r, b1r, b2r."""
+        """Coefficients a1r, a2r, b1r, b2r of the ship's difference equation of roll."""
         return tuple(self._roll.theta[:4].tolist())
 
     def update(self, psi: Sequence[float], phi: Sequence[float], rudder: float) -> None:
-        """Update the identification by one period.
+        """Update the identified difference equations of yaw and roll by one period of data.
 
         Args:
             psi: Heading [rad] now, one period ago, two ago.
@@ -116,7 +116,7 @@ class Ship:
         self._left = [left, self._left[0]]
 
     def named_estimates(self) -> dict[str, float]:
-        """Return the estimates by name, for a log."""
+        """Return the identified coefficients of yaw and roll by name, for a log."""
         return dict(
             zip(
                 ("a2y", "b1y", "b2y", "a1r", "a2r", "b1r", "b2r"),
@@ -126,12 +126,15 @@ class Ship:
         )
 
     def matrices(self) -> tuple[Array, Array]:
-        """Return A (4, 4) and B (4,) of the state (psi, psi one ago, phi, phi one ago)."""
+        """Return state-space matrices A (4, 4) and B (4,) of the identified ship.
+
+        The state is (psi, psi one period ago, phi, phi one period ago), the input the rudder angle.
+        """
         return state_space(self.yaw_coefficients, self.roll_coefficients)
 
 
 def state_space(yaw: Sequence[float], roll: Sequence[float]) -> tuple[Array, Array]:
-    """Return A (4, 4) and B (4,) of the difference equations.
+    """Return state-space matrices A (4, 4) and B (4,) of the difference equations of yaw and roll.
 
     Args:
         yaw: (a2y, b1y, b2y).
@@ -150,13 +153,13 @@ def state_space(yaw: Sequence[float], roll: Sequence[float]) -> tuple[Array, Arr
 
 
 def append_rudder_state(a: Array, b: Array) -> tuple[Array, Array]:
-    """Return A (n + 1, n + 1) and B (n + 1,) with the rudder angle as last state.
+    """Extend a state-space model of a ship by the rudder angle as last state.
 
-    The input is the change of the rudder angle.
+    Returns A (n + 1, n + 1) and B (n + 1,); the input is the change of the rudder angle.
 
     Args:
-        a: A (n, n).
-        b: B (n,).
+        a: System matrix A (n, n).
+        b: Input vector B (n,).
     """
     n = len(b)
     whole = np.block([[a, b[:, None]], [np.zeros((1, n)), np.ones((1, 1))]])

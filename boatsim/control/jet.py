@@ -10,10 +10,10 @@ JET_Q2 = 154.9  # [m^2/s^3] printed 164.5, with which the power jumps at throttl
 
 @lean
 def power_at_throttle(throttle: float, q2: float) -> float:
-    """Return the shaft power per mass [m^2/s^3]; the thrust per mass is power / speed.
+    """Return the shaft power of a water jet per mass of the craft [m^2/s^3] at a throttle.
 
-    Svendsen et al., IFAC MCMC 2012, equation 10 and Table 2, with the printed s_i as coefficients
-    of throttle^i.
+    The thrust per mass is power / speed. Svendsen et al., IFAC MCMC 2012, equation 10 and Table 2,
+    with the printed s_i as coefficients of throttle^i.
 
     Args:
         throttle: Throttle, 1 (idle) to 7 (full).
@@ -28,7 +28,7 @@ def power_at_throttle(throttle: float, q2: float) -> float:
 
 @lean
 def throttle_for_power(power: float, q2: float) -> float:
-    """Return the throttle for a power, limited to idle and full.
+    """Return the throttle at which a water jet has a given shaft power, within idle and full.
 
     Args:
         power: Shaft power per mass [m^2/s^3].

@@ -28,12 +28,12 @@ REMEMBERS = record_type("acted", "X", "N", yaw=AXIS, surge=AXIS, heading=HEADING
 
 @merged
 def yaw_moment(q: Any, m: Any, s: Any, wanted: float) -> float:
-    """Return the yaw moment [N m] for a demanded yaw rate.
+    """Return the yaw moment [N m] by which a joystick controller follows a demanded yaw rate.
 
     The rate is corrected for the heading error and limited.
 
     Args:
-        q: Parameters.
+        q: Parameters of the controller.
         m: State of the controller.
         s: Sensor readings.
         wanted: Demanded yaw rate [rad/s].
@@ -51,10 +51,12 @@ def yaw_moment(q: Any, m: Any, s: Any, wanted: float) -> float:
 
 @merged
 def surge_force(q: Any, m: Any, s: Any, wanted: float) -> float:
-    """Return the surge force [N] for a demanded speed; without a speed sensor a feed-forward only.
+    """Return the surge force [N] by which a joystick controller follows a demanded speed.
+
+    Without a speed sensor it is a feed-forward only.
 
     Args:
-        q: Parameters.
+        q: Parameters of the controller.
         m: State of the controller.
         s: Sensor readings.
         wanted: Demanded speed [m/s].
@@ -70,11 +72,13 @@ def surge_force(q: Any, m: Any, s: Any, wanted: float) -> float:
 
 @unlocked
 def law(boats: Any, settings: Any, memory: Any, sense: Any, goal: Any, sent: Any) -> None:
-    """Set the commands for the next period from gyro, surge speed if measured, and stick.
+    """Compute the outboard commands of L1 joystick controllers for the next period.
+
+    The inputs are gyro, surge speed if measured, and stick demands.
 
     Args:
-        boats: Rows to process.
-        settings: Parameters of each boat.
+        boats: Row numbers of the boats to process.
+        settings: Parameters of each controller.
         memory: State of each controller.
         sense: Sensor readings of each boat.
         goal: Demands of each boat.
@@ -140,7 +144,7 @@ class AdaptiveJoystick(Outboards, CompiledController):
     )
 
     def estimates(self) -> dict[str, Estimate]:
-        """Return the estimated disturbance of each channel, and the reference motion."""
+        """Return the estimated disturbances of yaw and surge, and the reference motion."""
         yaw, surge = self.memory_record["yaw"], self.memory_record["surge"]
         return {
             "sigma_yaw_Nm": Estimate(float(yaw["sigma"]), nan, nan),
@@ -150,11 +154,11 @@ class AdaptiveJoystick(Outboards, CompiledController):
         }
 
     def largest_goals(self) -> Mapping[str, float]:
-        """Return the goals at full stick: largest speeds [m/s] and turn rate [rad/s]."""
+        """Return the joystick demands at full stick: largest speeds [m/s] and turn rate [rad/s]."""
         return {**super().largest_goals(), "yaw_radps": self.rated_yaw}
 
     def loop_channels(self) -> tuple[LoopChannel, ...]:
-        """Return the feedback loops for margins.
+        """Return the controller's yaw and surge feedback loops, for stability margins.
 
         The true thrust over inertia is 0.5 to 1.8 times the assumed one.
         """

@@ -20,7 +20,7 @@ HEADINGS = (
 
 @dataclass(frozen=True)
 class Row:
-    """Margins of one channel at one ratio of true to assumed input gain."""
+    """Stability margins of one feedback loop at one ratio of true to assumed input gain."""
 
     channel: str
     input_gain: float
@@ -37,7 +37,7 @@ class Row:
 
 
 def margin_rows(controller: object) -> list[Row]:
-    """Return the rows of a controller, one for each input gain of each channel.
+    """Return the stability margins of a controller's loops, for several true input gains each.
 
     Args:
         controller: Object with `loop_channels`.
@@ -82,7 +82,7 @@ def _margin_row(channel: LoopChannel | SampledChannel, gain: float) -> Row:
 
 
 def format_margins(rows: list[Row]) -> str:
-    """Return the table for a terminal, with the L1-norm condition of each L1 channel.
+    """Return a table of stability margins as text, with the L1-norm condition of each L1 loop.
 
     Args:
         rows: Rows of `margin_rows`.

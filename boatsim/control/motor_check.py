@@ -25,17 +25,17 @@ WILDEST = 3.0  # largest plausible ratio of thrust astern to ahead, or its inver
 
 
 class Pulse(NamedTuple):
-    """Setting of the motors for one period."""
+    """Motor settings of two outboards in one period of a motor check."""
 
     sense: int  # both motors 1 ahead, -1 astern, 0 off
     inward: int  # PORT, STARBOARD or NEITHER
 
 
 class Drift(NamedTuple):
-    """Effect of sideways drift on a boat that turns, proportional to the square of its yaw rate.
+    """Effect of sideways drift on a boat that turns: yaw and surge per yaw rate squared.
 
-    It has the same sign for thrust ahead and astern and would otherwise appear as a difference of
-    the motors.
+    A motor check accounts for it: it has the same sign for thrust ahead and astern and would
+    otherwise appear as a difference of the motors.
     """
 
     yaw: float  # [1] acceleration towards the side that ahead turns to
@@ -54,7 +54,7 @@ class Found(NamedTuple):
 
 @dataclass
 class Train:
-    """Train of pulses and the readings during it.
+    """Train of thrust pulses of a motor check, and the sensor readings during it.
 
     The motors rest between the pulses and all pulses have the same length, so that the transients
     of the thrust cancel.
@@ -73,7 +73,9 @@ class Train:
             self.senses += [sense] * self.pulse + still
 
     def add_reading(self, rate: float, felt: float) -> None:
-        """Append the readings at the begin of a period, and at the end of the last one.
+        """Append gyro and accelerometer readings at the begin of a period to a pulse train.
+
+        After the last period, those at its end are appended too.
 
         Args:
             rate: Yaw rate [rad/s].
@@ -83,7 +85,7 @@ class Train:
         self.felt.append(felt)
 
     def evaluate(self, period: float, lag: float, drift: Drift, aside: int) -> Found:
-        """Return the least-squares result of the train.
+        """Return the boat's response to a train of thrust pulses, by least squares.
 
         Args:
             period: Length of a period [s].
@@ -132,11 +134,12 @@ def _fit_least_squares(columns: Array, values: Array) -> tuple[Array, Array]:
 
 @dataclass
 class MotorCheck:
-    """Pairs of trains, one for each side, until the reverse ratio is known well enough.
+    """Motor check: pulse trains that identify the thrust of two outboards astern over that ahead.
 
-    A constant moment, of wind for instance, adds to one side what it subtracts from the other.
-    After each pair the astern setting is corrected, and the remaining speed is removed by pulses
-    straight ahead or astern.
+    Pairs of trains, one for each side, follow until the ratio is known well enough. A constant
+    moment, of wind for instance, adds to one side what it subtracts from the other. After each pair
+    the astern setting is corrected, and the remaining speed is removed by pulses straight ahead or
+    astern.
     """
 
     period: float  # [s]
@@ -162,12 +165,15 @@ class MotorCheck:
 
     @property
     def ahead_acceleration(self) -> float:
-        """Acceleration [m/s^2] of both motors ahead, one of them turned inward."""
+        """Measured acceleration [m/s^2] with both outboards ahead, one of them turned inward."""
         return float(np.mean([f.push for f in self._found]))
 
     @property
     def yaw_asymmetry(self) -> float:
-        """Yaw accelerations (a - b) / (a + b), with port (a) and starboard (b) motor inward."""
+        """Relative difference (a - b) / (a + b) of the yaw accelerations to both sides.
+
+        They are measured with the port (a) and with the starboard (b) outboard turned inward.
+        """
         a, b = (
             abs(float(np.mean([f.turn for f in self._found[side::2]])))
             for side in (PORT, STARBOARD)
@@ -175,7 +181,7 @@ class MotorCheck:
         return (a - b) / (a + b)
 
     def step(self, rate: float, felt: float) -> Pulse:
-        """Process the readings of a period and return the next setting.
+        """Process the readings of a period of the motor check and return the next motor settings.
 
         The motors are off when the check is `done`.
 

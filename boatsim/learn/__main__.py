@@ -5,7 +5,7 @@ from boatsim.learn.environment_options import TASKS, make_simulation
 
 
 def main() -> None:
-    """Print the actions and observations of each environment."""
+    """Print the actions and observations of each registered Gymnasium environment."""
     for name in registration.environment_ids():
         options = registration.environment_arguments(name)
         game = make_simulation(n=1, **options)

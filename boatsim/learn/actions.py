@@ -24,7 +24,7 @@ STARBOARD = "the bow to starboard"
 
 @dataclass(frozen=True)
 class DriveChannel:
-    """A command channel that sets the thrust or the angle of a drive."""
+    """Command channel of a vessel that sets the thrust or the angle of one drive."""
 
     channel: str
     role: str  # in which an effect uses the actuator
@@ -34,7 +34,10 @@ class DriveChannel:
 
 
 class Action(NamedTuple):
-    """An action and its shares of the channels."""
+    """One action of a reinforcement learning environment, as a combination of drive commands.
+
+    Its `shares` are the weights with which it acts on the command channels.
+    """
 
     name: str
     words: str
@@ -43,10 +46,10 @@ class Action(NamedTuple):
 
 @dataclass(frozen=True)
 class Controls:
-    """Actions (n, A) from -1 to 1, and their conversion to commands (n, C).
+    """Actions of a learning environment, from -1 to 1, and their conversion to vessel commands.
 
-    The value of a channel is the sum of its actions' shares, limited to -1 and 1; 0 is its neutral
-    position, 1 and -1 are the ends of its range.
+    The value of a command channel is the weighted sum of the actions (n, A), limited to -1 and 1; 0
+    is its neutral position, 1 and -1 are the ends of its range.
     """
 
     names: tuple[str, ...]
@@ -58,7 +61,7 @@ class Controls:
     ahead: Array  # (A,) the action of full thrust straight ahead
 
     def commands(self, actions: Array) -> Array:
-        """Return the commands (n, C), in the order of the vessel's channels.
+        """Convert a learner's actions to commands (n, C), in the order of the vessel's channels.
 
         Args:
             actions: Actions (n, A) from -1 to 1.
@@ -69,7 +72,7 @@ class Controls:
 
 
 def make_controls(vessel: Vessel, use: Use) -> Controls:
-    """Return the actions of a vessel.
+    """Define the actions by which a learner drives a vessel through its thrusters and rudders.
 
     A mirrored pair of thrusters has an action `thrust` for both. It also has `turn`, port against
     starboard, if the use is manoeuvring or if nothing else turns the vessel. A mirrored pair of
@@ -103,7 +106,9 @@ def make_controls(vessel: Vessel, use: Use) -> Controls:
 
 
 def drive_channels(vessel: Vessel) -> list[DriveChannel]:
-    """Return the channel of each actuator: itself, or the raw command that feeds it.
+    """Return the command channels of a vessel's drives: thrusts and angles.
+
+    The channel of an actuator is the actuator's own command, or the raw command that feeds it.
 
     Args:
         vessel: The vessel.

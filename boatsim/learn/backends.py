@@ -11,14 +11,17 @@ Boats = NDArray[np.int64]  # numbers of boats
 
 
 class World(Protocol):
-    """Simulator of n boats; `boatsim.simulate.batch.Batch` is one."""
+    """Interface of a simulator of n boats in a learning environment.
+
+    `boatsim.simulate.batch.Batch` is one.
+    """
 
     @property
     def states(self) -> Array:
-        """Present states (n, 2 NQ) in SI units."""
+        """Present states (n, 2 NQ) of all simulated boats, in SI units."""
 
     def advance(self, commands: ArrayLike, steps: int = 1) -> None:
-        """Advance by integration steps with constant commands.
+        """Simulate all boats over a number of integration steps with constant commands.
 
         Args:
             commands: Commands (n, C).
@@ -28,7 +31,7 @@ class World(Protocol):
     def reset(
         self, states: ArrayLike, commands: ArrayLike | None = None, boats: ArrayLike | None = None
     ) -> None:
-        """Set the states of boats.
+        """Set the states of some or all simulated boats.
 
         Args:
             states: States (k, 2 NQ) in SI units.
@@ -37,7 +40,7 @@ class World(Protocol):
         """
 
     def assign(self, vessel: ArrayLike, boats: ArrayLike | None = None) -> None:
-        """Assign vessels to boats.
+        """Assign vessels (hulls or load conditions) to simulated boats.
 
         Args:
             vessel: Numbers (k,) of the vessels.
@@ -45,7 +48,7 @@ class World(Protocol):
         """
 
     def set(self, parameter: str, values: ArrayLike, boats: ArrayLike | None = None) -> None:
-        """Set a parameter of boats.
+        """Set a parameter of an effect, such as a wind speed, of some or all simulated boats.
 
         Args:
             parameter: "effect.parameter".
@@ -54,7 +57,7 @@ class World(Protocol):
         """
 
     def get(self, parameter: str) -> Array:
-        """Return the values (n,) of a parameter.
+        """Return the values (n,) of an effect's parameter, one for each simulated boat.
 
         Args:
             parameter: "effect.parameter".

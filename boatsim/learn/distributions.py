@@ -20,7 +20,7 @@ CALL = re.compile(r"\s*(\w+)\s*\(([^,]+),([^,]+)\)\s*")
 
 
 class Distribution(NamedTuple):
-    """A family of distributions with two numbers."""
+    """Family of probability distributions with two parameters, such as uniform or normal."""
 
     numbers: str  # names of the two numbers
     valid: Callable[[float, float], bool]
@@ -48,7 +48,7 @@ DISTRIBUTIONS = {
 
 @dataclass(frozen=True)
 class SampledParameter:
-    """A parameter and its distribution."""
+    """Parameter of an effect that is sampled for each episode, with its distribution."""
 
     key: str
     distribution: str
@@ -56,7 +56,7 @@ class SampledParameter:
     second: float
 
     def quantiles(self, probabilities: Array) -> Array:
-        """Return the quantiles (k,) of the distribution.
+        """Return quantiles (k,) of the parameter's distribution, for given probabilities.
 
         Args:
             probabilities: Probabilities (k,) between 0 and 1.
@@ -66,7 +66,7 @@ class SampledParameter:
 
 
 def make_sampled_parameter(key: str, text: str) -> SampledParameter:
-    """Return the sampled parameter of a key and a distribution.
+    """Return a parameter that is sampled for each episode, from a text that names its distribution.
 
     Args:
         key: Key of the parameter, such as "wind.speed".

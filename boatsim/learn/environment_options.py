@@ -20,7 +20,7 @@ TASKS: Mapping[str, type[Task]] = {
 
 
 class EnvironmentOptions(TypedDict, total=False):
-    """Optional arguments of an environment."""
+    """Optional arguments of a learning environment, such as vessel, effects and durations."""
 
     vessel: str  # name or path, also of a patched.toml
     scenario: str  # instead of a vessel; its vessel, load, set values and effects are used
@@ -38,7 +38,7 @@ class EnvironmentOptions(TypedDict, total=False):
 def make_simulation(
     task: str, n: int, world: MakeWorld | None = None, **options: Unpack[EnvironmentOptions]
 ) -> TaskSimulation:
-    """Return a simulation of n boats at a task.
+    """Return a simulation of n boats at a learning task, such as berthing.
 
     Args:
         task: Name of the task.

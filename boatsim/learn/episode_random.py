@@ -24,7 +24,7 @@ def _splitmix64(z: Seeds) -> Seeds:
 
 
 def episode_seeds(seeds: Seeds, number: Seeds) -> Seeds:
-    """Return the seeds (k,) of episodes after a reset.
+    """Return the random seeds (k,) of episodes from the seed of a reset and the episode number.
 
     Args:
         seeds: Seeds (k,) of the reset.
@@ -34,11 +34,13 @@ def episode_seeds(seeds: Seeds, number: Seeds) -> Seeds:
 
 
 def uniform_numbers(seeds: Seeds, count: int) -> Array:
-    """Return uniform random numbers (k, count) in the open interval from 0 to 1.
+    """Return uniform random numbers (k, count) in the open interval from 0 to 1, by seed.
+
+    The numbers of a seed depend on no other seed.
 
     Args:
         seeds: Seeds (k,).
-        count: Numbers for each seed.
+        count: Number of random numbers for each seed.
     """
     z = _splitmix64(seeds[:, None] * STRIDE + np.arange(1, count + 1, dtype=np.uint64) * STEP)
     return ((z >> np.uint64(11)).astype(float) + 0.5) / 9007199254740992.0  # 2^53

@@ -41,7 +41,7 @@ class Hulls(NamedTuple):
 
     @classmethod
     def from_vessels(cls, vessels: list[Vessel]) -> "Hulls":
-        """Return the rectangles of vessels.
+        """Return the waterplane rectangles of vessels, from their lengths and beams.
 
         Args:
             vessels: The vessels.
@@ -57,7 +57,7 @@ class Hulls(NamedTuple):
         return cls(half_lengths, 0.5 * np.array(beams), half_lengths - np.array(to_transom))
 
     def select(self, index: Array) -> "Hulls":
-        """Return the rectangles of boats.
+        """Return the waterplane rectangles of n boats, each that of the vessel it is assigned to.
 
         Args:
             index: Numbers (n,) of the vessels of the boats.
@@ -67,7 +67,7 @@ class Hulls(NamedTuple):
 
 @dataclass(frozen=True)
 class Scale:
-    """Units of the tolerances and bounds of a task, from the vessel file."""
+    """Length, beam and speed of a vessel, the units of tolerances and bounds of a learning task."""
 
     length: float  # [m]
     beam: float  # [m]
@@ -75,7 +75,9 @@ class Scale:
 
 
 def scale_of(vessel: Vessel, full_ahead: Array) -> Scale:
-    """Return the scale of a vessel.
+    """Return length, beam and attainable speed of a vessel, by which a learning task is scaled.
+
+    The speed is reached one length after the start from rest under full thrust.
 
     Args:
         vessel: The vessel.
@@ -99,7 +101,7 @@ def scale_of(vessel: Vessel, full_ahead: Array) -> Scale:
 
 
 def planar_state_indices(vessel: Vessel) -> list[int]:
-    """Return the indices of x, y, psi, u, v, r in a state of a vessel.
+    """Return the indices of x, y, psi, u, v, r in the state array of a vessel.
 
     Args:
         vessel: The vessel.

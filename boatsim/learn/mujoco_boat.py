@@ -13,7 +13,10 @@ from boatsim.simulate.world import Tank
 
 
 class TankWorld:
-    """A `World` of one boat; the model is rebuilt when an episode changes the vessel."""
+    """Simulator of one boat in a walled tank for a learning environment, by MuJoCo.
+
+    The MuJoCo model is rebuilt when an episode changes the vessel.
+    """
 
     def __init__(self, vessels: Sequence[Vessel], step: float, tank: Tank) -> None:
         """Create a simulator.
@@ -31,14 +34,14 @@ class TankWorld:
 
     @property
     def engine(self) -> Engine:
-        """Simulation of the boat by MuJoCo."""
+        """MuJoCo simulation of the boat."""
         if self._engine is None:
             self._engine = Engine(self.vessel, self.tank, self.step, show=False)
         return self._engine
 
     @property
     def states(self) -> Array:
-        """Present state (1, 2 NQ) in SI units."""
+        """Present state (1, 2 NQ) of the boat in SI units."""
         state = self.engine.state
         return np.array([[getattr(state, name) for name in self._names]])
 
@@ -48,7 +51,7 @@ class TankWorld:
         return [State._fields[1:][k] for k in self.engine.code.SHOWS]
 
     def advance(self, commands: ArrayLike, steps: int = 1) -> None:
-        """Advance by integration steps with constant commands.
+        """Simulate the boat over a number of integration steps with constant commands.
 
         Args:
             commands: Commands (1, C).
@@ -61,7 +64,7 @@ class TankWorld:
     def reset(
         self, states: ArrayLike, commands: ArrayLike | None = None, boats: ArrayLike | None = None
     ) -> None:
-        """Set the state of the boat, with its actuators settled at neutral.
+        """Set the state of the simulated boat, with its actuators settled at neutral.
 
         Args:
             states: State (1, 2 NQ) in SI units.
@@ -72,7 +75,7 @@ class TankWorld:
         self.engine.reset(State(**dict(zip(self._names, row, strict=True))))
 
     def assign(self, vessel: ArrayLike, boats: ArrayLike | None = None) -> None:
-        """Exchange the vessel.
+        """Replace the simulated boat by another vessel.
 
         Args:
             vessel: Number (1,) of the new vessel.
@@ -81,7 +84,9 @@ class TankWorld:
         self._replace_vessel(self.vessels[int(np.asarray(vessel).reshape(-1)[0])])
 
     def set(self, parameter: str, values: ArrayLike, boats: ArrayLike | None = None) -> None:
-        """Set a parameter; values that the vessel file derives from it do not change.
+        """Set a parameter of one of the boat's effects, such as a wind speed.
+
+        Values that the vessel file derives from the parameter do not change.
 
         Args:
             parameter: "effect.parameter".
@@ -101,7 +106,7 @@ class TankWorld:
         self._replace_vessel(replace(self.vessel, effects=tuple(effects)))
 
     def get(self, parameter: str) -> Array:
-        """Return the value (1,) of a parameter.
+        """Return the value (1,) of a parameter of one of the boat's effects.
 
         Args:
             parameter: "effect.parameter".
@@ -118,7 +123,7 @@ class TankWorld:
 
 
 def make_tank_world(vessels: Sequence[Vessel], n: int, step: float, tank: Tank) -> TankWorld:
-    """Return a simulator of one boat on MuJoCo.
+    """Return a simulator of one boat in a walled tank, by MuJoCo.
 
     Args:
         vessels: Vessels among which episodes choose.

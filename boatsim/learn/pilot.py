@@ -14,10 +14,12 @@ from boatsim.physics.signals import Array
 
 
 class Pilot(Protocol):
-    """Controller of one boat."""
+    """Interface of a controller that steers one boat through a learning task."""
 
     def step(self, sense: Sense) -> Mapping[str, float]:
-        """Return the commands of the next control step by channel; the others are neutral.
+        """Return a controller's commands for the next control step, by channel.
+
+        Channels that are not named are neutral.
 
         Args:
             sense: True motion of the boat.
@@ -27,7 +29,7 @@ class Pilot(Protocol):
 def run_episodes(
     play: TaskSimulation, seeds: Seeds, make_pilot: Callable[[], Pilot]
 ) -> dict[str, Array]:
-    """Run one episode of each boat with controllers.
+    """Run one episode of a learning task for each boat, steered by a controller.
 
     Args:
         play: The simulation of n boats.

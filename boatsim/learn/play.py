@@ -30,7 +30,7 @@ MakeWorld = Callable[[Sequence[Vessel], int, float, Tank], World]
 
 
 def make_batch_world(threads: int | None = None) -> MakeWorld:
-    """Return a function that creates compiled batches in open water.
+    """Return a function that creates simulators of many boats in open water, compiled.
 
     Args:
         threads: Threads that share the boats; None for one per core.
@@ -39,7 +39,7 @@ def make_batch_world(threads: int | None = None) -> MakeWorld:
 
 
 class Step(NamedTuple):
-    """Result of a control step of n boats."""
+    """Rewards, ends of episodes and metrics after one control step of n boats."""
 
     reward: Array  # (n,)
     terminated: Flags  # (n,)
@@ -49,7 +49,7 @@ class Step(NamedTuple):
 
 
 class TaskSimulation:
-    """Simulation of n boats at one task; each is in its own episode."""
+    """Simulation of n boats at one learning task, each in its own episode."""
 
     def __init__(
         self,
@@ -117,7 +117,7 @@ class TaskSimulation:
         return signals
 
     def begin_episodes(self, seeds: episode_random.Seeds, boats: Boats) -> None:
-        """Begin episodes.
+        """Begin new episodes of some boats: sample vessel, parameters, start and goal by the seeds.
 
         Args:
             seeds: Seeds (k,) of the episodes.
@@ -146,7 +146,7 @@ class TaskSimulation:
             present[boats] = new
 
     def step(self, actions: Array) -> Step:
-        """Simulate one control step.
+        """Simulate one control step of all boats under a learner's actions.
 
         Args:
             actions: Actions (n, A); they are limited to -1 and 1.
@@ -158,7 +158,7 @@ class TaskSimulation:
         return self.step_commands(self.controls.commands(self._actions))
 
     def step_commands(self, commands: Array) -> Step:
-        """Simulate one control step with commands of the vessel.
+        """Simulate one control step of all boats under commands in the vessel's own units.
 
         Args:
             commands: Commands (n, C) in the units of the channels.
@@ -191,14 +191,17 @@ class TaskSimulation:
 
     @property
     def motion(self) -> Motion:
-        """True motion of all boats."""
+        """True position, heading and velocity of all boats."""
         return Motion(*self.world.states.T[self._columns])
 
     def observations(self, normalised: bool, boats: Boats | slice = ALL_BOATS) -> Observations:
-        """Return observations (k, S) in the order of `signals`, limited to their bounds.
+        """Return what a learner observes of some boats, (k, S), in the order of `signals`.
+
+        Each value is limited to the bounds of its signal.
 
         Args:
-            normalised: Whether they are divided by their bounds; otherwise in their units.
+            normalised: Whether the observations are divided by their bounds; otherwise in their
+                units.
             boats: Numbers (k,) of the boats.
         """
         actions = self._actions[boats].T

@@ -18,22 +18,22 @@ def _read_id_tables() -> dict[str, Mapping[str, Any]]:
 
 
 def environment_ids() -> list[str]:
-    """Return the ids of all environments."""
+    """Return the Gymnasium ids of all environments of this package."""
     return [name for name in read_toml(IDS) if name != VARY]
 
 
 def environment_arguments(name: str) -> dict[str, Any]:
-    """Return the arguments of an environment.
+    """Return the arguments with which Gymnasium creates an environment of a given id.
 
     Args:
-        name: Its id.
+        name: Id of the environment.
     """
     tables = _read_id_tables()
     return {VARY: dict(tables[VARY]), **tables[name]}
 
 
 def register() -> None:
-    """Register the ids of ids.toml that are not registered yet."""
+    """Register with Gymnasium the environments of the file ids.toml that are not registered yet."""
     for name in environment_ids():
         if name not in gymnasium.registry:
             gymnasium.register(

@@ -10,7 +10,7 @@ HEIGHT, WIDTH = 480, 640
 
 
 class Camera:
-    """A camera over the first boat of a simulation, in the basin of its task."""
+    """Camera that renders pictures of the first boat of a simulation in the basin of its task."""
 
     def __init__(self, play: TaskSimulation) -> None:
         """Create a camera.
@@ -24,7 +24,7 @@ class Camera:
         self.physics = BoatPhysics(Engine(play.vessel, play.tank, play.period))
 
     def render(self) -> NDArray[np.uint8]:
-        """Return the present picture (480, 640, 3)."""
+        """Return a picture of the present state of the first boat, (480, 640, 3)."""
         motion = [float(values[0]) for values in self.play.motion]
         state = State(**dict(zip(self.play.motion._fields, motion, strict=True)))
         commands = self.play.commands[0].tolist()
@@ -36,5 +36,5 @@ class Camera:
         return picture.copy()
 
     def close(self) -> None:
-        """Free the renderer."""
+        """Free the resources of the camera's renderer."""
         self.physics.free()

@@ -12,7 +12,10 @@ from boatsim.physics.signals import Array
 
 
 class BoatVecEnv(VecEnv):
-    """Wraps a `BoatVectorEnv`; `infos` hold return and length of an episode as Monitor's do."""
+    """Vector environment of many boats with the interface of stable-baselines3.
+
+    It wraps a `BoatVectorEnv`; `infos` hold return and length of an episode as Monitor's do.
+    """
 
     def __init__(self, boats: BoatVectorEnv) -> None:
         """Wrap an environment.
@@ -29,7 +32,7 @@ class BoatVecEnv(VecEnv):
         self._empty_infos: list[dict[str, Any]] = [{} for _ in range(boats.num_envs)]
 
     def reset(self) -> NDArray[np.float32]:
-        """Begin episodes of all boats.
+        """Begin new episodes of all boats.
 
         Returns:
             Observations (n, S).
@@ -42,7 +45,7 @@ class BoatVecEnv(VecEnv):
         return observations
 
     def step_async(self, actions: NDArray[np.float32]) -> None:
-        """Keep the actions for `step_wait`.
+        """Store the actions of all boats for the following `step_wait`.
 
         Args:
             actions: Actions (n, A).
@@ -52,7 +55,7 @@ class BoatVecEnv(VecEnv):
     def step_wait(
         self,
     ) -> tuple[NDArray[np.float32], Array, NDArray[np.bool_], list[dict[str, Any]]]:
-        """Simulate one control step of all boats.
+        """Simulate one control step of all boats with the stored actions.
 
         Returns:
             Observations (n, S), rewards (n,), whether episodes ended (n,), and infos.
@@ -77,24 +80,24 @@ class BoatVecEnv(VecEnv):
         return observations, reward.astype(np.float32), over, infos
 
     def close(self) -> None:
-        """Close the wrapped environment."""
+        """Close the wrapped vector environment and free its resources."""
         self.boats.close()
 
     def get_attr(self, attr_name: str, indices: Any = None) -> list[Any]:
-        """Return an attribute of the wrapped environment, once for each boat.
+        """Return an attribute of the wrapped vector environment, once for each boat.
 
         Args:
-            attr_name: Its name.
+            attr_name: Name of the attribute.
             indices: The boats; None for all.
         """
         return [getattr(self.boats, attr_name)] * len(list(self._get_indices(indices)))
 
     def set_attr(self, attr_name: str, value: Any, indices: Any = None) -> None:
-        """Set an attribute of the wrapped environment.
+        """Set an attribute of the wrapped vector environment.
 
         Args:
-            attr_name: Its name.
-            value: Its value.
+            attr_name: Name of the attribute.
+            value: Value of the attribute.
             indices: Ignored; the boats share the attribute.
         """
         setattr(self.boats, attr_name, value)
@@ -102,7 +105,7 @@ class BoatVecEnv(VecEnv):
     def env_method(
         self, method_name: str, *method_args: Any, indices: Any = None, **method_kwargs: Any
     ) -> list[Any]:
-        """Call a method of the wrapped environment, once for all boats.
+        """Call a method of the wrapped vector environment, once for all boats.
 
         Args:
             method_name: Its name.
@@ -113,7 +116,7 @@ class BoatVecEnv(VecEnv):
         return [getattr(self.boats, method_name)(*method_args, **method_kwargs)]
 
     def env_is_wrapped(self, wrapper_class: type[Any], indices: Any = None) -> list[bool]:
-        """Return False for each boat.
+        """Return False for each boat: single boats have no Gymnasium wrappers.
 
         Args:
             wrapper_class: Ignored.
@@ -122,5 +125,5 @@ class BoatVecEnv(VecEnv):
         return [False] * len(list(self._get_indices(indices)))
 
     def get_images(self) -> Sequence[Any]:
-        """Return no pictures."""
+        """Return an empty list, because this vector environment renders no pictures."""
         return []

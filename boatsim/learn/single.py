@@ -20,11 +20,11 @@ SIMULATORS = ("batch", "mujoco")
 
 
 class BoatEnv(gymnasium.Env[Observations, NDArray[np.float32]]):
-    """One boat at a task; `signals` are its observations, `controls` its actions.
+    """Gymnasium environment of one boat at a task.
 
-    Observations are float32. They are divided by their bounds (-1 to 1) or, with
-    `normalised=False`, in their units. `info` is empty until an episode is over; it then holds
-    `is_success` and the metrics of the task.
+    `signals` are its observations, `controls` its actions. Observations are float32. They are
+    divided by their bounds (-1 to 1) or, with `normalised=False`, in their units. `info` is empty
+    until an episode is over; it then holds `is_success` and the metrics of the task.
     """
 
     metadata: dict[str, Any] = {"render_modes": ["rgb_array"], "render_fps": 5}
@@ -76,7 +76,7 @@ class BoatEnv(gymnasium.Env[Observations, NDArray[np.float32]]):
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[Observations, dict[str, Any]]:
-        """Begin an episode.
+        """Begin a new episode of the boat.
 
         Args:
             seed: Seed of this episode and of those that follow; None to continue the sequence.
@@ -97,7 +97,7 @@ class BoatEnv(gymnasium.Env[Observations, NDArray[np.float32]]):
     def step(
         self, action: NDArray[np.float32]
     ) -> tuple[Observations, float, bool, bool, dict[str, Any]]:
-        """Simulate one control step.
+        """Simulate one control step of the boat.
 
         Args:
             action: Action (A,) from -1 to 1.
@@ -113,7 +113,7 @@ class BoatEnv(gymnasium.Env[Observations, NDArray[np.float32]]):
         return observation, float(done.reward[0]), terminated, truncated, info
 
     def render(self) -> NDArray[np.uint8] | None:
-        """Return the boat from above (480, 640, 3); None without `render_mode`."""
+        """Return a picture of the boat from above (480, 640, 3); None without `render_mode`."""
         if self.render_mode is None:
             return None
         if self._camera is None:
@@ -121,7 +121,7 @@ class BoatEnv(gymnasium.Env[Observations, NDArray[np.float32]]):
         return self._camera.render()
 
     def close(self) -> None:
-        """Free the renderer."""
+        """Free the renderer of the environment."""
         if self._camera is not None:
             self._camera.close()
         self._camera = None

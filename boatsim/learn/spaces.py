@@ -7,7 +7,7 @@ from boatsim.learn.play import TaskSimulation
 
 
 def make_spaces(play: TaskSimulation, normalised: bool) -> tuple[Box[np.float32], Box[np.float32]]:
-    """Return the spaces of the observation and of the action of one boat.
+    """Return the Gymnasium spaces of the observation and of the action of one boat.
 
     Args:
         play: The simulation.

@@ -21,7 +21,7 @@ LOAD = "load"
 
 
 class Variation:
-    """Vessels of all loads, and the parameters that are sampled when an episode starts."""
+    """Random variation between episodes: vessels in all loads, and the sampled parameters."""
 
     def __init__(
         self,
@@ -45,14 +45,14 @@ class Variation:
 
     @property
     def random_number_count(self) -> int:
-        """Number of uniform random numbers that an episode needs."""
+        """Number of uniform random numbers that determine the variation of one episode."""
         count = 1 + len(self.sampled)
         if self.spread:
             count += len(self.spread.sd)
         return count
 
     def assign_samples(self, world: World, uniforms: Array, boats: Boats) -> Array:
-        """Assign vessels and sampled parameters to boats.
+        """Sample vessels and effect parameters for new episodes and assign them to boats.
 
         Args:
             world: Simulator of the boats.
@@ -85,7 +85,7 @@ def make_variation(
     vary: Vary | None = None,
     settings: Mapping[str, Mapping[str, object]] | None = None,
 ) -> Variation:
-    """Return the variation of a vessel.
+    """Define what varies between episodes of a vessel: loads and effect parameters.
 
     The uncertainty that a diagnosis found (`[spread]` of a patched.toml) is sampled too, unless
     `vary` has `"spread" = 0`.

@@ -17,14 +17,14 @@ from boatsim.physics.signals import Array
 
 
 class BoatVectorEnv(VectorEnv[Observations, NDArray[np.float32], Array]):
-    """Boats at a task.
+    """Gymnasium vector environment of many boats at one task.
 
     Boat i, reset with a seed, has the episodes of a single environment that is reset with seed + i.
     `autoreset_mode` determines when a finished episode is followed by the next one: at the next
-    step (Gymnasium's default), in the same step, with the last observations in
-    `info["final_obs"]`, or at `reset(options={"reset_mask": mask})`. Metrics of finished episodes
-    are in `info`, or in `info["final_info"]` if the next episode begins in the same step: arrays
-    with a mask `_name` each.
+    step (Gymnasium's default), in the same step, with the last observations in `info["final_obs"]`,
+    or at `reset(options={"reset_mask": mask})`. Metrics of finished episodes are in `info`, or in
+    `info["final_info"]` if the next episode begins in the same step: arrays with a mask `_name`
+    each.
     """
 
     metadata: dict[str, Any] = {"render_modes": [], "autoreset_mode": AutoresetMode.NEXT_STEP}
@@ -76,7 +76,7 @@ class BoatVectorEnv(VectorEnv[Observations, NDArray[np.float32], Array]):
     def reset(
         self, *, seed: int | list[int | None] | None = None, options: dict[str, Any] | None = None
     ) -> tuple[Observations, dict[str, Any]]:
-        """Begin episodes of all boats, or of those in `options["reset_mask"]`.
+        """Begin new episodes of all boats, or of those in `options["reset_mask"]`.
 
         Args:
             seed: Seed of boat 0, which the others count on from; or a seed for each boat, where

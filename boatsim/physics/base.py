@@ -92,7 +92,7 @@ __all__ = [
 
 
 def motion(current: tuple[float, float] = (0.0, 0.0), **given: float) -> Motion:
-    """Return a motion for tests and plots.
+    """Return a `Motion` (position, attitude, velocities of the hull) for tests and plots of laws.
 
     Args:
         current: Velocity of the water, north and east [m/s]. It holds for level axes; for a hull

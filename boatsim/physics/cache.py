@@ -54,11 +54,11 @@ KEPT = 90 * 86400.0  # [s] time after the last use of a program until it is remo
 
 
 def import_program(written: Mapping[str, str], classes: Iterable[type[Effect]]) -> ModuleType:
-    """Return a vessel's program, compiled before if the same one was composed before.
+    """Import a vessel's compiled program; numba's results of an earlier equal program are reused.
 
     Args:
-        written: Text of each generated file.
-        classes: Classes of the effects whose laws it calls.
+        written: Text of each generated file of the program, by file name.
+        classes: Classes of the effects whose laws the program calls.
     """
     copied = {}
     for path in sorted(KERNEL.glob("*.py")):
@@ -72,10 +72,10 @@ def import_program(written: Mapping[str, str], classes: Iterable[type[Effect]]) 
 
 
 def import_cached_package(files: Mapping[str, str], stamp: str, *further: Path) -> ModuleType:
-    """Write a package to the cache folder, if it is not there, and import it.
+    """Write a generated Python package to the cache folder, if it is not there, and import it.
 
     Args:
-        files: Text of each file.
+        files: Text of each file of the package, by file name.
         stamp: Name that identifies the content and all that it depends on.
         further: Folders in which the package finds its other modules.
     """
@@ -91,11 +91,14 @@ def import_cached_package(files: Mapping[str, str], stamp: str, *further: Path) 
 
 
 def program_digest(files: Mapping[str, str], classes: Iterable[type[Effect]]) -> str:
-    """Return the name of a program: a digest of its text and of all that it depends on.
+    """Return a hash of a vessel's generated program, which names it in the cache.
+
+    It covers the generated text, the source files on which the program depends, and the versions of
+    numba and Python.
 
     Args:
-        files: Text of each file of the program.
-        classes: Classes of the effects whose laws it calls.
+        files: Text of each file of the program, by file name.
+        classes: Classes of the effects whose laws the program calls.
     """
     kinds = sorted(classes, key=lambda kind: (kind.__module__, kind.__qualname__))
     digest = hashlib.sha256()
@@ -116,10 +119,12 @@ def program_digest(files: Mapping[str, str], classes: Iterable[type[Effect]]) ->
 
 
 def cache_folder() -> Path:
-    """Return the user's cache folder, or a temporary one of this process if that cannot be written.
+    """Return the folder that holds compiled programs between runs.
+
+    It is the user's cache folder, or a temporary folder of this process if that cannot be written.
 
     Raises:
-        BadInput: Another user owns the folder or may write to it; the code in it is run.
+        BadInput: Another user owns the folder or may write to it; the code in it is executed.
     """
     wanted = os.environ.get("BOATSIM_CACHE") or platformdirs.user_cache_dir("boatsim", False)
     try:

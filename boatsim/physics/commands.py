@@ -15,12 +15,14 @@ SLACK = 1e-6  # share of a channel's range by which rounding may exceed it
 
 
 def command_row(vessel: Vessel, given: Mapping[str, float]) -> Array:
-    """Return commands (inputs,) as sent, in the order of the vessel's inputs.
+    """Return an array (inputs,) of all inputs of a vessel, with commands given by name.
+
+    Values are not limited to the allowed ranges. Inputs are the commands in the vessel's order,
+    then the measured quantities of the environment.
 
     Args:
         vessel: The vessel.
-        given: Commands by name. The others are neutral; measured surroundings have their neutral
-            values.
+        given: Commands by name. Other commands and measured quantities have their neutral values.
 
     Raises:
         BadInput: The vessel has no such command.
@@ -34,7 +36,7 @@ def command_row(vessel: Vessel, given: Mapping[str, float]) -> Array:
 
 
 def clipped_commands(vessel: Vessel, given: Mapping[str, float]) -> Array:
-    """Return commands (inputs,) as sent, limited to the ranges of their channels.
+    """Return an array (inputs,) of all inputs of a vessel, commands limited to their ranges.
 
     Args:
         vessel: The vessel.
@@ -47,12 +49,14 @@ def clipped_commands(vessel: Vessel, given: Mapping[str, float]) -> Array:
 
 
 def clipped_recorded_commands(vessel: Vessel, signals: Mapping[str, Array], count: int) -> Array:
-    """Return inputs (N, inputs) that act under the columns of a recording.
+    """Return the inputs (N, inputs) of a vessel in each row of a recording.
+
+    They are limited to the allowed ranges of their channels.
 
     Args:
         vessel: The vessel.
-        signals: Columns (N,) by name; an input without a column is neutral, other columns are
-            ignored.
+        signals: Columns (N,) of the recording by name; an input without a column is neutral, other
+            columns are ignored.
         count: Number of rows N.
 
     Raises:
@@ -65,11 +69,11 @@ def clipped_recorded_commands(vessel: Vessel, signals: Mapping[str, Array], coun
 
 
 def clip_to_channel_ranges(vessel: Vessel, sent: Array) -> Array:
-    """Return inputs limited to the ranges of their channels.
+    """Return inputs of a vessel, each limited to the allowed range of its channel.
 
     Args:
         vessel: The vessel.
-        sent: (..., inputs) in the vessel's order.
+        sent: Inputs (..., inputs) in the vessel's order.
 
     Raises:
         BadInput: A value is not finite.
@@ -90,11 +94,11 @@ def clip_to_channel_ranges(vessel: Vessel, sent: Array) -> Array:
 
 
 def saturated_channels(vessel: Vessel, sent: Array) -> list[str]:
-    """Return the names of channels that are sent more than their range.
+    """Return the names of the channels whose command exceeds its allowed range.
 
     Args:
         vessel: The vessel.
-        sent: (inputs,) in the vessel's order.
+        sent: Inputs (inputs,) in the vessel's order.
     """
     excess = np.abs(sent - clip_to_channel_ranges(vessel, sent)).tolist()
     # measured inputs follow the commands and have no range

@@ -41,7 +41,10 @@ Rows = NDArray[np.int64]
 
 
 class CompiledProgram(Protocol):
-    """Interface of the compiled package that `boatsim.physics.cache` composes for a vessel."""
+    """Interface of the compiled equations and filter of one vessel, generated from its effects.
+
+    `boatsim.physics.cache` imports the package that contains them.
+    """
 
     __name__: str
     __file__: str
@@ -62,32 +65,39 @@ class CompiledProgram(Protocol):
 
     # Mass
     def compute_mass_constants(self, body: Array, p: Array, on: Array, k: Array) -> None:
-        """Fill k from the rigid body (6,) and the parameters."""
+        """Fill k with the vessel's mass matrices from rigid body (6,) and effect parameters."""
 
     # Actuators
     def advance_actuators(
         self, commands: Array, memory: Array, dt: float, p: Array, on: Array, act: Array
     ) -> None:
-        """Advance all channels by one step of dt [s] under commands (inputs,)."""
+        """Advance all actuators of the vessel by one step of dt [s] under commands (inputs,)."""
 
     def settle_actuators(
         self, commands: Array, memory: Array, p: Array, on: Array, act: Array
     ) -> None:
-        """Let the actuators reach their commands (inputs,)."""
+        """Set all actuators of the vessel to the steady state under commands (inputs,)."""
 
     def substep_length(
         self, commands: Array, memory: Array, left: float, least: float, p: Array, on: Array
     ) -> float:
-        """Length [s] of the next part of a step of which `left` remains; at least `least`."""
+        """Return the length [s] of the next part of an integration step.
+
+        The part ends where an actuator's signal jumps or has a kink. It is at least `least` and at
+        most `left`, the remainder of the step.
+        """
 
     def minimum_substep(self, part: float, before: float, least: float) -> float:
-        """Least length [s] of the next part of a step, after parts of `before` and `part`."""
+        """Return the lower limit [s] for the length of the next part of an integration step.
+
+        It grows where the parts become ever shorter, from a part of length `before` to `part`.
+        """
 
     # Motion
     def total_body_force(
         self, t: float, s: Array, act: Array, at: np.int64, p: Array, on: Array
     ) -> tuple[float, ...]:
-        """Body force (NQ,) of all laws [N, N m]."""
+        """Return the sum (NQ,) of the forces of all effects in body axes [N, N m]."""
 
     def acceleration_jacobian(
         self,
@@ -100,7 +110,10 @@ class CompiledProgram(Protocol):
         extra: Array,
         out: Array,
     ) -> None:
-        """Fill out (NQ, 2 NQ) with the derivatives of the joint accelerations by the state."""
+        """Fill out (NQ, 2 NQ) with the derivatives of the vessel's accelerations by its state.
+
+        The accelerations are those of the joint coordinates.
+        """
 
     def step_in_place(
         self,
@@ -113,12 +126,12 @@ class CompiledProgram(Protocol):
         k: Array,
         extra: Array,
     ) -> None:
-        """Advance y by one Runge-Kutta step of dt [s]."""
+        """Advance the vessel's state y by one Runge-Kutta step of dt [s]."""
 
     def steps(
         self, t: float, y: Array, dt: float, n: int, act: Array, p: Array, on: Array, k: Array
     ) -> None:
-        """Advance y by n steps of dt [s] with the actuators held."""
+        """Advance the vessel's state y by n steps of dt [s] with the actuators held."""
 
     def rollout(
         self,
@@ -130,34 +143,44 @@ class CompiledProgram(Protocol):
         substeps: int,
         out: Array,
     ) -> None:
-        """Simulate: row i of commands (N, inputs) is held for `substeps` steps of dt [s].
+        """Simulate a vessel under given commands: row i acts for `substeps` steps of dt [s].
 
-        Fills out (N + 1, 2 NQ) with the states and changes the arrays of `plant`.
+        The commands have shape (N, inputs). Fills out (N + 1, 2 NQ) with the states and changes the
+        arrays of `plant`.
         """
 
     def water_velocity(self, p: Array, on: Array) -> tuple[float, float]:
-        """Velocity of the water over the ground, north and east [m/s]."""
+        """Return the velocity of the water over the ground, north and east [m/s]."""
 
     def pose_and_velocities(self, s: Any) -> MeasuredMotion:
-        """Pose and body-axes velocities of a state."""
+        """Return position, attitude and body-axes velocities of a state of the vessel."""
 
     def jacobian(self, s: Any, J: Array) -> None:
-        """Fill J (6, NQ), zeros before, with the body rates per joint rate."""
+        """Fill J (6, NQ) with the derivatives of body velocities by joint rates.
+
+        J must contain zeros before.
+        """
 
     # Many vessels
     def compute_mass_constants_of_boats(
         self, boats: Rows, body: Array, p: Array, on: Array, k: Array
     ) -> None:
-        """Fill rows of k (B, K) from rigid bodies (B, 6) and parameters (B, P)."""
+        """Fill the rows `boats` of k (B, K) with the mass matrices of several vessels.
+
+        They follow from rigid bodies (B, 6) and effect parameters (B, P).
+        """
 
     def settle_actuators_of_boats(self, boats: Rows, fleet: FleetArrays) -> None:
-        """Reset the actuators of vessels and let them reach their commands."""
+        """Set all actuators of the vessels with numbers `boats` to their steady state."""
 
     def advance_boats(self, boats: Rows, fleet: FleetArrays, dt: float, steps: int) -> None:
-        """Advance vessels by steps of dt [s] with their commands held."""
+        """Simulate several vessels over steps of dt [s] with their commands held."""
 
     def read_instruments_of_boats(self, boats: Rows, fleet: FleetArrays, felt: Array) -> None:
-        """Write time and readings of instruments without noise to rows of felt (B, 11)."""
+        """Write time and noiseless instrument readings of several vessels to felt (B, 11).
+
+        Only the rows `boats` are written.
+        """
 
     # Recordings
     def kalman_filter(
@@ -171,7 +194,7 @@ class CompiledProgram(Protocol):
         out: PassArrays,
         history: FilterHistory,
     ) -> float:
-        """Run one pass of the filter; return the log likelihood."""
+        """Run the Kalman filter once over a recording; return its log likelihood."""
 
     def smooth_states(
         self,
@@ -182,7 +205,10 @@ class CompiledProgram(Protocol):
         p: Array,
         on: Array,
     ) -> None:
-        """Smooth the means and covariances of a pass; fill the smoother's gains (N, NZ, NZ)."""
+        """Smooth the filtered means and covariances of a recording in place.
+
+        It is a fixed-interval smoother and fills its gains (N, NZ, NZ).
+        """
 
     def simulate_intervals(
         self,
@@ -194,16 +220,20 @@ class CompiledProgram(Protocol):
         states: Array,
         out: Array,
     ) -> None:
-        """Simulate from row starts[j] to ends[j] out of states[j] (2 NQ,).
+        """Simulate intervals of a recording from given states, under the recorded commands.
 
-        Fills out (runs, N, 2 NQ) with all channels as the recording would show them.
+        Run j extends from row starts[j] to row ends[j] and begins at states[j] (2 NQ,). Fills out
+        (runs, N, 2 NQ) with all channels as the recording would show them.
         """
 
     def remove_position_errors(self, z: Array, t: float, p: Array, on: Array) -> None:
-        """Replace positions z[:NQ], recorded t [s] after the first row, by those of the vessel."""
+        """Replace recorded positions z[:NQ] by the true ones, inverting the measurement errors.
+
+        They were recorded t [s] after the first row.
+        """
 
     def oscillating_force(self, p: Array, on: Array) -> OscillatingForce:
-        """The random oscillating force; frequency 0: none."""
+        """Return the model of the random oscillating force on the vessel; frequency 0: none."""
 
     # MuJoCo
     def add_passive_forces_in_place(
@@ -212,7 +242,7 @@ class CompiledProgram(Protocol):
         """Add the vessel's forces to f and its added inertia to M, in MuJoCo's coordinates."""
 
     def compile_passive_callback(self, offsets: dict[str, int], size: int) -> Any:
-        """Compile the passive-force callback for models whose `userdata` has `size` floats."""
+        """Compile MuJoCo's passive-force callback, for models with `size` floats of `userdata`."""
 
     def add_force_and_inertia_to_mujoco(
         self,
@@ -226,4 +256,7 @@ class CompiledProgram(Protocol):
         force: Array,
         M: Array,
     ) -> None:
-        """Add the passive force and the lower triangle of J' M J; `force` and `M` are MuJoCo's."""
+        """Add the vessel's passive force and added inertia J' M J to MuJoCo's arrays.
+
+        `force` and `M` are arrays of MuJoCo. Only the lower triangle of J' M J is added.
+        """

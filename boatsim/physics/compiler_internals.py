@@ -50,7 +50,7 @@ WITHOUT_REFERENCE_COUNTS: Mapping[str, Any] = {"_nrt": False}
 
 
 def register_with_numba(constructor: Callable[..., object], record: type) -> None:
-    """Let compiled code call a function that builds a named tuple with default values.
+    """Make a Python function that builds a named tuple with defaults callable from numba code.
 
     numba does not support defaults of named tuples, and a small compiled function in place of the
     constructor would be analysed again at every call. The constructor is therefore registered by
@@ -95,7 +95,7 @@ DIGEST_SIZE = sha256().digest_size  # bytes in front of each file of compiled co
 
 
 class SealedCacheFile(IndexDataCacheFile):
-    """Files with the compiled code of one function, each with a digest of its content.
+    """Cache files of numba's compiled code of one function, each with a digest of its content.
 
     A damaged file counts as missing. numba compares the content of the function's own file alone;
     here the content of all modules of boatsim that the file imports counts as well.
@@ -110,13 +110,16 @@ class SealedCacheFile(IndexDataCacheFile):
         return dependency_digest(self.source)
 
     def load(self, key: Any) -> Any:
-        """Return the compiled code of a signature, None if there is none that can be read."""
+        """Return the compiled code that is stored for a signature of the function, or None.
+
+        None means that there is no file, or that it cannot be read or is damaged.
+        """
         with suppress(Exception):  # a damaged pickle may raise any exception
             return super().load(key)
         return None
 
     def save(self, key: Any, data: Any) -> None:
-        """Write compiled code; if that fails, the next process compiles the function again."""
+        """Store compiled code in the cache; if that fails, the next process compiles it again."""
         try:
             super().save(key, data)
         except Exception:  # the index cannot be read: start another one
@@ -137,10 +140,10 @@ class SealedCacheFile(IndexDataCacheFile):
 
 
 def keep_on_disk(compiled: Any, function: Callable[..., Any]) -> Any:
-    """Give a dispatcher or C callback of numba a `SealedCacheFile`; return it.
+    """Make a function compiled by numba store its machine code on disk; return it.
 
     Args:
-        compiled: What numba made of `function`.
+        compiled: Dispatcher or C callback that numba made of `function`.
         function: The Python function.
     """
     compiled._cache = FunctionCache(function)
@@ -154,7 +157,10 @@ def keep_on_disk(compiled: Any, function: Callable[..., Any]) -> Any:
 
 
 class FunctionPointer:
-    """A compiled function of one signature as an argument of another compiled function."""
+    """Wrapper by which a compiled function is passed as an argument to another compiled function.
+
+    The passed function has one fixed signature.
+    """
 
     def __init__(self, function: Any, call: Any) -> None:
         """Compile `function` for the signature `call`, unless that was done before."""
@@ -168,7 +174,7 @@ class FunctionPointer:
 
     @property
     def kind(self) -> Any:
-        """The type that numba gives to the pointer."""
+        """The numba type of the function pointer."""
         return self._numba_type_
 
     def __wrapper_address__(self) -> int:
@@ -177,7 +183,7 @@ class FunctionPointer:
 
 @intrinsic
 def pointer_from_integer(context: Any, word: Any) -> Any:
-    """Return the pointer whose address is `word`."""
+    """Return, in compiled code, the pointer to the memory address that an integer contains."""
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         return builder.inttoptr(arguments[0], cgutils.voidptr_t)
@@ -186,7 +192,7 @@ def pointer_from_integer(context: Any, word: Any) -> Any:
 
 
 def compile_callback(function: Callable[..., Any]) -> Any:
-    """Return a C function of two pointers without a result, with its compiled code kept on disk."""
+    """Compile a function of two pointers without a result to a C function, cached on disk."""
     options = {"nopython": True, "error_model": "numpy"}
     signature = ((types.voidptr, types.voidptr), types.void)
     native = keep_on_disk(CFunc(function, signature, {}, options), function)
@@ -212,7 +218,7 @@ PROBE_MODELS = (
 
 @cache
 def mujoco_layout() -> dict[str, int]:
-    """Find where MuJoCo's structs hold the fields that the native callback needs.
+    """Return the memory offsets of those fields of MuJoCo's structs that the callback needs.
 
     No header file is needed: Python knows the addresses of the arrays of mjData, and the struct is
     searched for them.
@@ -287,7 +293,7 @@ def _offset_of_nuserdata() -> int:
 
 @cache
 def load_mujoco_symbols() -> None:
-    """Let compiled code call functions of MuJoCo's own library by name.
+    """Load MuJoCo's shared library, so that compiled code can call its functions by name.
 
     Raises:
         BadPhysics: The package of MuJoCo holds no library.

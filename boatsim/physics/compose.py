@@ -22,7 +22,10 @@ from boatsim.physics.vessel import Vessel
 
 
 def effect_kinds() -> list[type[EffectKind]]:
-    """Return all kinds of effects, one for each file of `boatsim/physics/kinds`."""
+    """Return the base classes of all kinds of effects (force, inertia, channel, ...).
+
+    There is one for each file of `boatsim/physics/kinds`.
+    """
     found: list[type[EffectKind]] = []
     for name in library_names("kind"):
         module = import_library_module("kind", name)
@@ -38,7 +41,11 @@ def effect_kinds() -> list[type[EffectKind]]:
 
 
 class Composition:
-    """Places of each effect's parameters, signals and states in the flat arrays of a program."""
+    """Composes the source of a vessel's program that calls the laws of all its effects.
+
+    It assigns to each effect's parameters, signals and states their indices in the program's flat
+    arrays.
+    """
 
     def __init__(self, vessel: Vessel, effects: Sequence[Effect], offsets: Sequence[int]) -> None:
         """Assign places to signals and states.
@@ -66,10 +73,12 @@ class Composition:
     # ------------------------------------------------------------------------------------------
 
     def law_calls(self, number: int) -> Sequence[LawCall]:
-        """Return the calls of an effect's laws: one, or one for each effect that it acts on.
+        """Return the source texts of the calls to an effect's law in the generated program.
+
+        There is one call, or one for each instance of the other effect on which it acts.
 
         Args:
-            number: Place of the effect.
+            number: Index of the effect in the program.
         """
         effect = self.effects[number]
         own = self._parameters_text(number)
@@ -87,44 +96,48 @@ class Composition:
         return calls
 
     def target_actuators(self, number: int) -> Sequence[str]:
-        """Return the actuators that a channel effect acts on.
+        """Return the names of the actuators whose signals a given channel effect changes.
 
         Args:
-            number: Place of the effect.
+            number: Index of the effect in the program.
         """
         return self.vessel.target_actuators(self.effects[number])
 
     def command_for_actuator(self, number: int, actuator: str) -> str | None:
-        """Return the command that drives an actuator through a channel effect, or None.
+        """Return the raw command that feeds an actuator through a channel effect, or None.
+
+        An example is the PWM command from which a drive curve computes the thrust.
 
         Args:
-            number: Place of the effect.
+            number: Index of the effect in the program.
             actuator: Name of the actuator.
         """
         return self.vessel.command_for_actuator(self.effects[number], actuator)
 
     def side(self, actuator: str) -> float:
-        """Return the side on which an actuator acts: -1 port, 0 middle, +1 starboard.
+        """Return the side of the hull on which an actuator acts: -1 port, 0 middle, +1 starboard.
 
         Args:
-            actuator: Its name.
+            actuator: Name of the actuator.
         """
         return self.vessel.side(actuator)
 
     def memory_offset(self, number: int, actuator: str) -> int:
-        """Return the place of the first state that an effect has of an actuator.
+        """Return the index in the program's memory array of an effect's state for one actuator.
 
         Args:
-            number: Place of the effect.
+            number: Index of the effect in the program.
             actuator: Name of the actuator.
         """
         return self._memory_offsets[number, actuator]
 
     def history_place(self, number: int) -> int:
-        """Return the place in `law_signals` of the lagged signal of an effect; 0 if it has none.
+        """Return the index in `law_signals` of the past signal value that an effect uses.
+
+        It is 0 for an effect that uses none.
 
         Args:
-            number: Place of the effect.
+            number: Index of the effect in the program.
         """
         return self._own.get(number, 0)
 
@@ -136,10 +149,10 @@ class Composition:
         return number >= len(self.vessel.effects) or effect.uses_history
 
     def later_effects(self, number: int) -> Sequence[int]:
-        """Return the places of the effects that follow an effect in the program.
+        """Return the indices of the effects that are evaluated after a given effect.
 
         Args:
-            number: Place of the effect.
+            number: Index of the effect in the program.
         """
         return self._effect_order[self._effect_order.index(number) + 1 :]
 
@@ -150,7 +163,7 @@ class Composition:
 
     @cached_property
     def memory_size(self) -> int:
-        """Number of states of all channels and of all lags."""
+        """Number of floats that hold the state of all actuators and signal lags of the program."""
         size = len(self._own)
         for i, effect in enumerate(self.effects):
             if isinstance(effect, ChannelEffect):
@@ -211,7 +224,7 @@ class Composition:
     # ------------------------------------------------------------------------------------------
 
     def source_text(self) -> str:
-        """Return the text of `laws.py`."""
+        """Return the generated Python source of `laws.py`, which calls the laws of all effects."""
         functions: list[str] = []
         used: set[str] = set()
         constants = [f"HELD, MEMORY = {max(len(self.law_signals), 1)}, {max(self.memory_size, 1)}"]
@@ -299,9 +312,10 @@ def _called_functions(line: str) -> Iterator[str]:
 
 
 def effect_classes(addresses: Sequence[str]) -> list[type[Effect]]:
-    """Return the classes of effects, for use in generated programs.
+    """Return the classes of effects with given addresses, for use in generated programs.
 
     Args:
-        addresses: Their addresses (`content.effect_address`).
+        addresses: Name of each effect in the library, or path of its file
+            (`content.effect_address`).
     """
     return [load_class("effect", a) for a in addresses]

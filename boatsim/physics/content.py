@@ -43,16 +43,17 @@ USER_FOLDERS = {
 
 @cache
 def content_root() -> Path:
-    """Return the folder of models/, controllers/ and scenarios/."""
+    """Return the folder that contains the shipped models/, controllers/ and scenarios/."""
     package = Path(__file__).parents[1]
     packed = package / "_content"
     return packed if packed.is_dir() else package.parent
 
 
 def library_names(kind: str) -> list[str]:
-    """Return the names of all content of a kind in the library.
+    """Return the names of all shipped vessels, or of all shipped content of another kind.
 
-    Scenarios are folder/file or folder/case.
+    Kinds are, for example, "vessel", "controller", "scenario" and "effect". Scenarios have names of
+    the form folder/file or folder/case.
     """
     if kind == "effect":
         return sorted(_effect_files())
@@ -85,7 +86,7 @@ def _effect_files() -> dict[str, str]:
 
 
 def user_names(kind: str) -> list[str]:
-    """Return the names of content of a kind that the user's folders add to the library."""
+    """Return the names of vessels, effects or other content that the user's own folders add."""
     found: set[str] = set()
     for folder in trust.user_content_folders() if kind in USER_FOLDERS else ():
         inside = folder / USER_FOLDERS[kind]
@@ -100,12 +101,15 @@ def user_names(kind: str) -> list[str]:
 
 
 def all_names(kind: str) -> list[str]:
-    """Return the names of all content of a kind, of the library and of the user."""
+    """Return the names of all vessels, or of all content of another kind.
+
+    Both shipped content and that of the user's own folders count.
+    """
     return sorted([*library_names(kind), *user_names(kind)])
 
 
 def full_scenario_name(kind: str, name: str) -> str:
-    """Return folder/name of a scenario that is given by its bare name.
+    """Return the full name folder/name of a scenario that is given by its bare name.
 
     Any other name is returned unchanged.
 
@@ -121,7 +125,9 @@ def full_scenario_name(kind: str, name: str) -> str:
 
 
 def find_content_file(kind: str, name: str, base_folder: Path | None = None) -> Path:
-    """Return the path of a vessel.toml, a controller's .py or a scenario's .toml.
+    """Return the path of the file that defines a vessel, a controller or a scenario.
+
+    It is a vessel.toml, a controller's .py or a scenario's .toml.
 
     Args:
         kind: "vessel", "controller" or "scenario".
@@ -213,7 +219,7 @@ def _cases(path: Path, _modified_ns: int) -> tuple[str, ...]:
 
 
 def import_module_file(path: Path, name: str) -> ModuleType:
-    """Import a file under a module name, or return the module of that name.
+    """Import a Python file as a module of a given name; a module imported before is returned.
 
     Args:
         path: The Python file.
@@ -247,17 +253,17 @@ def _line_of(error: BaseException, path: Path) -> str:
 
 
 def camel_case(name: str) -> str:
-    """Return the class name of a file name: fan_wind -> FanWind."""
+    """Return the Python class name that belongs to a file name: fan_wind -> FanWind."""
     return "".join(word.capitalize() for word in name.split("_"))
 
 
 def snake_case(name: str) -> str:
-    """Return the name in files of a class: FanWind -> fan_wind."""
+    """Return the file name that belongs to a Python class name: FanWind -> fan_wind."""
     return re.sub(r"(?<!^)(?=[A-Z])", "_", name).lower()
 
 
 def import_library_module(kind: str, name: str) -> ModuleType:
-    """Return the module of this package that defines content of a kind."""
+    """Return the module of boatsim that defines an effect, sensor or other content by name."""
     file = _effect_files()[name] if kind == "effect" else name
     return importlib.import_module(f"boatsim.{PACKAGES[kind]}.{file}")
 
@@ -265,9 +271,9 @@ def import_library_module(kind: str, name: str) -> ModuleType:
 def load_class(
     kind: str, name: str, base_folder: Path | None = None, named: bool = False
 ) -> type[Any]:
-    """Return the class of an effect, measure, sensor or controller.
+    """Return the Python class of an effect, measure, sensor or controller with a given name.
 
-    Its name is the file's in CamelCase.
+    The name of the class is that of its file in CamelCase.
 
     Args:
         kind: "effect", "measure", "sensor" or "controller".
@@ -313,14 +319,21 @@ def _user_file(kind: str, name: str, base_folder: Path | None) -> Path:
 
 
 def effect_address(effect: type) -> str:
-    """Return the name of an effect class of the library, or the path of the file of another."""
+    """Return the text by which a file refers to the class of an effect.
+
+    It is the name of an effect of the library, or else the path of the file that defines the
+    effect.
+    """
     if effect.__module__.startswith("boatsim.physics.effects."):
         return snake_case(effect.__name__)
     return str(Path(sys.modules[effect.__module__].__file__ or "").resolve())
 
 
 def vessel_address(file: Path) -> str:
-    """Return the name of a shipped vessel, or the absolute path of another vessel.toml."""
+    """Return the text by which a saved file refers to a vessel.
+
+    It is the name of a shipped vessel, or the absolute path of another vessel.toml.
+    """
     if file.parent.parent == content_root() / KINDS["vessel"]:
         return file.parent.name
     return str(file.resolve())

@@ -25,7 +25,9 @@ if DEBUG:
 
 
 def python_function(function: Any) -> Callable[..., Any]:
-    """Return the Python function of a compiled one; in debug mode the function itself.
+    """Return the Python function from which numba compiled a given function.
+
+    In debug mode nothing is compiled, and the function itself is returned.
 
     Args:
         function: A function under one of the decorators of `boatsim.physics.kernel.compiling` or of
@@ -36,7 +38,9 @@ def python_function(function: Any) -> Callable[..., Any]:
 
 
 def is_compiled(function: Any) -> bool:
-    """Return whether numba compiles a function; in debug mode whether it is a function.
+    """Return whether an object is a function compiled by numba.
+
+    In debug mode, where nothing is compiled, return whether it is a function.
 
     Args:
         function: Any object.

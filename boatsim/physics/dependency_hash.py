@@ -10,7 +10,7 @@ PACKAGE = Path(__file__).parents[1]
 
 @cache
 def dependency_digest(path: Path) -> str:
-    """Return a digest of a file and of all files of boatsim that it reaches by imports.
+    """Return a hash of a Python file and of all boatsim files that it imports, also indirectly.
 
     Args:
         path: A Python file.
@@ -23,7 +23,9 @@ def dependency_digest(path: Path) -> str:
 
 @cache
 def file_content(path: Path) -> bytes:
-    """Return the content that a file had at the first call, as for an imported module.
+    """Return the content of a file as it was when this process first asked for it.
+
+    So the content agrees with the imported module even if the file has changed since.
 
     Args:
         path: The file.
@@ -33,7 +35,7 @@ def file_content(path: Path) -> bytes:
 
 @cache
 def imported_files(path: Path) -> frozenset[Path]:
-    """Return a file and all files of boatsim that it imports, directly or indirectly.
+    """Return the paths of a Python file and of all boatsim files that it imports, also indirectly.
 
     Args:
         path: A Python file, of boatsim or of a user.

@@ -18,7 +18,10 @@ LITTLE = 0.01
 
 @dataclass(frozen=True)
 class SymbolicTerm(Force, SignalHistory):
-    """One term of a law: a coefficient times up to three factors and a course in time."""
+    """Base class of effects found by symbolic regression: one term of a force law.
+
+    The term is a coefficient times up to three factors of the state and a function of time.
+    """
 
     described: ClassVar[bool] = True
     sees_held: ClassVar[bool] = True
@@ -82,11 +85,11 @@ class SymbolicTerm(Force, SignalHistory):
 
     @property
     def uses_history(self) -> bool:
-        """Whether one of its factors is the history of a signal."""
+        """Whether one of the term's factors uses past values of an actuator signal."""
         return self.has_value("memory") and "memory" not in self.filled
 
     def derived_parameters(self, vessel: Boat) -> dict[str, float]:
-        """Return the numbers that stand for names in the compiled law.
+        """Return the numbers that stand for factor names in a regression term's compiled law.
 
         Args:
             vessel: The vessel.
@@ -116,11 +119,17 @@ class SymbolicTerm(Force, SignalHistory):
         }
 
     def law_parameters(self) -> dict[str, float]:
-        """Return the parameters of the compiled law by name, without the coefficient."""
+        """Return the parameters of a regression term's compiled law by name.
+
+        The coefficient is not among them.
+        """
         return {n: getattr(self, n) for n in type(self).params() if n != "coefficient"}
 
     def fixed_settings(self) -> dict[str, object]:
-        """Return the keys of its table that describe the law, without those that it ignores."""
+        """Return the settings that define the form of a regression term, which no fit changes.
+
+        Keys that have no influence are omitted.
+        """
         found: dict[str, object] = {"of": list(self.of), "acts": self.acts}
         if self.acts != "always":
             found |= {"begin": self.begin, "end": self.end}

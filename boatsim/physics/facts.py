@@ -29,7 +29,7 @@ FIXES = ("camera", "gnss", "tracking", "inertial")
 
 
 def describe_fact(fact: str) -> str:
-    """Return the description of a fact for a report.
+    """Return a description in words of a fact about a recording, such as `still_water`.
 
     Args:
         fact: Key of the fact.
@@ -38,11 +38,13 @@ def describe_fact(fact: str) -> str:
 
 
 def excluding_fact(by: Mapping[str, tuple[object, ...]], facts: Mapping[str, object]) -> str:
-    """Return the fact that excludes an effect, as it is written in a file; "" if none does.
+    """Return the fact that rules out an effect, as "fact = value", or "" if none does.
+
+    An example is `indoors = true`, which rules out wind.
 
     Args:
         by: Values that exclude the effect, by fact (`Effect.ruled_out_by`).
-        facts: The facts of a run or vessel.
+        facts: The facts of a recording or vessel.
     """
     for fact, values in by.items():
         if fact in facts and facts[fact] in values:
@@ -52,10 +54,10 @@ def excluding_fact(by: Mapping[str, tuple[object, ...]], facts: Mapping[str, obj
 
 
 def first_invalid(facts: Mapping[str, object]) -> tuple[str, str] | None:
-    """Return the first fact with an invalid value and what is allowed, or None.
+    """Return the first fact with an invalid value and a description of what is allowed, or None.
 
     Args:
-        facts: The facts of a run or vessel.
+        facts: The facts of a recording or vessel.
     """
     if WALLS in facts and not _are_walls(facts[WALLS]):
         return WALLS, "[x_low, x_high, y_low, y_high], four numbers, each low below its high"

@@ -37,7 +37,7 @@ PLAIN_TYPES = (types.Number, types.Boolean, types.Array, types.StringLiteral, ty
 
 
 class RememberingContext(Context):
-    """numba's typing context, with a memory of the types of operators and builtin functions."""
+    """numba's typing context with a cache for result types of operators and builtin functions."""
 
     __slots__ = ("_resolved",)
 
@@ -47,7 +47,10 @@ class RememberingContext(Context):
         self._resolved: dict[Any, Any] = {}
 
     def resolve_function_type(self, func: Any, args: Any, kws: Any) -> Any:
-        """Return the signature of a call, from memory if all arguments are plain."""
+        """Return the type signature of a call during numba's type inference.
+
+        It is taken from a cache if all arguments are numbers, arrays or tuples of these.
+        """
         if kws or isinstance(func, types.Dispatcher) or not all(map(is_plain, args)):
             return super().resolve_function_type(func, args, kws)
         key = (func, tuple(args))
@@ -60,7 +63,7 @@ class RememberingContext(Context):
 
 
 def is_plain(kind: Any) -> bool:
-    """Return whether a type is a number, an array, or a tuple of these."""
+    """Return whether a numba type is a number, an array, or a tuple of these."""
     if isinstance(kind, types.BaseTuple):
         return all(map(is_plain, kind))
     return isinstance(kind, PLAIN_TYPES)
@@ -68,7 +71,7 @@ def is_plain(kind: Any) -> bool:
 
 @cache
 def remembering(context: Context) -> RememberingContext:
-    """Return the context with a memory that belongs to one of numba's contexts."""
+    """Return numba's typing context extended by a cache; one extension per original context."""
     return RememberingContext(context)
 
 
@@ -77,7 +80,10 @@ def remembering(context: Context) -> RememberingContext:
 
 
 class InnerLibrary(JITCodeLibrary):
-    """LLVM code of one function for linking into its callers, without machine code of its own."""
+    """LLVM code of one compiled function for linking into its callers.
+
+    It has no machine code of its own.
+    """
 
     def _optimize_final_module(self) -> None:
         """Run the inexpensive passes only; the callers are optimised with what they call."""
@@ -97,12 +103,12 @@ class InnerLibrary(JITCodeLibrary):
 
 @register_pass(mutates_CFG=True, analysis_only=False)
 class InnerLowering(NativeLowering):
-    """Lowers a function to an `InnerLibrary`."""
+    """Compiler pass that translates a function to LLVM code for linking into its callers."""
 
     _name = "inner_native_lowering"
 
     def run_pass(self, state: Any) -> bool:
-        """Lower the function, and register it for calls from compiled code."""
+        """Translate a function to LLVM code and register it for calls from compiled code."""
         state.library = state.targetctx.codegen().create_library(state.func_id.func_qualname)
         state.library.__class__ = InnerLibrary
         state.flags.no_compile = True
@@ -120,22 +126,28 @@ class InnerLowering(NativeLowering):
 
 
 class QuickCompiler(CompilerBase):
-    """numba's compiler with a `RememberingContext`."""
+    """numba compiler that uses a cache of operator types to infer types faster."""
 
     def __init__(self, typingctx: Context, *args: Any) -> None:
         """Take the arguments of numba's compiler."""
         super().__init__(remembering(typingctx), *args)
 
     def define_pipelines(self) -> list[Any]:
-        """Return the passes."""
+        """Return the compiler passes of numba, with a typing context that caches operator types."""
         return [DefaultPassBuilder.define_nopython_pipeline(self.state)]
 
 
 class InnerCompiler(QuickCompiler):
-    """Compiler of inner functions."""
+    """numba compiler of functions in the form that other compiled functions call.
+
+    The result is LLVM code that is linked into the callers.
+    """
 
     def define_pipelines(self) -> list[Any]:
-        """Return the passes, with `InnerLowering` in place of numba's."""
+        """Return numba's compiler passes, of which the last one translates to linkable LLVM code.
+
+        Functions so compiled are linked into their callers.
+        """
         (manager,) = super().define_pipelines()
         for place, (one, about) in enumerate(manager.passes):
             if one is NativeLowering:
@@ -150,7 +162,7 @@ class InnerCompiler(QuickCompiler):
 
 
 class OuterCompiler:
-    """Makes the outer form of a function from its inner one."""
+    """Compiler of the wrapper by which Python calls a function that exists as LLVM code."""
 
     def __init__(self, inner: CPUDispatcher, releases_gil: bool) -> None:
         """Take the dispatcher of the inner form.
@@ -164,7 +176,7 @@ class OuterCompiler:
         self.fold_argument_types = inner._compiler.fold_argument_types
 
     def compile(self, args: Any, return_type: Any) -> CompileResult:
-        """Return the wrapper for calls from Python and the one for calls by address.
+        """Compile the wrappers of a function for calls from Python and for calls by address.
 
         Args:
             args: Types of the arguments.
@@ -187,25 +199,25 @@ class OuterCompiler:
 
 
 class TwoFormFunction(CPUDispatcher):
-    """A compiled function whose inner form compiled code calls, and Python the outer one."""
+    """A compiled function in two forms: LLVM code for compiled callers, a wrapper for Python."""
 
     inner: CPUDispatcher
 
     def get_call_template(self, args: Any, kws: Any) -> Any:
-        """Return the typing of a call from compiled code."""
+        """Return numba's typing information for a call of this function from compiled code."""
         return self.inner.get_call_template(args, kws)
 
     def get_overload(self, sig: Any) -> Any:
-        """Return what identifies the inner form of a signature."""
+        """Return the key of the LLVM code that compiled callers with a given signature link."""
         return self.inner.get_overload(sig)
 
 
 def compile_both_forms(function: Callable[..., Any], options: Mapping[str, Any]) -> Any:
-    """Return a compiled function with an inner and an outer form.
+    """Compile a Python function in two forms: LLVM code for compiled callers, a wrapper for Python.
 
     Args:
         function: The Python function.
-        options: Options of `njit`.
+        options: Options of numba's `njit`.
     """
     outer = njit(**options)(function)
     if not isinstance(outer, CPUDispatcher):  # compiling is switched off

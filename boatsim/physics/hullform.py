@@ -20,7 +20,10 @@ AROUND = 20  # points around a rounded body
 
 @dataclass(frozen=True)
 class DeepV:
-    """Lines of a hard-chine hull with constant deadrise up to `parallel`, warped forward of it."""
+    """Lines (keel, chine, sheer) of a hard-chine planing hull.
+
+    Its deadrise is constant up to `parallel` and increases (warp) forward of it.
+    """
 
     length: float = 1.2  # [m] Bayless 2017, table 27
     beam: float = 0.30  # [m] same
@@ -38,7 +41,7 @@ class DeepV:
     chine_end: float = 0.95  # [-] where the chine runs into the stem
 
     def forebody_fraction(self, s: Array) -> Array:
-        """Return 0 up to the end of the parallel body, rising from there to 1 at the bow.
+        """Return a shape function of a hull: 0 along the parallel body, rising to 1 at the bow.
 
         Args:
             s: Place along the hull, 0 at the transom, 1 at the bow.
@@ -46,7 +49,7 @@ class DeepV:
         return np.clip((s - self.parallel) / (1 - self.parallel), 0, 1)
 
     def keel_height(self, s: Array) -> Array:
-        """Return the height of the keel and stem [m].
+        """Return the height of the hull's keel and stem above the waterline [m].
 
         Args:
             s: Place along the hull, 0 at the transom, 1 at the bow.
@@ -59,7 +62,7 @@ class DeepV:
         )
 
     def chine_points(self, s: Array) -> tuple[Array, Array]:
-        """Return half-breadth and height of the chine [m].
+        """Return half-breadth and height of the hull's chine [m].
 
         Args:
             s: Place along the hull, 0 at the transom, 1 at the bow.
@@ -70,7 +73,7 @@ class DeepV:
         return half, self.keel_height(s) + half * rise
 
     def sheer_points(self, s: Array) -> tuple[Array, Array]:
-        """Return half-breadth and height of the deck edge [m].
+        """Return half-breadth and height of the hull's deck edge [m].
 
         Args:
             s: Place along the hull, 0 at the transom, 1 at the bow.
@@ -81,28 +84,30 @@ class DeepV:
         return half, self.freeboard + (self.stem_height - self.freeboard) * rise
 
     def station_positions(self, count: int = 49) -> Array:
-        """Return places along the hull (count,), closer to each other towards the bow.
+        """Return relative positions (count,) of sections along the hull, denser towards the bow.
+
+        0 is the transom and 1 the bow.
 
         Args:
-            count: Number of places.
+            count: Number of sections.
         """
         return np.sin(np.linspace(0, math.pi / 2, count))
 
 
 @dataclass
 class Mesh:
-    """A mesh of triangles; surfaces share no vertices, so that their edges are sharp."""
+    """Triangle mesh of a boat part; surfaces share no vertices, so that their edges are sharp."""
 
     points: list[Array] = field(default_factory=list)
     faces: list[tuple[int, int, int]] = field(default_factory=list)
 
     def add_surface(self, grid: Array, *, flip: bool = False) -> None:
-        """Add the surface through a grid of points.
+        """Add to the mesh the surface through a grid of points.
 
         Args:
-            grid: (rows, columns, 3). With the columns upwards, the outside is to the left along the
-                rows.
-            flip: The outside is to the right.
+            grid: Points (rows, columns, 3). With the columns upwards, the outside is to the left
+                along the rows.
+            flip: Whether the outside is to the right instead.
         """
         rows, columns, _ = grid.shape
         start = sum(len(p) for p in self.points)
@@ -114,16 +119,16 @@ class Mesh:
                     self.faces.append(corners if flip else corners[::-1])
 
     def add_surface_and_mirror(self, grid: Array) -> None:
-        """Add a surface of the port side (y > 0) and its mirror image.
+        """Add to the mesh a surface on the port side (y > 0) and its mirror image to starboard.
 
         Args:
-            grid: (rows, columns, 3).
+            grid: Points (rows, columns, 3) of the surface.
         """
         self.add_surface(grid)
         self.add_surface(grid * (1, -1, 1), flip=True)
 
     def add_closed_body(self, rings: Sequence[Array]) -> None:
-        """Add a closed body.
+        """Add to the mesh a closed body that passes through rings of points, with end caps.
 
         Args:
             rings: Rings (n, 3) through which it passes, counter-clockwise seen against their order.
@@ -136,7 +141,7 @@ class Mesh:
             )
 
     def obj_text(self, about: str) -> str:
-        """Return the mesh as text of an OBJ file, without triangles of zero area.
+        """Return the mesh as text of a Wavefront OBJ file, without triangles of zero area.
 
         Args:
             about: Comment in the first line.
@@ -150,11 +155,11 @@ class Mesh:
 
 
 def ruled_surface(a: Array, b: Array, rows: int) -> Array:
-    """Return the ruled surface (n, rows, 3) between two curves.
+    """Return the points (n, rows, 3) of the ruled surface between two curves of n points.
 
     Args:
-        a: (n, 3).
-        b: (n, 3).
+        a: Points (n, 3) of the first curve.
+        b: Points (n, 3) of the second curve.
         rows: Points from one curve to the other.
     """
     t = np.linspace(0, 1, rows)[None, :, None]
@@ -162,17 +167,17 @@ def ruled_surface(a: Array, b: Array, rows: int) -> Array:
 
 
 def curve_points(x: Array, y: Array | float, z: Array | float) -> Array:
-    """Return the points (n, 3) of a curve from their coordinates, (n,) or scalar."""
+    """Return an array (n, 3) of the points of a curve, from coordinates that are (n,) or scalar."""
     return np.stack(np.broadcast_arrays(x, y, z), axis=-1).astype(float)
 
 
 def rounded_rectangle(
     centre: Sequence[float], half: tuple[float, float], power: float = 2.0, axis: str = "z"
 ) -> Array:
-    """Return the points (n, 3) of a rounded rectangle.
+    """Return the points (n, 3) of a rounded rectangle (superellipse) in space.
 
     Args:
-        centre: (3,) its centre.
+        centre: Its centre (3,).
         half: Half of its width and height.
         power: 2: ellipse; larger: closer to a rectangle.
         axis: Normal of its plane, "x" or "z".
@@ -188,7 +193,7 @@ def rounded_rectangle(
 
 
 def hull_mesh(hull: DeepV) -> Mesh:
-    """Return bottom, topsides and transom of a hull."""
+    """Return a mesh of the bottom, topsides and transom of a hull, for drawing."""
     s = hull.station_positions()
     x = s * hull.length
     chine_half, chine_z = hull.chine_points(s)
@@ -208,7 +213,7 @@ def hull_mesh(hull: DeepV) -> Mesh:
 
 
 def deck_mesh(hull: DeepV) -> Mesh:
-    """Return foredeck, side decks, cockpit, and a stripe below the deck edge of a hull."""
+    """Return a mesh of foredeck, side decks, cockpit, and a stripe below the deck edge."""
     s = np.unique(np.concatenate([hull.station_positions(), [0.04, 0.0401, 0.56, 0.5601]]))
     half, z = hull.sheer_points(s)
     x = s * hull.length
@@ -230,7 +235,7 @@ def deck_mesh(hull: DeepV) -> Mesh:
 
 
 def fittings_mesh() -> Mesh:
-    """Return console, seats and windscreen frame."""
+    """Return a mesh of a small motor boat's console, seats and windscreen frame."""
     mesh = Mesh()
     console = ((0.0, 0.045), (0.06, 0.045), (0.075, 0.034), (0.1, 0.02))
     mesh.add_closed_body(
@@ -256,7 +261,7 @@ def fittings_mesh() -> Mesh:
 
 
 def outboard_cowl_mesh() -> Mesh:
-    """Return the cover of the motor; origin on the steering axis at the waterline."""
+    """Return a mesh of an outboard motor's cover; origin on the steering axis at the waterline."""
     mesh = Mesh()
     levels = ((0.062, 0.75), (0.068, 0.93), (0.085, 1.0), (0.11, 0.98), (0.128, 0.88), (0.137, 0.6))
     mesh.add_closed_body(
@@ -269,7 +274,10 @@ def outboard_cowl_mesh() -> Mesh:
 
 
 def outboard_leg_mesh() -> Mesh:
-    """Return leg, cavitation plate, gear case, skeg and a propeller of three blades."""
+    """Return a mesh of an outboard motor below its cover, with a propeller of three blades.
+
+    It contains leg, cavitation plate, gear case and skeg.
+    """
     mesh = Mesh()
     strut = ((-0.055, 0.017), (0.0, 0.018), (0.064, 0.026))
     mesh.add_closed_body(
@@ -300,7 +308,9 @@ def outboard_leg_mesh() -> Mesh:
 
 
 def propeller_blade(turn: float) -> Array:
-    """Return one propeller blade (4, 3, 3), its pitch angle decreasing towards the tip.
+    """Return the surface points (4, 3, 3) of one propeller blade, for drawing.
+
+    Its pitch angle decreases towards the tip.
 
     Args:
         turn: Angle about the shaft [rad].
@@ -321,7 +331,10 @@ def propeller_blade(turn: float) -> Array:
 
 
 def collision_mesh(hull: DeepV) -> Mesh:
-    """Return a convex prism of few vertices around the deck edge, for contacts with walls."""
+    """Return a mesh for contacts with walls: a convex prism around the deck edge of a hull.
+
+    It has few vertices.
+    """
     s = np.array([0.0, 0.4, 0.6, 0.75, 0.87, 0.95, 1.0])
     half, _ = hull.sheer_points(s)
     plan = np.vstack(
@@ -336,7 +349,7 @@ def collision_mesh(hull: DeepV) -> Mesh:
 
 
 def obj_texts() -> dict[str, str]:
-    """Return the text of each OBJ file of the boat, by file name."""
+    """Return the text of each OBJ mesh file of the example motor boat, by file name."""
     hull = DeepV()
     parts = {
         "shell": hull_mesh(hull),
@@ -353,7 +366,7 @@ def obj_texts() -> dict[str, str]:
 
 
 def main(arguments: Iterable[str]) -> None:
-    """Write the meshes into folders.
+    """Write the OBJ mesh files of the example motor boat into folders.
 
     Args:
         arguments: The folders.

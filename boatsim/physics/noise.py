@@ -10,18 +10,22 @@ REALISATIONS = 1_000_000_000
 
 
 def seeded_realisation(realisation: float, seed: int) -> float:
-    """Return the number of the realisation that a scenario's seed gives an effect.
+    """Return the number of an effect's random realisation under the seed of a scenario.
+
+    The number selects a sequence of random numbers.
 
     Args:
-        realisation: The effect's own number, that of seed 0.
-        seed: The scenario's seed.
+        realisation: The effect's own number, used unchanged with seed 0.
+        seed: Seed of the scenario.
     """
     return float(1 + (int(realisation) - 1 + seed) % REALISATIONS)
 
 
 @njit(inline="always")
 def uniform_random(realisation: float, k: int) -> float:
-    """Return number k of a sequence, uniform in [0, 1) (SplitMix; G. Steele et al., OOPSLA 2014).
+    """Return number k of a reproducible random sequence, uniform in [0, 1).
+
+    The generator is SplitMix (G. Steele et al., OOPSLA 2014).
 
     Args:
         realisation: Number of the sequence.
@@ -37,10 +41,11 @@ def uniform_random(realisation: float, k: int) -> float:
 
 @njit(inline="always")
 def random_spectral_line(share: float, damping: float) -> tuple[float, float]:
-    """Return a frequency of filtered white noise and its weight in the energy.
+    """Return the frequency of one cosine that samples a narrow-band spectrum, and its weight.
 
-    In the variable a = w - 1 / w the spectrum is a Lorentz line times 1 + a / sqrt(a^2 + 4), whose
-    second part is odd. The weight is that factor.
+    The frequency is relative to that of the second-order filter that shapes the noise; the weight
+    is a factor of its energy. In the variable a = w - 1 / w the spectrum is a Lorentz line times 1
+    + a / sqrt(a^2 + 4), whose second part is odd. The weight is that factor.
 
     Args:
         share: Share of the line below the frequency less a half, in (-1/2, 1/2).
@@ -55,11 +60,11 @@ def random_spectral_line(share: float, damping: float) -> tuple[float, float]:
 def narrow_band_noise(
     t: float, frequency: float, damping: float, realisation: float, channel: float, count: float
 ) -> float:
-    """Return narrow-band noise with unit variance, as a sum of cosines.
+    """Return the value at one time of narrow-band noise with unit variance.
 
-    The line is divided into equal parts, and each contributes one cosine of random frequency and
-    phase. Whole numbers are floats here: numba would compile the function again for each integer
-    constant.
+    The noise is a sum of cosines: the spectral line of the filter is divided into equal parts, and
+    each contributes one cosine of random frequency and phase. Whole numbers are floats here: numba
+    would compile the function again for each integer constant.
 
     Args:
         t: Time [s].

@@ -14,7 +14,7 @@ UNSET = math.nan
 
 
 class Param(NamedTuple):
-    """Attributes of a parameter: bounds, unit, description, and how a diagnosis may fit it."""
+    """Declaration of an effect's parameter: bounds, unit, description, and how it may be fitted."""
 
     low: float
     high: float
@@ -55,7 +55,7 @@ def param(
     how: str = "sets",
     within: tuple[float, float] = (-math.inf, math.inf),
 ) -> N:
-    """Return the dataclass field of a checked number.
+    """Declare a parameter of an effect, as a dataclass field with bounds, unit and description.
 
     Args:
         nominal: Default value; it may be UNSET.
@@ -92,13 +92,15 @@ def factor_parameter(
     low: float = 0.1,
     high: float = 5.0,
 ) -> float:
-    """Return the field of a `CoefficientRelease` that multiplies numbers of the vessel.
+    """Declare a parameter that multiplies numbers of the vessel, such as a damping coefficient.
+
+    It belongs to a `CoefficientRelease`, the hypothesis that these numbers are wrong.
 
     Args:
         releases: The numbers, "linear_damping.surge" for example.
         words: Description.
         spread: Prior sd.
-        axis: Degree of freedom that it belongs to.
+        axis: Degree of freedom that the parameter belongs to.
         low: Lower bound.
         high: Upper bound.
     """
@@ -127,7 +129,9 @@ def shift_parameter(
     axis: str = "",
     within: tuple[float, float] = (-math.inf, math.inf),
 ) -> float:
-    """Return the field of a `CoefficientRelease` that is added to numbers of the vessel.
+    """Declare a parameter that is added to numbers of the vessel, such as a lever arm.
+
+    It belongs to a `CoefficientRelease`, the hypothesis that these numbers are wrong.
 
     Args:
         releases: The numbers, "body.centre" for example.
@@ -136,7 +140,7 @@ def shift_parameter(
         spread: Prior sd.
         low: Lower bound.
         high: Upper bound.
-        axis: Degree of freedom that it belongs to.
+        axis: Degree of freedom that the parameter belongs to.
         within: Plausible range of a fit.
     """
     return param(
@@ -164,7 +168,9 @@ def replacement_parameter(
     inactive_value: float,
     axis: str = "",
 ) -> float:
-    """Return the field of a `CoefficientRelease` that replaces a number of the vessel.
+    """Declare a parameter that replaces a number of the vessel, such as its mass.
+
+    It belongs to a `CoefficientRelease`, the hypothesis that this number is wrong.
 
     Args:
         releases: The number, "body.mass" for example.
@@ -191,9 +197,10 @@ def replacement_parameter(
 
 
 def code_parameter(words: str) -> float:
-    """Return the field of a number that stands for a name in a compiled law.
+    """Declare an internal parameter of an effect: a number that stands for a name.
 
-    `Effect.derived_parameters` sets it, files cannot.
+    A compiled law needs numbers, for example for an axis or a channel. `Effect.derived_parameters`
+    sets it, files cannot.
 
     Args:
         words: Description.
@@ -203,11 +210,14 @@ def code_parameter(words: str) -> float:
 
 
 class CheckedParameters:
-    """Mixin of dataclasses that checks `param` fields and reports unknown settings."""
+    """Base class of settings that checks the bounds of `param` fields.
+
+    Unknown settings are reported.
+    """
 
     @classmethod
     def params(cls) -> dict[str, Param]:
-        """Return the `Param` of every checked field by name, in the order of declaration."""
+        """Return the declaration (`Param`) of every checked parameter by name, in order."""
         params = {}
         for declared in fields(cls):  # type: ignore[arg-type]
             if "param" in declared.metadata:
@@ -216,10 +226,10 @@ class CheckedParameters:
 
     @classmethod
     def from_settings(cls, settings: Mapping[str, object]) -> Self:
-        """Return an instance with the settings of a file.
+        """Return an instance of an effect or other class with the settings of a file, checked.
 
         Args:
-            settings: Values by name.
+            settings: Values of the parameters by name.
 
         Raises:
             BadInput: A setting does not exist (the message contains the nearest valid name), or a

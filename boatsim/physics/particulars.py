@@ -14,7 +14,10 @@ SEA_WATER = 1025.0  # [kg/m^3]
 
 
 class SpheroidAddedMass(NamedTuple):
-    """Added mass and inertia of a spheroid, divided by its displaced mass and yaw inertia."""
+    """Added masses of a spheroid in surge, sway and yaw, as ratios.
+
+    They are divided by the displaced mass and, in yaw, by the yaw inertia of that mass.
+    """
 
     surge: float  # k1
     sway: float  # k2
@@ -22,7 +25,7 @@ class SpheroidAddedMass(NamedTuple):
 
 
 class LinearDerivatives(NamedTuple):
-    """Non-dimensional derivatives about midship.
+    """Linear hull derivatives in sway and yaw about midship, nondimensional.
 
     Forces per 0.5 rho L T V^2, moments per 0.5 rho L^2 T V^2.
     """
@@ -34,7 +37,9 @@ class LinearDerivatives(NamedTuple):
 
 
 def spheroid_added_mass(length: float, draught: float) -> SpheroidAddedMass:
-    """Return the added mass of a prolate spheroid (Lamb 1932, sections 114 and 115).
+    """Return the added mass of a prolate spheroid of a hull's length and draught.
+
+    Formulas: Lamb 1932, sections 114 and 115.
 
     Args:
         length: Length of the hull, twice the longer semi-axis [m].
@@ -64,7 +69,7 @@ def spheroid_added_mass(length: float, draught: float) -> SpheroidAddedMass:
 def linear_derivatives(
     length: float, beam: float, draught: float, trim: float, block: float
 ) -> LinearDerivatives:
-    """Return the linear derivatives of a trimmed hull.
+    """Estimate the linear sway and yaw derivatives of a trimmed hull by a published regression.
 
     S. Inoue, M. Hirano, K. Kijima, Int. Shipbuilding Progress 28 (1981), in the form of C. R.
     Martin, UBC 1993.
@@ -110,7 +115,9 @@ def rudder_lift_slope(aspect: float) -> float:
 
 
 def hull_force_ratio(block: float) -> float:
-    """Return a_H, the force on the hull per force on its rudder (Inoue et al. 1981).
+    """Estimate a_H, the side force that a rudder induces on the hull per force on the rudder.
+
+    Source: Inoue et al. 1981.
 
     Args:
         block: Block coefficient.
@@ -121,7 +128,9 @@ def hull_force_ratio(block: float) -> float:
 def roll_damping_ratio_by_speed(
     length: float, beam: float, block: float, metacentric_height: float, speed: float
 ) -> float:
-    """Return the increase of the roll damping ratio with speed (Martin 1993, Appendix IV).
+    """Estimate the increase of a hull's roll damping ratio with its forward speed.
+
+    Source: Martin 1993, Appendix IV.
 
     Args:
         length: Length [m].

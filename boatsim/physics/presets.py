@@ -12,7 +12,7 @@ E = TypeVar("E", bound=Effect)
 
 
 class ParameterChanges(TypedDict, total=False):
-    """Attributes of a `Param` that a preset changes."""
+    """Attributes of an effect's parameter that a special case of the effect redefines."""
 
     low: float
     high: float
@@ -32,11 +32,11 @@ def preset_effect(
     otherwise: Mapping[str, float] | None = None,
     **about: object,
 ) -> type[E]:
-    """Return another effect with the same law, under its own name.
+    """Define an effect as a special case of another one: same law, other free parameters.
 
     Args:
-        law: The effect whose law it has.
-        name: Name of the class.
+        law: The effect whose law the special case has.
+        name: Name of the new class.
         frees: Parameters that a diagnosis may fit, with the attributes that differ from those of
             `law`.
         fixed: Parameters with a fixed value.

@@ -33,7 +33,9 @@ KINEMATICS = (
 
 @dataclass(frozen=True)
 class Program:
-    """The effects of a vessel and further candidates, compiled, with one parameter array.
+    """A vessel's effects and further candidate effects, compiled to one program.
+
+    All parameters are in one array.
 
     Attributes:
         vessel: The vessel; its own effects always act.
@@ -56,18 +58,20 @@ class Program:
 
     @property
     def candidate_names(self) -> tuple[str, ...]:
-        """Names of the candidates without the placeholder effects of symbolic regression."""
+        """Names of the candidate effects, without placeholders for terms of symbolic regression."""
         return tuple(e.name for e in self.candidates if not type(e).described)
 
     def values(self) -> Array:
-        """Parameters of all effects (P,), in SI units."""
+        """Parameters (P,) of all effects of the program in one array, in SI units."""
         return np.array([v for e in self.effects for v in e.values()], dtype=float)
 
     def switches(self, active: Sequence[str] = ()) -> Array:
-        """Return (E,): 1 for the vessel's own effects and for the candidates that act, else 0.
+        """Return an array (E,) that says which effects act: 1 for active effects, else 0.
+
+        The vessel's own effects are always active.
 
         Args:
-            active: Names of the candidates that act.
+            active: Names of the candidate effects that act.
         """
         on = np.ones(len(self.effects))
         for i in range(len(self.vessel.effects), len(self.effects)):
@@ -75,7 +79,7 @@ class Program:
         return on
 
     def parameter_index(self, effect: str, parameter: str) -> int:
-        """Return the place of a parameter in the flat array.
+        """Return the index of an effect's parameter in the array of all parameters.
 
         Args:
             effect: Name of an effect.
@@ -86,7 +90,10 @@ class Program:
 
     @cached_property
     def body(self) -> Array:
-        """(6,) mass [kg], mass centre x, z [m], inertia in roll, pitch and yaw [kg m^2]."""
+        """Rigid body data (6,) of the vessel in SI units.
+
+        They are mass [kg], mass centre x, z [m], and inertia in roll, pitch and yaw [kg m^2].
+        """
         b = self.vessel.body
         return np.array(
             [
@@ -100,17 +107,17 @@ class Program:
         )
 
     def vessel_numbers(self, active: Sequence[str] = ()) -> VesselNumbers:
-        """Return rigid body, parameters and switches together.
+        """Return rigid body, effect parameters and active effects, as compiled functions take them.
 
         Args:
-            active: Names of the candidates that act.
+            active: Names of the candidate effects that act.
         """
         return VesselNumbers(self.body, self.values(), self.switches(active))
 
     def vessel_state(
         self, y: Array, memory: Array | None = None, force: Array | None = None
     ) -> VesselState:
-        """Return the state of a vessel for `rollout`.
+        """Return the initial state of a vessel in the form that the compiled simulation takes.
 
         Args:
             y: (2 NQ,) joint coordinates and rates, changed in place.
@@ -126,24 +133,24 @@ class Program:
 
     @cached_property
     def composition(self) -> Composition:
-        """The effects with the places of their parameters, signals and states."""
+        """Layout of the program: indices of each effect's parameters, signals and states."""
         return Composition(self.vessel, self.effects, self.offsets)
 
     @property
     def memory_size(self) -> int:
-        """Floats of the state of all actuators, at least one."""
+        """Number of floats that hold the state of all actuators, at least one."""
         return max(self.composition.memory_size, 1)
 
     @property
     def held_size(self) -> int:
-        """Floats that describe all actuators over a step."""
+        """Number of floats that hold the actuator signals at begin, middle and end of a step."""
         return 3 * int(self.module.HELD)
 
     def command_array(self, commands: Mapping[str, float]) -> Array:
-        """Return the commands in force (inputs,) in the vessel's order.
+        """Return an array (inputs,) of the vessel's inputs with commands limited to their ranges.
 
         Args:
-            commands: Values by name; the others are neutral.
+            commands: Commands by name; the others are neutral.
 
         Raises:
             BadInput: A command does not exist or is not finite.
@@ -151,18 +158,21 @@ class Program:
         return clipped_commands(self.vessel, commands)
 
     def pose_and_velocities(self, state: Sequence[float]) -> MeasuredMotion:
-        """Return pose and body-axes velocities of joint coordinates and rates (2 NQ,)."""
+        """Return position, attitude and body-axes velocities of a state (2 NQ,) of the vessel.
+
+        The state holds joint coordinates and their rates.
+        """
         found: MeasuredMotion = self._python_functions["pose_and_velocities"](state)
         return found
 
     def jacobian(self, state: Sequence[float]) -> Array:
-        """Return the body rates per joint rate (6, NQ) of joint coordinates and rates (2 NQ,)."""
+        """Return the derivatives (6, NQ) of body velocities by joint rates at a state (2 NQ,)."""
         J = np.zeros((len(AXES), self.module.NQ))
         self._python_functions["jacobian"](state, J)
         return J
 
     def body_rates(self, states: Array) -> Array:
-        """Return states (N, 2 NQ) with body rates in place of joint rates."""
+        """Convert states (N, 2 NQ) from joint rates to body-axes velocities."""
         out = np.empty(states.shape)
         seen = self._vectorised("pose_and_velocities")(states.T)
         for i, k in enumerate(self.module.SHOWS):
@@ -170,10 +180,10 @@ class Program:
         return out
 
     def joint_rates(self, states: Array) -> Array:
-        """Return states with joint rates in place of body rates: the inverse of `body_rates`.
+        """Convert states from body-axes velocities to joint rates: the inverse of `body_rates`.
 
         Args:
-            states: (N, 2 NQ), or one state (2 NQ,).
+            states: States (N, 2 NQ), or one state (2 NQ,).
         """
         code, rows = self.module, np.array(np.atleast_2d(states), dtype=float)
         J = np.zeros((len(AXES), code.NQ, len(rows)))
@@ -194,7 +204,10 @@ class Program:
 
     @cached_property
     def module(self) -> CompiledProgram:
-        """The compiled program, from the cache if the same one was composed before."""
+        """The compiled package of the program.
+
+        It comes from the disk cache if an equal program was compiled before.
+        """
         text = {
             "laws.py": self.composition.source_text(),
             "motion.py": motion_module_text(
@@ -206,7 +219,7 @@ class Program:
 
 
 def main(arguments: Sequence[str]) -> None:
-    """Print the laws that are composed for a vessel.
+    """Print the generated Python source that calls the laws of all effects of a vessel.
 
     Args:
         arguments: Name or folder of the vessel.

@@ -18,7 +18,10 @@ X, Y, Z, PHI, THETA, PSI, U, V, W, P, Q, R = np.arange(12)
 
 
 class InstrumentChannel(NamedTuple):
-    """A channel with an instrument of its own; x and y are those of one fix."""
+    """Recorded channel (such as heading) whose instrument may have an error of its own.
+
+    Positions x and y are not among them, because one position fix contains both.
+    """
 
     column: str
     axis: str  # degree of freedom
@@ -54,7 +57,7 @@ INSTRUMENT_CHANNELS = (
 
 @merged
 def replaced_if(condition: bool, value: float, other: float) -> float:
-    """Return the value if the condition holds, else the other one."""
+    """Return `value` if the condition holds, else `other`; an expression for compiled code."""
     if condition:
         return value
     return other
@@ -62,11 +65,11 @@ def replaced_if(condition: bool, value: float, other: float) -> float:
 
 @merged
 def with_channel(m: MeasuredMotion, channel: np.int64, value: float) -> MeasuredMotion:
-    """Return a motion with another value of one channel.
+    """Return a recorded motion in which one channel, such as the heading, has another value.
 
     Args:
         m: Motion: position [m], attitude [rad], velocities [m/s], rates [rad/s].
-        channel: Place of the channel among the fields.
+        channel: Index of the channel among the fields of the motion.
         value: Its new value, in the unit of the channel.
     """
     return MeasuredMotion(
@@ -87,7 +90,7 @@ def with_channel(m: MeasuredMotion, channel: np.int64, value: float) -> Measured
 
 @merged
 def channel_rate(m: MeasuredMotion, channel: np.int64, delay: float) -> float:
-    """Return the mean rate of change of a channel over the last `delay` seconds.
+    """Return the mean rate of change of one motion channel over the last `delay` seconds.
 
     The vessel turns steadily over the delay, so that the chord of its turn stands for the arc. For
     x, y and psi the hull is level: terms of second order in roll and pitch are neglected. The
@@ -95,7 +98,7 @@ def channel_rate(m: MeasuredMotion, channel: np.int64, delay: float) -> float:
 
     Args:
         m: Motion at the end of the delay.
-        channel: Place of the channel among the fields.
+        channel: Index of the channel among the fields of the motion.
         delay: The delay [s].
 
     Returns:
@@ -116,11 +119,11 @@ def channel_rate(m: MeasuredMotion, channel: np.int64, delay: float) -> float:
 
 @merged
 def delayed_channel(m: MeasuredMotion, channel: np.int64, delay: float) -> float:
-    """Return the value that a channel had `delay` seconds ago, to first order.
+    """Return the value that one motion channel had `delay` seconds ago, to first order.
 
     Args:
-        m: Motion now.
-        channel: Place of the channel among the fields.
+        m: Present motion.
+        channel: Index of the channel among the fields of the motion.
         delay: The delay [s].
     """
     return m[channel] - delay * channel_rate(m, channel, delay)

@@ -25,7 +25,10 @@ COMPONENTS = dict(zip(AXES, ("X_N", "Y_N", "Z_N", "K_Nm", "M_Nm", "N_Nm"), stric
 
 @dataclass(frozen=True)
 class Signal:
-    """One coordinate of a hull's motion, or its rate, with its names in files and controllers."""
+    """Declaration of a motion signal: one coordinate of a hull or its rate.
+
+    It has a symbol, a column name, a degree of freedom and a default sensor noise.
+    """
 
     symbol: str  # field of `Motion`, `MeasuredMotion` and the engine's `State`
     column: str  # in recordings and logs, with its unit
@@ -56,16 +59,20 @@ NOISE = {s.noise: s.noise_sd for s in STATE}
 
 
 def signals_of(dof: tuple[str, ...]) -> tuple[Signal, ...]:
-    """Return coordinates, then rates, of a vessel, in the order of `AXES`.
+    """Return the motion signals of a vessel: its coordinates, then their rates.
+
+    They have the order of `AXES`.
 
     Args:
-        dof: Its degrees of freedom.
+        dof: Degrees of freedom of the vessel.
     """
     return tuple(s for s in STATE if s.axis in dof)
 
 
 def measured_column_for_goal(goal: str) -> str | None:
-    """Return the column that follows a goal, as v_mps for `sway_mps`; None if no column does.
+    """Return the measured column that a controller's goal sets, as v_mps for `sway_mps`.
+
+    None if no column corresponds to the goal.
 
     Args:
         goal: Name of a column, or of a degree of freedom with a unit.
@@ -76,7 +83,10 @@ def measured_column_for_goal(goal: str) -> str | None:
 
 
 class Motion(NamedTuple):
-    """Motion as a force law sees it; zero for a degree of freedom that the vessel does not have."""
+    """Motion of the hull as an argument of force laws: time, position, attitude and velocities.
+
+    Values of a degree of freedom that the vessel does not have are zero.
+    """
 
     t: float  # [s]
     x: float  # [m] north or forward at the start
@@ -99,7 +109,10 @@ class Motion(NamedTuple):
 
 
 class MeasuredMotion(NamedTuple):
-    """Motion as instruments measure it; a measurement effect changes it before it is recorded."""
+    """Position, attitude and velocities of the hull as instruments measure and record them.
+
+    A measurement effect changes them.
+    """
 
     x: float  # [m]
     y: float  # [m]
@@ -116,7 +129,7 @@ class MeasuredMotion(NamedTuple):
 
 
 class Wrench(NamedTuple):
-    """Force on the hull in body axes about the origin of motion.
+    """Force and moment on the hull in body axes about the origin of motion.
 
     Compiled laws build it with `wrench`.
     """
@@ -132,15 +145,15 @@ class Wrench(NamedTuple):
 def wrench(
     X: float = 0.0, Y: float = 0.0, Z: float = 0.0, K: float = 0.0, M: float = 0.0, N: float = 0.0
 ) -> Wrench:
-    """Return a `Wrench` from the names of its components; the others are zero."""
+    """Return a `Wrench` (force and moment on the hull) from named components.
+
+    The others are zero.
+    """
     return Wrench(X, Y, Z, K, M, N)
 
 
 class MassMatrix(NamedTuple):
-    """Inertia matrix of a hull that is symmetric to port and starboard.
-
-    All other entries are zero.
-    """
+    """Mass matrix of a hull that is symmetric to port and starboard, by its nonzero entries."""
 
     surge: float = 0.0  # [kg]
     sway: float = 0.0  # [kg]
@@ -156,7 +169,7 @@ class MassMatrix(NamedTuple):
     roll_yaw: float = 0.0  # [kg m^2]
 
     def matrix(self) -> Array:
-        """Return the matrix (6, 6) over `AXES`."""
+        """Return the full mass matrix (6, 6) over `AXES`."""
         full = np.zeros((6, 6))
         for value, (i, j) in zip(self, MASS_ENTRIES, strict=True):
             full[i, j] = full[j, i] = value
@@ -183,14 +196,14 @@ def mass_matrix(
     sway_yaw: float = 0.0,
     roll_yaw: float = 0.0,
 ) -> MassMatrix:
-    """Return a `MassMatrix` from the names of its entries; the others are zero."""
+    """Return a `MassMatrix` of a symmetric hull from named entries; the others are zero."""
     diagonal = (surge, sway, heave, roll, pitch, yaw)
     couplings = (surge_heave, surge_pitch, heave_pitch, sway_roll, sway_yaw, roll_yaw)
     return MassMatrix(*diagonal, *couplings)
 
 
 class OscillatingForce(NamedTuple):
-    """Random oscillating force: a damped oscillator per axis, driven by white noise."""
+    """Model of a random oscillating force: a damped oscillator per axis, driven by white noise."""
 
     X: float  # [N] rms
     Y: float  # [N] rms
@@ -212,7 +225,7 @@ def oscillating_force(
     frequency: float = 0.0,
     damping: float = 1.0,
 ) -> OscillatingForce:
-    """Return a `OscillatingForce` from the names of its fields.
+    """Return an `OscillatingForce`, a model of random wave forces, from named fields.
 
     A frequency of zero means that there is none.
     """
@@ -220,7 +233,10 @@ def oscillating_force(
 
 
 class InstrumentDrift(NamedTuple):
-    """Slowly varying error of instruments, a first-order Gauss-Markov process."""
+    """Model of slowly varying instrument errors: rms and correlation time.
+
+    Each error is a first-order Gauss-Markov process.
+    """
 
     position: float  # [m] rms, north and east alike
     heading: float  # [rad] rms
@@ -236,7 +252,7 @@ for _constructor, _record in (
 
 
 class SignalSegment(NamedTuple):
-    """A signal over one step: at its begin, in its middle and at its end.
+    """Actuator signal over one step, by its values at begin, middle and end of the step.
 
     A Runge-Kutta step weighs the three by Simpson's rule. The middle is chosen so that this gives
     the mean of the signal over the step exactly, and thus the right impulse of a motor that reaches
@@ -250,7 +266,7 @@ class SignalSegment(NamedTuple):
 
 @njit(inline="always")
 def segment_with_mean(begin: float, mean: float, end: float) -> SignalSegment:
-    """Return the course of a signal with this mean over the step.
+    """Return an actuator signal over a step from its begin, end and exact mean.
 
     A constant signal is exactly constant.
     """
@@ -263,7 +279,10 @@ BRIEF = 0.02
 
 @njit(inline="always")
 def longest_lag_step(lag: float) -> float:
-    """Return the longest step [s] over which three points describe a lagged signal: one lag."""
+    """Return the longest step [s] over which three points describe a first-order lag.
+
+    It is one time constant of the lag.
+    """
     return max(lag, BRIEF) if lag > 0.0 else np.inf
 
 
@@ -271,18 +290,16 @@ def longest_lag_step(lag: float) -> float:
 def first_order_lag(
     x: SignalSegment, time_constant: float, memory: Array, at: int, dt: float
 ) -> SignalSegment:
-    """Return a signal behind a first-order lag, exact if its course is a parabola.
+    """Return an actuator signal after a first-order lag, exact if the input is a parabola.
 
-    Memory[at] is its state.
-
-    T y' = x - y with x = b + c s + d s^2, s in steps, has the solution f + g s + d s^2 plus a
-    decaying exponential.
+    The state of the lag is memory[at]. T y' = x - y with x = b + c s + d s^2, s in steps, has the
+    solution f + g s + d s^2 plus a decaying exponential.
 
     Args:
-        x: The signal over the step.
+        x: Input signal over the step.
         time_constant: T [s].
         memory: States of the actuators.
-        at: Place of the state in `memory`.
+        at: Index of the state of the lag in `memory`.
         dt: Length of the step [s].
     """
     y, quick = memory[at], dt / time_constant
@@ -296,8 +313,8 @@ def first_order_lag(
 
 @njit(inline="always")
 def segment_mean(x: SignalSegment) -> float:
-    """Return the mean of a signal over the step.
+    """Return the mean of an actuator signal over one step, by Simpson's rule.
 
-    That of a constant signal is exactly the signal.
+    The mean of a constant signal is exactly the signal.
     """
     return x.begin + (4.0 * (x.middle - x.begin) + (x.end - x.begin)) / 6.0

@@ -14,7 +14,10 @@ CORRELATION_DECIMALS = 9  # in a file; far below the uncertainty of an estimated
 
 
 class FittedTable(Table):
-    """One fitted quantity x, and the numbers of the vessel that change with it."""
+    """Entry of a patched vessel file: one fitted quantity x, its standard deviation and its use.
+
+    It lists the numbers of the vessel that change with x.
+    """
 
     fitted: str
     sd: PositiveFloat
@@ -23,7 +26,7 @@ class FittedTable(Table):
 
 
 class SpreadTable(Table):
-    """[spread] of a patched vessel file."""
+    """Table [spread] of a patched vessel file: uncertainty of the fitted quantities."""
 
     correlation: list[list[float]] = []  # of the quantities in [[spread.of]], in their order
     of: list[FittedTable] = Field(default=[])
@@ -39,7 +42,7 @@ class SpreadTable(Table):
 
 
 class SampledChange(NamedTuple):
-    """Change of a number of k vessels: it is multiplied by the factor, and the shift is added."""
+    """Random changes of one number of k vessels: a factor and a shift for each vessel."""
 
     factor: Array | float = 1.0
     shift: Array | float = 0.0
@@ -47,7 +50,10 @@ class SampledChange(NamedTuple):
 
 @dataclass(frozen=True)
 class FittedUncertainty:
-    """Normal distribution of the F fitted quantities about the numbers of the vessel file."""
+    """Joint normal distribution of the F quantities that a diagnosis fitted to a vessel.
+
+    Its mean is the numbers of the vessel file.
+    """
 
     of: tuple[FittedTable, ...]
     sd: Array  # (F,)
@@ -55,10 +61,10 @@ class FittedUncertainty:
 
     @classmethod
     def from_table(cls, table: SpreadTable) -> "FittedUncertainty | None":
-        """Return the distribution in a vessel file; None if there is none.
+        """Return the uncertainty of fitted quantities in a vessel file; None if there is none.
 
         Args:
-            table: The table [spread].
+            table: Table [spread] of the vessel file.
         """
         if not table.of:
             return None
@@ -67,12 +73,12 @@ class FittedUncertainty:
         return cls(tuple(table.of), sd, vectors * np.sqrt(np.maximum(values, 0.0)))
 
     def to_table(self) -> dict[str, object]:
-        """Return the [spread] table of a vessel file."""
+        """Return the table [spread] of a vessel file that stores this uncertainty."""
         correlation = np.round(self.root @ self.root.T, CORRELATION_DECIMALS)
         return {"correlation": correlation.tolist(), "of": [one.model_dump() for one in self.of]}
 
     def with_scaled_sd(self, factor: float) -> "FittedUncertainty":
-        """Return the distribution with all standard deviations multiplied by a factor.
+        """Return a copy of the uncertainty with all standard deviations multiplied by a factor.
 
         Args:
             factor: The factor.
@@ -80,10 +86,12 @@ class FittedUncertainty:
         return replace(self, sd=self.sd * factor)
 
     def sample_changes(self, shares: Array) -> dict[str, SampledChange]:
-        """Return the change of each "effect.number" for k samples.
+        """Sample k vessels from the uncertainty; return the change of each affected number.
+
+        The keys are "effect.number".
 
         Args:
-            shares: (k, F) independent numbers, uniform in (0, 1).
+            shares: Independent numbers (k, F), uniform in (0, 1).
         """
         off = ndtri(shares) @ self.root.T * self.sd
         found: dict[str, SampledChange] = {}

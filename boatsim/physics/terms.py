@@ -52,14 +52,14 @@ WITHIN, RISING, FADING, SWINGING = map(float, range(1, len(COURSES)))
 
 @apart
 def factor_value(m: Any, act: Any, at: Any, own: Any, number: float, detail: Detail) -> Any:
-    """Return one factor.
+    """Return one factor of a term of symbolic regression, such as a velocity or its sign.
 
     Args:
-        m: `Motion`.
-        act: Actuators.
-        at: First of the actuators to use.
-        own: Place of the term's lagged signal after `at`.
-        number: Number of the factor, see `factor_codes`.
+        m: `Motion` of the hull.
+        act: Values of the actuators.
+        at: Index in `act` of the first value to use.
+        own: Index, counted from `at`, of the term's lagged signal.
+        number: Code of the factor, see `factor_codes`.
         detail: Wavelength and crest of a ripple, which is 1 at its crest; speed `little` within
             which a sense changes; threshold `beyond`.
     """
@@ -85,12 +85,13 @@ def factor_value(m: Any, act: Any, at: Any, own: Any, number: float, detail: Det
 
 @apart
 def time_profile(t: Any, acts: float, begin: float, end: float) -> Any:
-    """Return the course of a law in time.
+    """Return the time-dependent factor of a term of symbolic regression at one time.
 
     Args:
         t: Time [s].
-        acts: Number of the course: always 1; 1 between begin and end; a ramp from begin to end; an
-            exponential decay from begin, or a sine, with end - begin as time constant or period.
+        acts: Code of the time dependence: always 1; 1 between begin and end; a ramp from begin to
+            end; an exponential decay from begin, or a sine, with end - begin as time constant or
+            period.
         begin: Time [s].
         end: Time [s].
     """
@@ -107,14 +108,16 @@ def time_profile(t: Any, acts: float, begin: float, end: float) -> Any:
 
 @njit(inline="always")
 def term_value(m: Any, q: Any, act: Any, at: Any, own: Any) -> Any:
-    """Return the product of a term's factors and its course.
+    """Return a term of symbolic regression without its coefficient.
+
+    It is the product of up to three factors of the state and a function of time.
 
     Args:
-        m: `Motion`.
+        m: `Motion` of the hull.
         q: Parameters of the effect.
-        act: Actuators.
-        at: First of the actuators to use.
-        own: Place of the term's lagged signal after `at`.
+        act: Values of the actuators.
+        at: Index in `act` of the first value to use.
+        own: Index, counted from `at`, of the term's lagged signal.
     """
     detail = (q.wavelength, q.crest, q.little, q.beyond)
     return (
@@ -137,16 +140,18 @@ def write_signal_history(
     beyond: float,
     memory: float,
 ) -> None:
-    """Write the history of a signal over a step to act.
+    """Compute the lagged value of an actuator signal over a step, for a term that uses its past.
+
+    The value (or the signal less the lagged value) at begin, middle and end is written to `act`.
 
     Args:
-        act: Actuators.
-        held: Numbers that describe the actuators at one time.
-        own: Place of the result in act.
+        act: Values of the actuators.
+        held: Number of values that describe the actuators at one time.
+        own: Index of the result in `act`.
         kept: States of the actuators.
-        at: Place of the state of the lag in `kept`.
+        at: Index of the state of the lag in `kept`.
         dt: Length of the step [s].
-        looks_at: Number of the signal, see `history_codes`.
+        looks_at: Code of the signal, see `history_codes`.
         beyond: 1 for the signal less the lagged one, else 0.
         memory: Time constant of the lag [s].
     """
@@ -166,14 +171,16 @@ def write_signal_history(
 def update_signal_history(
     act: Any, held: Any, own: Any, kept: Any, at: Any, dt: float, q: Any
 ) -> None:
-    """Apply `write_signal_history` with the parameters of an effect.
+    """Compute the lagged actuator signal that an effect's law uses, over one step.
+
+    It applies `write_signal_history` with the parameters of the effect.
 
     Args:
-        act: Actuators.
-        held: Numbers that describe the actuators at one time.
-        own: Place of the result in act.
+        act: Values of the actuators.
+        held: Number of values that describe the actuators at one time.
+        own: Index of the result in `act`.
         kept: States of the actuators.
-        at: Place of the state of the lag in `kept`.
+        at: Index of the state of the lag in `kept`.
         dt: Length of the step [s].
         q: Parameters of the effect.
     """
@@ -182,17 +189,17 @@ def update_signal_history(
 
 @njit(inline="always")
 def longest_history_step(q: Any) -> float:
-    """Return the longest step [s] over which three points describe the lagged signal."""
+    """Return the longest step [s] over which three points describe a lagged actuator signal."""
     return longest_lag_step(q.memory) if q.looks_at > 0.0 else np.inf
 
 
 @apart
 def wrench_along(m: Any, direction: float, force: float) -> Wrench:
-    """Return a force or moment along one of `DIRECTIONS`.
+    """Return the force and moment on the hull of a force along one axis of hull or earth.
 
     Args:
-        m: `Motion`.
-        direction: Number of the direction.
+        m: `Motion` of the hull.
+        direction: Code of the axis: index in `DIRECTIONS`.
         force: Force [N] or moment [N m].
     """
     k = int(direction)
@@ -211,10 +218,12 @@ def wrench_along(m: Any, direction: float, force: float) -> Wrench:
 
 
 def factor_names(held: Sequence[str]) -> tuple[str, ...]:
-    """Return the names of all factors of a vessel.
+    """Return the names of all factors that symbolic regression may use for a vessel.
+
+    They are quantities of its motion and of its actuators.
 
     Args:
-        held: Names of its actuator signals.
+        held: Names of the vessel's actuator signals.
     """
     signals: list[str] = []
     for name in held:
@@ -228,7 +237,9 @@ def factor_names(held: Sequence[str]) -> tuple[str, ...]:
 
 
 def split_history_name(name: str, held: Sequence[str]) -> tuple[str, str]:
-    """Return the kind of history of a factor and its signal; "", "" for other factors.
+    """Return the kind of past value that a factor's name denotes, and the actuator signal.
+
+    The result is "", "" for a factor that uses no past values.
 
     Args:
         name: Name of the factor.
@@ -242,7 +253,9 @@ def split_history_name(name: str, held: Sequence[str]) -> tuple[str, str]:
 
 
 def history_codes(what: str, of: Sequence[str], held: Sequence[str]) -> tuple[float, float]:
-    """Return the numbers of the signal and the kind of history of a term; 0, 0 without one.
+    """Return the numeric codes of the past actuator signal that a regression term uses.
+
+    They are the code of the signal and that of the kind of history; 0, 0 without one.
 
     Args:
         what: Name of the effect, for the message.
@@ -263,7 +276,7 @@ def history_codes(what: str, of: Sequence[str], held: Sequence[str]) -> tuple[fl
 
 
 def factor_codes(what: str, of: Sequence[str], held: Sequence[str]) -> tuple[float, ...]:
-    """Return the numbers (MOST_FACTORS,) of a term's factors.
+    """Return the numeric codes (MOST_FACTORS,) of the factors of a regression term.
 
     Args:
         what: Name of the effect, for the message.
@@ -292,15 +305,17 @@ def factor_codes(what: str, of: Sequence[str], held: Sequence[str]) -> tuple[flo
 
 
 def index_code(what: str, word: str, words: Sequence[str]) -> float:
-    """Return the number of a course or direction.
+    """Return the numeric code of a name: its index in a list of allowed names.
+
+    It is used for axes and time dependences of regression terms.
 
     Args:
         what: Name of the effect and key, for the message.
-        word: The course or direction.
-        words: All of them.
+        word: The name.
+        words: All allowed names.
 
     Raises:
-        BadInput: It does not exist.
+        BadInput: The name is not allowed.
     """
     if word not in words:
         raise BadInput(unknown_name(what, word, words))

@@ -15,7 +15,7 @@ from boatsim.errors import BadInput
 
 @dataclass(frozen=True)
 class TrustedFolders:
-    """The trusted folders.
+    """Folders whose Python files may run, because the user trusts them.
 
     Attributes:
         content: Folders of the user's own content; names of effects, vessels and so on are searched
@@ -32,7 +32,7 @@ class TrustedFolders:
     answers: dict[Path, bool] = field(default_factory=dict)
 
     def contains(self, path: Path) -> bool:
-        """Return whether a file lies in a trusted folder or below one.
+        """Return whether a file lies in a trusted folder or in a folder below one.
 
         Args:
             path: The file, without symbolic links.
@@ -44,12 +44,12 @@ _now: ContextVar[TrustedFolders] = ContextVar("trust")
 
 
 def current_trust() -> TrustedFolders:
-    """Return what is trusted here, for another process, which cannot ask the user."""
+    """Return the folders trusted in this process, for another process that cannot ask the user."""
     return replace(_now.get(TrustedFolders()), ask=None, answers={})
 
 
 def user_content_folders() -> tuple[Path, ...]:
-    """Return the folders of the user's own content."""
+    """Return the folders in which the user keeps own vessels, effects and other content."""
     return _now.get(TrustedFolders()).content
 
 
@@ -59,7 +59,9 @@ def trust_folders(
     allowed: Sequence[Path | str] = (),
     ask: Callable[[Path], bool] | None = None,
 ) -> Iterator[None]:
-    """Trust folders, with all folders below them, in addition to those that are trusted already.
+    """Within a `with` block, trust further folders, with all folders below them.
+
+    Python files in them may run. Folders that are trusted already remain so.
 
     Args:
         content: Folders of the user's own content. Names are searched in them as in the library: in
@@ -85,7 +87,7 @@ def trust_folders(
 
 
 def adopt_trust(trust: TrustedFolders) -> None:
-    """Trust what another process trusts, until this process ends.
+    """Trust the folders that another process trusts, until this process ends.
 
     Args:
         trust: `current_trust()` of the other process.
@@ -94,7 +96,7 @@ def adopt_trust(trust: TrustedFolders) -> None:
 
 
 def check_trusted(path: Path) -> None:
-    """Check that a Python file may run; ask the user if that is possible.
+    """Check that a Python file may run; ask the user if its folder is not trusted yet.
 
     Args:
         path: The file.

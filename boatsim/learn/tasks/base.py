@@ -21,7 +21,10 @@ Flags = NDArray[np.bool_]
 
 
 class Signal(NamedTuple):
-    """One observation; it is limited to the interval from -bound to bound."""
+    """Observation of a learner, such as a heading error, with its unit and bound.
+
+    Its value is limited to the interval from -bound to bound.
+    """
 
     name: str  # with its unit
     bound: float  # in this unit
@@ -29,7 +32,7 @@ class Signal(NamedTuple):
 
 
 class Outcome(NamedTuple):
-    """Reward and end of a control step of n boats."""
+    """Reward of a control step for n boats, and whether it ended their episodes."""
 
     reward: Array  # (n,)
     terminated: Flags  # (n,) the task is done, or can no longer be done
@@ -37,7 +40,7 @@ class Outcome(NamedTuple):
 
 @dataclass(frozen=True)
 class Task(CheckedParameters):
-    """Base class of tasks.
+    """Base class of learning tasks: start, observations, reward and end of an episode.
 
     Lengths are in boat lengths `scale.length` and speeds in `scale.speed`, unless a name or unit
     shows another one. A task computes `observed` quantities once per control step, each an array
@@ -53,15 +56,15 @@ class Task(CheckedParameters):
 
     @classmethod
     def idea(cls) -> str:
-        """Return the name of the task, which is that of its file."""
+        """Return the name of the learning task, which is that of its file."""
         return snake_case(cls.__name__)
 
     def check_actions(self, name: str, actions: Sequence[str]) -> None:
-        """Check that a vessel has enough actions.
+        """Check that a vessel has enough actions for the learning task.
 
         Args:
             name: Name of the vessel.
-            actions: Names of its actions.
+            actions: Names of the vessel's actions.
 
         Raises:
             BadInput: The vessel has fewer actions than the task needs.
@@ -74,14 +77,16 @@ class Task(CheckedParameters):
 
     @abstractmethod
     def signals(self, scale: Scale) -> tuple[Signal, ...]:
-        """Return the observations.
+        """Return the definitions of what a learner observes in this task.
 
         Args:
             scale: Scale of the vessel.
         """
 
     def basin(self, scale: Scale) -> Tank:
-        """Return water and walls for pictures and for MuJoCo: open water unless overridden.
+        """Return water and walls in which the task takes place: open water unless overridden.
+
+        Pictures and MuJoCo use them.
 
         Args:
             scale: Scale of the vessel.
@@ -90,7 +95,7 @@ class Task(CheckedParameters):
 
     @abstractmethod
     def sample_episodes(self, uniforms: Array, scale: Scale) -> tuple[Array, Array]:
-        """Return the starts and goals of episodes.
+        """Sample the initial states and the goals of episodes of the task.
 
         Args:
             uniforms: Random numbers (k, `random_numbers`) between 0 and 1.
@@ -104,7 +109,7 @@ class Task(CheckedParameters):
     def observe(
         self, m: Motion, t: Array, goal: Array, hulls: Hulls, scale: Scale
     ) -> tuple[Array, ...]:
-        """Return the observed quantities (n,).
+        """Compute the quantities (n,) on which observations, reward and end of an episode depend.
 
         Args:
             m: True motion.
@@ -115,7 +120,9 @@ class Task(CheckedParameters):
         """
 
     def initial_memory(self, observed: tuple[Array, ...], scale: Scale) -> Array:
-        """Return the memory (k, `memory`) at the start of episodes: zeros unless overridden.
+        """Return the task's memory (k, `memory`) at the start of episodes: zeros unless overridden.
+
+        The memory holds quantities that the reward needs from one control step to the next.
 
         Args:
             observed: Observed quantities (k,).
@@ -127,7 +134,7 @@ class Task(CheckedParameters):
     def evaluate(
         self, observed: tuple[Array, ...], memory: Array, period: float, scale: Scale
     ) -> Outcome:
-        """Return the reward and the end of a control step.
+        """Return the reward of a control step and whether it ends an episode.
 
         Args:
             observed: Observed quantities (n,) at the end of the control step.
@@ -140,7 +147,7 @@ class Task(CheckedParameters):
     def metrics(
         self, observed: tuple[Array, ...], memory: Array, t: Array, scale: Scale
     ) -> dict[str, Array]:
-        """Return the metrics (k,) of ended episodes by name, among them `is_success`.
+        """Return the metrics (k,) of ended episodes of the task by name, among them `is_success`.
 
         Args:
             observed: Observed quantities (k,) at the end.

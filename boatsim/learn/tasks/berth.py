@@ -68,7 +68,10 @@ class Berth(Task):
     )
 
     def signals(self, scale: Scale) -> tuple[Signal, ...]:
-        """Return place of the berth, heading error, velocity and room; see `Task`."""
+        """Return the observations of berthing; see `Task`.
+
+        They are the position of the berth, heading error, velocity and the room to the quay.
+        """
         far = self.reach * scale.length
         near = 0.5 * scale.length
         return (
@@ -97,15 +100,16 @@ class Berth(Task):
         )
 
     def basin(self, scale: Scale) -> Tank:
-        """Return the basin, whose wall to port is the quay; see `Task`."""
+        """Return the basin of the berthing task, whose wall to port is the quay; see `Task`."""
         width = 2.0 * self.reach * scale.length
         quay = 0.5 * scale.beam + self.gap * scale.length
         return Tank(width, width, scale.length, centre=(0.0, 0.5 * width - quay))
 
     def sample_episodes(self, uniforms: Array, scale: Scale) -> tuple[Array, Array]:
-        """Return starts almost at rest, at headings within 90 degrees of the quay's.
+        """Sample initial states for berthing, almost at rest and near the berth.
 
-        The bearing from the berth is within 60 degrees of the normal to the quay; see `Task`.
+        The heading is within 90 degrees of the quay's and the bearing from the berth within 60
+        degrees of the normal to the quay; see `Task`.
         """
         away = scale.length * (self.near + (self.far - self.near) * uniforms[:, 0])
         bearing = radians(60.0) * (2.0 * uniforms[:, 1] - 1.0)
@@ -119,7 +123,10 @@ class Berth(Task):
     def observe(
         self, m: Motion, t: Array, goal: Array, hulls: Hulls, scale: Scale
     ) -> tuple[Array, ...]:
-        """Return the signals, distance [L], heading error [rad] and speed [L/s]; see `Task`."""
+        """Compute the observations, distance [L], heading error [rad] and speed [L/s]; see `Task`.
+
+        Distance and heading error are those from the berth.
+        """
         c = np.cos(m.psi)
         s = np.sin(m.psi)
         off = wrap_angle(m.psi)
@@ -135,7 +142,10 @@ class Berth(Task):
         return (*place, s, c, off, *velocity, *velocity, room, distance, off, speed)
 
     def initial_memory(self, observed: tuple[Array, ...], scale: Scale) -> Array:
-        """Return the initial distance and heading error, and no time at the berth; see `Task`."""
+        """Return the initial distance and heading error, and no time at the berth; see `Task`.
+
+        The reward is computed from their decrease.
+        """
         *_, distance, off, _ = observed
         potential = distance + HEADING_WEIGHT * np.abs(off)
         return np.column_stack([potential, np.zeros(len(off))])
@@ -143,7 +153,10 @@ class Berth(Task):
     def evaluate(
         self, observed: tuple[Array, ...], memory: Array, period: float, scale: Scale
     ) -> Outcome:
-        """Reward progress and nearness, penalise time and failure; see `Task`."""
+        """Return the reward of berthing: progress and nearness, less penalties; see `Task`.
+
+        Time, touching the quay and leaving the area are penalised.
+        """
         room, distance, off, speed = observed[-4:]
         heading_error = np.abs(off)
         potential = distance + HEADING_WEIGHT * heading_error
@@ -165,7 +178,7 @@ class Berth(Task):
     def metrics(
         self, observed: tuple[Array, ...], memory: Array, t: Array, scale: Scale
     ) -> dict[str, Array]:
-        """Return place, heading error and speed at the end; see `Task`."""
+        """Return distance from the berth, heading error and speed at the end; see `Task`."""
         room, distance, off, speed = observed[-4:]
         touched = ~(room > 0.0)
         return {

@@ -58,7 +58,10 @@ class FollowPath(Task):
     )
 
     def signals(self, scale: Scale) -> tuple[Signal, ...]:
-        """Return distance from the path, its course here and ahead, and velocity; see `Task`."""
+        """Return the observations of path following; see `Task`.
+
+        They are the distance from the path, its course here and ahead, and the velocity.
+        """
         return (
             Signal(
                 "aside_m",
@@ -80,7 +83,7 @@ class FollowPath(Task):
         )
 
     def sample_episodes(self, uniforms: Array, scale: Scale) -> tuple[Array, Array]:
-        """Return starts within half a length and half a radian of the path; see `Task`."""
+        """Sample initial states within half a length and half a radian of the path; see `Task`."""
         length = scale.length
         wave = 2.0 * pi / (length * (8.0 + 16.0 * uniforms[:, 0]))
         steepest = np.minimum(0.7 / wave, 1.0 / (self.tightest * length * wave**2))
@@ -98,7 +101,7 @@ class FollowPath(Task):
     def observe(
         self, m: Motion, t: Array, goal: Array, hulls: Hulls, scale: Scale
     ) -> tuple[Array, ...]:
-        """Return the signals, then the speed along the path [m/s]; see `Task`."""
+        """Compute the observations, then the speed along the path [m/s]; see `Task`."""
         y, course = self._path(m.x, goal)
         turn = m.psi - course  # heading of the boat relative to the path
         c = np.cos(turn)
@@ -119,7 +122,7 @@ class FollowPath(Task):
     def evaluate(
         self, observed: tuple[Array, ...], memory: Array, period: float, scale: Scale
     ) -> Outcome:
-        """Reward speed along the path and nearness to it; see `Task`."""
+        """Return the reward for speed along the path and nearness to it; see `Task`."""
         aside = observed[0] / scale.length
         along = observed[-1]
         memory[:, TIME] += period
@@ -133,7 +136,7 @@ class FollowPath(Task):
     def metrics(
         self, observed: tuple[Array, ...], memory: Array, t: Array, scale: Scale
     ) -> dict[str, Array]:
-        """Return distance from the path and speed made good along it; see `Task`."""
+        """Return the distance from the path and the speed made good along it; see `Task`."""
         time = np.maximum(memory[:, TIME], 1e-9)
         rms = np.sqrt(memory[:, SQUARED_ERROR] / time)
         speed = memory[:, DISTANCE] / time

@@ -57,7 +57,10 @@ class HoldStation(Task):
     )
 
     def signals(self, scale: Scale) -> tuple[Signal, ...]:
-        """Return the place of the station, the heading error and the velocity; see `Task`."""
+        """Return the observations of station keeping; see `Task`.
+
+        They are the position of the station, the heading error and the velocity.
+        """
         far = self.reach * scale.length
         near = 0.5 * scale.length
         return (
@@ -73,7 +76,7 @@ class HoldStation(Task):
         )
 
     def sample_episodes(self, uniforms: Array, scale: Scale) -> tuple[Array, Array]:
-        """Return starts at rest near the station and its heading; see `Task`."""
+        """Sample initial states at rest near the station and its heading; see `Task`."""
         offset = 2.0 * uniforms - 1.0
         place = self.start_within * scale.length * offset[:, :2]
         at_rest = np.zeros((len(offset), 3))
@@ -83,7 +86,10 @@ class HoldStation(Task):
     def observe(
         self, m: Motion, t: Array, goal: Array, hulls: Hulls, scale: Scale
     ) -> tuple[Array, ...]:
-        """Return the signals, distance [L], heading error [rad] and time [s]; see `Task`."""
+        """Compute the observations, distance [L], heading error [rad] and time [s]; see `Task`.
+
+        Distance and heading error are those from the station to be kept.
+        """
         c = np.cos(m.psi)
         s = np.sin(m.psi)
         ahead = -c * m.x - s * m.y
@@ -95,7 +101,7 @@ class HoldStation(Task):
     def evaluate(
         self, observed: tuple[Array, ...], memory: Array, period: float, scale: Scale
     ) -> Outcome:
-        """Reward nearness, heading and low speed; see `Task`."""
+        """Return the reward for nearness to the station, its heading and low speed; see `Task`."""
         u, v, _, distance, heading_error, t = observed[-6:]
         counts = period * (t > self.settle)
         memory[:, TIME] += counts
@@ -110,7 +116,7 @@ class HoldStation(Task):
     def metrics(
         self, observed: tuple[Array, ...], memory: Array, t: Array, scale: Scale
     ) -> dict[str, Array]:
-        """Return root mean squares after settling; see `Task`."""
+        """Return rms distance and heading error after settling at the station; see `Task`."""
         _, _, _, distance, _, _ = observed[-6:]
         time = np.maximum(memory[:, TIME], 1e-9)
         place = np.sqrt(memory[:, SQUARED_DISTANCE] / time)

@@ -53,7 +53,10 @@ class Joystick(Task):
     )
 
     def signals(self, scale: Scale) -> tuple[Signal, ...]:
-        """Return the velocity of the boat and the requested one; see `Task`."""
+        """Return the observations: velocity of the boat and velocity requested by a stick.
+
+        See `Task`.
+        """
         sway = 2.0 * self.sway * scale.speed
         yaw = 2.0 * self.yaw * scale.speed / scale.length
         return (
@@ -65,7 +68,7 @@ class Joystick(Task):
         )
 
     def sample_episodes(self, uniforms: Array, scale: Scale) -> tuple[Array, Array]:
-        """Return starts at rest, and goals.
+        """Sample initial states at rest, and the sequence of velocities that the stick requests.
 
         A move requests sway, yaw, both or neither, each with probability 1/4; see `Task`.
         """
@@ -81,7 +84,7 @@ class Joystick(Task):
     def observe(
         self, m: Motion, t: Array, goal: Array, hulls: Hulls, scale: Scale
     ) -> tuple[Array, ...]:
-        """Return the signals; see `Task`."""
+        """Compute the observations, velocity and requested velocity of the boat; see `Task`."""
         move = (t / self.moves + 1e-9).astype(np.int64) % MOVES
         boats = np.arange(len(move))
         return (m.u, m.v, m.r, goal[boats, move], goal[boats, MOVES + move])
@@ -89,7 +92,7 @@ class Joystick(Task):
     def evaluate(
         self, observed: tuple[Array, ...], memory: Array, period: float, scale: Scale
     ) -> Outcome:
-        """Reward small errors of the velocity; see `Task`."""
+        """Return the reward, minus the squared error from the requested velocity; see `Task`."""
         u, v, r, sway, yaw = observed
         surge_error = (u / (self.sway * scale.speed)) ** 2
         sway_error = ((v - sway) / (self.sway * scale.speed)) ** 2
@@ -104,7 +107,7 @@ class Joystick(Task):
     def metrics(
         self, observed: tuple[Array, ...], memory: Array, t: Array, scale: Scale
     ) -> dict[str, Array]:
-        """Return rms errors relative to the largest requests; see `Task`."""
+        """Return rms velocity errors relative to the largest requests; see `Task`."""
         time = np.maximum(memory[:, TIME], 1e-9)
         surge = np.sqrt(memory[:, SURGE] / time)
         sway = np.sqrt(memory[:, SWAY] / time)

@@ -14,7 +14,7 @@ SLOWEST = 0.3
 
 @njit(inline="always")
 def law(m: Any, q: Any, s: Any) -> Wrench:
-    """Return the force that gives the accelerations of the polynomial model.
+    """Return the force of an Abkowitz model, polynomials in drift, yaw rate and rudder angle.
 
     The model solves its own inertia matrix, which need not be symmetric. Its accelerations are
     multiplied by the mass and the yaw inertia of the body, and the Coriolis terms that the
@@ -67,12 +67,12 @@ def law(m: Any, q: Any, s: Any) -> Wrench:
 
 
 def derivative_parameter(name: str) -> float:
-    """Return the parameter of a nondimensional derivative with the given name."""
+    """Declare one nondimensional hydrodynamic derivative as a parameter of an effect."""
     return param(0.0, low=-10.0, high=10.0, unit="", words=f"{name}', nondimensional")
 
 
 def inertia_parameter(words: str) -> float:
-    """Return the parameter of one entry of the nondimensional inertia matrix."""
+    """Declare one entry of a nondimensional inertia matrix as a parameter of an effect."""
     return param(1.0, low=-10.0, high=10.0, unit="", words=words)
 
 

@@ -199,7 +199,7 @@ class AddedMass(Inertia, Force):
     )
 
     def derived_parameters(self, vessel: Boat) -> dict[str, float]:
-        """Return the added masses [kg, kg m^2] of a spheroid of the vessel's size.
+        """Return the default added masses [kg, kg m^2]: those of a spheroid of the vessel's size.
 
         Args:
             vessel: Vessel with length, draught [m] and body.

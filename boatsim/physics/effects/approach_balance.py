@@ -12,6 +12,8 @@ from boatsim.physics.base import Force, Role, Wrench, param, wrench
 def law(m: Any, q: Any, s: Any) -> Wrench:
     """Return the surge force -damping (u_r - gain speed n / shaft_rate) at shaft rate n.
 
+    It is the difference of propeller thrust and resistance, linearised about the approach speed.
+
     Args:
         m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].
         q: Parameters of the effect, with the names and units of its class.

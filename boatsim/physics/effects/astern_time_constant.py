@@ -11,11 +11,10 @@ from boatsim.physics.effects.reversing_jet import jet_share
 
 @njit(inline="always")
 def law(m: Any, q: Any, s: Any, t: Any) -> Wrench:
-    """Return the yaw moment that changes the time constant T to factor T astern.
+    """Return the yaw moment that changes the yaw time constant T of a jet craft to factor T astern.
 
-    The time constant is that of the yaw equation r' = (K delta - r) / T.
-
-    It is (1 / factor - 1) times the moment of jet and yaw damping, and zero going ahead.
+    The time constant is that of the yaw equation r' = (K delta - r) / T. The moment is (1 / factor
+    - 1) times that of jet and yaw damping, and zero going ahead.
 
     Args:
         m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].

@@ -16,7 +16,7 @@ SMALL_AMPLITUDE = 22.5
 
 @njit(inline="always")
 def law(m: Any, q: Any) -> Wrench:
-    """Return the roll moment of the drag of both keels.
+    """Return the roll damping moment by the drag of both bilge keels.
 
     The drag coefficient is 2.4 + (22.5 / pi) breadth / (arm amplitude flow). Its second part is
     proportional to 1 / amplitude and so acts as a linear damping at the roll frequency.
@@ -100,7 +100,7 @@ class BilgeKeels(Force):
     )
 
     def derived_parameters(self, vessel: Boat) -> dict[str, float]:
-        """Return keel length, arm and roll frequency from the data of the vessel.
+        """Return default length, lever arm and roll frequency of bilge keels from the vessel data.
 
         Args:
             vessel: Vessel with length, beam, draught [m] and body.

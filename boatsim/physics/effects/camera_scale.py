@@ -11,7 +11,9 @@ from boatsim.physics.recorded_channels import X, Y, with_channel
 
 @njit(inline="always")
 def apply_measurement_error(m: MeasuredMotion, q: Any) -> MeasuredMotion:
-    """Return the recorded motion with the scaled position.
+    """Return the motion as a camera records it whose scale is wrong along two axes.
+
+    The position is scaled by one factor in x and one in y.
 
     Args:
         m: True motion: position [m], attitude [rad], velocities [m/s], rates [rad/s].

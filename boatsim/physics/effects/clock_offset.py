@@ -10,7 +10,9 @@ from boatsim.physics.base import Measurement, param
 
 @njit(inline="always")
 def motion_latency(q: Any) -> float:
-    """Return the latency: the pose in row t is that of the time t - pose_late.
+    """Return by how much the recorded motion lags the recorded commands, due to two clocks.
+
+    The pose in row t is that of the time t - pose_late.
 
     Args:
         q: Parameters of the effect, with the names and units of its class.

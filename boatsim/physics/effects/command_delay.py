@@ -15,13 +15,13 @@ HISTORY = 80  # stored commands of each actuator: one every 20 ms for a delay of
 
 @njit(inline="always")
 def store_command(x: float, memory: Array, at: int, dt: float, delay: float) -> int:
-    """Add a command held for dt to the ring buffer and return the index of the newest entry.
+    """Store a command and its duration in the ring buffer of a dead time; return the entry's index.
 
     The buffer holds pairs of command and duration. Commands that change too often for the buffer to
     span the delay are merged into their mean.
 
     Args:
-        x: Command.
+        x: Command, held for the time dt.
         memory: Memory of the program; the buffer begins at `memory[at]`.
         at: Index of the buffer in `memory`.
         dt: Time for which the command is held [s].
@@ -44,13 +44,13 @@ def store_command(x: float, memory: Array, at: int, dt: float, delay: float) -> 
 def transform_signal(
     x: SignalSegment, side: float, source: float, memory: Array, at: int, dt: float, q: Any
 ) -> SignalSegment:
-    """Return the mean command of the time window that lies `delay` before the step.
+    """Delay a command by a dead time: return its mean over a time window `delay` before the step.
 
     The result is exact because no step extends beyond a change of the delayed command (see
     `time_to_discontinuity`).
 
     Args:
-        x: Signal that enters: its values at the begin, middle and end of the step.
+        x: Signal of the actuator before the effect, at begin, middle and end of the step.
         side: -1 on the port side, +1 on the starboard side, 0 on the centreline.
         source: Raw command that feeds the channel (`fed_by`).
         memory: Memory of the compiled program.
@@ -59,7 +59,7 @@ def transform_signal(
         q: Parameters of the effect, with the names and units of its class.
 
     Returns:
-        The signal that leaves the effect, over the same step.
+        The signal of the actuator after the effect, over the same step.
     """
     given = segment_mean(x)
     i = store_command(given, memory, at, dt, q.delay)
@@ -89,16 +89,16 @@ def transform_signal(
 
 @njit
 def present_output(x: float, memory: Array, at: int, q: Any) -> float:
-    """Return the command that reaches the actuator now.
+    """Return the delayed command that reaches the actuator at present.
 
     Args:
-        x: Signal that enters now, assumed constant.
+        x: Present signal of the actuator before the effect, assumed constant.
         memory: Memory of the compiled program.
         at: Index of the first slot of this effect in `memory`.
         q: Parameters of the effect, with the names and units of its class.
 
     Returns:
-        The signal that leaves the effect now.
+        The present signal of the actuator after the effect.
     """
     if q.delay <= 0.0:
         return x
@@ -113,12 +113,12 @@ def present_output(x: float, memory: Array, at: int, q: Any) -> float:
 
 @njit
 def time_to_discontinuity(x: float, memory: Array, at: int, q: Any) -> float:
-    """Return the time until the next stored command reaches the actuator.
+    """Return the time until the next delayed command reaches the actuator.
 
-    A command that is new now needs the whole delay.
+    A command that is new at this instant needs the whole delay.
 
     Args:
-        x: Signal that enters now, assumed constant.
+        x: Present signal of the actuator before the effect, assumed constant.
         memory: Memory of the compiled program.
         at: Index of the first slot of this effect in `memory`.
         q: Parameters of the effect, with the names and units of its class.

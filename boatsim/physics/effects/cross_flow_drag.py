@@ -14,15 +14,16 @@ GAUSS = 0.5 / sqrt(3.0)  # two-point Gauss abscissa on an interval of unit lengt
 
 @njit(inline="always")
 def panel_integrals(a: float, b: float, v: float, r: float) -> tuple[float, float]:
-    """Return the integrals of w|w| and x w|w|, w = v + x r, over [a, b].
+    """Return the integrals of w|w| and x w|w| over a part [a, b] of the hull, w = v + x r.
 
-    w must keep its sign in the interval. Two-point Gauss quadrature is exact for these integrands.
+    They give the cross-flow drag and its moment. w must keep its sign in the interval. Two-point
+    Gauss quadrature is exact for these integrands.
 
     Args:
-        a: Begin of the interval [m].
+        a: Begin of the interval, ahead of the origin [m].
         b: End of the interval [m].
         v: Cross-flow velocity at x = 0 [m/s].
-        r: Its slope along the hull [1/s].
+        r: Slope of the cross-flow velocity along the hull, the yaw rate [1/s].
     """
     mid, half = 0.5 * (a + b), GAUSS * (b - a)
     w0, w1 = v + (mid - half) * r, v + (mid + half) * r
@@ -32,14 +33,15 @@ def panel_integrals(a: float, b: float, v: float, r: float) -> tuple[float, floa
 
 @njit(inline="always")
 def hull_integrals(v: float, r: float, q: Any) -> tuple[float, float]:
-    """Return the integrals of w|w| and x w|w|, w = v + x r, along the hull.
+    """Return the integrals of w|w| and x w|w| over the whole hull, w = v + x r.
 
-    With `stations` = 0 the hull is split where the cross flow changes sign and each part integrated
-    exactly; otherwise the trapezoidal rule over that many stations is used.
+    They give the cross-flow drag and its moment. With `stations` = 0 the hull is split where the
+    cross flow changes sign and each part integrated exactly; otherwise the trapezoidal rule over
+    that many stations is used.
 
     Args:
         v: Cross-flow velocity at x = 0 [m/s].
-        r: Its slope along the hull [1/s].
+        r: Slope of the cross-flow velocity along the hull, the yaw rate [1/s].
         q: Parameters of the effect.
     """
     stern, bow = q.centre - 0.5 * q.length, q.centre + 0.5 * q.length
@@ -62,7 +64,9 @@ def hull_integrals(v: float, r: float, q: Any) -> tuple[float, float]:
 
 @njit(inline="always")
 def law(m: Any, q: Any) -> Wrench:
-    """Return the drag in surge, sway and yaw, and in heave and pitch if `vertical` is set.
+    """Return the quadratic cross-flow drag of the hull and its drag in surge.
+
+    It acts in surge, sway and yaw, and in heave and pitch if `vertical` is set.
 
     Args:
         m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].

@@ -10,7 +10,7 @@ from boatsim.physics.base import WaterFlow, param
 
 @njit(inline="always")
 def water_velocity(q: Any) -> tuple[float, float]:
-    """Return the velocity of the water over the ground.
+    """Return the velocity over the ground of a uniform, steady current.
 
     Args:
         q: Parameters of the effect, with the names and units of its class.

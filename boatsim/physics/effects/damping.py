@@ -25,9 +25,9 @@ ITTC = "ITTC Recommended Procedure 7.5-02-07-04.5, Estimation of Roll Damping"
 
 @njit(inline="always")
 def speed_power(speed: float, exponent: float, equal: float) -> float:
-    """Return speed (|speed| / equal)^(exponent - 1).
+    """Return the power law speed (|speed| / equal)^(exponent - 1) of a damping force.
 
-    Exponents 1, 2 and 3 are evaluated by products.
+    The law replaces the speed in a linear damping. Exponents 1, 2 and 3 are evaluated by products.
 
     Args:
         speed: Velocity of the axis [m/s or rad/s].
@@ -45,9 +45,10 @@ def speed_power(speed: float, exponent: float, equal: float) -> float:
 
 @njit(inline="always")
 def law(m: Any, q: Any) -> Wrench:
-    """Return the damping force -D nu_r, each speed raised to the exponent of its axis.
+    """Return the hydrodynamic damping force on the hull, -D nu_r with a power law in each axis.
 
-    The sway damping acts on the cross flow at its own place, v_r + sway_at r.
+    Each speed is raised to the exponent of its axis. The sway damping acts on the cross flow at its
+    own place, v_r + sway_at r.
 
     Args:
         m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].
@@ -70,14 +71,14 @@ def law(m: Any, q: Any) -> Wrench:
 
 
 def exponent_parameter(axis: str) -> float:
-    """Return the parameter of the exponent of the speed in one axis."""
+    """Declare the exponent of the speed in one axis's damping as a parameter of an effect."""
     return param(
         1.0, low=1.0, high=3.0, unit="", words=f"power of the speed in {axis}; 1: linear", axis=axis
     )
 
 
 def equal_speed_parameter(axis: str, unit: str) -> float:
-    """Return the parameter of the speed at which the power law equals the linear law."""
+    """Declare the speed at which a power-law damping equals the linear law as a parameter."""
     return param(
         1.0,
         low=0.01,
@@ -252,7 +253,10 @@ class LateralCentreShift(CoefficientRelease):
 
 
 def replaced_exponent_parameter(axis: str) -> float:
-    """Return the parameter of the exponent that replaces the linear law in one axis."""
+    """Declare the exponent that replaces the linear law of one axis's damping as a parameter.
+
+    It belongs to a hypothesis that a diagnosis tests.
+    """
     return replacement_parameter(
         f"linear_damping.{axis}_exponent",
         words=f"exponent of the {axis} damping",
@@ -266,7 +270,10 @@ def replaced_exponent_parameter(axis: str) -> float:
 
 
 def agreement_speed_parameter(axis: str, unit: str) -> float:
-    """Return the parameter of the speed at which the power law and the linear law agree."""
+    """Declare the speed at which the linear and the power-law damping agree as a parameter.
+
+    It belongs to a hypothesis that a diagnosis tests.
+    """
     return replacement_parameter(
         f"linear_damping.{axis}_equal",
         words="speed at which both laws agree",

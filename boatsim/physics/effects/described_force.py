@@ -13,7 +13,9 @@ from boatsim.physics.param import code_parameter
 
 @njit(inline="always")
 def law(m: Any, q: Any, act: Any, at: Any, own: Any) -> Wrench:
-    """Return the force of the term along its axis of the hull or of the earth.
+    """Return the force of a term found by symbolic regression, along one axis of hull or earth.
+
+    The term is a coefficient times up to three factors of the state and a function of time.
 
     Args:
         m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].
@@ -58,7 +60,9 @@ class DescribedForce(SymbolicTerm):
         terms.index_code(f"{self.name}: axis", self.axis, terms.DIRECTIONS)
 
     def derived_parameters(self, vessel: Boat) -> dict[str, float]:
-        """Return the numeric codes of axis and factors for the compiled program.
+        """Return the numbers that stand for the axis and the factors of a regression term.
+
+        The compiled law needs numbers in place of names.
 
         Args:
             vessel: Vessel on which the effect acts.
@@ -71,5 +75,8 @@ class DescribedForce(SymbolicTerm):
         }
 
     def fixed_settings(self) -> dict[str, object]:
-        """Return the settings that no fit changes, without those that have no effect."""
+        """Return the settings of a regression term that no fit changes, such as axis and factors.
+
+        Settings without influence are omitted.
+        """
         return {"axis": self.axis} | super().fixed_settings()

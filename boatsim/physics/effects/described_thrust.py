@@ -17,7 +17,7 @@ SENSES = {"both": 0.0, "ahead": 1.0, "astern": -1.0}
 
 @njit(inline="always")
 def law(m: Any, q: Any, s: Any, t: Any, act: Any, at: Any, own: Any) -> Wrench:
-    """Return the change of thrust of one drive.
+    """Return the change of one drive's thrust by a term found by symbolic regression.
 
     It acts only on the drives of the given side and for the given sense of thrust.
 
@@ -74,7 +74,9 @@ class DescribedThrust(SymbolicTerm):
         terms.index_code(f"{self.name}: sense", self.sense, tuple(SENSES))
 
     def derived_parameters(self, vessel: Boat) -> dict[str, float]:
-        """Return the numeric codes of side, sense and factors for the compiled program.
+        """Return the numbers that stand for side, sense of thrust and factors of a regression term.
+
+        The compiled law needs numbers in place of names.
 
         Args:
             vessel: Vessel on which the effect acts.
@@ -88,5 +90,8 @@ class DescribedThrust(SymbolicTerm):
         }
 
     def fixed_settings(self) -> dict[str, object]:
-        """Return the settings that no fit changes, without those that have no effect."""
+        """Return the settings of a regression term that no fit changes, such as side and factors.
+
+        Settings without influence are omitted.
+        """
         return {"side": self.side, "sense": self.sense} | super().fixed_settings()

@@ -29,7 +29,7 @@ def thrust_deficit(thrust: float, speed: float, drag: float) -> float:
 
 @njit(inline="always")
 def law(m: Any, q: Any, s: Any, t: Any) -> Wrench:
-    """Return the thrust that one thruster lacks, from the speed of its mount along its axis.
+    """Return the thrust that one thruster lacks when it pushes against the motion of its mount.
 
     Args:
         m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].

@@ -14,10 +14,12 @@ from boatsim.physics.kinds.channel import MAPS
 def transform_signal(
     x: SignalSegment, side: float, source: float, memory: Array, at: int, dt: float, q: Any
 ) -> SignalSegment:
-    """Return the signal plus the output of the curve at the raw command.
+    """Return the thrust or shaft rate of a drive: its signal plus a static curve of a raw command.
+
+    The raw command is, for example, the duty cycle of a motor controller.
 
     Args:
-        x: Signal that enters: its values at the begin, middle and end of the step.
+        x: Signal of the actuator before the effect, at begin, middle and end of the step.
         side: -1 on the port side, +1 on the starboard side, 0 on the centreline.
         source: Raw command that feeds the channel (`fed_by`).
         memory: Memory of the compiled program.
@@ -26,7 +28,7 @@ def transform_signal(
         q: Parameters of the effect, with the names and units of its class.
 
     Returns:
-        The signal that leaves the effect, over the same step.
+        The signal of the actuator after the effect, over the same step.
     """
     off = source - q.neutral
     drive = (abs(off) - q.dead) / (q.span - q.dead)

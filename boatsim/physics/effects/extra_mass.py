@@ -23,7 +23,7 @@ from boatsim.physics.particulars import GRAVITY
 
 @njit(inline="always")
 def inertia(q: Any) -> MassMatrix:
-    """Return the inertia of a point mass on the centreline.
+    """Return the mass matrix of a point mass fixed to the hull on its centreline.
 
     Args:
         q: Parameters of the effect, with the names and units of its class.
@@ -46,9 +46,10 @@ def inertia(q: Any) -> MassMatrix:
 
 @njit(inline="always")
 def law(m: Any, q: Any) -> Wrench:
-    """Return the Coriolis and centripetal force of the point mass over ground, and its weight.
+    """Return the force on the hull of a point mass that it carries.
 
-    The weight sinks and trims the hull.
+    It consists of the Coriolis and centripetal force of the motion over ground, and the weight,
+    which sinks and trims the hull.
 
     Args:
         m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].
@@ -140,7 +141,7 @@ class Payload(CoefficientRelease):
     )
 
     def changes(self, vessel: Boat) -> list[CoefficientChange]:
-        """Return the changes of mass and of the inertias that the vessel specifies.
+        """Return by how much a payload changes the vessel's mass and its specified inertias.
 
         Args:
             vessel: Vessel on which the effect acts.
@@ -148,7 +149,7 @@ class Payload(CoefficientRelease):
         return [c for c in super().changes(vessel) if getattr(vessel.body, c.key) is not None]
 
     def shift_weights(self, vessel: Boat) -> dict[str, float]:
-        """Return the inertia per mass [m^2] of each axis.
+        """Return by how much each moment of inertia changes per unit of added mass [m^2].
 
         The radii of gyration do not change.
 
@@ -163,7 +164,7 @@ class Payload(CoefficientRelease):
         return {place: inertia / body.mass for place, inertia in inertias if inertia is not None}
 
     def identifiable_ratios(self, vessel: Boat) -> dict[str, tuple[float, str]]:
-        """Return the ratio of force to mass, the only quantity that the motion identifies.
+        """Return force over mass, the only quantity that the motion identifies about a payload.
 
         Args:
             vessel: Vessel on which the effect acts.

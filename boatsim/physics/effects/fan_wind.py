@@ -34,7 +34,9 @@ def air_drag(along: float, across: float, density: float, q: Any, swing: float) 
 
 @njit(inline="always")
 def law(m: Any, q: Any) -> Wrench:
-    """Return the air drag for the velocity of the air past the hull.
+    """Return the air drag of the hull in a steady stream of air, such as from a bank of fans.
+
+    It follows from the velocity of the air relative to the hull.
 
     Args:
         m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].

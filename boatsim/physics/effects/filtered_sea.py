@@ -11,7 +11,9 @@ from boatsim.physics.noise import narrow_band_noise, seeded_realisation
 
 @njit
 def law(m: Any, q: Any) -> Wrench:
-    """Return the wave force at the time of the motion; axes without a force are not computed.
+    """Return one realisation of narrow-band wave forces in sway, yaw and roll at the present time.
+
+    Axes with zero rms force are not computed.
 
     Args:
         m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].
@@ -72,7 +74,7 @@ class FilteredSea(Force):
     )
 
     def with_seed(self, seed: int) -> Self:
-        """Return the effect with a realisation that depends on the seed.
+        """Return a copy of the wave forces whose random realisation follows from the seed.
 
         Args:
             seed: Seed of the scenario.

@@ -10,9 +10,10 @@ from boatsim.physics.base import Force, Wrench, param, wrench
 
 @njit(inline="always")
 def law(m: Any, q: Any) -> Wrench:
-    """Return the damping by lift of hull and fins at a small angle to the flow.
+    """Return the damping of sway, roll and yaw by the lift of hull and fins at a small drift angle.
 
-    Going astern the sway force acts at the opposite end of the hull.
+    It is proportional to the forward speed. Going astern the sway force acts at the opposite end of
+    the hull.
 
     Args:
         m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].

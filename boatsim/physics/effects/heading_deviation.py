@@ -11,7 +11,9 @@ from boatsim.physics.base import MeasuredMotion, Measurement, param, preset_effe
 
 @njit(inline="always")
 def apply_measurement_error(m: MeasuredMotion, q: Any) -> MeasuredMotion:
-    """Return the recorded motion: heading with deviation, velocities along the recorded heading.
+    """Return the motion as recorded with a compass that has a deviation.
+
+    The heading contains the deviation, and the velocities are those along the recorded heading.
 
     Args:
         m: True motion: position [m], attitude [rad], velocities [m/s], rates [rad/s].

@@ -11,9 +11,10 @@ from boatsim.physics.particulars import GRAVITY
 
 @njit(inline="always")
 def law(m: Any, q: Any) -> Wrench:
-    """Return the restoring force -G (z, phi, theta) about the trim of the displaced mass.
+    """Return the linear restoring force of buoyancy in heave, roll and pitch.
 
-    A mass beyond the displacement makes the hull float deeper.
+    It is -G (z, phi, theta) about the equilibrium of the displaced mass. A mass beyond the
+    displacement makes the hull float deeper.
 
     Args:
         m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].
@@ -79,7 +80,7 @@ class Hydrostatics(Force):
     )
 
     def derived_parameters(self, vessel: Boat) -> dict[str, float]:
-        """Return the displacement: by default the hull floats at z = 0 with the mass of its file.
+        """Return the default displacement, the vessel's mass, with which the hull floats at z = 0.
 
         Args:
             vessel: Vessel with a body.

@@ -16,9 +16,10 @@ GRAVITY = particulars.GRAVITY
 
 @njit(inline="always")
 def wave_slope_integrals(s: float, taper: float) -> tuple[float, float]:
-    """Return the integrals of the wave slope over a hull of parabolic section areas.
+    """Return the integrals of a wave's slope along a hull that give its side force and yaw moment.
 
-    They are those of (1 - taper x^2) cos(s x) and (1 - taper x^2) x sin(s x) over x in [-1, 1].
+    They are the integrals of (1 - taper x^2) cos(s x) and (1 - taper x^2) x sin(s x) over x in [-1,
+    1], for a hull of parabolic section areas.
 
     Args:
         s: Wave number times half the length, along the hull [-].
@@ -40,10 +41,10 @@ def wave_slope_integrals(s: float, taper: float) -> tuple[float, float]:
 
 @njit
 def law(m: Any, q: Any) -> Wrench:
-    """Return the sum of the forces of all wave components.
+    """Return the force of an irregular, long-crested sea in sway, yaw and roll.
 
-    The frequency range is divided into cells with one wave in each, at a random frequency inside
-    the cell and with the energy of the spectrum in it.
+    It is a sum over wave components. The frequency range is divided into cells with one wave in
+    each, at a random frequency inside the cell and with the energy of the spectrum in it.
 
     Args:
         m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].
@@ -197,7 +198,7 @@ class IrregularSea(Force):
     )
 
     def derived_parameters(self, vessel: Boat) -> dict[str, float]:
-        """Return the depth of the centre of buoyancy, 0.4 of the draught.
+        """Return the default depth of the hull's centre of buoyancy, 0.4 of the draught.
 
         Args:
             vessel: Vessel on which the effect acts.
@@ -205,7 +206,7 @@ class IrregularSea(Force):
         return {"centre_depth": 0.4 * self.draught}
 
     def with_seed(self, seed: int) -> Self:
-        """Return the effect with a realisation that depends on the seed.
+        """Return a copy of the irregular sea whose random waves follow from the seed.
 
         Args:
             seed: Seed of the scenario.

@@ -10,7 +10,7 @@ from boatsim.physics.base import Force, Role, Wrench, param, wrench
 
 @njit(inline="always")
 def law(m: Any, q: Any, s: Any) -> Wrench:
-    """Return side force, roll and yaw moment proportional to the nozzle angle.
+    """Return side force, roll and yaw moment of a water jet, proportional to its nozzle angle.
 
     Args:
         m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].

@@ -11,9 +11,10 @@ from boatsim.physics.recorded_channels import X, Y, delayed_channel, with_channe
 
 @njit(inline="always")
 def apply_measurement_error(m: MeasuredMotion, q: Any) -> MeasuredMotion:
-    """Return the recorded motion with the position `latency` earlier in a steady turn.
+    """Return the motion as recorded with position fixes that are older than the headings.
 
-    The chord of the turn stands for its arc.
+    The position is that of the time `latency` earlier, assuming a steady turn whose chord stands
+    for its arc.
 
     Args:
         m: True motion: position [m], attitude [rad], velocities [m/s], rates [rad/s].

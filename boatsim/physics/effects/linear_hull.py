@@ -11,7 +11,7 @@ from boatsim.physics.base import UNSET, Boat, Force, Wrench, param, wrench
 
 @njit(inline="always")
 def law(m: Any, q: Any) -> Wrench:
-    """Return sway force, yaw moment and the roll moment of a low sway force.
+    """Return the linear hull forces: sway force, yaw moment, and the roll moment they cause.
 
     `arm` adds a roll moment proportional to the force that accelerates the hull in sway.
 
@@ -98,7 +98,9 @@ class LinearHull(Force):
     )
 
     def derived_parameters(self, vessel: Boat) -> dict[str, float]:
-        """Return the derivatives and levers from the size, speed and added mass of the vessel.
+        """Return default derivatives and levers of a linear hull, estimated by published formulas.
+
+        They follow from the size, approach speed and added mass of the vessel.
 
         Args:
             vessel: Vessel with length, beam, draught [m], body and an `added_mass`.

@@ -19,7 +19,9 @@ from boatsim.physics.base import (
 
 @njit(inline="always")
 def inertia(q: Any) -> MassMatrix:
-    """Return the first and second moment of the shifted mass; the mass itself belongs to the hull.
+    """Return the change of the mass matrix when the hull's mass centre lies ahead of the origin.
+
+    It holds the first and second moment of the shifted mass; the mass itself belongs to the hull.
 
     Args:
         q: Parameters of the effect, with the names and units of its class.
@@ -33,7 +35,9 @@ def inertia(q: Any) -> MassMatrix:
 
 @njit(inline="always")
 def law(m: Any, q: Any) -> Wrench:
-    """Return the Coriolis and centripetal force of the first moment.
+    """Return the Coriolis and centripetal force that a shift of the mass centre adds.
+
+    The mass centre lies ahead of or behind the origin of motion.
 
     Args:
         m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].

@@ -12,7 +12,7 @@ from boatsim.physics.effects.measured_wind import MeasuredWind
 
 @njit(inline="always")
 def law(m: Any, q: Any, s: Any) -> Wrench:
-    """Return the air drag for the measured velocity of the air past the hull.
+    """Return the air drag of the hull for the apparent wind that an anemometer on board measured.
 
     Args:
         m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].

@@ -11,7 +11,10 @@ from boatsim.physics.effects.fan_wind import AIR_DENSITY, air_drag
 
 @njit(inline="always")
 def law(m: Any, q: Any, s: Any) -> Wrench:
-    """Return the air drag for the true wind less the velocity of the hull over ground.
+    """Return the air drag of the hull in a recorded true wind.
+
+    The air velocity relative to the hull is the true wind less the velocity of the hull over
+    ground.
 
     Args:
         m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].

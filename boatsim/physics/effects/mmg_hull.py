@@ -47,7 +47,7 @@ def law(m: Any, q: Any) -> Wrench:
 
 
 def derivative_parameter(name: str, axis: str) -> float:
-    """Return the parameter of a nondimensional derivative from captive tests."""
+    """Declare a nondimensional hydrodynamic derivative of a hull as a parameter of an effect."""
     return param(
         0.0,
         low=-10.0,

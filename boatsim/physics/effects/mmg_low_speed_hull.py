@@ -12,11 +12,13 @@ from boatsim.physics.effects.cross_flow_drag import panel_integrals
 
 @njit(inline="always")
 def hull_integrals(v: float, r: float, length: float) -> tuple[float, float]:
-    """Return the integrals of w|w| and x w|w|, w = v + x r, over a hull about midship.
+    """Return the integrals of w|w| and x w|w|, w = v + x r, along a hull about midship.
+
+    They give the cross-flow drag and its yaw moment.
 
     Args:
         v: Cross-flow velocity midship [m/s].
-        r: Its slope along the hull [1/s].
+        r: Slope of the cross-flow velocity along the hull, the yaw rate [1/s].
         length: Length of the hull [m].
     """
     half = 0.5 * length
@@ -29,11 +31,11 @@ def hull_integrals(v: float, r: float, length: float) -> tuple[float, float]:
 
 @njit(inline="always")
 def law(m: Any, q: Any) -> Wrench:
-    """Return the hull force, defined for every drift angle and at rest.
+    """Return the force on a ship's bare hull at low speed, for every drift angle and at rest.
 
-    Polynomials in v / U and r L / U are not defined there. The weight of the resistance coefficient
-    astern grows linearly with the drift angle, from 0 ahead to 1 astern. In yaw the Coriolis force
-    of the added mass is part of N_v.
+    Linear lift and cross-flow drag replace polynomials in v / U and r L / U, which are not defined
+    at rest. The weight of the resistance coefficient astern grows linearly with the drift angle,
+    from 0 ahead to 1 astern. In yaw the Coriolis force of the added mass is part of N_v.
 
     Args:
         m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].
@@ -54,7 +56,7 @@ def law(m: Any, q: Any) -> Wrench:
 
 
 def coefficient_parameter(words: str, axis: str = "") -> float:
-    """Return the parameter of a nondimensional coefficient from captive tests."""
+    """Declare a nondimensional coefficient from captive model tests as a parameter of an effect."""
     return param(0.0, low=-10.0, high=10.0, unit="", words=words, calibrates="damping", axis=axis)
 
 

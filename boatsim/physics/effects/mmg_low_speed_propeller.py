@@ -12,7 +12,7 @@ from boatsim.physics.effects.mmg_propeller import open_water_thrust
 
 @njit(inline="always")
 def inflow_speed(m: Any, q: Any) -> float:
-    """Return the speed of the water through the propeller [m/s].
+    """Return the speed of the water that enters a ship's propeller, behind the hull's wake [m/s].
 
     The wake fraction decreases with the sideways velocity of the stern; going astern there is no
     wake.
@@ -30,7 +30,7 @@ def inflow_speed(m: Any, q: Any) -> float:
 
 @njit(inline="always")
 def astern_thrust(shaft: float, u: float, q: Any) -> float:
-    """Return the thrust over rho D^2 [m^2/s^2] of a shaft that turns astern.
+    """Return the thrust of a propeller whose shaft turns astern, divided by rho D^2 [m^2/s^2].
 
     It is linear in J_s = u / (n D) and constant below `astern_from`. J_s is negative while the ship
     still goes ahead, so the constant is that of a crash stop.
@@ -48,7 +48,7 @@ def astern_thrust(shaft: float, u: float, q: Any) -> float:
 
 @njit(inline="always")
 def propeller_thrust(m: Any, q: Any, shaft: float) -> float:
-    """Return the thrust on the ship over rho D^2 [m^2/s^2].
+    """Return the thrust of a propeller, ahead or astern, divided by rho D^2 [m^2/s^2].
 
     Astern the measured value includes the reaction of the hull.
 
@@ -64,10 +64,11 @@ def propeller_thrust(m: Any, q: Any, shaft: float) -> float:
 
 @njit(inline="always")
 def side_force(m: Any, q: Any, shaft: float) -> tuple[float, float]:
-    """Return side force over 0.5 rho L d and yaw moment over 0.5 rho L^2 d [m^2/s^2].
+    """Return side force and yaw moment of a propeller (its paddle-wheel effect) per water density.
 
-    With the shaft astern they are linear in J_s in three ranges, with the shaft ahead and the ship
-    astern they are a parabola in J_s; with both ahead they are zero.
+    The side force is divided by 0.5 rho L d, the yaw moment by 0.5 rho L^2 d [m^2/s^2]. With the
+    shaft astern they are linear in J_s = u / (n D) in three ranges, with the shaft ahead and the
+    ship astern they are a parabola in J_s; with both ahead they are zero.
 
     Args:
         m: Motion of the hull.
@@ -90,7 +91,9 @@ def side_force(m: Any, q: Any, shaft: float) -> tuple[float, float]:
 
 @njit(inline="always")
 def law(m: Any, q: Any, s: Any) -> Wrench:
-    """Return thrust, thrust deduction included, side force and yaw moment of the propeller.
+    """Return the thrust, side force and yaw moment of a propeller in all four quadrants.
+
+    The thrust is reduced by the thrust deduction of the hull.
 
     Args:
         m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].
@@ -107,7 +110,7 @@ def law(m: Any, q: Any, s: Any) -> Wrench:
 
 
 def coefficient_parameter(words: str) -> float:
-    """Return the parameter of a nondimensional coefficient from captive tests."""
+    """Declare a nondimensional propeller coefficient from captive tests as a parameter."""
     return param(0.0, low=-10.0, high=10.0, unit="", words=words)
 
 

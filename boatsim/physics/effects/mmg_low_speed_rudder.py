@@ -15,7 +15,7 @@ NEVER = pi  # [rad] default: no stall at any angle of attack
 
 @njit(inline="always")
 def slipstream_speed(m: Any, q: Any, shaft: float) -> float:
-    """Return the speed of the water along the rudder [m/s], negative from astern.
+    """Return the speed of the water along a rudder behind a propeller [m/s], negative from astern.
 
     A propeller with thrust ahead accelerates the flow over the part of the span behind it. One that
     backs or brakes draws water away from the rudder. On a ship that goes astern without thrust
@@ -48,9 +48,10 @@ def slipstream_speed(m: Any, q: Any, shaft: float) -> float:
 
 @njit(inline="always")
 def law(m: Any, q: Any, s: Any) -> Wrench:
-    """Return the force normal to the rudder, with the hull force that it induces.
+    """Return the force of a rudder behind a propeller at low speed, with the hull force it induces.
 
-    Hull and propeller straighten the flow that meets the rudder, by a factor for each side.
+    The force acts normal to the rudder. Hull and propeller straighten the flow that meets the
+    rudder, by a factor for each side.
 
     Args:
         m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].
@@ -86,7 +87,7 @@ def law(m: Any, q: Any, s: Any) -> Wrench:
 
 
 def propeller_parameter(name: str) -> float:
-    """Return a parameter that follows the one of the same name of the propeller."""
+    """Declare a rudder parameter whose default is the propeller's parameter of the same name."""
     return param(
         UNSET,
         low=-10.0,

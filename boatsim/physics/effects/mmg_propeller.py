@@ -11,7 +11,7 @@ from boatsim.physics.base import UNSET, Force, Role, Wrench, param, wrench
 
 @njit(inline="always")
 def drift_angle(m: Any) -> float:
-    """Return the drift angle beta [rad]; zero also for a ship going straight astern.
+    """Return the drift angle beta of the hull [rad]; zero also for a ship going straight astern.
 
     Args:
         m: Motion of the hull.
@@ -21,7 +21,7 @@ def drift_angle(m: Any) -> float:
 
 @njit(inline="always")
 def inflow_speed(m: Any, q: Any) -> float:
-    """Return the speed of the water through the propeller [m/s].
+    """Return the speed of the water that enters a ship's propeller, behind the hull's wake [m/s].
 
     The wake fraction decreases with the drift angle at the propeller.
 
@@ -38,10 +38,11 @@ def inflow_speed(m: Any, q: Any) -> float:
 
 @njit(inline="always")
 def open_water_thrust(shaft: float, V: float, q: Any) -> float:
-    """Return K_T n^2 D^2 [m^2/s^2] for K_T = k0 + k1 J + k2 J |J|.
+    """Return the open-water thrust of a propeller over rho D^2: K_T n^2 D^2 [m^2/s^2].
 
-    It is evaluated without J = V / (n D), so that the shaft may stand still. Ahead it is the
-    published polynomial; going astern a stopped propeller drags against the motion as well.
+    K_T = k0 + k1 J + k2 J |J| is evaluated without J = V / (n D), so that the shaft may stand
+    still. Ahead it is the published polynomial; going astern a stopped propeller drags against the
+    motion as well.
 
     Args:
         shaft: Shaft rate n [1/s].
@@ -54,7 +55,7 @@ def open_water_thrust(shaft: float, V: float, q: Any) -> float:
 
 @njit(inline="always")
 def law(m: Any, q: Any, s: Any) -> Wrench:
-    """Return the thrust less the thrust deduction of the hull.
+    """Return the propeller thrust of the MMG standard method, less the thrust deduction.
 
     Args:
         m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].

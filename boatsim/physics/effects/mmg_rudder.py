@@ -14,9 +14,7 @@ NEVER = pi  # [rad] default: no stall at any angle of attack
 
 @njit(inline="always")
 def slipstream_speed(m: Any, q: Any, shaft: float) -> float:
-    """Return the speed of the water along the rudder [m/s].
-
-    The part of its span behind the propeller is in the slipstream.
+    """Return the speed of the water along a rudder partly in the propeller slipstream [m/s].
 
     Args:
         m: Motion of the hull.
@@ -31,9 +29,10 @@ def slipstream_speed(m: Any, q: Any, shaft: float) -> float:
 
 @njit(inline="always")
 def law(m: Any, q: Any, s: Any) -> Wrench:
-    """Return the force normal to the rudder, with the hull force that it induces.
+    """Return the rudder force of the MMG standard method, with the hull force that it induces.
 
-    Hull and propeller straighten the flow that meets the rudder, by a factor for each side.
+    The force acts normal to the rudder. Hull and propeller straighten the flow that meets the
+    rudder, by a factor for each side.
 
     Args:
         m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].

@@ -10,7 +10,9 @@ from boatsim.physics.base import UNSET, Force, Role, Wrench, param, wrench
 
 @njit(inline="always")
 def law(m: Any, q: Any, s: Any) -> Wrench:
-    """Return the yaw moment I_z (K delta - r) / T with the present K and T.
+    """Return the yaw moment I_z (K delta - r) / T of a first-order (Nomoto) yaw response.
+
+    Gain K and time constant T are those at the present time.
 
     Args:
         m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].

@@ -10,7 +10,9 @@ from boatsim.physics.base import UNSET, Reaction, Wrench, param, wrench
 
 @njit(inline="always")
 def reaction(m: Any, w: Wrench, q: Any) -> Wrench:
-    """Return (kappa - 1) times the surge force of all other effects, m v r included.
+    """Return the surge force that slows the speed changes of a planing craft at low speed.
+
+    It is (kappa - 1) times the surge force of all other effects, m v r included.
 
     Args:
         m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].

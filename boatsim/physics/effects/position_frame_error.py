@@ -11,7 +11,9 @@ from boatsim.physics.base import MeasuredMotion, Measurement, param
 
 @njit(inline="always")
 def apply_measurement_error(m: MeasuredMotion, q: Any) -> MeasuredMotion:
-    """Return the recorded motion: position and velocity of a point away from the mass centre.
+    """Return the motion as recorded at another point of the hull, such as an antenna.
+
+    Position and velocity are those of a point away from the mass centre.
 
     Args:
         m: True motion: position [m], attitude [rad], velocities [m/s], rates [rad/s].

@@ -10,7 +10,9 @@ from boatsim.physics.base import DriftingMeasurement, InstrumentDrift, param
 
 @njit(inline="always")
 def instrument_drift(q: Any) -> InstrumentDrift:
-    """Return the noise model; north and east errors are independent and have the same rms.
+    """Return the noise model of slowly varying errors of position fixes and headings.
+
+    North and east errors are independent and have the same rms.
 
     Args:
         q: Parameters of the effect, with the names and units of its class.

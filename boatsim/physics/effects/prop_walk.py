@@ -10,7 +10,7 @@ from boatsim.physics.base import Force, Wrench, param, wrench
 
 @njit(inline="always")
 def law(m: Any, q: Any, s: Any, t: Any) -> Wrench:
-    """Return the side force of one propeller.
+    """Return the side force (prop walk) of one propeller, proportional to its thrust.
 
     All propellers turn the same way, so their forces add up.
 

@@ -13,7 +13,7 @@ ThrusterSignals = Thruster.signals_type()
 
 @njit(inline="always")
 def propeller_thrust(n: float, q: Any) -> float:
-    """Return k n |n| [N], with a coefficient for each sense of rotation.
+    """Return the propeller thrust k n |n| [N], with a coefficient k for each sense of rotation.
 
     Args:
         n: Shaft rate [rad/s], positive ahead.
@@ -24,7 +24,7 @@ def propeller_thrust(n: float, q: Any) -> float:
 
 @njit(inline="always")
 def law(m: Any, q: Any, s: Any) -> Wrench:
-    """Return the thrust along the axis of the propeller, at its mount.
+    """Return force and moment on the hull of a propeller's thrust along its axis, at its mount.
 
     Args:
         m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].
@@ -39,10 +39,12 @@ def law(m: Any, q: Any, s: Any) -> Wrench:
 
 @njit(inline="always")
 def as_thruster(s: Any, q: Any) -> Any:
-    """Return the signals of a thruster with the same thrust and angle.
+    """Convert the signals of a propeller to those of a thruster with the same thrust and angle.
+
+    Effects that act on thrusters can so act on propellers.
 
     Args:
-        s: Signals of the propeller.
+        s: Signals of the propeller: its shaft rate and angle.
         q: Parameters of the propeller.
     """
     return ThrusterSignals(propeller_thrust(s.shaft, q), s.angle, s.cos_angle, s.sin_angle)

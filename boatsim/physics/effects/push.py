@@ -22,9 +22,10 @@ EVER = 1e6  # [s]
 
 @njit(inline="always")
 def law(m: Any, q: Any) -> Wrench:
-    """Return the force in body axes plus the force along a bearing.
+    """Return a specified external force on the hull that acts during a time interval.
 
-    On a hull whose sway force accelerates it in roll, a sway force has the same lever.
+    It consists of constant parts in body axes and a part along a bearing, which may oscillate. On a
+    hull whose sway force accelerates it in roll, a sway force of this effect has the same lever.
 
     Args:
         m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].
@@ -125,7 +126,11 @@ Gust = preset_effect(
 
 @dataclass(frozen=True)
 class GustOffCentre(CoefficientRelease):
-    """Yaw moment proportional to the side force of the vessel's own gust."""
+    """Yaw moment proportional to the side force of the vessel's own gust.
+
+    A diagnosis tests with it whether a gust, modelled as a `push`, acts ahead of or behind the
+    origin.
+    """
 
     words: ClassVar[str] = (
         "the known disturbance also turns the boat: it acts away from the mass centre"

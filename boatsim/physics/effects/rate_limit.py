@@ -26,10 +26,12 @@ INSTANT = 2.0  # [rad/s] 115 deg/s; a faster steering counts as immediate
 def transform_signal(
     x: SignalSegment, side: float, source: float, memory: Array, at: int, dt: float, q: Any
 ) -> SignalSegment:
-    """Return the ramp to the command, then the lag, then the command itself.
+    """Return a signal that follows its command with a limited rate, then as a first-order lag.
+
+    With a rate of `instant` or more it equals the command.
 
     Args:
-        x: Signal that enters: its values at the begin, middle and end of the step.
+        x: Signal of the actuator before the effect, at begin, middle and end of the step.
         side: -1 on the port side, +1 on the starboard side, 0 on the centreline.
         source: Raw command that feeds the channel (`fed_by`).
         memory: Memory of the compiled program.
@@ -38,7 +40,7 @@ def transform_signal(
         q: Parameters of the effect, with the names and units of its class.
 
     Returns:
-        The signal that leaves the effect, over the same step.
+        The signal of the actuator after the effect, over the same step.
     """
     if q.rate >= q.instant:
         memory[at] = x.end
@@ -48,12 +50,13 @@ def transform_signal(
 
 @njit(inline="always")
 def time_to_discontinuity(x: float, memory: Array, at: int, q: Any) -> float:
-    """Return the time until the ramp ends or passes zero, where thrust laws have a kink.
+    """Return the time until a rate-limited signal reaches its command or passes zero.
 
-    After the ramp it is the time over which a `SignalSegment` follows the lag.
+    Thrust laws have a kink at zero. After the ramp it is the time over which a `SignalSegment`
+    follows the first-order lag.
 
     Args:
-        x: Signal that enters now, assumed constant.
+        x: Present signal of the actuator before the effect, assumed constant.
         memory: Memory of the compiled program.
         at: Index of the first slot of this effect in `memory`.
         q: Parameters of the effect, with the names and units of its class.
@@ -78,7 +81,8 @@ class RateLimit(ChannelEffect):
 
     y' = rate sign(x - y)  while |x - y| > rate lag,  then  y' = (x - y) / lag
 
-    With a rate of `instant` or more the command is followed without delay.
+    With a rate of `instant` or more the command is followed without delay. x is the command, y the
+    signal that reaches the actuator.
     """
 
     words: ClassVar[str] = "a signal follows its command at a limited rate"

@@ -18,7 +18,7 @@ from boatsim.physics.base import (
 
 @njit(inline="always")
 def jet_share(s: Any) -> float:
-    """Return the share of the jet that points astern, cos(2 beta) at bucket angle beta.
+    """Return the share of a water jet's thrust that drives ahead, cos(2 beta) at bucket angle beta.
 
     Args:
         s: Signals with the cosine of the bucket angle.
@@ -28,7 +28,9 @@ def jet_share(s: Any) -> float:
 
 @njit(inline="always")
 def law(m: Any, q: Any, s: Any) -> Wrench:
-    """Return thrust and steering moment, proportional to the jet that points astern.
+    """Return thrust and steering moment of an idling water jet with a deflecting bucket.
+
+    Both are proportional to the share of the jet that points astern.
 
     Args:
         m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].

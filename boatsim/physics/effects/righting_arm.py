@@ -21,7 +21,7 @@ from boatsim.physics.base import (
 
 @njit(inline="always")
 def law(m: Any, q: Any) -> Wrench:
-    """Return the restoring moment -stiffness (phi - list + cubic phi^3).
+    """Return the restoring roll moment -stiffness (phi - list + cubic phi^3) of buoyancy.
 
     Args:
         m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].
@@ -71,7 +71,7 @@ class RightingArm(Force):
     )
 
     def derived_parameters(self, vessel: Boat) -> dict[str, float]:
-        """Return the stiffness m g GM of the vessel's weight at the given metacentric height.
+        """Return the default roll stiffness m g GM, from the vessel's mass and metacentric height.
 
         Args:
             vessel: Vessel with a body.

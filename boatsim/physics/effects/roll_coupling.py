@@ -10,7 +10,7 @@ from boatsim.physics.base import Force, Wrench, param, wrench
 
 @njit(inline="always")
 def law(m: Any, q: Any) -> Wrench:
-    """Return the off-diagonal terms of the linear damping matrix in the row and column of roll.
+    """Return the forces by linear damping that couples roll with sway and yaw.
 
     Args:
         m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].

@@ -12,7 +12,7 @@ from boatsim.physics.base import UNSET, Boat, Force, Wrench, param, wrench
 
 @njit(inline="always")
 def law(m: Any, q: Any) -> Wrench:
-    """Return the roll moment -roll p.
+    """Return the linear damping moment in roll, -roll p.
 
     Args:
         m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].
@@ -68,7 +68,7 @@ class RollDamping(Force):
     )
 
     def derived_parameters(self, vessel: Boat) -> dict[str, float]:
-        """Return the damping coefficient of the vessel's stiffness, inertia, form and speed.
+        """Return the default roll damping coefficient from stiffness, inertia, hull form and speed.
 
         Args:
             vessel: Vessel with body and righting arm.

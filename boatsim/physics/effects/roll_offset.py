@@ -11,7 +11,7 @@ from boatsim.physics.recorded_channels import PHI, with_channel
 
 @njit(inline="always")
 def apply_measurement_error(m: MeasuredMotion, q: Any) -> MeasuredMotion:
-    """Return the recorded motion: phi plus the offset.
+    """Return the motion as recorded by a roll sensor with a constant error.
 
     Args:
         m: True motion: position [m], attitude [rad], velocities [m/s], rates [rad/s].

@@ -24,7 +24,9 @@ NEVER = 0.5 * pi  # [rad] larger than any rudder angle: no stall
 
 @njit(inline="always")
 def law(m: Any, q: Any, s: Any) -> Wrench:
-    """Return side force, roll and yaw moment proportional to the angle, constant beyond stall.
+    """Return the side force, roll and yaw moment of a rudder, linear in its angle up to stall.
+
+    Beyond the stall angle they are constant.
 
     Args:
         m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].
@@ -103,7 +105,9 @@ class Rudder(Force):
     )
 
     def derived_parameters(self, vessel: Boat) -> dict[str, float]:
-        """Return the coefficients of a rudder of the given area; empty if none is given.
+        """Return default force coefficients of a rudder, estimated from its area.
+
+        The result is empty if no area is given.
 
         Args:
             vessel: Vessel with a `linear_hull`.

@@ -11,7 +11,9 @@ from boatsim.physics.base import UNSET, Boat, Force, Role, Wrench, param, wrench
 
 @njit(inline="always")
 def law(m: Any, q: Any, s: Any) -> Wrench:
-    """Return the force normal to the rudder, proportional to the thrust ahead; none when backing.
+    """Return the rudder force that the slipstream of a propeller adds.
+
+    It acts normal to the rudder and is proportional to the thrust ahead; there is none astern.
 
     Args:
         m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].
@@ -79,7 +81,7 @@ class RudderRace(Force):
     )
 
     def derived_parameters(self, vessel: Boat) -> dict[str, float]:
-        """Return place and sense of the vessel's rudder.
+        """Return the default place and sign of the slipstream force, those of the vessel's rudder.
 
         Args:
             vessel: Vessel with a `rudder`.

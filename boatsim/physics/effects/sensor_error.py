@@ -31,7 +31,9 @@ from boatsim.physics.signals import RATES
 
 @njit(inline="always")
 def apply_measurement_error(m: MeasuredMotion, t: float, q: Any) -> MeasuredMotion:
-    """Return the recorded motion with the error of one channel.
+    """Return the motion as recorded with an instrument error of one channel.
+
+    The error consists of gain, offset, delay and drift.
 
     Args:
         m: True motion: position [m], attitude [rad], velocities [m/s], rates [rad/s].
@@ -102,7 +104,7 @@ class SensorError(Measurement):
         object.__setattr__(self, "channel", channel)
 
     def derived_parameters(self, vessel: Boat) -> dict[str, float]:
-        """Return the number of the channel for the compiled program.
+        """Return the number that stands for the erroneous channel in the compiled law.
 
         Args:
             vessel: Vessel on which the effect acts.
@@ -110,7 +112,10 @@ class SensorError(Measurement):
         return {"place": float(CHANNELS.index(self.channel))}
 
     def fixed_settings(self) -> dict[str, object]:
-        """Return the channel, where the name of the effect does not state it."""
+        """Return the name of the erroneous channel, as a setting that no fit changes.
+
+        The result is empty if the name of the effect already determines the channel.
+        """
         if self.special_case:
             return {}
         return {"channel": self.channel}
@@ -128,12 +133,14 @@ def special_case(
     words: str,
     with_rate: bool = False,
 ) -> dict[str, Any]:
-    """Return the settings of `preset_effect` for one error of one channel.
+    """Return the arguments with which `preset_effect` defines one error of one recorded channel.
+
+    The result is an effect such as a gain error of the yaw rate gyro, which a diagnosis tests.
 
     Args:
-        channel: The channel.
-        freed: Parameter that a diagnosis fits; the others are zero.
-        about: Attributes of the parameter.
+        channel: The recorded channel.
+        freed: Parameter that a diagnosis fits (gain, offset, delay or drift); the others are zero.
+        about: Attributes of that parameter.
         words: Description of the error.
         with_rate: Whether the error shows only in comparison with the recorded rate of the channel.
     """
@@ -154,7 +161,7 @@ def special_case(
 
 
 def gain_of(channel: InstrumentChannel, with_rate: bool = False) -> dict[str, Any]:
-    """Return the settings of `preset_effect` for a gain error of a channel."""
+    """Return the arguments of `preset_effect` that define a gain error of a recorded channel."""
     about: ParameterChanges = {
         "words": f"relative error of the {channel.words}",
         "spread": GAIN_SPREAD,
@@ -165,7 +172,7 @@ def gain_of(channel: InstrumentChannel, with_rate: bool = False) -> dict[str, An
 
 
 def offset_of(channel: InstrumentChannel) -> dict[str, Any]:
-    """Return the settings of `preset_effect` for a constant error of a channel."""
+    """Return the arguments of `preset_effect` for a constant error of a recorded channel."""
     about: ParameterChanges = {
         "words": f"constant error of the {channel.words}",
         "unit": channel.unit,
@@ -177,7 +184,7 @@ def offset_of(channel: InstrumentChannel) -> dict[str, Any]:
 
 
 def drift_of(channel: InstrumentChannel, with_rate: bool = False) -> dict[str, Any]:
-    """Return the settings of `preset_effect` for an error that grows with time."""
+    """Return the arguments of `preset_effect` for a channel's error that grows with time."""
     unit = f"{channel.unit}/s"
     if channel.unit.endswith("/s"):
         unit = f"{channel.unit}^2"
@@ -192,7 +199,10 @@ def drift_of(channel: InstrumentChannel, with_rate: bool = False) -> dict[str, A
 
 
 def delay_of(channel: InstrumentChannel) -> dict[str, Any]:
-    """Return the settings of `preset_effect` for a delay, which the recorded rate reveals."""
+    """Return the arguments of `preset_effect` that define a delay of a recorded channel.
+
+    Comparison with the recorded rate of the channel reveals the delay.
+    """
     about: ParameterChanges = {
         "words": f"delay of the {channel.words}",
         "spread": DELAY_SPREAD,

@@ -21,12 +21,14 @@ NONE = 1e-4  # [s] a shorter lag counts as none
 
 @njit(inline="always")
 def ramp_time(gap: float, rate: float, lag: float) -> float:
-    """Return the time [s] at the largest rate until the lag alone would be as slow.
+    """Return how long [s] a rate-limited servo moves at its largest rate towards its command.
+
+    After that time its first-order lag alone would not be faster.
 
     Args:
-        gap: Distance to the command.
+        gap: Difference between command and present angle.
         rate: Largest rate [1/s].
-        lag: Time constant [s].
+        lag: Time constant of the lag [s].
     """
     slow = rate * lag if lag >= NONE else 0.0
     return max(abs(gap) - slow, 0.0) / rate
@@ -36,7 +38,9 @@ def ramp_time(gap: float, rate: float, lag: float) -> float:
 def approach_command(
     goal: float, memory: Array, at: int, dt: float, rate: float, lag: float
 ) -> SignalSegment:
-    """Return the course towards a constant command: at the largest rate, then as a first-order lag.
+    """Return how a servo moves towards a constant command over one step.
+
+    It moves at the largest rate, then as a first-order lag.
 
     Args:
         goal: Command, held over the step.
@@ -71,10 +75,12 @@ def approach_command(
 def transform_signal(
     x: SignalSegment, side: float, source: float, memory: Array, at: int, dt: float, q: Any
 ) -> SignalSegment:
-    """Return the course towards the command limited to the range.
+    """Return the steering angle of a servo that follows its command within its range.
+
+    The servo has a rate limit and a first-order lag.
 
     Args:
-        x: Signal that enters: its values at the begin, middle and end of the step.
+        x: Signal of the actuator before the effect, at begin, middle and end of the step.
         side: -1 on the port side, +1 on the starboard side, 0 on the centreline.
         source: Raw command that feeds the channel (`fed_by`).
         memory: Memory of the compiled program.
@@ -83,7 +89,7 @@ def transform_signal(
         q: Parameters of the effect, with the names and units of its class.
 
     Returns:
-        The signal that leaves the effect, over the same step.
+        The signal of the actuator after the effect, over the same step.
     """
     return approach_command(
         min(max(segment_mean(x), -q.range), q.range), memory, at, dt, q.rate, q.lag
@@ -92,10 +98,12 @@ def transform_signal(
 
 @njit(inline="always")
 def time_to_discontinuity(x: float, memory: Array, at: int, q: Any) -> float:
-    """Return the time until the ramp ends, then that for which three points describe the lag.
+    """Return the time until a servo's motion at the largest rate ends.
+
+    After that it is the time for which three points describe the first-order lag.
 
     Args:
-        x: Signal that enters now, assumed constant.
+        x: Present signal of the actuator before the effect, assumed constant.
         memory: Memory of the compiled program.
         at: Index of the first slot of this effect in `memory`.
         q: Parameters of the effect, with the names and units of its class.

@@ -10,7 +10,9 @@ from boatsim.physics.base import UNSET, Force, Wrench, param, wrench
 
 @njit(inline="always")
 def law(m: Any, q: Any) -> Wrench:
-    """Return -m v r - gain (u - speed), relative to the water.
+    """Return the surge force that keeps the speed through the water constant.
+
+    It is -m v r - gain (u - speed) and cancels the Coriolis force.
 
     Args:
         m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].

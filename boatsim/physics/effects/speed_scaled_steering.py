@@ -10,10 +10,11 @@ from boatsim.physics.base import UNSET, Force, Role, Wrench, param, wrench
 
 @njit(inline="always")
 def law(m: Any, q: Any, s: Any) -> Wrench:
-    """Return the change of the linear hull and rudder forces against the approach speed U0.
+    """Return the change of the linear hull and rudder forces with the forward speed.
 
-    Hull forces scale with u / U0, rudder forces with its square. Going astern the flow meets the
-    rudder from behind and its force changes sign; damping stays damping.
+    It is the difference from their values at the approach speed U0. Hull forces scale with u / U0,
+    rudder forces with its square. Going astern the flow meets the rudder from behind and its force
+    changes sign; damping stays damping.
 
     Args:
         m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].

@@ -13,14 +13,14 @@ LONG = 1e3  # [s] a command held longer than this is the initial condition of a 
 
 @njit(inline="always")
 def play_operator(y: float, x: float, half: float) -> float:
-    """Return the output of the play operator.
+    """Return the output of a mechanical play (backlash) with a given input.
 
-    It moves only when the command reaches an end of the play.
+    The output moves only when the input reaches an end of the play.
 
     Args:
-        y: Angle so far [rad].
-        x: Command [rad].
-        half: Half of the play [rad].
+        y: Output angle so far [rad].
+        x: Input, the commanded angle [rad].
+        half: Half width of the play [rad].
     """
     return min(max(y, x - half), x + half)
 
@@ -29,12 +29,12 @@ def play_operator(y: float, x: float, half: float) -> float:
 def transform_signal(
     x: SignalSegment, side: float, source: float, memory: Array, at: int, dt: float, q: Any
 ) -> SignalSegment:
-    """Return the angle that the command drags along through the play.
+    """Return the steering angle that follows its command through the play of the linkage.
 
     At the start of a run a parameter gives the position within the play.
 
     Args:
-        x: Signal that enters: its values at the begin, middle and end of the step.
+        x: Signal of the actuator before the effect, at begin, middle and end of the step.
         side: -1 on the port side, +1 on the starboard side, 0 on the centreline.
         source: Raw command that feeds the channel (`fed_by`).
         memory: Memory of the compiled program.
@@ -43,7 +43,7 @@ def transform_signal(
         q: Parameters of the effect, with the names and units of its class.
 
     Returns:
-        The signal that leaves the effect, over the same step.
+        The signal of the actuator after the effect, over the same step.
     """
     half = 0.5 * q.width * (1.0 if dt < LONG else q.behind)
     begin = play_operator(memory[at], x.begin, half)

@@ -10,7 +10,9 @@ from boatsim.physics.base import Force, Wrench, param, wrench
 
 @njit(inline="always")
 def law(m: Any, q: Any, s: Any, t: Any) -> Wrench:
-    """Return X = -drag delta^2, the component of the rudder force along the ship.
+    """Return the resistance of a deflected rudder, X = -drag delta^2.
+
+    It is the component of the rudder force along the ship.
 
     Args:
         m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].

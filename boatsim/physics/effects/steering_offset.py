@@ -11,7 +11,7 @@ from boatsim.physics.kinds.channel import DEEDS
 
 @njit(inline="always")
 def angle_with_offset(x: float, side: float, q: Any) -> float:
-    """Return the angle with the offset of its side, and gain |x| added.
+    """Return a steering angle with constant error: the offset of its side, and gain |x|, are added.
 
     Args:
         x: Steering angle [rad].
@@ -25,10 +25,10 @@ def angle_with_offset(x: float, side: float, q: Any) -> float:
 def transform_signal(
     x: SignalSegment, side: float, source: float, memory: Array, at: int, dt: float, q: Any
 ) -> SignalSegment:
-    """Return the offset angle at each of the three instants.
+    """Return the steering angle with a constant error added at each of the three instants.
 
     Args:
-        x: Signal that enters: its values at the begin, middle and end of the step.
+        x: Signal of the actuator before the effect, at begin, middle and end of the step.
         side: -1 on the port side, +1 on the starboard side, 0 on the centreline.
         source: Raw command that feeds the channel (`fed_by`).
         memory: Memory of the compiled program.
@@ -37,7 +37,7 @@ def transform_signal(
         q: Parameters of the effect, with the names and units of its class.
 
     Returns:
-        The signal that leaves the effect, over the same step.
+        The signal of the actuator after the effect, over the same step.
     """
     return SignalSegment(
         angle_with_offset(x.begin, side, q),

@@ -10,7 +10,7 @@ from boatsim.physics.base import Force, Wrench, param, wrench
 
 @njit(inline="always")
 def law(m: Any, q: Any) -> Wrench:
-    """Return the resistance -(linear + quadratic |u|) u.
+    """Return the resistance in surge, -(linear + quadratic |u|) u.
 
     Args:
         m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].

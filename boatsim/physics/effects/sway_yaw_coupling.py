@@ -13,7 +13,7 @@ TWICE = (-9.2, 9.2)
 
 @njit(inline="always")
 def law(m: Any, q: Any) -> Wrench:
-    """Return X_vr v r, Y_ur u r and N_uv u v.
+    """Return the hull forces X_vr v r, Y_ur u r and N_uv u v, products of two velocities.
 
     The last two change sign with the direction of motion.
 

@@ -15,10 +15,10 @@ NEAR = 0.05  # [m] regularises the direction of the pull at the anchor
 
 @njit(inline="always")
 def line_elongation(beyond: float) -> float:
-    """Return the elongation of the line [m], smooth where it becomes taut.
+    """Return the elongation of a tether line [m], as a smooth function where it becomes taut.
 
     Args:
-        beyond: Distance of its ends less its length [m].
+        beyond: Distance between the ends of the line, less its length [m].
     """
     z = beyond / SOFT
     if z > 30.0:
@@ -28,7 +28,7 @@ def line_elongation(beyond: float) -> float:
 
 @njit(inline="always")
 def law(m: Any, q: Any) -> Wrench:
-    """Return the pull towards the anchor and the drag of the line.
+    """Return the force of a tether on the boat: the pull towards its anchor and the line's drag.
 
     Args:
         m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].
@@ -108,7 +108,9 @@ class Tether(Force):
     )
 
     def derived_parameters(self, vessel: Boat) -> dict[str, float]:
-        """Return the attachment, by default at the stern, half a length behind.
+        """Return the default attachment point of a tether, the stern.
+
+        It lies half a length behind the origin.
 
         Args:
             vessel: Vessel with a length [m].

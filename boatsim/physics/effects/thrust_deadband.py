@@ -11,7 +11,7 @@ from boatsim.physics.kinds.channel import COMMANDS
 
 @njit(inline="always")
 def outside_deadband(x: float, q: Any) -> float:
-    """Return the part of the command beyond the dead band.
+    """Return the part of a command that exceeds a symmetric dead band; zero inside the band.
 
     Args:
         x: Command.
@@ -24,10 +24,12 @@ def outside_deadband(x: float, q: Any) -> float:
 def transform_signal(
     x: SignalSegment, side: float, source: float, memory: Array, at: int, dt: float, q: Any
 ) -> SignalSegment:
-    """Return the signal beyond the dead band at each of the three instants.
+    """Return the thrust or shaft command after a dead band, at each of the three instants.
+
+    Commands inside the dead band give zero.
 
     Args:
-        x: Signal that enters: its values at the begin, middle and end of the step.
+        x: Signal of the actuator before the effect, at begin, middle and end of the step.
         side: -1 on the port side, +1 on the starboard side, 0 on the centreline.
         source: Raw command that feeds the channel (`fed_by`).
         memory: Memory of the compiled program.
@@ -36,7 +38,7 @@ def transform_signal(
         q: Parameters of the effect, with the names and units of its class.
 
     Returns:
-        The signal that leaves the effect, over the same step.
+        The signal of the actuator after the effect, over the same step.
     """
     return SignalSegment(
         outside_deadband(x.begin, q), outside_deadband(x.middle, q), outside_deadband(x.end, q)

@@ -13,10 +13,10 @@ from boatsim.physics.kinds.channel import DEEDS
 def transform_signal(
     x: SignalSegment, side: float, source: float, memory: Array, at: int, dt: float, q: Any
 ) -> SignalSegment:
-    """Return the port signal times 1 + f, the starboard signal times 1 - f.
+    """Return the thrust with an imbalance f of the sides: port times 1 + f, starboard times 1 - f.
 
     Args:
-        x: Signal that enters: its values at the begin, middle and end of the step.
+        x: Signal of the actuator before the effect, at begin, middle and end of the step.
         side: -1 on the port side, +1 on the starboard side, 0 on the centreline.
         source: Raw command that feeds the channel (`fed_by`).
         memory: Memory of the compiled program.
@@ -25,7 +25,7 @@ def transform_signal(
         q: Parameters of the effect, with the names and units of its class.
 
     Returns:
-        The signal that leaves the effect, over the same step.
+        The signal of the actuator after the effect, over the same step.
     """
     share = 1.0 - side * q.fraction
     return SignalSegment(x.begin * share, x.middle * share, x.end * share)

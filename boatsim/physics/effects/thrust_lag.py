@@ -23,10 +23,12 @@ SAME = 1e-9  # share of a command: a smaller thrust of the other sign counts as 
 def transform_signal(
     x: SignalSegment, side: float, source: float, memory: Array, at: int, dt: float, q: Any
 ) -> SignalSegment:
-    """Return the lagged signal, exact for a command that is a parabola over the step.
+    """Return the thrust that follows its command with a first-order lag.
+
+    The result is exact for a command that is a parabola over the step.
 
     Args:
-        x: Signal that enters: its values at the begin, middle and end of the step.
+        x: Signal of the actuator before the effect, at begin, middle and end of the step.
         side: -1 on the port side, +1 on the starboard side, 0 on the centreline.
         source: Raw command that feeds the channel (`fed_by`).
         memory: Memory of the compiled program.
@@ -35,7 +37,7 @@ def transform_signal(
         q: Parameters of the effect, with the names and units of its class.
 
     Returns:
-        The signal that leaves the effect, over the same step.
+        The signal of the actuator after the effect, over the same step.
     """
     if q.time_constant < NONE:
         memory[at] = x.end
@@ -45,12 +47,12 @@ def transform_signal(
 
 @njit(inline="always")
 def time_to_discontinuity(x: float, memory: Array, at: int, q: Any) -> float:
-    """Return the time for which three points describe the lag, at most until thrust reverses.
+    """Return the time for which three points describe a thrust with a first-order lag.
 
-    Thrust laws have a kink at zero thrust.
+    It ends when the thrust changes its sign, where thrust laws have a kink.
 
     Args:
-        x: Signal that enters now, assumed constant.
+        x: Present signal of the actuator before the effect, assumed constant.
         memory: Memory of the compiled program.
         at: Index of the first slot of this effect in `memory`.
         q: Parameters of the effect, with the names and units of its class.

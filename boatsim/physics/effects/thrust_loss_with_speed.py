@@ -11,7 +11,9 @@ from boatsim.physics.effects.thruster import thrust_wrench_at_mount
 
 @njit(inline="always")
 def law(m: Any, q: Any, s: Any, t: Any) -> Wrench:
-    """Return the loss of one thruster: thrust decreases ahead and increases when it brakes.
+    """Return the change of thrust of one thruster with the speed of advance.
+
+    Thrust decreases when it drives the boat on and increases when it brakes.
 
     Args:
         m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].

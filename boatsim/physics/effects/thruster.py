@@ -18,7 +18,7 @@ from boatsim.physics.base import (
 
 @njit(inline="always")
 def thrust_wrench_at_mount(thrust: float, s: Any, q: Any) -> Wrench:
-    """Return the wrench of a force along the axis of the thruster, at its mount.
+    """Return force and moment on the hull of a thrust along the axis of a thruster at its mount.
 
     Args:
         thrust: Force along the axis [N].
@@ -31,7 +31,7 @@ def thrust_wrench_at_mount(thrust: float, s: Any, q: Any) -> Wrench:
 
 @njit(inline="always")
 def law(m: Any, q: Any, s: Any) -> Wrench:
-    """Return the thrust along the axis of the thruster, at its mount.
+    """Return force and moment on the hull of one thruster, fixed or steered, at its mount.
 
     Args:
         m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].

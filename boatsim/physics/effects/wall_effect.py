@@ -13,7 +13,9 @@ REACH = 0.5  # [boat lengths] distance over which the effect of a wall falls to 
 
 @njit(inline="always")
 def wall_proximity(at: float, low: float, high: float, reach: float) -> tuple[float, float]:
-    """Return exp(-distance / reach) to the high and to the low wall of a pair.
+    """Return how near the hull is to two opposite tank walls, as exp(-distance / reach) of each.
+
+    The first value belongs to the wall of the high coordinate, the second to that of the low one.
 
     Args:
         at: Position between the walls [m].
@@ -26,7 +28,9 @@ def wall_proximity(at: float, low: float, high: float, reach: float) -> tuple[fl
 
 @njit(inline="always")
 def law(m: Any, q: Any) -> Wrench:
-    """Return the additional damping and the suction, exponential in the distance from the walls.
+    """Return the additional damping and the suction near the walls of a tank.
+
+    Both are exponential in the distance from the walls.
 
     Args:
         m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].
@@ -126,7 +130,7 @@ class WallEffect(Force):
     )
 
     def derived_parameters(self, vessel: Boat) -> dict[str, float]:
-        """Return the reach, half the length of the boat.
+        """Return the default reach of the wall effect, half the length of the boat.
 
         Args:
             vessel: Vessel with a length [m].

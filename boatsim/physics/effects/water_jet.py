@@ -14,10 +14,10 @@ FLAT = 4.0  # throttle at which the second one ends
 
 @njit(inline="always")
 def shaft_power(throttle: float, q: Any) -> float:
-    """Return the shaft power per unit mass [m^2/s^3] at a throttle from 1 (idle) to 7 (full).
+    """Return the shaft power of a jet drive per mass of the craft [m^2/s^3] at a throttle setting.
 
     Args:
-        throttle: Position of the handle.
+        throttle: Position of the handle, from 1 (idle) to 7 (full).
         q: Parameters of the three branches of the curve.
     """
     if throttle < PLANES:
@@ -29,7 +29,7 @@ def shaft_power(throttle: float, q: Any) -> float:
 
 @njit(inline="always")
 def law(m: Any, q: Any, s: Any) -> Wrench:
-    """Return the thrust: power over forward speed.
+    """Return the thrust of a jet drive: the shaft power set by the throttle over the forward speed.
 
     Args:
         m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].

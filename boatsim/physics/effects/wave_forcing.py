@@ -18,7 +18,9 @@ YAW = 103.0
 
 @njit
 def law(m: Any, q: Any) -> Wrench:
-    """Return one realisation of the oscillating force; axes without a force are not computed.
+    """Return one realisation of narrow-band wave forces in body axes.
+
+    Axes with zero rms force are not computed.
 
     Args:
         m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].
@@ -44,7 +46,9 @@ def law(m: Any, q: Any) -> Wrench:
 
 @njit(inline="always")
 def oscillating_force(q: Any) -> OscillatingForce:
-    """Return the oscillators that the diagnosis filter tracks; none if all forces are zero.
+    """Return the oscillators by which the diagnosis filter models the wave forces.
+
+    There are none if all forces are zero.
 
     Args:
         q: Parameters of the effect, with the names and units of its class.
@@ -137,7 +141,7 @@ class WaveForcing(RandomForce):
     )
 
     def with_seed(self, seed: int) -> Self:
-        """Return the effect with a realisation that depends on the seed.
+        """Return a copy of the wave forces whose random realisation follows from the seed.
 
         Realisation 0 (no waves) does not change.
 

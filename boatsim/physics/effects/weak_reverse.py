@@ -11,7 +11,7 @@ from boatsim.physics.kinds.channel import DEEDS
 
 @njit(inline="always")
 def scaled_astern(x: float, q: Any) -> float:
-    """Return the thrust, times the factor if it is astern.
+    """Return a thrust unchanged if it acts ahead, times a factor if it acts astern.
 
     Args:
         x: Thrust or shaft rate.
@@ -24,10 +24,12 @@ def scaled_astern(x: float, q: Any) -> float:
 def transform_signal(
     x: SignalSegment, side: float, source: float, memory: Array, at: int, dt: float, q: Any
 ) -> SignalSegment:
-    """Return the signal with the factor astern at each of the three instants.
+    """Return the thrust command, multiplied by a factor when it is astern.
+
+    The factor is applied at each of the three instants of the step.
 
     Args:
-        x: Signal that enters: its values at the begin, middle and end of the step.
+        x: Signal of the actuator before the effect, at begin, middle and end of the step.
         side: -1 on the port side, +1 on the starboard side, 0 on the centreline.
         source: Raw command that feeds the channel (`fed_by`).
         memory: Memory of the compiled program.
@@ -36,7 +38,7 @@ def transform_signal(
         q: Parameters of the effect, with the names and units of its class.
 
     Returns:
-        The signal that leaves the effect, over the same step.
+        The signal of the actuator after the effect, over the same step.
     """
     return SignalSegment(
         scaled_astern(x.begin, q), scaled_astern(x.middle, q), scaled_astern(x.end, q)

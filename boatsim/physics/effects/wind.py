@@ -11,7 +11,9 @@ from boatsim.physics.base import Force, Wrench, param, wrench
 
 @njit(inline="always")
 def law(m: Any, q: Any) -> Wrench:
-    """Return the wind force: the full force abeam, a share of it end-on, and its yaw moment.
+    """Return the force and yaw moment of a steady wind on the hull.
+
+    The force is full abeam and reduced to a share of it end-on.
 
     Args:
         m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].

@@ -16,7 +16,7 @@ FIRST = 20_000
 
 @njit(inline="always")
 def wave_component(k: int, q: Any) -> tuple[float, float, float]:
-    """Return frequency [rad/s], amplitude [rad/s] and phase [rad] of one component.
+    """Return frequency [rad/s], amplitude [rad/s] and phase [rad] of one cosine of wave yaw rate.
 
     The frequency is the middle of its part of the spectrum. The moment grows with the frequency, so
     that one sampled at random near the ends of the spectrum, which reach zero and infinity, would
@@ -36,7 +36,7 @@ def wave_component(k: int, q: Any) -> tuple[float, float, float]:
 
 @njit
 def law(m: Any, q: Any) -> Wrench:
-    """Return the yaw moment that adds the wave yaw rate r_w to the yaw rate of the hull.
+    """Return the yaw moment by which waves add a narrow-band yaw rate r_w to that of the hull.
 
     Args:
         m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].
@@ -56,7 +56,9 @@ def law(m: Any, q: Any) -> Wrench:
 
 @njit(inline="always")
 def oscillating_force(q: Any) -> OscillatingForce:
-    """Return the narrow-band oscillator that the diagnosis filter tracks; none without waves.
+    """Return the oscillator by which the diagnosis filter models the yaw moment of waves.
+
+    There is none if the waves have zero amplitude.
 
     Args:
         q: Parameters of the effect, with the names and units of its class.
@@ -114,7 +116,7 @@ class YawRateWaves(RandomForce):
     )
 
     def derived_parameters(self, vessel: Boat) -> dict[str, float]:
-        """Return the yaw inertia of the vessel with its added inertia.
+        """Return the default yaw inertia of the hull in waves, with its added inertia.
 
         Args:
             vessel: Vessel with a body.
@@ -125,7 +127,7 @@ class YawRateWaves(RandomForce):
         return {"inertia": vessel.body.yaw_inertia + (yaw + sway * at**2)}
 
     def with_seed(self, seed: int) -> Self:
-        """Return the effect with a realisation that depends on the seed.
+        """Return a copy of the wave yaw rate whose random realisation follows from the seed.
 
         Realisation 0 (no waves) does not change.
 

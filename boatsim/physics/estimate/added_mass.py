@@ -9,10 +9,10 @@ STRIPS = "strips of 0.5 pi rho T^2, J. N. Newman, Marine Hydrodynamics, 1977, se
 
 
 def surge_added_mass(hull: HullParticulars) -> Estimate:
-    """Return the surge added mass [kg] of all hulls.
+    """Estimate the surge added mass [kg] of a boat from its main particulars (all hulls together).
 
     Args:
-        hull: Hull with its main particulars.
+        hull: Boat with its main particulars.
     """
     value = (
         hull.hulls
@@ -25,10 +25,10 @@ def surge_added_mass(hull: HullParticulars) -> Estimate:
 
 
 def sway_added_mass(hull: HullParticulars) -> Estimate:
-    """Return the sway added mass [kg] of all hulls.
+    """Estimate the sway added mass [kg] of a boat from its main particulars (all hulls together).
 
     Args:
-        hull: Hull with its main particulars.
+        hull: Boat with its main particulars.
     """
     strips = hull.hulls * 0.5 * pi * DENSITY * hull.draught**2 * hull.length
     if not hull.is_slender:
@@ -38,12 +38,13 @@ def sway_added_mass(hull: HullParticulars) -> Estimate:
 
 
 def yaw_added_mass(hull: HullParticulars) -> Estimate:
-    """Return the yaw added mass [kg m^2] of all hulls about midship.
+    """Estimate the yaw added moment of inertia [kg m^2] of a boat about midship.
 
-    Of two hulls each adds its surge mass times the square of its distance from the centreline.
+    Each hull of a catamaran adds its surge added mass times the square of its distance from the
+    centreline.
 
     Args:
-        hull: Hull with its main particulars.
+        hull: Boat with its main particulars.
     """
     strips = hull.hulls * 0.5 * pi * DENSITY * hull.draught**2 * hull.length**3
     apart = surge_added_mass(hull).value * (0.5 * hull.hull_spacing) ** 2

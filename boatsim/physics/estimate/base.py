@@ -8,14 +8,14 @@ SLENDER = 5.0  # length per beam of one hull from which regressions over ships h
 
 
 class Estimate(NamedTuple):
-    """Estimated number and the rule behind it, as written to a vessel file."""
+    """Estimated coefficient of a boat with the rule behind it, as written to a vessel file."""
 
     value: float
     rule: str
 
 
 class HullParticulars(NamedTuple):
-    """Boat with one hull, or with two equal hulls side by side."""
+    """Main particulars of a boat with one hull, or with two equal hulls side by side."""
 
     length: float  # [m] of the waterline
     beam: float  # [m] overall
@@ -26,15 +26,15 @@ class HullParticulars(NamedTuple):
 
     @property
     def block_coefficient(self) -> float:
-        """Block coefficient of one hull."""
+        """Block coefficient of one hull: displaced volume / (length breadth draught)."""
         return self.mass / (DENSITY * self.hulls * self.length * self.breadth * self.draught)
 
     @property
     def is_slender(self) -> bool:
-        """Whether the hull is slender enough for regressions over ships."""
+        """Whether the hull is slender enough for regression formulas that were fitted to ships."""
         return self.length >= SLENDER * self.breadth
 
     @property
     def hull_spacing(self) -> float:
-        """Distance between the centrelines of two hulls [m]; 0 for one hull."""
+        """Distance between the centrelines of a catamaran's two hulls [m]; 0 for one hull."""
         return self.beam - self.breadth if self.hulls == 2 else 0.0

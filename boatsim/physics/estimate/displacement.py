@@ -10,7 +10,7 @@ FULLEST = 1.0  # a box
 
 
 def hull_breadth(beam: float, hulls: int) -> Estimate:
-    """Return the breadth of one hull [m].
+    """Estimate the breadth [m] of one hull of a boat from the beam overall.
 
     Args:
         beam: Beam overall [m].
@@ -24,7 +24,9 @@ def hull_breadth(beam: float, hulls: int) -> Estimate:
 
 
 def hull_draught(length: float, beam: float, mass: float, hulls: int) -> Estimate:
-    """Return the draught [m] that carries the mass at the usual block coefficient of small hulls.
+    """Estimate the draught [m] at which a boat of given size and mass floats.
+
+    It is the draught at the usual block coefficient of small hulls.
 
     Args:
         length: Length of the waterline [m].
@@ -41,7 +43,7 @@ def hull_draught(length: float, beam: float, mass: float, hulls: int) -> Estimat
 def hull_particulars(
     length: float, beam: float, mass: float, hulls: int, stated: float | None
 ) -> HullParticulars:
-    """Return the hull with its main particulars.
+    """Return a boat's main particulars; breadth and, if not given, draught are estimated.
 
     Args:
         length: Length of the waterline [m].

@@ -7,7 +7,7 @@ ROLL = 0.4  # of the beam; same sources have 0.35 to 0.40
 
 
 def yaw_inertia(hull: HullParticulars) -> Estimate:
-    """Return the yaw inertia about the mass centre [kg m^2].
+    """Estimate the yaw moment of inertia of a boat about its mass centre [kg m^2].
 
     Args:
         hull: Hull with its main particulars.
@@ -17,7 +17,7 @@ def yaw_inertia(hull: HullParticulars) -> Estimate:
 
 
 def roll_inertia(hull: HullParticulars) -> Estimate:
-    """Return the roll inertia about the mass centre [kg m^2].
+    """Estimate the roll moment of inertia of a boat about its mass centre [kg m^2].
 
     Args:
         hull: Hull with its main particulars.

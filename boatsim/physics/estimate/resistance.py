@@ -16,7 +16,7 @@ LINEAR_SLENDER = 0.1
 
 
 def service_speed(hull: HullParticulars) -> float:
-    """Return the speed [m/s] at which coefficients that depend on the speed are evaluated.
+    """Return the assumed speed of a boat [m/s] at which speed-dependent coefficients are estimated.
 
     Args:
         hull: Hull with its main particulars.
@@ -25,7 +25,7 @@ def service_speed(hull: HullParticulars) -> float:
 
 
 def wetted_surface(hull: HullParticulars) -> float:
-    """Return the wetted surface of all hulls [m^2] by Denny and Mumford, 1.7 L T + V / T.
+    """Estimate the wetted surface of all hulls [m^2] by Denny and Mumford, 1.7 L T + V / T.
 
     Args:
         hull: Hull with its main particulars.
@@ -34,7 +34,7 @@ def wetted_surface(hull: HullParticulars) -> float:
 
 
 def service_resistance(hull: HullParticulars) -> Estimate:
-    """Return the resistance at the service speed [N].
+    """Estimate the resistance of a boat at its service speed [N] from friction and wave making.
 
     Args:
         hull: Hull with its main particulars.
@@ -49,15 +49,15 @@ def service_resistance(hull: HullParticulars) -> Estimate:
 def surge_damping(
     hull: HullParticulars, thrust: float | None, top_speed: float | None
 ) -> tuple[Estimate, Estimate]:
-    """Return linear [N s/m] and quadratic [N s^2/m^2] surge damping, each a part of the resistance.
+    """Estimate linear [N s/m] and quadratic [N s^2/m^2] surge damping of a boat.
 
-    The resistance is that at the speed reached with full thrust if both are known, else that at the
-    service speed.
+    Their sum is the resistance at the speed reached with full thrust if both are known, else that
+    at the service speed.
 
     Args:
         hull: Hull with its main particulars.
         thrust: Full thrust at rest [N], or None.
-        top_speed: Speed reached with it [m/s], or None.
+        top_speed: Speed reached with full thrust [m/s], or None.
     """
     if thrust is not None and top_speed is not None:
         force = LEFT * thrust

@@ -12,7 +12,7 @@ REACHES = 0.5
 
 
 def rudder_area(hull: HullParticulars) -> Estimate:
-    """Return the rudder area [m^2].
+    """Estimate the area [m^2] of a boat's rudder from the main particulars of the hull.
 
     Args:
         hull: Hull with its main particulars.
@@ -22,7 +22,7 @@ def rudder_area(hull: HullParticulars) -> Estimate:
 
 
 def rudder_force_slope(blade: float, speed: float) -> Estimate:
-    """Return the force to starboard per angle [N/rad].
+    """Estimate the side force of a rudder per rudder angle [N/rad].
 
     Args:
         blade: Rudder area [m^2].
@@ -35,11 +35,11 @@ def rudder_force_slope(blade: float, speed: float) -> Estimate:
 
 
 def slipstream_rudder_force() -> Estimate:
-    """Return the normal force of a rudder over thrust and sine of its angle, at rest.
+    """Estimate the normal force of a rudder in the slipstream of a propeller, at rest.
 
-    A rudder as high as the propeller diameter D has the area D^2 / aspect. The slipstream of a
-    propeller at rest has V^2 = 8 T / (pi rho D^2) far behind, and `REACHES` of that velocity at the
-    rudder.
+    The result is the force divided by the thrust and by the sine of the rudder angle. A rudder as
+    high as the propeller diameter D has the area D^2 / aspect. The slipstream of a propeller at
+    rest has V^2 = 8 T / (pi rho D^2) far behind, and `REACHES` of that velocity at the rudder.
     """
     value = particulars.rudder_lift_slope(ASPECT) * REACHES**2 * 4.0 / (pi * ASPECT)
     return Estimate(

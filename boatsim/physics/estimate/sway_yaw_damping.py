@@ -15,7 +15,10 @@ SECTION = 0.8  # drag coefficient of a section across the flow: Otter 0.85, S. F
 
 
 class ClarkeDerivatives(NamedTuple):
-    """Clarke's derivatives per forward speed, positive for damping, Munk moment included."""
+    """Linear sway and yaw derivatives by Clarke's regression, each divided by the forward speed.
+
+    They are positive for damping and contain the Munk moment.
+    """
 
     sway: float  # [N s^2/m^2] -Y_uv
     yaw: float  # [N s^2] -N_ur
@@ -24,7 +27,10 @@ class ClarkeDerivatives(NamedTuple):
 
 
 class LiftDerivatives(NamedTuple):
-    """Side force proportional to forward speed and local drift, and the remaining yaw damping."""
+    """Hull lift at forward speed: side force per local drift angle, and the remaining yaw damping.
+
+    Both are proportional to the forward speed.
+    """
 
     sway: Estimate  # [N s^2/m^2]
     at: Estimate  # [m] ahead of the middle
@@ -32,7 +38,9 @@ class LiftDerivatives(NamedTuple):
 
 
 def clarke_derivatives(hull: HullParticulars) -> ClarkeDerivatives:
-    """Return the derivatives of all hulls, without the Coriolis force of the rigid body.
+    """Estimate the linear sway and yaw derivatives of a boat by Clarke's regression over ships.
+
+    They are those of all hulls, without the Coriolis force of the rigid body.
 
     Args:
         hull: Hull with its main particulars.
@@ -49,7 +57,7 @@ def clarke_derivatives(hull: HullParticulars) -> ClarkeDerivatives:
 
 
 def lift_derivatives(hull: HullParticulars) -> LiftDerivatives:
-    """Return the lift derivatives of the hull.
+    """Estimate the lift forces on a hull in sway and yaw, per forward speed.
 
     For a slender hull they are Clarke's less the Munk moment, else those of a low-aspect wing.
 
@@ -77,7 +85,7 @@ def lift_derivatives(hull: HullParticulars) -> LiftDerivatives:
 
 
 def damping_at_rest(hull: HullParticulars) -> tuple[Estimate, Estimate]:
-    """Return the linear damping in sway [N s/m] and yaw [N m s] of a hull without forward speed.
+    """Estimate the linear damping in sway [N s/m] and yaw [N m s] of a boat without forward speed.
 
     Sway and yaw decay with a time constant of 1 s for a boat of 2 m, scaled by Froude's law; much
     more slowly for slender hulls.
@@ -104,5 +112,5 @@ def damping_at_rest(hull: HullParticulars) -> tuple[Estimate, Estimate]:
 
 
 def section_drag_coefficient() -> Estimate:
-    """Return the drag coefficient of the sections in cross flow."""
+    """Return the assumed cross-flow drag coefficient of hull sections."""
     return Estimate(SECTION, "Otter 0.85 (MSS otter.m); S. F. Hoerner, Fluid-Dynamic Drag, 1965")

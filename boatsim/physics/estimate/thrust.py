@@ -13,7 +13,7 @@ OF_WEIGHT = 0.4  # Otter: 24.4 kgf of 55 kg, MSS otter.m
 
 
 def full_thrust(hull: HullParticulars) -> Estimate:
-    """Return the thrust of all thrusters together [N].
+    """Estimate the full thrust of a boat at rest [N], all thrusters together.
 
     Args:
         hull: Hull with its main particulars.
@@ -25,7 +25,7 @@ def full_thrust(hull: HullParticulars) -> Estimate:
 
 
 def thrust_loss_with_speed(hull: HullParticulars, top_speed: float | None) -> Estimate:
-    """Return the share of the thrust lost per forward speed [s/m].
+    """Estimate the relative loss of thrust per forward speed [s/m].
 
     Args:
         hull: Hull with its main particulars.

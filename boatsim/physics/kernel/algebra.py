@@ -7,7 +7,10 @@ Terms = dict[tuple[str, ...], int]  # names of the factors, in order -> coeffici
 
 
 class SymbolicSum:
-    """A sum of products with integer coefficients; zero has no terms. Immutable."""
+    """Symbolic expression: a sum of products of named variables with integer coefficients.
+
+    Zero has no terms. Immutable.
+    """
 
     __slots__ = ("terms",)
 
@@ -56,19 +59,19 @@ ONE = SymbolicSum({(): 1})
 
 
 def symbol(text: str) -> SymbolicSum:
-    """Return a number as a sum of one term.
+    """Return a symbolic expression that consists of one named variable.
 
     Args:
-        text: Its name.
+        text: Name of the variable.
     """
     return SymbolicSum({(text,): 1})
 
 
 def add_sums(parts: Iterable[SymbolicSum]) -> SymbolicSum:
-    """Return the sum of sums.
+    """Return the sum of symbolic expressions.
 
     Args:
-        parts: The sums.
+        parts: The expressions.
     """
     found = ZERO
     for part in parts:
@@ -77,18 +80,18 @@ def add_sums(parts: Iterable[SymbolicSum]) -> SymbolicSum:
 
 
 def dot_product(a: Iterable[SymbolicSum], b: Iterable[SymbolicSum]) -> SymbolicSum:
-    """Return the scalar product of two vectors."""
+    """Return the scalar product of two vectors of symbolic expressions."""
     return add_sums(map(mul, a, b))
 
 
 class CodeLines:
-    """Lines of a function body, with variables for intermediate results."""
+    """Source lines of a generated function, with variables for intermediate results."""
 
     def __init__(self) -> None:
         self.text: list[str] = []
 
     def add(self, line: str) -> None:
-        """Append a line.
+        """Append a line to the source of a generated function.
 
         Args:
             line: Python source.
@@ -96,13 +99,13 @@ class CodeLines:
         self.text.append(line)
 
     def assign(self, called: str, value: SymbolicSum) -> SymbolicSum:
-        """Assign a value to a variable and return its name.
+        """Generate an assignment of a symbolic expression to a variable; return the variable.
 
-        Return zero, one or a single name unchanged.
+        Zero, one or a single variable needs no assignment and is returned unchanged.
 
         Args:
             called: Name of the variable.
-            value: The value.
+            value: The symbolic expression.
         """
         if not value or (len(value.terms) == 1 and max(map(len, value.terms)) <= 1):
             return value
@@ -110,10 +113,10 @@ class CodeLines:
         return symbol(called)
 
     def assign_all(self, prefix: str, values: Iterable[SymbolicSum]) -> list[SymbolicSum]:
-        """Apply `assign` to each value; the variables are numbered.
+        """Generate assignments of symbolic expressions to numbered variables; return the variables.
 
         Args:
             prefix: Name of the variables without the number.
-            values: The values.
+            values: The symbolic expressions.
         """
         return [self.assign(f"{prefix}{i}", value) for i, value in enumerate(values)]

@@ -34,14 +34,17 @@ step_inlined = compile_shared_law(step_in_place)
 
 @unlocked
 def compute_mass_constants_of_boats(boats: Any, body: Array, p: Array, on: Any, k: Array) -> None:
-    """Fill the constants k (B, K) from rigid bodies (B, 6) and parameters (B, P)."""
+    """Fill the rows `boats` of k (B, K) with the mass matrices of several vessels.
+
+    They follow from rigid bodies (B, 6) and effect parameters (B, P).
+    """
     for b in boats:
         compute_mass_constants(body[b], p[b], on, k[b])
 
 
 @unlocked
 def settle_actuators_of_boats(boats: Any, fleet: FleetArrays) -> None:
-    """Reset the actuators and let them reach their commands."""
+    """Set the actuators of several vessels to their steady state under the present commands."""
     for b in boats:
         for i in range(fleet.memory.shape[1]):
             fleet.memory[b, i] = 0.0
@@ -50,7 +53,7 @@ def settle_actuators_of_boats(boats: Any, fleet: FleetArrays) -> None:
 
 @unlocked
 def advance_boats(boats: Any, fleet: FleetArrays, dt: float, steps: int) -> None:
-    """Advance vessels by steps of dt [s] with their commands held, in place."""
+    """Simulate several vessels over steps of dt [s] with their commands held, in place."""
     t, y, commands, memory, act, p, on, k, force = fleet
     for b in boats:
         begin = t[b]
@@ -67,7 +70,7 @@ def advance_boats(boats: Any, fleet: FleetArrays, dt: float, steps: int) -> None
 
 @unlocked
 def read_instruments_of_boats(boats: Any, fleet: FleetArrays, felt: Array) -> None:
-    """Write time and instrument readings without noise to rows of felt (B, 11)."""
+    """Write time and noiseless instrument readings of several vessels to rows of felt (B, 11)."""
     t, y, _, _, act, p, on, k, force = fleet
     last = np.int64(2 * HELD)  # the actuators at the end of the last step
     for b in boats:

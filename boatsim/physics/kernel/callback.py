@@ -25,7 +25,10 @@ factor_mass = types.ExternalFunction("mj_factorM", types.void(types.voidptr, typ
 def add_passive_forces(
     t: float, q: Array, qd: Array, user: Array, n: int, f: Array, M: Array
 ) -> None:
-    """Add forces and inertia; the time tells which stage of the Runge-Kutta step this is."""
+    """Add the vessel's forces and added inertia to MuJoCo's arrays at one stage of a step.
+
+    The time t determines the stage of the Runge-Kutta step and so the actuator values in use.
+    """
     act = n + K
     share = (t - user[act + 3 * HELD]) * user[act + 3 * HELD + 1]
     at = np.int64(0) if share < 0.25 else np.int64(HELD) if share < 0.75 else np.int64(2 * HELD)
@@ -38,12 +41,17 @@ def add_passive_forces(
 def add_passive_forces_in_place(
     t: float, q: Array, qd: Array, user: Array, f: Array, M: Array
 ) -> None:
-    """Add forces and inertia from a callback in Python, as the native callback does."""
+    """Add the vessel's forces and added inertia to MuJoCo's arrays, called from Python.
+
+    It does the same as the native callback.
+    """
     add_passive_forces(t, q, qd, user, user.size - 3 * HELD - 2 - K, f, M)
 
 
 def compile_passive_callback(offsets: dict[str, int], size: int) -> Any:
-    """Compile the callback to a C function.
+    """Compile MuJoCo's passive-force callback of one vessel to a C function.
+
+    The callback adds the vessel's forces and added inertia to a simulation.
 
     Args:
         offsets: Offsets of the fields in MuJoCo's structs, as `compiler_internals.mujoco_layout`

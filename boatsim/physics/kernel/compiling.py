@@ -16,10 +16,10 @@ from boatsim.physics.function_compiler import compile_both_forms
 
 
 def compiled_by(**options: Any) -> Callable[[Any], Any]:
-    """Return a decorator like `njit` for functions that compiled code calls more than Python.
+    """Return a decorator that compiles a function with numba, mainly for compiled callers.
 
     Args:
-        options: Further options of `njit`.
+        options: Further options of numba's `njit`.
     """
 
     def decorate(function: Any) -> Any:
@@ -29,10 +29,10 @@ def compiled_by(**options: Any) -> Callable[[Any], Any]:
 
 
 def cached_njit(**options: Any) -> Callable[[Any], Any]:
-    """Return a decorator like `compiled_by` that keeps the compiled code on disk.
+    """Return a decorator that compiles a function with numba and keeps the machine code on disk.
 
     Args:
-        options: Further options of `njit`.
+        options: Further options of numba's `njit`.
     """
 
     def decorate(function: Any) -> Any:
@@ -59,5 +59,5 @@ merged = compiled_by(forceinline=True, **WITHOUT_REFERENCE_COUNTS)
 
 @cache
 def compile_shared_law(law: Any) -> Any:
-    """Return an effect's law for programs to call, analysed once in a process."""
+    """Return an effect's law compiled for inlining into programs; each law once per process."""
     return merged(python_function(law))

@@ -20,9 +20,10 @@ IN_A_ROW = 2
 
 @lean
 def kalman_gain(one: Measurement, estimate: StateEstimate, gain: Array, Ph: Array) -> float:
-    """Compute gain (n,) and P row' (n,) of one measurement, in place.
+    """Compute the Kalman gain (n,) and P h' (n,) of one scalar measurement, in place.
 
-    Return the inverse sd of its prediction error.
+    h is the measurement's row of the measurement matrix. Return the inverse sd of the prediction
+    error.
     """
     row, n, ny, own = one.row, estimate.n, one.ny, one.own
     P, variance = estimate.P, one.variance
@@ -47,9 +48,9 @@ def kalman_gain(one: Measurement, estimate: StateEstimate, gain: Array, Ph: Arra
 def update_by_measurement(
     one: Measurement, estimate: StateEstimate, gains: bool, channel: MeasurementResults, Ph: Array
 ) -> float:
-    """Correct the mean by one measurement, and the covariance if `gains`.
+    """Update a Kalman filter's state by one scalar measurement; return its log likelihood.
 
-    Return its log likelihood.
+    The mean is corrected, and the covariance if `gains` is true. An outlier has a reduced weight.
     """
     z, P, n, error = estimate.z, estimate.P, estimate.n, one.error
     gain, scale, white, outliers = channel.gain, channel.scale, channel.white, channel.outliers

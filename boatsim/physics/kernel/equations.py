@@ -40,21 +40,24 @@ LINEAR, ANGULAR = range(3), range(3, 6)
 
 
 def has_hull_fixed_axes(free: frozenset[str]) -> bool:
-    """Return whether the body axes are fixed in the hull; otherwise they are level.
+    """Return whether a vessel's equations use body axes that are fixed in the hull.
+
+    Otherwise the axes turn with the heading and stay level when the hull rolls.
 
     Args:
-        free: The degrees of freedom.
+        free: Degrees of freedom of the vessel.
     """
     return "pitch" in free or {"heave", "roll"} <= free
 
 
 def has_square_jacobian(free: frozenset[str]) -> bool:
-    """Return whether as many body rates as coordinates are free.
+    """Return whether a vessel has as many free body velocities as free coordinates.
 
-    They are for all six, and for level axes unless the hull yaws with only one of surge and sway.
+    This holds for all six degrees of freedom, and for level axes unless the hull yaws with only one
+    of surge and sway.
 
     Args:
-        free: The degrees of freedom.
+        free: Degrees of freedom of the vessel.
     """
     if has_hull_fixed_axes(free):
         return free == frozenset(AXES)
@@ -62,10 +65,12 @@ def has_square_jacobian(free: frozenset[str]) -> bool:
 
 
 def mass_matrix_entry(begin: int, i: int, j: int) -> SymbolicSum:
-    """Return an entry of one of the constant 6 by 6 matrices of a symmetric hull.
+    """Return the symbol of one entry of a constant 6 by 6 mass matrix in generated code.
+
+    It is zero where port-starboard symmetry of the hull requires it.
 
     Args:
-        begin: First place of the matrix in the constants.
+        begin: Index in the array of constants at which the matrix begins.
         i: Row.
         j: Column.
     """
@@ -74,13 +79,16 @@ def mass_matrix_entry(begin: int, i: int, j: int) -> SymbolicSum:
 
 
 def cross_product(a: list[SymbolicSum], b: list[SymbolicSum]) -> list[SymbolicSum]:
-    """Return the vector product of two vectors (3,)."""
+    """Return the vector product of two vectors (3,) of symbolic expressions."""
     return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 
 
 @dataclass
 class Kinematics:
-    """Kinematics at one state, in the names of variables of the generated code."""
+    """Symbolic kinematics of a vessel at one state, as variables of the generated code.
+
+    It holds rotation matrix, Jacobian, body velocities and the velocity of the water.
+    """
 
     R: list[list[SymbolicSum]]  # body axes to earth axes
     # 6 by 6: body rates per joint rate; columns of coordinates that are held are not used
@@ -91,12 +99,12 @@ class Kinematics:
     water: list[SymbolicSum]  # (3,) velocity of the current in body axes
 
     def jacobian_column(self, i: int) -> list[SymbolicSum]:
-        """Return the body rates (6,) per rate of coordinate i."""
+        """Return the symbolic body velocities (6,) per unit rate of coordinate i."""
         return [row[i] for row in self.J]
 
 
 class EquationWriter:
-    """Writes the source of the equations of motion for one set of degrees of freedom."""
+    """Generates the source of the equations of motion for one set of degrees of freedom."""
 
     def __init__(self, dof: tuple[str, ...], centred: bool) -> None:
         """Set the degrees of freedom.
@@ -118,15 +126,18 @@ class EquationWriter:
     # ------------------------------------------------------------------------------------------
 
     def coordinate_symbol(self, i: int) -> SymbolicSum:
-        """Return the name of a joint coordinate, zero if it is held."""
+        """Return the symbol of coordinate i (x, y, z, phi, theta, psi); zero if it is not free."""
         return symbol(COORDINATES[i]) if i in self.free else ZERO
 
     def rate_symbol(self, i: int) -> SymbolicSum:
-        """Return the name of a joint rate, zero if it is held."""
+        """Return the symbol of the time derivative of coordinate i; zero if it is not free."""
         return symbol(COORDINATES[i] + "d") if i in self.free else ZERO
 
     def cosine_and_sine(self, lines: CodeLines, i: int) -> tuple[SymbolicSum, SymbolicSum]:
-        """Return cosine and sine of an angle i; level axes do not roll or pitch."""
+        """Return symbols of cosine and sine of an Euler angle, and generate their computation.
+
+        They are 1 and 0 for an angle that is not free, and for roll and pitch of level axes.
+        """
         angle = COORDINATES[i]
         if i not in self.free or (i != 5 and not self.hull_fixed_axes):
             return ONE, ZERO
@@ -134,7 +145,9 @@ class EquationWriter:
         return symbol(f"c_{angle}"), symbol(f"s_{angle}")
 
     def kinematics(self, lines: CodeLines, current: bool = True) -> Kinematics:
-        """Return the kinematics of a state whose coordinates and rates are variables.
+        """Generate the kinematics of a state: rotation, Jacobian and velocities as symbols.
+
+        Coordinates and rates of the state are variables already.
 
         Args:
             lines: The function so far, to which variables are added.
@@ -182,7 +195,7 @@ class EquationWriter:
         return Kinematics(R, J, nu, turning, drift, water)
 
     def motion_text(self, frame: Kinematics) -> str:
-        """Return the source of the `Motion` argument of the force laws."""
+        """Return the source text of the `Motion` object that is passed to the force laws."""
         through = map(sub, frame.nu[:3], frame.water)
         psi = ("c_psi", "s_psi") if 5 in self.free else ("1.0", "0.0")
         values = [
@@ -198,12 +211,18 @@ class EquationWriter:
     # ------------------------------------------------------------------------------------------
 
     def current_acceleration_force(self, frame: Kinematics, axis: int) -> SymbolicSum:
-        """Return a component of the force of added mass as a uniform current turns in body axes."""
+        """Return one component of the added-mass force by a current that turns in body axes.
+
+        The current is uniform; in the axes of a turning hull its velocity changes.
+        """
         away = map(neg, cross_product(frame.turning, frame.water))
         return dot_product((mass_matrix_entry(WATER, axis, j) for j in LINEAR), away)
 
     def rigid_body_force(self, lines: CodeLines, frame: Kinematics) -> list[SymbolicSum]:
-        """Return the Coriolis and centripetal force (6,) of the rigid body about the origin."""
+        """Return symbols of the rigid body's Coriolis and centripetal force (6,).
+
+        The moments are about the origin of motion.
+        """
         m, inertia = symbol("k[0]"), [symbol(f"k[{3 + i}]") for i in LINEAR]
         spin = frame.turning
         p, q, r = frame.nu[3:]
@@ -220,7 +239,10 @@ class EquationWriter:
         return force + list(map(add, cross_product(lever, force), moment))
 
     def right_hand_side(self, lines: CodeLines, frame: Kinematics, extra: str) -> list[SymbolicSum]:
-        """Return the right-hand side (6,) of M nu' = ..., as sums."""
+        """Return the total force (6,), the right-hand side of M nu' = ..., as symbolic sums.
+
+        Source lines that evaluate the force laws are added.
+        """
         lines.add(f"f = wrench({self.motion_text(frame)}, p, on, act, at)")
         rigid = self.rigid_body_force(lines, frame)
         found = []
@@ -235,7 +257,7 @@ class EquationWriter:
         return found
 
     def unpack_state(self, lines: CodeLines) -> None:
-        """Add variables for the coordinates and rates of the state."""
+        """Generate the line that unpacks a state array into variables of coordinates and rates."""
         for more, first in (("", 0), ("d", self.n)):
             names = ", ".join(COORDINATES[i] + more for i in self.free)
             lines.add(f"{names} = {', '.join(f's[{first + j}]' for j in range(self.n))}")
@@ -244,7 +266,7 @@ class EquationWriter:
     # ------------------------------------------------------------------------------------------
 
     def accelerations_code(self) -> list[str]:
-        """Return the body of `accelerations`."""
+        """Return the source lines of the generated function `accelerations`."""
         lines = CodeLines()
         self.unpack_state(lines)
         frame = self.kinematics(lines)
@@ -274,11 +296,11 @@ class EquationWriter:
     def joint_accelerations(
         self, lines: CodeLines, frame: Kinematics, body: dict[int, SymbolicSum], moving: bool
     ) -> list[str]:
-        """Return joint accelerations from body accelerations.
+        """Generate joint accelerations (of the coordinates) from body accelerations.
 
         Args:
             lines: The function so far.
-            frame: Kinematics.
+            frame: Kinematics of the state.
             body: Body acceleration of each free axis.
             moving: Whether to include the terms that are quadratic in the Euler rates.
         """
@@ -305,14 +327,14 @@ class EquationWriter:
         return found + list(map(str, rest))
 
     def mass_matrix_product(self, begin: int, motion: list[SymbolicSum]) -> list[SymbolicSum]:
-        """Return the product of a constant matrix and a body motion (6,)."""
+        """Return the symbolic product of a constant mass matrix and a body motion (6,)."""
         found = []
         for i in range(6):
             found.append(dot_product((mass_matrix_entry(begin, i, j) for j in range(6)), motion))
         return found
 
     def factor_mass_matrix(self, lines: CodeLines, frame: Kinematics) -> None:
-        """Add variables for J' M J of the free coordinates and its factors L D L'."""
+        """Generate the mass matrix J' M J of the free coordinates and its factors L D L'."""
         for b, j in enumerate(self.free):
             column = self.mass_matrix_product(WHOLE, frame.jacobian_column(j))
             for a, i in enumerate(self.free[b:], b):
@@ -327,7 +349,7 @@ class EquationWriter:
     def solve_factored_system(
         self, lines: CodeLines, right: list[SymbolicSum], tag: str
     ) -> list[str]:
-        """Add variables for the solution of the factored system; return their names."""
+        """Generate the solution of a system with the factored mass matrix; return its symbols."""
         for i, value in enumerate(right):
             lines.add(f"y{tag}{i} = {value}" + "".join(f" - L{i}{k} * y{tag}{k}" for k in range(i)))
         for i in reversed(range(self.n)):
@@ -338,7 +360,10 @@ class EquationWriter:
         return [f"x{tag}{i}" for i in range(self.n)]
 
     def acceleration_per_force_code(self) -> list[str]:
-        """Return the body of `acceleration_per_force`."""
+        """Return the source lines of the generated function `acceleration_per_force`.
+
+        It computes the derivatives of the accelerations by a body force.
+        """
         lines = CodeLines()
         self.unpack_state(lines)
         frame = self.kinematics(lines, current=False)
@@ -362,7 +387,10 @@ class EquationWriter:
     # ------------------------------------------------------------------------------------------
 
     def total_body_force_code(self) -> list[str]:
-        """Return the body of `total_body_force`."""
+        """Return the source lines of the generated function `total_body_force`.
+
+        It computes the sum of the forces of all effects.
+        """
         lines = CodeLines()
         self.unpack_state(lines)
         frame = self.kinematics(lines)
@@ -371,7 +399,10 @@ class EquationWriter:
         return lines.text
 
     def pose_and_velocities_code(self) -> list[str]:
-        """Return the body of `pose_and_velocities`."""
+        """Return the source lines of the generated function `pose_and_velocities`.
+
+        It computes the true values of all recorded signals.
+        """
         lines = CodeLines()
         self.unpack_state(lines)
         frame = self.kinematics(lines, current=False)
@@ -380,7 +411,10 @@ class EquationWriter:
         return lines.text
 
     def instrument_readings_code(self) -> list[str]:
-        """Return the body of `instrument_readings`."""
+        """Return the source lines of the generated function `instrument_readings`.
+
+        It computes noiseless readings of instruments on board.
+        """
         lines = CodeLines()
         self.unpack_state(lines)
         frame = self.kinematics(lines, current=False)
@@ -398,7 +432,10 @@ class EquationWriter:
         return lines.text
 
     def jacobian_code(self) -> list[str]:
-        """Return the body of `jacobian`."""
+        """Return the source lines of the generated function `jacobian`.
+
+        It computes the derivatives of body velocities by coordinate rates.
+        """
         lines = CodeLines()
         self.unpack_state(lines)
         frame = self.kinematics(lines, current=False)
@@ -409,7 +446,10 @@ class EquationWriter:
         return lines.text
 
     def expected_measurement_level_code(self) -> list[str]:
-        """Return the body of `expected_measurement_level`: a position or a level-axes rate."""
+        """Return the source lines of the generated function `expected_measurement_level`.
+
+        It computes the expected value of a measured position or velocity for level axes.
+        """
         lines = CodeLines()
         lines.add("if code < NQ:")
         lines.add("    row[code] = 1.0")
@@ -430,7 +470,7 @@ class EquationWriter:
         return lines.text
 
     def mujoco_code(self) -> list[str]:
-        """Return the body of `add_force_and_inertia_to_mujoco`."""
+        """Return the source lines of the generated function `add_force_and_inertia_to_mujoco`."""
         lines = CodeLines()
         order = [i for i in map(COORDINATES.index, JOINTS) if i in self.free]
         for b, i in enumerate(order):
@@ -471,5 +511,5 @@ class EquationWriter:
         return lines.text
 
     def tuple_text(self, items: list[str]) -> str:
-        """Return the text of a tuple."""
+        """Return the source text of a tuple with the given items."""
         return f"({', '.join(items)},)"

@@ -98,10 +98,11 @@ def predict_motion(
     laws: LawArguments,
     plant: VesselState,
 ) -> int:
-    """Integrate the motion `plant.y` from row i - 1 to row i in place.
+    """Integrate the vessel's motion from row i - 1 to row i of a recording, in place.
 
-    The motion of row i happened `delay` before its time. `row` is the last row of commands used so
-    far; returns the one used last. No step extends beyond a change of an actuator's signal.
+    The filter uses it for its prediction. The motion of row i happened `delay` before its time.
+    `row` is the last row of commands used so far; returns the one used last. No step extends beyond
+    a change of an actuator's signal.
     """
     times, given, commands = inputs
     p, on, k = laws
@@ -127,9 +128,9 @@ def predict_motion(
 def state_transition(
     t: float, h: float, z: Array, laws: LawArguments, plant: VesselState, work: FilterWorkspace
 ) -> float:
-    """Fill F with the transition of motion and latent forces over h.
+    """Compute the filter's transition matrix of motion and latent forces over a time h.
 
-    Returns the decay rate of the quickest motion there [1/s].
+    Fills the matrix F of `work` and returns the decay rate of the quickest motion there [1/s].
     """
     A = work.A
     for i in range(LASTING):
@@ -152,10 +153,11 @@ def state_transition(
 def oscillator_transition(
     h: float, s: OscillatingForce
 ) -> tuple[float, float, float, float, float, float]:
-    """Transition of the oscillator over h, and its mean force per state and rate at the start.
+    """Return the transition matrix of a random oscillating force over a time h.
 
-    The force is the rate divided by the frequency, w s / (s^2 + 2 damping w s + w^2): waves have no
-    energy at zero frequency.
+    The last two of the six numbers are the mean force over h per unit of the two states at its
+    begin. The force is the rate divided by the frequency, w s / (s^2 + 2 damping w s + w^2): waves
+    have no energy at zero frequency.
     """
     w, damped = s.frequency, s.frequency * sqrt(1.0 - s.damping * s.damping)
     e, share = exp(-s.damping * w * h), s.damping * w / damped
@@ -167,7 +169,10 @@ def oscillator_transition(
 
 @lean
 def add_oscillators(h: float, s: OscillatingForce, F: Array) -> None:
-    """Add the rows of the oscillators, and their effect on the motion, to the transition F."""
+    """Add the random oscillating forces to the filter's transition matrix F.
+
+    Rows of the oscillators and their effect on the motion are added.
+    """
     f11, f12, f21, f22, mean1, mean2 = oscillator_transition(h, s)
     for i in range(NZ):
         for j in range(LASTING, NZ):
@@ -181,7 +186,11 @@ def add_oscillators(h: float, s: OscillatingForce, F: Array) -> None:
 
 @lean
 def state_sizes(s: OscillatingForce, w: InstrumentDrift) -> tuple[Any, Any]:
-    """Entries of a state that are motion and forces, and all with the errors of instruments."""
+    """Return how many entries of the filter's state are in use: without and with instrument drift.
+
+    The first number counts motion, latent forces and oscillators, the second one also the slowly
+    varying errors of instruments.
+    """
     m = NZ if not HAS_INSTRUMENT_DRIFT else NZ - NQ
     if s.frequency == 0.0:
         m = LASTING
@@ -190,7 +199,7 @@ def state_sizes(s: OscillatingForce, w: InstrumentDrift) -> tuple[Any, Any]:
 
 @lean
 def instrument_drift_rms(w: InstrumentDrift, j: int) -> float:
-    """Rms of the slowly varying error of position j of a state."""
+    """Return the rms of an instrument's slowly varying error of coordinate j of a state."""
     if FREE[j] < 2:
         return float(w.position)
     return float(w.heading) if FREE[j] == 5 else 0.0
@@ -198,7 +207,10 @@ def instrument_drift_rms(w: InstrumentDrift, j: int) -> float:
 
 @lean
 def add_process_noise(h: float, noise: ProcessNoise, P: Array) -> None:
-    """Add the covariance that latent forces, oscillators and instrument errors gain over h."""
+    """Add the process noise of a time h to the filter's covariance P.
+
+    It is that of latent forces, oscillators and instrument errors.
+    """
     s, w, m = noise.oscillating_force, noise.instrument_drift, noise.m
     decay = exp(-h / noise.force.time_constant)
     for j in range(NQ):
@@ -220,7 +232,10 @@ def add_process_noise(h: float, noise: ProcessNoise, P: Array) -> None:
 
 @lean
 def set_plant_from_state(z: Array, h: float, noise: ProcessNoise, plant: VesselState) -> None:
-    """Set the motion of `plant`, and its force to the mean latent force over h seconds."""
+    """Set a vessel's motion to a filter state, and its extra force to the mean latent force.
+
+    The mean is that over the next h seconds.
+    """
     force = plant.force
     copy_vector(z, plant.y)
     for a in range(NQ):
@@ -233,7 +248,10 @@ def set_plant_from_state(z: Array, h: float, noise: ProcessNoise, plant: VesselS
 
 @lean
 def predict_covariance(h: float, noise: ProcessNoise, P: Array, F: Array, work: Array) -> None:
-    """Predict P over h; extend F from motion and latent forces to the whole state."""
+    """Predict the filter's covariance P over a time h.
+
+    The transition matrix F is extended from motion and latent forces to the whole state.
+    """
     m, n = noise.m, noise.n
     for a in range(NY, LASTING):
         F[a, a] = exp(-h / noise.force.time_constant)
@@ -249,7 +267,7 @@ def predict_covariance(h: float, noise: ProcessNoise, P: Array, F: Array, work: 
 
 @lean
 def predict_mean(h: float, noise: ProcessNoise, y: Array, z: Array) -> None:
-    """Predict the state over h, with the motion y at its end."""
+    """Predict the mean of the filter's state over a time h, given the motion y at its end."""
     m = noise.m
     for a in range(NY):
         z[a] = y[a]
@@ -265,7 +283,10 @@ def predict_mean(h: float, noise: ProcessNoise, y: Array, z: Array) -> None:
 
 @lean
 def add_deviation(F: Array, z: Array, about: Array, y: Array) -> None:
-    """Add the deviation of z from `about` to y, the motion that follows from `about`."""
+    """Add to a predicted motion y the effect of a deviation of the initial state from `about`.
+
+    F is the transition matrix and y the motion that follows from `about`.
+    """
     for a in range(NY):
         for b in range(NY):
             y[a] += F[a, b] * (z[b] - about[b])
@@ -275,10 +296,11 @@ def add_deviation(F: Array, z: Array, about: Array, y: Array) -> None:
 def predict_motion_and_transition(
     f: FilterPass, i: int, row: int, z: Array, max_step: float, steps: Array
 ) -> int:
-    """Apply `predict_motion` and compute the transition F about the state z at the begin.
+    """Integrate the motion to row i of a recording and compute the transition matrix over it.
 
-    The steps follow the quickest motion: those that suited the row before may be too long. Fills
-    steps[i] and a first guess for the next row.
+    The matrix is linearised about the state z at the begin. The integration steps are adapted to
+    the quickest motion: those of the row before may be too long. Fills steps[i] and a first guess
+    for the next row.
     """
     inputs, plant, times = f.inputs, f.plant, f.inputs.times
     h = times[i] - times[i - 1]
@@ -304,13 +326,19 @@ def predict_motion_and_transition(
 
 @lean
 def predicted_measurement(y: Array, t: float, code: int, p: Array, on: Any) -> float:
-    """Value of one channel that a recording shows of a motion y (2 NQ,), t after its first row."""
+    """Return the value that a recording shows of one channel for a given motion y (2 NQ,).
+
+    It includes measurement errors, t after the first row.
+    """
     return float(apply_measurement_errors(pose_and_velocities(y), t, p, on)[SHOWS[code]])
 
 
 @lean
 def differentiate_channels(z: Array, t: float, codes: Any, H: Array, p: Array, on: Any) -> None:
-    """Fill H (C, 2 NQ) with the derivatives of the channels by z that need differences."""
+    """Fill H (C, 2 NQ) with finite-difference derivatives of measured channels by the motion z.
+
+    Nothing is done if the derivatives of all channels are known in closed form.
+    """
     if not HULL_FIXED_AXES and not has_measurement_errors(on):
         return
     seen = apply_measurement_errors(pose_and_velocities(z), t, p, on)
@@ -330,9 +358,9 @@ def differentiate_channels(z: Array, t: float, codes: Any, H: Array, p: Array, o
 def expected_measurement(
     z: Array, t: float, code: int, slope: Array, row: Array, p: Array, on: Any
 ) -> float:
-    """Return the expected value of one channel; fill its row (n,) of the measurement matrix.
+    """Return the expected value of one measured channel and fill its row of the measurement matrix.
 
-    `slope` is its row by `differentiate_channels`, where that filled it.
+    The row has n entries. `slope` is its row by `differentiate_channels`, where that filled it.
     """
     if not HULL_FIXED_AXES and not has_measurement_errors(on):
         for j in range(NZ):
@@ -344,7 +372,10 @@ def expected_measurement(
 
 @compiled
 def remove_position_errors(z: Array, t: float, p: Array, on: Any) -> None:
-    """Replace positions recorded t after the first row by those of the vessel, in place."""
+    """Replace recorded positions by the true ones, inverting the measurement errors, in place.
+
+    They were recorded t after the first row.
+    """
     if has_measurement_errors(on):
         positions, y = np.zeros(NQ), np.zeros(NY)
         copy_vector(z, positions)
@@ -364,9 +395,9 @@ def update_row(
     gains: bool,
     out: PassArrays,
 ) -> float:
-    """Correct the mean by row i of a recording, and the covariance if `gains`.
+    """Update the filter's state by all measurements in row i of a recording.
 
-    Return its log likelihood.
+    The covariance is updated if `gains` is true. Returns the log likelihood of the row.
     """
     likelihood, z, codes = 0.0, estimate.z, measured.codes
     p, on, m, work = f.laws.p, f.laws.on, f.noise.m, f.work
@@ -395,7 +426,7 @@ def update_row(
 
 @lean
 def initialise_filter(start: FilterStart, noise: ProcessNoise, estimate: StateEstimate) -> None:
-    """Set mean and covariance of the first row, with the oscillators at any phase."""
+    """Set the filter's mean and covariance at the first row, with oscillators at any phase."""
     s, w, m, z, P = noise.oscillating_force, noise.instrument_drift, noise.m, estimate.z, estimate.P
     for a in range(LASTING):
         z[a] = start.mean[a]
@@ -424,9 +455,9 @@ def kalman_filter(
     out: PassArrays,
     history: FilterHistory,
 ) -> float:
-    """Run one pass of the filter over a recording; fill `out` and, on demand, `history`.
+    """Run the extended Kalman filter once over a recording; return its log likelihood.
 
-    Returns the log likelihood.
+    Fills `out` and, on demand, `history`.
     """
     body, p, on = model
     k, act, memory = np.zeros(K), np.zeros(3 * HELD), np.zeros(MEMORY)
@@ -492,9 +523,9 @@ def kalman_filter(
 def smooth_states(
     history: FilterHistory, gains: Array, times: Array, force: LatentForce, p: Array, on: Any
 ) -> None:
-    """Smooth the means and covariances of a pass in place (Rauch, Tung and Striebel).
+    """Smooth the filtered means and covariances of a recording in place (Rauch, Tung, Striebel).
 
-    Fill the gains (N, NZ, NZ).
+    Fills the smoother gains (N, NZ, NZ).
     """
     means, covariances, transitions, predicted = history
     s, w = oscillating_force(p, on), instrument_drift(p, on)
@@ -535,10 +566,11 @@ def simulate_intervals(
     states: Array,
     out: Array,
 ) -> None:
-    """Simulate from row starts[j] to ends[j] out of states[j] (2 NQ,) under the commands.
+    """Simulate intervals of a recording from given states, under the recorded commands.
 
-    The actuators are simulated from the first row on, latent forces are zero. Fills out (runs, N, 2
-    NQ) with every channel as the recording would show it.
+    Run j extends from row starts[j] to row ends[j] and begins at states[j] (2 NQ,). The actuators
+    are simulated from the first row on, latent forces are zero. Fills out (runs, N, 2 NQ) with
+    every channel as the recording would show it.
     """
     times, (body, p, on) = inputs.times, model
     k, act, memory = np.zeros(K), np.zeros(3 * HELD), np.zeros(MEMORY)

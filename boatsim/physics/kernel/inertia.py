@@ -18,9 +18,9 @@ COUPLINGS = ((6, 7, 8), (9, 10, 11))
 
 @lean
 def invert_mass_matrix(m: Array) -> None:
-    """Invert a mass matrix by its two blocks, in place.
+    """Invert a 6 by 6 mass matrix of a symmetric hull by its two 3 by 3 blocks, in place.
 
-    The row of a held axis is that of the identity.
+    The row of an axis that is not free is that of the identity.
     """
     for b in range(2):
         (i, j, k), (d, e, f), (x, y, z) = DIAGONAL[b], COUPLINGS[b], BLOCKS[b]
@@ -40,9 +40,10 @@ def invert_mass_matrix(m: Array) -> None:
 
 @lean
 def compute_mass_constants(body: Array, p: Array, on: Any, k: Array) -> None:
-    """Fill k (42,): rigid body, then `MassMatrix` entries of added mass, ballast and the sum.
+    """Fill the constants k (42,) of a vessel with its rigid body data and mass matrices.
 
-    The sum is inverted where one inverse serves all states (`CLOSED`).
+    After the rigid body follow the `MassMatrix` entries of added mass, ballast and the sum. The sum
+    is inverted where one inverse serves all states (`CLOSED`).
     """
     m, x, z = body[0], body[1], body[2]
     for i in range(6):

@@ -26,52 +26,58 @@ HAS_INSTRUMENT_DRIFT = False  # whether any instrument has a slowly varying erro
 
 
 def wrench(m: Motion, p: Array, on: Any, act: Array, at: int) -> Wrench:
-    """Sum of all force laws with the actuators act[at:]."""
+    """Return the total force of all effects of a vessel, with the actuators act[at:]."""
     raise NotImplementedError
 
 
 def water_velocity(p: Array, on: Any) -> tuple[float, float]:
-    """Velocity of the water over the ground (north, east) [m/s]."""
+    """Return the velocity of the water over the ground (north, east) [m/s]."""
     raise NotImplementedError
 
 
 def add_inertias(p: Array, on: Any, water: Array, hull: Array) -> None:
-    """Add the `MassMatrix` entries (12,) of added mass to `water` and of ballast to `hull`."""
+    """Add the mass matrices of all effects to `water` (added mass) and `hull` (ballast).
+
+    Each is an array of 12 `MassMatrix` entries.
+    """
     raise NotImplementedError
 
 
 def advance_channels(
     commands: Array, memory: Array, dt: float, p: Array, on: Any, act: Array, held: Any
 ) -> None:
-    """Advance all channels by one step of dt [s]; fill act (3 held,)."""
+    """Advance the actuators of a vessel by one step of dt [s]; fill act (3 held,)."""
     raise NotImplementedError
 
 
 def time_to_discontinuity(commands: Array, memory: Array, p: Array, on: Any) -> float:
-    """Time until the signal of a channel jumps or bends while its command is held [s]."""
+    """Return the time [s] until an actuator's signal jumps or bends while its command is held."""
     raise NotImplementedError
 
 
 def apply_measurement_errors(m: MeasuredMotion, t: float, p: Array, on: Any) -> MeasuredMotion:
-    """Motion as the recording shows it t seconds after its first row."""
+    """Return the motion that a recording shows of a true motion, with all measurement errors.
+
+    The time is t [s] after the first row.
+    """
     raise NotImplementedError
 
 
 def has_measurement_errors(on: Any) -> bool:
-    """Whether a recording shows anything but the true motion."""
+    """Return whether an active effect makes a recording differ from the true motion."""
     raise NotImplementedError
 
 
 def motion_latency(p: Array, on: Any) -> float:
-    """Delay of the recorded motion behind the recorded commands [s]."""
+    """Return the delay of the recorded motion behind the recorded commands [s]."""
     raise NotImplementedError
 
 
 def oscillating_force(p: Array, on: Any) -> OscillatingForce:
-    """Random oscillating force; frequency 0: none."""
+    """Return the model of the random oscillating force on a vessel; frequency 0: none."""
     raise NotImplementedError
 
 
 def instrument_drift(p: Array, on: Any) -> InstrumentDrift:
-    """Slowly varying error of the instruments; zeros: none."""
+    """Return the noise model of slowly varying instrument errors; zeros: none."""
     raise NotImplementedError

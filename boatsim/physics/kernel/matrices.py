@@ -15,7 +15,7 @@ SMALLEST = 2.0**-40
 
 @lean
 def copy_vector(source: Array, out: Array) -> None:
-    """Fill a vector from the begin of another.
+    """Fill a vector `out` with the first entries of another vector.
 
     An assignment of slices would take numba seconds to compile.
     """
@@ -25,7 +25,7 @@ def copy_vector(source: Array, out: Array) -> None:
 
 @lean
 def copy_square_matrix(source: Array, out: Array, n: int) -> None:
-    """Copy the first n rows and columns of a matrix."""
+    """Copy the upper left n by n part of a matrix to another matrix."""
     for i in range(n):
         for j in range(n):
             out[i, j] = source[i, j]
@@ -33,7 +33,10 @@ def copy_square_matrix(source: Array, out: Array, n: int) -> None:
 
 @lean
 def multiply_matrices(A: Array, B: Array, out: Array, n: int) -> None:
-    """Compute out = A B; A has many zeros, so that this is faster than a library call."""
+    """Compute the matrix product out = A B of n by n matrices, skipping zeros of A.
+
+    A has many zeros, so that this is faster than a library call.
+    """
     for i in range(n):
         for j in range(n):
             out[i, j] = 0.0
@@ -46,7 +49,10 @@ def multiply_matrices(A: Array, B: Array, out: Array, n: int) -> None:
 
 @lean
 def propagate_covariance(F: Array, P: Array, work: Array, n: int) -> None:
-    """Compute P = F P F', symmetric, in place; the many zeros of F are skipped."""
+    """Compute the covariance P = F P F' of a linear transition F, symmetric, in place.
+
+    The many zeros of F are skipped.
+    """
     multiply_matrices(F, P, work, n)
     for i in range(n):
         for j in range(i):
@@ -59,9 +65,10 @@ def propagate_covariance(F: Array, P: Array, work: Array, n: int) -> None:
 
 @lean
 def matrix_exponential(A: Array, h: float, F: Array, B: Array, n: int) -> None:
-    """Compute F = exp(A h) by scaling and squaring; A and B are overwritten.
+    """Compute the matrix exponential F = exp(A h) by scaling and squaring.
 
-    The series of third order is taken over a part of h that is small enough for stiff damping.
+    A and B are overwritten. The series of third order is taken over a part of h that is small
+    enough for stiff damping.
     """
     part, stiffest = h, 0.0
     for i in range(n):
@@ -85,7 +92,10 @@ def matrix_exponential(A: Array, h: float, F: Array, B: Array, n: int) -> None:
 
 @lean
 def cholesky_solve(A: Array, B: Array, n: int) -> None:
-    """Compute B = A^-1 B for a symmetric positive definite A, which becomes its Cholesky factor."""
+    """Compute B = A^-1 B for a symmetric positive definite matrix A.
+
+    A is replaced by its Cholesky factor.
+    """
     for j in range(n):
         for k in range(j):
             for i in range(j, n):

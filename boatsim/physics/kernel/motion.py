@@ -25,45 +25,51 @@ DIFFERENCE = 1e-6  # [m, rad, m/s, rad/s] step of one-sided finite differences
 def step_in_place(
     t: float, y: Array, dt: float, act: Array, p: Array, on: Any, k: Array, extra: Array
 ) -> None:
-    """Advance the state y by one Runge-Kutta step of fourth order.
+    """Advance the vessel's state y by one Runge-Kutta step of fourth order.
 
-    Extra: a further body force (NQ,).
+    `extra` is a further body force (NQ,).
     """
 
 
 def total_body_force(
     t: float, s: Array, act: Array, at: Any, p: Array, on: Any
 ) -> tuple[float, ...]:
-    """Body force (NQ,) of all laws with the actuators act[at:]."""
+    """Return the sum (NQ,) of the body forces of all effects, with the actuators act[at:]."""
     raise NotImplementedError
 
 
 def acceleration_jacobian(
     t: float, s: Array, act: Array, p: Array, on: Any, k: Array, extra: Array, out: Array
 ) -> None:
-    """Write the derivatives of the joint accelerations by the state to out (NQ, 2 NQ)."""
+    """Write the derivatives of the vessel's accelerations by its state to out (NQ, 2 NQ).
+
+    The accelerations are those of the joint coordinates.
+    """
 
 
 def acceleration_per_force(s: Array, k: Array, A: Array, row: np.int64, column: np.int64) -> None:
-    """Write the derivatives of the joint accelerations by a body force to A[row:, column:]."""
+    """Write the derivatives of the vessel's accelerations by a body force to A[row:, column:]."""
 
 
 def instrument_readings(
     t: float, s: Any, act: Array, at: Any, p: Array, on: Any, k: Array, extra: Any
 ) -> tuple[float, ...]:
-    """Readings of instruments aboard: psi, r, acceleration along x and y, u, v, x, y, phi, p."""
+    """Return noiseless readings of instruments on board for a state of the vessel.
+
+    They are psi, r, acceleration along x and y, u, v, x, y, phi, p.
+    """
     raise NotImplementedError
 
 
 def pose_and_velocities(s: Any) -> MeasuredMotion:
-    """True values of all recorded signals in a state."""
+    """Return the true values of all recorded signals (pose and velocities) in a state."""
     raise NotImplementedError
 
 
 def expected_measurement_level(s: Array, code: int, row: Array) -> float:
-    """Expected value of one measured channel.
+    """Return the expected value of one measured channel for axes that stay level.
 
-    Fills its row of the measurement matrix. For level axes only.
+    Fills its row of the measurement matrix.
     """
     raise NotImplementedError
 
@@ -71,4 +77,7 @@ def expected_measurement_level(s: Array, code: int, row: Array) -> float:
 def add_force_and_inertia_to_mujoco(
     t: float, q: Array, qd: Array, act: Array, at: Any, p: Array, k: Array, force: Array, M: Array
 ) -> None:
-    """Add the passive force and the lower triangle of J' M J, in MuJoCo's coordinates."""
+    """Add the vessel's passive force and added inertia J' M J to MuJoCo's arrays.
+
+    Only the lower triangle of J' M J is added. Both are in MuJoCo's coordinates.
+    """

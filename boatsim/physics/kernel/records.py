@@ -11,7 +11,7 @@ from boatsim.physics.signals import Array, InstrumentDrift, OscillatingForce
 
 
 class VesselNumbers(NamedTuple):
-    """The numbers of a vessel: rigid body, parameters, and which optional effects act."""
+    """Numbers of a vessel for its compiled program: rigid body, parameters and active effects."""
 
     body: Array  # (6,) as in `Program.body`
     p: Array  # (P,) parameters of all effects, in SI units
@@ -19,7 +19,7 @@ class VesselNumbers(NamedTuple):
 
 
 class LawArguments(NamedTuple):
-    """Parameters, switches and constants of the equations of motion."""
+    """Effect parameters, switches of effects, and mass constants for the equations of motion."""
 
     p: Array  # (P,) parameters of all effects, in SI units
     on: Any  # (E,) 1 for an effect that acts
@@ -27,7 +27,10 @@ class LawArguments(NamedTuple):
 
 
 class VesselState(NamedTuple):
-    """State of one vessel; `step_in_place` and `advance_actuators` change the arrays."""
+    """State of one simulated vessel: coordinates, rates, actuators and a constant extra force.
+
+    `step_in_place` and `advance_actuators` change the arrays.
+    """
 
     y: Array  # (2 NQ,) joint coordinates and their rates
     memory: Array  # (MEMORY,) state of the actuators
@@ -36,7 +39,10 @@ class VesselState(NamedTuple):
 
 
 class FleetArrays(NamedTuple):
-    """States and parameters of many vessels, a row each; `advance_boats` changes the arrays."""
+    """States, commands and parameters of many simulated vessels, one row each.
+
+    `advance_boats` changes the arrays.
+    """
 
     t: Array  # (B,) [s]
     y: Array  # (B, 2 NQ) joint coordinates and their rates
@@ -50,7 +56,7 @@ class FleetArrays(NamedTuple):
 
 
 class Inputs(NamedTuple):
-    """Row times of a recording and the commands that act on it."""
+    """Row times of a recording and the commands that act on the vessel during it."""
 
     times: Array  # (N,) [s]
     change_times: Array  # (M,) [s]
@@ -58,7 +64,7 @@ class Inputs(NamedTuple):
 
 
 class Measurements(NamedTuple):
-    """Measured channels of a recording."""
+    """Measured values of a recording's channels, with the noise variances of their sensors."""
 
     values: Array  # (N, C), nan where missing
     codes: Any  # (C,) 0 .. NQ - 1: a position; NQ .. 2 NQ - 1: a body-axes rate
@@ -66,14 +72,20 @@ class Measurements(NamedTuple):
 
 
 class LatentForce(NamedTuple):
-    """Force of unmodelled effects: an Ornstein-Uhlenbeck process per axis."""
+    """Model of the force of unmodelled effects in the Kalman filter.
+
+    It is an Ornstein-Uhlenbeck process per axis.
+    """
 
     variances: Array  # (NQ,) [N^2, N^2 m^2]
     time_constant: float  # [s]
 
 
 class FilterStart(NamedTuple):
-    """Distribution of positions, earth-axes rates and latent forces at the first row."""
+    """Gaussian distribution of the filter's state at the first row of a recording.
+
+    The state contains positions, earth-axes rates and latent forces.
+    """
 
     mean: Array  # (3 NQ,)
     covariance: Array  # (3 NQ, 3 NQ)
@@ -81,7 +93,7 @@ class FilterStart(NamedTuple):
 
 
 class PassOptions(NamedTuple):
-    """Options of a pass of the filter: what it computes and what it reuses."""
+    """Options of one run of the Kalman filter over a recording: what it computes or reuses."""
 
     max_step: float  # [s] longest integration step
     gains: bool  # compute the gains; else reuse those of the last pass that did
@@ -90,7 +102,10 @@ class PassOptions(NamedTuple):
 
 
 class PassArrays(NamedTuple):
-    """Results of a pass of the filter for each row, computed or reused according to its options."""
+    """Results of one run of the Kalman filter for each row of a recording.
+
+    They are computed or reused according to the options of the run.
+    """
 
     transitions: Array  # (N, 3 NQ, 3 NQ) of motion and latent forces
     steps: Array  # (N,) [s] longest integration step that follows the quickest motion
@@ -100,7 +115,10 @@ class PassArrays(NamedTuple):
 
 
 class FilterHistory(NamedTuple):
-    """Results of a pass that the smoother needs; it overwrites the means and covariances."""
+    """Filtered means, covariances and transitions of a recording, the input of the smoother.
+
+    The smoother overwrites the means and covariances.
+    """
 
     means: Array  # (N, NZ)
     covariances: Array  # (N, NZ, NZ)
@@ -113,7 +131,7 @@ class FilterHistory(NamedTuple):
 
 
 class ProcessNoise(NamedTuple):
-    """Noise that drives the filter's state, and the sizes of that state."""
+    """Process noise of the Kalman filter's state, and the numbers of state entries in use."""
 
     force: LatentForce
     oscillating_force: OscillatingForce
@@ -123,7 +141,7 @@ class ProcessNoise(NamedTuple):
 
 
 class StateEstimate(NamedTuple):
-    """Mean and covariance of the filter's state, changed in place."""
+    """Mean and covariance of the Kalman filter's state, changed in place."""
 
     z: Array  # (NZ,)
     P: Array  # (NZ, NZ)
@@ -131,7 +149,10 @@ class StateEstimate(NamedTuple):
 
 
 class Measurement(NamedTuple):
-    """One measured value."""
+    """One scalar measurement in an update of the Kalman filter.
+
+    It holds the prediction error, its row of the measurement matrix and the noise variance.
+    """
 
     error: float  # less what was expected
     row: Array  # its row of the measurement matrix
@@ -141,9 +162,9 @@ class Measurement(NamedTuple):
 
 
 class MeasurementResults(NamedTuple):
-    """Where the results of one measurement go.
+    """Arrays that receive the results of one scalar measurement in the Kalman filter.
 
-    The first entry of `outliers`, `scale` and `white` belongs to it.
+    The first entry of `outliers`, `scale` and `white` belongs to the measurement.
     """
 
     outliers: Array  # consecutive outliers so far
@@ -153,7 +174,7 @@ class MeasurementResults(NamedTuple):
 
 
 class FilterWorkspace(NamedTuple):
-    """Arrays of one pass of the filter in which intermediate results lie."""
+    """Preallocated work arrays of one run of the Kalman filter."""
 
     F: Array  # (NZ, NZ) transition
     A: Array  # (NZ, NZ)
@@ -166,7 +187,7 @@ class FilterWorkspace(NamedTuple):
 
 
 class FilterPass(NamedTuple):
-    """Inputs that are common to all steps of a pass of the filter."""
+    """Inputs that are common to all time steps of one run of the Kalman filter."""
 
     inputs: Inputs
     laws: LawArguments

@@ -11,7 +11,7 @@ from boatsim.physics.signals import Array, SignalSegment
 def write_cosine_and_sine(
     x: SignalSegment, act: Array, held: Any, angle: int, cosine: int, sine: int
 ) -> None:
-    """Write cosine and sine of an angle at three times of a step to act (3 held,).
+    """Write cosine and sine of an actuator's angle at three times of a step to act (3 held,).
 
     They take longer than the rest of an actuator and are not computed again for an angle that has
     not changed. The begin is the end of the step before, which act still holds; zeros in both mean

@@ -25,16 +25,19 @@ ENOUGH = 1e-9  # [s] a remainder of a step that is neglected
 def advance_actuators(
     commands: Array, memory: Array, dt: float, p: Array, on: Any, act: Array
 ) -> None:
-    """Advance all channels by one step.
+    """Advance all actuators of a vessel by one step of dt [s] under constant commands.
 
-    Fill act with the actuators at its begin, in its middle and at its end.
+    Fills act with their values at the begin, in the middle and at the end of the step.
     """
     advance_channels(commands, memory, dt, p, on, act, np.int64(HELD))
 
 
 @compiled
 def settle_actuators(commands: Array, memory: Array, p: Array, on: Any, act: Array) -> None:
-    """Let the actuators reach their commands, in place, by a few very long steps."""
+    """Set all actuators of a vessel to the steady state under the commands, in place.
+
+    A few very long steps are simulated.
+    """
     for i in range(3 * HELD):
         act[i] = 0.0
     for _ in range(3):
@@ -47,7 +50,11 @@ def settle_actuators(commands: Array, memory: Array, p: Array, on: Any, act: Arr
 def substep_length(
     commands: Array, memory: Array, left: float, least: float, p: Array, on: Any
 ) -> float:
-    """Return the length of the next part of a step: up to a jump or bend, within [least, left]."""
+    """Return the length of the next part of an integration step.
+
+    The part ends where an actuator's signal jumps or bends, and lies within [least, left], where
+    `left` is the remainder of the step.
+    """
     if HAS_TIME_TO_DISCONTINUITY:
         return min(left, max(time_to_discontinuity(commands, memory, p, on), least))
     return left
@@ -55,7 +62,10 @@ def substep_length(
 
 @lean
 def minimum_substep(part: float, before: float, least: float) -> float:
-    """Return the least length of the next part of a step, after `before` and `part`."""
+    """Return the lower limit for the length of the next part of an integration step.
+
+    It grows where the parts become ever shorter, from a part of length `before` to `part`.
+    """
     return GROWS * least if part <= least or part < before else SHORTEST
 
 
@@ -69,11 +79,9 @@ def rollout(
     substeps: int,
     out: Array,
 ) -> None:
-    """Simulate a vessel: row i of commands (N, C) is held for `substeps` steps of dt.
+    """Simulate a vessel under given commands: row i of (N, C) acts for `substeps` steps of dt.
 
-    States to out (N + 1, 2 NQ).
-
-    Changes the arrays of `plant`.
+    Fills out (N + 1, 2 NQ) with the states and changes the arrays of `plant`.
     """
     body, p, on = model
     y, memory, act, force = plant

@@ -15,13 +15,13 @@ from .laws import HELD, water_velocity, wrench
 
 
 def function_text(head: str, about: str, body: list[str], compiled: str) -> str:
-    """Return the text of a compiled function.
+    """Return the source text of a generated function with its decorator.
 
     Args:
-        head: Name and arguments.
-        about: Docstring.
-        body: Lines of the body.
-        compiled: Decorator.
+        head: Name and arguments of the function.
+        about: Its docstring.
+        body: Lines of its body.
+        compiled: Name of its decorator.
     """
     return "\n".join(
         [
@@ -36,12 +36,12 @@ def function_text(head: str, about: str, body: list[str], compiled: str) -> str:
 
 
 def array_entries(array: str, n: int) -> str:
-    """Return the first n entries of an array, separated by commas."""
+    """Return source text that lists the first n entries of an array: "a[0], a[1], ..."."""
     return ", ".join(f"{array}[{i}]" for i in range(n))
 
 
 def step_code(n: int) -> list[str]:
-    """Return the body of one Runge-Kutta step of fourth order over 2 n states."""
+    """Return the source lines of one Runge-Kutta step of fourth order over 2 n states."""
     moved = [f"s[{i}] + h * z[{n + i}]" for i in range(n)]
     moved += [f"s[{n + i}] + h * a[{i}]" for i in range(n)]
     ended = [f"s[{i}] + w * v{i}" for i in range(n)] + [f"s[{n + i}] + w * r{i}" for i in range(n)]
@@ -64,7 +64,7 @@ def step_code(n: int) -> list[str]:
 
 
 def step_in_place_code(n: int) -> list[str]:
-    """Return the body of one Runge-Kutta step on arrays, in place."""
+    """Return the source lines of one Runge-Kutta step that changes a state array in place."""
     state, force = array_entries("y", 2 * n), array_entries("extra", n)
     return [
         f"z = step(t, ({state}), dt, act, p, on, k, ({force},))",
@@ -73,7 +73,7 @@ def step_in_place_code(n: int) -> list[str]:
 
 
 def steps_code(n: int) -> list[str]:
-    """Return the body of many Runge-Kutta steps with the actuators held."""
+    """Return the source lines of many Runge-Kutta steps with the actuators held."""
     return [
         f"z = ({array_entries('y', 2 * n)})",
         "for i in range(n):",
@@ -83,7 +83,10 @@ def steps_code(n: int) -> list[str]:
 
 
 def acceleration_jacobian_code(n: int) -> list[str]:
-    """Return the body of `acceleration_jacobian`, by finite differences over the 2 n states."""
+    """Return the source lines that differentiate the accelerations by the 2 n states.
+
+    The generated code uses finite differences.
+    """
     displaced = ", ".join(f"s[{i}] + DIFFERENCE * (j == {i})" for i in range(2 * n))
     values = list(map("b{}".format, range(n)))
     return [
@@ -99,7 +102,7 @@ def acceleration_jacobian_code(n: int) -> list[str]:
 
 
 def module_head(w: EquationWriter) -> list[str]:
-    """Return imports and constants of the generated file."""
+    """Return the lines with imports and constants of the generated module `motion.py`."""
     shows = tuple(w.free + [6 + i for i in w.free])
     axes = ", ".join(AXES[i] for i in w.free)
     freed = tuple(float(i in w.free) for i in range(6))
@@ -121,10 +124,10 @@ def module_head(w: EquationWriter) -> list[str]:
 
 
 def motion_module_text(dof: tuple[str, ...], centred: bool) -> str:
-    """Return the text of `motion.py`.
+    """Return the source of `motion.py`, the equations of motion of a vessel.
 
     Args:
-        dof: The degrees of freedom.
+        dof: Degrees of freedom of the vessel.
         centred: Whether the mass centre is the origin of motion.
     """
     w = EquationWriter(dof, centred)

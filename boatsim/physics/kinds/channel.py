@@ -12,12 +12,14 @@ WHOLE = "*"  # channel of the insertion point after those of all actuators
 
 
 def actuator_stations(program: ProgramLayout) -> Sequence[InsertionPoint]:
-    """Return the insertion points of `advance_channels`: one for each signal, then one for all.
+    """Return the places at which effects add code to the generated function `advance_channels`.
 
-    Each signal starts as its command or reading, held over the step, and ends in the rows of `act`.
+    There is one place for each actuator or sensor signal, then one after all of them. Each signal
+    starts as its command or reading, constant over the time step; after the code of the effects its
+    values at begin, middle and end of the step are stored in the array `act`.
 
     Args:
-        program: Program that is composed.
+        program: Layout of the program that is generated for the vessel.
     """
     stations = []
     for name in program.signals:
@@ -35,10 +37,13 @@ def actuator_stations(program: ProgramLayout) -> Sequence[InsertionPoint]:
 
 
 def sum_lines(program: ProgramLayout) -> Iterator[str]:
-    """Yield the lines that compute sums over several actuators.
+    """Yield source lines that store sums of actuator signals (such as total thrust) in `act`.
+
+    The generated function `advance_channels` of a vessel's compiled program contains them. The sums
+    are signals for terms of symbolic regression.
 
     Args:
-        program: Program that is composed.
+        program: Layout of the program that is generated for the vessel.
     """
     for name, parts in program.signal_sums.items():
         for row in ("", "held + ", "2 * held + "):
@@ -47,12 +52,13 @@ def sum_lines(program: ProgramLayout) -> Iterator[str]:
 
 
 def discontinuity_stations(program: ProgramLayout) -> Sequence[InsertionPoint]:
-    """Return the insertion points of `time_to_discontinuity`, one for each signal.
+    """Return the places at which effects add code to the generated `time_to_discontinuity`.
 
-    Each signal starts as its command or reading.
+    There is one place for each actuator or sensor signal, then one after all of them. Each signal
+    starts as its present command or reading.
 
     Args:
-        program: Program that is composed.
+        program: Layout of the program that is generated for the vessel.
     """
     stations = []
     for name in program.signals:
@@ -90,7 +96,10 @@ TIME_TO_DISCONTINUITY = ProgramFunction(
 
 @dataclass(frozen=True)
 class ChannelEffect(EffectKind):
-    """Effect on each signal in `on` between command and actuator.
+    """Base class of effects that change a signal between its command and the actuator.
+
+    Examples are dead time, rate limit, dead band and offset. The effect acts on each signal that
+    its setting `on` names.
 
     `transform_signal(x, side, source, memory, at, dt, values)`, compiled, returns a
     `SignalSegment`. x is the signal so far over the step dt [s] that begins now; side is -1 port,
@@ -139,7 +148,12 @@ class ChannelEffect(EffectKind):
 
     @property
     def program_position(self) -> int:
-        """Position in the program relative to the actuator: the stage, or its opposite."""
+        """Position of a channel effect in the compiled program relative to the actuator.
+
+        Negative: the effect changes the command before the actuator follows it; positive: it
+        changes the output of the actuator. It is the class's `stage`, or lies on the opposite side
+        of the actuator if the effect was set to act there (`other_side`).
+        """
         if not self.other_side:
             return type(self).stage
         return DEEDS if type(self).stage < 0 else COMMANDS
@@ -148,13 +162,15 @@ class ChannelEffect(EffectKind):
     def program_lines(
         cls, part: ProgramFunction, station: InsertionPoint, number: int, program: ProgramLayout
     ) -> Iterator[str]:
-        """Yield the lines that pass the signal of an actuator through the effect, if it acts on it.
+        """Yield the source lines that pass an actuator's signal through a channel effect.
+
+        There are none if the effect does not act on this actuator.
 
         Args:
-            part: Function of the program.
-            station: Place in it; one for each actuator.
-            number: Index of the effect.
-            program: Program that is composed.
+            part: Function of the compiled program that receives the lines.
+            station: Insertion point in that function; there is one for each actuator.
+            number: Index of the effect among all effects of the program.
+            program: Layout of the program that is generated for the vessel.
         """
         effect = program.effects[number]
         if not isinstance(effect, ChannelEffect) or station.channel not in program.target_actuators(

@@ -24,7 +24,10 @@ def _named_tuple_type(fields: tuple[str, ...]) -> Callable[..., tuple[float, ...
 
 @dataclass(frozen=True)
 class Role:
-    """Signal that a law takes under a fixed name, bound to a channel of the vessel."""
+    """Input signal of an effect's law, such as "thrust", which a vessel binds to a channel.
+
+    It has a unit, a description and, if binding is optional, a fixed value.
+    """
 
     unit: str
     words: str
@@ -34,9 +37,10 @@ class Role:
 
 @dataclass(frozen=True)
 class Effect(CheckedParameters):
-    """One instance of a physical or measurement effect on a vessel.
+    """Base class of effects: one term of a vessel's physics or one error of its instruments.
 
-    Subclasses derive from one or several of the kinds in this folder.
+    An instance holds the parameters of the term. Subclasses derive from one or several of the kinds
+    in this folder, such as force, inertia or measurement.
     """
 
     # sentence in a report: "a steady wind pushes the hull downwind ..."
@@ -112,19 +116,24 @@ class Effect(CheckedParameters):
 
     @classmethod
     def type_name(cls) -> str:
-        """Return the name of the effect, which is its file name and the word for `use` in files."""
+        """Return the name of the effect's type, such as "fan_wind".
+
+        It is the name of the effect's file and the value of the key `use` in vessel and scenario
+        files.
+        """
         return snake_case(cls.__name__)
 
     @classmethod
     def values_type(cls) -> Callable[..., tuple[float, ...]]:
-        """Return the NamedTuple type of the parameters, as the compiled law takes them."""
+        """Return the named tuple type in which the law of this effect receives its parameters."""
         return _named_tuple_type(tuple(cls.params()))
 
     @classmethod
     def signals_type(cls) -> Callable[..., tuple[float, ...]]:
-        """Return the NamedTuple type of the signals that a vessel assigns to the effect's roles.
+        """Return the named tuple type in which the law of this effect receives its input signals.
 
-        A role in radians also has its cosine and sine.
+        It has one field for each role of the effect, and also the cosine and sine of a role in
+        radians.
         """
         angles: list[str] = []
         for name, role in cls.roles.items():
@@ -134,10 +143,11 @@ class Effect(CheckedParameters):
 
     @classmethod
     def signals(cls, **given: float) -> tuple[float, ...]:
-        """Return the signals of the roles as the third argument of the law.
+        """Return the input signals of an effect's law as the named tuple that the law receives.
 
         Args:
-            given: Signal of each role; a missing one has the fixed value of its role, or 0.
+            given: Value of the signal of each role; a missing one has the fixed value of its role,
+                or 0.
         """
         held = {name: role.fixed or 0.0 for name, role in cls.roles.items()} | given
         parts: dict[str, float] = {}
@@ -148,7 +158,10 @@ class Effect(CheckedParameters):
         return cls.signals_type()(**held, **parts)
 
     def values(self) -> tuple[float, ...]:
-        """Return the parameters as the second argument of the law; 0 for those without a value."""
+        """Return the parameters of the effect as the named tuple that its compiled law receives.
+
+        A parameter without a value is 0.
+        """
         values = [0.0] * len(type(self).params())
         for i, name in enumerate(type(self).params()):
             if self.has_value(name):
@@ -156,7 +169,7 @@ class Effect(CheckedParameters):
         return type(self).values_type()(*values)
 
     def has_value(self, name: str) -> bool:
-        """Return whether a parameter has a value, including zero.
+        """Return whether a parameter of the effect has been given a value (zero counts as a value).
 
         Args:
             name: Name of the parameter.
@@ -164,7 +177,7 @@ class Effect(CheckedParameters):
         return getattr(self, name) is not UNSET
 
     def with_values(self, values: Mapping[str, Any]) -> Self:
-        """Return the effect with other values of some parameters.
+        """Return a copy of the effect with other values of some parameters.
 
         Args:
             values: Name of the parameter -> value.
@@ -172,10 +185,11 @@ class Effect(CheckedParameters):
         return replace(self, **values)
 
     def with_all_parameters(self, vessel: "Boat") -> Self:
-        """Return the effect with all parameters set; values from a file take precedence.
+        """Return a copy of the effect in which every parameter has a value.
 
-        A parameter without a value takes that of the vessel it `follows`, else that of
-        `derived_parameters`, else 0.
+        Values that were given, for example in a vessel file, are kept. A parameter without a value
+        takes that of the vessel's number which it `follows`, else that of `derived_parameters`,
+        else 0.
 
         Args:
             vessel: Vessel on which the effect acts.
@@ -202,7 +216,10 @@ class Effect(CheckedParameters):
         )
 
     def identifiable_ratios(self, vessel: "Boat") -> dict[str, tuple[float, str]]:
-        """Return the quantities that recordings identify instead of a parameter.
+        """Return the quantities that recordings can identify instead of single parameters.
+
+        An example is force over mass, where motion data determine the ratio only. Empty unless a
+        subclass defines some.
 
         Args:
             vessel: Vessel on which the effect acts.
@@ -213,11 +230,16 @@ class Effect(CheckedParameters):
         return {}
 
     def fixed_settings(self) -> dict[str, object]:
-        """Return the settings that no fit changes, other than the name and `on`."""
+        """Return the settings of the effect that a diagnosis keeps fixed in its fits, by name.
+
+        The instance name and the binding `on` are not among them.
+        """
         return {n: getattr(self, n) for names in type(self).facts.values() for n in names}
 
     def derived_parameters(self, vessel: "Boat") -> dict[str, float]:
-        """Return parameters that follow from the vessel by a rule, for those without a value.
+        """Return parameter values that a rule computes from the vessel, such as an added mass.
+
+        They are used for parameters without a given value. Empty unless a subclass defines a rule.
 
         Args:
             vessel: Vessel on which the effect acts; parameters with `follows` are set before.
@@ -228,7 +250,10 @@ class Effect(CheckedParameters):
         return {}
 
     def keeps_derived_codes(self, vessel: "Boat") -> bool:
-        """Return whether derived code parameters are unchanged for the completed vessel.
+        """Return whether the numeric codes derived from a vessel equal those that the effect holds.
+
+        Such codes stand for names, for example of a factor or a channel, in the compiled law; an
+        effect bound to another vessel may need other codes.
 
         Args:
             vessel: Completed vessel.
@@ -245,7 +270,9 @@ class Effect(CheckedParameters):
         return [n for n in type(self).params() if not self.has_value(n)]
 
     def followed_value(self, source: str, vessel: "Boat") -> float:
-        """Return the value of the vessel, or of one of its effects, that a parameter follows.
+        """Return the vessel's number that serves as the default of one of the effect's parameters.
+
+        A parameter may follow, for instance, "vessel.length" or "linear_damping.yaw".
 
         Args:
             source: "vessel.key" or "effect.key"; with a trailing "?" a missing effect gives 0.
@@ -262,7 +289,7 @@ class Effect(CheckedParameters):
         return float(getattr(self.required_effect(vessel, owner), key))
 
     def required_effect(self, vessel: "Boat", owner: str) -> "Effect":
-        """Return the effect of the vessel on which this one builds.
+        """Return another effect of the vessel, on whose numbers this effect depends.
 
         Args:
             vessel: Vessel on which the effect acts.
@@ -278,11 +305,13 @@ class Effect(CheckedParameters):
 
     @property
     def program_position(self) -> int:
-        """Position in the program: effects with a lower number come first."""
+        """Sorting key of the effect in the compiled program: lower numbers are evaluated first."""
         return type(self).stage
 
     def with_seed(self, seed: int) -> Self:
-        """Return the effect with its random realisation set from the seed of a scenario.
+        """Return a copy of the effect whose random realisation follows from the seed of a scenario.
+
+        Effects without a random realisation are returned unchanged.
 
         Args:
             seed: Seed of the scenario.
@@ -291,7 +320,7 @@ class Effect(CheckedParameters):
 
 
 class RigidBody(Protocol):
-    """Properties of the rigid body of a vessel that an effect may use."""
+    """Mass and moments of inertia of a vessel, as far as effects may read them."""
 
     mass: float  # [kg]
     roll_inertia: float  # [kg m^2]
@@ -299,7 +328,7 @@ class RigidBody(Protocol):
 
 
 class Boat(Protocol):
-    """Properties of a vessel that an effect may use."""
+    """Interface of a vessel for its effects: name, dimensions, rigid body and other effects."""
 
     @property
     def name(self) -> str:
@@ -307,33 +336,40 @@ class Boat(Protocol):
 
     @property
     def length(self) -> float:
-        """Length [m]."""
+        """Length of the vessel [m]."""
 
     @property
     def beam(self) -> float:
-        """Beam [m]."""
+        """Beam of the vessel [m]."""
 
     @property
     def draught(self) -> float:
-        """Draught [m]."""
+        """Draught of the vessel [m]."""
 
     @property
     def body(self) -> RigidBody:
-        """The rigid body."""
+        """Rigid body of the vessel: its mass and moments of inertia."""
 
     @property
     def described_signals(self) -> Sequence[str]:
-        """Actuator signals for laws of symbolic regression: values, cos, sin, sums."""
+        """Names of the actuator signals that terms found by symbolic regression may contain.
+
+        They are values of actuators, cosines and sines of actuator angles, and sums over several
+        actuators.
+        """
 
     def effect(self, name: str) -> Effect | None:
-        """Return the vessel's effect of that name, or its only one of that class."""
+        """Return the vessel's effect with a given name, or its only effect of the type so named."""
 
     def names_of(self, name: str) -> list[str]:
-        """Return the names of the vessel's effects to which a word refers."""
+        """Return the names of all effects of the vessel that have a given name or type."""
 
 
 class LawCall(NamedTuple):
-    """Call of the law of an effect: its index in the program and the text of the arguments."""
+    """Source text with which a generated program calls the compiled law of one effect.
+
+    It holds the index of the effect and the text of the arguments.
+    """
 
     number: int  # of the effect
     values: str  # text of the parameters: V3(p[7], p[8])
@@ -341,17 +377,21 @@ class LawCall(NamedTuple):
     signals: tuple[str, ...] = ()
 
     def text(self, law: str, *first: str) -> str:
-        """Return the text of a call of one of the compiled functions of the effect.
+        """Return the source text of a call to one of the compiled functions of an effect.
 
         Args:
-            law: Name of the function.
-            first: First arguments.
+            law: Name of the function, such as "transform_signal".
+            first: Texts of the first arguments, before the parameters and signals of the effect.
         """
         return f"{law}{self.number}({', '.join((*first, self.values, *self.signals))})"
 
 
 class InsertionPoint(NamedTuple):
-    """Place in a composed function at which effects add lines."""
+    """Place in a generated function at which effects insert source lines.
+
+    It has fixed lines before and after those of the effects and, if the place belongs to one
+    actuator, the name of that actuator.
+    """
 
     begin: tuple[str, ...] = ()
     end: tuple[str, ...] = ()
@@ -359,7 +399,10 @@ class InsertionPoint(NamedTuple):
 
 
 class ProgramLayout(Protocol):
-    """Properties of the composed program that a kind may use."""
+    """Interface of a vessel's generated program for the code that writes its source lines.
+
+    It gives the effects, the signals and their indices in the flat arrays of the program.
+    """
 
     effects: tuple[Effect, ...]
     signals: tuple[str, ...]  # actuators, and readings of the environment
@@ -369,39 +412,54 @@ class ProgramLayout(Protocol):
     signal_sums: Mapping[str, Sequence[str]]  # sum in `law_signals` -> the actuators that it adds
 
     def law_calls(self, number: int) -> Sequence[LawCall]:
-        """Return the calls of the laws of an effect, one for each instance on which it acts."""
+        """Return the source texts of the calls to an effect's law.
+
+        There is one call, or one for each instance of the other effect on which it acts (for
+        example, one for each thruster).
+        """
 
     def target_actuators(self, number: int) -> Sequence[str]:
-        """Return the actuators on which a channel effect acts."""
+        """Return the names of the actuators whose signals a given channel effect changes."""
 
     def command_for_actuator(self, number: int, actuator: str) -> str | None:
-        """Return the command that feeds an actuator through a channel effect, or None."""
+        """Return the raw command that feeds an actuator through a channel effect, or None.
+
+        An example is the PWM command from which a drive curve computes the thrust.
+        """
 
     def side(self, actuator: str) -> float:
         """Return the side of an actuator: -1 port, +1 starboard, 0 on the centreline."""
 
     def memory_offset(self, number: int, actuator: str) -> int:
-        """Return the index at which the memory of an effect for an actuator begins."""
+        """Return the index in the program's memory array of an effect's state for one actuator."""
 
     def history_place(self, number: int) -> int:
-        """Return the index in `law_signals` of the past value of an effect; 0 if it has none."""
+        """Return the index in `law_signals` of the past signal value that an effect uses.
+
+        It is 0 for an effect that uses none.
+        """
 
     def later_effects(self, number: int) -> Sequence[int]:
-        """Return the effects that come after one in the program."""
+        """Return the indices of the effects that are evaluated after a given effect."""
 
 
 def single_insertion_point(program: ProgramLayout) -> Sequence[InsertionPoint]:
-    """Return one station: the body of a sum over effects.
+    """Return the single place at which effects add lines to a generated function.
+
+    It is the default for functions that sum contributions of effects.
 
     Args:
-        program: Program that is composed.
+        program: Layout of the program that is generated for the vessel.
     """
     return (InsertionPoint(),)
 
 
 @dataclass(frozen=True)
 class ProgramFunction:
-    """Function of the composed program to which kinds add lines."""
+    """Function of the generated program whose body is composed of the lines of many effects.
+
+    It has a name, arguments, first lines, a result, and the places at which effects add lines.
+    """
 
     name: str
     arguments: str
@@ -412,7 +470,10 @@ class ProgramFunction:
 
 
 class EffectKind(Effect):
-    """Base of the kinds: defines what effects of one kind add to the program."""
+    """Base class of the kinds of effects, such as force, inertia, channel or measurement.
+
+    A kind defines which source lines its effects add to the compiled program of a vessel.
+    """
 
     parts: ClassVar[
         tuple[ProgramFunction, ...]
@@ -424,12 +485,14 @@ class EffectKind(Effect):
     def program_lines(
         cls, part: ProgramFunction, station: InsertionPoint, number: int, program: ProgramLayout
     ) -> Iterator[str]:
-        """Yield the lines that an effect adds to a part of the program at a station.
+        """Yield the source lines that an effect adds to one function of the generated program.
+
+        Empty unless a kind defines some.
 
         Args:
-            part: Function of the program.
-            station: Place in it.
-            number: Index of the effect.
-            program: Program that is composed.
+            part: Function of the compiled program that receives the lines.
+            station: Insertion point in that function.
+            number: Index of the effect among all effects of the program.
+            program: Layout of the program that is generated for the vessel.
         """
         yield from ()

@@ -11,7 +11,10 @@ FLOW = ProgramFunction("water_velocity", "p, on", ("north = east = 0.0",), "nort
 
 @dataclass(frozen=True)
 class WaterFlow(EffectKind):
-    """Velocity of the water: compiled `water_velocity(values) -> (north, east)` [m/s]."""
+    """Base class of effects that move the water over the ground, such as a current.
+
+    Their compiled function is `water_velocity(values) -> (north, east)` [m/s].
+    """
 
     parts: ClassVar = (FLOW,)
     laws: ClassVar[tuple[str, ...]] = ("water_velocity",)
@@ -21,13 +24,13 @@ class WaterFlow(EffectKind):
     def program_lines(
         cls, part: ProgramFunction, station: InsertionPoint, number: int, program: ProgramLayout
     ) -> Iterator[str]:
-        """Yield the lines that add the velocity of the water.
+        """Yield the source lines that add the effect's water velocity to the sum over all effects.
 
         Args:
-            part: Function of the program.
-            station: Place in it.
-            number: Index of the effect.
-            program: Program that is composed.
+            part: Function of the compiled program that receives the lines.
+            station: Insertion point in that function.
+            number: Index of the effect among all effects of the program.
+            program: Layout of the program that is generated for the vessel.
         """
         if part is FLOW:
             for site in program.law_calls(number):

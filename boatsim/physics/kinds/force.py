@@ -20,7 +20,9 @@ WRENCH = ProgramFunction(
 
 @dataclass(frozen=True)
 class Force(EffectKind):
-    """Memoryless force: compiled `law(motion, values) -> Wrench`.
+    """Base class of effects that exert a force given by the present motion of the hull.
+
+    The force has no memory: compiled `law(motion, values) -> Wrench`.
 
     With `roles` the law takes the bound signals as a third argument. An effect with
     `per_instance_of` is evaluated once for each instance of that other effect, with its signals and
@@ -39,13 +41,13 @@ class Force(EffectKind):
     def program_lines(
         cls, part: ProgramFunction, station: InsertionPoint, number: int, program: ProgramLayout
     ) -> Iterator[str]:
-        """Yield the lines that add the force of the law to the sum.
+        """Yield the source lines that add the effect's force to the sum of all forces.
 
         Args:
-            part: Function of the program.
-            station: Place in it.
-            number: Index of the effect.
-            program: Program that is composed.
+            part: Function of the compiled program that receives the lines.
+            station: Insertion point in that function.
+            number: Index of the effect among all effects of the program.
+            program: Layout of the program that is generated for the vessel.
         """
         if part is WRENCH:
             for site in program.law_calls(number):
@@ -53,7 +55,9 @@ class Force(EffectKind):
                 yield ADD
 
     def wrench(self, m: Motion, *given: tuple[float, ...], **signals: float) -> Wrench:
-        """Return the force at one motion.
+        """Return force and moment of this effect on the hull at one given motion.
+
+        It evaluates the compiled law from Python, for tests and plots.
 
         Args:
             m: Motion of the hull.

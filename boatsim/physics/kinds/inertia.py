@@ -12,7 +12,7 @@ INERTIAS = ProgramFunction("add_inertias", "p, on, water, hull", ("pass",), "")
 
 @dataclass(frozen=True)
 class Inertia(EffectKind):
-    """Mass matrix: compiled `inertia(values) -> MassMatrix`.
+    """Base class of effects that add a mass matrix: compiled `inertia(values) -> MassMatrix`.
 
     The Coriolis force of the mass is the law of the effect.
 
@@ -29,13 +29,15 @@ class Inertia(EffectKind):
     def program_lines(
         cls, part: ProgramFunction, station: InsertionPoint, number: int, program: ProgramLayout
     ) -> Iterator[str]:
-        """Yield the lines that add the entries to the mass matrix of the water or of the hull.
+        """Yield the source lines that add the effect's mass matrix to the sum over all effects.
+
+        Added mass of the water and masses on board have separate sums.
 
         Args:
-            part: Function of the program.
-            station: Place in it.
-            number: Index of the effect.
-            program: Program that is composed.
+            part: Function of the compiled program that receives the lines.
+            station: Insertion point in that function.
+            number: Index of the effect among all effects of the program.
+            program: Layout of the program that is generated for the vessel.
         """
         if part is INERTIAS:
             into = getattr(type(program.effects[number]), "moves_with", "water")
@@ -44,5 +46,5 @@ class Inertia(EffectKind):
                 yield f"for j in range({len(MASS_ENTRIES)}): {into}[j] += g[j]"
 
     def matrix(self) -> Array:
-        """Return the mass matrix (6, 6) over `AXES` [kg, kg m, kg m^2]."""
+        """Return the mass matrix (6, 6) of this effect over `AXES` [kg, kg m, kg m^2]."""
         return MassMatrix(*type(self).inertia(self.values())).matrix()

@@ -16,7 +16,7 @@ MOTION_LATENCY = ProgramFunction("motion_latency", "p, on", ("seconds = 0.0",), 
 
 @dataclass(frozen=True)
 class Measurement(EffectKind):
-    """Error of a recording: a difference between recorded and true motion.
+    """Base class of measurement errors: differences between recorded and true motion.
 
     `apply_measurement_error(motion, values)`, compiled, takes and returns a `MeasuredMotion`. It
     acts in the diagnosis filter and in `replay`, not on the simulated boat. With `uses_time` it is
@@ -41,13 +41,15 @@ class Measurement(EffectKind):
     def program_lines(
         cls, part: ProgramFunction, station: InsertionPoint, number: int, program: ProgramLayout
     ) -> Iterator[str]:
-        """Yield the lines that change the recorded motion, mark it as changed and add its latency.
+        """Yield the source lines by which a measurement error changes the predicted recording.
+
+        They apply the error to the motion, report that there is an error, and add its latency.
 
         Args:
-            part: Function of the program.
-            station: Place in it.
-            number: Index of the effect.
-            program: Program that is composed.
+            part: Function of the compiled program that receives the lines.
+            station: Insertion point in that function.
+            number: Index of the effect among all effects of the program.
+            program: Layout of the program that is generated for the vessel.
         """
         effect = program.effects[number]
         if not isinstance(effect, Measurement):

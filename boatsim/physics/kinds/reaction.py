@@ -13,10 +13,10 @@ SO_FAR = f"Wrench({', '.join(COMPONENTS)})"
 
 @dataclass(frozen=True)
 class Reaction(EffectKind):
-    """Force as a function of other forces: compiled `reaction(motion, wrench, values) -> Wrench`.
+    """Base class of effects whose force is a function of the sum of other forces.
 
-    `wrench` is the sum of all laws before it: those of the vessel in the order of its file, then
-    the candidates.
+    Their compiled function is `reaction(motion, wrench, values) -> Wrench`, where `wrench` is the
+    sum of all laws before it: those of the vessel in the order of its file, then the candidates.
     """
 
     laws: ClassVar[tuple[str, ...]] = ("reaction",)
@@ -26,13 +26,13 @@ class Reaction(EffectKind):
     def program_lines(
         cls, part: ProgramFunction, station: InsertionPoint, number: int, program: ProgramLayout
     ) -> Iterator[str]:
-        """Yield the lines that add the reaction to the sum so far.
+        """Yield the source lines that compute the effect's force from the sum so far, and add it.
 
         Args:
-            part: Function of the program.
-            station: Place in it.
-            number: Index of the effect.
-            program: Program that is composed.
+            part: Function of the compiled program that receives the lines.
+            station: Insertion point in that function.
+            number: Index of the effect among all effects of the program.
+            program: Layout of the program that is generated for the vessel.
         """
         if part is WRENCH:
             for site in program.law_calls(number):

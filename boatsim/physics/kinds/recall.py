@@ -10,13 +10,13 @@ from boatsim.physics.kinds.effect import EffectKind, InsertionPoint, ProgramFunc
 
 @dataclass(frozen=True)
 class SignalHistory(EffectKind):
-    """Effect that uses past values of an actuator signal.
+    """Base class of effects whose law uses past values of an actuator signal.
 
     `update_signal_history(act, held, own, memory, at, dt, values)`, compiled, is called after the
     step of the actuators. It sets act[own], act[held + own] and act[2 held + own] to the values
-    that the law uses at begin, middle and end of the step dt [s], from the actuators there and
-    from memory[at].
-    `longest_history_step(values)` is the time [s] for which three points describe these values.
+    that the law uses at begin, middle and end of the step dt [s], from the actuators there and from
+    memory[at]. `longest_history_step(values)` is the time [s] for which three points describe these
+    values.
     """
 
     laws: ClassVar[tuple[str, ...]] = ("update_signal_history", "longest_history_step")
@@ -25,20 +25,20 @@ class SignalHistory(EffectKind):
 
     @property
     def uses_history(self) -> bool:
-        """Whether this instance uses past values; otherwise it needs no memory."""
+        """Whether this effect uses past values of an actuator; otherwise it needs no memory."""
         return True
 
     @classmethod
     def program_lines(
         cls, part: ProgramFunction, station: InsertionPoint, number: int, program: ProgramLayout
     ) -> Iterator[str]:
-        """Yield the lines that track the actuator whose past values the law uses.
+        """Yield the source lines that store the past actuator values which the effect's law uses.
 
         Args:
-            part: Function of the program.
-            station: Place in it.
-            number: Index of the effect.
-            program: Program that is composed.
+            part: Function of the compiled program that receives the lines.
+            station: Insertion point in that function.
+            number: Index of the effect among all effects of the program.
+            program: Layout of the program that is generated for the vessel.
         """
         if (
             station.channel != WHOLE

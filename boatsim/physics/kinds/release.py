@@ -7,7 +7,10 @@ from boatsim.physics.kinds.effect import Boat, Effect
 
 
 class CoefficientChange(NamedTuple):
-    """Change of one number of a vessel by a parameter of a release."""
+    """Change of one number of a vessel (such as its mass) by a parameter of another effect.
+
+    The parameter, of a `CoefficientRelease`, replaces the number, multiplies it or is added to it.
+    """
 
     parameter: str  # parameter of the release
     owner: str  # effect of the vessel, or "body"
@@ -16,11 +19,11 @@ class CoefficientChange(NamedTuple):
     weight: float  # factor of a shift
 
     def apply_to(self, stated: float, value: float) -> float:
-        """Return the number that replaces the specified one.
+        """Return the changed value of a vessel's number: replaced, scaled or shifted.
 
         Args:
-            stated: Specified value.
-            value: Value of the parameter.
+            stated: Value of the number as specified in the vessel file.
+            value: Value of the parameter that changes it.
         """
         if self.how == "scales":
             return stated * value
@@ -40,7 +43,7 @@ def _existing_places(places: str, vessel: Boat) -> list[str]:
 
 @dataclass(frozen=True)
 class CoefficientRelease(Effect):
-    """Hypothesis that numbers of the vessel differ from their specified values.
+    """Hypothesis that numbers of the vessel, such as its damping, differ from specified values.
 
     It has no law; the vessel's own effects use the changed numbers. Each parameter lists in
     `releases` the numbers that it changes; those that the vessel does not have are omitted. In a
@@ -49,7 +52,9 @@ class CoefficientRelease(Effect):
     """
 
     def changes(self, vessel: Boat) -> list[CoefficientChange]:
-        """Return the changes of the numbers that the vessel has.
+        """Return which numbers of the vessel each parameter of this hypothesis changes, and how.
+
+        Numbers that the vessel does not have are omitted.
 
         Args:
             vessel: Vessel on which the effect acts.
@@ -66,7 +71,10 @@ class CoefficientRelease(Effect):
         return found
 
     def shift_weights(self, vessel: Boat) -> dict[str, float]:
-        """Return the change of a number per unit of a shift; 1 for numbers that are not listed.
+        """Return by how much each number of the vessel changes per unit of an additive parameter.
+
+        Numbers that are not listed change by the parameter itself (weight 1). Empty unless a
+        subclass defines other weights.
 
         Args:
             vessel: Vessel on which the effect acts.
@@ -74,13 +82,13 @@ class CoefficientRelease(Effect):
         return {}
 
     def with_all_parameters(self, vessel: Boat) -> Self:
-        """Return the effect with all parameters set.
+        """Return a copy in which every parameter has a value; check that it applies to the vessel.
 
         Args:
             vessel: Vessel on which the effect acts.
 
         Raises:
-            BadInput: The vessel has none of the numbers.
+            BadInput: The vessel has none of the numbers that this hypothesis changes.
         """
         if not self.changes(vessel):
             places = (p for about in type(self).params().values() for p in about.releases)

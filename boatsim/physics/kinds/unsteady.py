@@ -15,9 +15,11 @@ OSCILLATION = ProgramFunction(
 
 @dataclass(frozen=True)
 class RandomForce(Force):
-    """Random force: compiled `oscillating_force(values) -> OscillatingForce`.
+    """Base class of random forces, such as wave forces, with a narrow-band spectrum.
 
-    `law` is the force of one realisation.
+    `oscillating_force(values) -> OscillatingForce`, compiled, gives the rms, frequency and damping
+    ratio of the oscillators that model the force in the diagnosis filter. `law` is the force of one
+    realisation.
 
     The simulator uses the realisation of `law`. The diagnosis filter tracks the oscillators of
     `oscillating_force` instead and disables the law by `realisation` = 0.
@@ -32,13 +34,15 @@ class RandomForce(Force):
     def program_lines(
         cls, part: ProgramFunction, station: InsertionPoint, number: int, program: ProgramLayout
     ) -> Iterator[str]:
-        """Yield the line that sets the oscillators; the realisation is an ordinary force.
+        """Yield the source line that gives a random force's oscillators to the diagnosis filter.
+
+        The force of its realisation is added like that of any other force effect.
 
         Args:
-            part: Function of the program.
-            station: Place in it.
-            number: Index of the effect.
-            program: Program that is composed.
+            part: Function of the compiled program that receives the lines.
+            station: Insertion point in that function.
+            number: Index of the effect among all effects of the program.
+            program: Layout of the program that is generated for the vessel.
         """
         if part is OSCILLATION:
             for site in program.law_calls(number):

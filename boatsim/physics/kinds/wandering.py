@@ -13,9 +13,11 @@ DRIFT = ProgramFunction("instrument_drift", "p, on", ("w = InstrumentDrift(0.0, 
 
 @dataclass(frozen=True)
 class DriftingMeasurement(Measurement):
-    """Slowly varying error: compiled `instrument_drift(values) -> InstrumentDrift`.
+    """Base class of measurement errors that vary slowly and at random.
 
-    The diagnosis filter tracks the error; a simulation without data does not contain it.
+    Their compiled function is `instrument_drift(values) -> InstrumentDrift`, the rms and
+    correlation time of the error. The diagnosis filter tracks the error; a simulation without data
+    does not contain it.
     """
 
     random: ClassVar[bool] = True
@@ -27,13 +29,13 @@ class DriftingMeasurement(Measurement):
     def program_lines(
         cls, part: ProgramFunction, station: InsertionPoint, number: int, program: ProgramLayout
     ) -> Iterator[str]:
-        """Yield the line that sets the noise model of the error.
+        """Yield the source line that gives the noise model of the error to the diagnosis filter.
 
         Args:
-            part: Function of the program.
-            station: Place in it.
-            number: Index of the effect.
-            program: Program that is composed.
+            part: Function of the compiled program that receives the lines.
+            station: Insertion point in that function.
+            number: Index of the effect among all effects of the program.
+            program: Layout of the program that is generated for the vessel.
         """
         if part is DRIFT:
             for site in program.law_calls(number):

@@ -47,17 +47,20 @@ class ChannelBindings:
 
     @property
     def actuators(self) -> tuple[str, ...]:
-        """Names of the commands that are bound to a role of an effect."""
+        """Names of the vessel's actuators: commands that an effect's law uses."""
         return tuple(filter(self.roles.__contains__, self.commands))
 
     @property
     def readings(self) -> tuple[str, ...]:
-        """Names of the measured channels that are bound to a role of an effect."""
+        """Names of measured environment signals, such as wind, that an effect's law uses."""
         return tuple(filter(self.roles.__contains__, self.measured))
 
     @cached_property
     def roles(self) -> Mapping[str, str]:
-        """Channel -> role ("thrust", "angle", ...) in which the first effect uses it."""
+        """Role ("thrust", "angle", ...) of each channel of the vessel.
+
+        It is that in which the first effect uses the channel.
+        """
         roles: dict[str, str] = {}
         for effect in self.effects:
             for role, channel in self.specified_bindings(effect).items():
@@ -67,17 +70,27 @@ class ChannelBindings:
 
     @cached_property
     def angles(self) -> tuple[str, ...]:
-        """Names of the actuators that are angles. Laws have their cosine and sine too."""
+        """Names of the actuators that are angles.
+
+        The laws of effects receive their cosine and sine too.
+        """
         return tuple(filter(self._is_angle, self.actuators))
 
     @cached_property
     def reading_angles(self) -> tuple[str, ...]:
-        """Names of the readings that are angles. Laws have their cosine and sine too."""
+        """Names of the measured environment signals that are angles, such as a wind direction.
+
+        The laws of effects receive their cosine and sine too.
+        """
         return tuple(filter(self._is_angle, self.readings))
 
     @cached_property
     def law_signals(self) -> tuple[str, ...]:
-        """Signals of laws: actuators, cosines and sines of angles, then the same of readings."""
+        """Names of all signals that the laws of the vessel's effects receive.
+
+        They are the actuators, cosines and sines of those that are angles, then likewise the
+        measured signals.
+        """
         return (
             *self.actuators,
             *_with_cosine_and_sine(self.angles),
@@ -87,7 +100,10 @@ class ChannelBindings:
 
     @cached_property
     def signal_sums(self) -> Mapping[str, tuple[str, ...]]:
-        """Role of several actuators -> their names; their sum is a signal of described laws."""
+        """Groups of actuators with the same role ("thrust", ...), whose sum is a signal of its own.
+
+        Terms of symbolic regression may use the sums. Role -> names of the actuators.
+        """
         sums: dict[str, tuple[str, ...]] = {}
         for role in self.roles.values():
             names = self._actuators_of_roles((role,))
@@ -97,11 +113,17 @@ class ChannelBindings:
 
     @property
     def described_signals(self) -> tuple[str, ...]:
-        """Names of the signals of described laws: those of `law_signals`, then the sums."""
+        """Names of the actuator signals that terms of symbolic regression may contain.
+
+        They are the signals of `law_signals`, then sums over actuators of one role.
+        """
         return (*self.law_signals, *self.signal_sums)
 
     def unit(self, channel: str) -> str:
-        """Return the unit of an actuator, a reading or a sum; "" where no effect uses it."""
+        """Return the unit of an actuator, a measured signal or a sum of actuators.
+
+        It is "" if no effect uses the channel.
+        """
         first, *_ = self.signal_sums.get(channel, (channel,))
         for effect in self.effects:
             for role, bound in self.specified_bindings(effect).items():
@@ -117,7 +139,7 @@ class ChannelBindings:
         return tuple(name for name in self.actuators if self.roles[name] in roles)
 
     def side(self, channel: str) -> int:
-        """Return the side of the hull on which the device of a channel is mounted.
+        """Return the side of the hull on which the thruster or rudder of a command is mounted.
 
         Args:
             channel: Name of a command; one that feeds an actuator has the side of that actuator.
@@ -136,14 +158,14 @@ class ChannelBindings:
         return 0
 
     def unknown_command(self, name: str) -> str:
-        """Return the message for a command that the vessel does not have."""
+        """Return the error message for a command that the vessel does not have."""
         return unknown_name(f"{self.name}: command", name, self.commands)
 
     # Effects
     # ----------------------------------------------------------------------------------------------
 
     def effect(self, name: str) -> Effect | None:
-        """Return the effect of that name, or the only effect of that type.
+        """Return the vessel's effect with a given name, or its only effect of the type so named.
 
         None where there is none or several.
 
@@ -159,24 +181,30 @@ class ChannelBindings:
         return None
 
     def names_of(self, name: str) -> list[str]:
-        """Return the names of all effects that have a name or a type."""
+        """Return the names of all effects of the vessel that have a given name or type."""
         return [e.name for e in self.effects if name in (e.name, type(e).type_name())]
 
     def effects_of(self, idea: str) -> list[Effect]:
-        """Return all effects of a type and those with a conversion to it, in their order."""
+        """Return the vessel's effects of a type, and those that can stand for that type.
+
+        An example is a propeller in place of a thruster. The order is that of the vessel.
+        """
         return [
             e for e in self.effects if type(e).type_name() == idea or hasattr(type(e), f"as_{idea}")
         ]
 
     @staticmethod
     def specified_bindings(effect: Effect) -> Mapping[str, str | float]:
-        """Return what an effect's own table binds its roles to: a channel's name, or a constant."""
+        """Return the channels or constants that an effect's own table assigns to its input signals.
+
+        The keys are the roles of the signals, such as "thrust".
+        """
         if isinstance(effect.on, Mapping):
             return effect.on
         return {}
 
     def bindings(self, effect: Effect) -> dict[str, str | float]:
-        """Return what each role of an effect is bound to: a channel's name, or a constant.
+        """Return the channel or constant that each input signal of an effect's law is bound to.
 
         An effect whose table has no bindings is bound to the vessel's only channel in each role. An
         optional role stays unbound then: a fixed thruster does not turn with the only rudder.
@@ -191,12 +219,15 @@ class ChannelBindings:
         return bound
 
     def carrier_effects(self, effect: Effect) -> list[Effect]:
-        """Return the effects at which an effect acts, such as the thrusters of a prop walk."""
+        """Return the other effects at which an effect acts, such as the propellers of prop walk."""
         carriers = self.effects_of(type(effect).per_instance_of)
         return [e for e in carriers if not effect.on or e.name in effect.on]
 
     def target_actuators(self, effect: Effect) -> tuple[str, ...]:
-        """Return the actuators that a channel effect acts on: named ones, else all in its role."""
+        """Return the actuators whose signals a channel effect (such as a rate limit) changes.
+
+        They are the named ones, else all actuators with the role on which the effect acts.
+        """
         if not isinstance(effect, ChannelEffect):
             return ()
         if effect.on:
@@ -207,7 +238,10 @@ class ChannelBindings:
         return self._actuators_of_roles(roles)
 
     def command_for_actuator(self, effect: Effect, actuator: str) -> str | None:
-        """Return the command that feeds an actuator through a channel effect, None without one."""
+        """Return the raw command that feeds an actuator through a channel effect, None without one.
+
+        An example is the PWM command from which a drive curve computes the thrust.
+        """
         if not isinstance(effect, ChannelEffect) or actuator not in effect.on:
             return None
         return dict(zip(effect.on, effect.fed_by, strict=False)).get(actuator)
@@ -221,7 +255,7 @@ def _with_cosine_and_sine(angles: tuple[str, ...]) -> list[str]:
 
 
 def check_bindings(vessel: ChannelBindings, label: str) -> None:
-    """Check that every effect has a unique name and that all channels and effects it names exist.
+    """Check that a vessel's effects have unique names and refer to existing channels and effects.
 
     Args:
         vessel: The vessel.

@@ -10,7 +10,7 @@ from boatsim.physics.kinds.effect import Effect
 
 
 def effect_from_table(table: Mapping[str, object], label: str, folder: Path) -> Effect:
-    """Return the effect of an [[effect]] table.
+    """Return the effect that an [[effect]] table of a vessel or scenario file describes.
 
     Args:
         table: The table; `use` names the type of the effect.
@@ -33,14 +33,15 @@ def effect_from_table(table: Mapping[str, object], label: str, folder: Path) -> 
 
 
 def effect_name(table: Mapping[str, object]) -> str:
-    """Return the name of the effect that an [[effect]] table describes."""
+    """Return the instance name of the effect that an [[effect]] table of a file describes."""
     return str(table.get("name", table.get("use")))
 
 
 def effect_table(effect: Effect) -> dict[str, object]:
-    """Return the [[effect]] table of an effect: its type and all values that are not defaults.
+    """Return the [[effect]] table that describes an effect in a vessel file.
 
-    Parameters in `effect.filled` are left out: a rule computes them when the vessel is loaded.
+    It contains the effect's type and all values that are not defaults. Parameters in
+    `effect.filled` are left out: a rule computes them when the vessel is loaded.
     """
     table: dict[str, object] = {"use": effect_address(type(effect))}
     if effect.name != type(effect).type_name():

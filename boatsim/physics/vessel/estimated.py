@@ -15,10 +15,12 @@ from boatsim.physics.vessel.schema import Body
 
 
 def check_estimated(estimated: Iterable[str], vessel: ChannelBindings, label: str) -> None:
-    """Check that every key of [estimated] is a group of numbers or one number.
+    """Check the keys of the table [estimated] of a vessel file.
+
+    Each key must be a group of numbers ("damping") or one number of the vessel.
 
     Args:
-        estimated: The keys.
+        estimated: The table: key -> relative standard deviation.
         vessel: The vessel with its effects.
         label: Name of the file in messages.
 
@@ -58,7 +60,7 @@ def _numbers_of(owner: str, vessel: ChannelBindings) -> list[str]:
 def sd_of_refined_numbers(
     effect: Effect, vessel: ChannelBindings, estimated: Mapping[str, float]
 ) -> float | None:
-    """Return the relative standard deviation of the estimated numbers that an effect refines.
+    """Return the relative standard deviation of the estimated numbers that an effect corrects.
 
     Args:
         effect: An effect that a diagnosis identified.
@@ -85,7 +87,7 @@ def sd_of_refined_numbers(
 def number_sd(
     owner: str, key: str, vessel: ChannelBindings, estimated: Mapping[str, float]
 ) -> float | None:
-    """Return the relative standard deviation of one number of a vessel that is an estimate.
+    """Return the relative standard deviation of one number of a vessel that is only an estimate.
 
     Args:
         owner: Name or type of an effect of the vessel, or "body".

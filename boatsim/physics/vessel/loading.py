@@ -21,7 +21,7 @@ def load_vessel(
     extra: Sequence[Mapping[str, object]] = (),
     base_folder: Path | None = None,
 ) -> Vessel:
-    """Return a vessel by name or path.
+    """Load a vessel by name or path, in given load conditions and with changed numbers.
 
     Args:
         name: Name of a shipped vessel, or path of a vessel.toml or of its folder.
@@ -63,9 +63,9 @@ def load_vessel(
 def merge_load_conditions(
     name: str, loads: Sequence[str], more: Sequence[str], base_folder: Path | None = None
 ) -> list[str]:
-    """Return load conditions with others added.
+    """Return a vessel's load conditions with others added.
 
-    Those that exclude one of the added ones are removed.
+    Load conditions that exclude one of the added ones are removed.
 
     Args:
         name: Name or path of the vessel.
@@ -93,7 +93,7 @@ def merge_load_conditions(
 def with_effect_tables(
     vessel: Vessel, tables: Sequence[Mapping[str, object]], folder: Path, label: str
 ) -> Vessel:
-    """Return the vessel with the effects of [[effect]] tables added in their order.
+    """Return a copy of a vessel with the effects of [[effect]] tables added in their order.
 
     Args:
         vessel: The vessel.

@@ -14,14 +14,18 @@ Loads = Mapping[str, Mapping[str, object]]
 
 
 def check_loads_exist(names: Sequence[str], loads: Loads, label: str) -> None:
-    """Check that all load conditions exist. Raises BadInput."""
+    """Check that a vessel file defines all load conditions with given names.
+
+    Raises:
+        BadInput: A load condition does not exist.
+    """
     for name in names:
         if name not in loads:
             raise BadInput(unknown_name(f"{label}: load", name, loads))
 
 
 def check_loads_compatible(names: Sequence[str], loads: Loads, label: str) -> None:
-    """Check that no two load conditions set one value differently.
+    """Check that no two of a vessel's load conditions set one number to different values.
 
     Raises:
         BadInput: With the two load conditions and the value.
@@ -37,7 +41,10 @@ def check_loads_compatible(names: Sequence[str], loads: Loads, label: str) -> No
 def conflicting_values(
     first: Mapping[str, object], second: Mapping[str, object]
 ) -> dict[str, tuple[object, object]]:
-    """Return the keys ("body.mass") that two load conditions set differently -> both values."""
+    """Return the numbers that two load conditions set differently, with both values.
+
+    The keys have the form "body.mass".
+    """
     flat_first, flat_second = _dotted_keys(first), _dotted_keys(second)
     different: dict[str, tuple[object, object]] = {}
     for key, value in flat_first.items():
@@ -62,7 +69,9 @@ def _dotted_keys(table: Mapping[str, object]) -> dict[str, object]:
 def apply_load_values(
     raw: Mapping[str, object], changes: Mapping[str, object], label: str
 ) -> dict[str, object]:
-    """Return the content of a vessel file with the values of a load condition or of [set].
+    """Return the content of a vessel file with some numbers replaced.
+
+    The new values are those of a load condition or of the table [set] of a scenario.
 
     Args:
         raw: Content of the vessel file.

@@ -136,7 +136,9 @@ class Vessel(ChannelBindings):
 
     @classmethod
     def from_file(cls, content: VesselFile, name: str, file: Path, folder: Path) -> Self:
-        """Return the vessel of a checked vessel.toml, without its effects and in no load condition.
+        """Create a vessel from the checked content of a vessel.toml, still without its effects.
+
+        It is in no load condition.
 
         Args:
             content: Content of the file.
@@ -220,7 +222,7 @@ class Vessel(ChannelBindings):
     # ----------------------------------------------------------------------------------------------
 
     def replace(self, **changes: Any) -> Self:
-        """Return the vessel with other values of its fields, such as `length` or `body`.
+        """Return a copy of the vessel with other values of its fields, such as `length` or `body`.
 
         Parameters of effects that a rule computes from these values are computed again.
 
@@ -231,7 +233,7 @@ class Vessel(ChannelBindings):
         return changed._with_effects(changed.effects)
 
     def with_effect(self, effect: Effect | Mapping[str, object]) -> Self:
-        """Return the vessel with one more effect.
+        """Return a copy of the vessel with one more effect.
 
         Args:
             effect: The effect, or its table as in [[effect]] of a vessel.toml.
@@ -245,10 +247,10 @@ class Vessel(ChannelBindings):
         return changed
 
     def without_effect(self, name: str) -> Self:
-        """Return the vessel without the effects of a name or a type.
+        """Return a copy of the vessel without the effects that have a given name or type.
 
         Raises:
-            BadInput: If there is none, or another effect needs it.
+            BadInput: If there is no such effect, or another effect needs it.
         """
         names = self.names_of(name)
         if not names:
@@ -256,7 +258,9 @@ class Vessel(ChannelBindings):
         return self._with_effects([e for e in self.effects if e.name not in names])
 
     def with_parameters(self, parameters: Mapping[str, Mapping[str, object]]) -> Self:
-        """Return the vessel with other values of parameters, as [set] of a scenario does.
+        """Return a copy of the vessel with other values of effect parameters or of the rigid body.
+
+        The table [set] of a scenario does the same.
 
         Args:
             parameters: Name of an effect, or "body" -> parameter -> value.
@@ -283,7 +287,7 @@ class Vessel(ChannelBindings):
         return changed._with_effects(effects)
 
     def with_measured(self, values: Mapping[str, float]) -> Self:
-        """Return the vessel with other neutral values of measured channels.
+        """Return a copy of the vessel with other default values of measured signals, such as wind.
 
         Raises:
             BadInput: For a channel that the vessel does not measure.
@@ -296,9 +300,10 @@ class Vessel(ChannelBindings):
         return dataclasses.replace(self, measured=measured)
 
     def with_completed_effect(self, effect: Effect) -> Self:
-        """Return the vessel with one more effect, completed, without a check of its bindings.
+        """Return a copy of the vessel with one more effect, all of whose parameters get a value.
 
-        A `CoefficientRelease` is not added: it changes the numbers that it names.
+        The bindings of the effect are not checked. A `CoefficientRelease` is not added: it changes
+        the numbers that it names.
 
         Raises:
             BadInput: If a parameter can not be computed from the vessel's numbers.
@@ -367,7 +372,7 @@ class Vessel(ChannelBindings):
         return [effect.name for effect in self.effects]
 
     def check(self, label: str) -> None:
-        """Check the bindings of all effects, and that the rigid body suits the degrees of freedom.
+        """Check the channel bindings of all effects, and that the rigid body suits the free axes.
 
         Args:
             label: Name of the file in messages.
@@ -392,15 +397,15 @@ class Vessel(ChannelBindings):
     # ----------------------------------------------------------------------------------------------
 
     def limits(self) -> dict[str, tuple[float, float]]:
-        """Return the allowed range (low, high) of each input.
+        """Return the allowed range (low, high) of each input of the vessel, by name.
 
-        That of a measured channel is unbounded.
+        The range of a measured channel is unbounded.
         """
         limits = {name: (channel.low, channel.high) for name, channel in self.commands.items()}
         return limits | dict.fromkeys(self.measured, (-inf, inf))
 
     def save(self, folder: Path | str) -> Self:
-        """Write the vessel in its present load condition as a vessel.toml.
+        """Write the vessel in its present load condition to a vessel.toml file.
 
         A vessel from a file keeps the hull of its folder by `based_on`. For a vessel without a hull
         file a plain hull.xml is written, unless the folder has one. Load conditions of the file are

@@ -26,7 +26,7 @@ HEAD = """\
 
 
 def hull_xml(hull: HullParticulars, name: str, comment: str, fittings: Iterable[str] = ()) -> str:
-    """Return the MJCF of a hull.
+    """Return a plain drawing of a hull (boxes and ellipsoids) as the text of a MuJoCo MJCF file.
 
     Args:
         hull: Dimensions [m] and mass [kg].
@@ -52,7 +52,10 @@ def hull_xml(hull: HullParticulars, name: str, comment: str, fittings: Iterable[
 
 
 def deck_height(hull: HullParticulars) -> float:
-    """Return the height of the deck above the water [m], chosen for the looks."""
+    """Return the height of the deck above the water [m] in a plain drawing of a hull.
+
+    It is chosen for the looks.
+    """
     return max(hull.draught, 0.08 * hull.length)
 
 
@@ -108,7 +111,7 @@ def geom_element(
     default_class: str,
     material: str = "",
 ) -> str:
-    """Return a MJCF geom element.
+    """Return the text of an MJCF geom element, one shape in the drawing of a hull.
 
     Args:
         name: Name of the geom.
@@ -128,5 +131,5 @@ def geom_element(
 
 
 def format_numbers(*values: float) -> str:
-    """Return numbers with four digits, as MJCF attributes have them."""
+    """Return numbers as text with four digits, as MJCF attributes have them."""
     return " ".join(f"{value:.4g}" for value in values)

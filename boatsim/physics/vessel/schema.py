@@ -40,7 +40,7 @@ OVERRIDES = ("ambient", "horizon", "rate", "noise")
 
 
 class Body(Table):
-    """Rigid body.
+    """Rigid body of a vessel: mass, moments of inertia and mass centre.
 
     Inertia is about the mass centre, which is the origin of motion unless `centre` is given.
 
@@ -60,7 +60,7 @@ class Body(Table):
     centre: tuple[float, float] = (0.0, 0.0)
 
     def effective_pitch_inertia(self) -> float:
-        """Return the inertia in pitch [kg m^2].
+        """Return the pitch inertia of the rigid body [kg m^2].
 
         Without a value it is the largest of the other two, so that roll causes no other rotation.
         """
@@ -70,7 +70,7 @@ class Body(Table):
 
 
 class CommandChannel(Table):
-    """A command of the vessel.
+    """A command channel of the vessel, such as a thrust or a rudder angle, with its range.
 
     Attributes:
         low: Smallest allowed value.
@@ -103,7 +103,7 @@ class MeasuredChannel(Table):
 
 
 class DiagnosisTable(Table):
-    """Assumptions of a diagnosis about this vessel before it has read data.
+    """Assumptions that a diagnosis makes about this vessel before it has read data.
 
     Attributes:
         leave_out: Candidate effects that are not tested, each with its reason.
@@ -146,7 +146,9 @@ class DiagnosisTable(Table):
 
 
 class ManoeuvringTable(Table):
-    """Commands of the standard manoeuvres. Missing values are derived from the vessel's channels.
+    """Table of a vessel file with the commands of the standard manoeuvres.
+
+    Missing values are derived from the vessel's channels.
 
     Attributes:
         ahead: Commands of the approach.
@@ -162,7 +164,7 @@ class ManoeuvringTable(Table):
 
 
 class VesselFile(Table):
-    """Content of a vessel.toml.
+    """Content of a vessel file (vessel.toml) as a checked data model.
 
     `Vessel` has the descriptions of the keys that it shares with this table.
 
@@ -215,7 +217,7 @@ class VesselFile(Table):
         return flat
 
     def check_channels(self, label: str) -> None:
-        """Check names and ranges of the command channels.
+        """Check names and ranges of the command channels of a vessel file.
 
         Args:
             label: Name of the file in messages.
