@@ -885,6 +885,13 @@ class SelectConfig:
         "reports what it has not tried.",
         low=1,
     )
+    further_fits: int = setting(
+        3,
+        "count",
+        "Candidates that are fitted in full, and with a second one, where much remains unexplained "
+        "and no candidate gains enough by itself.",
+        low=1,
+    )
     least_gain: float = setting(
         4.0, "nats", "Evidence that an identified effect must gain alone.", low=0.0
     )

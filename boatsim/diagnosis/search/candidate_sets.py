@@ -74,6 +74,8 @@ class CandidateSets:
         self.rechecked: set[tuple[Set, str]] = set()
         self.fitted_in_full: set[tuple[Set, str]] = set()
         self.banned: set[str] = set()
+        # results of `further_effects` by the names of a set and of the candidates then banned
+        self.further: dict[tuple[Set, Set], Fit | None] = {}
         # effects without which held-out recordings are predicted worse, as free runs show
         self.supported: set[str] = set()
         # log likelihoods of recordings that are held out, by the identities of these and of the fit
@@ -147,6 +149,20 @@ class CandidateSets:
         self.forget_screenings(key)
         self.fits[key] = other
         return other
+
+    def keep_better(self, found: Fit) -> Fit:
+        """Store a converged fit if it is better than the cached one of its set; return the better.
+
+        Args:
+            found: Converged fit of the vessel model with some candidate effects.
+        """
+        key = frozenset(found.effects)
+        known = self.fits.get(key)
+        if known is not None and found.evidence <= known.evidence + self.config.fit.refit_gain:
+            return known
+        self.forget_screenings(key)
+        self.fits[key] = found
+        return found
 
     def forget_screenings(self, key: Set) -> None:
         """Discard cached first estimates of candidate effects that would be added to a given set.

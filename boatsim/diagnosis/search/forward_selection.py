@@ -10,6 +10,7 @@ from boatsim.diagnosis.problem import Fit
 from boatsim.diagnosis.search.budget import addition_to
 from boatsim.diagnosis.search.candidate_sets import CandidateSets
 from boatsim.diagnosis.search.evidence import combined_gain, gain_by_curvature, gains_over
+from boatsim.diagnosis.search.further_effects import further_effects
 
 # shares of the work of a selection, by experience: at its begin and end, and what remains of it
 # after each further effect
@@ -43,7 +44,11 @@ def select_forward(sets: CandidateSets, best: Fit) -> Fit:
             tested = laws  # a stochastic force can replace a law, a law hardly replaces it
         slight = config.slight_share * sets.explained_evidence(best)
         if _combined_gain(tested, best) < max(sets.required_gain, slight):
-            break
+            further = further_effects(sets, best)
+            if further is None:
+                break
+            best = further
+            continue
         name = max(tested, key=lambda n: tested[n].evidence)
         if sets.budget.spent:
             gain = tested[name].evidence - best.evidence

@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.special import chdtri, ndtr
 
 from boatsim.diagnosis.candidates import REORDERED, base_name
 from boatsim.diagnosis.config import DEFAULT, SelectConfig
@@ -189,11 +190,34 @@ def differs_from_zero(sets: CandidateSets, best: Fit, name: str) -> bool:
             return True
     if kind.random:
         return False
+    inactive = {n: params[n].inactive_value for n in strength}
+    if _jointly_differs_from_zero(best, name, inactive, sure):
+        return True
     for parameter, free in own.items():
         narrow = best.value(name, parameter)[1] < config.determined_share * free.sd
         if parameter not in strength and narrow:
             return True
     return False
+
+
+def _jointly_differs_from_zero(
+    best: Fit, name: str, inactive: Mapping[str, float], certainty: float
+) -> bool:
+    """Whether several parameters of an effect together are clearly away from zero effect.
+
+    Recordings may determine a combination of them and none of them alone, such as the difference of
+    two scales. Their squared Mahalanobis distance is compared with the quantile of the chi-square
+    distribution that is as improbable as `certainty` standard deviations of one parameter.
+    """
+    places, offsets = [], []
+    for place, free in enumerate(best.free):
+        if free.effect == name and not free.relative and free.name in inactive:
+            places.append(place)
+            offsets.append(best.theta[place] - inactive[free.name])
+    covariance = best.covariance[np.ix_(places, places)]
+    distance = float(np.array(offsets) @ np.linalg.pinv(covariance) @ np.array(offsets))
+    least = chdtri(len(places), 2.0 * ndtr(-certainty))
+    return len(places) > 1 and distance > least
 
 
 def _compare_with_rivals(sets: CandidateSets, best: Fit, name: str) -> IdentifiedEffect:

@@ -1,0 +1,82 @@
+"""Finds effects where much remains unexplained although no candidate gains enough by itself.
+
+Two cases hide a cause from forward selection. The latent (unmodelled) force of the Kalman filter
+may explain what a candidate would explain: the candidate then gains little as long as that force
+is as large as it is without it. And two causes may hide each other, so that neither gains much
+alone.
+"""
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from boatsim.diagnosis.candidates import base_name
+from boatsim.diagnosis.fit import converge, gauss_newton
+from boatsim.diagnosis.problem import Fit
+from boatsim.diagnosis.search.candidate_sets import CALM_STEPS, CandidateSets
+from boatsim.diagnosis.search.evidence import unexplained_evidence, unknown_threshold
+from boatsim.diagnosis.search.screening import screen
+
+
+def further_effects(sets: CandidateSets, best: Fit) -> Fit | None:
+    """Return a fit with one or two more candidate effects that explain an unexplained force.
+
+    Candidates are screened with the latent force at its assumed level. The most promising ones are
+    fitted, and if none gains enough, each of them together with the most promising second one.
+
+    Args:
+        sets: Cache of the fits of candidate sets, with the estimation problem.
+        best: Fit to which no single candidate adds enough evidence.
+
+    Returns:
+        The best fit whose further effects gain enough; None if there is none, or if little remains
+        unexplained.
+    """
+    key = frozenset(best.effects), frozenset(sets.banned)
+    if key not in sets.further:
+        sets.further[key] = _look(sets, best)
+    return sets.further[key]
+
+
+def _look(sets: CandidateSets, best: Fit) -> Fit | None:
+    threshold = unknown_threshold(sets.config.select, sets.explained_evidence(best))
+    room = sets.config.select.most_effects - len(best.effects)
+    if room < 1 or sets.budget.spent or unexplained_evidence(sets.problem, best) < threshold:
+        return None
+    singles = list(_additions(sets, best))
+    found = _sufficient(singles, best.evidence + sets.required_gain)
+    if found is not None or room < 2:
+        return found
+    pairs: list[Fit] = []
+    for single in singles:
+        if sets.budget.spent:
+            break
+        pairs += _additions(sets, single)
+    return _sufficient(pairs, best.evidence + 2.0 * sets.required_gain)
+
+
+def _sufficient(fits: list[Fit], least: float) -> Fit | None:
+    """The fit with most evidence, if that is enough."""
+    best = max(fits, key=lambda one: one.evidence, default=None)
+    return best if best is not None and best.evidence > least else None
+
+
+def _additions(sets: CandidateSets, best: Fit) -> Iterator[Fit]:
+    """Yield converged fits with one more effect, for the candidates that promise most."""
+    problem, enough = sets.problem, sets.config.fit.refit_gain
+    levels = replace(best.levels, force=np.minimum(best.levels.force, problem.ambient.force))
+    calm = gauss_newton(problem, replace(best, levels=levels, evidence=-np.inf), CALM_STEPS, enough)
+    if not np.isfinite(calm.evidence):
+        return
+    ideas = set(map(base_name, best.effects))
+    names = []
+    for name in sets.candidates:
+        if base_name(name) not in ideas and name not in sets.random | sets.banned:
+            names.append(name)
+    screened = screen(problem, calm, names)
+    leading = sorted(names, key=lambda name: -screened[name].evidence)
+    for name in leading[: sets.config.select.further_fits]:
+        start = gauss_newton(problem, replace(screened[name], evidence=-np.inf), CALM_STEPS, enough)
+        if np.isfinite(start.evidence):
+            yield sets.keep_better(converge(problem, start))
