@@ -18,6 +18,8 @@ from boatsim.diagnosis.search.candidate_sets import CALM_STEPS, CandidateSets
 from boatsim.diagnosis.search.evidence import unexplained_evidence, unknown_threshold
 from boatsim.diagnosis.search.screening import screen
 
+NOT_SOUGHT = "effects that hide each other were not sought, although much remains unexplained"
+
 
 def further_effects(sets: CandidateSets, best: Fit) -> Fit | None:
     """Return a fit with one or two more candidate effects that explain an unexplained force.
@@ -42,7 +44,10 @@ def further_effects(sets: CandidateSets, best: Fit) -> Fit | None:
 def _look(sets: CandidateSets, best: Fit) -> Fit | None:
     threshold = unknown_threshold(sets.config.select, sets.explained_evidence(best))
     room = sets.config.select.most_effects - len(best.effects)
-    if room < 1 or sets.budget.spent or unexplained_evidence(sets.problem, best) < threshold:
+    if room < 1 or unexplained_evidence(sets.problem, best) < threshold:
+        return None
+    if sets.budget.spent:
+        sets.budget.state(NOT_SOUGHT)
         return None
     singles = list(_additions(sets, best))
     found = _sufficient(singles, best.evidence + sets.required_gain)
