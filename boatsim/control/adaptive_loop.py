@@ -104,7 +104,7 @@ def adapt_estimates(
 
 
 @lean
-def filter_input(
+def low_pass_control_input(
     value: float,
     known: float,
     gain: float,
@@ -306,7 +306,7 @@ def compute_loop_input(
     known = a.estimates[n] - wanted
     for i in range(n):
         known += a.estimates[i] * a.before[i]
-    mean, a.value = filter_input(
+    mean, a.value = low_pass_control_input(
         a.value, known, a.estimates[n + 1], d.bandwidth, low, high, rate, d.period, d.steps
     )
     return mean

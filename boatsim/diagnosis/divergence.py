@@ -51,7 +51,7 @@ def is_lost(problem: Problem, fit: Fit) -> bool:
     return not _follows(problem, _passes(problem, fit))
 
 
-def follow(problem: Problem, recordings: Sequence[MappedRecording]) -> Fit:
+def follow_recordings(problem: Problem, recordings: Sequence[MappedRecording]) -> Fit:
     """Return the nominal vessel model with a latent force large enough to follow recordings.
 
     No parameter is fitted. The level of the latent (unmodelled) force is raised step by step, each

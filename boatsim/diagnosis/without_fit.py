@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from boatsim.diagnosis.divergence import divergences, first_rows_are_finite, follow
+from boatsim.diagnosis.divergence import divergences, first_rows_are_finite, follow_recordings
 from boatsim.diagnosis.evaluation import MODELS, Evaluation, in_order
 from boatsim.diagnosis.filter import MappedRecording, axes_of
 from boatsim.diagnosis.free_runs import FreeRun, free_run_horizon, free_runs, rms_errors
@@ -39,7 +39,7 @@ def unknown_cause(
     if not first_rows_are_finite(problem, everything):
         raise _not_evaluated(problem, where)
     with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
-        fit = follow(problem, everything)
+        fit = follow_recordings(problem, everything)
         forces = _finite_forces(residual_force(problem, fit, everything))
         if not any(len(force.t) for force in forces):
             raise BadInput(

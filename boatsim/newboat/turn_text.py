@@ -18,7 +18,7 @@ REFERENCE_LENGTH = 3.0  # [m]
 HELM = 0.35  # [rad] 20 deg
 
 
-def turn_text(boat: Particulars) -> str:
+def turn_scenario_text(boat: Particulars) -> str:
     """Return the text of turn.toml, the first scenario of a new boat: straight runs and turns.
 
     Args:

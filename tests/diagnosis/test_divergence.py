@@ -9,7 +9,7 @@ import pytest
 from pushed_boat import BOAT, laid, sail
 
 from boatsim.diagnosis import loading, pipeline
-from boatsim.diagnosis.divergence import divergences, follow, is_lost
+from boatsim.diagnosis.divergence import divergences, follow_recordings, is_lost
 from boatsim.diagnosis.loading import Loaded, Request
 from boatsim.diagnosis.locate.missing_force import residual_force
 from boatsim.diagnosis.without_fit import unknown_cause
@@ -70,7 +70,7 @@ def test_a_good_fit_is_not_lost_and_its_disturbance_is_not_raised() -> None:
     problem, recalibrated = laid(sail("run", 3, nothing)[0])
     assert not is_lost(problem, recalibrated)
     assert is_lost(problem, replace(recalibrated, evidence=-np.inf))
-    followed = follow(problem, problem.recordings)
+    followed = follow_recordings(problem, problem.recordings)
     np.testing.assert_array_equal(followed.levels.force, problem.ambient.force)
     forces = residual_force(problem, followed, problem.recordings)
     assert len(divergences(problem, problem.recordings, forces)) == 1

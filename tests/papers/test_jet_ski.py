@@ -15,9 +15,9 @@ from boatsim.control.adaptive_loop import (
     adapt_estimates,
     adapt_loop,
     compute_loop_input,
-    filter_input,
     initialise_loop,
     loop_memory_type,
+    low_pass_control_input,
     make_loop_design,
     project_rate,
 )
@@ -229,11 +229,13 @@ def test_adaptive_loop_equals_the_textbook_example_with_a_known_reference_system
 
 
 def test_filter_of_the_input_is_the_first_order_low_pass() -> None:
-    mean, end = filter_input(0.0, -3.0, 2.0, 5.0, -10.0, 10.0, 1e9, 0.1, 10000)
+    mean, end = low_pass_control_input(0.0, -3.0, 2.0, 5.0, -10.0, 10.0, 1e9, 0.1, 10000)
     assert end == pytest.approx(1.5 * (1.0 - exp(-1.0)), rel=1e-4)
     assert mean == pytest.approx(1.5 * (1.0 - (1.0 - exp(-1.0))), rel=1e-4)
-    assert filter_input(0.0, -3.0, 2.0, 5.0, -10.0, 0.2, 1e9, 0.1, 100)[1] == 0.2
-    assert filter_input(0.0, -3.0, 2.0, 5.0, -10.0, 10.0, 0.5, 0.1, 100)[1] == pytest.approx(0.05)
+    assert low_pass_control_input(0.0, -3.0, 2.0, 5.0, -10.0, 0.2, 1e9, 0.1, 100)[1] == 0.2
+    assert low_pass_control_input(0.0, -3.0, 2.0, 5.0, -10.0, 10.0, 0.5, 0.1, 100)[
+        1
+    ] == pytest.approx(0.05)
 
 
 def test_predictor_told_the_truth_learns_nothing() -> None:

@@ -53,7 +53,7 @@ class Decision:
     judgements: tuple[Judgement, ...]
     log: LogSigns
 
-    def judgement(self, name: str) -> Judgement:
+    def judgement_of_effect(self, name: str) -> Judgement:
         """Return the statistics and probability of one identified effect.
 
         Args:

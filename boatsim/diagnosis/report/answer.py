@@ -280,7 +280,7 @@ def _effect(
     problem: Problem, best: Fit, named: IdentifiedEffect, decision: Decision
 ) -> EffectEntry:
     """Return the entry of an identified effect."""
-    judged = decision.judgement(named.name)
+    judged = decision.judgement_of_effect(named.name)
     effect = next(e for e in problem.program.candidates if e.name == named.name)
     kind, config = type(effect), problem.config.answer
     acting: Acting = {}
@@ -309,7 +309,7 @@ def _possible(
 ) -> PossibleEntry:
     """Return the entry of an effect that is probably a stand-in for another cause."""
     effect = next(e for e in problem.program.candidates if e.name == doubtful.name)
-    judged = decision.judgement(doubtful.name)
+    judged = decision.judgement_of_effect(doubtful.name)
     why = reason_for_doubt(judged.signs, decision.log, problem.config.decide)
     if judged.outcome == "unconfirmed":
         why = reason_unconfirmed(judged)

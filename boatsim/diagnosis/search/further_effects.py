@@ -37,11 +37,11 @@ def further_effects(sets: CandidateSets, best: Fit) -> Fit | None:
     """
     key = frozenset(best.effects), frozenset(sets.banned)
     if key not in sets.further:
-        sets.further[key] = _look(sets, best)
+        sets.further[key] = _find_further_effects(sets, best)
     return sets.further[key]
 
 
-def _look(sets: CandidateSets, best: Fit) -> Fit | None:
+def _find_further_effects(sets: CandidateSets, best: Fit) -> Fit | None:
     threshold = unknown_threshold(sets.config.select, sets.explained_evidence(best))
     room = sets.config.select.most_effects - len(best.effects)
     if room < 1 or unexplained_evidence(sets.problem, best) < threshold:

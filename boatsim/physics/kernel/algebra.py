@@ -90,7 +90,7 @@ class CodeLines:
     def __init__(self) -> None:
         self.text: list[str] = []
 
-    def add(self, line: str) -> None:
+    def append_line(self, line: str) -> None:
         """Append a line to the source of a generated function.
 
         Args:
@@ -109,7 +109,7 @@ class CodeLines:
         """
         if not value or (len(value.terms) == 1 and max(map(len, value.terms)) <= 1):
             return value
-        self.add(f"{called} = {value}")
+        self.append_line(f"{called} = {value}")
         return symbol(called)
 
     def assign_all(self, prefix: str, values: Iterable[SymbolicSum]) -> list[SymbolicSum]:

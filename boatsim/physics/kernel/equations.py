@@ -141,7 +141,7 @@ class EquationWriter:
         angle = COORDINATES[i]
         if i not in self.free or (i != 5 and not self.hull_fixed_axes):
             return ONE, ZERO
-        lines.add(f"c_{angle}, s_{angle} = cos({angle}), sin({angle})")
+        lines.append_line(f"c_{angle}, s_{angle} = cos({angle}), sin({angle})")
         return symbol(f"c_{angle}"), symbol(f"s_{angle}")
 
     def kinematics(self, lines: CodeLines, current: bool = True) -> Kinematics:
@@ -187,7 +187,7 @@ class EquationWriter:
         drift = list(map(neg, cross_product(turning, nu[:3]))) + lines.assign_all("bend", bend)
         water = [ZERO, ZERO, ZERO]
         if current and {0, 1} & set(self.free):
-            lines.add("north, east = water_velocity(p, on)")
+            lines.append_line("north, east = water_velocity(p, on)")
             water = [
                 lines.assign(f"{n}_water", R[0][i] * symbol("north") + R[1][i] * symbol("east"))
                 for i, n in enumerate("uvw")
@@ -243,7 +243,7 @@ class EquationWriter:
 
         Source lines that evaluate the force laws are added.
         """
-        lines.add(f"f = wrench({self.motion_text(frame)}, p, on, act, at)")
+        lines.append_line(f"f = wrench({self.motion_text(frame)}, p, on, act, at)")
         rigid = self.rigid_body_force(lines, frame)
         found = []
         for i, component in enumerate(Wrench._fields):
@@ -260,7 +260,7 @@ class EquationWriter:
         """Generate the line that unpacks a state array into variables of coordinates and rates."""
         for more, first in (("", 0), ("d", self.n)):
             names = ", ".join(COORDINATES[i] + more for i in self.free)
-            lines.add(f"{names} = {', '.join(f's[{first + j}]' for j in range(self.n))}")
+            lines.append_line(f"{names} = {', '.join(f's[{first + j}]' for j in range(self.n))}")
 
     # Accelerations
     # ------------------------------------------------------------------------------------------
@@ -277,7 +277,7 @@ class EquationWriter:
             self.factor_mass_matrix(lines, frame)
             right = [dot_product(frame.jacobian_column(i), named) for i in self.free]
             found = self.solve_factored_system(lines, right, "")
-            lines.add(f"return {self.tuple_text(found)}")
+            lines.append_line(f"return {self.tuple_text(found)}")
             return lines.text
         pushed = {i: lines.assign(f"load{i}", load[i]) for i in self.free}
         nudot = {
@@ -288,7 +288,7 @@ class EquationWriter:
             if i in nudot:  # acceleration over ground along the axes
                 nudot[i] = nudot[i] - frame.drift[i]
         moved = {i: lines.assign(f"a{i}", a) for i, a in nudot.items()}
-        lines.add(
+        lines.append_line(
             f"return {self.tuple_text(self.joint_accelerations(lines, frame, moved, moving=True))}"
         )
         return lines.text
@@ -315,10 +315,10 @@ class EquationWriter:
         secant, along = symbol("secant"), symbol("along")
         quadratic = [ZERO] * 4
         if moving:
-            lines.add("secant = 1.0 / c_theta")
+            lines.append_line("secant = 1.0 / c_theta")
             turn = thetad * psid
             quadratic = [phid * thetad, turn * secant, phid * psid * ct, turn * st * secant]
-        lines.add(f"along = {sf * body[4] + cf * body[5] + quadratic[0]}")
+        lines.append_line(f"along = {sf * body[4] + cf * body[5] + quadratic[0]}")
         rest = [
             body[3] + quadratic[1] + along * st * secant,
             cf * body[4] - sf * body[5] - quadratic[2],
@@ -339,21 +339,25 @@ class EquationWriter:
             column = self.mass_matrix_product(WHOLE, frame.jacobian_column(j))
             for a, i in enumerate(self.free[b:], b):
                 value = dot_product(frame.jacobian_column(i), column)
-                lines.add(f"M{a}{b} = {value}")
+                lines.append_line(f"M{a}{b} = {value}")
         for j in range(self.n):
-            lines.add(f"D{j} = M{j}{j}" + "".join(f" - L{j}{k} * L{j}{k} * D{k}" for k in range(j)))
+            lines.append_line(
+                f"D{j} = M{j}{j}" + "".join(f" - L{j}{k} * L{j}{k} * D{k}" for k in range(j))
+            )
             for i in range(j + 1, self.n):
                 taken = "".join(f" - L{i}{k} * L{j}{k} * D{k}" for k in range(j))
-                lines.add(f"L{i}{j} = (M{i}{j}{taken}) / D{j}")
+                lines.append_line(f"L{i}{j} = (M{i}{j}{taken}) / D{j}")
 
     def solve_factored_system(
         self, lines: CodeLines, right: list[SymbolicSum], tag: str
     ) -> list[str]:
         """Generate the solution of a system with the factored mass matrix; return its symbols."""
         for i, value in enumerate(right):
-            lines.add(f"y{tag}{i} = {value}" + "".join(f" - L{i}{k} * y{tag}{k}" for k in range(i)))
+            lines.append_line(
+                f"y{tag}{i} = {value}" + "".join(f" - L{i}{k} * y{tag}{k}" for k in range(i))
+            )
         for i in reversed(range(self.n)):
-            lines.add(
+            lines.append_line(
                 f"x{tag}{i} = y{tag}{i} / D{i}"
                 + "".join(f" - L{k}{i} * x{tag}{k}" for k in range(i + 1, self.n))
             )
@@ -368,7 +372,7 @@ class EquationWriter:
         self.unpack_state(lines)
         frame = self.kinematics(lines, current=False)
         if self.hull_fixed_axes and self.square_jacobian:
-            lines.add("secant = 1.0 / c_theta")
+            lines.append_line("secant = 1.0 / c_theta")
         if not self.square_jacobian:
             self.factor_mass_matrix(lines, frame)
         for b, j in enumerate(self.free):
@@ -380,7 +384,7 @@ class EquationWriter:
                     lines, [frame.J[j][i] for i in self.free], f"{b}_"
                 )
             for a, text in enumerate(found):
-                lines.add(f"A[row + {a}, column + {b}] = {text}")
+                lines.append_line(f"A[row + {a}, column + {b}] = {text}")
         return lines.text
 
     # Further functions
@@ -394,8 +398,10 @@ class EquationWriter:
         lines = CodeLines()
         self.unpack_state(lines)
         frame = self.kinematics(lines)
-        lines.add(f"f = wrench({self.motion_text(frame)}, p, on, act, at)")
-        lines.add(f"return {self.tuple_text([f'f.{Wrench._fields[i]}' for i in self.free])}")
+        lines.append_line(f"f = wrench({self.motion_text(frame)}, p, on, act, at)")
+        lines.append_line(
+            f"return {self.tuple_text([f'f.{Wrench._fields[i]}' for i in self.free])}"
+        )
         return lines.text
 
     def pose_and_velocities_code(self) -> list[str]:
@@ -407,7 +413,7 @@ class EquationWriter:
         self.unpack_state(lines)
         frame = self.kinematics(lines, current=False)
         values = [*map(str, map(self.coordinate_symbol, range(6))), *map(str, frame.nu)]
-        lines.add(f"return MeasuredMotion({', '.join(values)})")
+        lines.append_line(f"return MeasuredMotion({', '.join(values)})")
         return lines.text
 
     def instrument_readings_code(self) -> list[str]:
@@ -418,7 +424,7 @@ class EquationWriter:
         lines = CodeLines()
         self.unpack_state(lines)
         frame = self.kinematics(lines, current=False)
-        lines.add("a = accelerations(t, s, act, at, p, on, k, extra)")
+        lines.append_line("a = accelerations(t, s, act, at, p, on, k, extra)")
         ahead, aside = (
             add_sums(
                 frame.J[row][i] * symbol(f"a[{b}]") for b, i in enumerate(self.free) if i in LINEAR
@@ -428,7 +434,7 @@ class EquationWriter:
         u, v, _, rolling, _, turning = frame.nu
         x, y, _, roll, _, heading = map(self.coordinate_symbol, range(6))
         readings = (heading, turning, ahead, aside, u, v, x, y, roll, rolling)
-        lines.add(f"return {self.tuple_text(list(map(str, readings)))}")
+        lines.append_line(f"return {self.tuple_text(list(map(str, readings)))}")
         return lines.text
 
     def jacobian_code(self) -> list[str]:
@@ -442,7 +448,7 @@ class EquationWriter:
         for i in range(6):
             for b, j in enumerate(self.free):
                 if frame.J[i][j]:
-                    lines.add(f"J[{i}, {b}] = {frame.J[i][j]}")
+                    lines.append_line(f"J[{i}, {b}] = {frame.J[i][j]}")
         return lines.text
 
     def expected_measurement_level_code(self) -> list[str]:
@@ -451,22 +457,22 @@ class EquationWriter:
         It computes the expected value of a measured position or velocity for level axes.
         """
         lines = CodeLines()
-        lines.add("if code < NQ:")
-        lines.add("    row[code] = 1.0")
-        lines.add("    return float(s[code])")
+        lines.append_line("if code < NQ:")
+        lines.append_line("    row[code] = 1.0")
+        lines.append_line("    return float(s[code])")
         if not self.hull_fixed_axes and {0, 1, 5} <= set(self.free):
             psi, north, east = self.free.index(5), self.n, self.n + 1
-            lines.add("if code < NQ + 2:")
-            lines.add(f"    c, s_ = cos(s[{psi}]), sin(s[{psi}])")
+            lines.append_line("if code < NQ + 2:")
+            lines.append_line(f"    c, s_ = cos(s[{psi}]), sin(s[{psi}])")
             along = f"c * s[{north}] + s_ * s[{east}]"
-            lines.add(f"    along, across = {along}, c * s[{east}] - s_ * s[{north}]")
-            lines.add("    if code == NQ:")
-            lines.add(f"        row[{north}], row[{east}], row[{psi}] = c, s_, across")
-            lines.add("        return float(along)")
-            lines.add(f"    row[{north}], row[{east}], row[{psi}] = -s_, c, -along")
-            lines.add("    return float(across)")
-        lines.add("row[code] = 1.0")
-        lines.add("return float(s[code])")
+            lines.append_line(f"    along, across = {along}, c * s[{east}] - s_ * s[{north}]")
+            lines.append_line("    if code == NQ:")
+            lines.append_line(f"        row[{north}], row[{east}], row[{psi}] = c, s_, across")
+            lines.append_line("        return float(along)")
+            lines.append_line(f"    row[{north}], row[{east}], row[{psi}] = -s_, c, -along")
+            lines.append_line("    return float(across)")
+        lines.append_line("row[code] = 1.0")
+        lines.append_line("return float(s[code])")
         return lines.text
 
     def mujoco_code(self) -> list[str]:
@@ -475,10 +481,10 @@ class EquationWriter:
         order = [i for i in map(COORDINATES.index, JOINTS) if i in self.free]
         for b, i in enumerate(order):
             flip = "-" if SIGN[COORDINATES[i]] < 0 else ""
-            lines.add(f"{COORDINATES[i]}, {COORDINATES[i]}d = {flip}q[{b}], {flip}qd[{b}]")
-        lines.add("on = ()")
+            lines.append_line(f"{COORDINATES[i]}, {COORDINATES[i]}d = {flip}q[{b}], {flip}qd[{b}]")
+        lines.append_line("on = ()")
         frame = self.kinematics(lines)
-        lines.add(f"f = wrench({self.motion_text(frame)}, p, on, act, at)")
+        lines.append_line(f"f = wrench({self.motion_text(frame)}, p, on, act, at)")
         added = [
             [mass_matrix_entry(WATER, i, j) + mass_matrix_entry(HULL, i, j) for j in range(6)]
             for i in range(6)
@@ -493,7 +499,7 @@ class EquationWriter:
             )
         for b, i in enumerate(order):
             force = add_sums(frame.J[a][i] * load[a] for a in needed)
-            lines.add(f"force[{b}] += {force if SIGN[COORDINATES[i]] > 0 else -force}")
+            lines.append_line(f"force[{b}] += {force if SIGN[COORDINATES[i]] > 0 else -force}")
         mass = [[ZERO] * 6 for _ in range(6)]
         for a in needed:
             for c in range(a, 6):
@@ -507,7 +513,7 @@ class EquationWriter:
                     )
                 if value:
                     same = SIGN[COORDINATES[i]] == SIGN[COORDINATES[j]]
-                    lines.add(f"M[{b * (b + 1) // 2 + d}] += {value if same else -value}")
+                    lines.append_line(f"M[{b * (b + 1) // 2 + d}] += {value if same else -value}")
         return lines.text
 
     def tuple_text(self, items: list[str]) -> str:
