@@ -58,6 +58,7 @@ class Hangs(Controller):
         return {}
 """
 Finish = Callable[[], tuple[int, str]]
+BEGUN: list["subprocess.Popen[str]"] = []  # processes of the present test
 
 
 def heeding() -> None:
@@ -69,9 +70,22 @@ def heeding() -> None:
 def begin(*arguments: object, before: Callable[[], None] = heeding) -> "subprocess.Popen[str]":
     command = [sys.executable, "-m", "boatsim", *map(str, arguments)]
     pipe = subprocess.PIPE
-    return subprocess.Popen(
+    running = subprocess.Popen(
         command, stdout=pipe, stderr=pipe, text=True, start_new_session=True, preexec_fn=before
     )
+    BEGUN.append(running)
+    return running
+
+
+@pytest.fixture(autouse=True)
+def ends_what_it_began() -> Iterator[None]:
+    """A test that fails leaves no endless run behind."""
+    yield
+    for running in BEGUN:
+        if running.poll() is None:
+            os.killpg(running.pid, signal.SIGKILL)
+            running.communicate()
+    BEGUN.clear()
 
 
 def end(running: "subprocess.Popen[str]", within: float = 60.0) -> tuple[int, str]:
@@ -87,7 +101,7 @@ def end(running: "subprocess.Popen[str]", within: float = 60.0) -> tuple[int, st
     )
 
 
-def wait_for(there: Callable[[], object], within: float = 60.0) -> None:
+def wait_for(there: Callable[[], object], within: float = 180.0) -> None:
     until = time.monotonic() + within
     while not there():
         assert time.monotonic() < until, "it never came"
