@@ -125,30 +125,22 @@ class InnerLowering(NativeLowering):
         return True
 
 
-class QuickCompiler(CompilerBase):
-    """numba compiler that uses a cache of operator types to infer types faster."""
-
-    def __init__(self, typingctx: Context, *args: Any) -> None:
-        """Take the arguments of numba's compiler."""
-        super().__init__(remembering(typingctx), *args)
-
-    def define_pipelines(self) -> list[Any]:
-        """Return the compiler passes of numba, with a typing context that caches operator types."""
-        return [DefaultPassBuilder.define_nopython_pipeline(self.state)]
-
-
-class InnerCompiler(QuickCompiler):
+class InnerCompiler(CompilerBase):
     """numba compiler of functions in the form that other compiled functions call.
 
     The result is LLVM code that is linked into the callers.
     """
+
+    def __init__(self, typingctx: Context, *args: Any) -> None:
+        """Take the arguments of numba's compiler, and cache the types of operators."""
+        super().__init__(remembering(typingctx), *args)
 
     def define_pipelines(self) -> list[Any]:
         """Return numba's compiler passes, of which the last one translates to linkable LLVM code.
 
         Functions so compiled are linked into their callers.
         """
-        (manager,) = super().define_pipelines()
+        manager = DefaultPassBuilder.define_nopython_pipeline(self.state)
         for place, (one, about) in enumerate(manager.passes):
             if one is NativeLowering:
                 manager.passes[place] = (InnerLowering, about)

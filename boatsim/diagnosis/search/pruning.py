@@ -215,9 +215,10 @@ def _jointly_differs_from_zero(
             places.append(place)
             offsets.append(best.theta[place] - inactive[free.name])
     covariance = best.covariance[np.ix_(places, places)]
+    if len(places) < 2 or not np.isfinite(covariance).all():
+        return False
     distance = float(np.array(offsets) @ np.linalg.pinv(covariance) @ np.array(offsets))
-    least = chdtri(len(places), 2.0 * ndtr(-certainty))
-    return len(places) > 1 and distance > least
+    return distance > float(chdtri(len(places), 2.0 * ndtr(-certainty)))
 
 
 def _compare_with_rivals(sets: CandidateSets, best: Fit, name: str) -> IdentifiedEffect:
