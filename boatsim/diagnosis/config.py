@@ -1145,6 +1145,14 @@ class DecideConfig:
         "standard deviations.",
         0.0,
     )
+    required_sd: float = setting(
+        4.0,
+        "sd",
+        "Size of an effect on held-out recordings, in its standard deviations, from which these "
+        "require it, although their simulations get no better while all other parameters stay: a "
+        "true effect whose fit shares an error with another parameter is not refuted.",
+        0.0,
+    )
     intercept: float = setting(
         3.42,
         "1",

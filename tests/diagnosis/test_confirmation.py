@@ -10,8 +10,8 @@ from boatsim.diagnosis.candidates import library_for
 from boatsim.diagnosis.config import DEFAULT
 from boatsim.diagnosis.filter import MappedRecording, map_recording, prior_levels
 from boatsim.diagnosis.fit import converge, unfitted_hypothesis
-from boatsim.diagnosis.open_set.confirmation import Outcome, errors_of_each, outcome_of
-from boatsim.diagnosis.open_set.consistency import consistency_of
+from boatsim.diagnosis.open_set.confirmation import Errors, Outcome, errors_of_each, outcome_of
+from boatsim.diagnosis.open_set.consistency import Factor, consistency_of
 from boatsim.diagnosis.problem import Fit, Problem, priors_of
 from boatsim.diagnosis.search.ranking import fit_baseline
 from boatsim.physics.base import Array
@@ -73,6 +73,16 @@ def test_a_true_effect_is_confirmed_and_alone_reduces_the_errors(fitted) -> None
 def test_a_boat_without_the_effect_does_not_confirm_it(fitted) -> None:
     held_out = map_recording(sail("c", 3, strong_astern)[0], PROGRAM)
     assert outcome(fitted, held_out) == "unconfirmed"
+
+
+def test_an_effect_that_held_out_recordings_require_in_another_size_is_not_refuted(fitted) -> None:
+    problem, without, best = fitted
+    held_out = map_recording(sail("c", 3, weak_astern)[0], PROGRAM)
+    signs = consistency_of(problem, best, {ONLY: without}, [held_out])[ONLY]
+    worse = {"position_rms_m": Errors(0.1, 0.2)}
+    for sd, expected in ((0.1, "open"), (0.4, "unconfirmed")):
+        own = replace(signs, held_out=Factor(0.8, sd), held_out_gain=-3.0)
+        assert outcome_of(problem.candidates[ONLY], worse, own, DEFAULT.decide) == expected
 
 
 def test_recordings_that_do_not_excite_an_effect_are_no_evidence_against_it(fitted) -> None:

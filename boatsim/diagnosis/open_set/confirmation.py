@@ -3,7 +3,8 @@
 An effect is compared with the fit that has all other effects, refitted without it. It is confirmed
 if free runs over held-out recordings are better with it, or if these recordings are more likely
 with it. If neither holds there are two cases. Where the held-out recordings determine its size,
-they could have shown it, but are explained as well without it: it is unconfirmed, and is not named.
+they could have shown it, but are explained as well without it: it is unconfirmed, and is not named,
+unless they require it once the other parameters may change too.
 Where they are too short for that, or do not excite the effect, they are no evidence against it: the
 name, which the fitted recordings require, stays, and the report states that it is open.
 """
@@ -70,7 +71,8 @@ def outcome_of(
     """Return whether held-out recordings confirm an identified effect.
 
     "confirmed" if they are simulated better or are more likely with it, "unconfirmed" if they could
-    have shown it but do not, "open" if they do not determine its size. An effect that releases
+    have shown it but do not, "open" if they do not determine its size, or if they require it once
+    the other parameters may change too. An effect that releases
     coefficients of the vessel is never unconfirmed: without it the same coefficients are refitted,
     only far outside of their stated uncertainty, and predict the same.
 
@@ -83,6 +85,8 @@ def outcome_of(
     if signs.held_out_gain > 0.0 or mean_ratio(errors) < 1.0:
         return "confirmed"
     if signs.held_out.sd > config.confirmed_sd or isinstance(effect, CoefficientRelease):
+        return "open"
+    if signs.held_out.significance > config.required_sd:
         return "open"
     return "unconfirmed"
 

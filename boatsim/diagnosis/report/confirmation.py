@@ -14,8 +14,8 @@ from boatsim.diagnosis.report.formatting import (
 from boatsim.diagnosis.report.schema import AloneEntry, EffectEntry, Family
 
 OPEN = (
-    "Held-out recordings neither confirm nor contradict it: they are too short, or do not excite "
-    "it."
+    "Held-out recordings neither confirm nor contradict it: they are too short, do not excite it, "
+    "or require it only if other numbers of the vessel change too."
 )
 
 
