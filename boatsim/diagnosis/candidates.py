@@ -399,7 +399,7 @@ def program_to_replay(vessel: Vessel) -> tuple[Program, tuple[str, ...]]:
     """Return the compiled program with which a recording of a vessel is replayed.
 
     The program of a patched vessel is that of its diagnosis, which was compiled before. For any
-    other vessel the program contains its own effects only, and compiles in half the time.
+    other vessel the program contains its own effects only, and compiles faster.
 
     Args:
         vessel: Vessel file, or a patched one.

@@ -77,7 +77,7 @@ def pose_question(
         loaded: Fitted and held-out recordings with their vessels.
         config: Settings of the diagnosis.
         with_candidates: Whether the compiled program holds the candidates. Without them it has the
-            same numbers for the vessel as specified, and compiles in half the time.
+            same numbers for the vessel as specified, and compiles faster.
 
     Raises:
         BadInput: A column is missing, or a level or an uncertainty cannot be used.

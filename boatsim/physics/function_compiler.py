@@ -1,6 +1,6 @@
 """How numba compiles the functions of a program.
 
-A program has about a hundred compiled functions, of which Python calls ten. numba by itself gives
+A program has many compiled functions, of which Python calls few. numba by itself gives
 each of them machine code and a wrapper for calls from Python, and optimises it again within each
 of its callers. Here a function has two forms:
 
@@ -10,7 +10,7 @@ of its callers. Here a function has two forms:
    made at the first call from Python, and kept on disk (`compiler_internals.keep_on_disk`).
 
 The types of operators are looked up once for each combination of arguments
-(`RememberingContext`), because numba tries some twenty overloads for every product of two floats.
+(`RememberingContext`), because numba tries many overloads for every product of two floats.
 
 This module and `compiler_internals` are the only ones that rely on undocumented parts of numba;
 `tests/physics/test_function_compiler.py` checks what this one assumes.

@@ -20,7 +20,7 @@ class BudgetSpentError(Exception):
 
 
 class SearchBudget:
-    """Limit of the computing work of a search for candidate effects, and a list of skipped trials.
+    """Limit of the computing work of a search for candidate effects, and what it skipped.
 
     Work is counted in rows filtered times degrees of freedom, so that the result does not depend on
     the speed of the machine.

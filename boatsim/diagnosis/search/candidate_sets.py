@@ -137,10 +137,7 @@ class CandidateSets:
         config, problem = self.config, self.problem
         if unexplained_evidence(problem, found) < config.select.unknown_gain:
             return found
-        force = np.minimum(found.levels.force, problem.ambient.force)
-        calm = replace(found.levels, force=force)
-        start = replace(found, levels=calm, evidence=-np.inf)
-        other = gauss_newton(problem, start, CALM_STEPS, config.fit.refit_gain)
+        other = self.steps_at_assumed_disturbance(found)
         if np.isfinite(other.evidence):
             other = converge(problem, other)
         if not other.evidence > found.evidence + config.fit.refit_gain:
@@ -149,6 +146,19 @@ class CandidateSets:
         self.forget_screenings(key)
         self.fits[key] = other
         return other
+
+    def steps_at_assumed_disturbance(self, found: Fit) -> Fit:
+        """Return a few Gauss-Newton steps of a fit with the latent force at its assumed level.
+
+        Args:
+            found: Fit of the vessel model with some candidate effects.
+
+        Returns:
+            The unconverged fit; its evidence is minus infinity if the simulated vessel diverges.
+        """
+        force = np.minimum(found.levels.force, self.problem.ambient.force)
+        start = replace(found, levels=replace(found.levels, force=force), evidence=-np.inf)
+        return gauss_newton(self.problem, start, CALM_STEPS, self.config.fit.refit_gain)
 
     def keep_better(self, found: Fit) -> Fit:
         """Store a converged fit if it is better than the cached one of its set; return the better.

@@ -7,14 +7,13 @@ alone.
 """
 
 from collections.abc import Iterator
-from dataclasses import replace
 
 import numpy as np
 
 from boatsim.diagnosis.candidates import base_name
-from boatsim.diagnosis.fit import converge, gauss_newton
+from boatsim.diagnosis.fit import converge
 from boatsim.diagnosis.problem import Fit
-from boatsim.diagnosis.search.candidate_sets import CALM_STEPS, CandidateSets
+from boatsim.diagnosis.search.candidate_sets import CandidateSets
 from boatsim.diagnosis.search.evidence import unexplained_evidence, unknown_threshold
 from boatsim.diagnosis.search.screening import screen
 
@@ -69,9 +68,8 @@ def _sufficient(fits: list[Fit], least: float) -> Fit | None:
 
 def _additions(sets: CandidateSets, best: Fit) -> Iterator[Fit]:
     """Yield converged fits with one more effect, for the candidates that promise most."""
-    problem, enough = sets.problem, sets.config.fit.refit_gain
-    levels = replace(best.levels, force=np.minimum(best.levels.force, problem.ambient.force))
-    calm = gauss_newton(problem, replace(best, levels=levels, evidence=-np.inf), CALM_STEPS, enough)
+    problem = sets.problem
+    calm = sets.steps_at_assumed_disturbance(best)
     if not np.isfinite(calm.evidence):
         return
     ideas = set(map(base_name, best.effects))
@@ -82,6 +80,6 @@ def _additions(sets: CandidateSets, best: Fit) -> Iterator[Fit]:
     screened = screen(problem, calm, names)
     leading = sorted(names, key=lambda name: -screened[name].evidence)
     for name in leading[: sets.config.select.further_fits]:
-        start = gauss_newton(problem, replace(screened[name], evidence=-np.inf), CALM_STEPS, enough)
+        start = sets.steps_at_assumed_disturbance(screened[name])
         if np.isfinite(start.evidence):
             yield sets.keep_better(converge(problem, start))

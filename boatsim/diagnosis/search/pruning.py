@@ -166,7 +166,8 @@ def _improves_prediction(sets: CandidateSets, best: Fit, named: IdentifiedEffect
 def differs_from_zero(sets: CandidateSets, best: Fit, name: str) -> bool:
     """Whether the size of an effect in a fit is significantly different from zero.
 
-    A stochastic force must be further away: its size is positive, so that a search finds some in
+    Several parameters may differ from zero together although none of them does alone. A stochastic
+    force must be further away: its size is positive, so that a search finds some in
     pure noise. An effect acts, too, if the recordings determine one of its parameters that has no
     meaning without it. A craft that never reaches its planing speed shows by how much it is slowed,
     but not that speed. (The frequency of a stochastic force is determined by any trace of it.)
