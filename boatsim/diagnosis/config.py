@@ -658,6 +658,14 @@ class LocateConfig:
     structure_max_p: float = setting(
         0.01, "1", "Largest corrected p-value of a structure of the residual force.", high=1.0
     )
+    structure_least_share: float = setting(
+        0.05,
+        "1",
+        "Share of the information about a structure of the residual force that the fitted "
+        "parameters are taken to leave, at least; with less, rounding decides.",
+        low=1e-3,
+        high=1.0,
+    )
     structure_parts: int = setting(
         8, "count", "Parts of a run in each of which a residual force may act alone.", low=1
     )

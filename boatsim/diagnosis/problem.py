@@ -107,9 +107,24 @@ class Fit:
             effect: Name of an effect of this fit.
             name: Name of one of its fitted parameters.
         """
-        names = [("" if f.relative else f.effect, f.name) for f in self.free]
-        i = names.index((effect, name))
+        i = self._index(effect, name)
         return float(self.theta[i]), float(np.sqrt(self.covariance[i, i]))
+
+    def without_effect(self, effect: str, name: str) -> float:
+        """Return the value of a parameter at which its effect has no influence.
+
+        A dimensional value follows Froude's law from the reference hull to the vessel.
+
+        Args:
+            effect: Name of an effect of this fit.
+            name: Name of one of its fitted parameters.
+        """
+        return self.free[self._index(effect, name)].mean
+
+    def _index(self, effect: str, name: str) -> int:
+        """Place of a parameter of an effect among the free parameters."""
+        names = [("" if f.relative else f.effect, f.name) for f in self.free]
+        return names.index((effect, name))
 
 
 class Priors(NamedTuple):
@@ -304,15 +319,15 @@ class Problem:
             target = self._target(effect, name)
             if target is None:
                 continue
-            usual = param.spread * self.scale(effect, name)
+            scale = self.scale(effect, name)
             low, high = self._bounds(param)
             free.append(
                 FreeParameter(
                     effect.name,
                     name,
                     target.at,
-                    mean=param.inactive_value,
-                    sd=self.spreads.get(effect.name, usual),
+                    mean=param.inactive_value * scale,
+                    sd=self.spreads.get(effect.name, param.spread * scale),
                     low=low,
                     high=high,
                     searched=type(effect).random,

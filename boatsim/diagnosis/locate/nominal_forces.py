@@ -119,3 +119,39 @@ def coefficient_forces(problem: Problem, fit: Fit, mapped: MappedRecording, stat
         doubled = problem.values(mapped, fit.free, ones + unit)
         parts[j] = body_forces(mapped, states, held, doubled) - base
     return parts
+
+
+def parameter_forces(problem: Problem, fit: Fit, mapped: MappedRecording, states: Array) -> Array:
+    """Return how the force of a fitted vessel model along a recording changes by each parameter.
+
+    Stochastic forces and errors of instruments exert no force along a given motion, so that their
+    parameters have none.
+
+    Args:
+        problem: The estimation problem.
+        fit: Fit of the vessel model with some candidate effects.
+        mapped: The mapped recording.
+        states: Smoothed states (N, 2 NQ).
+
+    Returns:
+        Forces (F, N, axes) of the F free parameters per prior standard deviation [N, N m].
+    """
+    step = problem.config.fit.derivative_step
+    states = np.ascontiguousarray(states)
+    values = problem.values(mapped, fit.free, fit.theta)
+    held = actuator_states(mapped, fit.effects, values)
+    base = body_forces(mapped, states, held, values, fit.effects)
+    parts = np.empty((len(fit.free), *base.shape))
+    for j, parameter in enumerate(fit.free):
+        theta = fit.theta.copy()
+        change = step * parameter.sd
+        if theta[j] + change > parameter.high:
+            change = -change
+        theta[j] += change
+        values = problem.values(mapped, fit.free, theta)
+        own = held
+        if not parameter.relative:  # it may change an actuator
+            own = actuator_states(mapped, fit.effects, values)
+        changed = body_forces(mapped, states, own, values, fit.effects)
+        parts[j] = (changed - base) * (parameter.sd / change)
+    return parts

@@ -15,8 +15,9 @@ from scipy.special import chdtrc
 
 from boatsim.diagnosis.config import LocateConfig
 from boatsim.diagnosis.filter import MappedRecording, axes_of
-from boatsim.diagnosis.locate.smoothing import latent_force, separate_information
-from boatsim.diagnosis.problem import Fit, Problem
+from boatsim.diagnosis.locate.nominal_forces import parameter_forces
+from boatsim.diagnosis.locate.smoothing import information_beside, latent_force
+from boatsim.diagnosis.problem import Fit, Problem, priors_of
 from boatsim.physics.base import Array
 
 # share of the largest information on an axis below which a feature is ignored as rounding
@@ -65,6 +66,27 @@ class Structure:
         return not self.goes_with.startswith((CONSTANT, SINCE_START, WITHIN, *PLACES.values()))
 
 
+@dataclass
+class _Information:
+    """What recordings tell of the factor of a feature."""
+
+    own: float  # Fisher information of the factor alone
+    score: float
+    shared: Array  # (F,) Fisher information that it shares with the fitted parameters
+
+    def gain(self, parameters: Array, scores: Array, least_share: float) -> float:
+        """Return the log likelihood that the feature gains beside the fitted parameters [nats].
+
+        Args:
+            parameters: Fisher information (F, F) of the parameters, with that of their prior.
+            scores: Scores (F,) of the parameters.
+            least_share: Share of its information that the parameters cannot replace, at least.
+        """
+        weights = np.linalg.solve(parameters, self.shared)
+        left = max(self.own - float(self.shared @ weights), least_share * self.own)
+        return 0.5 * (self.score - float(scores @ weights)) ** 2 / left
+
+
 def find_structure(problem: Problem, fit: Fit) -> Structure:
     """Return the quantity with which the force that a fit leaves unexplained correlates most.
 
@@ -72,32 +94,62 @@ def find_structure(problem: Problem, fit: Fit) -> Structure:
 
     Args:
         problem: The estimation problem.
-        fit: Fit of the vessel model.
+        fit: Fit of the vessel model to the recordings of the problem.
     """
+    # at the maximum of the likelihood with its prior the scores of the parameters are zero
+    prior: Array = np.eye(len(fit.free))
+    return _structure(problem, fit, prior, fitted=True)
+
+
+def find_structure_held_out(problem: Problem, fit: Fit) -> Structure:
+    """Return the same as `find_structure` of recordings to which nothing was fitted.
+
+    The parameters may differ from the fit by their posterior uncertainty.
+
+    Args:
+        problem: The estimation problem on held-out recordings.
+        fit: Fit of the vessel model to other recordings.
+    """
+    sd = priors_of(fit.free).sd
+    precision = np.asarray(np.linalg.inv(fit.covariance / np.outer(sd, sd)), dtype=float)
+    return _structure(problem, fit, precision, fitted=False)
+
+
+def _structure(problem: Problem, fit: Fit, precision: Array, fitted: bool) -> Structure:
+    """The structure, with the prior information (F, F) of the parameters in prior sds."""
     config = problem.config.locate
     limit = config.disturbance_factor * problem.ambient.force
     levels = replace(fit.levels, force=np.minimum(fit.levels.force, limit))
     axes = axes_of(problem.program.vessel)
-    information = defaultdict[tuple[str, str], float](float)
-    scores = defaultdict[tuple[str, str], float](float)
+    none = np.zeros(len(precision))
+    sums = defaultdict[tuple[str, str], _Information](lambda: _Information(0.0, 0.0, none))
+    information, scores = precision, none
     for mapped in problem.recordings:
         force = latent_force(problem, fit, mapped, levels)
         states = np.ascontiguousarray(force.states)
         named = dict(features(mapped, states, levels.time_constant, config))
         values = np.column_stack(list(named.values()))
         shapes = np.einsum("na,kb->nkba", values, np.eye(len(axes)))
-        known, score = separate_information(shapes.reshape(*force.mean.shape, -1), force)
+        parameters = np.moveaxis(parameter_forces(problem, fit, mapped, states), 0, 2)
+        found = information_beside(shapes.reshape(*force.mean.shape, -1), parameters, force)
+        information = information + found.others
+        scores = scores + found.others_score
         keys = [(axis, name) for axis in axes for name in named]
-        for key, i, s in zip(keys, known.tolist(), score.tolist(), strict=True):
-            information[key] += i
-            scores[key] += s
+        for k, key in enumerate(keys):
+            total = sums[key]
+            sums[key] = _Information(
+                total.own + float(found.own[k]),
+                total.score + float(found.score[k]),
+                total.shared + found.shared[k],
+            )
+    if fitted:
+        scores = none
     gains = {}
     for axis in axes:
-        own = {key: i for key, i in information.items() if key[0] == axis}
-        largest = max(own.values())
-        for key, i in own.items():
-            if i > MIN_FEATURE_INFORMATION * largest:
-                gains[key] = 0.5 * scores[key] ** 2 / i
+        largest = max(one.own for key, one in sums.items() if key[0] == axis)
+        for key, one in sums.items():
+            if key[0] == axis and one.own > MIN_FEATURE_INFORMATION * largest:
+                gains[key] = one.gain(information, scores, config.structure_least_share)
     if not gains:
         return Structure(axes[0], CONSTANT, 0.0, 1.0, 0, False)
     axis, name = max(gains, key=lambda key: gains[key])
@@ -124,6 +176,8 @@ def features(
     """
     for source in (
         _speed_features(mapped, states),
+        _inclined_damping_features(mapped, states),
+        _memory_features(mapped, states, time_constant),
         _command_features(mapped, states, time_constant),
         _heading_features(mapped, states),
         _place_features(mapped, states),
@@ -156,6 +210,34 @@ def _speed_features(mapped: MappedRecording, states: Array) -> Iterator[tuple[st
         yield f"the cube of {name}", w**3
     for (first, a), (second, b) in combinations(speeds.items(), 2):
         yield f"{first} times {second}", a * b
+
+
+def _inclined_damping_features(
+    mapped: MappedRecording, states: Array
+) -> Iterator[tuple[str, Array]]:
+    """Rates of roll and pitch times their angle, as of damping that depends on the inclination."""
+    axes = axes_of(mapped.program.vessel)
+    for name, rate in _speeds(mapped, states).items():
+        axis = name.removesuffix(" rate")
+        if axis not in PLACES or axis not in ROTATIONS:
+            continue
+        angle = states[:, axes.index(axis)]
+        yield f"{name} times {PLACES[axis]}", rate * angle
+        yield f"{name} times the size of {PLACES[axis]}", rate * np.abs(angle)
+        yield f"{name} times the side of {PLACES[axis]}", rate * np.sign(angle)
+
+
+def _memory_features(
+    mapped: MappedRecording, states: Array, time_constant: float
+) -> Iterator[tuple[str, Array]]:
+    """Earlier speeds and inclinations, as in a force with memory: a wake, or water in a tank."""
+    axes = axes_of(mapped.program.vessel)
+    signals = _speeds(mapped, states)
+    for axis, name in PLACES.items():
+        if axis in axes and axis in ROTATIONS:
+            signals[name.removeprefix("the ")] = states[:, axes.index(axis)]
+    for name, values in signals.items():
+        yield f"the delayed {name}", _low_pass(values, mapped.times, time_constant)
 
 
 def _command_features(

@@ -5,6 +5,7 @@ G_i ... G_j-1 P_j, where P are the covariances and G the gains of the Rauch-Tung
 """
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -176,6 +177,38 @@ def separate_information(shapes: Array, force: LatentForce) -> tuple[Array, Arra
     weights, seen = _weighted(shapes, force)
     score = np.einsum("nka,nk->a", weights, force.mean)
     return np.einsum("nka,nka->a", weights, seen), score
+
+
+class SharedInformation(NamedTuple):
+    """Fisher information and score of shapes of a missing force, and of others beside them."""
+
+    own: Array  # (S,) information of each shape alone
+    score: Array  # (S,)
+    shared: Array  # (S, F) information that they share with the others
+    others: Array  # (F, F) information of the others
+    others_score: Array  # (F,)
+
+
+def information_beside(shapes: Array, others: Array, force: LatentForce) -> SharedInformation:
+    """Return the information about shapes of a missing force, each alone, beside other shapes.
+
+    Args:
+        shapes: Shapes (N, k, S), each of which is tested alone.
+        others: Shapes (N, k, F) that act at the same time, for example of fitted parameters.
+        force: Smoothed latent force.
+
+    Returns:
+        Information and scores; see `joint_information`.
+    """
+    weights, seen = _weighted(shapes, force)
+    other_weights, other_seen = _weighted(others, force)
+    return SharedInformation(
+        np.einsum("nka,nka->a", weights, seen),
+        np.einsum("nka,nk->a", weights, force.mean),
+        np.einsum("nka,nkb->ab", weights, other_seen),
+        np.einsum("nka,nkb->ab", other_weights, other_seen),
+        np.einsum("nka,nk->a", other_weights, force.mean),
+    )
 
 
 def _weighted(shapes: Array, force: LatentForce) -> tuple[Array, Array]:

@@ -78,7 +78,7 @@ def decide(
         candidates: Number of candidates that were tested.
     """
     config = problem.config
-    of_log = log_signs(problem, ranking)
+    of_log = log_signs(problem, ranking, held_out)
     signs = consistency_of(problem, ranking.best, ranking.without, held_out)
     alone = errors_of_each(problem, ranking.best, ranking.without, held_out)
     judgements = []

@@ -1,11 +1,15 @@
 """Signs of a whole log that a cause outside the candidates acts."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
+from boatsim.diagnosis.filter import MappedRecording
+from boatsim.diagnosis.locate.residual_structure import find_structure_held_out
+from boatsim.diagnosis.noise_levels import fit_noise
 from boatsim.diagnosis.problem import Fit, Problem
-from boatsim.diagnosis.search.evidence import unknown_threshold
+from boatsim.diagnosis.search.evidence import unexplained_evidence, unknown_threshold
 from boatsim.diagnosis.search.ranking import Ranking
 
 
@@ -23,6 +27,9 @@ class LogSigns:
             commands, place or time [nats].
         effects_gain: Evidence that all identified effects gain together [nats].
         effects: Number of identified effects.
+        held_out_unexplained: The same share as `unexplained` on held-out recordings, to which no
+            parameter was fitted.
+        held_out_structure: Evidence of the largest such dependence on held-out recordings [nats].
     """
 
     coefficient_shift: float
@@ -31,13 +38,15 @@ class LogSigns:
     structure_gain: float
     effects_gain: float
     effects: int
+    held_out_unexplained: float = 0.0
+    held_out_structure: float = 0.0
 
 
 # where nothing was fitted
 NO_SIGNS = LogSigns(0.0, 1.0, 0.0, 0.0, 0.0, 0)
 
 
-def log_signs(problem: Problem, ranking: Ranking) -> LogSigns:
+def log_signs(problem: Problem, ranking: Ranking, held_out: Sequence[MappedRecording]) -> LogSigns:
     """Return statistics that indicate a cause which no candidate effect describes.
 
     They are computed from the recordings as a whole, after the selection of effects.
@@ -45,16 +54,35 @@ def log_signs(problem: Problem, ranking: Ranking) -> LogSigns:
     Args:
         problem: The estimation problem: recordings, vessel model, candidate effects and priors.
         ranking: Result of the selection of effects.
+        held_out: Held-out recordings, which no fit has used.
     """
     best = ranking.best
+    threshold = unknown_threshold(problem.config.select, ranking.explained)
+    remains, structure = _of_held_out(problem, best, held_out)
     return LogSigns(
         _coefficient_shift(best),
         float(np.max(best.levels.force / problem.ambient.force)),
-        float(ranking.left_over / unknown_threshold(problem.config.select, ranking.explained)),
+        float(ranking.left_over / threshold),
         float(ranking.structure.gain),
         float(best.evidence - ranking.recalibrated.evidence),
         len(ranking.named),
+        remains / threshold,
+        structure,
     )
+
+
+def _of_held_out(
+    problem: Problem, best: Fit, held_out: Sequence[MappedRecording]
+) -> tuple[float, float]:
+    """Evidence of an unmodelled force on held-out recordings, and of its structure [nats]."""
+    if not held_out:
+        return 0.0, 0.0
+    unseen = problem.on(held_out)
+    fitted = fit_noise(unseen, best)
+    remains = unexplained_evidence(unseen, fitted)
+    if not np.isfinite(remains):
+        return 0.0, 0.0
+    return float(remains), float(find_structure_held_out(unseen, fitted).gain)
 
 
 def _coefficient_shift(fit: Fit) -> float:

@@ -382,14 +382,19 @@ def _parameter(best: Fit, effect: Effect, name: str, config: AnswerConfig) -> Pa
         entry["value"] = wrap(value)
     free = _fitted_parameters(best, effect)[name]
     for end in (free.low, free.high):
-        if end != param.inactive_value and abs(value - end) <= config.at_bound * abs(end):
+        if end != free.mean and abs(value - end) <= config.at_bound * abs(end):
             entry["at_bound"] = True
     return entry
 
 
 def _candidates(ranking: Ranking) -> list[CandidateEntry]:
-    """Return each candidate alone, best first, with its probability against the others and none."""
-    names = sorted(ranking.first, key=lambda n: -ranking.first[n])
+    """Return each candidate alone, best first, with its probability against the others and none.
+
+    A candidate with which the simulation diverges at every starting point has no evidence, and is
+    omitted.
+    """
+    finite = {name: gain for name, gain in ranking.first.items() if np.isfinite(gain)}
+    names = sorted(finite, key=lambda n: -finite[n])
     gains = [0.0]
     for name in names:
         gains.append(ranking.first[name])
@@ -418,6 +423,6 @@ def _limits(problem: Problem, fitted: Fit, name: str) -> dict[str, float]:
             continue
         value, sd = fitted.value(name, f.name)
         if sd < config.limit_share * f.sd:
-            limit = abs(value - params[f.name].inactive_value) + config.limit_quantile * sd
+            limit = abs(value - f.mean) + config.limit_quantile * sd
             limits[parameter_key(f.name, params[f.name].unit)] = float(f"{limit:.3g}")
     return limits

@@ -95,7 +95,7 @@ def _fitted(best: Fit, effect: Effect) -> list[FreeParameter]:
 def _exceeds_sd(problem: Problem, best: Fit, effect: Effect, name: str) -> bool:
     value, _ = best.value(effect.name, name)
     sd = reported_sd(best, effect, name, problem.config.answer)
-    return abs(value - type(effect).params()[name].inactive_value) >= sd
+    return abs(value - best.without_effect(effect.name, name)) >= sd
 
 
 def _has_known_size(problem: Problem, best: Fit, effect: Effect) -> bool:
@@ -169,12 +169,13 @@ def _refined_number(problem: Problem, best: Fit, effect: Effect, name: str) -> _
             sd *= abs(change.weight)
         unit = _unit(problem, change.owner, change.key)
         return _Number(words, float(recording.values[at]), float(after[at]), sd, unit)
+    inactive = best.without_effect(effect.name, name)
     own = problem.program.vessel.effect(type(effect).type_name())
     if own is None or not effect.name.startswith(FURTHER):
-        return _Number(words, param.inactive_value, value, sd, param.unit)
+        return _Number(words, inactive, value, sd, param.unit)
     # The vessel has this effect already: the new one adds to its number
     at = problem.index_of_parameter(own.name, name)
-    total = float(after[at]) + value - param.inactive_value
+    total = float(after[at]) + value - inactive
     return _Number(words, float(recording.values[at]), total, sd, param.unit)
 
 

@@ -38,7 +38,7 @@ def reported_sd(best: Fit, effect: Effect, name: str, config: AnswerConfig) -> f
     param = kind.params()[name]
     if name in (kind.strength or kind.params()):
         # some laws are absent at an infinite value
-        strength = min(abs(value - param.inactive_value), abs(value) or np.inf)
+        strength = min(abs(value - best.without_effect(effect.name, name)), abs(value) or np.inf)
         return float(np.hypot(sd, config.law_error * strength))
     if param.unit == "rad":
         return float(np.hypot(sd, config.law_error))

@@ -142,6 +142,8 @@ class LogSignsEntry(TypedDict):
     structure_gain: float  # [nats]
     effects_gain: float  # [nats]
     effects: int
+    held_out_unexplained: float  # the share `unexplained` on held-out recordings
+    held_out_structure: float  # [nats]
 
 
 class SignsEntry(TypedDict):

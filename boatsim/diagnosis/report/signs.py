@@ -45,6 +45,8 @@ def signs_entry(decision: Decision) -> SignsEntry:
             "structure_gain": round(log.structure_gain, 3),
             "effects_gain": round(log.effects_gain, 2),
             "effects": log.effects,
+            "held_out_unexplained": round(log.held_out_unexplained, 4),
+            "held_out_structure": round(log.held_out_structure, 3),
         },
     }
 

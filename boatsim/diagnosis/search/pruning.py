@@ -187,11 +187,11 @@ def differs_from_zero(sets: CandidateSets, best: Fit, name: str) -> bool:
     sure = config.certainty_stochastic if kind.random else config.certainty
     for parameter in strength:
         value, sd = best.value(name, parameter)
-        if abs(value - params[parameter].inactive_value) > sure * sd:
+        if abs(value - own[parameter].mean) > sure * sd:
             return True
     if kind.random:
         return False
-    inactive = {n: params[n].inactive_value for n in strength}
+    inactive = {n: own[n].mean for n in strength}
     if _jointly_differs_from_zero(best, name, inactive, sure):
         return True
     for parameter, free in own.items():

@@ -176,12 +176,10 @@ def starting_points(problem: Problem, effect: Effect) -> list[dict[str, float]]:
     kind = type(effect)
     default = {}
     for name, p in kind.params().items():
-        step = problem.config.select.screening_start * p.spread * problem.scale(effect, name)
-        default[name] = (
-            p.inactive_value + step
-            if p.inactive_value + step <= p.high
-            else p.inactive_value - step
-        )
+        scale = problem.scale(effect, name)
+        inactive = p.inactive_value * scale
+        step = problem.config.select.screening_start * p.spread * scale
+        default[name] = inactive + step if inactive + step <= p.high else inactive - step
     specified = []
     for start in kind.starts:
         specified.append({n: x * problem.scale(effect, n) for n, x in start.items()})
