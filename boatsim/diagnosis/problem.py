@@ -111,7 +111,7 @@ class Fit:
         return float(self.theta[i]), float(np.sqrt(self.covariance[i, i]))
 
     def without_effect(self, effect: str, name: str) -> float:
-        """Return the value of a parameter at which its effect has no influence.
+        """Return the value of a parameter without its effect; for a limit, the usual value.
 
         A dimensional value follows Froude's law from the reference hull to the vessel.
 
@@ -326,7 +326,7 @@ class Problem:
                     effect.name,
                     name,
                     target.at,
-                    mean=param.inactive_value * scale,
+                    mean=param.prior_mean * scale,
                     sd=self.spreads.get(effect.name, param.spread * scale),
                     low=low,
                     high=high,

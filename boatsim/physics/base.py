@@ -29,7 +29,7 @@ from boatsim.physics.param import (
     replacement_parameter,
     shift_parameter,
 )
-from boatsim.physics.presets import preset_effect
+from boatsim.physics.presets import ParameterChanges, preset_effect
 from boatsim.physics.signals import (
     AXES,
     Array,
@@ -84,6 +84,7 @@ __all__ = [
     "motion",
     "replacement_parameter",
     "param",
+    "ParameterChanges",
     "preset_effect",
     "shift_parameter",
     "snake_case",

@@ -36,6 +36,15 @@ class Param(NamedTuple):
     how: str = "sets"  # or "scales" or "shifts": how the parameter changes the released numbers
     # plausible range of a fit, in the unit of `spread`
     within: tuple[float, float] = (-math.inf, math.inf)
+    # value about which a fit expects the parameter, in the unit of `spread`; None: without effect
+    usual: float | None = None
+
+    @property
+    def prior_mean(self) -> float:
+        """Prior mean of a fit, for a 1.2 m boat of 4.6 kg; scaled by Froude's law."""
+        if self.usual is None:
+            return self.inactive_value
+        return self.usual
 
 
 def param(

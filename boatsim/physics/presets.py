@@ -21,6 +21,8 @@ class ParameterChanges(TypedDict, total=False):
     spread: float
     axis: str
     inactive_value: float
+    calibrates: str
+    usual: float
 
 
 def preset_effect(
@@ -56,7 +58,8 @@ def preset_effect(
             continue
         nominal = defaults[key]
         if key in frees:
-            known = known._replace(fit=True, calibrates="", **frees[key])
+            changes: ParameterChanges = {"calibrates": "", **frees[key]}
+            known = known._replace(fit=True, **changes)
             nominal = known.inactive_value
         elif key in fixed:
             nominal = fixed[key]

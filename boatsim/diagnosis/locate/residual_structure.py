@@ -68,7 +68,7 @@ class Structure:
 
 @dataclass
 class _Information:
-    """What recordings tell of the factor of a feature."""
+    """Fisher information and score of the factor of a feature, over all recordings."""
 
     own: float  # Fisher information of the factor alone
     score: float
@@ -96,9 +96,9 @@ def find_structure(problem: Problem, fit: Fit) -> Structure:
         problem: The estimation problem.
         fit: Fit of the vessel model to the recordings of the problem.
     """
-    # at the maximum of the likelihood with its prior the scores of the parameters are zero
-    prior: Array = np.eye(len(fit.free))
-    return _structure(problem, fit, prior, fitted=True)
+    prior = priors_of(fit.free)
+    slope = (prior.mean - fit.theta) / prior.sd
+    return _structure(problem, fit, np.eye(len(fit.free)), slope)
 
 
 def find_structure_held_out(problem: Problem, fit: Fit) -> Structure:
@@ -112,18 +112,25 @@ def find_structure_held_out(problem: Problem, fit: Fit) -> Structure:
     """
     sd = priors_of(fit.free).sd
     precision = np.asarray(np.linalg.inv(fit.covariance / np.outer(sd, sd)), dtype=float)
-    return _structure(problem, fit, precision, fitted=False)
+    return _structure(problem, fit, precision, np.zeros(len(sd)))
 
 
-def _structure(problem: Problem, fit: Fit, precision: Array, fitted: bool) -> Structure:
-    """The structure, with the prior information (F, F) of the parameters in prior sds."""
+def _structure(problem: Problem, fit: Fit, precision: Array, slope: Array) -> Structure:
+    """The structure beside the parameters, all in prior standard deviations.
+
+    Args:
+        problem: The estimation problem.
+        fit: Fit of the vessel model.
+        precision: Prior information (F, F) of the parameters.
+        slope: Derivative (F,) of the log prior density.
+    """
     config = problem.config.locate
     limit = config.disturbance_factor * problem.ambient.force
     levels = replace(fit.levels, force=np.minimum(fit.levels.force, limit))
     axes = axes_of(problem.program.vessel)
     none = np.zeros(len(precision))
     sums = defaultdict[tuple[str, str], _Information](lambda: _Information(0.0, 0.0, none))
-    information, scores = precision, none
+    information, scores = precision, slope
     for mapped in problem.recordings:
         force = latent_force(problem, fit, mapped, levels)
         states = np.ascontiguousarray(force.states)
@@ -142,8 +149,6 @@ def _structure(problem: Problem, fit: Fit, precision: Array, fitted: bool) -> St
                 total.score + float(found.score[k]),
                 total.shared + found.shared[k],
             )
-    if fitted:
-        scores = none
     gains = {}
     for axis in axes:
         largest = max(one.own for key, one in sums.items() if key[0] == axis)

@@ -21,7 +21,7 @@ from boatsim.diagnosis.fit import jacobian
 from boatsim.diagnosis.locate.residual_structure import find_structure
 from boatsim.diagnosis.locate.smoothing import latent_force
 from boatsim.diagnosis.problem import FilterPasses, Fit, Problem, priors_of
-from boatsim.physics.base import Array
+from boatsim.physics.base import Array, Effect
 
 # prior sd of a factor, so that a part without information does not make the equations singular
 FACTOR_SD = 100.0
@@ -138,8 +138,9 @@ def consistency_of(
     unseen = _linearised(unseen_problem, best) if held_out else None
     found = {}
     for name, without in without_each.items():
-        direction = _direction(best, fitted.jacobian, name)
-        nuisance = _nuisance(best, fitted.jacobian, name)
+        size = _change_by_factor(best, problem.candidates[name])
+        direction = _direction(best, fitted.jacobian, name, size)
+        nuisance = _nuisance(best, fitted.jacobian, name, size)
         times = _factors(fitted.whitened, direction, nuisance, parts)
         runs = _factors(fitted.whitened, direction, nuisance, _recordings(problem))
         worst, quantity = Variation(0.0, 0.0, 0), ""
@@ -149,7 +150,7 @@ def consistency_of(
                 worst, quantity = variation, words
         unseen_factor, unseen_gain = Factor(0.0, UNDETERMINED), 0.0
         if unseen is not None:
-            unseen_factor = _held_out_factor(best, fitted, unseen, name)
+            unseen_factor = _held_out_factor(best, fitted, unseen, name, size)
             unseen_gain = _gain(unseen_problem, best, without)
         found[name] = Consistency(
             tuple(map(Factor, runs[0].tolist(), np.sqrt(np.diag(runs[1])).tolist())),
@@ -185,16 +186,28 @@ def _size(fit: Fit, name: str) -> Array:
     return (fit.theta[own] - priors.mean[own]) / priors.sd[own]
 
 
-def _direction(fit: Fit, J: Array, name: str) -> Array:
+def _change_by_factor(fit: Fit, effect: Effect) -> Array:
+    """(P,) change of an effect's own parameters by a factor of its size, in prior sds.
+
+    The size of an effect with a limit, as of a rate, is the inverse of that limit.
+    """
+    own = _own(fit, effect.name)
+    change = _size(fit, effect.name)
+    for k, place in enumerate(own):
+        if fit.free[place].name in type(effect).limits:
+            change[k] = -fit.theta[place] / fit.free[place].sd
+    return change
+
+
+def _direction(fit: Fit, J: Array, name: str, size: Array) -> Array:
     """(rows,) derivative of the whitened errors by a common factor of an effect's parameters."""
-    return np.asarray(J[:, _own(fit, name)] @ _size(fit, name))
+    return np.asarray(J[:, _own(fit, name)] @ size)
 
 
-def _nuisance(fit: Fit, J: Array, name: str) -> Array:
+def _nuisance(fit: Fit, J: Array, name: str, size: Array) -> Array:
     """(rows, F - 1) derivatives by all other parameters and by the other directions of its own."""
     own = _own(fit, name)
     others = np.delete(J, own, axis=1)
-    size = _size(fit, name)
     length = float(np.linalg.norm(size))
     if len(own) < 2 or length == 0.0:
         return others
@@ -253,9 +266,11 @@ def _variation(factors: Array, covariance: Array) -> Variation:
     return Variation(float(np.sqrt(excess)), chi_square, dof)
 
 
-def _held_out_factor(best: Fit, fitted: _Linearised, unseen: _Linearised, name: str) -> Factor:
+def _held_out_factor(
+    best: Fit, fitted: _Linearised, unseen: _Linearised, name: str, size: Array
+) -> Factor:
     """Return the factor of an effect on held-out recordings, given the fit to the others."""
-    direction = _direction(best, unseen.jacobian, name)
+    direction = _direction(best, unseen.jacobian, name, size)
     columns = np.hstack([unseen.jacobian, direction[:, None]])
     if not np.isfinite(columns).all() or not np.isfinite(unseen.whitened).all():
         return Factor(0.0, UNDETERMINED)

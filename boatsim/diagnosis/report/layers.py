@@ -10,6 +10,7 @@ from boatsim.diagnosis.problem import Fit, FreeParameter, Problem
 from boatsim.diagnosis.report.formatting import format_parameter, join_words, words_of_name
 from boatsim.diagnosis.report.parameters import parameter_key, reported_sd
 from boatsim.diagnosis.report.schema import EffectEntry, PossibleEntry, RefinedEntry
+from boatsim.diagnosis.significance import distance_from_zero, jointly_differ_from_zero
 from boatsim.physics.base import AXES, CoefficientChange, CoefficientRelease, Effect
 from boatsim.physics.vessel import number_sd, sd_of_refined_numbers
 
@@ -93,15 +94,15 @@ def _fitted(best: Fit, effect: Effect) -> list[FreeParameter]:
 
 
 def _exceeds_sd(problem: Problem, best: Fit, effect: Effect, name: str) -> bool:
-    value, _ = best.value(effect.name, name)
     sd = reported_sd(best, effect, name, problem.config.answer)
-    return abs(value - best.without_effect(effect.name, name)) >= sd
+    return distance_from_zero(best, effect, name) >= sd
 
 
 def _has_known_size(problem: Problem, best: Fit, effect: Effect) -> bool:
-    """Whether a strength exceeds its standard deviation, or another parameter is well determined.
+    """Whether strengths exceed their standard deviation, or another parameter is well determined.
 
-    A parameter that has no meaning without the effect shows that it acts, as in the selection.
+    Strengths may do so alone or together. A parameter that has no meaning without the effect shows
+    that it acts, as in the selection.
     """
     strengths = _strengths(best, effect)
     if not strengths:
@@ -111,6 +112,8 @@ def _has_known_size(problem: Problem, best: Fit, effect: Effect) -> bool:
             return True
     if type(effect).random:
         return False
+    if jointly_differ_from_zero(best, effect.name, [f.name for f in strengths], certainty=1.0):
+        return True
     for free in _fitted(best, effect):
         sd = best.value(effect.name, free.name)[1]
         if free not in strengths and sd < problem.config.select.determined_share * free.sd:

@@ -4,6 +4,7 @@ import numpy as np
 
 from boatsim.diagnosis.config import AnswerConfig
 from boatsim.diagnosis.problem import Fit
+from boatsim.diagnosis.significance import distance_from_zero
 from boatsim.physics.base import Effect
 
 
@@ -37,8 +38,7 @@ def reported_sd(best: Fit, effect: Effect, name: str, config: AnswerConfig) -> f
     value, sd = best.value(effect.name, name)
     param = kind.params()[name]
     if name in (kind.strength or kind.params()):
-        # some laws are absent at an infinite value
-        strength = min(abs(value - best.without_effect(effect.name, name)), abs(value) or np.inf)
+        strength = min(distance_from_zero(best, effect, name), abs(value) or np.inf)
         return float(np.hypot(sd, config.law_error * strength))
     if param.unit == "rad":
         return float(np.hypot(sd, config.law_error))

@@ -4,7 +4,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.special import chdtri, ndtr
 
 from boatsim.diagnosis.candidates import REORDERED, base_name
 from boatsim.diagnosis.config import DEFAULT, SelectConfig
@@ -19,6 +18,7 @@ from boatsim.diagnosis.search.evidence import (
     unknown_threshold,
 )
 from boatsim.diagnosis.search.forward_selection import select_forward
+from boatsim.diagnosis.significance import distance_from_zero, jointly_differ_from_zero
 
 MOST_TIED = 3  # look-alikes that are reported of an effect
 
@@ -178,7 +178,8 @@ def differs_from_zero(sets: CandidateSets, best: Fit, name: str) -> bool:
         name: Name of one of its effects.
     """
     config = sets.config.select
-    kind = type(sets.problem.candidates[name])
+    effect = sets.problem.candidates[name]
+    kind = type(effect)
     own = {f.name: f for f in best.free if f.effect == name and not f.relative}
     params = kind.params()
     strength = [n for n in own if n in (kind.strength or params)]
@@ -186,40 +187,18 @@ def differs_from_zero(sets: CandidateSets, best: Fit, name: str) -> bool:
         return True
     sure = config.certainty_stochastic if kind.random else config.certainty
     for parameter in strength:
-        value, sd = best.value(name, parameter)
-        if abs(value - own[parameter].mean) > sure * sd:
+        sd = best.value(name, parameter)[1]
+        if distance_from_zero(best, effect, parameter) > sure * sd:
             return True
     if kind.random:
         return False
-    inactive = {n: own[n].mean for n in strength}
-    if _jointly_differs_from_zero(best, name, inactive, sure):
+    if jointly_differ_from_zero(best, name, strength, sure):
         return True
     for parameter, free in own.items():
         narrow = best.value(name, parameter)[1] < config.determined_share * free.sd
         if parameter not in strength and narrow:
             return True
     return False
-
-
-def _jointly_differs_from_zero(
-    best: Fit, name: str, inactive: Mapping[str, float], certainty: float
-) -> bool:
-    """Whether several parameters of an effect together are clearly away from zero effect.
-
-    Recordings may determine a combination of them and none of them alone, such as the difference of
-    two scales. Their squared Mahalanobis distance is compared with the quantile of the chi-square
-    distribution that is as improbable as `certainty` standard deviations of one parameter.
-    """
-    places, offsets = [], []
-    for place, free in enumerate(best.free):
-        if free.effect == name and not free.relative and free.name in inactive:
-            places.append(place)
-            offsets.append(best.theta[place] - inactive[free.name])
-    covariance = best.covariance[np.ix_(places, places)]
-    if len(places) < 2 or not np.isfinite(covariance).all():
-        return False
-    distance = float(np.array(offsets) @ np.linalg.pinv(covariance) @ np.array(offsets))
-    return distance > float(chdtri(len(places), 2.0 * ndtr(-certainty)))
 
 
 def _compare_with_rivals(sets: CandidateSets, best: Fit, name: str) -> IdentifiedEffect:

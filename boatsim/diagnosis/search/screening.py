@@ -177,9 +177,9 @@ def starting_points(problem: Problem, effect: Effect) -> list[dict[str, float]]:
     default = {}
     for name, p in kind.params().items():
         scale = problem.scale(effect, name)
-        inactive = p.inactive_value * scale
+        mean = p.prior_mean * scale
         step = problem.config.select.screening_start * p.spread * scale
-        default[name] = inactive + step if inactive + step <= p.high else inactive - step
+        default[name] = mean + step if mean + step <= p.high else mean - step
     specified = []
     for start in kind.starts:
         specified.append({n: x * problem.scale(effect, n) for n, x in start.items()})

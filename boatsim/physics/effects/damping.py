@@ -9,6 +9,7 @@ from boatsim.physics.base import (
     AXES,
     CoefficientRelease,
     Force,
+    ParameterChanges,
     Wrench,
     factor_parameter,
     param,
@@ -157,20 +158,32 @@ PLAIN = dict.fromkeys(("sway_by_yaw", "yaw_by_sway", "sway_at"), 0.0) | {
     f"{axis}_equal": 1.0 for axis in AXES
 }
 
+
+def growing_damping(word: str, power: int, **spreads: float) -> dict[str, ParameterChanges]:
+    """Return the free parameters of damping that grows with a power of the speed, by axis.
+
+    Args:
+        word: Word for the power, "quadratic" for example.
+        power: The power.
+        spreads: Prior standard deviation of each axis.
+    """
+    frees: dict[str, ParameterChanges] = {}
+    for axis, spread in spreads.items():
+        unit = f"N m s^{power}" if axis in ("roll", "pitch", "yaw") else f"N s^{power}/m^{power}"
+        words = f"{word} {axis} damping"
+        frees[axis] = {"unit": unit, "words": words, "spread": spread, "calibrates": "damping"}
+    return frees
+
+
 QuadraticDamping = preset_effect(
     LinearDamping,
     "QuadraticDamping",
     words="damping grows with the square of the speed",
     shown_by="the same motion at a large and at a small amplitude",
     source=ITTC,
-    frees={
-        "surge": {"unit": "N s^2/m^2", "words": "quadratic surge damping", "spread": 4.0},
-        "sway": {"unit": "N s^2/m^2", "words": "quadratic sway damping", "spread": 40.0},
-        "yaw": {"unit": "N m s^2", "words": "quadratic yaw damping", "spread": 1.5},
-        "roll": {"unit": "N m s^2", "words": "quadratic roll damping", "spread": 0.1},
-        "heave": {"unit": "N s^2/m^2", "words": "quadratic heave damping", "spread": 40.0},
-        "pitch": {"unit": "N m s^2", "words": "quadratic pitch damping", "spread": 1.5},
-    },
+    frees=growing_damping(
+        "quadratic", 2, surge=4.0, sway=40.0, yaw=1.5, roll=0.1, heave=40.0, pitch=1.5
+    ),
     fixed=PLAIN | {f"{axis}_exponent": 2.0 for axis in AXES},
 )
 
@@ -180,14 +193,9 @@ CubicDamping = preset_effect(
     words="damping grows with the cube of the speed",
     shown_by="the same motion at a large and at a small amplitude",
     source=ITTC,
-    frees={
-        "surge": {"unit": "N s^3/m^3", "words": "cubic surge damping", "spread": 4.0},
-        "sway": {"unit": "N s^3/m^3", "words": "cubic sway damping", "spread": 40.0},
-        "yaw": {"unit": "N m s^3", "words": "cubic yaw damping", "spread": 1.5},
-        "roll": {"unit": "N m s^3", "words": "cubic roll damping", "spread": 0.003},
-        "heave": {"unit": "N s^3/m^3", "words": "cubic heave damping", "spread": 40.0},
-        "pitch": {"unit": "N m s^3", "words": "cubic pitch damping", "spread": 1.5},
-    },
+    frees=growing_damping(
+        "cubic", 3, surge=4.0, sway=40.0, yaw=1.5, roll=0.003, heave=40.0, pitch=1.5
+    ),
     fixed=PLAIN | {f"{axis}_exponent": 3.0 for axis in AXES},
 )
 
@@ -210,22 +218,28 @@ class DampingError(CoefficientRelease):
         "linear_damping.surge|surge_drag.linear|approach_balance.damping|mmg_hull.R_0"
         "|abkowitz_hull.X_u|mmg_low_speed_hull.X_0F",
         "surge_drag.quadratic",
+        "quadratic_damping.surge",
         words="factor on the surge damping",
         axis="surge",
     )
     sway_factor: float = factor_parameter(
         "linear_damping.sway|linear_hull.sway|mmg_hull.Y_v|abkowitz_hull.Y_v|mmg_low_speed_hull.C_D"
         "|cross_flow_drag.section_drag_coefficient",
+        "quadratic_damping.sway",
         words="factor on the sway damping",
         axis="sway",
     )
     yaw_factor: float = factor_parameter(
         "linear_damping.yaw|linear_hull.yaw|mmg_hull.N_r|abkowitz_hull.N_r|mmg_low_speed_hull.N_r",
+        "quadratic_damping.yaw",
         words="factor on the yaw damping",
         axis="yaw",
     )
     roll_factor: float = factor_parameter(
-        "linear_damping.roll|roll_damping.roll", words="factor on the roll damping", axis="roll"
+        "linear_damping.roll|roll_damping.roll",
+        "quadratic_damping.roll",
+        words="factor on the roll damping",
+        axis="roll",
     )
 
 

@@ -19,7 +19,8 @@ from boatsim.physics.effects.servo import NONE, approach_command, ramp_time
 
 SAME = 1e-9  # share of a ramp: a smaller distance to zero counts as zero
 NEVER = 1e6  # [1/s] rate without a limit
-INSTANT = 2.0  # [rad/s] 115 deg/s; a faster steering counts as immediate
+INSTANT = 50.0  # [rad/s] upper bound of the rate of a steering; it counts as immediate
+USUAL = 2.0  # [rad/s] on the reference hull, 115 deg/s; about which a fit expects it
 
 
 @njit(inline="always")
@@ -119,16 +120,18 @@ SteeringRateLimit = preset_effect(
     shown_by="hard-over steering reversals",
     source="J. van Amerongen, Adaptive Steering of Ships, PhD, Delft 1982 (steering machine)",
     acts_on="angle",
+    limits=("rate",),
     ruled_out_by={"steering_measured": (True,)},
     starts=({"rate": 0.1}, {"rate": 0.4}, {"rate": 1.2}),
     frees={
         "rate": {
             "low": 0.0005,
-            "high": 50.0,
+            "high": INSTANT,
             "unit": "rad/s",
             "words": "largest rate of turn of the steering",
             "spread": 2.0,
             "inactive_value": INSTANT,
+            "usual": USUAL,
         },
         "lag": {"spread": 0.3},
     },

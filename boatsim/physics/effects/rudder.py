@@ -134,6 +134,7 @@ class RudderStall(CoefficientRelease):
     source: ClassVar[str] = (
         "L. F. Whicker, L. F. Fehlner, DTMB report 933, 1958: lift of low aspect ratio surfaces"
     )
+    limits: ClassVar = ("angle",)
     thresholds: ClassVar = {"angle": (0.3, 0.45, 0.6, 0.75, 0.9)}
 
     angle: float = replacement_parameter(

@@ -55,6 +55,8 @@ class Effect(CheckedParameters):
     refines: ClassVar[str] = ""
     # parameters of its strength, zero if absent; empty: all fitted parameters
     strength: ClassVar[tuple[str, ...]] = ()
+    # parameters that limit a quantity: the effect is absent at an infinite value of them
+    limits: ClassVar[tuple[str, ...]] = ()
     # fact in the notes of a recording -> parameters that it gives
     facts: ClassVar[Mapping[str, tuple[str, ...]]] = {}
     # starting points of a fit; empty: a tenth of each spread
