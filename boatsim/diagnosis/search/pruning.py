@@ -76,7 +76,19 @@ def prune(sets: CandidateSets, best: Fit) -> tuple[Fit, tuple[IdentifiedEffect, 
         removed = min(weak + calming, key=lambda n: n.gain)
         if removed in calming:
             sets.banned.add(removed.name)
-        best = sets.fit_without(best, removed.name)
+        without = sets.fit_without(best, removed.name)
+        if _may_have_hidden_others(sets, best, removed):
+            sets.banned.add(removed.name)
+            without = select_forward(sets, without)
+        best = without
+
+
+def _may_have_hidden_others(sets: CandidateSets, best: Fit, removed: IdentifiedEffect) -> bool:
+    """Whether an effect gains much although its size may be zero.
+
+    A stochastic force of uncertain size can take the place of a law, which was not selected then.
+    """
+    return removed.gain > sets.required_gain and not differs_from_zero(sets, best, removed.name)
 
 
 def _not_replaced(best: Fit, better: Fit) -> str:

@@ -24,7 +24,7 @@ from boatsim.diagnosis.search.validation import (
     generalizes_worse,
     misleading_effect,
     refuted_effect,
-    remove_dwarfed_effects,
+    remove_dwarfed_effect,
     remove_refuted_rivals,
 )
 from boatsim.physics.described_laws import SymbolicTerm
@@ -134,10 +134,10 @@ def rank(
     start = refit_from_base_levels(sets, begin) if begin else recalibrated
     best, named = prune(sets, select_forward(sets, start))
     while True:
-        fewer = remove_dwarfed_effects(sets, best, held_out)
+        fewer = remove_dwarfed_effect(sets, best, held_out)
         if fewer is best:
             break
-        best, named = prune(sets, fewer)
+        best, named = prune(sets, select_forward(sets, fewer))
     report("judging what is left over", JUDGING)
     best, named = _remove_refuted_effects(sets, best, named, held_out)
     remaining, correlated = unexplained_evidence(problem, best), find_structure(problem, best)

@@ -241,48 +241,44 @@ def remove_refuted_rivals(
     return tuple(found)
 
 
-def remove_dwarfed_effects(sets: CandidateSets, best: Fit, held_out: Recordings) -> Fit:
-    """Remove effects that only absorb a small part of a much larger unexplained force.
+def remove_dwarfed_effect(sets: CandidateSets, best: Fit, held_out: Recordings) -> Fit:
+    """Remove an effect that only absorbs a small part of a much larger unexplained force.
 
-    They reduce the latent (unmodelled) force by almost nothing, and simulations of held-out
-    recordings get no worse without any of them.
+    It reduces the latent (unmodelled) force by almost nothing, and simulations of held-out
+    recordings get no worse without it. Of several such effects a stochastic force is removed first,
+    because it may have taken the place of a law.
 
     Args:
-        sets: Fits of candidate sets; effects that are removed are added to those refuted.
+        sets: Fits of candidate sets; an effect that is removed is added to those refuted.
         best: Fit of the vessel model with some candidate effects.
         held_out: Held-out recordings, which no fit has used.
 
     Returns:
-        The fit without them; the same object if no effect is removed.
+        The fit without it; the same object if no effect is removed.
     """
     config = sets.config.validate
-    whole: dict[str, list[float]] = {}
-    while True:
-        remaining = unexplained_evidence(sets.problem, best)
-        if remaining < unknown_threshold(sets.config.select, sets.explained_evidence(best)):
-            return best
-        without = sets.fits_without_each(best)
-        little = []
-        for name, fewer in without.items():
-            if np.min(best.levels.force / fewer.levels.force) > config.unexplained_share:
-                little.append(name)
-        if little:
-            fits = {name: without[name] for name in little}
-            if not whole:
-                fits[""] = best
-            runs = _free_runs(sets, fits, held_out, config.fewest_runs)
-            whole = whole or generalization.mean_square_errors(runs, "")
-            kept = little
-            little = []
-            for name in kept:
-                squares = generalization.mean_square_errors(runs, name)
-                if not _errors_grew(sets, whole, squares, config.certainty):
-                    little.append(name)
-        if not little:
-            return best
-        removed = max(little, key=lambda name: without[name].evidence)
-        sets.banned.add(removed)
-        best = without[removed]
+    remaining = unexplained_evidence(sets.problem, best)
+    if remaining < unknown_threshold(sets.config.select, sets.explained_evidence(best)):
+        return best
+    without = sets.fits_without_each(best)
+    little = {}
+    for name, fewer in without.items():
+        if np.min(best.levels.force / fewer.levels.force) > config.unexplained_share:
+            little[name] = fewer
+    if not little:
+        return best
+    runs = _free_runs(sets, {"": best, **little}, held_out, config.fewest_runs)
+    whole = generalization.mean_square_errors(runs, "")
+    idle = []
+    for name in little:
+        squares = generalization.mean_square_errors(runs, name)
+        if not _errors_grew(sets, whole, squares, config.certainty):
+            idle.append(name)
+    if not idle:
+        return best
+    removed = max(idle, key=lambda name: (name in sets.random, without[name].evidence))
+    sets.banned.add(removed)
+    return without[removed]
 
 
 def _errors_grew(sets: CandidateSets, before: Squares, after: Squares, sure: float) -> bool:

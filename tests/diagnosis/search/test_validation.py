@@ -19,7 +19,7 @@ from boatsim.diagnosis.search.validation import (
     deterministic_replacement,
     predictive_log_likelihood,
     refuted_effect,
-    remove_dwarfed_effects,
+    remove_dwarfed_effect,
     remove_refuted_rivals,
 )
 from boatsim.physics.base import Array
@@ -100,8 +100,8 @@ def test_beside_what_nothing_explains_only_what_unseen_runs_ask_for_is_stood_for
     )  # as if nothing took any of it away
     much, none = replace(found, levels=levels), replace(base, levels=levels)
     sets = sets_of(problem, none, much)
-    assert remove_dwarfed_effects(sets, much, held_out) is much and not sets.banned
-    assert remove_dwarfed_effects(sets, much, []) is none and sets.banned == {"weak_reverse"}
+    assert remove_dwarfed_effect(sets, much, held_out) is much and not sets.banned
+    assert remove_dwarfed_effect(sets, much, []) is none and sets.banned == {"weak_reverse"}
 
 
 def test_free_runs_of_a_boat_that_runs_away_have_grown() -> None:
