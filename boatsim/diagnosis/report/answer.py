@@ -103,7 +103,7 @@ def compose_answer(
         "also_possible": possible,
         "unknown": _unknown(problem, ranking, evaluation),
         "described": formulas,
-        "candidates": _candidates(ranking),
+        "candidates": candidate_entries(ranking),
         "upper_limits": limits,
         "where": _where(problem, ranking, evaluation),
         "fit": _fit(evaluation, [mapped.name for mapped in question.held_out]),
@@ -387,11 +387,14 @@ def _parameter(best: Fit, effect: Effect, name: str, config: AnswerConfig) -> Pa
     return entry
 
 
-def _candidates(ranking: Ranking) -> list[CandidateEntry]:
+def candidate_entries(ranking: Ranking) -> list[CandidateEntry]:
     """Return each candidate alone, best first, with its probability against the others and none.
 
     A candidate with which the simulation diverges at every starting point has no evidence, and is
     omitted.
+
+    Args:
+        ranking: The selection, with the evidence of each candidate.
     """
     finite = {name: gain for name, gain in ranking.first.items() if np.isfinite(gain)}
     names = sorted(finite, key=lambda n: -finite[n])

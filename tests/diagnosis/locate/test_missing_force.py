@@ -20,7 +20,11 @@ from boatsim.diagnosis.locate.periodicity import most_significant_peak
 from boatsim.diagnosis.locate.region_candidates import tank_walls
 from boatsim.diagnosis.locate.region_tests import ScoreStatistics, combined
 from boatsim.diagnosis.locate.regions import Region, regions
-from boatsim.diagnosis.locate.residual_structure import features, find_structure
+from boatsim.diagnosis.locate.residual_structure import (
+    features,
+    find_structure,
+    find_structure_held_out,
+)
 from boatsim.diagnosis.locate.smoothing import (
     LatentForce,
     joint_information,
@@ -407,6 +411,60 @@ def test_a_force_below_the_tolerated_one_is_seen_by_what_it_goes_with(
     assert (
         unexplained_evidence(problem, found) < DEFAULT.select.unknown_gain
     )  # whose rms alone would pass
+
+
+def test_held_out_runs_of_a_boat_that_lacks_nothing_have_no_structure() -> None:
+    """Their parameters differ from the fit by its uncertainty, which is no structure."""
+    for seed in range(60, 72, 2):
+        problem, found = laid(*(sail(f"run_{k}", seed + k, nothing)[0] for k in range(2)))
+        unseen = sail("held_out", seed + 40, nothing)[0]
+        held_out = problem.on([map_recording(unseen, problem.program)])
+        assert find_structure_held_out(held_out, found).p_value > 0.01
+
+
+def test_a_force_that_a_fitted_coefficient_explains_is_no_structure() -> None:
+    """The same force is structure beside a damping that may not change."""
+    runs = [
+        sail(f"run_{k}", 80 + k, lambda t, y, c: -0.3 * DAMPING * y[3:6] * [0, 0, 1])[0]
+        for k in range(2)
+    ]
+    program = Program(BOAT)
+    recordings = [map_recording(run, program) for run in runs]
+    gains = []
+    for uncertainty in (0.3, 1e-6):
+        problem = Problem(recordings, prior_levels(BOAT, runs), {"damping": uncertainty})
+        gains.append(find_structure(problem, fit_baseline(problem)[1]).gain)
+    print(gains)
+    assert gains[0] < 8.0 < gains[1]
+
+
+@pytest.mark.parametrize(
+    ("quantity", "more"),
+    [
+        ("roll rate times", lambda t, phi, p: -30.0 * p * (phi > 0.0)),
+        ("the roll angle squared", lambda t, phi, p: 150.0 * phi**2),
+    ],
+)
+def test_damping_on_one_side_is_told_from_a_righting_moment_on_one_side(
+    quantity: str, more: Any
+) -> None:
+    ship = vessel.load_vessel("kvlcc2_roll")
+    inertia, damping, stiffness = 115.6 + 19.8, 6.7, 822.3  # kg m^2, N m s, N m
+    noise = np.random.default_rng(12)
+    t = np.arange(0.0, 60.0, 0.2)
+
+    def slope(y: Array, t: float) -> list[float]:
+        return [y[1], (-damping * y[1] - stiffness * y[0] + more(t, *y)) / inertia]
+
+    course = odeint(slope, [0.15, 0.0], t, rtol=1e-9, atol=1e-11)[:, 0]
+    recording = Recording("decay", t, {"phi_rad": course + 1e-3 * noise.standard_normal(len(t))})
+    problem = Problem(
+        [map_recording(recording, Program(ship))],
+        prior_levels(ship, [recording]),
+        {"damping": 0.5, "restoring": 0.02},
+    )
+    seen = find_structure(problem, fit_baseline(problem)[1])
+    assert seen.significant and quantity in seen.goes_with
 
 
 def test_stretches_are_told_by_the_clock_of_the_recording() -> None:

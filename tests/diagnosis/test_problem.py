@@ -1,0 +1,60 @@
+"""Priors of the estimation problem on hulls of any size, and coefficients that are refitted."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from boatsim.diagnosis.filter import MappedRecording, NoiseLevels
+from boatsim.diagnosis.problem import Problem
+from boatsim.physics import vessel
+from boatsim.physics.effects.damping import QuadraticDamping
+from boatsim.physics.effects.rate_limit import SteeringRateLimit
+from boatsim.physics.effects.wave_forcing import WaveForcing
+from boatsim.physics.program import Program
+from boatsim.physics.vessel import Vessel
+
+REFERENCE_LENGTH = 1.2  # [m] of the hull for which effects state their priors
+
+
+def problem_of(boat: Vessel, *candidates: object) -> Problem:
+    """An estimation problem with one recording in which nothing was measured."""
+    program = Program(boat, candidates)
+    rows = 5
+    mapped = MappedRecording(
+        "made_up",
+        program,
+        0.1 * np.arange(rows),
+        np.full((rows, 1), np.nan),
+        ("heading_sd_rad",),
+        ("psi_rad",),
+        np.array([2]),
+        np.zeros((rows, len(boat.commands))),
+        np.append(program.values(), program.body),
+        {"heading_sd_rad": 1.0},
+    )
+    levels = NoiseLevels(np.ones(3), 1.0, {"heading_sd_rad": 0.01})
+    return Problem([mapped], levels, {"damping": 0.1})
+
+
+@pytest.mark.parametrize("name", ["joystick_boat", "catamaran", "mariner"])
+def test_frequencies_and_rates_scale_with_the_root_of_the_length(name: str) -> None:
+    """Mean and sd of a prior follow the same law: waves of a longer ship are slower (Froude)."""
+    boat = vessel.load_vessel(name)
+    waves, limit = WaveForcing(name="wave_forcing"), SteeringRateLimit(name="steering_rate_limit")
+    problem = problem_of(boat, waves, limit)
+    slower = (boat.length / REFERENCE_LENGTH) ** -0.5
+    free = {f.name: f for f in problem.parameters(("wave_forcing",)) if f.effect == "wave_forcing"}
+    assert free["frequency"].mean == pytest.approx(3.0 * slower)
+    assert free["frequency"].sd == pytest.approx(1.5 * slower)
+    assert free["damping"].mean == pytest.approx(0.08)  # a ratio has the same value on any hull
+
+
+def test_all_damping_coefficients_of_a_vessel_are_refitted() -> None:
+    boat = vessel.load_vessel("catamaran")
+    quadratic = QuadraticDamping(name="quadratic_damping", sway=20.0, yaw=1.0)
+    heavier = replace(boat, effects=(*boat.effects, quadratic))
+    found = {(f.effect, f.name) for f in problem_of(heavier).nominal_coefficients}
+    assert {("quadratic_damping", "sway"), ("quadratic_damping", "yaw")} <= found
+    assert ("quadratic_damping", "surge") not in found  # zero in the file
+    assert ("linear_damping", "yaw") in found
