@@ -148,7 +148,10 @@ def rank(
         sets.banned.add(waves)
         pruned = prune(sets, select_forward(sets, sets.fit_without(best, waves)))
         best, named = _remove_refuted_effects(sets, *pruned, held_out)
+        best, named = _waves_beside_law(sets, best, named, waves)
         remaining, correlated = unexplained_evidence(problem, best), find_structure(problem, best)
+        if waves in best.effects:
+            break
     named = remove_refuted_rivals(sets, best, named, held_out)
     alone = gains_over(sets.screen_candidates(sets.base), sets.base)
     last = sets.screen_candidates(best)
@@ -221,6 +224,23 @@ def _replaces_law(sets: CandidateSets, best: Fit, waves: str, correlated: Struct
     )
     enough = correlated.gain > sets.config.select.remaining_share * gain
     return correlated.is_effect and clear and enough
+
+
+def _waves_beside_law(
+    sets: CandidateSets, best: Fit, named: tuple[IdentifiedEffect, ...], waves: str
+) -> tuple[Fit, tuple[IdentifiedEffect, ...]]:
+    """The set with a stochastic force that hid a law, if it acts beside that law as well."""
+    if not best.effects:
+        return best, named
+    sets.banned.remove(waves)
+    both, named_both = prune(sets, select_forward(sets, best))
+    more = both.evidence > best.evidence + sets.required_gain
+    if more and {waves, *best.effects} <= set(both.effects):
+        correlated = find_structure(sets.problem, both)
+        if not _replaces_law(sets, both, waves, correlated):
+            return both, named_both
+    sets.banned.add(waves)
+    return best, named
 
 
 def _clearly_correlates(
