@@ -291,6 +291,14 @@ def _gauss_newton_steps(
             return white, score + float(slope @ ((x - middle) / space.sd))
 
     white, score = evaluate(theta)
+    if not score > about.score - config.screening_loss:
+        # the other parameters may make up for the start: more mass for more thrust and damping
+        J = np.hstack([known, np.zeros((len(known), len(free) - known.shape[1]))])
+        g = slope - J.T @ white - (theta - space.mean) / space.sd
+        moved = space.damped_step(theta, J.T @ J, g, 0.0)
+        after, value = evaluate(moved)
+        if np.isfinite(value) and not value <= score:
+            theta, white, score = moved, after, value
     own = np.arange(len(free)) >= len(about.slope)
     for _ in range(config.screening_halvings):  # a start may be far too strong for this hull
         if np.isfinite(score) and score > about.score - config.screening_loss:
