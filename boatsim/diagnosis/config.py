@@ -1069,8 +1069,10 @@ class DecideConfig:
 
     The regression is one of right and wrong effects, over about 1,080 simulated logs with known
     causes, made by `validation.calibration` with the seeds 2 and 3 while its shares of the kinds of
-    logs were being chosen. `python -m validation.calibration --weights` fits weights to the logs
-    that it has diagnosed. Each multiplies a feature of `boatsim.diagnosis.open_set.probability`.
+    logs were being chosen; the intercept and the weights of a stochastic force were fitted again to
+    about 650 logs of the seeds 4 to 6. `python -m validation.calibration --weights` fits weights to
+    the logs that it has diagnosed. Each multiplies a feature of
+    `boatsim.diagnosis.open_set.probability`.
     """
 
     least_probability: float = setting(
@@ -1162,7 +1164,7 @@ class DecideConfig:
         0.0,
     )
     intercept: float = setting(
-        3.42,
+        3.02,
         "1",
         "Log of the odds of a name whose features are all zero.",
         low=-inf,
@@ -1234,9 +1236,16 @@ class DecideConfig:
         low=-inf,
     )
     stochastic: float = setting(
-        -3.07,
+        -9.61,
         "1",
         "Weight: whether it is a stochastic force, which fits almost anything.",
+        low=-inf,
+    )
+    stochastic_gain: float = setting(
+        1.77,
+        "1",
+        "Weight: for a stochastic force, log of the log-likelihood [nats] that held-out recordings "
+        "gain by it.",
         low=-inf,
     )
     look_alikes: float = setting(
