@@ -1069,10 +1069,9 @@ class DecideConfig:
 
     The regression is one of right and wrong effects, over about 1,080 simulated logs with known
     causes, made by `validation.calibration` with the seeds 2 and 3 while its shares of the kinds of
-    logs were being chosen; the intercept and the weights of a stochastic force were fitted again to
-    about 650 logs of the seeds 4 to 6. `python -m validation.calibration --weights` fits weights to
-    the logs that it has diagnosed. Each multiplies a feature of
-    `boatsim.diagnosis.open_set.probability`.
+    logs were being chosen. The two weights of a stochastic force were fitted again to about 650
+    logs of the seeds 4 to 6. `python -m validation.calibration --weights` fits weights to the logs
+    that it has diagnosed. Each multiplies a feature of `boatsim.diagnosis.open_set.probability`.
     """
 
     least_probability: float = setting(
@@ -1164,7 +1163,7 @@ class DecideConfig:
         0.0,
     )
     intercept: float = setting(
-        3.02,
+        3.42,
         "1",
         "Log of the odds of a name whose features are all zero.",
         low=-inf,
