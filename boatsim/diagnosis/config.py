@@ -656,7 +656,11 @@ class LocateConfig:
         3, "count", "Periodogram ordinates in a band, at least.", low=1
     )
     structure_max_p: float = setting(
-        0.01, "1", "Largest corrected p-value of a structure of the residual force.", high=1.0
+        0.003,
+        "1",
+        "Largest corrected p-value of a structure of the residual force: at most one log of three "
+        "hundred without a cause is called unknown by it.",
+        high=1.0,
     )
     structure_least_share: float = setting(
         0.05,
