@@ -22,6 +22,7 @@ from boatsim.physics.base import Array
 
 # share of the largest information on an axis below which a feature is ignored as rounding
 MIN_FEATURE_INFORMATION = 1e-9
+LEAST_VARIANCE = 1e-9  # in prior variances, of a parameter that a fit holds at its value
 CONSTANT = "nothing, it is constant"
 SINCE_START = "the time since the beginning"
 WITHIN = "time: it acts in"
@@ -111,7 +112,8 @@ def find_structure_held_out(problem: Problem, fit: Fit) -> Structure:
         fit: Fit of the vessel model to other recordings.
     """
     sd = priors_of(fit.free).sd
-    precision = np.asarray(np.linalg.inv(fit.covariance / np.outer(sd, sd)), dtype=float)
+    covariance = fit.covariance / np.outer(sd, sd) + LEAST_VARIANCE * np.eye(len(sd))
+    precision = np.asarray(np.linalg.inv(covariance), dtype=float)
     return _structure(problem, fit, precision, np.zeros(len(sd)))
 
 
