@@ -28,6 +28,7 @@ KINDS = {
 KNOWN = {"single": 1, "pair": 2, "several": 3}  # number of causes of the library
 ROUGH_SHARE = 0.4  # of trials whose vessel file is rough
 FARTHEST = 1e5  # [m, s, N] beyond which a recorded value belongs to a simulation that diverges
+CAPSIZED = np.pi / 2.0  # [rad] of roll or pitch
 ROUGH = 0.2  # relative sd of its damping and thrust, which recording.toml states
 # of trials whose single effect is diagnosed again with the effect removed from the candidates
 REMOVED_SHARE = 0.3
@@ -140,11 +141,13 @@ def record(out: Path, job: Job) -> None:
 
 
 def diverges(files: Path) -> bool:
-    """Whether the simulated boat of a trial runs away, as a cause of great strength may make it."""
+    """Whether the simulated boat of a trial runs away or capsizes, so that it is no trial."""
     for file in sorted(files.glob("run_*.csv")):
-        values = np.loadtxt(file, delimiter=",", skiprows=1)
-        if not np.all(np.abs(values) < FARTHEST):
-            return True
+        table = np.genfromtxt(file, delimiter=",", names=True)
+        for name in table.dtype.names:
+            farthest = CAPSIZED if name in ("phi_rad", "theta_rad") else FARTHEST
+            if not np.all(np.abs(table[name]) < farthest):
+                return True
     return False
 
 
