@@ -110,8 +110,8 @@ class Fit:
         i = self._index(effect, name)
         return float(self.theta[i]), float(np.sqrt(self.covariance[i, i]))
 
-    def without_effect(self, effect: str, name: str) -> float:
-        """Return the value of a parameter without its effect; for a limit, the usual value.
+    def prior_mean(self, effect: str, name: str) -> float:
+        """Return the prior mean: the value without the effect, or for a limit the usual value.
 
         A dimensional value follows Froude's law from the reference hull to the vessel.
 

@@ -23,7 +23,7 @@ def distance_from_zero(fit: Fit, effect: Effect, name: str) -> float:
     value, _ = fit.value(effect.name, name)
     if name in type(effect).limits:
         return abs(value)
-    return abs(value - fit.without_effect(effect.name, name))
+    return abs(value - fit.prior_mean(effect.name, name))
 
 
 def jointly_differ_from_zero(

@@ -4,8 +4,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from unmeasured import unmeasured
 
-from boatsim.diagnosis.filter import MappedRecording, NoiseLevels
+from boatsim.diagnosis.filter import NoiseLevels
 from boatsim.diagnosis.problem import Problem
 from boatsim.physics import vessel
 from boatsim.physics.effects.damping import QuadraticDamping
@@ -20,19 +21,7 @@ REFERENCE_LENGTH = 1.2  # [m] of the hull for which effects state their priors
 def problem_of(boat: Vessel, *candidates: object) -> Problem:
     """An estimation problem with one recording in which nothing was measured."""
     program = Program(boat, candidates)
-    rows = 5
-    mapped = MappedRecording(
-        "made_up",
-        program,
-        0.1 * np.arange(rows),
-        np.full((rows, 1), np.nan),
-        ("heading_sd_rad",),
-        ("psi_rad",),
-        np.array([2]),
-        np.zeros((rows, len(boat.commands))),
-        np.append(program.values(), program.body),
-        {"heading_sd_rad": 1.0},
-    )
+    mapped = unmeasured(program)
     levels = NoiseLevels(np.ones(3), 1.0, {"heading_sd_rad": 0.01})
     return Problem([mapped], levels, {"damping": 0.1})
 

@@ -172,7 +172,7 @@ def _refined_number(problem: Problem, best: Fit, effect: Effect, name: str) -> _
             sd *= abs(change.weight)
         unit = _unit(problem, change.owner, change.key)
         return _Number(words, float(recording.values[at]), float(after[at]), sd, unit)
-    inactive = best.without_effect(effect.name, name)
+    inactive = best.prior_mean(effect.name, name)
     own = problem.program.vessel.effect(type(effect).type_name())
     if own is None or not effect.name.startswith(FURTHER):
         return _Number(words, inactive, value, sd, param.unit)

@@ -7,9 +7,10 @@ from pathlib import Path
 import boats
 import numpy as np
 import pytest
+from unmeasured import unmeasured
 
 from boatsim.diagnosis.candidates import diagnosis_program
-from boatsim.diagnosis.filter import MappedRecording, NoiseLevels
+from boatsim.diagnosis.filter import NoiseLevels
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.diagnosis.report.layers import Layers, separate_layers
 from boatsim.diagnosis.report.parameters import parameter_key, reported_sd
@@ -43,19 +44,7 @@ def layers_of(
     """The layers of a fit that is made up: all effects of FITTED, and factors of coefficients."""
     boat = vessel.load_vessel(str(boats.written(folder, "test_boat", boats.PLANAR + text)))
     program, _ = diagnosis_program(boat)
-    rows = 5
-    mapped = MappedRecording(
-        "made_up",
-        program,
-        0.1 * np.arange(rows),
-        np.full((rows, 1), np.nan),
-        ("heading_sd_rad",),
-        ("psi_rad",),
-        np.array([2]),
-        np.zeros((rows, len(boat.commands))),
-        np.append(program.values(), program.body),
-        {"heading_sd_rad": 1.0},
-    )
+    mapped = unmeasured(program)
     levels = NoiseLevels(np.ones(3), 1.0, {"heading_sd_rad": 0.01})
     problem = Problem([mapped], levels, {"damping": 1.0, "thrust": 0.3})
     free = problem.parameters(tuple(FITTED))
