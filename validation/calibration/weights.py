@@ -18,7 +18,7 @@ from validation.calibration.table import right_names
 Array = NDArray[np.float64]
 
 # prior sd of a weight per standard deviation of its feature: chosen by cross-validated likelihood
-WEIGHT_SD = 0.6
+WEIGHT_SD = 0.3
 FOLDS = 10  # of the cross-validation, whole trials each
 
 Record = dict[str, Any]
@@ -27,8 +27,7 @@ Record = dict[str, Any]
 def examples(records: Sequence[Record]) -> tuple[list[str], Array, Array, Array]:
     """Return all identified effects of a campaign as examples.
 
-    An effect removed from the candidates makes no example: what stands in for it is often the
-    same law in other words.
+    Where the true effect was removed from the candidates, every other name is a wrong one.
 
     Returns:
         Names of the features, features (N, F), whether the name or one of its look-alikes is right
@@ -36,9 +35,9 @@ def examples(records: Sequence[Record]) -> tuple[list[str], Array, Array, Array]
     """
     names: list[str] = []
     rows, right, trials = [], [], []
-    for number, record in enumerate(records):
-        if record["kind"] == "removed":
-            continue
+    numbers: dict[str, int] = {}
+    for record in records:
+        number = numbers.setdefault(record["trial"], len(numbers))
         truth = right_names(record)
         signs = record["signs"]
         log_signs = LogSigns(**signs["log"])

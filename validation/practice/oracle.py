@@ -32,6 +32,9 @@ from validation.practice.sail import ActuatorHistory, Voyage
 
 FITTED = (0, 1)  # runs to diagnose from
 HELD_OUT = 2
+# prior sd of another force, as the length of its whitened vector: far above the strongest cause,
+# whose length is about 100, so that forces of any size are projected out
+ANY_SIZE = 1000.0
 
 
 @dataclass(frozen=True)
@@ -193,14 +196,14 @@ class Oracle:
     def gain(self, force: Array, others: Sequence[Array]) -> float:
         """Return the evidence [nats] of a force after projecting out alternatives.
 
-        The alternatives are the coefficients, other forces of any size, and a stronger ambient
-        force in each axis.
+        The alternatives are the coefficients, other forces of any size, an ambient force of any
+        size at the start of a recording, and a stronger ambient force in each axis.
         """
         y = self.white(force)
         columns = [self.white(f) for f in self.coefficients().values()]
         free = [
-            30.0 * v / np.linalg.norm(v)
-            for f in others
+            ANY_SIZE * v / np.linalg.norm(v)
+            for f in (*others, *self.initial_forces())
             if np.linalg.norm(v := self.white(f)) > 1e-9
         ]
         A = np.array([*columns, *free]).T
@@ -218,6 +221,20 @@ class Oracle:
         )  # spectrum per true one
         nats = 0.5 * (count * (np.log(more) + 1.0 / more - 1.0) + square / more).sum(axis=2)
         return float(nats.min(axis=0).sum() + 0.5 * theta @ theta)
+
+    def initial_forces(self) -> list[Array]:
+        """Return forces (K, 6, RUNS) that act at the start of one run and decay.
+
+        An ambient force that is large when the recording begins decays with its correlation time.
+        """
+        time = np.arange(len(self.seen.q)) * self.voyage.grid.dt
+        found = []
+        for axis in self.nominal.free:
+            for run in FITTED:
+                force = np.zeros_like(self.seen.q)
+                force[:, axis, run] = np.exp(-time / self.nominal.scale)
+                found.append(force)
+        return found
 
     def marginal(self, cause: Cause) -> float:
         """Return the evidence gain of a true cause given the trial's others."""

@@ -69,7 +69,8 @@ def decide(
 
     An effect that is probably a stand-in for another cause, or that held-out recordings do not
     confirm, is not stated as a cause. It stays in the patched vessel, because it describes the
-    data, and if it explains much the cause is reported as unknown.
+    data, and if it explains much the cause is reported as unknown. So it is if held-out recordings
+    require a force that no identified effect gives.
 
     Args:
         problem: The estimation problem: recordings, vessel model, candidate effects and priors.
@@ -98,7 +99,13 @@ def decide(
         others = ranking.explained - stated.gain
         least = required_gain(candidates, config.select) + unknown_threshold(config.select, others)
         stands_in = stands_in or bool(stated.shared > least)
-    decided = replace(ranking, named=tuple(named), doubtful=tuple(doubtful), stands_in=stands_in)
+    decided = replace(
+        ranking,
+        named=tuple(named),
+        doubtful=tuple(doubtful),
+        stands_in=stands_in,
+        held_out_remains=of_log.held_out_unexplained > config.decide.held_out_share,
+    )
     return Decision(problem, decided, tuple(judgements), of_log)
 
 

@@ -70,6 +70,7 @@ class Ranking:
     doubtful: tuple[IdentifiedEffect, ...] = ()
     skipped: tuple[str, ...] = ()  # what was not tried because the search's budget was spent
     stands_in: bool = False  # whether one of them explains so much that a cause must exist
+    held_out_remains: bool = False  # whether held-out recordings clearly require another force
     # which refitted coefficients `recalibrated` has; None before that is decided
     recalibration: Recalibration | None = None
 
@@ -87,7 +88,7 @@ class Ranking:
     def unknown(self) -> bool:
         """Whether a force or a cause remains that no candidate effect explains."""
         described = self.description is not None or bool(self.divergences)
-        return described or self.remains or self.stands_in
+        return described or self.remains or self.stands_in or self.held_out_remains
 
     @property
     def remains(self) -> bool:
