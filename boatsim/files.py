@@ -27,6 +27,9 @@ DOTTED = re.compile(
     r"""(?<![\w-])(?:(?:[\w-]{1,200}+|"[^"\n]{0,200}"|'[^'\n]{0,200}')[ \t]{0,9}\.[ \t]{0,9}){32}"""
 )
 
+# pydantic adds the kind of value that it tried to the place of a mistake, if several are allowed
+KINDS_OF_VALUE = ("float", "bool", "str", "int")
+
 
 class Table(BaseModel):
     """Base class of the models of TOML tables, which reject unknown keys and non-finite numbers."""
@@ -101,9 +104,16 @@ def validate_table(model: type[T], data: Mapping[str, object], file: str) -> T:
         BadInput: With file, key, value found, what is allowed and the nearest valid key.
     """
     try:
-        return model.model_validate(data)
+        # strictly as JSON: a string or a truth value is no number, and a list may be a tuple
+        return model.model_validate_json(json.dumps(data, default=_plain_value), strict=True)
     except ValidationError as error:
         raise BadInput(f"{file}: {_first_mistake(model, error)}") from None
+
+
+def _plain_value(value: object) -> object:
+    """A value that JSON lacks: an array as lists, a date or a path as text."""
+    to_list = getattr(value, "tolist", None)
+    return to_list() if to_list else str(value)
 
 
 def array_of_tables(value: object) -> list[dict[str, Value]]:
@@ -117,7 +127,7 @@ def _first_mistake(model: type[BaseModel], error: ValidationError) -> str:
     """Message of the first mistake of a validation."""
     # A misspelt key is also a missing one
     first = min(error.errors(), key=lambda e: e["type"] != "extra_forbidden")
-    place = ".".join(map(str, first["loc"]))
+    place = ".".join(str(key) for key in first["loc"] if key not in KINDS_OF_VALUE)
     if first["type"] == "extra_forbidden":
         table = ".".join(map(str, first["loc"][:-1]))
         what = "key"

@@ -26,6 +26,7 @@ from boatsim.cli.trust_prompt import trusted_content
 from boatsim.errors import BadInput
 from boatsim.interruption import raise_on_signals, signal_received
 from boatsim.quiet import exit_on_signals
+from boatsim.recordings.run_folder import recording_file
 from boatsim.version import version as installed
 
 P = ParamSpec("P")
@@ -77,10 +78,17 @@ app = typer.Typer(
 
 Runs = Annotated[
     list[Path],
-    typer.Argument(metavar="RUN", help="Recordings: .csv, .parquet, or .rrd of boatsim."),
+    typer.Argument(
+        metavar="RUN",
+        help="Recordings: .csv, .parquet, .rrd of boatsim, or a run's folder.",
+    ),
 ]
 OneRun = Annotated[
-    Path, typer.Argument(metavar="RUN", help="A recording: .csv, .parquet, or .rrd of boatsim.")
+    Path,
+    typer.Argument(
+        metavar="RUN",
+        help="A recording: .csv, .parquet, .rrd of boatsim, or a run's folder.",
+    ),
 ]
 VesselName = Annotated[
     str | None,
@@ -574,7 +582,7 @@ def compare(
     from boatsim.cli import diagnosis as commands
 
     with trusted_content(content, trust, [run, vessel, scenario]):
-        return commands.compare(run, vessel, _split_loads(load), scenario, out)
+        return commands.compare(recording_file(run), vessel, _split_loads(load), scenario, out)
 
 
 @app.command()
@@ -594,7 +602,7 @@ def replay(
     from boatsim.cli import diagnosis as commands
 
     with trusted_content(content, trust, [run, vessel]):
-        return commands.replay(run, vessel, _split_loads(load), horizon, out)
+        return commands.replay(recording_file(run), vessel, _split_loads(load), horizon, out)
 
 
 @app.command()
@@ -604,7 +612,10 @@ def diagnose(
     out: OutFolder = Path("out/diagnosis"),
     hold_out: Annotated[
         list[Path] | None,
-        typer.Option(metavar="RUN", help="Recording used only to validate the result. Repeatable."),
+        typer.Option(
+            metavar="RUN",
+            help="Recording used only to validate the result. Repeatable.",
+        ),
     ] = None,
     vessel: VesselName = None,
     load: Load = None,
@@ -674,7 +685,7 @@ def diagnose(
             from boatsim.cli.sweeping import diagnose_each
 
             return diagnose_each(runs, options, out, jobs, ray)
-        return commands.diagnose(runs, options, out)
+        return commands.diagnose([recording_file(run) for run in runs], options, out)
 
 
 @app.command()
@@ -690,7 +701,7 @@ def check(
     from boatsim.cli.checking import print_checks
 
     with trusted_content(content, trust, [*runs, vessel]):
-        return print_checks(runs, vessel, _split_loads(load))
+        return print_checks([recording_file(run) for run in runs], vessel, _split_loads(load))
 
 
 @app.command("import")

@@ -30,7 +30,7 @@ def print_metrics(run: "RunEntry", folder: Path) -> None:
         words += ", interrupted"
     title = Text(printable(words))
     metrics = run["norms"]
-    table = Table(title=title, pad_edge=False)
+    table = Table(title=title, pad_edge=False, show_edge=False)
     for heading, justify in _column_alignments(metrics.values()).items():
         table.add_column(heading, justify=justify, no_wrap=True)
     for name, metric in metrics.items():
@@ -71,7 +71,7 @@ def _format_cells(metric: "MetricEntry") -> dict[str, str]:
         "value": format_value(metric),
         "published": published_text,
         "verdict": verdicts.get(metric["verdict"] or "", ""),
-        "band": _format_band(metric["guard"]),
+        "band": _format_band(metric["guard"], metric["unit"]),
         "met": met[metric["ok"]],
     }
 
@@ -120,14 +120,14 @@ def explain_missing_values(metrics: Mapping[str, "MetricEntry"]) -> list[str]:
     return [f"{', '.join(affected)} {reason}" for reason, affected in names.items()]
 
 
-def _format_band(band: Sequence[float | None] | None) -> str:
+def _format_band(band: Sequence[float | None] | None, unit: str) -> str:
     low, high = band or (None, None)
     if low is not None and high is not None:
-        return f"{low:.4g} to {high:.4g}"
+        return f"{low:.4g} to {high:.4g} {unit}".strip()
     if low is not None:
-        return f"at least {low:.4g}"
+        return f"at least {low:.4g} {unit}".strip()
     if high is not None:
-        return f"at most {high:.4g}"
+        return f"at most {high:.4g} {unit}".strip()
     return ""
 
 

@@ -15,7 +15,8 @@ from boatsim.files import Value
 from boatsim.physics import vessel as vessels
 from boatsim.physics.vessel import Vessel
 from boatsim.progress import Report, ignore_progress
-from boatsim.recordings.notes import notes_for
+from boatsim.recordings.notes import NotesFile, notes_for
+from boatsim.recordings.run_folder import recording_file
 from boatsim.recordings.table import Recording, read
 
 THIRDS = ("first", "middle", "last")
@@ -72,7 +73,7 @@ def load(
     Raises:
         BadInput: A file cannot be used.
     """
-    paths = [*request.runs, *request.hold_out]
+    paths = list(map(recording_file, (*request.runs, *request.hold_out)))
     _check_distinct(paths)
     opened, own_vessels = list[Recording](), list[Vessel]()
     count = "1 recording"
@@ -111,6 +112,18 @@ def load(
     )
 
 
+def _belong_to(vessel: str, file: NotesFile) -> bool:
+    """Whether load and settings of a recording's notes are those of a vessel, or of its patch."""
+    own = file.notes.vessel
+    if not own or own == vessel or not (file.notes.load or file.notes.settings):
+        return True
+    try:
+        noted = vessels.load_vessel(own, base_folder=file.folder)
+    except BadInput:
+        return False
+    return vessels.load_vessel(vessel).path == noted.path
+
+
 def vessel_for(
     path: Path,
     vessel: str | None,
@@ -140,6 +153,9 @@ def vessel_for(
         )
     conditions = load_conditions or notes.load
     try:
+        if vessel and not _belong_to(vessel, file):
+            notes = replace(notes, load=(), settings={})
+            conditions = load_conditions
         found = vessels.load_vessel(name, conditions, notes.settings, base_folder=base_folder)
     except BadInput as error:
         by_notes = not vessel or notes.settings or (notes.load and not load_conditions)

@@ -26,8 +26,8 @@ class EnvironmentOptions(TypedDict, total=False):
     scenario: str  # instead of a vessel; its vessel, load, set values and effects are used
     load: Sequence[str]
     effects: Sequence[Mapping[str, object]]  # in addition to the vessel's, as [[effect]] tables
-    # "effect.parameter" -> "uniform(low, high)" and so on; "load" -> a list; "spread" -> a factor
-    # of the uncertainty that a diagnosis found
+    # "effect.parameter" -> "uniform(low, high)" and so on; "load" -> a list, or lists by the name
+    # of the vessel; "spread" -> a factor of the uncertainty that a diagnosis found
     vary: Vary
     settings: Mapping[str, object]  # parameters of the task, such as its tolerances
     period: float  # [s] of a control step

@@ -94,8 +94,9 @@ def make_variation(
         vessel: Name or path of the vessel.
         load: Load conditions.
         effects: Effects in addition to the vessel's, as `[[effect]]` tables.
-        vary: "effect.parameter" with a distribution or a fixed value; "load" with a list; "spread"
-            with a factor. An effect that the vessel lacks is added with its defaults.
+        vary: "effect.parameter" with a distribution or a fixed value; "load" with a list, or with
+            lists by the name of the vessel; "spread" with a factor. An effect that the vessel lacks
+            is added with its defaults.
         settings: Values that replace those of the vessel file, per effect.
 
     Raises:
@@ -103,6 +104,8 @@ def make_variation(
     """
     varied = dict(vary or {})
     loads = varied.pop(LOAD, None)
+    if isinstance(loads, Mapping):  # load conditions belong to their own vessel
+        loads = loads.get(vessel)
     factor = varied.pop("spread", 1.0)
     if isinstance(loads, str) or (loads is not None and not isinstance(loads, Sequence)):
         raise BadInput(

@@ -11,6 +11,9 @@ from boatsim.errors import BadInput
 
 GRAVITY = 9.81  # [m/s^2] of all formulas here, as in Martin 1993
 SEA_WATER = 1025.0  # [kg/m^3]
+# Length over the cube root of the displaced volume, far outside all boats: full tankers have 4,
+# racing shells 19
+LEAST_SLENDERNESS, MOST_SLENDERNESS = 1.0, 60.0
 
 
 class SpheroidAddedMass(NamedTuple):
@@ -34,6 +37,24 @@ class LinearDerivatives(NamedTuple):
     sway_by_yaw: float  # Y'r
     yaw_by_sway: float  # N'v
     yaw_by_yaw: float  # N'r
+
+
+def check_slenderness(length: float, mass: float) -> None:
+    """Check that a hull of this length can have this mass, so that a wrong unit is found.
+
+    Args:
+        length: Length [m].
+        mass: Mass, which is that of the displaced water [kg].
+
+    Raises:
+        BadInput: The length divided by the cube root of the displaced volume is that of no boat.
+    """
+    side = (mass / SEA_WATER) ** (1.0 / 3.0)
+    if not LEAST_SLENDERNESS <= length / side <= MOST_SLENDERNESS:
+        raise BadInput(
+            f"length = {length:g} m does not fit mass = {mass:g} kg; allowed for this mass is "
+            f"{LEAST_SLENDERNESS * side:.3g} to {MOST_SLENDERNESS * side:.3g} m"
+        )
 
 
 def spheroid_added_mass(length: float, draught: float) -> SpheroidAddedMass:

@@ -21,6 +21,7 @@ from boatsim.recordings import limits, units
 from boatsim.recordings.expression import Expression, parse
 from boatsim.recordings.notes import Notes, join_mistakes, notes_for, unit_of
 from boatsim.recordings.raw_table import Raw, file_error, select_rows
+from boatsim.recordings.run_folder import recording_file
 
 __all__ = ["POSE", "RATES", "Notes", "Recording", "read", "write_csv"]
 
@@ -204,7 +205,7 @@ def read(
     """Read a recording from a file, with checks and the notes of the nearest `recording.toml`.
 
     Args:
-        path: File of the recording.
+        path: File of the recording, or the output folder of a run.
         channels: Allowed range (low, high) of the vessel's inputs; inputs without a column are
             absent.
         columns: Signal -> column of the vessel's recordings; those of the notes replace them.
@@ -212,7 +213,7 @@ def read(
     Raises:
         BadInput: One line with file, row and column of what can not be used.
     """
-    path, channels = Path(path), channels or {}
+    path, channels = recording_file(path), channels or {}
     found = notes_for(path)
     raw, _, absent = _rename_columns(_read_raw(path), columns or {}, found.columns)
     needed = []
@@ -260,9 +261,10 @@ def read_unchecked(
     """
     found = notes_for(path)
     raw, made, _ = _rename_columns(_read_raw(path), columns or {}, found.columns)
-    if "t_s" not in raw.columns or len(raw.rows) < 2:
+    if "t_s" not in raw.columns or not len(raw.rows):
         _check_columns(raw, list(raw.columns))
-        raise file_error(path, f"has {len(raw.rows)} rows; at least {FEWEST_ROWS} are needed")
+    if len(raw.rows) < FEWEST_ROWS:
+        raise _too_few_rows(raw)
     signals = dict(raw.columns)
     t = signals.pop("t_s")
     return Recording(path.stem, t, signals, found.notes, path), made
@@ -392,6 +394,10 @@ def _check_columns(raw: Raw, needed: list[str]) -> None:
         raise file_error(raw.path, f"has a header and no rows; at least {FEWEST_ROWS} are needed")
 
 
+def _too_few_rows(raw: Raw) -> BadInput:
+    return file_error(raw.path, f"has {len(raw.rows)} rows; at least {FEWEST_ROWS} are needed")
+
+
 def _check_cells(raw: Raw, needed: list[str]) -> None:
     for name in needed:
         if name in raw.text:
@@ -413,9 +419,7 @@ def _check_cells(raw: Raw, needed: list[str]) -> None:
             what = "the cell is empty or not a number (NaN)"
         raise file_error(raw.path, f"{what}; every row needs a number here", raw.rows[index], name)
     if len(raw.rows) < FEWEST_ROWS:
-        raise file_error(
-            raw.path, f"has {len(raw.rows)} rows; at least {FEWEST_ROWS} are needed", raw.rows[-1]
-        )
+        raise _too_few_rows(raw)
 
 
 def allowed_gaps(

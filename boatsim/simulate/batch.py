@@ -7,7 +7,8 @@ vessels and threads, to the last bit. One vessel is a batch of n = 1.
 import os
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from functools import cache, cached_property
+from functools import cache, cached_property, partial
+from operator import index
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -30,7 +31,37 @@ BODY = {
     "body.pitch_inertia": (4, Param(1e-9, 1e18, "kg m^2", "pitch inertia of the rigid body")),
     "body.yaw_inertia": (5, Param(1e-9, 1e18, "kg m^2", "yaw inertia of the rigid body")),
 }
+UNINTERRUPTED = 1_000_000  # steps of all vessels together between two chances to interrupt
+MOST_STEPS = 10**12  # more would take days for a single vessel
+FAR = 10.0  # widths of a channel's range outside it from which a command is an error
 TURN = 256  # vessels that a thread steps at a time, so that their data stay in its core's cache
+
+
+def _checked_steps(steps: int) -> int:
+    """The number of steps. Raises BadInput."""
+    try:
+        count = index(steps)
+    except TypeError:
+        raise BadInput(f"steps = {steps!r}; allowed is a whole number") from None
+    if not 0 <= count <= MOST_STEPS:
+        raise BadInput(f"steps = {count}; allowed 0 to {MOST_STEPS:g}")
+    return count
+
+
+def _check_command(vessel: Vessel, name: str, values: ArrayLike) -> None:
+    """Check that commands of a channel are in its unit. Raises BadInput."""
+    limits = vessel.limits()
+    if name not in limits:
+        return
+    try:
+        given = np.asarray(values, dtype=float)
+    except (TypeError, ValueError):
+        raise BadInput(f"{vessel.name}: {name} = {values!r}; allowed is a number") from None
+    low, high = limits[name]
+    reach = FAR * (high - low)
+    far = (given < low - reach) | (given > high + reach)
+    if far.any():
+        raise BadInput(f"{vessel.name}: {name} = {given[far][0]:g}; allowed {low:g} to {high:g}")
 
 
 class Batch:
@@ -195,16 +226,23 @@ class Batch:
 
         Args:
             commands: Commands by channel, (C,) or (n, C), which act within their ranges; without
-                the measured inputs, these do not change. None: the commands in force.
-            steps: Number of steps.
+                the measured inputs, these do not change. None: the commands in force. A command
+                that is farther outside than ten times the width of its range is an error.
+            steps: Number of steps, 0 to 1e12.
 
         Raises:
             BadInput: If a shape, name or value is not valid.
+            KeyboardInterrupt: When it is interrupted; all vessels have made the same steps.
         """
+        remaining = _checked_steps(steps)
         everyone = np.arange(self.n)
         if commands is not None:
             self._commands[:] = self._clip(commands, everyone)
-        self.run_on_threads(lambda some: self._step_boats(some, steps))
+        most = max(UNINTERRUPTED // max(self.n, 1), 1)
+        while remaining:
+            some = min(remaining, most)
+            self.run_on_threads(partial(self._step_boats, steps=some))
+            remaining -= some
 
     def set(self, parameter: str, values: ArrayLike, boats: ArrayLike | None = None) -> None:
         """Change one model parameter of some or all vessels.
@@ -408,6 +446,8 @@ class Batch:
         """Commands (k, C) in force when these are sent. Raises BadInput."""
         vessel = self.vessels[0]
         if isinstance(commands, Mapping):
+            for name, value in commands.items():
+                _check_command(vessel, name, value)
             return clipped_commands(vessel, commands)
         given, width = np.asarray(commands, dtype=float), len(vessel.commands)
         fits = given.shape[:-1] in ((), (1,), boats.shape)
@@ -416,6 +456,8 @@ class Batch:
                 f"commands of shape {given.shape}; "
                 f"allowed are {width} a boat: {', '.join(vessel.commands)}"
             )
+        for name, column in zip(vessel.inputs, np.moveaxis(given, -1, 0), strict=False):
+            _check_command(vessel, name, column)
         rows = self._commands[boats]
         rows[:, : given.shape[-1]] = given
         return clip_to_channel_ranges(vessel, rows)

@@ -322,12 +322,17 @@ def _make_metric(
     if value is None or not isfinite(value):
         value = None
         lacking = NOT_REACHED if run.complete else SHORT
-    band = table.guard
+    factor = table.factor(unit)
+    published, tolerance = _scale(table.published, factor), _scale(table.tolerance, factor)
+    band = None
     ok = None
-    if band is not None:
+    if table.guard is not None:
+        band = (factor * table.guard[0], factor * table.guard[1])
         if run.scenario.file.noise_widens_guards and floor is not None:
             band = (band[0] - floor, band[1] + floor)
         ok = value is not None and band[0] <= value <= band[1]
-    return Metric(
-        value, unit, table.published, table.tolerance, band, ok, at_reported, floor, lacking
-    )
+    return Metric(value, unit, published, tolerance, band, ok, at_reported, floor, lacking)
+
+
+def _scale(value: float | None, factor: float) -> float | None:
+    return None if value is None else factor * value

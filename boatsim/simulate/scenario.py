@@ -5,7 +5,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import chain
-from math import pi, sin
+from math import degrees, pi, sin, sqrt
 from pathlib import Path
 from typing import Annotated, Literal, Self, TypeVar
 
@@ -16,6 +16,7 @@ from boatsim.errors import BadInput, unknown_name
 from boatsim.files import Table, validate_table
 from boatsim.physics import vessel as vessels
 from boatsim.physics.content import load_class
+from boatsim.physics.particulars import GRAVITY
 from boatsim.physics.signals import STATE
 from boatsim.physics.vessel import Vessel
 from boatsim.simulate import tracking_errors
@@ -32,6 +33,7 @@ OFF = "off"
 RESERVED = ("from", OFF)  # keys of a [[goal]] that are not goals
 # limit of a band, which may be infinite
 End = Annotated[float, Field(allow_inf_nan=True)]
+FASTEST_FROUDE = 10.0  # of a goal: no boat reaches it, so that its unit is another one
 
 
 class TankTable(Table):
@@ -80,6 +82,24 @@ class MetricTable(Table):
     # of the published value, to either side, as the publication states it
     tolerance: float | None = Field(default=None, gt=0)
     guard: tuple[End, End] | None = None  # regression band: low, high
+    unit: str | None = None  # of these values; None: that of the metric
+
+    def factor(self, unit: str) -> float:
+        """Return the factor from the stated unit of the values to the unit of the metric.
+
+        Args:
+            unit: Unit of the metric.
+
+        Raises:
+            BadInput: The stated unit is another one. Radians may stand for degrees.
+        """
+        if self.unit in (None, unit):
+            return 1.0
+        radians = unit.replace("deg", "rad")
+        if self.unit == radians:
+            return degrees(1.0)
+        allowed = " or ".join(f'"{one}"' for one in dict.fromkeys((unit, radians)))
+        raise BadInput(f'unit = "{self.unit}"; allowed is {allowed}')
 
     @model_validator(mode="after")
     def _check_order(self) -> Self:
@@ -357,14 +377,29 @@ def _check_goals(file: ScenarioFile, vessel: Vessel, controller: Controller) -> 
                 raise BadInput(
                     f"[[goal]] {key} = {value:g}; allowed {channel.low:g} to {channel.high:g}"
                 )
+            if not channel and isinstance(value, float):
+                _check_goal_size(key, value, vessel.length)
     starts = [_goal_begin_time(g) for g in file.goal]
     if starts != sorted(starts):
         raise BadInput(f"[[goal]] from = {starts}; allowed are times in ascending order")
+    if starts and starts[-1] >= file.duration:
+        raise BadInput(
+            f"[[goal]] from = {starts[-1]:g} s; the run ends at duration = {file.duration:g} s"
+        )
     if unknown := [c for c in type(controller).commands if c not in vessel.commands]:
         raise BadInput(
             f"controller {file.controller['use']} sets {unknown[0]}; "
             f"{vessel.unknown_command(unknown[0])}"
         )
+
+
+def _check_goal_size(key: str, value: float, length: float) -> None:
+    """Check that a goal is not far beyond what any boat does, as it is in a wrong unit."""
+    speed = FASTEST_FROUDE * sqrt(GRAVITY * length)
+    limits = {"_mps": speed, "_radps": speed / length, "_rad": 2.0 * pi}
+    for ending, most in limits.items():
+        if key.endswith(ending) and abs(value) > most:
+            raise BadInput(f"[[goal]] {key} = {value:g}; allowed {-most:.3g} to {most:.3g}")
 
 
 def _check_shape(file: ScenarioFile, controller: Controller) -> None:
@@ -389,11 +424,16 @@ def _check_shape(file: ScenarioFile, controller: Controller) -> None:
 
 def _check_metrics(file: ScenarioFile, camera: Camera, measure: MetricSet | None) -> None:
     """Check that the metrics with bands are computed and that the camera delivers their frames."""
-    tracked = tracking_errors.error_units(chain.from_iterable(file.goal))
-    allowed = [*type(measure).units, *tracked] if measure else list(tracked)
-    for name in file.norms:
-        if name not in allowed:
-            raise BadInput(unknown_name("[norms] key", name, allowed))
+    units = tracking_errors.error_units(chain.from_iterable(file.goal))
+    if measure:
+        units = {name: measure.unit(name) for name in type(measure).units} | units
+    for name, table in file.norms.items():
+        if name not in units:
+            raise BadInput(unknown_name("[norms] key", name, units))
+        try:
+            table.factor(units[name])
+        except BadInput as error:
+            raise BadInput(f"[norms.{name}] {error}") from None
     if isinstance(measure, CameraMetricSet):
         measure.check_camera(camera)
 

@@ -344,6 +344,28 @@ def test_a_single_run_keeps_its_middle_third_unseen():
     assert "middle third" in note
 
 
+def test_load_and_settings_of_the_notes_belong_to_their_own_vessel(tmp_path):
+    run = written(tmp_path, recorded("alone", 1))[0]
+    (tmp_path / "recording.toml").write_text(
+        'vessel = "joystick_boat"\nload = ["light", "narrow"]\n[set.pwm_thrust]\nat_span = 0.3\n'
+    )
+    own, same = loading.vessel_for(run, None, ()), loading.vessel_for(run, "joystick_boat", ())
+    other = loading.vessel_for(run, "otter", ())
+    assert own.load == same.load == ("light", "narrow")
+    assert other.name == "otter" and other.load == ()
+    with pytest.raises(BadInput, match="load 'light' does not exist"):
+        loading.vessel_for(run, "otter", ["light"])
+
+
+def test_the_folder_of_a_run_is_its_recording(tmp_path):
+    run = written(tmp_path, recorded("alone", 1))[0]
+    run.rename(tmp_path / "recording.csv")
+    (tmp_path / "recording.toml").write_text('vessel = "trial_boat"\n')
+    assert len(recording.read(tmp_path)) == len(recording.read(tmp_path / "recording.csv"))
+    loaded = loading.load(loading.Request([tmp_path]))
+    assert loaded.vessel.name == "trial_boat"
+
+
 def test_bad_requests_get_one_line(folder):
     runs = written(folder, recorded("alone", 1))
     with pytest.raises(BadInput, match="no vessel given"):

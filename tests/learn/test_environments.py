@@ -21,6 +21,7 @@ from boatsim.learn.actions import make_controls  # noqa: E402
 from boatsim.learn.environment_options import make_simulation  # noqa: E402
 from boatsim.learn.pilot import run_episodes  # noqa: E402
 from boatsim.learn.play import TaskSimulation  # noqa: E402
+from boatsim.learn.variation import make_variation  # noqa: E402
 from boatsim.physics import vessel  # noqa: E402
 from boatsim.physics.content import load_class  # noqa: E402
 
@@ -291,6 +292,14 @@ def test_what_does_not_fit_is_told_in_one_line(task: str, told: dict[str, Any], 
     with pytest.raises(BadInput) as error:
         make_simulation(task, 1, **{**STILL, **told})  # type: ignore[arg-type]
     assert line in str(error.value) and "\n" not in str(error.value)
+
+
+def test_the_loads_of_an_id_belong_to_its_own_boat() -> None:
+    arguments = registration.environment_arguments("boatsim/Berth-v0")
+    own = make_variation(arguments["vessel"], vary=arguments["vary"])
+    other = make_variation("otter", vary=arguments["vary"])
+    assert [boat.load for boat in other.boats] == [()]
+    assert ("light", "narrow") in [boat.load for boat in own.boats] and len(own.boats) == 4
 
 
 def test_other_boats_play_too() -> None:

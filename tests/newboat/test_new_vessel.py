@@ -167,6 +167,7 @@ def test_a_stated_top_speed_is_reached_at_full_thrust(tmp_path: Path) -> None:
         ({"thrusters": ["-9,0"]}, "within the length"),
         ({"mass": 90000.0}, "is the mass in kg"),
         ({"mass": -1.0}, "--mass -1; allowed"),
+        ({"length": 300.0, "mass": 90.0}, "length = 300 m does not fit mass = 90 kg; allowed"),
         ({"beam": 4.0}, "less than the length"),
         ({"draught": 0.01}, "lies at least"),
         ({"rudder": "0"}, "--rudder 0"),

@@ -309,6 +309,11 @@ MISTAKES = [
     ({"camera": {"mark_sd": 9.0}}, r"\[camera\] .*mark_sd = 9 m; allowed 0 to 0\.1 m"),
     ({"goal": [{"sway": 0.07}]}, r"\[\[goal\]\] key 'sway' .*did you mean 'sway_mps'"),
     ({"goal": [{"from": 3.0}, {"from": 1.0}]}, r"times in ascending order"),
+    ({"goal": [{"from": 300.0}]}, r"from = 300 s; the run ends at duration = "),
+    ({"goal": [{"sway_mps": 70.0}]}, r"sway_mps = 70; allowed -34\.3 to 34\.3"),
+    ({"goal": [{"yaw_radps": 45.0}]}, r"yaw_radps = 45; allowed -28\.6 to 28\.6"),
+    ({"goal": [{"sway_mps": "0.07"}]}, r"goal\.0\.sway_mps = '0\.07'; .*valid number"),
+    ({"duration": True}, r"duration = True; .*valid number"),
     ({"effect": [{"use": "weak_revers"}]}, r"effect 'weak_revers' .*did you mean 'weak_reverse'"),
     ({"set": {"pwm_thrust": {"at_spa": 0.3}}}, r"setting 'at_spa' .*did you mean 'at_span'"),
     (
@@ -316,6 +321,10 @@ MISTAKES = [
         r"guard = \[2\.0, 1\.0\]; allowed are its lower end",
     ),
     ({"norms": {"yaw_rate_l1": {"tolerance": 1.0}}}, r"tolerance needs published"),
+    (
+        {"norms": {"yaw_rate_inf": {"guard": [0.0, 1.0], "unit": "m"}}},
+        r"\[norms\.yaw_rate_inf\] unit = \"m\"; allowed is \"deg/s\" or \"rad/s\"",
+    ),
     ({"norms": {"moved": {"guard": [0.0, 1.0]}}}, r"\[norms\] key 'moved' does not exist"),
 ]
 

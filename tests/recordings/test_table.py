@@ -233,7 +233,7 @@ def test_the_unit_is_the_end_of_the_name(name, unit):
         ("", "is empty"),
         (HEADER, "has a header and no rows"),
         (b"\x89PNG\r\n\x1a\n\xff\xfe" * 9, "is not a text file"),
-        (HEADER + "".join(lines(19)), "row 20: has 19 rows; at least 20 are needed"),
+        (HEADER + "".join(lines(19)), "has 19 rows; at least 20 are needed"),
         ((HEADER + "".join(lines())).replace(",", ";"), "row 1: is separated by semicolons"),
         (changed(1, "time,x_m,y_m,psi_rad,thrust_port_N"), "row 1, column t_s: is missing"),
         (changed(1, "t_s,a,b,c,thrust_port_N"), "no pose or rate"),

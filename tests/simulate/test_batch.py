@@ -142,6 +142,13 @@ def test_boats_in_waves_take_their_courses_from_their_seeds():
         (lambda b: Batch(BOAT, 2, seeds=[1]), "1 seeds for 2 boats"),
         (lambda b: b.advance(np.full((2, 6), np.nan)), "nan"),
         (lambda b: b.advance({"pwm_prt": 1.0}), "pwm_port"),
+        (lambda b: b.advance({"pwm_port": 1e9}), "pwm_port = 1e+09; allowed -255 to 255"),
+        (lambda b: b.advance({"pwm_port": "fast"}), "pwm_port = 'fast'; allowed is a number"),
+        (lambda b: b.advance(np.full((2, 6), -1e9)), "allowed"),
+        (lambda b: b.advance(steps=-1), "steps = -1; allowed 0 to"),
+        (lambda b: b.advance(steps=1.5), "steps = 1.5; allowed is a whole number"),
+        (lambda b: b.advance(steps=float("inf")), "steps = inf; allowed is a whole number"),
+        (lambda b: b.advance(steps=10**15), "allowed 0 to 1e+12"),
         (lambda b: b.reset([1.0, 2.0]), "states of shape (2,)"),
         (lambda b: b.reset(boats=[2]), "boat 2; allowed 0 to 1"),
         (lambda b: Batch([BOAT, vessel.load_vessel("otter")]), "otter"),
@@ -152,6 +159,31 @@ def test_what_can_not_be_is_refused_in_one_line(act, said):
     with pytest.raises(BadInput) as refused:
         act(Batch(BOAT, 2))
     assert said in str(refused.value) and "\n" not in str(refused.value)
+
+
+def test_many_steps_are_interrupted_after_the_same_steps_of_all_boats(monkeypatch):
+    batch, calls = Batch(BOAT, 2), []
+
+    def interrupted(*args, **kwargs):
+        calls.append(kwargs["steps"])
+        if len(calls) == 3:
+            raise KeyboardInterrupt
+        step_boats(*args, **kwargs)
+
+    step_boats = batch._step_boats
+    monkeypatch.setattr(batch, "_step_boats", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        batch.advance(steps=10**12)
+    assert max(calls) * batch.n <= 1_000_000
+    assert batch.t[0] == batch.t[1] == pytest.approx(2 * calls[0] * batch.step)
+
+
+def test_steps_in_parts_move_a_boat_as_steps_at_once(monkeypatch):
+    at_once, in_parts = Batch(BOAT, 3), Batch(BOAT, 3)
+    at_once.advance(orders(3), 500)
+    monkeypatch.setattr("boatsim.simulate.batch.UNINTERRUPTED", 100)
+    in_parts.advance(orders(3), 500)
+    assert (at_once.states == in_parts.states).all()
 
 
 def test_a_boat_that_goes_wild_is_told_and_leaves_the_others_alone():

@@ -274,6 +274,14 @@ def test_guards_hold_the_value_with_its_sign(rate: float, ok: bool) -> None:
     assert (judged.ok, judged.published, judged.band) == (ok, 12.2, (5.0, 8.0))
 
 
+def test_bands_of_an_angle_may_be_given_in_radians() -> None:
+    band = {"published": radians(12.2), "guard": [radians(5.0), radians(8.0)], "unit": "rad"}
+    norms = {"heading_at_end": band}
+    judged = requested_metrics(filmed("sway", swaying(0.5), 16.0, norms=norms))["heading_at_end"]
+    assert judged.unit == "deg" and judged.ok
+    assert judged.published == pytest.approx(12.2) and judged.band == pytest.approx((5.0, 8.0))
+
+
 @pytest.mark.parametrize(
     ("value", "published", "tolerance", "verdict"),
     [

@@ -71,7 +71,7 @@ def _time_jumps(
 ) -> NDArray[np.int64]:
     """Rows before a step of time in which the boat moved far less than its speed implies."""
     none = np.zeros(0, dtype=np.int64)
-    if not {"x_m", "y_m"} <= recording.signals.keys():
+    if not {"x_m", "y_m"} <= recording.signals.keys() or len(steps) < config.clock_speed_rows:
         return none
     usual = float(np.median(steps))
     if not usual > 0.0:

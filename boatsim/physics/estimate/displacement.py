@@ -2,6 +2,7 @@
 
 from boatsim.errors import BadInput
 from boatsim.physics.estimate.base import DENSITY, Estimate, HullParticulars
+from boatsim.physics.particulars import check_slenderness
 
 # displaced water per length x beam x draught; C_b of a pontoon of the Otter, MSS otter.m
 BLOCK = 0.4
@@ -75,4 +76,5 @@ def hull_particulars(
             f"{found.draught:.3g} m deep; "
             "is the mass in kg?"
         )
+    check_slenderness(length, mass)
     return found

@@ -7,6 +7,7 @@ from pathlib import Path
 from boatsim.errors import BadInput
 from boatsim.files import read_toml, validate_table
 from boatsim.physics.content import find_content_file
+from boatsim.physics.particulars import check_slenderness
 from boatsim.physics.vessel import loads as load_conditions
 from boatsim.physics.vessel.effect_tables import effect_from_table, effect_name
 from boatsim.physics.vessel.estimated import check_estimated
@@ -49,6 +50,10 @@ def load_vessel(
     raw = load_conditions.apply_load_values(raw, dict(settings or {}), label)
     content = validate_table(VesselFile, raw, label)
     content.check_channels(label)
+    try:
+        check_slenderness(content.length, content.body.mass)
+    except BadInput as error:
+        raise BadInput(f"{label}: {error}") from None
     _check_new_names(extra, content, vessel_name)
     folder = _hull_folder(content.based_on, path, label)
     vessel = Vessel.from_file(content, vessel_name, path, folder)

@@ -1,0 +1,16 @@
+"""The recording in the output folder of a run."""
+
+from pathlib import Path
+
+RECORDING = "recording.csv"
+
+
+def recording_file(path: str | Path) -> Path:
+    """Return the file of a recording that is given as a file, or as the output folder of a run.
+
+    Args:
+        path: A file, or a folder with a recording.csv.
+    """
+    path = Path(path)
+    inside = path / RECORDING
+    return inside if inside.is_file() else path
