@@ -3,9 +3,11 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")"
 
+say() { echo "setup.sh: $1"; }
 fits() { "$1" -c 'import sys; sys.exit(not (3, 11) <= sys.version_info[:2] < (3, 15))' 2>/dev/null; }
 
 make_venv() {
+    say "creating .venv"
     for python in python3 python3.12 python3.11 python3.13 python3.14; do
         if fits "$python"; then
             "$python" -m venv --clear .venv
@@ -21,5 +23,7 @@ make_venv() {
 }
 
 [ -x .venv/bin/pip ] && fits .venv/bin/python || make_venv
-.venv/bin/python -m pip install --quiet --disable-pip-version-check --requirement requirements.lock
+say "$(.venv/bin/python --version); installing what requirements.lock states: some minutes the first time, seconds later"
+.venv/bin/python -m pip install --quiet --progress-bar on --disable-pip-version-check --requirement requirements.lock
 .venv/bin/python -m pip install --quiet --disable-pip-version-check --no-deps --editable .
+say "ready: .venv/bin/boatsim"

@@ -6,6 +6,30 @@ from difflib import get_close_matches
 GAP = " ... "  # replaces the middle of a line that is too long
 MAX_LISTED = 12  # with more names than this a message lists the nearest ones only
 NEAREST_LISTED = 5  # number of nearest names that are listed then
+# Words of users for things that have another name here
+SYNONYMS = {
+    "heading": ("psi_rad",),
+    "yaw": ("psi_rad", "r_radps"),
+    "yaw_rate": ("r_radps", "yaw_radps"),
+    "course": ("psi_rad",),
+    "roll": ("phi_rad",),
+    "pitch": ("theta_rad",),
+    "speed": ("surge_mps", "u_mps"),
+    "surge": ("surge_mps", "u_mps"),
+    "north": ("x_m",),
+    "east": ("y_m",),
+    "simulate": ("run",),
+    "simulation": ("run",),
+    "start": ("run",),
+    "identify": ("diagnose",),
+    "fit": ("diagnose",),
+    "analyse": ("diagnose",),
+    "convert": ("import",),
+    "validate": ("check",),
+    "create": ("new",),
+    "vessels": ("list",),
+    "help": ("show",),
+}
 
 
 class BoatsimError(Exception):
@@ -50,11 +74,14 @@ def unknown_name(what: str, found: str, allowed: Iterable[str]) -> str:
     examples = ""
     if similar:
         examples = f", such as {', '.join(similar)}"
-    return f"{what} {found!r} does not exist{hint} ({len(names)} do{examples})"
+    return f"{what} {found!r} does not exist{hint} (there are {len(names)}{examples})"
 
 
 def _nearest(found: str, names: list[str]) -> str | None:
-    """The most similar name, or the name whose last part is the most similar."""
+    """The name for a user's word, the most similar name, or the one with the most similar end."""
+    for name in SYNONYMS.get(found.lower(), ()):
+        if name in names:
+            return name
     if near := get_close_matches(found, names, n=1, cutoff=0.5):
         return near[0]
     last_parts = {name.rpartition("/")[2]: name for name in reversed(names)}
@@ -68,10 +95,8 @@ def nearest_hint(found: str, allowed: Iterable[str]) -> str:
 
     The result is "" if no valid name is similar.
     """
-    near = get_close_matches(found, list(allowed), n=1, cutoff=0.5)
-    if near:
-        return f"; did you mean {near[0]!r}?"
-    return ""
+    near = _nearest(found, sorted(allowed))
+    return f"; did you mean {near!r}?" if near else ""
 
 
 def printable(text: str, longest: int | None = None) -> str:

@@ -23,7 +23,7 @@ from boatsim.cli.exits import (
     print_lines,
 )
 from boatsim.cli.trust_prompt import trusted_content
-from boatsim.errors import BadInput
+from boatsim.errors import BadInput, nearest_hint
 from boatsim.interruption import raise_on_signals, signal_received
 from boatsim.quiet import exit_on_signals
 from boatsim.recordings.run_folder import recording_file
@@ -34,6 +34,14 @@ BASELINE_SEEDS = 5  # enough runs for a range of a metric, at five times the cos
 # Base class of all command-line errors; Typer exports only its subclass BadParameter.
 UsageError: Any = typer.BadParameter.__base__
 MOST_SPEED = 1e6  # times real time; a larger value is a mistake
+
+
+# Headings of the help text with their commands; a test checks that none is missing
+COMMAND_GROUPS = {
+    "Simulate": ("run", "drive", "sweep", "test", "manoeuvre", "margins"),
+    "Learn from recordings": ("import", "check", "diagnose", "replay", "compare"),
+    "Vessels and content": ("new", "list", "show"),
+}
 
 
 class OneLineGroup(TyperGroup):
@@ -62,9 +70,41 @@ class OneLineGroup(TyperGroup):
             if error.ctx:
                 command = error.ctx.command_path
             message = " ".join(error.format_message().split()).rstrip(".")
-            print_error(f"{message}; see {command} --help")
+            see = " See" if message.endswith("?") else "; see"
+            print_error(f"{message}{see} {command} --help")
             code = Exit.BAD_INPUT
         sys.exit(code)
+
+    def get_command(self, ctx: Any, cmd_name: str) -> Any:
+        """Return a command by its name.
+
+        Args:
+            ctx: Context of the command line.
+            cmd_name: Name of the command.
+
+        Raises:
+            UsageError: There is no such command.
+        """
+        found = super().get_command(ctx, cmd_name)
+        if found is None:
+            hint = nearest_hint(cmd_name, self.commands)
+            raise UsageError(f"command {cmd_name!r} does not exist{hint}", ctx)
+        return found
+
+    def format_commands(self, ctx: Any, formatter: Any) -> None:
+        """Write the commands into the help text, by purpose, with the first sentence of each.
+
+        Args:
+            ctx: Context of the command line.
+            formatter: Formatter of the help text.
+        """
+        for heading, names in COMMAND_GROUPS.items():
+            rows = []
+            for name in names:
+                sentence, _, _ = (self.commands[name].help or "").partition("\n\n")
+                rows.append((name, " ".join(sentence.split())))
+            with formatter.section(heading):
+                formatter.write_dl(rows)
 
 
 app = typer.Typer(
@@ -72,6 +112,7 @@ app = typer.Typer(
     cls=OneLineGroup,
     help="Simulate small boats on MuJoCo, test controllers, find the physics that a model lacks.",
     add_completion=False,
+    suggest_commands=False,
     pretty_exceptions_enable=False,
     rich_markup_mode=None,
 )

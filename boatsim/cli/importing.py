@@ -6,7 +6,7 @@ from pathlib import Path
 from boatsim.cli.exits import print_lines, print_note, print_notes
 from boatsim.cli.progress import report_stages
 from boatsim.errors import BadInput, printable
-from boatsim.files import replace_file
+from boatsim.files import read_toml, replace_file
 from boatsim.physics import vessel as vessels
 from boatsim.physics.content import vessel_address
 from boatsim.physics.vessel import Vessel
@@ -94,8 +94,8 @@ def _turn_direction(boat: Vessel, channel: str) -> int:
 
 def _convert_log(path: Path, out: Path, map: Path, vessel: str | None, load: Sequence[str]) -> int:
     mapping = read_map(map)
-    name = vessel or mapping.vessel
-    boat = vessels.load_vessel(name, load) if name else None
+    name, base_folder = vessel or mapping.vessel, None if vessel else map.resolve().parent
+    boat = vessels.load_vessel(name, load, base_folder=base_folder) if name else None
     limits = boat.limits() if boat else {}
     with report_stages() as report:
         report("reading the log")
@@ -117,13 +117,28 @@ def _convert_log(path: Path, out: Path, map: Path, vessel: str | None, load: Seq
 
 
 def _write_vessel(out: Path, boat: Vessel, fix: str | None) -> None:
-    """Write the vessel of a recording to recording.toml in its folder; keep an existing file."""
+    """Write the vessel of a recording to recording.toml in its folder.
+
+    The recording is added to an existing file that has no notes on it; notes on it are kept.
+    """
     file = out.parent / "recording.toml"
     text = recording_notes_text(out, vessel_address(boat.file), fix)
-    if file.exists():
+    try:
+        with replace_file(file) as temporary:
+            temporary.write_text(_notes_before(file, out.stem) + text, encoding="utf-8")
+            read_toml(temporary)  # nothing is written that could not be read again
+    except BadInput:
         lines = " / ".join(text.splitlines())
         print_note(f"{file} exists and is kept; for this recording it should contain: {lines}")
         return
-    with replace_file(file) as temporary:
-        temporary.write_text(text, encoding="utf-8")
-    print_lines([printable(f"written to {file}: {boat.name}")])
+    print_lines([printable(f"written to {file}: {out.stem}: {boat.name}")])
+
+
+def _notes_before(file: Path, run: str) -> str:
+    """The text of recording.toml before the notes on a run. Raises BadInput if it has them."""
+    if not file.exists():
+        return ""
+    runs = read_toml(file).get("runs", {})
+    if not isinstance(runs, dict) or run in runs:
+        raise BadInput(f"{file}: has notes on {run}")
+    return file.read_text(encoding="utf-8-sig").rstrip() + "\n\n"

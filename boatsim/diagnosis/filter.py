@@ -771,12 +771,16 @@ def parameter_values(program: Program, facts: Mapping[str, Any]) -> Array:
 
 
 def _missing_inputs(recording: Recording, vessel: Vessel) -> list[str]:
-    """Readings that are not recorded, and actuators whose command is not (PWM drives thrust)."""
+    """Readings that are not recorded, and actuators whose command is not (PWM drives thrust).
+
+    An actuator is stated by all columns of which one is needed.
+    """
     missing = []
     for actuator in vessel.actuators:
-        driven = any(_drives(vessel, command, actuator) for command in recording.signals)
-        if actuator not in recording.signals and not driven:
-            missing.append(actuator)
+        commands = [name for name in vessel.commands if _drives(vessel, name, actuator)]
+        columns = list(dict.fromkeys((*commands, actuator)))
+        if not any(name in recording.signals for name in columns):
+            missing.append(" or ".join(columns))
     return missing + [name for name in vessel.readings if name not in recording.signals]
 
 

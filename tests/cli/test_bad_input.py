@@ -11,12 +11,15 @@ from typing import Any
 
 import numpy as np
 import pytest
+import typer
 from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 from hypothesis.errors import InvalidArgument
 from typer.testing import CliRunner
 
 from boatsim.cli import app
+from boatsim.cli.commands import COMMAND_GROUPS
+from boatsim.errors import unknown_name
 from boatsim.physics.content import content_root
 
 DIAGNOSIS = {"diagnosis.json", "report.html", "report.md", "patched.toml", "diagnosis.rrd"}
@@ -555,6 +558,32 @@ def test_wrong_usage_is_one_line(arguments: list[str], said: str) -> None:
 
 def test_no_arguments_ask_for_help() -> None:
     assert "diagnose" in CliRunner().invoke(app, []).stdout
+
+
+def test_help_has_every_command_once_with_its_whole_first_sentence() -> None:
+    text = " ".join(CliRunner().invoke(app, ["--help"]).stdout.split())
+    listed = [name for names in COMMAND_GROUPS.values() for name in names]
+    commands = typer.main.get_command(app).commands
+    assert sorted(listed) == sorted(commands)
+    for command in commands.values():
+        assert " ".join(command.help.partition("\n\n")[0].split()) in text
+
+
+@pytest.mark.parametrize(
+    "word, meant", [("simulate", "run"), ("daignose", "diagnose"), ("convert", "import")]
+)
+def test_a_command_that_does_not_exist_is_answered_by_the_one_that_is_meant(
+    word: str, meant: str
+) -> None:
+    result = CliRunner().invoke(app, [word], catch_exceptions=False)
+    assert result.exit_code == 2
+    assert result.stderr.strip() == (
+        f"boatsim: command '{word}' does not exist; did you mean '{meant}'? See boatsim --help"
+    )
+
+
+def test_a_word_of_users_is_answered_by_the_name() -> None:
+    assert "did you mean 'psi_rad'?" in unknown_name("key", "heading", ["psi_rad", "sway_mps"])
 
 
 @pytest.mark.parametrize(

@@ -207,9 +207,44 @@ def test_a_log_becomes_a_recording_that_can_be_read_and_knows_its_vessel(tmp_pat
     found = read(run, load_vessel("otter").limits())
     assert found.notes.vessel == "otter" and found.notes.facts["position_fix"] == "gnss"
     assert np.isnan(found["x_m"]).any() and np.isfinite(found["n_port_radps"]).all()
-    again = tmp_path / "runs" / "again.csv"
-    _, said = ran(log, again, map, None, None)
-    assert "exists and is kept" in said and again.read_bytes() == run.read_bytes()
+
+
+def test_each_recording_of_a_folder_is_entered_in_its_notes(tmp_path):
+    log, map, runs = LOGS / "rover.BIN", tmp_path / "map.toml", tmp_path / "runs"
+    ran(log, None, None, map, "otter")
+    ran(log, runs / "first.csv", map, None, None)
+    notes = runs / "recording.toml"
+    notes.write_text(notes.read_text() + "\n[noise]\nposition_sd_m = 0.5\n")
+    ran(log, runs / "second.csv", map, None, None)
+    assert (runs / "first.csv").read_bytes() == (runs / "second.csv").read_bytes()
+    for name in ("first", "second"):
+        found = read(runs / f"{name}.csv", load_vessel("otter").limits()).notes
+        assert found.vessel == "otter" and found.noise == {"position_sd_m": 0.5}
+    written = notes.read_bytes()
+    _, said = ran(log, runs / "second.csv", map, None, None)
+    assert "exists and is kept" in said and notes.read_bytes() == written
+
+
+def test_notes_that_can_not_be_extended_are_kept(tmp_path):
+    log, map, run = LOGS / "rover.BIN", tmp_path / "map.toml", tmp_path / "run.csv"
+    ran(log, None, None, map, "otter")
+    notes = tmp_path / "recording.toml"
+    notes.write_text('runs = { other = { vessel = "mariner" } }\n')
+    _, said = ran(log, run, map, None, None)
+    assert "exists and is kept" in said and "[runs.run]" in said
+    assert notes.read_text().startswith("runs = {")
+
+
+def test_the_vessel_of_a_map_lies_beside_the_map(tmp_path, monkeypatch):
+    log, map = LOGS / "rover.BIN", tmp_path / "maps" / "map.toml"
+    ran(log, None, None, map, "otter")
+    shutil.copytree(load_vessel("otter").path, tmp_path / "maps" / "boats" / "mine")
+    text = map.read_text().replace('vessel = "otter"', 'vessel = "boats/mine"')
+    map.write_text(text)
+    monkeypatch.chdir(tmp_path)
+    ran(log, tmp_path / "runs" / "run.csv", map, None, None)
+    found = read(tmp_path / "runs" / "run.csv").notes.vessel
+    assert Path(found) == tmp_path / "maps" / "boats" / "mine" / "vessel.toml"
 
 
 def test_without_a_map_nothing_is_written(tmp_path):
