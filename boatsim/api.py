@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from boatsim.diagnosis import pipeline
+from boatsim.diagnosis.checks.data_cleaning import drop_faulty_values
 from boatsim.diagnosis.config import Given, from_settings
 from boatsim.diagnosis.loading import open_recording
 from boatsim.diagnosis.replay import join_free_runs, replay_recording
@@ -430,6 +431,7 @@ def replay(
     opened, replayed_vessel = open_recording(
         Path(recording), _optional_text(vessel), _name_list(load)
     )
+    opened = drop_faulty_values(opened, replayed_vessel)
     return join_free_runs(replay_recording(opened, replayed_vessel, horizon))
 
 

@@ -10,6 +10,7 @@ import numpy as np
 from boatsim.atomic_folder import atomic_folder
 from boatsim.cli.exits import print_lines, print_note, print_notes
 from boatsim.cli.progress import report_stages
+from boatsim.diagnosis.checks.data_cleaning import drop_faulty_values
 from boatsim.diagnosis.checks.entry import entry_text
 from boatsim.diagnosis.config import from_settings
 from boatsim.diagnosis.free_runs import FreeRun, free_runs, rms_errors
@@ -109,6 +110,7 @@ def replay(run: Path, vessel: str | None, load: list[str], horizon: float, out: 
     with report_stages() as report:
         report("reading the recording")
         recording, boat = open_recording(run, vessel, load)
+        recording = drop_faulty_values(recording, boat)
         stretches = replay_recording(recording, boat, horizon, report)
     print_notes(recording.remarks)
     _write_replay(stretches, out / "replay.csv")
@@ -151,6 +153,7 @@ def compare(run: Path, vessel: str | None, load: list[str], scenario: str | None
     with report_stages() as report:
         report("reading the recording")
         recording, boat = open_recording(run, vessel, load)
+        recording = drop_faulty_values(recording, boat)
         if vessel is None and not load and not scenario:
             boat = _add_scenario_effects(recording, boat)
         if scenario:

@@ -401,6 +401,22 @@ class ChecksConfig:
     jump_min_share: float = setting(
         0.5, "1", "Share of a step that must persist, so that it is a jump and no outlier."
     )
+    excursion_max_rest: float = setting(
+        0.4,
+        "1",
+        "Share of a jump that may remain after a later jump has taken it back: the boat moves and "
+        "the fixes scatter in both rows.",
+        0.0,
+        1.0,
+    )
+    excursion_max_share: float = setting(
+        0.3,
+        "1",
+        "Longest time between a jump and the one that takes it back, as a share of the recording: "
+        "in a longer part it is not known which part is wrong.",
+        0.0,
+        1.0,
+    )
     outlier_max_duration: float = setting(
         1.5, "s", "Longest duration of an outlier on a hull of 1.2 m; longer ones may be motion."
     )

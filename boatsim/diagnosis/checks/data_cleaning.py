@@ -74,7 +74,20 @@ def clean_recording(
         The cleaned recording; ignored values are nan, and its remarks list each correction.
     """
     reduced = recording.thinned(priors.used_sample_rate(vessel, duration, config.load))
-    return drop_position_outliers(drop_repeated_values(reduced), vessel, config)
+    return drop_faulty_values(reduced, vessel, config)
+
+
+def drop_faulty_values(
+    recording: Recording, vessel: Vessel, config: DiagnosisConfig = DEFAULT
+) -> Recording:
+    """Return a prepared recording without repeated values and outliers, which become nan.
+
+    Args:
+        recording: A prepared recording.
+        vessel: The vessel that it is a recording of.
+        config: Settings; the groups `checks` and `load` are used.
+    """
+    return drop_position_outliers(drop_repeated_values(recording), vessel, config)
 
 
 def total_duration(recordings: Sequence[Recording]) -> float:

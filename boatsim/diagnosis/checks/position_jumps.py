@@ -18,7 +18,8 @@ SIGNALS = (
 def check_position_jumps(recording: Recording, _: Vessel, config: ChecksConfig) -> list[Finding]:
     """Find permanent jumps of the recorded position or heading within one row.
 
-    The longest part of the recording between two jumps can be used.
+    The longest part of the recording between two jumps can be used. A jump that a later one takes
+    back is none of them: the values in between are dropped as outliers.
 
     Args:
         recording: A prepared recording.
@@ -42,6 +43,8 @@ def _check_columns(
     t = recording.t[known]
     values = values[known]
     rows = jump_rows(t, values, config)
+    for begin, end in excursions(t, values, rows, config):
+        rows = rows[(rows != begin) & (rows != end)]
     if not len(rows):
         return []
     listed = rows[:MAX_LISTED].tolist()
@@ -94,6 +97,38 @@ def jump_rows(t: Array, values: Array, config: ChecksConfig = DEFAULT.checks) ->
         if permanent and gap > config.jump_min_gap * usual:
             found.append(k)
     return np.array(found, dtype=np.int64)
+
+
+def excursions(
+    t: Array, values: Array, rows: NDArray[np.int64], config: ChecksConfig = DEFAULT.checks
+) -> list[tuple[int, int]]:
+    """Return pairs of jumps of which the second takes back the first.
+
+    The values in between are wrong if they are the smaller part of the recording.
+
+    Args:
+        t: Times (N,) [s].
+        values: Values (N, C), complete.
+        rows: Rows (K,) before a jump.
+        config: Thresholds of the quality checks.
+
+    Returns:
+        Rows before the jump away and before the jump back, for each pair.
+    """
+    found = []
+    open_row: int | None = None
+    longest = config.excursion_max_share * float(t[-1] - t[0])
+    for row in rows.tolist():
+        if open_row is not None:
+            away = values[open_row + 1] - values[open_row]
+            rest = np.linalg.norm(away + values[row + 1] - values[row])
+            near = rest < config.excursion_max_rest * np.linalg.norm(away)
+            if near and t[row] - t[open_row] < longest:
+                found.append((open_row, row))
+                open_row = None
+                continue
+        open_row = row
+    return found
 
 
 def _course_gap(t: Array, values: Array, k: int, side: int) -> float:

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from boatsim.diagnosis.checks.position_jumps import excursions, jump_rows
 from boatsim.diagnosis.config import DEFAULT, ChecksConfig, DiagnosisConfig
 from boatsim.diagnosis.priors import estimate_sensor_noise, froude_time
 from boatsim.physics.base import Array
@@ -54,6 +55,8 @@ def drop_position_outliers(
         values = np.column_stack([signals[n] for n in names])
         finest = config.load.finest_noise * scale
         outlier = outlier_rows(recording.t, values, finest, duration, config.checks)
+        values[outlier] = np.nan
+        outlier |= excursion_rows(recording.t, values, config.checks)
         if outlier.any():
             remarks.append(
                 f"{recording.path or recording.name}: {', '.join(names)} jump away and return "
@@ -151,6 +154,29 @@ def outlier_rows(
             k += back
         k += 1
     return outlier
+
+
+def excursion_rows(
+    t: Array, values: Array, config: ChecksConfig = DEFAULT.checks
+) -> NDArray[np.bool_]:
+    """Return which rows lie between a jump and a later one that takes it back.
+
+    They may last longer than outliers, because two jumps within one row each are no motion.
+
+    Args:
+        t: Times (N,) [s].
+        values: Values (N, C); nan where nothing was measured.
+        config: Thresholds of the quality checks.
+
+    Returns:
+        True (N,) for these rows.
+    """
+    known = np.flatnonzero(np.isfinite(values).all(axis=1))
+    away = np.zeros(len(t), dtype=np.bool_)
+    rows = jump_rows(t[known], values[known], config)
+    for begin, end in excursions(t[known], values[known], rows, config):
+        away[known[begin + 1 : end + 1]] = True
+    return away
 
 
 def _smallest_jump(t: Array, y: Array, finest: float, config: ChecksConfig) -> float:

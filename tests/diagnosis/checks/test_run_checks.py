@@ -15,9 +15,10 @@ from real_boat import Real, recorded
 from typer.testing import CliRunner
 
 from boatsim.cli.commands import app
+from boatsim.diagnosis.checks.data_cleaning import drop_faulty_values
 from boatsim.diagnosis.checks.finding import Change, apply_changes, column_lines
 from boatsim.diagnosis.checks.position_jumps import jump_rows
-from boatsim.diagnosis.loading import vessel_for
+from boatsim.diagnosis.loading import open_recording, vessel_for
 from boatsim.diagnosis.log_check import check_files
 from boatsim.diagnosis.pipeline import diagnose
 from boatsim.errors import BadInput
@@ -262,6 +263,21 @@ def test_hard_turns_and_crash_stops_are_no_leaps() -> None:
     assert not len(jump_rows(t, path))
     moved = path + np.where(t[:, None] > 30.0, [[1.0, 0.0]], 0.0)
     assert jump_rows(t, moved).tolist() == [int(np.flatnonzero(t <= 30.0)[-1])]
+
+
+@pytest.mark.parametrize("seconds", [0.5, 4.0, 10.0])
+def test_fixes_that_leap_away_and_come_back_are_dropped_and_no_part_is_cut_off(
+    seconds: float, tmp_path: Path
+) -> None:
+    log = good()[0]
+    begin = 0.6 * log["t_s"][-1]
+    away = (log["t_s"] > begin) & (log["t_s"] <= begin + seconds)
+    path = files(tmp_path, [log | {"x_m": log["x_m"] + 9.0 * away, "y_m": log["y_m"] - 7.0 * away}])
+    recording, vessel = open_recording(path[0], "trial_boat", ())
+    cleaned = drop_faulty_values(recording, vessel)
+    assert (np.isnan(cleaned["x_m"]) == away).all() and (cleaned.t == recording.t).all()
+    said = [e["name"] for e in found_in(path)]
+    assert said == ["outliers"]
 
 
 @pytest.mark.parametrize(
