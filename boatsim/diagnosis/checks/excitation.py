@@ -65,12 +65,22 @@ def _never_astern(recording: Recording, vessel: Vessel) -> list[Finding]:
 
 
 def _never_moved(recording: Recording, vessel: Vessel, config: ChecksConfig) -> list[Finding]:
+    recorded = [name for name in vessel.commands if name in recording.signals]
     still = []
-    for name in vessel.actuators:
-        if name in recording.signals and _is_constant(recording, vessel, name, config):
+    for name in recorded:
+        if _is_constant(recording, vessel, name, config):
             still.append(name)
     if not still:
         return []
+    if still == recorded:
+        return [
+            _limit(
+                "never_moved",
+                "no command moves",
+                "thrust, steering and their delays can not be identified; if the boat was "
+                "controlled, the log lacks its commands",
+            )
+        ]
     names = " and ".join(still)
     return [
         _limit(

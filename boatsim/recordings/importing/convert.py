@@ -23,6 +23,7 @@ from boatsim.recordings.importing.resample import (
     MIN_LOST,
     Samples,
     clean_samples,
+    count_disorder,
     longest_hold,
     mean_held_values,
     nearest_samples,
@@ -93,10 +94,13 @@ def convert(
     work.begin = min(starts, default=0.0)
     if map.position:
         _add_position(work, map.position)
+    disorder: dict[tuple[int, int, float], list[str]] = {}
     for name, what in map.columns.items():
         t, values = _column(work, name, what)
+        disorder.setdefault(count_disorder(t), []).append(name)
         is_held = name in work.channels or is_command(name) or name.startswith(HELD)
         work.columns[name] = Column(_check_not_empty(work, name, clean_samples(t, values)), is_held)
+    _remark_disorder(work, disorder)
     _drop_repeats(work)
     rows, near = _row_times(work)
     signals: dict[str, Array] = {}
@@ -115,6 +119,22 @@ def convert(
         remarks=tuple(work.remarks),
         path=log.path,
     )
+
+
+def _remark_disorder(work: _Work, disorder: Mapping[tuple[int, int, float], list[str]]) -> None:
+    """Add remarks on samples out of order and on several samples at one time, by columns."""
+    for (late, doubled, first), names in disorder.items():
+        where = f"first {first - work.begin:.3f} s after the log begins"
+        if late:
+            work.remark(
+                f"{', '.join(names)}: {late} samples are logged after a later one, {where}; "
+                "they are sorted by time"
+            )
+        if doubled:
+            work.remark(
+                f"{', '.join(names)}: {doubled} samples have the time of another one, {where}; "
+                "of these the one logged last is used"
+            )
 
 
 def _signal(work: _Work, key: str, text: str) -> tuple[Signal, Expression]:

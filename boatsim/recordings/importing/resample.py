@@ -49,6 +49,24 @@ def clean_samples(t: Array, values: Array) -> Samples:
     return Samples(t[last], values[last])
 
 
+def count_disorder(t: Array) -> tuple[int, int, float]:
+    """Count the samples that `clean_samples` sorts, and those that it drops for another one.
+
+    Args:
+        t: Times (N,) [s] as logged.
+
+    Returns:
+        Number of samples after a later one, number of samples at the time of another one, and the
+        first time of either [s]; 0 without any.
+    """
+    t = t[np.isfinite(t)]
+    late = t < np.maximum.accumulate(t) if len(t) else np.zeros(0, dtype=np.bool_)
+    times = np.sort(t)
+    doubled = times[1:][np.diff(times) == 0.0]
+    first = np.concatenate([t[late], doubled])
+    return int(late.sum()), len(doubled), float(first.min()) if len(first) else 0.0
+
+
 def row_times(base: Array, others: Sequence[Samples], near: float) -> Array:
     """Return the times (N,) of rows [s]: `base`, and samples farther than `near` [s] from it."""
     rows = base

@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 from boatsim.recordings.importing.resample import (
     Samples,
     clean_samples,
+    count_disorder,
     longest_hold,
     mean_held_values,
     nearest_samples,
@@ -94,3 +95,19 @@ def test_a_recording_of_mixed_rates_is_thinned_signal_by_signal():
         float(np.sin(t).sum() * 0.01), abs=1e-9
     )
     np.testing.assert_array_equal(run.orders.signals["thrust"], np.sin(t))
+
+
+@pytest.mark.parametrize(
+    ("times", "wanted"),
+    [
+        ([], (0, 0, 0.0)),
+        ([1.0, 2.0, 3.0], (0, 0, 0.0)),
+        ([1.0, 3.0, 2.0, 4.0], (1, 0, 2.0)),
+        ([1.0, 2.0, 2.0, 2.0, 3.0], (0, 2, 2.0)),
+        ([1.0, 2.0, 1.0, 2.0, 3.0, np.nan], (1, 2, 1.0)),
+    ],
+)
+def test_samples_out_of_order_and_at_one_time_are_counted(
+    times: list[float], wanted: tuple[int, int, float]
+) -> None:
+    assert count_disorder(np.array(times)) == wanted

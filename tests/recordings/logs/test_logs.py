@@ -225,6 +225,20 @@ def test_each_recording_of_a_folder_is_entered_in_its_notes(tmp_path):
     assert "exists and is kept" in said and notes.read_bytes() == written
 
 
+def test_doubled_rows_and_rows_out_of_order_are_reported(tmp_path):
+    lines = (LOGS / "truth.csv").read_text().splitlines()
+    log, map, run = tmp_path / "log.csv", tmp_path / "map.toml", tmp_path / "runs" / "run.csv"
+    log.write_text(
+        "\n".join([*lines[:50], *lines[45:50], *lines[60:70], *lines[50:60], *lines[70:]])
+    )
+    ran(log, None, None, map, "otter")
+    _, said = ran(log, run, map, None, None)
+    assert "5 samples have the time of another one" in said
+    assert "14 samples are logged after a later one" in said
+    ran(LOGS / "truth.csv", tmp_path / "good" / "run.csv", map, None, None)
+    assert run.read_bytes() == (tmp_path / "good" / "run.csv").read_bytes()
+
+
 def test_notes_that_can_not_be_extended_are_kept(tmp_path):
     log, map, run = LOGS / "rover.BIN", tmp_path / "map.toml", tmp_path / "run.csv"
     ran(log, None, None, map, "otter")
