@@ -185,7 +185,8 @@ def test_ctrl_c_in_the_first_moments_is_quiet(wait: float, endless: Path, tmp_pa
     time.sleep(wait)
     os.kill(running.pid, signal.SIGINT)
     code, said = end(running)
-    if code == -signal.SIGINT:  # before the first line of ours
+    # Python itself was interrupted while it started, before the first line of ours
+    if code == -signal.SIGINT or (code == 1 and "boatsim" not in said):
         assert wait < 0.1
         return
     assert (

@@ -3,11 +3,14 @@
 Each command imports its implementation when it is called, so that `boatsim --help` answers quickly.
 """
 
+import atexit
 import functools
 import os
 import re
 import sys
+import threading
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import Annotated, Any, Literal, NoReturn, ParamSpec
 
@@ -884,10 +887,21 @@ def main() -> None:
         app()
     except SystemExit as error:
         exit_on_signals()
-        if not signal_received():
-            raise
-        # After an interruption that Python code has handled, the interpreter would still exit with
-        # the code of an unhandled Ctrl-C. os._exit keeps the code of the command.
-        for stream in (sys.stdout, sys.stderr):
+        _leave(int(error.code or 0))
+
+
+def _leave(code: int) -> NoReturn:
+    """End the process with an exit code after all clean-up that Python code has registered.
+
+    The interpreter itself is not ended in its usual way: the threads of Arrow's pools are still
+    alive then, which sometimes aborts the process ("terminate called without an active exception"),
+    and after an interruption that Python code has handled it would exit with the code of an
+    unhandled Ctrl-C.
+    """
+    # the steps of the interpreter itself when it ends: thread pools, then registered functions
+    threading._shutdown()  # type: ignore[attr-defined]
+    atexit._run_exitfuncs()
+    for stream in (sys.stdout, sys.stderr):
+        with suppress(OSError, ValueError):  # a reader that has gone, a stream that is closed
             stream.flush()
-        os._exit(int(error.code or 0))
+    os._exit(code)
