@@ -1122,8 +1122,9 @@ class DecideConfig:
         3.0,
         "1",
         "Evidence for a force beyond the assumed disturbance on held-out recordings, relative to "
-        "the threshold of an unknown cause, from which a cause is unknown. Parameters that are "
-        "fitted to other recordings leave up to 3 there, and unknown causes 5 and more.",
+        "the threshold of an unknown cause, from which a cause is unknown if that force also "
+        "correlates significantly with a motion, command or place. Without such a correlation "
+        "known effects of uncertain size leave up to 16 there.",
         0.0,
     )
     sure_probability: float = setting(

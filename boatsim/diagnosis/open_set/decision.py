@@ -99,12 +99,13 @@ def decide(
         others = ranking.explained - stated.gain
         least = required_gain(candidates, config.select) + unknown_threshold(config.select, others)
         stands_in = stands_in or bool(stated.shared > least)
+    unseen = of_log.held_out_unexplained > config.decide.held_out_share
     decided = replace(
         ranking,
         named=tuple(named),
         doubtful=tuple(doubtful),
         stands_in=stands_in,
-        held_out_remains=of_log.held_out_unexplained > config.decide.held_out_share,
+        held_out_remains=unseen and of_log.held_out_structured,
     )
     return Decision(problem, decided, tuple(judgements), of_log)
 

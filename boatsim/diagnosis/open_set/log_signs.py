@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from boatsim.diagnosis.filter import MappedRecording
-from boatsim.diagnosis.locate.residual_structure import find_structure_held_out
+from boatsim.diagnosis.locate.residual_structure import Structure, find_structure_held_out
 from boatsim.diagnosis.noise_levels import fit_noise
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.diagnosis.search.evidence import unexplained_evidence, unknown_threshold
@@ -29,7 +29,9 @@ class LogSigns:
         effects: Number of identified effects.
         held_out_unexplained: The same share as `unexplained` on held-out recordings, to which no
             parameter was fitted.
-        held_out_structure: Evidence of the largest such dependence on held-out recordings [nats].
+        held_out_structure: Evidence of the largest such dependence on held-out recordings [nats],
+            beyond what the uncertainty of the parameters explains.
+        held_out_structured: Whether that dependence is significant.
     """
 
     coefficient_shift: float
@@ -40,8 +42,10 @@ class LogSigns:
     effects: int
     held_out_unexplained: float = 0.0
     held_out_structure: float = 0.0
+    held_out_structured: bool = False
 
 
+NO_STRUCTURE = Structure("", "", 0.0, 1.0, 0, False)
 # where nothing was fitted
 NO_SIGNS = LogSigns(0.0, 1.0, 0.0, 0.0, 0.0, 0)
 
@@ -67,22 +71,23 @@ def log_signs(problem: Problem, ranking: Ranking, held_out: Sequence[MappedRecor
         float(best.evidence - ranking.recalibrated.evidence),
         len(ranking.named),
         remains / threshold,
-        structure,
+        structure.gain,
+        structure.significant,
     )
 
 
 def _of_held_out(
     problem: Problem, best: Fit, held_out: Sequence[MappedRecording]
-) -> tuple[float, float]:
-    """Evidence of an unmodelled force on held-out recordings, and of its structure [nats]."""
+) -> tuple[float, Structure]:
+    """Evidence of an unmodelled force on held-out recordings [nats], and its structure."""
     if not held_out:
-        return 0.0, 0.0
+        return 0.0, NO_STRUCTURE
     unseen = problem.on(held_out)
     fitted = fit_noise(unseen, best)
     remains = unexplained_evidence(unseen, fitted)
     if not np.isfinite(remains):
-        return 0.0, 0.0
-    return float(remains), float(find_structure_held_out(unseen, fitted).gain)
+        return 0.0, NO_STRUCTURE
+    return float(remains), find_structure_held_out(unseen, fitted)
 
 
 def _coefficient_shift(fit: Fit) -> float:

@@ -144,6 +144,7 @@ class LogSignsEntry(TypedDict):
     effects: int
     held_out_unexplained: float  # the share `unexplained` on held-out recordings
     held_out_structure: float  # [nats]
+    held_out_structured: bool  # whether that structure is significant
 
 
 class SignsEntry(TypedDict):

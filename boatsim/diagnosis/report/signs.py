@@ -47,6 +47,7 @@ def signs_entry(decision: Decision) -> SignsEntry:
             "effects": log.effects,
             "held_out_unexplained": round(log.held_out_unexplained, 4),
             "held_out_structure": round(log.held_out_structure, 3),
+            "held_out_structured": log.held_out_structured,
         },
     }
 
