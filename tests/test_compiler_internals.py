@@ -4,6 +4,7 @@ its bound is raised.
 Each test covers one assumption in the list of `boatsim.physics.compiler_internals`.
 """
 
+import importlib
 import os
 import re
 import subprocess
@@ -19,6 +20,7 @@ from numba import carray, njit, types
 from numba.core.caching import FunctionCache, IndexDataCacheFile
 
 from boatsim.physics import compiler_internals as internals
+from boatsim.physics.cache_folder import cache_folder
 from boatsim.physics.content import content_root
 from boatsim.physics.kernel.compiling import WITHOUT_REFERENCE_COUNTS, compiled
 from boatsim.physics.signals import Wrench, wrench
@@ -86,7 +88,12 @@ def test_2_compiled_code_is_found_on_disk_and_a_damaged_file_is_compiled_again(
     tmp_path: Path,
 ) -> None:
     (tmp_path / "script.py").write_text(CACHED)
-    environment = os.environ | {"PYTHONPATH": str(content_root()), "NUMBA_CACHE_DIR": str(tmp_path)}
+    cached = tmp_path / "cache"
+    environment = os.environ | {
+        "PYTHONPATH": str(content_root()),
+        "BOATSIM_CACHE": str(cached),
+        "NUMBA_CACHE_DIR": str(tmp_path / "numba"),  # of any user: nothing is read or written there
+    }
 
     def hits() -> str:
         command = [sys.executable, str(tmp_path / "script.py")]
@@ -95,6 +102,7 @@ def test_2_compiled_code_is_found_on_disk_and_a_damaged_file_is_compiled_again(
 
     assert [hits(), hits()] == ["3.0 0", "3.0 1"]
     (code,) = tmp_path.rglob("*.nbc")
+    assert code.is_relative_to(cached) and not (tmp_path / "numba").exists()
     content = bytearray(code.read_bytes())
     content[-1] ^= 1
     code.write_bytes(content)
@@ -165,3 +173,11 @@ def test_6_a_field_that_is_not_found_is_an_error_with_its_name(
             internals.mujoco_layout()
     finally:
         internals.mujoco_layout.cache_clear()
+
+
+def test_no_compiled_function_of_the_package_is_kept_outside_of_the_cache_folder() -> None:
+    for name in ("boatsim.control.allocation", "boatsim.simulate.sensing", "boatsim.control.jet"):
+        for one in vars(importlib.import_module(name)).values():
+            if store := getattr(one, "_cache", None):
+                folder = Path(getattr(store, "_cache_path", cache_folder()))
+                assert folder.is_relative_to(cache_folder()), name

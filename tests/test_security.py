@@ -334,7 +334,7 @@ def test_11_the_cache_is_private(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 
 def test_12_without_a_home_the_cache_is_a_new_folder_of_the_process(tmp_path: Path) -> None:
     code = (
-        "import os; from boatsim.physics.cache import cache_folder as f; a = f(); print(a, f() == a, "
+        "import os; from boatsim.physics.cache_folder import cache_folder as f; a = f(); print(a, f() == a, "
         "oct(a.stat().st_mode)[-3:], os.environ['BOATSIM_CACHE'] == str(a))"
     )
     (tmp_path / "file").touch()

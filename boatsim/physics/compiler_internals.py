@@ -7,8 +7,8 @@ MuJoCo in `pyproject.toml` exist because of these two modules: raise a bound aft
 
 1. numba reads the default of each argument of a Python function through an `AbstractTemplate`
    (`register_with_numba`).
-2. numba keeps compiled code in a `FunctionCache`, whose file object may be given another class
-   (`keep_on_disk`).
+2. numba keeps compiled code in a `FunctionCache`, whose file object may be given another class and
+   whose folder a `_CacheLocator` chooses (`keep_on_disk`).
 3. The option `_nrt=False` switches off numba's reference counts (`WITHOUT_REFERENCE_COUNTS`).
 4. A compiled function has a C wrapper whose address may be passed to other compiled code
    (`FunctionPointer`).
@@ -32,13 +32,19 @@ from llvmlite import ir
 from numba import types
 from numba.core import cgutils, utils
 from numba.core.base import BaseContext
-from numba.core.caching import FunctionCache, IndexDataCacheFile
+from numba.core.caching import (
+    CompileResultCacheImpl,
+    FunctionCache,
+    IndexDataCacheFile,
+    _CacheLocator,
+)
 from numba.core.ccallback import CFunc
 from numba.core.typing.templates import AbstractTemplate, Signature, infer_global, signature
 from numba.extending import intrinsic, lower_builtin
 from numpy.typing import NDArray
 
-from boatsim.errors import BadPhysics
+from boatsim.errors import BadInput, BadPhysics
+from boatsim.physics.cache_folder import cache_folder
 from boatsim.physics.dependency_hash import dependency_digest
 
 # numba counts references to arrays with locked instructions at every assignment, which takes longer
@@ -94,6 +100,9 @@ def register_with_numba(constructor: Callable[..., object], record: type) -> Non
 DIGEST_SIZE = sha256().digest_size  # bytes in front of each file of compiled code
 
 
+PROGRAM = "program_"  # begins the name of a folder of a vessel's program
+
+
 class SealedCacheFile(IndexDataCacheFile):
     """Cache files of numba's compiled code of one function, each with a digest of its content.
 
@@ -105,7 +114,7 @@ class SealedCacheFile(IndexDataCacheFile):
 
     @property
     def _source_stamp(self) -> str:
-        if self.source.parent.name.startswith("program_"):
+        if self.source.parent.name.startswith(PROGRAM):
             return ""  # the folder of a compiled program is named by its content
         return dependency_digest(self.source)
 
@@ -139,14 +148,54 @@ class SealedCacheFile(IndexDataCacheFile):
         return pickle.loads(whole[DIGEST_SIZE:])
 
 
+class _InCacheFolder(_CacheLocator):
+    """Chooses boatsim's cache folder for the code of a function; numba's own may be of anybody.
+
+    numba stores its index as a pickle, which can run any code, beside the function's file or in a
+    folder that other users may write to.
+    """
+
+    def __init__(self, line: int, file: Path) -> None:
+        self.line, self.file = line, file
+
+    @classmethod
+    def from_function(cls, py_func: Callable[..., Any], py_file: str) -> "_InCacheFolder":
+        return cls(py_func.__code__.co_firstlineno, Path(py_file))
+
+    def get_cache_path(self) -> str:
+        folder = self.file.parent
+        if not folder.name.startswith(PROGRAM):  # programs lie in the cache folder already
+            folder = cache_folder() / "functions" / self.get_suitable_cache_subpath(str(self.file))
+        return str(folder / "__pycache__")
+
+    def get_source_stamp(self) -> str:
+        return ""  # `SealedCacheFile` has its own
+
+    def get_disambiguator(self) -> str:
+        return str(self.line)
+
+
+class _InCacheFolderImpl(CompileResultCacheImpl):
+    _locator_classes = (_InCacheFolder,)
+
+
+class _CacheInFolder(FunctionCache):
+    _impl_class = _InCacheFolderImpl
+
+
 def keep_on_disk(compiled: Any, function: Callable[..., Any]) -> Any:
     """Make a function compiled by numba store its machine code on disk; return it.
+
+    Without a safe folder it is compiled again by every process.
 
     Args:
         compiled: Dispatcher or C callback that numba made of `function`.
         function: The Python function.
     """
-    compiled._cache = FunctionCache(function)
+    with suppress(BadInput):
+        compiled._cache = _CacheInFolder(function)
+    if not isinstance(compiled._cache, _CacheInFolder):
+        return compiled
     compiled._cache._cache_file.__class__ = SealedCacheFile
     compiled._cache._cache_file.source = Path(function.__code__.co_filename)
     return compiled

@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from typing import Any
 
 from boatsim.errors import BadInput
-from boatsim.physics.cache import cache_folder
+from boatsim.physics.cache_folder import cache_folder
 
 
 def import_warp() -> Any:
