@@ -12,6 +12,7 @@ from functools import partial
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from boatsim.errors import BadInput, unknown_name
 from boatsim.files import replace_file
@@ -221,11 +222,12 @@ def read(
         if name in ("t_s", *MOTION, *channels) or is_command(name):
             needed.append(name)
     _check_columns(raw, needed)
-    _check_cells(raw, needed)
+    used = _used_rows(raw, found.notes.use)  # rows outside may have faults
+    _check_cells(used, needed)
     mistakes: list[str] = []
     for check in (_check_time, _check_units, partial(_check_limits, channels=channels)):
         try:
-            check(raw)
+            check(used)
         except BadInput as error:
             mistakes.append(str(error))
     if mistakes:
@@ -381,6 +383,17 @@ def is_command(name: str) -> bool:
     return COMMAND.match(name) is not None
 
 
+def _used_rows(raw: Raw, use: tuple[float, float] | None) -> Raw:
+    """The rows of a table that the notes select; all rows if they select too few."""
+    if use is None:
+        return raw
+    inside = (raw.columns["t_s"] >= use[0] - 1e-9) & (raw.columns["t_s"] <= use[1] + 1e-9)
+    if inside.sum() < FEWEST_ROWS:
+        return raw
+    rows = np.asarray(raw.rows)[inside].tolist()
+    return replace(raw, columns=select_rows(raw.columns, inside), rows=rows)
+
+
 def _check_columns(raw: Raw, needed: list[str]) -> None:
     if "t_s" not in raw.columns:
         raise file_error(
@@ -479,11 +492,21 @@ def _check_time(raw: Raw) -> None:
         raise file_error(raw.path, message, raw.rows[index], "t_s")
     if (apart := np.diff(t) > MAX_GAP).any():
         index = int(np.argmax(apart)) + 1
+        advice = "is it in seconds?"
+        if 2 * int(apart.sum()) < len(apart):
+            advice = f"use = {_longest_part(t, apart)} in recording.toml selects the longest part"
         message = (
             f"{t[index] - t[index - 1]:g} s after the row before, at most {MAX_GAP:g} s "
-            "are allowed; is it in seconds?"
+            f"are allowed; {advice}"
         )
         raise file_error(raw.path, message, raw.rows[index], "t_s")
+
+
+def _longest_part(t: Array, apart: NDArray[np.bool_]) -> list[float]:
+    """First and last time [s] of the longest part of a recording between gaps."""
+    parts = np.split(t, np.flatnonzero(apart) + 1)
+    longest = max(parts, key=np.ptp)
+    return [float(longest[0]), float(longest[-1])]
 
 
 def _check_units(raw: Raw) -> None:

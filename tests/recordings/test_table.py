@@ -543,3 +543,33 @@ def test_a_csv_of_numbers_is_read_by_native_code(tmp_path: Path) -> None:
     quick = csv._read_fast(tmp_path / "run.csv", content[:13], content)
     assert quick is not None and quick.text == {"mode": (2, "AUTO")}
     np.testing.assert_array_equal(quick.columns["x_m"], [0.5, np.nan])
+
+
+def test_a_hole_is_answered_by_the_part_to_use_and_that_part_is_read(tmp_path: Path) -> None:
+    after = [
+        line.replace(line.split(",")[0], f"{0.1 * i + 100.0:.1f}", 1)
+        for i, line in enumerate(lines(60))
+    ]
+    path = file(tmp_path, HEADER + "".join(lines(30) + after))
+    with pytest.raises(BadInput, match=r"use = \[100\.0, 105\.9\] in recording\.toml"):
+        read(path)
+    (tmp_path / "recording.toml").write_text("use = [100.0, 105.9]\n")
+    assert len(read(path).used()) == 60
+
+
+def test_faults_outside_of_the_part_to_use_do_not_matter(tmp_path: Path) -> None:
+    good = lines(60)
+    bad = [good[0], good[2], good[1].replace("0.5\n", "99\n"), *good[3:]]
+    path = file(tmp_path, HEADER + "".join(bad))
+    with pytest.raises(BadInput, match="must increase"):
+        read(path, LIMITS)
+    (tmp_path / "recording.toml").write_text("use = [0.3, 9.0]\n")
+    assert len(read(path, LIMITS).used()) == 57
+
+
+def test_time_in_another_unit_is_no_hole(tmp_path: Path) -> None:
+    slow = [
+        line.replace(line.split(",")[0], f"{100.0 * i:.1f}", 1) for i, line in enumerate(lines(60))
+    ]
+    with pytest.raises(BadInput, match="is it in seconds"):
+        read(file(tmp_path, HEADER + "".join(slow)))
