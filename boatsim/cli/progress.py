@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from rich.progress import Progress
 
 LINE_INTERVAL = 10.0  # [s] between two lines of a campaign, so that a log of it stays short
+STAGE_INTERVAL = 30.0  # [s] between two lines of one stage, for the same reason
 SMALLEST_SHARE = 0.05  # of the work, below which an estimate of the time left is unreliable
 SHORTEST_TIME = 1.0  # [s] of work, below which an estimate of the time left is unreliable
 # Called with the index of a run and the simulated time it has reached [s].
@@ -38,14 +39,23 @@ def report_stages() -> Iterator[Report]:
 def _report_lines() -> Report:
     """Report that prints each stage once, the first together with the second.
 
-    Wrong input is refused in the first stage, and then only the error is printed.
+    Wrong input is refused in the first stage, and then only the error is printed. In a long stage
+    the elapsed time and the time left are printed now and then.
     """
     stages: list[str] = []
+    start = last_line = monotonic()
 
     def report(stage: str, share: float = 0.0, detail: str = "") -> None:
+        nonlocal last_line
+        now = monotonic()
         if stage in stages:  # The selection of effects is repeated after the validation.
+            if now - last_line >= STAGE_INTERVAL:
+                last_line = now
+                left = time_left(now - start, share)
+                print_progress(", ".join(filter(None, (f"{now - start:.0f} s so far", left))))
             return
         stages.append(stage)
+        last_line = now
         if len(stages) == 2:
             print_progress(stages[0])
         if len(stages) > 1:
@@ -62,24 +72,44 @@ def report_campaign() -> Iterator[Report]:
         Function to call with the stage, the fraction of the tasks done, and a detail.
     """
     if sys.stderr.isatty():
-        with _show_bar() as bar:
+        with _show_bar(_Pace()) as bar:
             yield bar
         return
-    start = monotonic()
-    last_line = start - LINE_INTERVAL
+    last_line = monotonic() - LINE_INTERVAL
+    paced = _Pace()
 
     def report(stage: str, share: float = 0.0, detail: str = "") -> None:
         nonlocal last_line
+        paced.note(share)
         if monotonic() - last_line < LINE_INTERVAL and share < 1.0:
             return
         last_line = monotonic()
         line = detail or stage
-        left = time_left(last_line - start, share)
+        left = paced.time_left(share)
         if left and share < 1.0:
             line = f"{line}, {left}"
         print_progress(line)
 
     yield report
+
+
+class _Pace:
+    """Time left of many tasks, counted from the first one that is done: it waits for compilation."""
+
+    def __init__(self) -> None:
+        self.first: tuple[float, float] | None = None  # time [s] and share of the work done
+
+    def note(self, share: float) -> None:
+        """Note the share of the work that is done now."""
+        if self.first is None and share > 0.0:
+            self.first = (monotonic(), share)
+
+    def time_left(self, share: float) -> str:
+        """Return the estimated remaining time in words; "" where an estimate is unreliable."""
+        if self.first is None:
+            return ""
+        begun, before = self.first
+        return time_left(monotonic() - begun, (share - before) / max(1.0 - before, 1e-9))
 
 
 def print_progress(line: str) -> None:
@@ -92,7 +122,7 @@ def print_progress(line: str) -> None:
 
 
 @contextmanager
-def _show_bar() -> Iterator[Report]:
+def _show_bar(paced: "_Pace | None" = None) -> Iterator[Report]:
     """Progress bar with the present stage, the elapsed time and the time left."""
     from rich.console import Console
     from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
@@ -117,9 +147,11 @@ def _show_bar() -> Iterator[Report]:
             words += f": {detail}"
         elapsed = bars.tasks[row].elapsed or 0.0
         done = max(share, bars.tasks[row].completed)
-        bars.update(
-            row, description=printable(words), completed=done, left=time_left(elapsed, done)
-        )
+        left = time_left(elapsed, done)
+        if paced:
+            paced.note(done)
+            left = paced.time_left(done)
+        bars.update(row, description=printable(words), completed=done, left=left)
 
     with _activate(bars):
         yield report

@@ -152,6 +152,40 @@ def test_the_time_left_is_what_the_rest_takes_at_the_same_pace(
     assert progress.time_left(elapsed, share) == said
 
 
+def test_the_first_of_many_tasks_which_waits_for_the_compiler_does_not_count(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    now = [0.0]
+    monkeypatch.setattr(progress, "monotonic", lambda: now[0])
+    with progress.report_campaign() as report:
+        for time, done in ((100.0, 1), (110.0, 2), (130.0, 4)):
+            now[0] = time
+            report("runs", done / 10, f"{done} of 10")
+    assert lines(capsys.readouterr().err) == [
+        "1 of 10",
+        "2 of 10, about 80 s left",
+        "4 of 10, about 60 s left",
+    ]
+
+
+def test_a_long_stage_tells_its_time(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    now = [0.0]
+    monkeypatch.setattr(progress, "monotonic", lambda: now[0])
+    with progress.report_stages() as report:
+        report("reading", 0.0)
+        for time in (1.0, 20.0, 32.0, 50.0, 64.0):
+            now[0] = time
+            report("selecting", time / 128.0)
+    assert lines(capsys.readouterr().err) == [
+        "reading",
+        "selecting",
+        "32 s so far, about 2 min left",
+        "64 s so far, about 64 s left",
+    ]
+
+
 def test_the_bar_makes_way_for_a_question(monkeypatch: pytest.MonkeyPatch) -> None:
     seen: list[str] = []
 
