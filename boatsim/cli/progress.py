@@ -94,7 +94,7 @@ def report_campaign() -> Iterator[Report]:
 
 
 class _Pace:
-    """Time left of many tasks, counted from the end of the first: that one waits for compilation."""
+    """Time left of many tasks, counted from the end of the first, which waits for compilation."""
 
     def __init__(self) -> None:
         self.first: tuple[float, float] | None = None  # time [s] and share of the work done
