@@ -29,7 +29,7 @@ TIME_CONSTANTS = (0.5, 0.8, 1.67, 2.5, 4.0)  # [s]
 def control_loop(**switches: float) -> SampledChannel:
     """Return the loop of a controller with these switches, on the craft that it assumes."""
     controller: Any = load_class("controller", "l1_heading_discrete")(**switches)
-    (found,) = controller.loop_channels()
+    (found,) = controller.feedback_loops()
     assert isinstance(found, SampledChannel)
     return found
 

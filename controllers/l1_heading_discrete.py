@@ -143,7 +143,7 @@ class L1HeadingDiscrete(Controller):
         """Return the estimated disturbance of the yaw motion, an acceleration, for the log."""
         return {"sigma_radps2": Estimate(self._sigma, nan, nan)}
 
-    def loop_channels(self) -> tuple[SampledChannel, ...]:
+    def feedback_loops(self) -> tuple[SampledChannel, ...]:
         """Return the controller's feedback loop for an analysis of stability margins.
 
         It is broken at the yaw acceleration.

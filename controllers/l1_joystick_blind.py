@@ -129,12 +129,12 @@ class L1JoystickBlind(AdaptiveJoystick):
         """
         return None if self._check else (self._astern, self._angle, self._scale)
 
-    def loop_channels(self) -> tuple[LoopChannel, ...]:
+    def feedback_loops(self) -> tuple[LoopChannel, ...]:
         """Return the yaw feedback loop for an analysis of stability margins.
 
         There is no surge loop, because no measurement closes it.
         """
-        return tuple(channel for channel in super().loop_channels() if channel.name == "yaw")
+        return tuple(channel for channel in super().feedback_loops() if channel.name == "yaw")
 
     def _make_motor_check(self) -> MotorCheck:
         return MotorCheck(

@@ -109,12 +109,12 @@ class L1JoystickSway(AdaptiveJoystick):
             "reference_v_mps": Estimate(float(sway["model"]), nan, nan),
         }
 
-    def loop_channels(self) -> tuple[LoopChannel, ...]:
+    def feedback_loops(self) -> tuple[LoopChannel, ...]:
         """Return the yaw, surge and sway feedback loops for an analysis of stability margins."""
         delayed = partial(
             LoopChannel, hold_s=0.5 * self.period, servo_lag_s=SERVO_LAG, input_gain=(0.5, 1.0, 1.8)
         )
         return (
-            *super().loop_channels(),
+            *super().feedback_loops(),
             delayed("sway", pole=self.sway_pole, bandwidth=self.sway_bandwidth),
         )

@@ -154,7 +154,7 @@ class PidAutopilot(Outboards, CompiledController):
         1.0, low=0.0, high=100.0, unit="N s/m", words="surge force per m/s with no speed sensor"
     )
 
-    def loop_channels(self) -> tuple[LoopChannel, ...]:
+    def feedback_loops(self) -> tuple[LoopChannel, ...]:
         """Return the heading and speed feedback loops for an analysis of stability margins.
 
         PI control of a speed is PD control of its integral.

@@ -157,7 +157,7 @@ class AdaptiveJoystick(Outboards, CompiledController):
         """Return the joystick demands at full stick: largest speeds [m/s] and turn rate [rad/s]."""
         return {**super().largest_goals(), "yaw_radps": self.rated_yaw}
 
-    def loop_channels(self) -> tuple[LoopChannel, ...]:
+    def feedback_loops(self) -> tuple[LoopChannel, ...]:
         """Return the controller's yaw and surge feedback loops, for stability margins.
 
         The true thrust over inertia is 0.5 to 1.8 times the assumed one.

@@ -40,21 +40,21 @@ def margin_rows(controller: object) -> list[Row]:
     """Return the stability margins of a controller's loops, for several true input gains each.
 
     Args:
-        controller: Object with `loop_channels`.
+        controller: Object with `feedback_loops`.
 
     Raises:
-        BadInput: The controller has no `loop_channels`.
+        BadInput: The controller has no `feedback_loops`.
     """
-    describe = getattr(controller, "loop_channels", None)
+    describe = getattr(controller, "feedback_loops", None)
     if describe is None:
         asked = snake_case(type(controller).__name__)
         able = [
             name
             for name in library_names("controller")
-            if hasattr(load_class("controller", name), "loop_channels")
+            if hasattr(load_class("controller", name), "feedback_loops")
         ]
         raise BadInput(
-            f"controller {asked!r} describes no loop_channels (these do: "
+            f"controller {asked!r} describes no feedback_loops (these do: "
             f"{', '.join(able) or 'none'})"
         )
     rows = []

@@ -170,7 +170,7 @@ class TaskSimulation:
         self.world.advance(commands, self.substeps)
         self._steps += 1
         self._observe()
-        outcome = self.task.evaluate(self._observed, self._memory, self.period, self.scale)
+        outcome = self.task.outcome(self._observed, self._memory, self.period, self.scale)
         reward, terminated = outcome
         truncated = (self._steps >= self._last_step) & ~terminated
         finished = np.flatnonzero(terminated | truncated)

@@ -27,7 +27,7 @@ class Described:
     def __init__(self, *channels: LoopChannel) -> None:
         self.channels = channels
 
-    def loop_channels(self) -> tuple[LoopChannel, ...]:
+    def feedback_loops(self) -> tuple[LoopChannel, ...]:
         return self.channels
 
 
@@ -121,7 +121,7 @@ def test_damping_of_the_boat_lowers_the_slope_needed() -> None:
 
 def test_controller_without_channels_names_those_that_have() -> None:
     with pytest.raises(
-        BadInput, match=r"'open_loop' describes no loop_channels \(these do: .*l1_joystick"
+        BadInput, match=r"'open_loop' describes no feedback_loops \(these do: .*l1_joystick"
     ):
         margins.margin_rows(load_class("controller", "open_loop")())
 

@@ -266,6 +266,9 @@ def test_ideal_boat_has_nothing_missing(folder):
     assert answer["verdict"] == "nothing_missing" and answer["effects"] == []
     limits = answer["upper_limits"]["weak_reverse"]["astern_factor"]
     assert 0.0 < limits < 0.1  # so small a weakness would have gone unseen
+    # a slower steering would have been seen: the larger its rate, the weaker that effect
+    assert "rate_radps" not in answer["upper_limits"]["steering_rate_limit"]
+    assert answer["lower_limits"]["steering_rate_limit"]["rate_radps"] > 0.1
     assert answer["where"]["region"] == []
 
 

@@ -90,9 +90,9 @@ def compose_answer(
         possible.append(_possible(problem, ranking.best, identified, decision))
     formulas = described_entries(ranking.description, vessel)
     tested = () if ranking.divergences else question.candidates
-    limits = {}
+    upper, lower = dict[str, dict[str, float]](), dict[str, dict[str, float]]()
     for name, fitted in ranking.last.items():
-        limits[base_name(name)] = _limits(problem, fitted, name)
+        upper[base_name(name)], lower[base_name(name)] = _limits(problem, fitted, name)
     answer: Answer = {
         "verdict": _verdict(ranking, layers.effects, bool(formulas)),
         "sentence": "",
@@ -104,7 +104,8 @@ def compose_answer(
         "unknown": _unknown(problem, ranking, evaluation),
         "described": formulas,
         "candidates": candidate_entries(ranking),
-        "upper_limits": limits,
+        "upper_limits": upper,
+        "lower_limits": {name: found for name, found in lower.items() if found},
         "where": _where(problem, ranking, evaluation),
         "fit": _fit(evaluation, [mapped.name for mapped in question.held_out]),
         "next_experiment": next_experiment.plan_entry(plan, NEXT_SCENARIO),
@@ -415,17 +416,25 @@ def candidate_entries(ranking: Ranking) -> list[CandidateEntry]:
     return list(found.values())
 
 
-def _limits(problem: Problem, fitted: Fit, name: str) -> dict[str, float]:
-    """Return upper limits (95 %) of the distance of each parameter from zero effect."""
+def _limits(problem: Problem, fitted: Fit, name: str) -> tuple[dict[str, float], dict[str, float]]:
+    """Return limits (95 %) of the parameters of an effect that was not found.
+
+    They are upper limits of the distance from zero effect, and lower limits of parameters that are
+    limits themselves, such as that of a rate.
+    """
     config = problem.config.answer
     kind = next(type(e) for e in problem.program.candidates if e.name == name)
     params = kind.params()
-    limits = {}
+    upper, lower = dict[str, float](), dict[str, float]()
     for f in fitted.free:
         if f.effect != name or f.relative or f.name not in (kind.strength or params):
             continue
         value, sd = fitted.value(name, f.name)
-        if sd < config.limit_share * f.sd:
-            limit = abs(value - f.mean) + config.limit_quantile * sd
-            limits[parameter_key(f.name, params[f.name].unit)] = float(f"{limit:.3g}")
-    return limits
+        if sd >= config.limit_share * f.sd:
+            continue
+        key, margin = parameter_key(f.name, params[f.name].unit), config.limit_quantile * sd
+        if f.name not in kind.limits:
+            upper[key] = float(f"{abs(value - f.mean) + margin:.3g}")
+        elif value > margin:
+            lower[key] = float(f"{value - margin:.3g}")
+    return upper, lower

@@ -377,6 +377,8 @@ class Answer(TypedDict):
     facts: NotRequired[dict[str, object]]
     rules: NotRequired[RulesEntry]
     upper_limits: dict[str, dict[str, float]]
+    # of parameters that limit a quantity, such as a rate: an effect is weaker with larger ones
+    lower_limits: NotRequired[dict[str, dict[str, float]]]
     where: WhereEntry
     fit: FitEntry
     recalibration: NotRequired[RecalibrationEntry]  # absent if nothing could be fitted

@@ -559,10 +559,18 @@ def _status(f: Findings) -> dict[str, str]:
 
 
 def _limits(f: Findings) -> Iterator[Block]:
-    """Yield the largest strength that each effect may have that was not found."""
+    """Yield the largest strength that each effect may have that was not found.
+
+    There are none beside an unknown cause, in whose force any of these effects may hide.
+    """
+    if f.answer["unknown"]["flag"]:
+        return
     rows = []
     for name, values in _not_found(f).items():
         limits = []
+        for key, value in f.answer.get("lower_limits", {}).get(name, {}).items():
+            words, text = format_upper_limit(key, value)
+            limits.append(f"{words} at least {text}")
         for key, value in values.items():
             words, text = format_upper_limit(key, value)
             limits.append(f"{_measurement_meaning(f, name, key) or words} {text}")
@@ -571,8 +579,8 @@ def _limits(f: Findings) -> Iterator[Block]:
     if not rows:
         return
     caption = (
-        "With 95 % confidence each effect is weaker than this. The limit of a factor or fraction "
-        "is its distance from the value in the vessel file."
+        "With 95 % confidence each effect is weaker than this, if nothing else is missing. The "
+        "limit of a factor or fraction is its distance from the value in the vessel file."
     )
     header, folded = ["candidate", "at most", "meaning"], f.answer["verdict"] != "nothing_missing"
     yield without_empty_columns(Table(caption, header, rows, (1, 2), folded=folded, aside=True))
@@ -602,6 +610,11 @@ def _coefficients(f: Findings) -> Iterator[Block]:
         rows.append([words_of_name(name.replace(".", ", ")), format_with_sd(factor, sd), change])
     if rows:
         caption = "Coefficients of the recalibrated vessel: factor on the value in the vessel file"
+        if f.answer["effects"] or f.answer["described"]:
+            caption += (
+                ". That vessel has none of the effects and formulas above; patched.toml has other "
+                "factors, fitted together with them"
+            )
         yield Table(caption, ["coefficient", "factor ± deviation", "change"], rows)
 
 
@@ -682,8 +695,9 @@ def _limitations(f: Findings) -> Iterator[Block]:
     if not f.answer["fit"].get("held_out"):
         lines.append("Whether the finding holds on other data: no recording was held out.")
     unlimited = []
+    lower = f.answer.get("lower_limits", {})
     for name, limits in _not_found(f).items():
-        if not limits:
+        if not limits and name not in lower and not f.answer["unknown"]["flag"]:
             unlimited.append(words_of_name(name))
     if unlimited:
         lines.append(

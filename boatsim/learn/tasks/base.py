@@ -131,7 +131,7 @@ class Task(CheckedParameters):
         return np.zeros((len(observed[0]), type(self).memory))
 
     @abstractmethod
-    def evaluate(
+    def outcome(
         self, observed: tuple[Array, ...], memory: Array, period: float, scale: Scale
     ) -> Outcome:
         """Return the reward of a control step and whether it ends an episode.

@@ -150,7 +150,7 @@ class Berth(Task):
         potential = distance + HEADING_WEIGHT * np.abs(off)
         return np.column_stack([potential, np.zeros(len(off))])
 
-    def evaluate(
+    def outcome(
         self, observed: tuple[Array, ...], memory: Array, period: float, scale: Scale
     ) -> Outcome:
         """Return the reward of berthing: progress and nearness, less penalties; see `Task`.

@@ -119,7 +119,7 @@ class FollowPath(Task):
         angle = wave * x + phase
         return amplitude * np.sin(angle), np.arctan(amplitude * wave * np.cos(angle))
 
-    def evaluate(
+    def outcome(
         self, observed: tuple[Array, ...], memory: Array, period: float, scale: Scale
     ) -> Outcome:
         """Return the reward for speed along the path and nearness to it; see `Task`."""

@@ -98,7 +98,7 @@ class HoldStation(Task):
         signals = (ahead, starboard, ahead, starboard, s, c, m.u, m.v, m.r)
         return (*signals, distance, np.abs(wrap_angle(m.psi)), t)
 
-    def evaluate(
+    def outcome(
         self, observed: tuple[Array, ...], memory: Array, period: float, scale: Scale
     ) -> Outcome:
         """Return the reward for nearness to the station, its heading and low speed; see `Task`."""

@@ -89,7 +89,7 @@ class Joystick(Task):
         boats = np.arange(len(move))
         return (m.u, m.v, m.r, goal[boats, move], goal[boats, MOVES + move])
 
-    def evaluate(
+    def outcome(
         self, observed: tuple[Array, ...], memory: Array, period: float, scale: Scale
     ) -> Outcome:
         """Return the reward, minus the squared error from the requested velocity; see `Task`."""
