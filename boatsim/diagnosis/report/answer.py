@@ -283,14 +283,10 @@ def _effect(
     """Return the entry of an identified effect."""
     judged = decision.judgement_of_effect(named.name)
     effect = next(e for e in problem.program.candidates if e.name == named.name)
-    kind, config = type(effect), problem.config.answer
+    kind = type(effect)
     acting: Acting = {}
     if effect.on:
         acting["on"] = list(effect.on)
-    parameters = {}
-    for name in _fitted_parameters(best, effect):
-        key = parameter_key(name, kind.params()[name].unit)
-        parameters[key] = _parameter(best, effect, name, config)
     return {
         "name": base_name(named.name),
         **acting,
@@ -299,7 +295,7 @@ def _effect(
         "gain_nats": round(named.gain, 2),
         "words": _words(best, effect),
         "tied_with": list(map(base_name, named.tied_with)),
-        "parameters": parameters | _ratios(problem, best, effect),
+        "parameters": _parameters(problem, best, effect) | _ratios(problem, best, effect),
         "alone": alone_entry(judged.alone),
         "confirmed": judged.outcome == "confirmed",
     }
@@ -321,9 +317,19 @@ def _possible(
         "words": _words(best, effect),
         "why": why,
         "in_patch": True,
+        "parameters": _parameters(problem, best, effect),
         "alone": alone_entry(judged.alone),
         "confirmed": judged.outcome == "confirmed",
     }
+
+
+def _parameters(problem: Problem, best: Fit, effect: Effect) -> dict[str, ParameterEntry]:
+    """Return the entries of the fitted parameters of an effect by their keys."""
+    params, found = type(effect).params(), {}
+    for name in _fitted_parameters(best, effect):
+        key = parameter_key(name, params[name].unit)
+        found[key] = _parameter(best, effect, name, problem.config.answer)
+    return found
 
 
 def _fitted_parameters(best: Fit, effect: Effect) -> dict[str, FreeParameter]:

@@ -79,6 +79,7 @@ class PossibleEntry(TypedDict):
     words: str
     why: str  # reason why it is not among the identified effects
     in_patch: NotRequired[bool]  # whether the patched vessel contains it, as a description
+    parameters: NotRequired[dict[str, "ParameterEntry"]]
     alone: NotRequired[dict[Family, AloneEntry]]
     confirmed: NotRequired[bool]
 

@@ -1,7 +1,7 @@
 """Sections of the report of a diagnosis."""
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import repeat
 
@@ -46,6 +46,7 @@ from boatsim.diagnosis.report.schema import (
     EffectEntry,
     IntervalEntry,
     LogEntry,
+    ParameterEntry,
     StructureEntry,
     TermEntry,
 )
@@ -167,6 +168,11 @@ def _also_possible(f: Findings) -> Iterator[Block]:
         facts = f"{entry['name']} · {likely} · {format_evidence(entry['gain_nats'])}"
         yield Heading(capitalize(effect_description(entry["words"])), facts)
         yield Text(f"{capitalize(entry['why'])}.")
+        if parameters := entry.get("parameters"):
+            header = ["parameter", "value ± deviation", "meaning"]
+            rows = _values(f, entry["name"], parameters)
+            caption = "Values as patched.toml contains them"
+            yield without_empty_columns(Table(caption, header, rows, prose=(2,)))
 
 
 def _effect(f: Findings, e: EffectEntry, explain_deviation: bool) -> Iterator[Block]:
@@ -176,7 +182,8 @@ def _effect(f: Findings, e: EffectEntry, explain_deviation: bool) -> Iterator[Bl
     yield Heading(capitalize(effect_description(e["words"])), facts)
     if e["parameters"]:
         header = ["parameter", "value ± deviation", "meaning"]
-        yield without_empty_columns(Table("Fitted values", header, _values(f, e), prose=(2,)))
+        rows = _values(f, e["name"], e["parameters"])
+        yield without_empty_columns(Table("Fitted values", header, rows, prose=(2,)))
     if explain_deviation:
         yield Text(_about_deviations(f, e))
     if sentences := effect_sentences(e):
@@ -190,12 +197,12 @@ def _effect(f: Findings, e: EffectEntry, explain_deviation: bool) -> Iterator[Bl
         yield Text(f"These recordings cannot distinguish it from {join_words(rivals, 'or')}.")
 
 
-def _values(f: Findings, effect: EffectEntry) -> list[list[str]]:
-    """Return name, value and meaning of each fitted parameter."""
+def _values(f: Findings, effect: str, parameters: Mapping[str, ParameterEntry]) -> list[list[str]]:
+    """Return name, value and meaning of each fitted parameter of an effect."""
     rows = []
-    for key, p in effect["parameters"].items():
+    for key, p in parameters.items():
         name, text = format_parameter(key, p["value"], p["unit"], p["sd"])
-        meaning = f.words.get(f"{effect['name']}.{key}", "")
+        meaning = f.words.get(f"{effect}.{key}", "")
         if meaning == name:
             meaning = ""
         rows.append([name, text, meaning])

@@ -12,6 +12,7 @@ from unmeasured import unmeasured
 from boatsim.diagnosis.candidates import diagnosis_program
 from boatsim.diagnosis.filter import NoiseLevels
 from boatsim.diagnosis.problem import Fit, Problem
+from boatsim.diagnosis.report.blocks import Table
 from boatsim.diagnosis.report.layers import Layers, separate_layers
 from boatsim.diagnosis.report.parameters import parameter_key, reported_sd
 from boatsim.diagnosis.report.schema import EffectEntry
@@ -165,3 +166,23 @@ def test_log_and_missing_physics_stand_before_the_refined_numbers(tmp_path: Path
         "Numbers refined",
         "Also possible",
     ]
+
+
+def test_an_effect_that_is_only_possible_is_shown_with_its_values() -> None:
+    findings = planar()
+    effect = findings.answer["effects"][0]
+    possible = {
+        "name": effect["name"],
+        "probability": 0.3,
+        "gain_nats": 12.0,
+        "words": effect["words"],
+        "why": "its size differs between the recordings",
+        "parameters": effect["parameters"],
+    }
+    answer = findings.answer | {"effects": [], "also_possible": [possible]}
+    sections = sections_of(replace(findings, answer=answer))
+    blocks = next(one.blocks for one in sections if one.title == "Also possible")
+    (table,) = [block for block in blocks if isinstance(block, Table)]
+    shown = [row[0].replace(" ", "_") for row in table.rows]
+    assert len(shown) == len(effect["parameters"]) > 0
+    assert all(key.startswith(name) for key, name in zip(effect["parameters"], shown, strict=True))
