@@ -11,6 +11,7 @@ disturbance, which reduces a large expected log Bayes factor.
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from math import isfinite
 from operator import attrgetter
 
 import numpy as np
@@ -117,8 +118,10 @@ def all_plans(problem: Problem, best: Fit, rivals: Mapping[str, Fit]) -> list[Pl
     plans = []
     for manoeuvre in manoeuvres:
         simulated = simulate_manoeuvre(problem, best, manoeuvre)
-        if simulated is not None:
-            gains = expected_log_bayes_factors(problem, simulated.recording, best, rivals)
+        if simulated is None:
+            continue
+        gains = expected_log_bayes_factors(problem, simulated.recording, best, rivals)
+        if all(map(isfinite, gains.values())):  # a rival that diverges tells nothing
             plans.append(_plan(simulated, (*own, *rivals), gains))
     return plans
 

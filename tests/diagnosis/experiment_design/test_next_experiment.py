@@ -230,6 +230,21 @@ def test_expected_gain_is_the_divergence_of_the_dense_predictions_of_a_linear_mo
     assert got == pytest.approx(wanted, rel=0.05)
 
 
+def test_a_manoeuvre_in_which_a_rival_diverges_is_no_plan(monkeypatch):
+    """Its evidence is not a number, which would void the whole answer."""
+    problem, winner, rival = tie("wind at constant heading")
+    compute, calls = next_experiment.expected_log_bayes_factors, []
+
+    def first_diverges(*given):
+        calls.append(given)
+        return {"rival": float("nan")} if len(calls) == 1 else compute(*given)
+
+    monkeypatch.setattr(next_experiment, "expected_log_bayes_factors", first_diverges)
+    plans = next_experiment.all_plans(problem, winner, {"rival": rival})
+    assert len(plans) == len(calls) - 1
+    assert all(np.isfinite(plan.expected_gain) for plan in plans)
+
+
 @pytest.mark.parametrize("case", CONFUSABLE)
 def test_no_manoeuvre_is_expected_to_speak_against_the_truth(case):
     """A Kullback-Leibler divergence is never negative."""
