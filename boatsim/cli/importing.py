@@ -94,8 +94,7 @@ def _turn_direction(boat: Vessel, channel: str) -> int:
 
 def _convert_log(path: Path, out: Path, map: Path, vessel: str | None, load: Sequence[str]) -> int:
     mapping = read_map(map)
-    name, base_folder = vessel or mapping.vessel, None if vessel else map.resolve().parent
-    boat = vessels.load_vessel(name, load, base_folder=base_folder) if name else None
+    boat = _vessel_of_log(vessel, mapping.vessel, map, load)
     limits = boat.limits() if boat else {}
     with report_stages() as report:
         report("reading the log")
@@ -114,6 +113,20 @@ def _convert_log(path: Path, out: Path, map: Path, vessel: str | None, load: Seq
     except BadInput as error:
         print_note(f"a diagnosis would refuse this recording: {error}")
     return 0
+
+
+def _vessel_of_log(
+    given: str | None, mapped: str | None, map: Path, load: Sequence[str]
+) -> Vessel | None:
+    """The vessel of the command line, or that of the map, whose path starts beside the map."""
+    if given:
+        return vessels.load_vessel(given, load)
+    if mapped is None:
+        return None
+    try:
+        return vessels.load_vessel(mapped, load, base_folder=map.resolve().parent)
+    except BadInput:  # a name that the user would give here
+        return vessels.load_vessel(mapped, load)
 
 
 def _write_vessel(out: Path, boat: Vessel, fix: str | None) -> None:

@@ -1087,18 +1087,19 @@ class SelectConfig:
 class DecideConfig:
     """Weights of a logistic regression: the probability that an identified effect is a true cause.
 
-    The regression is one of right and wrong effects over 1,663 simulated logs with known causes:
-    those of `validation.calibration` with the seeds 5 to 8, 104 of them diagnosed a second time
-    with the true effect removed from the candidates. `python -m validation.calibration --weights`
+    The regression is one of right and wrong effects over 669 simulated logs with known causes:
+    those of `validation.calibration` with the seeds 5 to 7, 45 of them diagnosed a second time with
+    the true effect removed from the candidates. `python -m validation.calibration --weights`
     prints weights that are fitted to the logs of its folder. Each multiplies a feature of
     `boatsim.diagnosis.open_set.probability`.
     """
 
     least_probability: float = setting(
-        0.5,
+        0.45,
         "1",
         "Probability, together with look-alikes, from which an effect is named; below it an effect "
-        "is only reported as possible: it is then more likely wrong than right.",
+        "is only reported as possible. It is a little below one half, because a true effect that "
+        "is not named is reported as an unknown cause.",
         0.0,
         1.0,
     )
@@ -1191,99 +1192,92 @@ class DecideConfig:
         0.0,
     )
     intercept: float = setting(
-        2.58,
+        2.64,
         "1",
         "Log of the odds of a name whose features are all zero.",
         low=-inf,
     )
     held_out_gain: float = setting(
-        0.135,
+        0.226,
         "1",
         "Weight: log of the log-likelihood [nats] that held-out recordings gain by the effect.",
         low=-inf,
     )
     held_out_significance: float = setting(
-        0.135,
+        0.0885,
         "1",
         "Weight: size on held-out recordings in its standard deviations: a true effect is found"
         " again.",
         low=-inf,
     )
     held_out_deviation: float = setting(
-        -0.317,
+        -0.158,
         "1",
         "Weight: deviation of the size on held-out recordings from the fitted size, in standard"
         " deviations with 10 % error of the law.",
         low=-inf,
     )
     times_apart: float = setting(
-        -1.16,
+        -1.21,
         "1",
         "Weight: variation of the size between parts in time, as a share of the fitted size.",
         low=-inf,
     )
     ranges_apart: float = setting(
-        -0.869,
+        -0.952,
         "1",
         "Weight: variation of the size between ranges of a speed, a command or the heading, as "
         "a share of the fitted size.",
         low=-inf,
     )
     unexplained: float = setting(
-        -0.167,
+        -0.241,
         "1",
         "Weight: evidence that remains unexplained, as a share of the threshold of an unknown "
         "cause.",
         low=-inf,
     )
     structure: float = setting(
-        -1.79,
+        -1.35,
         "1",
         "Weight: dependence of the remaining force on motion, commands, place or time, as a "
         "share of all gained evidence.",
         low=-inf,
     )
     alternative: float = setting(
-        -0.25,
+        -0.411,
         "1",
         "Weight: evidence of the best single-term force in its place, as a share of its own.",
         low=-inf,
     )
     prior_distance: float = setting(
-        -1.39,
+        -1.01,
         "1",
         "Weight: log of the distance from zero effect in prior standard deviations: an "
         "implausible size.",
         low=-inf,
     )
     at_bound: float = setting(
-        -3.27,
+        -1.96,
         "1",
         "Weight: whether a parameter is at a bound of its range and a recording requires more.",
         low=-inf,
     )
     stochastic: float = setting(
-        -2.01,
+        -1.38,
         "1",
         "Weight: whether it is a stochastic force, which fits almost anything.",
         low=-inf,
     )
-    stochastic_alternative: float = setting(
-        -0.636,
-        "1",
-        "Weight: for a stochastic force, log of the evidence of the best single-term law in its "
-        "place relative to its own: a law in disguise is explained by one.",
-        low=-inf,
-    )
     coefficient_shift: float = setting(
-        -0.769,
+        -0.869,
         "1",
         "Weight: rms distance of the refitted coefficients from the vessel file in prior "
         "standard deviations.",
         low=-inf,
     )
     effects: float = setting(
-        -1.29,
+        -1.31,
         "1",
         "Weight: log of the number of identified effects: true causes are few.",
         low=-inf,

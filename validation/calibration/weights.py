@@ -18,7 +18,7 @@ from validation.calibration.table import right_names
 Array = NDArray[np.float64]
 
 # prior sd of a weight per standard deviation of its feature: chosen by cross-validated likelihood
-WEIGHT_SD = 0.4
+WEIGHT_SD = 0.3
 FOLDS = 10  # of the cross-validation, whole trials each
 
 Record = dict[str, Any]

@@ -18,7 +18,6 @@ MOST_SIGNIFICANT = 10.0
 MOST_DEVIATION = 8.0
 MOST_EXCESS = 2.0
 LEAST_GAIN = 0.1  # [nats] on held-out recordings; less is no evidence
-LITTLE_EVIDENCE = 10.0  # [nats] about what an effect needs to be identified
 MOST_LOG_ODDS = 30.0  # beyond it the probability is 0 or 1 in every printed digit
 
 
@@ -46,7 +45,6 @@ def features(
     held_out = consistency.held_out
     off = abs(held_out.value - 1.0) / hypot(held_out.sd, config.law_error)
     alternative = consistency.alternative_gain / max(effect.gain, 1.0)
-    law_instead = log(_evidence(consistency.alternative_gain) / _evidence(effect.gain))
     distance = consistency.prior_distance
     if stochastic:  # the prior of a disturbance is a usual level, not what is plausible
         distance = 0.0
@@ -63,7 +61,6 @@ def features(
         "prior_distance": log1p(distance),
         "at_bound": float(exceeds_range(consistency, config)),
         "stochastic": float(stochastic),
-        "stochastic_alternative": float(stochastic) * law_instead,
         "coefficient_shift": _within(log_signs.coefficient_shift, 0.0, 4.0),
         "effects": log(max(log_signs.effects, 1)),
     }
@@ -96,11 +93,6 @@ def exceeds_range(consistency: Consistency, config: DecideConfig) -> bool:
     """
     sizes = [factor.value for factor in consistency.recordings]
     return consistency.at_bound and max(sizes, default=2.0) > 1.0 + config.law_error
-
-
-def _evidence(gain: float) -> float:
-    """Evidence [nats] for a ratio, in which little of it counts as none."""
-    return max(gain, 0.0) + LITTLE_EVIDENCE
 
 
 def _within(value: float, low: float, high: float) -> float:
