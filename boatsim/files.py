@@ -111,7 +111,9 @@ def validate_table(model: type[T], data: Mapping[str, object], file: str) -> T:
 
 
 def _plain_value(value: object) -> object:
-    """A value that JSON lacks: an array as lists, a date or a path as text."""
+    """A value that JSON lacks: a table that was checked before, an array as lists, or its text."""
+    if isinstance(value, BaseModel):
+        return value.model_dump()
     to_list = getattr(value, "tolist", None)
     return to_list() if to_list else str(value)
 

@@ -9,7 +9,7 @@ from math import degrees, pi, sin, sqrt
 from pathlib import Path
 from typing import Annotated, Literal, Self, TypeVar
 
-from pydantic import Field, model_validator
+from pydantic import Field, field_validator, model_validator
 
 from boatsim.control.base import Controller
 from boatsim.errors import BadInput, unknown_name
@@ -165,6 +165,19 @@ class ScenarioFile(Table):
     norms: dict[str, MetricTable] = {}
     noise_widens_guards: bool = False
     check: list[CheckTable] = []
+
+    @field_validator("goal", mode="before")
+    @classmethod
+    def _number_of_off(cls, tables: object) -> object:
+        """The goals with `off = true` as a number, the only truth value among them."""
+        if not isinstance(tables, list):
+            return tables
+        found: list[object] = []
+        for table in tables:
+            if isinstance(table, dict) and isinstance(table.get(OFF), bool):
+                table = table | {OFF: float(table[OFF])}
+            found.append(table)
+        return found
 
     @property
     def is_compiled(self) -> bool:

@@ -176,7 +176,7 @@ def test_what_a_norm_is_follows_from_the_end_of_its_name() -> None:
 
 
 def test_a_guard_on_a_goal_that_never_comes_is_missed(tmp_path: Path) -> None:
-    text = TEXT.replace("from = 1.0", "from = 9.0") + "[norms.yaw_error_rms]\nguard = [0.0, 9.0]\n"
+    text = TEXT + "[norms.yaw_error_rms]\nguard = [0.0, 9.0]\n[until]\nstarboard = 1e-4\n"
     (tmp_path / "two.toml").write_text(text)
     norm = all_metrics(run(scenario.load(str(tmp_path / "two.toml"))))["yaw_error_rms"]
     assert (norm.value, norm.ok, norm.unit) == (None, False, "deg/s")

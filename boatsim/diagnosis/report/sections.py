@@ -566,12 +566,7 @@ def _status(f: Findings) -> dict[str, str]:
 
 
 def _limits(f: Findings) -> Iterator[Block]:
-    """Yield the largest strength that each effect may have that was not found.
-
-    There are none beside an unknown cause, in whose force any of these effects may hide.
-    """
-    if f.answer["unknown"]["flag"]:
-        return
+    """Yield the largest strength that each effect may have that was not found."""
     rows = []
     for name, values in _not_found(f).items():
         limits = []
@@ -589,6 +584,8 @@ def _limits(f: Findings) -> Iterator[Block]:
         "With 95 % confidence each effect is weaker than this, if nothing else is missing. The "
         "limit of a factor or fraction is its distance from the value in the vessel file."
     )
+    if f.answer["unknown"]["flag"]:
+        caption += " Here something else is missing, in which any of these effects may hide."
     header, folded = ["candidate", "at most", "meaning"], f.answer["verdict"] != "nothing_missing"
     yield without_empty_columns(Table(caption, header, rows, (1, 2), folded=folded, aside=True))
 
@@ -704,7 +701,7 @@ def _limitations(f: Findings) -> Iterator[Block]:
     unlimited = []
     lower = f.answer.get("lower_limits", {})
     for name, limits in _not_found(f).items():
-        if not limits and name not in lower and not f.answer["unknown"]["flag"]:
+        if not limits and name not in lower:
             unlimited.append(words_of_name(name))
     if unlimited:
         lines.append(
