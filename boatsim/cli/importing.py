@@ -144,7 +144,7 @@ def _write_vessel(out: Path, boat: Vessel, fix: str | None) -> None:
         lines = " / ".join(text.splitlines())
         print_note(f"{file} exists and is kept; for this recording it should contain: {lines}")
         return
-    print_lines([printable(f"written to {file}: {out.stem}: {boat.name}")])
+    print_lines([printable(f"written to {file}: {boat.name}")])
 
 
 def _notes_before(file: Path, run: str) -> str:

@@ -1087,11 +1087,11 @@ class SelectConfig:
 class DecideConfig:
     """Weights of a logistic regression: the probability that an identified effect is a true cause.
 
-    The regression is one of right and wrong effects over 669 simulated logs with known causes:
-    those of `validation.calibration` with the seeds 5 to 7, 45 of them diagnosed a second time with
-    the true effect removed from the candidates. `python -m validation.calibration --weights`
-    prints weights that are fitted to the logs of its folder. Each multiplies a feature of
-    `boatsim.diagnosis.open_set.probability`.
+    The regression is one of right and wrong effects, over about 1,080 simulated logs with known
+    causes, made by `validation.calibration` with the seeds 2 and 3 while its shares of the kinds of
+    logs were being chosen. The two weights of a stochastic force were fitted again to about 650
+    logs of the seeds 4 to 6. `python -m validation.calibration --weights` fits weights to the logs
+    that it has diagnosed. Each multiplies a feature of `boatsim.diagnosis.open_set.probability`.
     """
 
     least_probability: float = setting(
@@ -1192,92 +1192,105 @@ class DecideConfig:
         0.0,
     )
     intercept: float = setting(
-        2.64,
+        3.42,
         "1",
         "Log of the odds of a name whose features are all zero.",
         low=-inf,
     )
     held_out_gain: float = setting(
-        0.226,
+        0.231,
         "1",
         "Weight: log of the log-likelihood [nats] that held-out recordings gain by the effect.",
         low=-inf,
     )
     held_out_significance: float = setting(
-        0.0885,
+        0.0797,
         "1",
         "Weight: size on held-out recordings in its standard deviations: a true effect is found"
         " again.",
         low=-inf,
     )
     held_out_deviation: float = setting(
-        -0.158,
+        -0.412,
         "1",
         "Weight: deviation of the size on held-out recordings from the fitted size, in standard"
         " deviations with 10 % error of the law.",
         low=-inf,
     )
     times_apart: float = setting(
-        -1.21,
+        -0.851,
         "1",
         "Weight: variation of the size between parts in time, as a share of the fitted size.",
         low=-inf,
     )
     ranges_apart: float = setting(
-        -0.952,
+        -1.41,
         "1",
         "Weight: variation of the size between ranges of a speed, a command or the heading, as "
         "a share of the fitted size.",
         low=-inf,
     )
     unexplained: float = setting(
-        -0.241,
+        -0.274,
         "1",
         "Weight: evidence that remains unexplained, as a share of the threshold of an unknown "
         "cause.",
         low=-inf,
     )
     structure: float = setting(
-        -1.35,
+        -1.25,
         "1",
         "Weight: dependence of the remaining force on motion, commands, place or time, as a "
         "share of all gained evidence.",
         low=-inf,
     )
     alternative: float = setting(
-        -0.411,
+        -0.226,
         "1",
         "Weight: evidence of the best single-term force in its place, as a share of its own.",
         low=-inf,
     )
     prior_distance: float = setting(
-        -1.01,
+        -1.43,
         "1",
         "Weight: log of the distance from zero effect in prior standard deviations: an "
         "implausible size.",
         low=-inf,
     )
     at_bound: float = setting(
-        -1.96,
+        -3.98,
         "1",
         "Weight: whether a parameter is at a bound of its range and a recording requires more.",
         low=-inf,
     )
     stochastic: float = setting(
-        -1.38,
+        -9.61,
         "1",
         "Weight: whether it is a stochastic force, which fits almost anything.",
         low=-inf,
     )
+    stochastic_gain: float = setting(
+        1.77,
+        "1",
+        "Weight: for a stochastic force, log of the log-likelihood [nats] that held-out recordings "
+        "gain by it.",
+        low=-inf,
+    )
+    look_alikes: float = setting(
+        0.647,
+        "1",
+        "Weight: number of its look-alikes, each of which may be the true cause.",
+        low=-inf,
+    )
     coefficient_shift: float = setting(
-        -0.869,
+        -0.48,
         "1",
         "Weight: rms distance of the refitted coefficients from the vessel file in prior "
         "standard deviations.",
         low=-inf,
     )
     effects: float = setting(
-        -1.31,
+        -1.68,
         "1",
         "Weight: log of the number of identified effects: true causes are few.",
         low=-inf,

@@ -49,8 +49,9 @@ def features(
     if stochastic:  # the prior of a disturbance is a usual level, not what is plausible
         distance = 0.0
     structure = log_signs.structure_gain / max(log_signs.effects_gain, 1.0)
+    held_out_gain = log(max(consistency.held_out_gain, LEAST_GAIN))
     return {
-        "held_out_gain": log(max(consistency.held_out_gain, LEAST_GAIN)),
+        "held_out_gain": held_out_gain,
         "held_out_significance": _within(held_out.significance, -3.0, MOST_SIGNIFICANT),
         "held_out_deviation": _within(off, 0.0, MOST_DEVIATION),
         "times_apart": _within(consistency.between_times.excess, 0.0, MOST_EXCESS),
@@ -61,6 +62,8 @@ def features(
         "prior_distance": log1p(distance),
         "at_bound": float(exceeds_range(consistency, config)),
         "stochastic": float(stochastic),
+        "stochastic_gain": float(stochastic) * held_out_gain,
+        "look_alikes": float(len(effect.tied_with)),
         "coefficient_shift": _within(log_signs.coefficient_shift, 0.0, 4.0),
         "effects": log(max(log_signs.effects, 1)),
     }
