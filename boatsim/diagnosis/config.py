@@ -1124,7 +1124,7 @@ class DecideConfig:
         "Evidence for a force beyond the assumed disturbance on held-out recordings, relative to "
         "the threshold of an unknown cause, from which a cause is unknown if that force also "
         "correlates significantly with a motion, command or place. Without such a correlation "
-        "known effects of uncertain size leave up to 16 there.",
+        "known effects of uncertain size left up to 16 there (calibration, seed 8).",
         0.0,
     )
     sure_probability: float = setting(

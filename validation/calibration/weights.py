@@ -35,7 +35,7 @@ def examples(records: Sequence[Record]) -> tuple[list[str], Array, Array, Array]
     """
     names: list[str] = []
     rows, right, trials = [], [], []
-    numbers: dict[str, int] = {}
+    numbers: dict[str, int] = {}  # both diagnoses of a trial fall into one fold
     for record in records:
         number = numbers.setdefault(record["trial"], len(numbers))
         truth = right_names(record)
