@@ -133,55 +133,74 @@ def rank(
     nominal, recalibrated = base or fit_baseline(problem)
     sets = CandidateSets(problem, candidates, recalibrated, report, budget)
     start = refit_from_base_levels(sets, begin) if begin else recalibrated
-    best, named = prune(sets, select_forward(sets, start))
-    while True:
-        fewer = remove_dwarfed_effect(sets, best, held_out)
-        if fewer is best:
-            break
-        best, named = prune(sets, select_forward(sets, fewer))
+    best, named = _select(sets, start, held_out)
     report("judging what is left over", JUDGING)
     best, named = _remove_refuted_effects(sets, best, named, held_out)
-    remaining, correlated = unexplained_evidence(problem, best), find_structure(problem, best)
-    while True:
-        waves = oscillating_force(sets, best)
-        if not waves or not _replaces_law(sets, best, waves, correlated):
-            break
-        sets.banned.add(waves)
-        pruned = prune(sets, select_forward(sets, sets.fit_without(best, waves)))
-        best, named = _remove_refuted_effects(sets, *pruned, held_out)
-        best, named = _waves_beside_law(sets, best, named, waves)
-        remaining, correlated = unexplained_evidence(problem, best), find_structure(problem, best)
-        if waves in best.effects:
-            break
+    best, named, correlated = _search_law_behind_waves(sets, best, named, held_out)
     named = remove_refuted_rivals(sets, best, named, held_out)
-    alone = gains_over(sets.screen_candidates(sets.base), sets.base)
-    last = sets.screen_candidates(best)
-    for name in sets.banned & last.keys():  # an effect that was refuted is no hint
-        last[name] = replace(last[name], evidence=min(last[name].evidence, best.evidence))
     explained = sets.explained_evidence(best)
     inflated = inflate_covariance(problem, best)
+    decide = problem.config.decide
+    gain = float(inflated.evidence - sets.base.evidence)
     return Ranking(
         nominal,
         sets.base,
         inflated,
         named,
-        alone,
-        last,
-        remaining,
+        gains_over(sets.screen_candidates(sets.base), sets.base),
+        _evidence_on_top(sets, best),
+        unexplained_evidence(problem, best),
         correlated,
         explained,
-        told_from=unknown_threshold(
-            problem.config.select, explained, problem.config.decide.unexplained_share
-        ),
-        structured=_clearly_correlates(
-            sets,
-            correlated,
-            float(inflated.evidence - sets.base.evidence),
-            problem.config.decide.structure_share,
-        ),
+        told_from=unknown_threshold(problem.config.select, explained, decide.unexplained_share),
+        structured=_clearly_correlates(sets, correlated, gain, decide.structure_share),
         without=sets.fits_without_each(best),
         skipped=sets.budget.skipped,
     )
+
+
+def _select(
+    sets: CandidateSets, start: Fit, held_out: Sequence[MappedRecording]
+) -> tuple[Fit, tuple[IdentifiedEffect, ...]]:
+    """Forward selection and pruning, repeated after each dwarfed effect that is removed."""
+    best, named = prune(sets, select_forward(sets, start))
+    while True:
+        fewer = remove_dwarfed_effect(sets, best, held_out)
+        if fewer is best:
+            return best, named
+        best, named = prune(sets, select_forward(sets, fewer))
+
+
+def _search_law_behind_waves(
+    sets: CandidateSets,
+    best: Fit,
+    named: tuple[IdentifiedEffect, ...],
+    held_out: Sequence[MappedRecording],
+) -> tuple[Fit, tuple[IdentifiedEffect, ...], Structure]:
+    """Exclude a stochastic force that stands in for a law, and select again.
+
+    Returns the set, its identified effects, and what the force that remains correlates with.
+    """
+    correlated = find_structure(sets.problem, best)
+    while True:
+        waves = oscillating_force(sets, best)
+        if not waves or not _replaces_law(sets, best, waves, correlated):
+            return best, named, correlated
+        sets.banned.add(waves)
+        pruned = prune(sets, select_forward(sets, sets.fit_without(best, waves)))
+        best, named = _remove_refuted_effects(sets, *pruned, held_out)
+        best, named = _waves_beside_law(sets, best, named, waves)
+        correlated = find_structure(sets.problem, best)
+        if waves in best.effects:
+            return best, named, correlated
+
+
+def _evidence_on_top(sets: CandidateSets, best: Fit) -> dict[str, Fit]:
+    """Each candidate on top of the set; one that was refuted is no hint and gains nothing."""
+    found = sets.screen_candidates(best)
+    for name in sets.banned & found.keys():
+        found[name] = replace(found[name], evidence=min(found[name].evidence, best.evidence))
+    return found
 
 
 def _remove_refuted_effects(
