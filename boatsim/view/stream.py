@@ -11,6 +11,7 @@ from struct import Struct
 import rerun as rr
 
 from boatsim.files import AppendedFile
+from boatsim.view.rrd_index import add_index
 
 HEAD = 12  # [bytes] before the first message of a .rrd: RRF2, version, options
 FRAME = Struct("<QQ")  # kind and length of a message
@@ -38,10 +39,12 @@ class Stream:
         """
         self._streams: list[rr.RecordingStream] = []
         self._file = self._written = self._viewer = None
+        self._path: Path | None = None
         self._has_header = False
         if path is not None:
-            Path(path).parent.mkdir(parents=True, exist_ok=True)
-            self._file = AppendedFile(Path(path).open("wb", buffering=0), Path(path))
+            self._path = Path(path)
+            self._path.parent.mkdir(parents=True, exist_ok=True)
+            self._file = AppendedFile(self._path.open("wb", buffering=0), self._path)
             to_file = rr.RecordingStream(name, send_properties=False)
             self._written = rr.binary_stream(to_file)
             self._streams.append(to_file)
@@ -80,7 +83,7 @@ class Stream:
             self._has_header = True
 
     def close(self) -> None:
-        """Write the remaining messages, close the file and disconnect from the viewer.
+        """Write the remaining messages and the index of the file, and disconnect from the viewer.
 
         Raises:
             OSError: If the disk is full.
@@ -92,13 +95,15 @@ class Stream:
                 self._file.close()
             if self._viewer:
                 _close_stream(self._viewer)
+        if self._path:
+            add_index(self._path)
 
 
 def _split_messages(whole: bytes, first: bool) -> Iterator[bytes]:
     """Messages of a whole `.rrd` for appending to a file, with the header only if `first`.
 
-    A message begins with its kind and length. The last one and what follows are an index of the
-    file, which readers do not need.
+    A message begins with its kind and length. The last one and what follows are an index of this
+    part; `add_index` writes that of the whole file.
     """
     if first:
         yield whole[:HEAD]

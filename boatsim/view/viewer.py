@@ -12,11 +12,11 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
-from pathlib import Path
 from typing import NoReturn
 from urllib.parse import quote
 
 from boatsim.errors import BoatsimError
+from boatsim.view.rerun_command import rerun_command
 
 PORT = 9876  # where a viewer listens, unless the port is in use
 PAGE = 9090  # port of the web viewer's page, unless it is in use
@@ -136,13 +136,10 @@ def _ends_within(started: "subprocess.Popen[bytes]", seconds: float) -> bool:
 
 def _start_rerun(*options: str) -> "subprocess.Popen[bytes]":
     """Start rerun's viewer in a new session, which signals of the terminal do not reach."""
-    command = [sys.executable, "-m", "rerun"]
-    script = Path(sys.executable).parent / "rerun"
-    if script.is_file():
-        command = [str(script)]
     silent = subprocess.DEVNULL
+    command = [*rerun_command(), *options]
     return subprocess.Popen(
-        [*command, *options], stdin=silent, stdout=silent, stderr=silent, start_new_session=True
+        command, stdin=silent, stdout=silent, stderr=silent, start_new_session=True
     )
 
 

@@ -1,5 +1,6 @@
 """Logs of runs: read back they are the recording, however they ended, and they open laid out."""
 
+import subprocess
 from dataclasses import replace
 
 import numpy as np
@@ -9,8 +10,10 @@ from rerun.chunk import RrdReader
 from boatsim.errors import BadInput
 from boatsim.recordings.readers.rrd import last_time
 from boatsim.recordings.table import Recording, read, write_csv
-from boatsim.view import blueprint, rerun_log, water
+from boatsim.view import blueprint, rerun_log, rrd_index, water
+from boatsim.view.rerun_command import rerun_command
 from boatsim.view.rerun_log import RerunLog, log_overlay, metrics_table
+from boatsim.view.rrd_index import add_index
 from boatsim.view.scene import Thruster, plain_scene, scene_from
 
 PORT = Thruster("port", -0.5, -0.19, "actual_thrust_port_N", "actual_steer_port_rad")
@@ -354,3 +357,55 @@ def test_a_legend_says_the_unit():
     assert blueprint.legend_text("actual_thrust_port_N") == "actual thrust port [N]"
     assert blueprint.legend_text("estimate_d_N_low") == "estimate d low [N]"
     assert blueprint.legend_text("pwm_port") == "pwm port"
+
+
+# The index at the end of a file, which rerun's own check asks for
+# ------------------------------------------------------------------------------------------------
+
+
+def verified(path) -> bool:
+    """Whether `rerun rrd verify` accepts a file."""
+    command = [*rerun_command(), "rrd", "verify", str(path)]
+    return subprocess.run(command, capture_output=True, check=False).returncode == 0
+
+
+def test_rerun_accepts_the_log_of_a_run(logged):
+    assert verified(logged)
+    assert [f.name for f in logged.parent.iterdir()] == ["run.rrd"]
+
+
+def test_rerun_accepts_the_log_of_an_interrupted_run(tmp_path):
+    with pytest.raises(KeyboardInterrupt), RerunLog(tmp_path / "run.rrd", SCENE) as log:
+        for piece in pieces(circle())[:4]:
+            log.add_rows(piece)
+        raise KeyboardInterrupt
+    assert verified(tmp_path / "run.rrd")
+
+
+def test_rerun_accepts_the_log_of_a_diagnosis(tmp_path):
+    run = circle()
+    log_overlay(tmp_path / "d.rrd", {"recording": [run], "nominal": [run]}, None, [], SCENE)
+    assert verified(tmp_path / "d.rrd")
+
+
+def test_a_log_of_which_the_writer_was_killed_can_be_read_and_gets_its_index_from_rerun(tmp_path):
+    log = RerunLog(tmp_path / "run.rrd", SCENE)
+    for piece in pieces(circle()):
+        log.add_rows(piece)
+    log._write()  # and no more: the process is killed
+    killed = tmp_path / "killed.rrd"
+    killed.write_bytes((tmp_path / "run.rrd").read_bytes())
+    assert not verified(killed)
+    assert add_index(killed) and verified(killed)
+    np.testing.assert_array_equal(read(killed)["y_m"], circle()["y_m"])
+    log.close()
+
+
+def test_a_file_that_rerun_can_not_index_stays_as_it_was(tmp_path, monkeypatch):
+    broken = tmp_path / "broken.rrd"
+    broken.write_bytes(b"no log of ours at all")
+    assert not add_index(broken)
+    monkeypatch.setattr(rrd_index, "MAX_BYTES", 10)
+    assert not add_index(broken)
+    assert broken.read_bytes() == b"no log of ours at all"
+    assert [f.name for f in tmp_path.iterdir()] == ["broken.rrd"]
