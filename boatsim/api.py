@@ -8,7 +8,7 @@ of one line.
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from boatsim.diagnosis import pipeline
 from boatsim.diagnosis.checks.data_cleaning import drop_faulty_values
@@ -16,6 +16,11 @@ from boatsim.diagnosis.config import Given, from_settings
 from boatsim.diagnosis.loading import open_recording
 from boatsim.diagnosis.replay import join_free_runs, replay_recording
 from boatsim.diagnosis.report import output_files
+from boatsim.diagnosis.report.notebook_views import (
+    diagnosis_figure,
+    diagnosis_html,
+    parameter_table,
+)
 from boatsim.diagnosis.report.schema import Answer
 from boatsim.errors import BadInput
 from boatsim.physics import vessel as vessels
@@ -24,6 +29,7 @@ from boatsim.physics.vessel import CommandChannel as CommandChannel
 from boatsim.physics.vessel import Vessel as Vessel
 from boatsim.progress import Report, ignore_progress
 from boatsim.recordings import table
+from boatsim.recordings.notebook.data_frame import data_frame
 from boatsim.recordings.notes import notes_for
 from boatsim.recordings.table import Recording as Recording
 from boatsim.simulate.batch import Batch as Batch
@@ -33,6 +39,7 @@ from boatsim.simulate.fleet import Fleet as Fleet
 from boatsim.simulate.run import run as simulate
 from boatsim.simulate.run_files import run_into_folder
 from boatsim.simulate.run_options import RunOptions
+from boatsim.simulate.run_summary import run_html
 from boatsim.simulate.scenario import Scenario as Scenario
 from boatsim.sweeps.axes import make_axis
 from boatsim.sweeps.designs import Design
@@ -43,6 +50,11 @@ from boatsim.sweeps.plan import make_plan
 from boatsim.sweeps.results import Results
 from boatsim.sweeps.sampled_keys import make_sampled_key
 from boatsim.sweeps.summary import Pair, Spread, compare_controllers, metric_spreads
+
+if TYPE_CHECKING:
+    import pandas as pd
+    import pyarrow as pa
+    from matplotlib.figure import Figure
 
 # Name of shipped content, or path of a file or folder
 Name = str | Path
@@ -75,6 +87,52 @@ class Run:
     def ok(self) -> bool:
         """Whether every metric of the run lies within its regression band."""
         return all(metric.ok is not False for metric in self.metrics.values())
+
+    def to_arrow(self) -> "pa.Table":
+        """Return the true signals as a table of Arrow, `t_s` first, in SI units and radians.
+
+        The metadata has scenario and seed; that of each column has its `unit`.
+        """
+        signals = self.recording.to_arrow()
+        about = {"scenario": self.scenario, "seed": str(self.seed)}
+        return signals.replace_schema_metadata({**signals.schema.metadata, **about})
+
+    def __arrow_c_stream__(self, requested_schema: object = None) -> object:
+        """Return the true signals as a stream of Arrow, so that `pyarrow.table(run)` works.
+
+        Args:
+            requested_schema: Capsule of the schema that the reader prefers.
+        """
+        return self.to_arrow().__arrow_c_stream__(requested_schema)
+
+    def to_pandas(self) -> "pd.DataFrame":
+        """Return the true signals as a data frame of pandas, in SI units and radians.
+
+        `attrs` has scenario and seed, and in `attrs["units"]` the unit of each column.
+
+        Raises:
+            BadInput: If pandas is not installed.
+        """
+        return data_frame(self.to_arrow())
+
+    def plot(self, signals: Sequence[str] = ()) -> "Figure":
+        """Draw the track seen from above, and signals over time, with angles in degrees.
+
+        Args:
+            signals: Signals to draw over time; by default attitude, rates and commands.
+
+        Returns:
+            A figure of matplotlib.
+
+        Raises:
+            BadInput: If a signal does not exist, or matplotlib is not installed.
+        """
+        return self.recording.plot(signals)
+
+    def _repr_html_(self) -> str:
+        """Return a replay seen from above and the metrics, for a notebook."""
+        summary = run_html(self.scenario, self.seed, self.complete, self.metrics)
+        return self.recording._repr_html_() + summary
 
 
 class Parameter(NamedTuple):
@@ -164,6 +222,47 @@ class Diagnosis:
             folder: Folder of the files; it is created if needed.
         """
         output_files.write_diagnosis(self.result, Path(folder))
+
+    def to_arrow(self) -> "pa.Table":
+        """Return the parameters of the identified effects as a table of Arrow, one row for each.
+
+        The columns are effect, parameter, value, sd, unit, at_bound, probability,
+        log_bayes_factor_nats and confirmed. The metadata has verdict and sentence.
+        """
+        return parameter_table(self.answer)
+
+    def __arrow_c_stream__(self, requested_schema: object = None) -> object:
+        """Return the parameters as a stream of Arrow, so that `pyarrow.table(diagnosis)` works.
+
+        Args:
+            requested_schema: Capsule of the schema that the reader prefers.
+        """
+        return self.to_arrow().__arrow_c_stream__(requested_schema)
+
+    def to_pandas(self) -> "pd.DataFrame":
+        """Return the parameters of the identified effects as a data frame of pandas.
+
+        `attrs` has the verdict and the sentence.
+
+        Raises:
+            BadInput: If pandas is not installed.
+        """
+        return data_frame(self.to_arrow())
+
+    def plot(self) -> "Figure":
+        """Draw a held-out recording with the simulations of the vessel before, retuned, corrected.
+
+        Returns:
+            A figure of matplotlib.
+
+        Raises:
+            BadInput: If no recording was held out, or matplotlib is not installed.
+        """
+        return diagnosis_figure(self.result.findings)
+
+    def _repr_html_(self) -> str:
+        """Return the sentence, the parameters and a replay of held-out data, for a notebook."""
+        return diagnosis_html(self.result.findings)
 
 
 @dataclass(frozen=True)

@@ -41,6 +41,14 @@ HEAVY = {  # library -> the only modules that may import it
     "pyulog": {"recordings.logs.ulog"},
     "pynmea2": {"recordings.logs.nmea"},
     "websockets": {"drive.server"},
+    "pandas": {"recordings.notebook.data_frame", "recordings.table", "api"},
+    "matplotlib": {
+        "recordings.notebook.figures",
+        "recordings.notebook.views",
+        "recordings.table",
+        "diagnosis.report.notebook_views",
+        "api",
+    },
 }
 BY_ANY_NAME = {
     "physics.content",

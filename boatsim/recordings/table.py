@@ -10,6 +10,7 @@ from dataclasses import dataclass, field, replace
 from difflib import get_close_matches
 from functools import partial
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,9 +21,17 @@ from boatsim.physics.content import import_library_module, library_names
 from boatsim.physics.signals import POSE, RATES, Array
 from boatsim.recordings import limits, units
 from boatsim.recordings.expression import Expression, parse
+from boatsim.recordings.notebook.arrow import signal_table
+from boatsim.recordings.notebook.data_frame import data_frame
+from boatsim.recordings.notebook.views import recording_figure, recording_html, table_metadata
 from boatsim.recordings.notes import Notes, join_mistakes, notes_for, unit_of
 from boatsim.recordings.raw_table import Raw, file_error, select_rows
 from boatsim.recordings.run_folder import recording_file
+
+if TYPE_CHECKING:
+    import pandas as pd
+    import pyarrow as pa
+    from matplotlib.figure import Figure
 
 __all__ = ["POSE", "RATES", "Notes", "Recording", "read", "write_csv"]
 
@@ -185,6 +194,65 @@ class Recording:
         if self.notes.use:
             return self.between(*self.notes.use)
         return self
+
+    def to_arrow(self) -> "pa.Table":
+        """Return the columns of the recording as a table of Arrow, `t_s` first.
+
+        Units are SI and radians; the metadata of each column has its `unit`. Missing values are
+        null.
+        """
+        return signal_table(self.t, self.signals, table_metadata(self.name, self.notes))
+
+    def __arrow_c_stream__(self, requested_schema: object = None) -> object:
+        """Return the columns as a stream of Arrow, so that `pyarrow.table(recording)` works.
+
+        This is the PyCapsule interface of Arrow, which pandas, polars and DuckDB read too.
+
+        Args:
+            requested_schema: Capsule of the schema that the reader prefers.
+        """
+        return self.to_arrow().__arrow_c_stream__(requested_schema)
+
+    def to_pandas(self) -> "pd.DataFrame":
+        """Return the columns of the recording as a data frame of pandas, `t_s` first.
+
+        Units are SI and radians; `attrs["units"]` has the unit of each column.
+
+        Raises:
+            BadInput: If pandas is not installed.
+        """
+        return data_frame(self.to_arrow())
+
+    def plot(self, signals: Sequence[str] = ()) -> "Figure":
+        """Draw the track seen from above, and signals over time, with angles in degrees.
+
+        Args:
+            signals: Signals to draw over time; by default attitude, rates and commands.
+
+        Returns:
+            A figure of matplotlib.
+
+        Raises:
+            BadInput: If a signal does not exist, or matplotlib is not installed.
+        """
+        for name in signals:
+            self[name]
+        selected = signals or _motion_and_commands(self.signals)
+        return recording_figure(self.name, self.t, self.signals, selected)
+
+    def _repr_html_(self) -> str:
+        """Return the summary of the recording for a notebook, with a replay seen from above."""
+        return recording_html(self.name, self.t, self.signals, self.notes)
+
+
+def _motion_and_commands(signals: Mapping[str, Array]) -> list[str]:
+    """Names of attitude, rates and commands; the position is drawn as a track if it is complete."""
+    found = []
+    has_track = {"x_m", "y_m"} <= signals.keys()
+    for name in signals:
+        if not RUN_COLUMN.match(name) and not (has_track and name in ("x_m", "y_m")):
+            found.append(name)
+    return found
 
 
 def _motion_and_others(signals: Mapping[str, Array]) -> tuple[dict[str, Array], dict[str, Array]]:

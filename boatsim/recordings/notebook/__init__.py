@@ -1,0 +1,1 @@
+"""Recordings in notebooks: as Arrow tables and data frames, as figures and as replays."""
