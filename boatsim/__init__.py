@@ -1,9 +1,9 @@
 """boatsim: small-boat motion and control on MuJoCo, and diagnosis of models from recordings.
 
-`load_vessel`, `load_scenario`, `run`, `sweep`, `read`, `diagnose` and `replay` are the Python
-equivalents of the commands. `Vessel`, `Scenario`, `Recording`, `Diagnosis`, `Run` and `Sweep` are
-their arguments and results; `Batch` and `Fleet` simulate many vessels together. All are defined or
-exported by `boatsim.api`, which is imported at first use.
+`load_vessel`, `load_scenario`, `run`, `sweep`, `read`, `diagnose`, `replay` and `export` are the
+Python equivalents of the commands. `Vessel`, `Scenario`, `Recording`, `Diagnosis`, `Run` and
+`Sweep` are their arguments and results; `Batch` and `Fleet` simulate many vessels together. All are
+defined or exported by `boatsim.api`, which is imported at first use.
 """
 
 from importlib import import_module
@@ -23,6 +23,7 @@ if TYPE_CHECKING:
         Sweep,
         Vessel,
         diagnose,
+        export,
         load_scenario,
         load_vessel,
         read,
@@ -45,6 +46,7 @@ __all__ = [
     "Vessel",
     "__version__",
     "diagnose",
+    "export",
     "load_scenario",
     "load_vessel",
     "read",

@@ -29,8 +29,10 @@ from boatsim.physics.vessel import CommandChannel as CommandChannel
 from boatsim.physics.vessel import Vessel as Vessel
 from boatsim.progress import Report, ignore_progress
 from boatsim.recordings import table
+from boatsim.recordings.exporting.mcap import write_mcap
 from boatsim.recordings.notebook.data_frame import data_frame
 from boatsim.recordings.notes import notes_for
+from boatsim.recordings.run_folder import recording_file
 from boatsim.recordings.table import Recording as Recording
 from boatsim.simulate.batch import Batch as Batch
 from boatsim.simulate.controllers import load_with_controller
@@ -445,6 +447,35 @@ def read(path: Name, vessel: Name | None = None, load: Names = ()) -> Recording:
         return table.read(file)
     recording, _ = open_recording(file, _optional_text(vessel), _name_list(load))
     return recording
+
+
+def export(recording: Name | Recording | Run, path: Name) -> int:
+    """Write a recording to an MCAP file, which Foxglove, PlotJuggler and ROS 2 open.
+
+    Pose, twist and transform are standard messages in the axes of ROS (x east, y north, z up; hull
+    x forward, y port); commands and all other signals are numbers in SI units and SNAME axes.
+
+    Args:
+        recording: A recording, its file, the folder of a run, or a `Run`, of which the true motion
+            is written.
+        path: The .mcap file.
+
+    Returns:
+        Number of messages.
+
+    Raises:
+        BadInput: If the recording can not be read, or `mcap` and `rosbags` are not installed.
+
+    >>> import boatsim
+    >>> done = boatsim.run("joystick_boat/sway_1")
+    >>> boatsim.export(done, "out/sway_1.mcap") > 10 * len(done.recording)
+    True
+    """
+    if isinstance(recording, Run):
+        recording = recording.recording
+    if not isinstance(recording, Recording):
+        recording = read(recording_file(recording))
+    return write_mcap(recording, Path(path))
 
 
 def diagnose(

@@ -21,7 +21,7 @@ from boatsim.errors import BadInput
 from boatsim.physics import content
 from boatsim.physics.effects.current import Current
 
-OFFERED = ("diagnose", "load_scenario", "load_vessel", "read", "replay", "run", "sweep")
+OFFERED = ("diagnose", "export", "load_scenario", "load_vessel", "read", "replay", "run", "sweep")
 NOUNS = ("Batch", "Diagnosis", "Fleet", "Recording", "Run", "Scenario", "Sweep", "Vessel")
 ROOT = Path(__file__).parents[1]
 USER = """

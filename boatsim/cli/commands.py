@@ -42,7 +42,7 @@ MOST_SPEED = 1e6  # times real time; a larger value is a mistake
 # Headings of the help text with their commands; a test checks that none is missing
 COMMAND_GROUPS = {
     "Simulate": ("run", "drive", "sweep", "test", "manoeuvre", "margins"),
-    "Learn from recordings": ("import", "check", "diagnose", "replay", "compare"),
+    "Learn from recordings": ("import", "check", "diagnose", "replay", "compare", "export"),
     "Vessels and content": ("new", "list", "show"),
 }
 
@@ -780,6 +780,26 @@ def import_(
 
     with trusted_content(content, trust, [vessel]):
         return import_log(log, out, map, propose, vessel, _split_loads(load))
+
+
+@app.command()
+@exits_with_code
+def export(
+    run: OneRun,
+    out: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE.mcap", help="File to write; by default next to the recording."),
+    ] = None,
+    vessel: VesselName = None,
+    load: Load = None,
+    content: Content = None,
+    trust: Trusted = False,
+) -> int:
+    """Write a recording as MCAP with standard messages, for Foxglove, PlotJuggler and ROS 2."""
+    from boatsim.cli.exporting import export_recording
+
+    with trusted_content(content, trust, [run, vessel]):
+        return export_recording(recording_file(run), out, vessel, _split_loads(load))
 
 
 @app.command()

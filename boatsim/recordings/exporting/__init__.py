@@ -1,0 +1,1 @@
+"""Recordings in the log formats of other programs."""
