@@ -5,6 +5,7 @@ that a reader needs nothing else.
 """
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -53,7 +54,7 @@ def write_mcap(recording: Recording, path: Path) -> int:
     stamps = np.round(t * 1e9).astype(np.int64).tolist()
     count = 0
     with replace_file(path) as temporary, temporary.open("wb") as file:
-        writer = Writer(file)
+        writer: Any = Writer(file)
         writer.start(profile="ros2", library=f"boatsim {version()}")
         schemas: dict[str, int] = {}
         channels = []
@@ -74,7 +75,7 @@ def write_mcap(recording: Recording, path: Path) -> int:
 
 
 def _about(recording: Recording) -> dict[str, str]:
-    """What a reader should know of the file."""
+    """Metadata of the file: recording, vessel and axes."""
     notes = recording.notes
     return {
         "recording": recording.name,

@@ -82,7 +82,10 @@ def _take(
 
 
 def _complete_rows(signals: Mapping[str, Array]) -> NDArray[np.bool_]:
-    return np.isfinite(np.column_stack(list(signals.values()))).all(axis=1)
+    complete = np.ones(len(next(iter(signals.values()))), dtype=np.bool_)
+    for values in signals.values():
+        complete &= np.isfinite(values)
+    return complete
 
 
 def _zeros_if_absent(signals: Mapping[str, Array], names: tuple[str, ...]) -> list[Array]:
