@@ -90,6 +90,11 @@ class Run:
         """Whether every metric of the run lies within its regression band."""
         return all(metric.ok is not False for metric in self.metrics.values())
 
+    def __repr__(self) -> str:
+        """Scenario, seed and size; the values would fill pages."""
+        size = f"{len(self.recording)} rows, {len(self.metrics)} metrics"
+        return f"<Run of {self.scenario}, seed {self.seed}: {size}>"
+
     def to_arrow(self) -> "pa.Table":
         """Return the true signals as a table of Arrow, `t_s` first, in SI units and radians.
 
@@ -224,6 +229,10 @@ class Diagnosis:
             folder: Folder of the files; it is created if needed.
         """
         output_files.write_diagnosis(self.result, Path(folder))
+
+    def __repr__(self) -> str:
+        """Verdict and sentence; all results would fill pages."""
+        return f"<Diagnosis, {self.verdict}: {self.sentence}>"
 
     def to_arrow(self) -> "pa.Table":
         """Return the parameters of the identified effects as a table of Arrow, one row for each.

@@ -105,6 +105,10 @@ class Recording:
     def __len__(self) -> int:
         return len(self.t)
 
+    def __repr__(self) -> str:
+        """Name, number of rows and signals; the values would fill pages."""
+        return f"<Recording {self.name}: {len(self)} rows of {len(self.signals)} signals>"
+
     def __getitem__(self, name: str) -> Array:
         """Return the values (N,) of a signal. Raises SignalMissing."""
         if name not in self.signals:

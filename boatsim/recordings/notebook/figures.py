@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 NEEDED = 'plot needs matplotlib: pip install "boatsim[notebook]"'
 TRACK = ("x_m", "y_m")
-WIDTH, PANEL_HEIGHT, LEAST_HEIGHT = 10.0, 1.7, 4.5  # [inch]
+WIDTH, PANEL_HEIGHT, LEAST_HEIGHT = 9.0, 1.5, 4.0  # [inch]
 MARGIN = 0.05  # of the range of the drawn values, on each side
 REACH = 0.5  # of that range, by which a curve that is not fitted in may widen the axes
 
