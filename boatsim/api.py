@@ -122,11 +122,12 @@ class Run:
         """
         return data_frame(self.to_arrow())
 
-    def plot(self, signals: Sequence[str] = ()) -> "Figure":
+    def plot(self, signals: str | Sequence[str] = ()) -> "Figure":
         """Draw the track seen from above, and signals over time, with angles in degrees.
 
         Args:
-            signals: Signals to draw over time; by default attitude, rates and commands.
+            signals: One or several signals to draw over time; by default attitude, rates and
+                commands.
 
         Returns:
             A figure of matplotlib.

@@ -29,6 +29,7 @@ from boatsim.recordings.table import Notes, Recording, read
 from boatsim.simulate.camera_metric import CameraFrames, CameraMetricSet
 from boatsim.simulate.growing_table import PIECE, FileTable, GrowingTable
 from boatsim.simulate.metric import TooShort
+from boatsim.view.rerun_command import rerun_command
 
 FILES = {"recording.csv", "camera.csv", "recording.toml", "norms.json", "run.rrd"}
 ENDLESS = """
@@ -147,6 +148,8 @@ def test_a_signal_ends_a_run_and_what_was_logged_is_kept_with_its_norms_so_far(
     table, log = read(out / "recording.csv"), read(out / "run.rrd")
     np.testing.assert_allclose(log.t, table.t, atol=1e-9)
     assert table.t[-1] > 1.0 and len(table) == content["steps"] + 1
+    command = [*rerun_command(), "rrd", "verify", str(out / "run.rrd")]
+    assert subprocess.run(command, capture_output=True, check=False).returncode == 0
 
 
 def test_a_process_that_is_killed_leaves_all_but_the_last_second(

@@ -227,11 +227,12 @@ class Recording:
         """
         return data_frame(self.to_arrow())
 
-    def plot(self, signals: Sequence[str] = ()) -> "Figure":
+    def plot(self, signals: str | Sequence[str] = ()) -> "Figure":
         """Draw the track seen from above, and signals over time, with angles in degrees.
 
         Args:
-            signals: Signals to draw over time; by default attitude, rates and commands.
+            signals: One or several signals to draw over time; by default attitude, rates and
+                commands.
 
         Returns:
             A figure of matplotlib.
@@ -239,8 +240,10 @@ class Recording:
         Raises:
             BadInput: If a signal does not exist, or matplotlib is not installed.
         """
+        if isinstance(signals, str):
+            signals = [signals]
         for name in signals:
-            self[name]
+            self[name]  # raises for a name that does not exist
         selected = signals or _motion_and_commands(self.signals)
         return recording_figure(self.name, self.t, self.signals, selected)
 

@@ -113,6 +113,7 @@ def test_selected_signals_are_drawn_and_a_wrong_name_is_answered_with_the_neares
     run = circle()
     _, panel = run.plot(["camera_x_m"]).axes
     assert panel.get_ylabel() == "camera x [m]"
+    assert run.plot("camera_x_m").axes[1].get_ylabel() == "camera x [m]"
     with pytest.raises(SignalMissing, match="did you mean 'psi_rad'"):
         run.plot(["psi_radd"])
 
