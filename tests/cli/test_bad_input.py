@@ -391,6 +391,7 @@ def place() -> Iterator[Callable[..., Path]]:
 # ---- recordings
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("command", ["diagnose", "replay", "compare"])
 def test_a_recording_that_is_right_is_used(command: str, place: Callable[..., Path]) -> None:
     folder = place(run__csv=csv_text(decay()), recording__toml=NOTES)

@@ -49,6 +49,7 @@ def run(tmp_path: Path) -> Path:
     return tmp_path / "run" / "recording.csv"
 
 
+@pytest.mark.slow
 def test_a_run_knows_its_scenario_and_is_compared_with_all_that_acted_in_it(
     run: Path, tmp_path: Path
 ) -> None:

@@ -88,6 +88,7 @@ def test_free_runs_of_a_recording_say_their_stages(tmp_path: Path, command: str)
     assert told[0] == "reading the recording" and "fitting the noise" in told
 
 
+@pytest.mark.slow
 def test_a_new_boat_fitted_to_a_log_says_its_stages(tmp_path: Path) -> None:
     rows = [
         line.split(",")[:6] for line in TRIAL[0].read_text().splitlines()

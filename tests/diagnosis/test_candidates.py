@@ -278,6 +278,7 @@ def test_inertia_and_coriolis_force_are_newtons_law_of_each_part(
 # composition
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("real", "wanted"),
     few(
@@ -314,6 +315,7 @@ def test_concealed_effects_are_named_with_their_values(
             ), key
 
 
+@pytest.mark.slow
 def test_late_commands_and_an_early_clock_are_told_to_be_the_same_in_open_loop(
     tmp_path: Path,
 ) -> None:

@@ -67,10 +67,12 @@ def test_every_special_case_is_a_candidate_of_a_boat_with_all_freedoms_and_all_c
         assert {library.inapplicable[n] for n in without} <= {f"no column {column} was recorded"}
 
 
+@pytest.mark.slow
 def test_a_perfect_gyro_names_nothing(tmp_path: Path) -> None:
     nothing_missing(diagnosed(with_gyro(), tmp_path, "trial_boat", library=FURTHER))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("column", "error", "name", "true"),
     [

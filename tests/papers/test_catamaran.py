@@ -424,6 +424,7 @@ def test_the_boat_of_the_paper_lacks_nothing(tmp_path: Path) -> None:
     assert answer["verdict"] == "nothing_missing" and not answer["effects"]
 
 
+@pytest.mark.slow
 def test_case_1_turned_positions_are_found_before_forces_are_blamed(tmp_path: Path) -> None:
     found = pipeline.diagnose(recorded(tmp_path, [3, 5, -5], replay=True))
     assert (
@@ -456,6 +457,7 @@ def test_honest_positions_stay(trial: int) -> None:
     assert drop_rotated_positions(other) is other
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("trials", "lever"), [([3, 5, -5, 7], 0.05), ([3, 5, -5, 7], 0.15), ([1], 0.05)]
 )
@@ -472,6 +474,7 @@ def test_case_2_a_disturbance_off_the_mass_centre_is_named_with_its_lever(
     assert named(answer) == {"gust_off_centre": {"arm_m": pytest.approx(lever, rel=0.2)}}
 
 
+@pytest.mark.slow
 def test_case_3_a_heavier_boat_is_named_with_its_deeper_draught(tmp_path: Path) -> None:
     """9 kg instead of 7: D grows from 45 to 52 mm, which raises the added mass in sway and yaw by a
     third."""
@@ -483,6 +486,7 @@ def test_case_3_a_heavier_boat_is_named_with_its_deeper_draught(tmp_path: Path) 
     assert found["added_mass_error"]["sway_factor"] == pytest.approx(0.0521**2 / 0.045**2, rel=0.1)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("trials", "coefficient"), [([1], 80.0), ([3, 5, 6], 80.0), ([3, 5, 6], 400.0)]
 )

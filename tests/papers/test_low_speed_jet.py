@@ -305,6 +305,7 @@ def test_filter_spares_the_nozzle_near_its_frequency_and_costs_accuracy_below() 
     assert value("waves_1p5_filter", "psi_rms") > 1.2 * value("waves_1p5_pd", "psi_rms")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "grows"),
     few([("l1_0p8", False), ("l1_1p0", True), ("pd_1p2", False), ("pd_1p5", True)], 2),

@@ -571,6 +571,7 @@ def test_adaptive_roll_reducers_run_away_in_eastward_hos_beam_sea(kind: str) -> 
     assert mean("yaw_rms", "eastward_ho", "seas_90", kind, 2) > 10.0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("vessel", "test"), [*QUARTERING, *((v, "seas_90") for v in martin.VESSELS)]
 )

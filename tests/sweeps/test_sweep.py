@@ -430,6 +430,7 @@ def once_it_has(out: Path, lines: int, running: "subprocess.Popen[str]") -> None
         time.sleep(0.002)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("jobs", [1, 2])
 def test_killed_and_continued_it_ends_with_the_same_bytes(
     short: str, tmp_path: Path, jobs: int
@@ -523,6 +524,7 @@ def deadly(told: tuple[str, int]) -> dict[str, Any]:
     return {"failure": None, "number": number}
 
 
+@pytest.mark.slow
 def test_a_task_that_kills_its_process_costs_nobody_else(tmp_path: Path) -> None:
     mark = str(tmp_path / "mark")
     tasks = [(n, (mark, n)) for n in (5, 0, 1, 2, 3, 4)]

@@ -58,6 +58,7 @@ def test_an_installed_package_is_returned() -> None:
     assert import_package("numpy", "a test") is np
 
 
+@pytest.mark.slow
 def test_the_true_effect_brings_simulations_nearer_to_the_recording(question: Question) -> None:
     simulator = Simulator(question)
     nominal = Hypothesis((), question.start())

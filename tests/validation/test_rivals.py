@@ -40,6 +40,7 @@ def easy(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("rival", RIVALS)
 def test_a_rival_names_what_is_plain_to_see_and_is_scored(
     rival: str,

@@ -240,6 +240,7 @@ def recorded(real: Real, seed: int) -> Recording:
     return Recording(f"run_{seed}", dt * np.arange(count), signals)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("astern", "name"),
     [

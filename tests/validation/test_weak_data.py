@@ -109,6 +109,7 @@ EFFECTS = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seconds", [6.0, 12.0])
 @pytest.mark.parametrize("case", EFFECTS)
 def test_a_short_run_names_what_is_there_or_nothing(

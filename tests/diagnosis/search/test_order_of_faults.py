@@ -125,6 +125,7 @@ def test_what_has_its_place_can_not_be_put_elsewhere() -> None:
         ThrustImbalance(other_side=True)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("behind", [slow(False), True], ids=["of the command", "of the shaft"])
 def test_a_diagnosis_tells_a_dead_band_of_the_shaft_from_one_of_the_command(
     tmp_path: Path, behind: bool

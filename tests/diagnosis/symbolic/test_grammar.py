@@ -199,6 +199,7 @@ def replays(found: Diagnosis, held_out: Recording, folder: Path) -> None:
         )  # started at each program's own smoothed state
 
 
+@pytest.mark.slow
 def test_a_moment_that_swings_is_described_with_its_period_and_carries_over(tmp_path: Path) -> None:
     found = diagnosed(swinging, swinging, swinging)
     answer = found.findings.answer
@@ -217,6 +218,7 @@ def test_a_moment_that_swings_is_described_with_its_period_and_carries_over(tmp_
     replays(found, sail("run_3", 42, swinging)[0], tmp_path)
 
 
+@pytest.mark.slow
 def test_a_side_force_with_the_square_of_the_yaw_rate_is_described_as_one() -> None:
     found = diagnosed(even_in_yaw, even_in_yaw, even_in_yaw)
     answer = found.findings.answer
@@ -229,6 +231,7 @@ def test_a_side_force_with_the_square_of_the_yaw_rate_is_described_as_one() -> N
     assert found.findings.described[0].curve is not None
 
 
+@pytest.mark.slow
 def test_what_acts_in_one_run_alone_is_an_event_and_no_part_of_the_patched_vessel() -> None:
     found = diagnosed(of_one_run, nothing, nothing)
     answer = found.findings.answer
@@ -252,6 +255,7 @@ def test_what_acts_in_one_run_alone_is_an_event_and_no_part_of_the_patched_vesse
     assert "described" not in text
 
 
+@pytest.mark.slow
 def test_times_are_those_at_which_it_acts() -> None:
     found = diagnosed(of_one_run, nothing, nothing)
     (event,) = found.findings.described

@@ -237,6 +237,7 @@ def test_the_quick_weighing_recalls_what_the_filter_does() -> None:
     } == {1.7 * 1.5, 1.7 / 1.5}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("factor", "late"),
     [

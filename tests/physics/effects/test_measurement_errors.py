@@ -98,6 +98,7 @@ def diagnosed(folder: Path, real: Real) -> dict[str, Any]:
     return pipeline.diagnose(files[:2], files[2:], "trial_boat", library=FURTHER).findings.answer
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("real", "wanted"),
     [
@@ -128,6 +129,7 @@ def test_a_measurement_error_is_named_as_such_and_undone(
     )  # replays show what the camera shows
 
 
+@pytest.mark.slow
 def test_an_antenna_off_the_mass_centre_and_a_turned_compass_are_told_apart(tmp_path: Path) -> None:
     real = Real(compass=(0.12, 0.0, 0.0), antenna=(0.25, 0.0))
     answer = diagnosed(tmp_path, real)
@@ -167,6 +169,7 @@ def test_fixes_of_a_steady_turn_are_shown_where_she_was() -> None:
     assert [seen.x, seen.y] == pytest.approx(was, abs=2e-3 * speed * late) and seen[2:] == now[2:]
 
 
+@pytest.mark.slow
 def test_irregular_waves_are_named_with_their_frequency(tmp_path: Path) -> None:
     answer = diagnosed(tmp_path, Real(sea=(0.15, 0.3, 0.05)))
     (effect,) = answer["effects"]

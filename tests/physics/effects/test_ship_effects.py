@@ -392,6 +392,7 @@ def check(answer: dict[str, Any], wanted: dict[str, dict[str, float]]) -> None:
             ), key
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("real", "wanted"),
     [
@@ -491,6 +492,7 @@ def slipping(a: float, u: float) -> float:
     return a * (1.0 - 0.015 * u * (0.8 + 0.2 * u / 12.0)) - drag(u)  # more than in proportion
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("change", "wanted"),
     [
