@@ -146,9 +146,11 @@ def _plan(
 def open_question(ranking: Ranking, config: DiagnosisConfig) -> tuple[Fit, dict[str, Fit]]:
     """Return the hypotheses that a selection of effects leaves undecided, for the next experiment.
 
-    The rivals are the look-alikes of the identified effects. If there are none, the nearest rival
-    of the least certain effect is used. If no effect was identified, the best candidate effect is
-    compared with no effect and with its own look-alikes, if its evidence is large enough.
+    The rivals are the look-alikes of the identified effects. If there are none, the most probable
+    of the effects that are only possible is compared with its nearest rival, or with its absence;
+    without such effects, the least certain identified effect. If nothing was identified, the best
+    candidate effect is compared with no effect and with its own look-alikes, if its evidence is
+    large enough.
 
     Args:
         ranking: Result of the selection of effects.
@@ -158,6 +160,8 @@ def open_question(ranking: Ranking, config: DiagnosisConfig) -> tuple[Fit, dict[
         Fit of the best hypothesis, and fits of its rivals by name.
     """
     undecided = list(filter(attrgetter("tied_with"), ranking.named))
+    if not undecided and ranking.doubtful:
+        return ranking.best, _rivals_of_suspect(ranking)
     if not undecided:
         undecided = sorted(ranking.named, key=lambda named: named.probability)[:1]
     if undecided:
@@ -177,6 +181,15 @@ def open_question(ranking: Ranking, config: DiagnosisConfig) -> tuple[Fit, dict[
         if ranking.last[name].evidence > best.evidence - config.select.alike:
             rivals[name] = ranking.last[name]
     return best, {**rivals, NOTHING: ranking.best}
+
+
+def _rivals_of_suspect(ranking: Ranking) -> dict[str, Fit]:
+    """Fits of the rivals of the most probable effect that is only possible."""
+    suspect = max(ranking.doubtful, key=attrgetter("probability"))
+    names = suspect.tied_with or other_effects(suspect)[:1]
+    if not names:
+        return {NOTHING: ranking.without[suspect.name]}
+    return {name: suspect.rivals[name] for name in names}
 
 
 def plan_entry(plan: Plan | None, scenario: str) -> NextEntry:

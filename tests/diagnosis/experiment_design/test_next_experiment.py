@@ -4,6 +4,8 @@ runs."""
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
+from types import SimpleNamespace
+from typing import cast
 
 import numpy as np
 import pytest
@@ -13,12 +15,15 @@ from scipy.linalg import expm
 
 from boatsim.cli import diagnosis as commands
 from boatsim.diagnosis.candidates import effect_at_zero, library_for
+from boatsim.diagnosis.config import DEFAULT
 from boatsim.diagnosis.experiment_design import manoeuvres, next_experiment
 from boatsim.diagnosis.experiment_design.manoeuvres import Manoeuvre, available_manoeuvres
 from boatsim.diagnosis.experiment_design.simulated_manoeuvre import simulate_manoeuvre
 from boatsim.diagnosis.filter import NoiseLevels, map_recording, prior_levels
 from boatsim.diagnosis.fit import converge, fit, gauss_newton
 from boatsim.diagnosis.problem import Fit, Problem
+from boatsim.diagnosis.search.pruning import IdentifiedEffect
+from boatsim.diagnosis.search.ranking import Ranking
 from boatsim.diagnosis.search.screening import screen
 from boatsim.physics import vessel
 from boatsim.physics.base import Array
@@ -228,6 +233,33 @@ def test_expected_gain_is_the_divergence_of_the_dense_predictions_of_a_linear_mo
     )["rival"]
     assert wanted > 1.0
     assert got == pytest.approx(wanted, rel=0.05)
+
+
+def test_the_question_is_about_an_effect_that_is_only_possible() -> None:
+    """A report that names a suspect suggests the manoeuvre that tests this suspect."""
+    _, winner, other = tie("deadband at one thrust level")
+    certain = IdentifiedEffect("wind", 40.0, 40.0, 0.97, (), {"current": other})
+    suspect = IdentifiedEffect("thrust_deadband", 9.0, 9.0, 0.3, (), {"thrust_gain_error": other})
+    unlike = IdentifiedEffect("surge_drag", 6.0, 6.0, 0.1, (), {})
+    ranking = SimpleNamespace(
+        named=(certain,),
+        doubtful=(unlike, suspect),
+        best=winner,
+        without={"surge_drag": other, "thrust_deadband": other},
+    )
+    assert question_of(ranking) == (winner, {"thrust_gain_error": other})
+    ranking.doubtful = (unlike,)  # without a rival of its own
+    assert question_of(ranking) == (winner, {next_experiment.NOTHING: other})
+    ranking.doubtful = ()
+    assert question_of(ranking) == (winner, {"current": other})
+    ranking.named = (replace(certain, tied_with=("current",)),)
+    ranking.doubtful = (suspect,)  # what the tool states is settled first
+    assert question_of(ranking) == (winner, {"current": other})
+
+
+def question_of(ranking: SimpleNamespace) -> tuple[Fit, dict[str, Fit]]:
+    """The question of a selection that has only the parts it needs."""
+    return next_experiment.open_question(cast(Ranking, ranking), DEFAULT)
 
 
 def test_a_manoeuvre_in_which_a_rival_diverges_is_no_plan(monkeypatch):
