@@ -16,7 +16,7 @@ from boatsim.physics import vessel as vessels
 from boatsim.physics.vessel import Vessel
 from boatsim.progress import Report, ignore_progress
 from boatsim.recordings.notes import NotesFile, notes_for
-from boatsim.recordings.run_folder import recording_file
+from boatsim.recordings.run_folder import is_of_run, recording_file
 from boatsim.recordings.table import Recording, read
 
 THIRDS = ("first", "middle", "last")
@@ -274,9 +274,15 @@ def _check_distinct(paths: Sequence[Path]) -> None:
 
 
 def _distinct_names(paths: Sequence[Path]) -> list[str]:
-    """The stems of files, with as many folders in front as distinguish them."""
-    for depth in range(1, MOST_FOLDERS + 1):
-        short = ["/".join(path.resolve().with_suffix("").parts[-depth:]) for path in paths]
-        if len(set(short)) == len(short):
-            return short
+    """The stems of files, with as many folders in front as distinguish them.
+
+    A file in the folder of a run has the name of that folder, if that distinguishes it.
+    """
+    whole = [path.resolve().with_suffix("") for path in paths]
+    folders = [path.parent if is_of_run(path) else path for path in whole]
+    for names in (folders, whole):
+        for depth in range(1, MOST_FOLDERS + 1):
+            short = ["/".join(path.parts[-depth:]) for path in names]
+            if len(set(short)) == len(short):
+                return short
     return list(map(str, paths))

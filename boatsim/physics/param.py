@@ -38,6 +38,10 @@ class Param(NamedTuple):
     within: tuple[float, float] = (-math.inf, math.inf)
     # value about which a fit expects the parameter, in the unit of `spread`; None: without effect
     usual: float | None = None
+    # sentence on a fitted ratio in per cent, "astern thrust is {share} of the commanded thrust":
+    # {share} is the ratio, {more} and {larger} the change from `inactive_value` ("8 % (± 1.2)
+    # less", "... smaller"), and {opposite} the other way ("more")
+    in_per_cent: str = ""
 
     @property
     def prior_mean(self) -> float:
@@ -63,6 +67,7 @@ def param(
     releases: tuple[str, ...] = (),
     how: str = "sets",
     within: tuple[float, float] = (-math.inf, math.inf),
+    in_per_cent: str = "",
 ) -> N:
     """Declare a parameter of an effect, as a dataclass field with bounds, unit and description.
 
@@ -82,6 +87,7 @@ def param(
         releases: Numbers of the vessel that it changes.
         how: How it changes them: "sets", "scales" or "shifts".
         within: Plausible range of a fit.
+        in_per_cent: Sentence on a fitted ratio, see `Param`.
 
     Raises:
         ValueError: A parameter with `fit` has no spread.
@@ -89,7 +95,7 @@ def param(
     if fit and not spread > 0.0:
         raise ValueError(f"a parameter with fit=True needs a spread, its prior sd ({words})")
     about = Param(low, high, unit, words, fit, spread, axis, inactive_value, calibrates, follows)
-    about = about._replace(releases=releases, how=how, within=within)
+    about = about._replace(releases=releases, how=how, within=within, in_per_cent=in_per_cent)
     return field(default=nominal, metadata={"param": about})
 
 
@@ -100,6 +106,7 @@ def factor_parameter(
     axis: str = "",
     low: float = 0.1,
     high: float = 5.0,
+    in_per_cent: str = "",
 ) -> float:
     """Declare a parameter that multiplies numbers of the vessel, such as a damping coefficient.
 
@@ -112,6 +119,7 @@ def factor_parameter(
         axis: Degree of freedom that the parameter belongs to.
         low: Lower bound.
         high: Upper bound.
+        in_per_cent: Sentence on a fitted value, see `Param`.
     """
     return param(
         1.0,
@@ -125,6 +133,7 @@ def factor_parameter(
         inactive_value=1.0,
         releases=releases,
         how="scales",
+        in_per_cent=in_per_cent,
     )
 
 
@@ -137,6 +146,7 @@ def shift_parameter(
     high: float,
     axis: str = "",
     within: tuple[float, float] = (-math.inf, math.inf),
+    in_per_cent: str = "",
 ) -> float:
     """Declare a parameter that is added to numbers of the vessel, such as a lever arm.
 
@@ -151,6 +161,7 @@ def shift_parameter(
         high: Upper bound.
         axis: Degree of freedom that the parameter belongs to.
         within: Plausible range of a fit.
+        in_per_cent: Sentence on a fitted value, see `Param`.
     """
     return param(
         0.0,
@@ -164,6 +175,7 @@ def shift_parameter(
         releases=releases,
         how="shifts",
         within=within,
+        in_per_cent=in_per_cent,
     )
 
 

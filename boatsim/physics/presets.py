@@ -23,6 +23,7 @@ class ParameterChanges(TypedDict, total=False):
     inactive_value: float
     calibrates: str
     usual: float
+    in_per_cent: str
 
 
 def preset_effect(

@@ -3,6 +3,7 @@
 from pathlib import Path
 
 RECORDING = "recording.csv"
+METRICS = "norms.json"
 
 
 def recording_file(path: str | Path) -> Path:
@@ -14,3 +15,12 @@ def recording_file(path: str | Path) -> Path:
     path = Path(path)
     inside = path / RECORDING
     return inside if inside.is_file() else path
+
+
+def is_of_run(path: Path) -> bool:
+    """Return whether a file lies in the output folder of a run.
+
+    Args:
+        path: The file.
+    """
+    return (path.parent / METRICS).is_file()

@@ -20,6 +20,7 @@ from boatsim.errors import BadInput
 from boatsim.files import AppendedFile, replace_file, toml_key, toml_value
 from boatsim.interruption import deferred_signals
 from boatsim.physics.content import vessel_address
+from boatsim.recordings.run_folder import METRICS
 from boatsim.recordings.table import Recording, csv_header, csv_rows
 from boatsim.simulate import evaluation
 from boatsim.simulate.engine import Engine
@@ -31,7 +32,6 @@ from boatsim.simulate.run_options import Listener, RunOptions
 from boatsim.simulate.scenario import Scenario
 
 CAMERA = "camera"  # stem of the file that a diagnosis reads
-METRICS = "norms.json"
 METRICS_INTERVAL = 1.0  # [s] of wall time at least between two updates of norms.json
 METRICS_SHARE = 0.03  # largest share of the time of a run that these updates may take
 

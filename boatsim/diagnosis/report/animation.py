@@ -7,6 +7,7 @@ import numpy as np
 
 from boatsim.diagnosis.free_runs import FreeRun
 from boatsim.diagnosis.report.figures import unit_for_signal
+from boatsim.diagnosis.report.model_names import MODEL_WORDS
 from boatsim.diagnosis.report.svg_plots import evenly_spaced_rows
 from boatsim.physics.base import Array
 
@@ -26,6 +27,7 @@ class Boat(TypedDict):
     """
 
     look: str  # class of the style sheet
+    name: str  # words of the legend
     x: list[float | None]
     y: list[float | None]
     turned: list[float | None]  # [rad] clockwise
@@ -112,6 +114,7 @@ def _boat(
             turned = joined(model, signal)
     return {
         "look": model,
+        "name": MODEL_WORDS[model],
         "x": _as_json(x, decimals),
         "y": _as_json(y, decimals),
         "turned": _as_json(turned, 3),

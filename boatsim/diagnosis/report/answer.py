@@ -23,7 +23,7 @@ from boatsim.diagnosis.report.assumptions import excluded_candidates, rules_entr
 from boatsim.diagnosis.report.confirmation import alone_entry, reason_unconfirmed
 from boatsim.diagnosis.report.described_terms import described_entries
 from boatsim.diagnosis.report.families import FAMILIES
-from boatsim.diagnosis.report.formatting import capitalize, join_words
+from boatsim.diagnosis.report.formatting import capitalize, join_words, sentence_in_per_cent
 from boatsim.diagnosis.report.layers import separate_layers
 from boatsim.diagnosis.report.parameters import parameter_key, reported_sd
 from boatsim.diagnosis.report.schema import (
@@ -151,6 +151,8 @@ def _unknown(problem: Problem, ranking: Ranking, evaluation: Evaluation) -> Unkn
         entry["rest"] = locate.strength(problem, evaluation.remaining)
     if ranking.stands_in and not ranking.remains:
         entry["stand_ins"] = [base_name(one.name) for one in ranking.doubtful]
+    if ranking.held_out_remains and not (ranking.remains or ranking.stands_in):
+        entry["held_out_only"] = True
     if ranking.structure.significant:
         entry["structure"] = _structure(ranking.structure)
     if ranking.divergences:
@@ -391,6 +393,9 @@ def _parameter(best: Fit, effect: Effect, name: str, config: AnswerConfig) -> Pa
     for end in (free.low, free.high):
         if end != free.mean and abs(value - end) <= config.at_bound * abs(end):
             entry["at_bound"] = True
+    sentence = sentence_in_per_cent(param.in_per_cent, value, entry["sd"], param.inactive_value)
+    if sentence:
+        entry["statement"] = sentence
     return entry
 
 

@@ -1,4 +1,4 @@
-"""Table and remarks on the errors of the nominal, the recalibrated and the patched vessel."""
+"""Table and remarks on the errors of the vessel before, retuned and corrected."""
 
 from typing import NamedTuple
 
@@ -6,6 +6,8 @@ import numpy as np
 
 from boatsim.diagnosis.evaluation import ALONE, MODELS, Evaluation, PartErrors
 from boatsim.diagnosis.problem import Problem
+from boatsim.diagnosis.report.formatting import format_odds
+from boatsim.diagnosis.report.model_names import words_of_models
 from boatsim.diagnosis.search.ranking import Ranking
 
 Table = tuple[str, list[str], list[list[str]]]  # title, header, rows
@@ -25,7 +27,7 @@ class _Unit(NamedTuple):
 def error_table(evaluation: Evaluation) -> Table | None:
     """Return the report's table of simulation errors before and after the diagnosis.
 
-    It compares the nominal, the recalibrated and the patched vessel model over every recording.
+    It compares the vessel model before, retuned and corrected over every recording.
     None is returned if there are no errors.
 
     Args:
@@ -47,9 +49,9 @@ def error_table(evaluation: Evaluation) -> Table | None:
         "part",
         "data",
         "rms error of",
-        *MODELS,
-        "nominal refitted to this part alone",
-        "patched / recalibrated",
+        *words_of_models(MODELS),
+        "retuned to this part alone",
+        "corrected / retuned",
     ]
     return f"Free runs of {evaluation.horizon:g} s, part by part", header, rows
 
@@ -83,8 +85,8 @@ def _no_gain(ranking: Ranking, evaluation: Evaluation) -> list[str]:
         if rms["patched"] > rms["recalibrated"]:
             unit = _unit_of(family)
             found.append(
-                f"The patch does not reduce the error of {unit.signal} on held-out data: "
-                f"{unit.text(rms['patched'])} {unit.unit}, the recalibrated vessel "
+                f"The correction does not reduce the error of {unit.signal} on held-out data: "
+                f"{unit.text(rms['patched'])} {unit.unit}, the retuned vessel "
                 f"{unit.text(rms['recalibrated'])} {unit.unit}."
             )
     return found
@@ -106,7 +108,7 @@ def _unexplained(problem: Problem, ranking: Ranking) -> list[str]:
     factor = problem.config.locate.disturbance_factor
     return [
         "A force beyond the assumed disturbance level remains unexplained "
-        f"({remaining:.0f} nats beyond {factor:g} times that level): {why}."
+        f"({format_odds(remaining)}): it is more than {factor:g} times that level, and {why}."
     ]
 
 
@@ -117,17 +119,17 @@ def _uninformative(evaluation: Evaluation) -> list[str]:
         own = [part for part in evaluation.parts if part.name == name]
         errors = " and ".join(map(_compared, own))
         found.append(
-            f"{name}: the nominal model, refitted to this part alone, already has an error of "
+            f"{name}: the model before, retuned to this part alone, already has an error of "
             f"{errors}. This part alone does not show what is missing."
         )
     return found
 
 
 def _compared(part: PartErrors) -> str:
-    """Return the errors of the nominal model refitted to a part and of the patched vessel."""
+    """Return the errors of the model retuned to a part alone, and of the corrected vessel."""
     unit = _unit_of(part.family)
     alone, patched = unit.text(part.rms[ALONE], 2), unit.text(part.rms["patched"], 2)
-    return f"{alone} {unit.unit} in {unit.signal} (patched vessel: {patched} {unit.unit})"
+    return f"{alone} {unit.unit} in {unit.signal} (corrected vessel: {patched} {unit.unit})"
 
 
 def _unit_of(family: str) -> _Unit:

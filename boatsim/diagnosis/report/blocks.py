@@ -14,6 +14,15 @@ class Text:
 
 
 @dataclass(frozen=True)
+class Note:
+    """A paragraph that the page shows on request only, under its title."""
+
+    kind: ClassVar[str] = "note"
+    title: str
+    words: str
+
+
+@dataclass(frozen=True)
 class Heading:
     """A heading within a section of a report, with a line of facts below it."""
 
@@ -86,7 +95,7 @@ class Figures:
     pictures: list[str]
 
 
-Block = Text | Heading | Items | Table | Figures
+Block = Text | Note | Heading | Items | Table | Figures
 
 
 @dataclass(frozen=True)
@@ -99,9 +108,12 @@ class Section:
 
 
 def escape_markup(words: str) -> str:
-    """Escape characters in text from files that a browser or Markdown would read as mark-up."""
-    words = words.replace("&", "&amp;").replace("<", "&lt;").replace("\n", " ")
-    return re.sub(r"([|*`]|(?<=\])\()", r"\\\1", words)
+    """Escape characters in text from files that Markdown would read as mark-up, by a backslash.
+
+    A "<" before a space and an "&" before a space begin neither a tag nor an entity and stay.
+    """
+    words = words.replace("\n", " ")
+    return re.sub(r"([|*`]|<(?=[\w/!?])|&(?=[\w#])|(?<=\])\()", r"\\\1", words)
 
 
 def markdown_lines(block: Block) -> list[str]:
@@ -113,6 +125,8 @@ def markdown_lines(block: Block) -> list[str]:
     match block:
         case Text():
             return ["", escape_markup(block.words)]
+        case Note():
+            return ["", f"*{escape_markup(block.title)}*: {escape_markup(block.words)}"]
         case Heading():
             lines = ["", f"### {escape_markup(block.words)}"]
             if block.facts:

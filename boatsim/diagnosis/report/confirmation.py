@@ -104,8 +104,8 @@ def recalibration_sentences(f: Findings) -> list[str]:
         return []
     names = join_words(_names(found["undetermined"]))
     return [
-        "The recalibrated vessel keeps these numbers of the vessel file, because the recordings "
-        f"do not determine them better: {names}."
+        "The retuned vessel keeps these numbers of the vessel file, because the recordings do "
+        f"not determine them better: {names}."
     ]
 
 
@@ -118,11 +118,11 @@ def _not_adopted(f: Findings, refitted: Mapping[Family, float]) -> list[str]:
             before, after = format_in_one_unit(pair, unit)
             errors.append(f"{after} in {words} instead of {before}")
     sentences = [
-        "The recalibrated vessel has the coefficients of the vessel file, because refitted ones "
-        f"are worse on held-out data: {join_words(errors)}."
+        "The retuned vessel has the coefficients of the vessel file, because refitted ones are "
+        f"worse on held-out data: {join_words(errors)}."
     ]
     if f.has_added_effects:
-        sentences.append("The patched vessel has coefficients fitted together with its effects.")
+        sentences.append("The corrected vessel has coefficients fitted together with its effects.")
     return sentences
 
 

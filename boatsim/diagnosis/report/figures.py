@@ -16,6 +16,7 @@ from boatsim.diagnosis.report.described_terms import (
 )
 from boatsim.diagnosis.report.findings import MissingForceCurve
 from boatsim.diagnosis.report.formatting import capitalize, convenient_unit, format_number
+from boatsim.diagnosis.report.model_names import MODEL_WORDS
 from boatsim.diagnosis.report.schema import IntervalEntry
 from boatsim.diagnosis.report.svg_plots import SQUARE, Line, Panel, axis_limits, figure
 from boatsim.physics.base import Array
@@ -73,7 +74,7 @@ def _missing_panel(
     force, sd = factor * m.force[axis], factor * m.sd[axis]
     lines = [Line("missing", m.t, force, "missing")]
     if axis in m.left:
-        lines.append(Line("left", m.t, factor * m.left[axis], "missing in the patched vessel"))
+        lines.append(Line("left", m.t, factor * m.left[axis], "missing in the corrected vessel"))
     rms = format_number(float(np.sqrt(np.nanmean(force**2))))
     kind = "force" if axis in ("surge", "sway", "heave") else "moment"
     return Panel(
@@ -109,13 +110,13 @@ def free_run_figures(runs: Sequence[FreeRun]) -> list[str]:
         panels.append(_error_panel(runs, "position"))
     if plan and len(runs) > 1:
         worst = max(runs, key=lambda r: _largest_error(r, "position"))
-        title = f"{name}: largest error of the recalibrated vessel, {_span(worst)}"
+        title = f"{name}: largest error of the retuned vessel, {_span(worst)}"
         found.append(figure([plan_view([worst])], title))
     if "phi_rad" in signals:
         worst = part_with_largest_error(
             max(runs, key=lambda r: _largest_error(r, "phi_rad")), "phi_rad"
         )
-        title = f"{name}: roll, largest error of the recalibrated vessel, {_span(worst)}"
+        title = f"{name}: roll, largest error of the retuned vessel, {_span(worst)}"
         found.append(figure([signal_panel([worst], "phi_rad")], title, wide=True))
     for signal in SIGNALS:
         if signal in signals:
@@ -228,7 +229,7 @@ def plan_view(runs: Sequence[FreeRun], models: Sequence[str] = ()) -> Panel:
     for model in ("recorded", *(models or models_in(runs[0]))):
         for r in runs:
             path = r.channels[model]
-            lines.append(Line(model, path["y_m"], path["x_m"], t=r.t))
+            lines.append(Line(model, path["y_m"], path["x_m"], MODEL_WORDS[model], r.t))
             if model != "nominal":
                 across.append(path["y_m"])
                 up.append(path["x_m"])
@@ -266,13 +267,13 @@ def _error_panel(runs: Sequence[FreeRun], signal: str) -> Panel:
     unit, factor = convenient_unit(si, max(largest[m] for m in kept))
     title, lines, drawn, sizes = f"error in {words} [{unit}]", [], [], []
     for model, found in errors.items():
-        sizes.append(f"{model} {format_number(factor * largest[model])} {unit}")
+        sizes.append(f"{MODEL_WORDS[model]} {format_number(factor * largest[model])} {unit}")
         for r, e in zip(runs, found, strict=True):
-            lines.append(Line(model, r.t, factor * e))
+            lines.append(Line(model, r.t, factor * e, MODEL_WORDS[model]))
             if model in kept:
                 drawn.append(factor * e)
     if cut_off:
-        title += f"; nominal up to {format_number(factor * largest['nominal'])}, outside the figure"
+        title += f"; before: up to {format_number(factor * largest['nominal'])}, outside the figure"
     about = f"Largest error in {words}: {', '.join(sizes)}"
     x = float(runs[0].t[0]), float(runs[-1].t[-1])
     return Panel(title, tuple(lines), x, axis_limits(drawn), "time [s]", about=about)
@@ -290,7 +291,7 @@ def signal_panel(runs: Sequence[FreeRun], signal: str, models: Sequence[str] = (
     lines, drawn = [], []
     for model in ("recorded", *(models or models_in(runs[0]))):
         for r in runs:
-            lines.append(Line(model, r.t, factor * r.channels[model][signal]))
+            lines.append(Line(model, r.t, factor * r.channels[model][signal], MODEL_WORDS[model]))
             if model != "nominal":
                 drawn.append(lines[-1].y)
     return Panel(

@@ -20,6 +20,10 @@ STEPS = {
 FACTOR = "(kg|rad|N|m|s)([2-9]?)"
 # the spelling of a unit at the end of a key, such as Ns2pm2
 UNIT = re.compile(f"({FACTOR})+(p({FACTOR})+)?|per({FACTOR})+")
+OF_CHANCE = " that the better fit is chance"
+# least evidence [nats] and its strength: R. E. Kass, A. E. Raftery, Bayes Factors, J. Am. Stat.
+# Assoc. 90, 1995, section 3.2 (Bayes factors of 3, 20 and 150)
+STRENGTHS = ((5.0, "very strong"), (3.0, "strong"), (1.1, "positive"), (0.0, "slight"))
 SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
@@ -97,21 +101,44 @@ def format_odds(log_bayes_factor: float) -> str:
         return "the better fit may be chance"
     if log_bayes_factor < math.log(1e6):
         odds = float(f"{math.exp(log_bayes_factor):.1e}")
-        return f"1 in {odds:,.0f} that the better fit is chance"
+        return f"1 in {odds:,.0f}{OF_CHANCE}"
     power = math.floor(log_bayes_factor / math.log(10.0))
-    return f"less than 1 in {_power_of_ten(power)} that the better fit is chance"
+    return f"less than 1 in {_power_of_ten(power)}{OF_CHANCE}"
+
+
+def evidence_strength(log_bayes_factor: float) -> str:
+    """Return the strength of evidence in a word: slight, positive, strong or very strong.
+
+    Args:
+        log_bayes_factor: Evidence [nats]; "no" where it is negative.
+    """
+    for least, word in STRENGTHS:
+        if log_bayes_factor >= least:
+            return word
+    return "no"
 
 
 def format_evidence(log_bayes_factor: float) -> str:
-    """Format log evidence in nats together with the odds that the better fit is chance.
+    """Format evidence in words, with the odds that the better fit is chance.
 
     Args:
         log_bayes_factor: Evidence [nats].
 
     Returns:
-        Words such as "evidence 4.0 nats (1 in 55 that the better fit is chance)".
+        Words such as "strong evidence (1 in 55 that the better fit is chance)".
     """
-    return f"evidence {format_nats(log_bayes_factor)} nats ({format_odds(log_bayes_factor)})"
+    return f"{evidence_strength(log_bayes_factor)} evidence ({format_odds(log_bayes_factor)})"
+
+
+def short_odds(log_bayes_factor: float) -> str:
+    """Return the odds that the better fit is chance for a table: 1 in 55, "-" if it may be.
+
+    Args:
+        log_bayes_factor: Evidence [nats].
+    """
+    if log_bayes_factor < math.log(2.0):
+        return "–"
+    return format_odds(log_bayes_factor).removesuffix(OF_CHANCE)
 
 
 def format_with_sd(value: float, sd: float) -> str:
@@ -132,6 +159,37 @@ def format_with_sd(value: float, sd: float) -> str:
     if power:
         return f"({text}) × {_power_of_ten(power)}"
     return text
+
+
+def sentence_in_per_cent(template: str, value: float, sd: float, inactive: float) -> str:
+    """Return the sentence on a fitted ratio in per cent that its effect declares.
+
+    For example, astern thrust is 69 % (± 1.5) of the commanded thrust.
+
+    Args:
+        template: Sentence with placeholders, see `Param.in_per_cent`; "" for none.
+        value: Fitted value.
+        sd: Its standard deviation.
+        inactive: Value without influence, from which a change is counted.
+    """
+    if not template:
+        return ""
+    share = _per_cent(value, sd)
+    change = _per_cent(abs(value - inactive), sd)
+    more, less, size = "more", "less", "larger"
+    if value < inactive:
+        more, less, size = "less", "more", "smaller"
+    return template.format(
+        share=share, more=f"{change} {more}", larger=f"{change} {size}", opposite=less
+    )
+
+
+def _per_cent(share: float, sd: float) -> str:
+    """Return a share in per cent with its standard deviation: 69 % (± 1.5)."""
+    if not (math.isfinite(sd) and sd > 0.0):
+        return f"{format_number(100.0 * share)} %"
+    value = f"{100.0 * share:.{_decimals(100.0 * sd, 1)}f}".replace("-", "−")
+    return f"{value} % (± {100.0 * sd:.{_decimals(100.0 * sd, 2)}f})"
 
 
 def format_unit(unit: str) -> str:

@@ -19,12 +19,13 @@ def glossary(f: Findings) -> tuple[tuple[str, str], ...]:
     named = f.setting("decide.least_probability")
     return (
         (
-            "nominal, recalibrated, patched",
-            "Nominal is the vessel file as given. Recalibrated is the same vessel with its own "
+            "before, retuned, corrected",
+            "Before is the vessel file as given. Retuned is the same vessel with its own "
             "coefficients refitted to the recordings, as far as these determine them and held-out "
-            "data get no worse. Patched is the recalibrated vessel with the "
-            "identified effects added. Effects are compared with the recalibrated vessel, because "
-            "refitting alone reduces any error a little.",
+            "data get no worse. Corrected is the retuned vessel with the "
+            "identified effects added. Effects are compared with the retuned vessel, because "
+            "refitting alone reduces any error a little. diagnosis.json calls the three nominal, "
+            "recalibrated and patched.",
         ),
         (
             "candidate effect",
@@ -57,7 +58,7 @@ def glossary(f: Findings) -> tuple[tuple[str, str], ...]:
         ),
         (
             "missing force",
-            "The force or moment on the hull that the recordings show and the recalibrated vessel "
+            "The force or moment on the hull that the recordings show and the retuned vessel "
             "does not explain, estimated over time. Its band is two standard deviations on either "
             "side. An interval is flagged where the band does not contain zero and the force "
             "exceeds the assumed disturbance level.",

@@ -17,6 +17,7 @@ from boatsim.diagnosis.report.figures import (
 )
 from boatsim.diagnosis.report.findings import Findings
 from boatsim.diagnosis.report.formatting import format_number, join_words
+from boatsim.diagnosis.report.model_names import MODEL_WORDS, words_of_models
 from boatsim.diagnosis.report.svg_plots import Panel, legend, stack_panels
 
 MOST_PATHS = 16  # consecutive free runs in a view from above
@@ -25,7 +26,6 @@ MARGIN = 0.06  # of the range of each axis, on each side
 SMALLEST, LARGEST = 0.08, 0.25  # length of the drawn boat, relative to the height of the figure
 SECTION_SIZE = 0.2  # size of the drawn midship section, relative to the height of the figure
 MARK_SIZE = 0.03  # size of the mark, relative to the height of the figure
-AGE = {"recorded": "", "recalibrated": " (before)", "patched": " (after)"}
 # outlines: to starboard and astern, relative to beam and length
 BOAT = ((0.0, -0.5), (0.5, -0.2), (0.5, 0.5), (-0.5, 0.5), (-0.5, -0.2))
 # to starboard and down
@@ -121,17 +121,12 @@ def _signals_over_time(
 def _title(what: str, runs: Sequence[FreeRun], models: Sequence[str]) -> str:
     return (
         f"{what} on held-out data, {runs[0].run}: recorded, and free runs of the "
-        f"{join_words(models)} vessel"
+        f"{join_words(words_of_models(models))} vessel"
     )
 
 
 def _legend(models: Sequence[str]) -> str:
-    looks = {}
-    for model in ("recorded", *models):
-        looks[model] = model
-        if "patched" in models:
-            looks[model] += AGE[model]
-    return legend(looks)
+    return legend({model: MODEL_WORDS[model] for model in ("recorded", *models)})
 
 
 def _with_margin(limits: tuple[float, float]) -> tuple[float, float]:

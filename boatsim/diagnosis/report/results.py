@@ -1,5 +1,7 @@
 """Collects the results of a diagnosis that the report shows."""
 
+from os.path import commonprefix
+
 import numpy as np
 
 from boatsim.diagnosis.evaluation import Evaluation
@@ -50,12 +52,24 @@ def findings_of(
         evaluation.free_runs,
         before_after.limitation_sentences(problem, ranking, evaluation),
         _coefficients(ranking.recalibrated),
+        _coefficients(ranking.best),
         (table,) if table else (),
         effect_meanings(problem.program.candidates, problem.program.vessel),
         ranking.description.terms if ranking.description else (),
         next_experiment.command_steps(plan),
         (vessel.length, vessel.beam),
+        _names(loaded),
     )
+
+
+def _names(loaded: Loaded) -> dict[str, str]:
+    """Return the names of the recordings by the paths of their files."""
+    names: dict[str, str] = {}
+    for recording in (*loaded.fitted, *loaded.held_out):
+        if recording.path is not None:
+            path = str(recording.path)
+            names[path] = commonprefix([names.get(path, recording.name), recording.name])
+    return {path: name.rstrip(" (") for path, name in names.items()}  # parts: "run (first third)"
 
 
 def _missing(vessel: Vessel, evaluation: Evaluation) -> tuple[MissingForceCurve, ...]:
@@ -73,10 +87,11 @@ def _missing(vessel: Vessel, evaluation: Evaluation) -> tuple[MissingForceCurve,
     return tuple(found)
 
 
-def _coefficients(recalibrated: Fit) -> dict[str, tuple[float, float]]:
-    """Return the factor of each recalibrated coefficient, and its standard deviation."""
-    sd = np.sqrt(np.diag(recalibrated.covariance))
+def _coefficients(fitted: Fit) -> dict[str, tuple[float, float]]:
+    """Return the factor of each coefficient of a fit, and its standard deviation."""
+    sd = np.sqrt(np.maximum(np.diag(fitted.covariance), 0.0))
     found = {}
-    for f, x, s in zip(recalibrated.free, recalibrated.theta, sd, strict=True):
-        found[f"{f.effect}.{f.name}"] = float(x), float(s)
+    for f, x, s in zip(fitted.free, fitted.theta, sd, strict=True):
+        if f.relative:
+            found[f"{f.effect}.{f.name}"] = float(x), float(s)
     return found

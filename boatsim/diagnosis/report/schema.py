@@ -15,6 +15,7 @@ class ParameterEntry(TypedDict):
     sd: float
     unit: str
     at_bound: NotRequired[bool]  # at a bound of its range: the true value may lie outside
+    statement: NotRequired[str]  # sentence on a ratio in per cent
 
 
 AloneEntry = TypedDict("AloneEntry", {"without": float, "with": float})
@@ -211,6 +212,8 @@ class UnknownEntry(TypedDict):
     structure: NotRequired[StructureEntry]  # if that force varies with any quantity
     # effects that explain the force, but that are probably not its cause, if none of it remains
     stand_ins: NotRequired[list[str]]
+    # whether only held-out recordings require the force
+    held_out_only: NotRequired[bool]
     # if fits diverge: no candidate effect was ranked
     diverges: NotRequired[list[DivergenceEntry]]
 

@@ -15,6 +15,7 @@ from boatsim.diagnosis.report.blocks import (
     Figures,
     Heading,
     Items,
+    Note,
     Section,
     Table,
     Text,
@@ -25,6 +26,7 @@ from boatsim.diagnosis.report.families import FAMILIES
 from boatsim.diagnosis.report.findings import Findings, MissingForceCurve
 from boatsim.diagnosis.report.formatting import (
     capitalize,
+    evidence_strength,
     format_cause_probability,
     format_evidence,
     format_in_one_unit,
@@ -39,9 +41,11 @@ from boatsim.diagnosis.report.formatting import (
     format_with_sd,
     join_words,
     name_and_unit,
+    short_odds,
     words_of_name,
 )
 from boatsim.diagnosis.report.glossary import glossary
+from boatsim.diagnosis.report.model_names import MODEL_WORDS, words_of_models
 from boatsim.diagnosis.report.schema import (
     EffectEntry,
     IntervalEntry,
@@ -55,11 +59,14 @@ from boatsim.diagnosis.report.sentences import (
     assumption_sentences,
     effect_description,
     effects_of_kind,
+    held_out_only,
+    in_per_cent,
     none_tested_reason,
     only_measurement_errors,
     refined_rows,
 )
 
+STATISTICS = "Statistics behind this"  # title of a note
 MOST_INTERVALS = 24  # rows of the table of flagged intervals; diagnosis.json has all of them
 MOST_MISSING_FIGURES = 6  # recordings whose missing force is drawn: those flagged longest
 MOST_HELD_OUT_FIGURES = 3  # held-out recordings that are drawn
@@ -88,7 +95,7 @@ def sections_of(f: Findings) -> list[Section]:
         Section("next", "What to record next", list(_next_experiment(f))),
         Section("cannot", "What these recordings cannot show", list(_limitations(f))),
         Section("limits", "Upper limits of effects that were not found", list(_limits(f))),
-        Section("coefficients", "Recalibrated coefficients", list(_coefficients(f))),
+        Section("coefficients", "Coefficients of the model", list(_coefficients(f))),
         Section("files", "Files", list(_files(f))),
         Section("reading", "How to read this report", [Items(glossary(f))]),
     ]
@@ -98,7 +105,7 @@ def _log_problems(f: Findings) -> Iterator[Block]:
     """Yield the problems of the recordings with their corrections, and the measurement errors."""
     for e in f.answer.get("log", ()):
         cause = e.get("words", "corrected or allowed for by the diagnosis")
-        facts = f"{e['run']} · {cause} · probability {format_probability(e['sure'])}"
+        facts = f"{f.name_of(e['run'])} · {cause} · probability {format_probability(e['sure'])}"
         yield Heading(capitalize(words_of_name(e["name"])), facts)
         yield Text(f"{capitalize(e['evidence'])}.")
         if corrections := _corrections(e):
@@ -155,7 +162,7 @@ def _refined(f: Findings) -> Iterator[Block]:
         return
     yield Text(
         "The vessel file calls these numbers estimates. The recordings give better values, which "
-        "are in the patched vessel. They are no faults of the boat or of the log."
+        "are in the corrected vessel. They are no faults of the boat or of the log."
     )
     header = ["number", "before", "after ± deviation", "off by"]
     yield Table("Numbers of the vessel file", header, rows)
@@ -165,9 +172,10 @@ def _also_possible(f: Findings) -> Iterator[Block]:
     """Yield the effects that may act but that these recordings do not confirm."""
     for entry in f.answer.get("also_possible", []):
         likely = format_cause_probability(entry["probability"])
-        facts = f"{entry['name']} · {likely} · {format_evidence(entry['gain_nats'])}"
+        facts = f"{entry['name']} · {likely}"
         yield Heading(capitalize(effect_description(entry["words"])), facts)
         yield Text(f"{capitalize(entry['why'])}.")
+        yield Note(STATISTICS, f"{capitalize(_statistics(entry['gain_nats']))}.")
         if parameters := entry.get("parameters"):
             header = ["parameter", "value ± deviation", "meaning"]
             rows = _values(f, entry["name"], parameters)
@@ -178,16 +186,19 @@ def _also_possible(f: Findings) -> Iterator[Block]:
 def _effect(f: Findings, e: EffectEntry, explain_deviation: bool) -> Iterator[Block]:
     kind = "measurement error" if e["kind"] == "measurement" else "physics"
     likely = format_cause_probability(e["probability"])
-    facts = f"{e['name']} · {kind} · {likely} · {format_evidence(e['gain_nats'])}"
-    yield Heading(capitalize(effect_description(e["words"])), facts)
+    yield Heading(capitalize(effect_description(e["words"])), f"{e['name']} · {kind} · {likely}")
+    if ratios := in_per_cent([e]):
+        yield Text(" ".join(f"{capitalize(ratio)}." for ratio in ratios))
     if e["parameters"]:
         header = ["parameter", "value ± deviation", "meaning"]
         rows = _values(f, e["name"], e["parameters"])
         yield without_empty_columns(Table("Fitted values", header, rows, prose=(2,)))
-    if explain_deviation:
-        yield Text(_about_deviations(f, e))
-    if sentences := effect_sentences(e):
+    if sentences := _held_out_sentences(f, e):
         yield Text(" ".join(sentences))
+    statistics = f"{capitalize(_statistics(e['gain_nats']))}."
+    if explain_deviation:
+        statistics += f" {_about_deviations(f, e)}"
+    yield Note(STATISTICS, statistics)
     if e["tied_with"]:
         rivals = []
         for name in e["tied_with"]:
@@ -195,6 +206,19 @@ def _effect(f: Findings, e: EffectEntry, explain_deviation: bool) -> Iterator[Bl
             if name in f.words:
                 rivals[-1] += f" ({_meaning(f.words[name])})"
         yield Text(f"These recordings cannot distinguish it from {join_words(rivals, 'or')}.")
+
+
+def _held_out_sentences(f: Findings, effect: EffectEntry) -> list[str]:
+    """Return what an effect does on held-out data, unless the top of the page states the same."""
+    added = [*f.answer["effects"], *f.answer.get("refined", ()), *f.answer["described"]]
+    if len(added) == 1 and effect.get("confirmed", True):
+        return []
+    return effect_sentences(effect)
+
+
+def _statistics(gain_nats: float) -> str:
+    """Return evidence in words, as odds and in nats."""
+    return f"{format_evidence(gain_nats)}: a log Bayes factor of {format_nats(gain_nats)} nats"
 
 
 def _values(f: Findings, effect: str, parameters: Mapping[str, ParameterEntry]) -> list[list[str]]:
@@ -241,11 +265,18 @@ def _unexplained(f: Findings) -> Iterator[Block]:
         yield Text(
             "Even with all identified effects, the recordings require an additional random force "
             f"of more than {factor:g} times the assumed disturbance level: "
-            f"{format_evidence(unknown['gain_nats'])}. Such a force is reported from "
-            f"{format_nats(unknown['told_from_nats'])} nats on. This threshold increases with the "
-            "evidence that the identified effects explain, because their laws are never exact. The "
-            "section on the missing force shows where and when the force acts."
+            f"{format_evidence(unknown['gain_nats'])}. The section on the missing force shows "
+            "where and when the force acts."
         )
+    elif sentence := held_out_only(f.answer):
+        yield Text(f"{capitalize(sentence)}.")
+    yield Note(
+        STATISTICS,
+        f"The additional force has an evidence of {format_nats(unknown['gain_nats'])} nats. Such a "
+        f"force is reported from {format_nats(unknown['told_from_nats'])} nats on. This threshold "
+        "increases with the evidence that the identified effects explain, because their laws are "
+        "never exact.",
+    )
     if "structure" in unknown:
         yield Text(_structure(unknown["structure"]))
 
@@ -256,9 +287,9 @@ def _structure(s: StructureEntry) -> str:
     if s["p_value"] >= 1e-6:
         often = format_number(1.0 / s["p_value"], 1)
     return (
-        f"The unexplained force in {s['axis']} varies with {s['goes_with']}. A force in proportion "
-        f"to it gains {format_nats(s['gain_nats'])} nats. One of the {s['tried']} quantities "
-        f"tested would gain as much by chance once in {often} recordings."
+        f"The unexplained force in {s['axis']} varies with {s['goes_with']}. One of the "
+        f"{s['tried']} quantities tested would appear to do so by chance once in {often} "
+        "recordings."
     )
 
 
@@ -269,18 +300,18 @@ def _formulas(f: Findings) -> Iterator[Block]:
         for term in law["terms"]:
             gain += term["gain_nats"]
             value = _coefficient(law["axis"], term)
-            rows.append([term["of"], value, format_nats(term["gain_nats"])])
+            rows.append([term["of"], value, short_odds(term["gain_nats"])])
         yield Heading(capitalize(law["statement"]), f"formula · {format_evidence(gain)}")
-        header = ["varies with", "value ± deviation", "evidence [nats]"]
+        header = ["varies with", "value ± deviation", "odds of chance"]
         yield Table("Terms", header, rows)
         if law["carries_over"]:
             yield Text(
                 "It reduces the errors of free runs over held-out recordings. Therefore it is part "
-                "of the patched vessel."
+                "of the corrected vessel."
             )
         else:
             yield Text(
-                "Held-out recordings do not confirm it. Therefore it is no part of the patched "
+                "Held-out recordings do not confirm it. Therefore it is no part of the corrected "
                 "vessel."
             )
     if not f.answer["described"]:
@@ -343,9 +374,13 @@ def _missing_force(f: Findings) -> Iterator[Block]:
         yield Text(
             "An interval is flagged wherever the missing force exceeds the assumed disturbance "
             "level. Together the intervals are not enough for a finding: no candidate effect "
-            "explains them clearly better than the vessel model alone, and a cause outside the "
-            f"candidates gains {format_nats(unknown['gain_nats'])} of the "
-            f"{format_nats(unknown['told_from_nats'])} nats required."
+            "explains them clearly better than the vessel model alone, and the evidence for a "
+            "cause outside the candidates is not sufficient."
+        )
+        yield Note(
+            STATISTICS,
+            f"A cause outside the candidates gains {format_nats(unknown['gain_nats'])} of the "
+            f"{format_nats(unknown['told_from_nats'])} nats required.",
         )
     yield _interval_table(where["intervals"])
 
@@ -361,7 +396,7 @@ def _strengths(f: Findings) -> Table:
         if share:
             row.append(f"{100 * share.get(axis, 0.0):.0f} %")
         rows.append(row)
-    return Table("Force and moment that the recalibrated vessel does not explain", header, rows)
+    return Table("Force and moment that the retuned vessel does not explain", header, rows)
 
 
 def _interval_table(intervals: Sequence[IntervalEntry]) -> Table:
@@ -402,11 +437,11 @@ def _missing_figures(f: Findings) -> Iterator[Block]:
     drawn: list[MissingForceCurve] = []
     for i in sorted(order[:MOST_MISSING_FIGURES]):
         drawn.append(f.missing[i])
-        if not f.has_added_effects:  # the patched vessel is the recalibrated one
+        if not f.has_added_effects:  # the corrected vessel is the retuned one
             drawn[-1] = replace(f.missing[i], left={})
     looks = {
         "missing": "missing force",
-        "left": "missing force of the patched vessel",
+        "left": "missing force of the corrected vessel",
         "band": "band of 2 standard deviations",
         "flag": "flagged: the band does not contain zero",
     }
@@ -424,9 +459,9 @@ def _validation(f: Findings) -> Iterator[Block]:
     """Yield the errors of free runs over held-out recordings, and their figures."""
     fit = f.answer["fit"]
     models: tuple[str, ...] = MODELS[:2]
-    header = list(models)
+    header = words_of_models(models)
     if f.has_added_effects:
-        models, header = MODELS, [*MODELS, "error reduced by factor"]
+        models, header = MODELS, [*words_of_models(MODELS), "error reduced by factor"]
     rows = []
     for key, (words, unit) in FAMILIES.items():
         if rms := fit.get(key):
@@ -444,13 +479,13 @@ def _validation(f: Findings) -> Iterator[Block]:
         for runs in by_run:
             for row in _errors_of_run(runs):
                 rows.append(row[: len(header) + 1])
-        yield Table("The same for each recording", ["recording", *header], rows)
+        yield Table("Each recording by itself", ["recording", *header], rows, folded=True)
     drawn = []
     for runs in by_run[:MOST_HELD_OUT_FIGURES]:
         drawn += figures.free_run_figures(_select_models(runs, models))
     if by_run:
         names = _select_models(by_run[0], models)[0].channels
-        yield Figures(svg_plots.legend(dict(zip(names, names, strict=True))), drawn)
+        yield Figures(svg_plots.legend({name: MODEL_WORDS[name] for name in names}), drawn)
     if len(by_run) > MOST_HELD_OUT_FIGURES:
         yield Text(
             f"The figures show the first {MOST_HELD_OUT_FIGURES} of {len(by_run)} held-out "
@@ -504,50 +539,56 @@ def _errors_of_run(runs: Sequence[FreeRun]) -> list[list[str]]:
 
 
 def _ranking(f: Findings) -> Iterator[Block]:
-    """Yield the evidence for each candidate effect alone."""
+    """Yield the evidence for each candidate effect alone: the best ones as odds, all on request."""
     candidates = f.answer["candidates"]
     if not candidates:
         return
     status, visible = _status(f), MOST_VISIBLE_CANDIDATES
     rows, gains = [], []
     for i, c in enumerate(candidates, 1):
-        name = c["name"]
-        gains.append(c["gain_nats"])
+        name, gain = c["name"], c["gain_nats"]
+        gains.append(gain)
         if name in status:
             visible = max(visible, i)
-        rows.append(
-            [
-                words_of_name(name),
-                format_nats(c["gain_nats"]),
-                format_probability(c["probability"]),
-                status.get(name, ""),
-                f.words.get(name, ""),
-            ]
-        )
+        verdict, meaning = status.get(name, ""), f.words.get(name, "")
+        rows.append([words_of_name(name), short_odds(gain), verdict, meaning])
     bars = tuple((np.maximum(gains, 0.0) / max(*gains, 1e-9)).tolist())
     caption = (
-        "Each candidate effect tested alone. The evidence compares the recalibrated vessel "
-        "with and without the candidate. For an identified effect it differs from the value above, "
-        "which is computed in the presence of all other identified effects. The probability "
-        "assumes that exactly one of these candidates is missing, or none. The probabilities add "
-        "up to 100 %, so that only the strongest of several missing effects has a high probability."
+        "Each candidate effect tested alone, the best ones first. The odds are those that the "
+        "better fit is chance. For an identified effect they differ from the value above, which is "
+        "computed in the presence of all other identified effects."
     )
+    header = ["candidate", "odds of chance", "verdict", "meaning"]
+    yield without_empty_columns(
+        Table(caption, header, rows[:visible], (2, 3), bars[:visible], aside=True)
+    )
+    yield from _evidence_of_all(f)
+
+
+def _evidence_of_all(f: Findings) -> Iterator[Block]:
+    """Yield the evidence for all candidate effects in nats, on request."""
+    candidates, rows = f.answer["candidates"], []
+    for c in candidates:
+        probability = format_probability(c["probability"])
+        meaning = f.words.get(c["name"], "")
+        rows.append([words_of_name(c["name"]), format_nats(c["gain_nats"]), probability, meaning])
+    title = f"Statistics of all {len(rows)} candidates"
+    if len(rows) == 1:
+        title = "Statistics of the candidate"
     header = [
         "candidate",
         "evidence [nats]",
         "probability, if only one effect is missing",
-        "verdict",
         "meaning",
     ]
-    yield without_empty_columns(
-        Table(caption, header, rows[:visible], (3, 4), bars[:visible], aside=True)
+    yield without_empty_columns(Table(title, header, rows, (3,), folded=True, aside=True))
+    yield Note(
+        "How to read these statistics",
+        "The evidence compares the retuned vessel with and without the candidate. The probability "
+        "assumes that exactly one of these candidates is missing, or none. The probabilities add "
+        "up to 100 %, so that only the strongest of several missing effects has a high "
+        "probability. It is not the probability that an effect is a true cause.",
     )
-    if rest := rows[visible:]:
-        title = f"The other {len(rest)} candidates"
-        if len(rest) == 1:
-            title = "The other candidate"
-        table = Table(title, header, rest, (3, 4), bars[visible:], folded=True, aside=True)
-        yield without_empty_columns(table)
 
 
 def _status(f: Findings) -> dict[str, str]:
@@ -608,18 +649,35 @@ def _not_found(f: Findings) -> dict[str, dict[str, float]]:
 
 
 def _coefficients(f: Findings) -> Iterator[Block]:
-    rows = []
-    for name, (factor, sd) in f.coefficients.items():
-        change = f"{100 * (factor - 1):+.1f} %".replace("-", "−")
-        rows.append([words_of_name(name.replace(".", ", ")), format_with_sd(factor, sd), change])
-    if rows:
-        caption = "Coefficients of the recalibrated vessel: factor on the value in the vessel file"
-        if f.answer["effects"] or f.answer["described"]:
-            caption += (
-                ". That vessel has none of the effects and formulas above; patched.toml has other "
-                "factors, fitted together with them"
-            )
-        yield Table(caption, ["coefficient", "factor ± deviation", "change"], rows)
+    """Yield the factors on the coefficients of the vessel file, on request."""
+    rows, corrected = [], f.corrected_coefficients if f.has_added_effects else {}
+    refined = {entry["name"] for entry in f.answer.get("refined", ())}
+    for name, value in f.coefficients.items():
+        if name in refined:  # in the table of refined numbers
+            continue
+        row = [words_of_name(name.replace(".", ", ")), _factor(*value)]
+        if corrected:
+            row.append(_factor(*corrected[name]) if name in corrected else "")
+        rows.append(row)
+    if not rows:
+        return
+    caption = "Factors on the coefficients of the vessel file, and the change"
+    header = ["coefficient", "retuned"]
+    if corrected:
+        header.append("corrected")
+    yield Table(caption, header, rows, folded=True)
+    if corrected:
+        yield Text(
+            "The retuned vessel has none of the effects and formulas above, so that its "
+            "coefficients make up for them as far as they can. Those of the corrected vessel were "
+            "fitted together with the effects; patched.toml contains them."
+        )
+
+
+def _factor(factor: float, sd: float) -> str:
+    """Return a factor with its deviation, and the change in per cent."""
+    change = f"{100 * (factor - 1):+.1f} %".replace("-", "−")
+    return f"{format_with_sd(factor, sd)} ({change})"
 
 
 def _next_experiment(f: Findings) -> Iterator[Block]:
@@ -627,10 +685,11 @@ def _next_experiment(f: Findings) -> Iterator[Block]:
     wanted = f.answer["next_experiment"]
     if not wanted:
         if f.answer["effects"]:
+            odds = math.exp(f.setting("plan.min_gain"))
             yield Text(
-                "None of the manoeuvres considered is expected to add more than "
-                f"{f.setting('plan.min_gain'):g} nat of evidence on the identified effects and "
-                "their rivals."
+                "Nothing more is needed for this question: none of the manoeuvres considered is "
+                "expected to change the odds between an identified effect and its rivals by more "
+                f"than a factor of {odds:.1f}."
             )
         return
     scenario = wanted["scenario"]
@@ -647,8 +706,8 @@ def _next_experiment(f: Findings) -> Iterator[Block]:
             ("Distinguishes", f"{capitalize(join_words(rivals, 'or'))}."),
             (
                 "Expected evidence",
-                f"{format_nats(gain)} nats for the true cause against its closest rival "
-                f"({format_odds(gain)}).",
+                f"{capitalize(evidence_strength(gain))}, for the true cause against its closest "
+                f"rival ({format_odds(gain)}).",
             ),
             (
                 "How to perform it",
@@ -658,8 +717,22 @@ def _next_experiment(f: Findings) -> Iterator[Block]:
             ),
         )
     )
+    if sentence := _not_in_doubt(f, wanted["separates"]):
+        yield Text(sentence)
+    yield Note(STATISTICS, f"The expected log Bayes factor is {format_nats(gain)} nats.")
     if f.steps:
         yield _commands(f)
+
+
+def _not_in_doubt(f: Findings, separated: Sequence[str]) -> str:
+    """Return why the next experiment tests none of the identified effects; "" if it does."""
+    named = [effect["name"] for effect in f.answer["effects"]]
+    if not named or set(named) & set(separated):
+        return ""
+    return (
+        f"It is no test of {join_words(map(words_of_name, named))}, about which these recordings "
+        "leave less doubt. It decides what remains open."
+    )
 
 
 def _commands(f: Findings) -> Table:
@@ -694,7 +767,7 @@ def _limitations(f: Findings) -> Iterator[Block]:
             causes = join_words(map(words_of_name, (e["name"], *e["tied_with"])), "or")
             lines.append(
                 f"Whether the cause is {causes}: they explain these recordings about equally well "
-                f"(within {close:g} nats, a factor of {math.exp(close):.0f})."
+                f"(one at most {math.exp(close):.0f} times as probable as another)."
             )
     if not f.answer["fit"].get("held_out"):
         lines.append("Whether the finding holds on other data: no recording was held out.")
@@ -716,12 +789,13 @@ def _files(f: Findings) -> Iterator[Block]:
     lines = {"diagnosis.json": "All results as data."}
     if patch := f.answer["patch"]:
         lines[patch] = (
-            "The vessel with recalibrated coefficients and the identified effects. boatsim run, "
-            f"replay and diagnose read it with --vessel {patch}."
+            "The corrected vessel, with retuned coefficients and the identified effects. boatsim "
+            f"run, replay and diagnose read it with --vessel {patch}."
         )
     if wanted := f.answer["next_experiment"]:
         lines[wanted["scenario"]] = "The manoeuvre to record next, as a scenario for boatsim run."
     lines["diagnosis.rrd"] = (
-        "Recording, nominal, recalibrated and patched vessel in one scene of the rerun viewer."
+        "The recording and the vessel before (nominal), retuned (recalibrated) and corrected "
+        "(patched), in one scene of the rerun viewer."
     )
     yield Items(tuple(lines.items()))

@@ -11,20 +11,23 @@ from boatsim.diagnosis.report.findings import Findings, setting_of
 from boatsim.diagnosis.report.formatting import (
     capitalize,
     format_cause_probability,
-    format_evidence,
     format_in_one_unit,
+    format_nats,
     format_number,
+    format_odds,
     format_parameter,
     format_quantity,
     join_words,
     words_of_name,
 )
+from boatsim.diagnosis.report.model_names import MODEL_WORDS
 from boatsim.diagnosis.report.schema import (
     AmbientEntry,
     Answer,
     EffectEntry,
     LeftOutEntry,
     MeanEntry,
+    ParameterEntry,
 )
 
 WAYS = {  # axis -> direction of a positive mean force, and of a negative one
@@ -147,6 +150,8 @@ def _effects(answer: Answer, words: Mapping[str, str]) -> list[str]:
     statements = []
     if answer["unknown"].get("stand_ins") and not answer["described"]:
         statements.append(_stand_ins(answer))
+    elif sentence := held_out_only(answer):
+        statements.append(sentence)
     elif answer["unknown"]["flag"] and not answer["described"]:
         statements.append(
             f"a force is missing that no candidate effect explains{_unexplained_rms(answer)}"
@@ -167,6 +172,7 @@ def _effects(answer: Answer, words: Mapping[str, str]) -> list[str]:
     addition = "in addition, " if statements else ""
     if physics or probable:
         statements.append(f"{addition}the model {_left_out(physics, probable)}")
+        statements += in_per_cent(effects_of_kind(answer, "physics"))
     if measured:
         errors = "a measurement error"
         if len(measured) > 1:
@@ -178,7 +184,47 @@ def _effects(answer: Answer, words: Mapping[str, str]) -> list[str]:
                 f"no missing physics was found, but the recordings contain {errors}: "
                 f"{_clauses(measured)}"
             )
+        statements += in_per_cent(effects_of_kind(answer, "measurement"))
     return statements
+
+
+def in_per_cent(effects: Sequence[EffectEntry]) -> list[str]:
+    """Return the sentences on the main ratios of effects, in per cent.
+
+    Args:
+        effects: Identified effects.
+    """
+    found = []
+    for effect in effects:
+        for p in _main_parameters(effect).values():
+            if sentence := p.get("statement"):
+                if p.get("at_bound"):
+                    sentence += ", the bound of its range"
+                found.append(sentence)
+    return found
+
+
+def _main_parameters(effect: EffectEntry) -> dict[str, ParameterEntry]:
+    """Return the first fitted parameters of an effect, without those that may be zero."""
+    found = {}
+    for key, p in effect["parameters"].items():
+        if abs(p["value"]) > p["sd"] or "factor" in key:
+            found[key] = p
+    return dict(itertools.islice(found.items(), MOST_NUMBERS))
+
+
+def held_out_only(answer: Answer) -> str:
+    """Return the statement that only held-out recordings require a force; "" if that is not so.
+
+    Args:
+        answer: Content of diagnosis.json.
+    """
+    if answer["described"] or not answer["unknown"].get("held_out_only"):
+        return ""
+    return (
+        "the cause is unknown only because of the held-out recordings: the model explains the "
+        "fitted recordings, but the held-out ones require a force that no candidate effect explains"
+    )
 
 
 def _left_out(sure: Sequence[str], probable: Sequence[str]) -> str:
@@ -315,6 +361,8 @@ def _clauses(clauses: Sequence[str]) -> str:
 def fitted_values(effect: EffectEntry, words: Mapping[str, str]) -> str:
     """Return the main fitted parameter values of an effect as text, without those that may be zero.
 
+    Ratios about which the effect has a sentence of its own are omitted.
+
     Args:
         effect: An identified effect.
         words: Meaning of parameters by "effect.parameter".
@@ -323,8 +371,8 @@ def fitted_values(effect: EffectEntry, words: Mapping[str, str]) -> str:
         Text such as: astern factor 0.694 ± 0.012.
     """
     numbers = []
-    for key, p in effect["parameters"].items():
-        if abs(p["value"]) <= p["sd"] and "factor" not in key:
+    for key, p in _main_parameters(effect).items():
+        if p.get("statement"):
             continue
         name, text = format_parameter(key, p["value"], p["unit"], p["sd"])
         if effect["kind"] == "measurement":  # "error heading north" is clearer than "cos"
@@ -332,11 +380,11 @@ def fitted_values(effect: EffectEntry, words: Mapping[str, str]) -> str:
         if p.get("at_bound"):
             text += ", the bound of its range"
         numbers.append(f"{name} {text}")
-    return ", ".join(numbers[:MOST_NUMBERS])
+    return ", ".join(numbers)
 
 
 def improvement_on_held_out(f: Findings) -> str:
-    """Return a sentence on how much the patched vessel reduces errors on held-out recordings.
+    """Return a sentence on how much the corrected vessel reduces errors on held-out recordings.
 
     The errors are those of simulations with the recorded commands alone.
     """
@@ -355,13 +403,13 @@ def improvement_on_held_out(f: Findings) -> str:
         return "The result could not be validated: no recording was held out."
     runs = f"In free runs of {fit['horizon_s']:g} s over the held-out recordings"
     if not f.has_added_effects:
-        return f"{runs}, the recalibrated vessel has an rms error of {join_words(errors)}."
+        return f"{runs}, the retuned vessel has an rms error of {join_words(errors)}."
     caution = ""
     if max(gains) <= f.setting("answer.least_improvement"):
         caution = "Treat this result as a hint: it hardly reduces the errors on held-out data. "
     return (
-        f"{caution}{runs}, the patched vessel has an rms error of {join_words(compared)}. The "
-        "comparison is with the recalibrated vessel, whose own coefficients were refitted."
+        f"{caution}{runs}, the corrected vessel has an rms error of {join_words(compared)}. The "
+        "comparison is with the retuned vessel, whose own coefficients were refitted."
     )
 
 
@@ -374,11 +422,11 @@ def _improvement_factor(gain: float) -> str:
 
 
 def mean_force_paragraph(answer: Answer, patched: bool) -> list[str]:
-    """Return a paragraph on the constant force that the patched vessel model does not explain.
+    """Return a paragraph on the constant force that the corrected vessel model does not explain.
 
     Args:
         answer: Content of diagnosis.json.
-        patched: Whether the patched vessel differs from the recalibrated one.
+        patched: Whether the corrected vessel differs from the retuned one.
 
     Returns:
         One paragraph with size, direction and share of full thrust; an empty list without a force.
@@ -386,7 +434,7 @@ def mean_force_paragraph(answer: Answer, patched: bool) -> list[str]:
     found = answer.get("mean_left") or {}
     if not found:
         return []
-    vessel = "patched" if patched else "recalibrated"
+    vessel = "corrected" if patched else "retuned"
     forces = join_words(itertools.starmap(_mean_with_sd, found.items()))
     return [
         f"A mean force remains in the {vessel} vessel: {forces}, averaged over all recordings. No "
@@ -459,12 +507,13 @@ def console_lines(f: Findings) -> list[str]:
     """
     answer = f.answer
     lines = [answer["sentence"]]
-    lines += _effect_lines("Errors of the recordings", effects_of_kind(answer, "measurement"))
-    lines += _effect_lines("Missing physics", effects_of_kind(answer, "physics"))
+    measured, physics = effects_of_kind(answer, "measurement"), effects_of_kind(answer, "physics")
+    lines += _effect_lines("Errors of the recordings", measured, with_nats=True)
+    lines += _effect_lines("Missing physics", physics, with_nats=not measured)
     for law in answer["described"]:
         for term in law["terms"]:
             varies = f"{effect_of_axis(law['axis'])} that varies with {term['of']}"
-            lines.append(f"  formula: {varies}: {format_evidence(term['gain_nats'])}")
+            lines.append(f"  formula: {varies}: {format_odds(term['gain_nats'])}")
             lines.append(f"    {term['value']:.4g} ± {term['sd']:.2g} {term['unit']}".rstrip())
     lines += [*_refined_lines(answer), *_possible_lines(answer)]
     for line in assumption_sentences(answer):
@@ -473,7 +522,7 @@ def console_lines(f: Findings) -> list[str]:
     if wanted := answer["next_experiment"]:
         rivals, expected = join_words(wanted["separates"], "or"), wanted["expected_gain_nats"]
         lines.append(f"next experiment: {wanted['manoeuvre']}")
-        lines.append(f"  it distinguishes {rivals}; expected {format_evidence(expected)}")
+        lines.append(f"  it distinguishes {rivals}; expected: {format_odds(expected)}")
     return lines
 
 
@@ -487,14 +536,20 @@ def effects_of_kind(answer: Answer, kind: str) -> list[EffectEntry]:
     return [effect for effect in answer["effects"] if effect["kind"] == kind]
 
 
-def _effect_lines(title: str, effects: Sequence[EffectEntry]) -> list[str]:
-    """Return evidence and values of effects under a title; no lines without an effect."""
+def _effect_lines(title: str, effects: Sequence[EffectEntry], with_nats: bool) -> list[str]:
+    """Return evidence and values of effects under a title; no lines without an effect.
+
+    The evidence of the first effect is also in nats if that is wanted.
+    """
     if not effects:
         return []
     lines = [f"{title}:"]
     for effect in effects:
         likely = format_cause_probability(effect["probability"])
-        lines.append(f"  {effect['name']}: {likely}; {format_evidence(effect['gain_nats'])}")
+        nats = ""
+        if with_nats and effect is effects[0]:
+            nats = f" ({format_nats(effect['gain_nats'])} nats; report.html explains the unit)"
+        lines.append(f"  {effect['name']}: {likely}; {format_odds(effect['gain_nats'])}{nats}")
         for key, p in effect["parameters"].items():
             lines.append(f"    {key} = {p['value']:.4g} ± {p['sd']:.2g}")
         for sentence in effect_sentences(effect):
@@ -538,7 +593,7 @@ def _validation(f: Findings) -> list[str]:
             scale = 1.0
             if unit == "rad":
                 unit, scale = "deg", 57.29578
-            cells = ", ".join(f"{model} {rms[model] * scale:.4g}" for model in MODELS)
+            cells = ", ".join(f"{MODEL_WORDS[m]} {rms[m] * scale:.4g}" for m in MODELS)
             lines.append(f"  {words} [{unit}]: {cells}")
     for sentence in recalibration_sentences(f):
         lines.append(f"  {sentence}")

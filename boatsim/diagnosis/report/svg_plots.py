@@ -19,8 +19,11 @@ from boatsim.physics.base import Array
 GRID = 2000  # units of the drawing along each edge; one is finer than a pixel
 POINTS = 500  # of a line; more are not visible
 DOTS = 250  # most points of a scatter plot
+MARGIN = 0.06  # of the range of the values, on each side of an axis
+STRIP = 0.04  # height of the strip that marks an interval, relative to that of the panel
 MOST_PIECES = 100  # pieces of a curve that are drawn separately
 FEWEST_POINTS = 6  # of a piece
+SHAPES = {"band": "M0 3H28V13H0Z", "flag": "M0 6H28V10H0Z"}  # in the legend; others: a line
 TIMES, SQUARE = 3.2, 1.25  # ratio of width to height of a plot over time and of a map
 
 
@@ -67,7 +70,7 @@ class Panel:
         y: Limits of the ordinate.
         x_label: Label of the abscissa.
         band: Abscissae, lower and upper limits of a band.
-        flags: Intervals of the abscissa to shade.
+        flags: Intervals of the abscissa to mark by a strip at the upper edge, above all curves.
         shape: Ratio of width to height.
         about: Description for readers who cannot see the plot.
         dots: Points without a line.
@@ -97,7 +100,7 @@ def legend(looks: Mapping[str, str]) -> str:
     """
     items = []
     for look, words in looks.items():
-        shape = "M0 3H28V13H0Z" if look in ("band", "flag") else "M0 8H28"
+        shape = SHAPES.get(look, "M0 8H28")
         items.append(
             '<li><svg class="key" viewBox="0 0 28 16" aria-hidden="true">'
             f'<path class="{look}" d="{shape}"/></svg>{escape(words)}</li>'
@@ -160,7 +163,7 @@ def _drawing(p: Panel, across: Iterable[float], heights: Iterable[float]) -> str
     """Return the paths of a panel, with a grid at these shares of width and height."""
     paths = []
     for begin, end in p.flags:
-        paths.append(f'<path class="flag" d="{_shaded_interval(p, begin, end)}"/>')
+        paths.append(f'<path class="flag" d="{_marked_interval(p, begin, end)}"/>')
     grid = ""
     for share in heights:
         grid += f"M0 {GRID * (1 - share):.0f}H{GRID}"
@@ -260,10 +263,10 @@ def _area(p: Panel, x: Array, low: Array, high: Array) -> str:
     return f"{_polyline(around)}Z"
 
 
-def _shaded_interval(p: Panel, begin: float, end: float) -> str:
-    """Return a box over an interval of the abscissa."""
+def _marked_interval(p: Panel, begin: float, end: float) -> str:
+    """Return a strip over an interval of the abscissa, within the margin above the curves."""
     a, b = GRID * (np.clip([begin, end], *p.x) - p.x[0]) / (p.x[1] - p.x[0])
-    return f"M{a:.0f} 0H{b:.0f}V{GRID}H{a:.0f}Z"
+    return f"M{a:.0f} 0H{b:.0f}V{STRIP * GRID:.0f}H{a:.0f}Z"
 
 
 def rows_of_extremes(y: Array, most: int = POINTS) -> NDArray[np.int64]:
@@ -325,7 +328,7 @@ def axis_limits(values: Sequence[Array], zero: bool = True) -> tuple[float, floa
         low, high = float(found.min()), float(found.max())
     if zero:
         low, high = min(low, 0.0), max(high, 0.0)
-    margin = 0.06 * (high - low) or max(abs(high), 1e-9)
+    margin = MARGIN * (high - low) or max(abs(high), 1e-9)
     if low < 0.0 or not zero:
         low -= margin
     return low, high + margin

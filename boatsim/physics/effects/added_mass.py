@@ -235,13 +235,22 @@ class AddedMassError(CoefficientRelease):
     source: ClassVar[str] = AddedMass.source
 
     surge_factor: float = factor_parameter(
-        "added_mass.surge", words="factor on the surge added mass", axis="surge"
+        "added_mass.surge",
+        words="factor on the surge added mass",
+        axis="surge",
+        in_per_cent="the added mass in surge is {share} of its value in the vessel file",
     )
     sway_factor: float = factor_parameter(
-        "added_mass.sway", words="factor on the sway added mass", axis="sway"
+        "added_mass.sway",
+        words="factor on the sway added mass",
+        axis="sway",
+        in_per_cent="the added mass in sway is {share} of its value in the vessel file",
     )
     yaw_factor: float = factor_parameter(
-        "added_mass.yaw", words="factor on the yaw added mass", axis="yaw"
+        "added_mass.yaw",
+        words="factor on the yaw added mass",
+        axis="yaw",
+        in_per_cent="the added mass in yaw is {share} of its value in the vessel file",
     )
 
 
@@ -266,6 +275,7 @@ class AddedMassCoriolis(CoefficientRelease):
         spread=0.8,
         low=-1.0,
         high=2.0,
+        in_per_cent="the model omits {share} of the Coriolis force of the added mass",
     )
 
 

@@ -61,6 +61,7 @@ class AsternTimeConstant(Force):
         fit=True,
         spread=0.4,
         inactive_value=1.0,
+        in_per_cent="the time constant astern is {share} of the one ahead",
     )
     yaw: float = param(
         UNSET,

@@ -43,8 +43,22 @@ class CameraScale(Measurement):
     apply_measurement_error: ClassVar = apply_measurement_error
 
     x_fraction: float = param(
-        0.0, low=-0.4, high=0.4, unit="", words="relative scale error in x", fit=True, spread=0.1
+        0.0,
+        low=-0.4,
+        high=0.4,
+        unit="",
+        words="relative scale error in x",
+        fit=True,
+        spread=0.1,
+        in_per_cent="distances along x are recorded {larger} than they are",
     )
     y_fraction: float = param(
-        0.0, low=-0.4, high=0.4, unit="", words="relative scale error in y", fit=True, spread=0.1
+        0.0,
+        low=-0.4,
+        high=0.4,
+        unit="",
+        words="relative scale error in y",
+        fit=True,
+        spread=0.1,
+        in_per_cent="distances along y are recorded {larger} than they are",
     )

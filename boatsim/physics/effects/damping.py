@@ -220,6 +220,7 @@ class DampingError(CoefficientRelease):
         "surge_drag.quadratic",
         "quadratic_damping.surge",
         words="factor on the surge damping",
+        in_per_cent="the damping in surge is {share} of its value in the vessel file",
         axis="surge",
     )
     sway_factor: float = factor_parameter(
@@ -227,18 +228,21 @@ class DampingError(CoefficientRelease):
         "|cross_flow_drag.section_drag_coefficient",
         "quadratic_damping.sway",
         words="factor on the sway damping",
+        in_per_cent="the damping in sway is {share} of its value in the vessel file",
         axis="sway",
     )
     yaw_factor: float = factor_parameter(
         "linear_damping.yaw|linear_hull.yaw|mmg_hull.N_r|abkowitz_hull.N_r|mmg_low_speed_hull.N_r",
         "quadratic_damping.yaw",
         words="factor on the yaw damping",
+        in_per_cent="the damping in yaw is {share} of its value in the vessel file",
         axis="yaw",
     )
     roll_factor: float = factor_parameter(
         "linear_damping.roll|roll_damping.roll",
         "quadratic_damping.roll",
         words="factor on the roll damping",
+        in_per_cent="the damping in roll is {share} of its value in the vessel file",
         axis="roll",
     )
 

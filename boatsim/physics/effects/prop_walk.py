@@ -54,6 +54,7 @@ class PropWalk(Force):
         words="side force to starboard over thrust, astern",
         fit=True,
         spread=0.1,
+        in_per_cent="going astern, the side force to starboard is {share} of the thrust",
     )
     ahead_share: float = param(
         1.0 / 3.0, low=0.0, high=1.0, unit="", words="share of that side force when going ahead"

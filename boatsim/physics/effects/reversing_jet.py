@@ -111,5 +111,11 @@ class JetLeak(CoefficientRelease):
     starts: ClassVar = ({"fraction": 0.1},)
 
     fraction: float = shift_parameter(
-        "reversing_jet.leak", words="share of the jet", unit="", spread=0.3, low=-1.0, high=1.0
+        "reversing_jet.leak",
+        words="share of the jet",
+        unit="",
+        spread=0.3,
+        low=-1.0,
+        high=1.0,
+        in_per_cent="{share} of the jet gives thrust ahead at every bucket angle",
     )

@@ -96,7 +96,10 @@ class MetacentricHeightError(CoefficientRelease):
     starts: ClassVar = ({"factor": 0.5}, {"factor": 0.8}, {"factor": 1.25}, {"factor": 2.0})
 
     factor: float = factor_parameter(
-        "righting_arm.stiffness", words="metacentric height over its specified value", axis="roll"
+        "righting_arm.stiffness",
+        words="metacentric height over its specified value",
+        axis="roll",
+        in_per_cent="the metacentric height is {share} of its value in the vessel file",
     )
 
 

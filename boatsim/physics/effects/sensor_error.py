@@ -165,6 +165,7 @@ def gain_of(channel: InstrumentChannel, with_rate: bool = False) -> dict[str, An
     about: ParameterChanges = {
         "words": f"relative error of the {channel.words}",
         "spread": GAIN_SPREAD,
+        "in_per_cent": f"the recorded {channel.words} is {{larger}} than the true one",
     }
     settings = special_case(channel, "gain_fraction", about, "is too small", with_rate)
     above = f"the recorded {channel.words} is too large (not physics)"

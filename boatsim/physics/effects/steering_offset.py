@@ -99,6 +99,8 @@ SteeringAsymmetry = preset_effect(
         "gain": {
             "words": "relative increase of angles to starboard and decrease to port",
             "spread": 0.1,
+            "in_per_cent": "the same angle steers {more} to starboard, and as much {opposite} to "
+            "port",
         }
     },
     fixed={"port": 0.0, "starboard": 0.0, "middle": 0.0},

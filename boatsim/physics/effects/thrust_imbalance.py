@@ -52,4 +52,6 @@ class ThrustImbalance(ChannelEffect):
         words="f: port thrust times 1 + f, starboard thrust times 1 - f",
         fit=True,
         spread=0.15,
+        in_per_cent="the port side pushes {more} than commanded, the starboard side as much "
+        "{opposite}",
     )

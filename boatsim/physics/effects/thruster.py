@@ -94,4 +94,5 @@ class ThrustGainError(CoefficientRelease):
         spread=0.3,
         low=0.2,
         high=3.0,
+        in_per_cent="all thrust is {share} of the specified thrust",
     )

@@ -70,4 +70,5 @@ class WeakReverse(ChannelEffect):
         fit=True,
         spread=0.3,
         inactive_value=1.0,
+        in_per_cent="astern thrust is {share} of the commanded thrust",
     )

@@ -123,8 +123,8 @@ function replayed(stage) {
     });
     const words = film.boats.map((boat, i) => {
       if (!places[i]) return "";
-      if (!film.plan) return `${boat.look} ${formatted(places[i][1], y1 - y0, film.unit)}`;
-      return i && places[0] ? `${boat.look} ${distance(Math.hypot(places[i][0] - places[0][0], places[i][1] - places[0][1]))} off` : "";
+      if (!film.plan) return `${boat.name} ${formatted(places[i][1], y1 - y0, film.unit)}`;
+      return i && places[0] ? `${boat.name} ${distance(Math.hypot(places[i][0] - places[0][0], places[i][1] - places[0][1]))} off` : "";
     });
     output.textContent = [formatted(time, 100, "s"), ...words.filter(Boolean)].join(" \u00b7 ");
     slider.value = time;

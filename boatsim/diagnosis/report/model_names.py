@@ -1,0 +1,22 @@
+"""Words for the vessel models that a report compares: before, retuned and corrected.
+
+diagnosis.json and the code call them nominal, recalibrated and patched.
+"""
+
+from collections.abc import Iterable, Mapping
+
+MODEL_WORDS: Mapping[str, str] = {
+    "recorded": "recorded",
+    "nominal": "before",  # the vessel file as given
+    "recalibrated": "retuned",  # its own coefficients refitted
+    "patched": "corrected",  # with the identified effects as well
+}
+
+
+def words_of_models(models: Iterable[str]) -> list[str]:
+    """Return the words by which a reader knows these vessel models.
+
+    Args:
+        models: Keys of diagnosis.json, such as "recalibrated".
+    """
+    return [MODEL_WORDS[model] for model in models]
