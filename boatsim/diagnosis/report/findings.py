@@ -58,13 +58,13 @@ class Findings:
         remarks: Sentences on what the recordings cannot show.
         coefficients: Factor on the value in the vessel file, and its standard deviation, of each
             coefficient of the retuned vessel.
-        corrected_coefficients: The same of the corrected vessel.
         extra_tables: Further tables: title, header, rows.
         words: Meaning of each effect, by name, and of its parameters, by "effect.parameter".
         described: Terms of the formulas, with their curves.
         steps: Commands of the next experiment: the time [s] from which they hold, value by name.
         size: Length and beam of the vessel [m].
         names: Names of the recordings by the paths of their files.
+        corrected_coefficients: As `coefficients`, of the corrected vessel.
     """
 
     answer: Answer
@@ -76,13 +76,13 @@ class Findings:
     free_runs: tuple[FreeRun, ...] = ()
     remarks: tuple[str, ...] = ()
     coefficients: dict[str, tuple[float, float]] = field(default_factory=dict)
-    corrected_coefficients: dict[str, tuple[float, float]] = field(default_factory=dict)
     extra_tables: tuple[tuple[str, list[str], list[list[str]]], ...] = ()
     words: dict[str, str] = field(default_factory=dict)
     described: tuple[FittedTerm, ...] = ()
     steps: tuple[tuple[float, Mapping[str, float]], ...] = ()
     size: tuple[float, float] = (1.0, 0.3)
     names: Mapping[str, str] = field(default_factory=dict)
+    corrected_coefficients: dict[str, tuple[float, float]] = field(default_factory=dict)
 
     @property
     def has_added_effects(self) -> bool:

@@ -52,13 +52,13 @@ def findings_of(
         evaluation.free_runs,
         before_after.limitation_sentences(problem, ranking, evaluation),
         _coefficients(ranking.recalibrated),
-        _coefficients(ranking.best),
         (table,) if table else (),
         effect_meanings(problem.program.candidates, problem.program.vessel),
         ranking.description.terms if ranking.description else (),
         next_experiment.command_steps(plan),
         (vessel.length, vessel.beam),
         _names(loaded),
+        _coefficients(ranking.best),
     )
 
 

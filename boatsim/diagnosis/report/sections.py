@@ -60,6 +60,7 @@ from boatsim.diagnosis.report.sentences import (
     effect_description,
     effects_of_kind,
     held_out_only,
+    improvement_on_held_out,
     in_per_cent,
     none_tested_reason,
     only_measurement_errors,
@@ -209,9 +210,13 @@ def _effect(f: Findings, e: EffectEntry, explain_deviation: bool) -> Iterator[Bl
 
 
 def _held_out_sentences(f: Findings, effect: EffectEntry) -> list[str]:
-    """Return what an effect does on held-out data, unless the top of the page states the same."""
-    added = [*f.answer["effects"], *f.answer.get("refined", ()), *f.answer["described"]]
-    if len(added) == 1 and effect.get("confirmed", True):
+    """Return what an effect does on held-out data, unless the top of the page has its numbers."""
+    top = improvement_on_held_out(f)
+    for family, pair in effect.get("alone", {}).items():
+        before, after = format_in_one_unit([pair["without"], pair["with"]], FAMILIES[family][1])
+        if f"{after} in {FAMILIES[family][0]} instead of {before}" not in top:
+            return effect_sentences(effect)
+    if effect.get("confirmed", True):
         return []
     return effect_sentences(effect)
 

@@ -59,12 +59,12 @@ def test_an_effect_that_held_out_recordings_do_not_confirm_is_marked() -> None:
     [
         (
             {"adopted": False, "undetermined": [], "refitted": {"position_rms_m": 0.2}},
-            "The recalibrated vessel has the coefficients of the vessel file, because refitted "
+            "The retuned vessel has the coefficients of the vessel file, because refitted "
             "ones are worse on held-out data: 20.0 cm in position instead of 14.2 cm.",
         ),
         (
             {"adopted": True, "undetermined": ["linear_damping.sway"], "refitted": {}},
-            "The recalibrated vessel keeps these numbers of the vessel file, because the recordings "
+            "The retuned vessel keeps these numbers of the vessel file, because the recordings "
             "do not determine them better: linear damping, sway.",
         ),
     ],

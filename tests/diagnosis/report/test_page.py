@@ -26,12 +26,14 @@ from boatsim.diagnosis.report.formatting import (
     format_upper_limit,
     format_with_sd,
     name_and_unit,
+    sentence_in_per_cent,
 )
 from boatsim.diagnosis.report.page import LONGEST_HEADLINE
 from boatsim.diagnosis.report.schema import Answer, IntervalEntry
 from boatsim.diagnosis.report.sections import sections_of
 from boatsim.diagnosis.report.sentences import NONE_TESTED, verdict_sentences
 from boatsim.diagnosis.report.svg_plots import round_ticks, rows_of_extremes
+from boatsim.physics.content import library_names, load_class
 from boatsim.physics.effects.described_force import DescribedForce
 from boatsim.physics.effects.described_thrust import DescribedThrust
 
@@ -419,7 +421,7 @@ def test_every_number_of_the_answer_and_every_remark_is_in_both_texts(written):
     told += [format_with_sd(*v) for v in findings.coefficients.values()]
     told += [cell for _, _, rows in findings.extra_tables for row in rows for cell in row]
     assert [t for t in told if t not in words] == []
-    assert [t for t in told if t.replace("<", "&lt;") not in text] == []
+    assert [t for t in told if t not in text] == []
 
 
 def test_the_page_says_its_sentence_first_and_fetches_nothing(written):
@@ -494,7 +496,8 @@ def test_names_and_words_from_files_do_not_become_markup(tmp_path):
         tmp_path,
     )
     html, text = ((tmp_path / n).read_text("utf-8") for n in ("report.html", "report.md"))
-    assert Outline(html).open == [] and "<script>alert" not in html and "<script" not in text
+    assert Outline(html).open == [] and "<script>alert" not in html
+    assert "\\<script" in text and not re.search(r"(?<!\\)<script", text)
     assert (
         html.count("<script") == 2 and "|*a*" not in text
     )  # the film, which is data, and the page's own
@@ -969,6 +972,108 @@ def test_a_described_law_is_drawn_over_what_it_goes_with_and_said_to_carry_over_
     report.write_report(described(), tmp_path)
     page, text = ((tmp_path / f"report.{end}").read_text("utf-8") for end in ("html", "md"))
     assert "A side force, over yaw rate [rad/s]" in page and "band of 2 standard deviations" in page
-    assert "it is part of the patched vessel" in text and "no part of the patched vessel" in text
+    assert (
+        "it is part of the corrected vessel" in text and "no part of the corrected vessel" in text
+    )
     assert "1.200 ± 0.050 N s²" in text and "−15.0 ± 2.0 %" in text
-    assert text.count("patched") > text.count("0.03")  # the patched boat has a column of its own
+    assert "| error in | before | retuned | corrected |" in text
+
+
+def test_a_person_reads_before_retuned_and_corrected_and_the_keys_are_explained_once(written):
+    _, html, text = written
+    words = " ".join(Outline(re.sub(r"<script.*?</script>", "", html, flags=re.DOTALL)).words)
+    explained = (
+        "diagnosis.json calls the three nominal, recalibrated and patched.",
+        "before (nominal), retuned (recalibrated) and corrected (patched)",
+    )
+    for whole in (words, text):
+        assert "retuned" in whole and "Before is the vessel file as given." in whole
+        for sentence in explained:
+            assert whole.count(sentence) == 1
+            whole = whole.replace(sentence, "")
+        assert not re.search(r"(?i)nominal|recalibrat|patched(?!\.toml)", whole)
+
+
+def test_the_markdown_text_has_no_entities(written):
+    _, _, text = written
+    assert not re.search(r"&(lt|gt|amp|#\d+);", text)
+
+
+def test_evidence_is_stated_as_odds_and_nats_stand_behind_an_explanation(written):
+    findings, html, _ = written
+    shown = re.sub(r"<details.*?</details>|<script.*?</script>", "", html, flags=re.DOTALL)
+    shown = shown[: shown.index('id="reading"')]  # the glossary explains the unit
+    assert not re.search(r"\d nats", shown)
+    for effect in findings.answer["effects"]:
+        assert "that the better fit is chance" in html
+        assert f"{format_nats(effect['gain_nats'])} nats" in html
+
+
+@pytest.mark.parametrize(
+    ("template", "value", "sd", "inactive", "text"),
+    [
+        ("astern thrust is {share} of it", 0.6939, 0.0155, 1.0, "astern thrust is 69 % (± 1.6) of it"),
+        ("{share}", 0.6939, 0.0035, 1.0, "69.4 % (± 0.35)"),
+        ("port pushes {more}, starboard {opposite}", -0.08, 0.012, 0.0, "port pushes 8 % (± 1.2) less, starboard more"),
+        ("it is {larger}", 0.21, 0.02, 0.0, "it is 21 % (± 2.0) larger"),
+        ("", 0.5, 0.1, 1.0, ""),
+    ],
+)  # fmt: skip
+def test_a_ratio_is_said_in_per_cent_with_its_deviation(template, value, sd, inactive, text):
+    assert sentence_in_per_cent(template, value, sd, inactive) == text
+
+
+def test_every_sentence_in_per_cent_of_the_library_can_be_made():
+    made = 0
+    for name in library_names("effect"):
+        for param in load_class("effect", name).params().values():
+            for value in (0.5, 1.5):
+                if param.in_per_cent:
+                    sentence = sentence_in_per_cent(param.in_per_cent, value, 0.02, 1.0)
+                    assert "%" in sentence and not re.search(r"[{}]", sentence)
+                    assert param.fit and not param.unit, name
+                    made += 1
+    assert made > 20
+
+
+def test_a_ratio_has_a_sentence_of_its_own_in_the_verdict():
+    answer = planar_answer([])
+    parameter = answer["effects"][0]["parameters"]["astern_factor"]
+    parameter["statement"] = "astern thrust is 69 % (± 1.2) of the commanded thrust"
+    assert verdict_sentences(answer).startswith(
+        "The model leaves out one effect: the propellers push less astern than commanded. "
+        "Astern thrust is 69 % (± 1.2) of the commanded thrust. "
+    )
+
+
+def test_a_cause_that_only_held_out_recordings_show_has_a_sentence_of_its_own():
+    answer = unknown().answer
+    answer["unknown"] = answer["unknown"] | {"held_out_only": True}
+    assert verdict_sentences(answer).startswith(
+        "The cause is unknown only because of the held-out recordings: the model explains the "
+        "fitted recordings"
+    )
+
+
+def test_flags_lie_above_all_curves(tmp_path):
+    report.write_report(planar(), tmp_path)
+    html = (tmp_path / "report.html").read_text("utf-8")
+    drawn = html[html.index('id="where"') : html.index('id="ranking"')]
+    panels = re.findall(r"<svg viewBox=\"0 0 2000.*?</svg>", drawn, re.DOTALL)
+    flagged = 0
+    for panel in panels:
+        bottoms = re.findall(r'class="flag" d="M\d+ 0H\d+V(\d+)', panel)
+        curves = re.findall(r'class="(?:line|band)[^"]*" d="([^"]*)"', panel)
+        heights = [int(y) for d in curves for y in re.findall(r"-?\d+ (-?\d+)", d)]
+        flagged += len(bottoms)
+        assert all(int(bottom) < min(heights) for bottom in bottoms)
+    assert flagged == len(planar().answer["where"]["intervals"])
+
+
+def test_an_experiment_that_tests_none_of_the_effects_says_so():
+    f = planar()
+    other = f.answer["next_experiment"] | {"separates": ["wind", "current"]}
+    sections = sections_of(replace(f, answer=f.answer | {"next_experiment": other}))
+    text = report.report_markdown(f, sections)
+    assert "It is no test of weak reverse" in text
+    assert "It is no test of" not in report.report_markdown(f, sections_of(f))

@@ -243,7 +243,7 @@ def test_a_mean_force_that_stays_is_said_first_with_its_axis_its_side_and_its_sh
     assert said in html[: html.index("<nav")] and said in (tmp_path / "report.md").read_text(
         "utf-8"
     )
-    assert "remains in the patched vessel" in html
+    assert "remains in the corrected vessel" in html
 
 
 @pytest.mark.parametrize("made", [planar, rolling, nothing, unknown, described])
