@@ -41,6 +41,7 @@ MOST_SPEED = 1e6  # times real time; a larger value is a mistake
 
 # Headings of the help text with their commands; a test checks that none is missing
 COMMAND_GROUPS = {
+    "Start here": ("demo",),
     "Simulate": ("run", "drive", "sweep", "test", "manoeuvre", "margins"),
     "Learn from recordings": ("import", "check", "diagnose", "replay", "compare", "export"),
     "Vessels and content": ("new", "list", "show"),
@@ -275,6 +276,27 @@ def options(
     ] = False,
 ) -> None:
     """Options before the name of a command."""
+
+
+@app.command()
+@exits_with_code
+def demo(
+    out: OutFolder = Path("out/demo"),
+    open_: Annotated[
+        bool, typer.Option("--open", help="Open the report in a browser, if there is a display.")
+    ] = False,
+) -> int:
+    """Simulate a boat with a hidden fault, find the fault from its recordings, write the report.
+
+    It takes some ten seconds, and a minute the first time. scenarios/demo.toml lists the scenarios.
+    """
+    print_lines(
+        ["A boat with a hidden fault is simulated, and the fault is found from recordings."]
+    )
+    sys.stdout.flush()  # the imports below take seconds
+    from boatsim.cli.demo import run_demo
+
+    return run_demo(out, open_)
 
 
 @app.command()

@@ -1,0 +1,54 @@
+"""The result of a diagnosis in a few lines for a reader who has never seen one."""
+
+from boatsim.diagnosis.evaluation import MODELS
+from boatsim.diagnosis.report.families import FAMILIES
+from boatsim.diagnosis.report.findings import Findings
+from boatsim.diagnosis.report.formatting import (
+    format_in_one_unit,
+    format_number,
+    format_odds,
+    format_probability,
+    join_words,
+    words_of_name,
+)
+from boatsim.diagnosis.report.model_names import words_of_models
+
+EXPLANATION = (
+    "(before: the model as given; retuned: its own numbers refitted; corrected: with the effect)"
+)
+
+
+def brief_lines(f: Findings) -> list[str]:
+    """Return a diagnosis in a few lines: what is missing, how sure, errors on held-out recordings.
+
+    Args:
+        f: Findings of a diagnosis.
+    """
+    lines = [f.answer["sentence"]]
+    for effect in f.answer["effects"]:
+        probability = format_probability(effect["probability"])
+        lines.append(
+            f"How sure: {probability} that {words_of_name(effect['name'])} is the true cause; "
+            f"{format_odds(effect['gain_nats'])}."
+        )
+    if errors := _error_lines(f):
+        held_out = join_words(f.answer["fit"]["held_out"])
+        lines.append(f"Errors of the simulation on held-out recordings ({held_out}):")
+        lines += errors
+        lines.append(f"  {EXPLANATION}")
+    return lines
+
+
+def _error_lines(f: Findings) -> list[str]:
+    """Return the errors of position, heading and roll, as far as they were recorded."""
+    lines = []
+    for family, (words, unit) in FAMILIES.items():
+        rms = f.answer["fit"].get(family)
+        if not rms:
+            continue
+        errors = format_in_one_unit([rms[model] for model in MODELS], unit)
+        pairs = zip(errors, words_of_models(MODELS), strict=True)
+        text = ", ".join(f"{error} {model}" for error, model in pairs)
+        gain = rms["recalibrated"] / max(rms["patched"], 1e-300)
+        lines.append(f"  {words}: {text}: {format_number(gain, 2)} times smaller than retuned")
+    return lines
