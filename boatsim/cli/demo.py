@@ -55,13 +55,18 @@ def run_demo(out: Path, browser: bool) -> int:
     path = content_root() / "scenarios" / FILE
     demo = validate_table(DemoFile, read_toml(path), FILE)
     names = [*demo.fit, *demo.hold_out]
-    _print_now([f"The boat: {demo.about}.", f"1. Simulating {len(names)} recordings (the first time compiles, for some minutes in all):"])
+    _print_now(
+        [
+            f"The boat: {demo.about}.",
+            f"1. Simulating {len(names)} recordings. Compiling takes a minute the first time:",
+        ]
+    )
     loaded = [scenarios.load(name) for name in names]
     recordings = [_simulate(scenario, out, demo.seed) for scenario in loaded]
     fitted = recordings[: len(demo.fit)]
     _print_now(
         [
-            f"2. Comparing them with the boat's model, which knows no fault: {len(fitted)} are fitted, "
+            f"2. Comparing them with the boat's model: {len(fitted)} are fitted, "
             f"{len(demo.hold_out)} are held out to test the answer."
         ]
     )
