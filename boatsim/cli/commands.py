@@ -140,7 +140,7 @@ VesselName = Annotated[
     typer.Option(
         "--vessel",
         metavar="NAME|FOLDER|FILE",
-        help="Nominal vessel [default: the one in recording.toml].",
+        help="Vessel to compare with [default: the one in recording.toml].",
     ),
 ]
 

@@ -91,7 +91,7 @@ def test_the_commands_of_the_front_page_are_looked_at() -> None:
         for place, (commands, _) in sessions().items()
         if "README" in place
     ]
-    assert front == [["run", "diagnose"]]
+    assert front == [["demo"]]
 
 
 @pytest.mark.parametrize("name", TUTORIALS)
