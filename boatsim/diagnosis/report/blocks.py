@@ -4,6 +4,8 @@ import re
 from dataclasses import dataclass, field, replace
 from typing import ClassVar
 
+STATISTICS = "Statistics behind this"  # title of a note
+
 
 @dataclass(frozen=True)
 class Text:

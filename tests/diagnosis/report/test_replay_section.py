@@ -1,4 +1,4 @@
-"""The first screen of a report: a picture and a film of recorded, recalibrated and patched boats,
+"""The first screen of a report: a picture and a film of recorded, retuned and corrected boats,
 and what stays."""
 
 import json
@@ -14,6 +14,7 @@ from boatsim.diagnosis.report.animation import FRAMES, LONGEST_ANIMATION
 from boatsim.diagnosis.report.findings import Findings, FreeRun, MissingForceCurve
 from boatsim.diagnosis.report.replay_section import LARGEST, MOST_PATHS, SMALLEST, animated_replay
 from boatsim.diagnosis.report.sentences import mean_force_paragraph
+from tests import chrome
 from tests.diagnosis.report.test_page import MODELS, described, nothing, planar, rolling, unknown
 
 LIMIT = 2_000_000  # bytes of a page
@@ -261,3 +262,19 @@ def test_the_share_of_belief_says_what_it_is(tmp_path):
     assert (
         "The probability assumes that exactly one of these candidates is missing, or none." in text
     )
+
+
+@pytest.mark.skipif(chrome.PROGRAM is None, reason="there is no Chromium on this machine")
+@pytest.mark.parametrize(("wide", "replay_first"), [(390, True), (1200, False)])
+def test_a_phone_shows_the_replay_first_and_nothing_is_wider_than_it(tmp_path, wide, replay_first):
+    report.write_report(planar(), tmp_path)
+    with chrome.chromium() as browser:
+        page = browser((tmp_path / "report.html").as_uri())
+        page.picture(tmp_path / "page.png", wide, 900)
+        top = "document.querySelector('{}').getBoundingClientRect().top"
+        replay, title = page.run(top.format(".replay")), page.run(top.format("h1"))
+        assert (replay < title - 100) == replay_first
+        if not replay_first:  # beside it
+            assert replay < title + 100
+        assert page.run("document.documentElement.scrollWidth") <= wide
+        assert page.run("document.querySelector('output').textContent.includes('retuned')")

@@ -1,0 +1,147 @@
+"""Sections of a report on the candidate effects: their ranking, and upper limits."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from boatsim.diagnosis.report.blocks import (
+    Block,
+    Note,
+    Table,
+    without_empty_columns,
+)
+from boatsim.diagnosis.report.findings import Findings
+from boatsim.diagnosis.report.formatting import (
+    format_nats,
+    format_probability,
+    format_upper_limit,
+    short_odds,
+    words_of_name,
+)
+from boatsim.diagnosis.report.sentences import (
+    effect_description,
+)
+
+MOST_VISIBLE_CANDIDATES = 8  # rows of the ranking that are not folded
+
+
+def ranking(f: Findings) -> Iterator[Block]:
+    """Yield the evidence for each candidate effect alone: the best ones as odds, all on request.
+
+    Args:
+        f: Findings of a diagnosis.
+    """
+    candidates = f.answer["candidates"]
+    if not candidates:
+        return
+    status, visible = _status(f), MOST_VISIBLE_CANDIDATES
+    rows, gains = [], []
+    for i, c in enumerate(candidates, 1):
+        name, gain = c["name"], c["gain_nats"]
+        gains.append(gain)
+        if name in status:
+            visible = max(visible, i)
+        verdict, meaning = status.get(name, ""), f.words.get(name, "")
+        rows.append([words_of_name(name), short_odds(gain), verdict, meaning])
+    bars = tuple((np.maximum(gains, 0.0) / max(*gains, 1e-9)).tolist())
+    caption = (
+        "Each candidate effect tested alone, the best ones first. The odds are those that the "
+        "better fit is chance. For an identified effect they differ from the value above, which is "
+        "computed in the presence of all other identified effects."
+    )
+    header = ["candidate", "odds of chance", "verdict", "meaning"]
+    yield without_empty_columns(
+        Table(caption, header, rows[:visible], (2, 3), bars[:visible], aside=True)
+    )
+    yield from _evidence_of_all(f)
+
+
+def _evidence_of_all(f: Findings) -> Iterator[Block]:
+    """Yield the evidence for all candidate effects in nats, on request."""
+    candidates, rows = f.answer["candidates"], []
+    for c in candidates:
+        probability = format_probability(c["probability"])
+        meaning = f.words.get(c["name"], "")
+        rows.append([words_of_name(c["name"]), format_nats(c["gain_nats"]), probability, meaning])
+    title = f"Statistics of all {len(rows)} candidates"
+    if len(rows) == 1:
+        title = "Statistics of the candidate"
+    header = [
+        "candidate",
+        "evidence [nats]",
+        "probability, if only one effect is missing",
+        "meaning",
+    ]
+    yield without_empty_columns(Table(title, header, rows, (3,), folded=True, aside=True))
+    yield Note(
+        "How to read these statistics",
+        "The evidence compares the retuned vessel with and without the candidate. The probability "
+        "assumes that exactly one of these candidates is missing, or none. The probabilities add "
+        "up to 100 %, so that only the strongest of several missing effects has a high "
+        "probability. It is not the probability that an effect is a true cause.",
+    )
+
+
+def _status(f: Findings) -> dict[str, str]:
+    """Return the verdict on identified effects and their look-alikes, by name."""
+    status = {}
+    for possible in f.answer.get("also_possible", []):
+        status[possible["name"]] = "also possible"
+    for refined in f.answer.get("refined", []):
+        status[refined["name"]] = "number refined"
+    for e in f.answer["effects"]:
+        for rival in e["tied_with"]:
+            status[rival] = f"look-alike of {words_of_name(e['name'])}"
+    for e in f.answer["effects"]:
+        status[e["name"]] = "identified"
+    return status
+
+
+def upper_limits(f: Findings) -> Iterator[Block]:
+    """Yield the largest strength that each effect may have that was not found.
+
+    Args:
+        f: Findings of a diagnosis.
+    """
+    rows = []
+    for name, values in limits_of_effects_not_found(f).items():
+        limits = []
+        for key, value in f.answer.get("lower_limits", {}).get(name, {}).items():
+            words, text = format_upper_limit(key, value)
+            limits.append(f"{words} at least {text}")
+        for key, value in values.items():
+            words, text = format_upper_limit(key, value)
+            limits.append(f"{_measurement_meaning(f, name, key) or words} {text}")
+        if limits:
+            rows.append([words_of_name(name), ", ".join(limits), f.words.get(name, "")])
+    if not rows:
+        return
+    caption = (
+        "With 95 % confidence each effect is weaker than this, if nothing else is missing. The "
+        "limit of a factor or fraction is its distance from the value in the vessel file."
+    )
+    if f.answer["unknown"]["flag"]:
+        caption += " Here something else is missing, in which any of these effects may hide."
+    header, folded = ["candidate", "at most", "meaning"], f.answer["verdict"] != "nothing_missing"
+    yield without_empty_columns(Table(caption, header, rows, (1, 2), folded=folded, aside=True))
+
+
+def _measurement_meaning(f: Findings, name: str, key: str) -> str:
+    """Return the meaning of a parameter of a measurement error, which is clearer than its name."""
+    words = f.words.get(name, "")
+    if words == effect_description(words):
+        return ""
+    return f.words.get(f"{name}.{key}", "")
+
+
+def limits_of_effects_not_found(f: Findings) -> dict[str, dict[str, float]]:
+    """Return the upper limits without those of look-alikes, which may be the true cause.
+
+    Args:
+        f: Findings of a diagnosis.
+    """
+    limits = dict(f.answer["upper_limits"])
+    for e in f.answer["effects"]:
+        for rival in e["tied_with"]:
+            limits.pop(rival, None)
+    return limits

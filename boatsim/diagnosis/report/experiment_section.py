@@ -1,0 +1,107 @@
+"""Section of a report on what to record next."""
+
+import math
+from collections.abc import Iterator, Sequence
+
+from boatsim.diagnosis.report.blocks import (
+    STATISTICS,
+    Block,
+    Items,
+    Note,
+    Table,
+    Text,
+)
+from boatsim.diagnosis.report.findings import Findings
+from boatsim.diagnosis.report.formatting import (
+    capitalize,
+    evidence_strength,
+    format_nats,
+    format_odds,
+    format_parameter,
+    format_sentence,
+    join_words,
+    name_and_unit,
+    words_of_name,
+)
+
+
+def next_experiment(f: Findings) -> Iterator[Block]:
+    """Yield the manoeuvre that would add most evidence, and how to perform it.
+
+    Args:
+        f: Findings of a diagnosis.
+    """
+    wanted = f.answer["next_experiment"]
+    if not wanted:
+        if f.answer["effects"]:
+            odds = math.exp(f.setting("plan.min_gain"))
+            yield Text(
+                "Nothing more is needed for this question: none of the manoeuvres considered is "
+                "expected to change the odds between an identified effect and its rivals by more "
+                f"than a factor of {odds:.1f}."
+            )
+        return
+    scenario = wanted["scenario"]
+    rivals = []
+    for name in wanted["separates"]:
+        rivals.append("no effect at all" if name == "nothing" else words_of_name(name))
+    commands = "the initial state that it specifies"
+    if f.steps:
+        commands = "the commands below"
+    gain = wanted["expected_gain_nats"]
+    yield Items(
+        (
+            ("Manoeuvre", f"{capitalize(format_sentence(wanted['manoeuvre']))}."),
+            ("Distinguishes", f"{capitalize(join_words(rivals, 'or'))}."),
+            (
+                "Expected evidence",
+                f"{capitalize(evidence_strength(gain))}, for the true cause against its closest "
+                f"rival ({format_odds(gain)}).",
+            ),
+            (
+                "How to perform it",
+                f"The file {scenario} lies next to this report; boatsim run {scenario} simulates "
+                f"it with the vessel as specified. Give the real boat {commands}, record it, and "
+                "diagnose all recordings together.",
+            ),
+        )
+    )
+    if sentence := _not_in_doubt(f, wanted["separates"]):
+        yield Text(sentence)
+    yield Note(STATISTICS, f"The expected log Bayes factor is {format_nats(gain)} nats.")
+    if f.steps:
+        yield _commands(f)
+
+
+def _not_in_doubt(f: Findings, separated: Sequence[str]) -> str:
+    """Return why the next experiment tests none of the identified effects; "" if it does."""
+    named = [effect["name"] for effect in f.answer["effects"]]
+    if not named or set(named) & set(separated):
+        return ""
+    return (
+        f"It is no test of {join_words(map(words_of_name, named))}, about which these recordings "
+        "leave less doubt. It decides what remains open."
+    )
+
+
+def _commands(f: Findings) -> Table:
+    """Return the folded table of the commands of the next experiment; its last row is the end."""
+    header = ["from"]
+    units: dict[str, str] = {}
+    for _, levels in f.steps:
+        for name in levels:
+            if name not in units:
+                words, units[name] = name_and_unit(name)
+                header.append(words)
+    rows = []
+    for t, levels in f.steps:
+        row = [f"{t:g} s"]
+        for name, unit in units.items():
+            text = ""
+            if name in levels:
+                _, text = format_parameter(name, levels[name], unit)
+            row.append(text)
+        if not levels:
+            row[1] = "end"
+        rows.append(row)
+    return Table("Commands of the next experiment", header, rows, folded=True)

@@ -1,0 +1,139 @@
+"""Section of a report on where and when a force is missing."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+
+from boatsim.diagnosis.report import figures, svg_plots
+from boatsim.diagnosis.report.blocks import (
+    STATISTICS,
+    Block,
+    Figures,
+    Note,
+    Table,
+    Text,
+)
+from boatsim.diagnosis.report.findings import Findings, MissingForceCurve
+from boatsim.diagnosis.report.formatting import (
+    capitalize,
+    format_in_one_unit,
+    format_nats,
+    format_number,
+    format_sentence,
+)
+from boatsim.diagnosis.report.schema import (
+    IntervalEntry,
+)
+from boatsim.diagnosis.report.sentences import (
+    only_measurement_errors,
+)
+
+MOST_INTERVALS = 24  # rows of the table of flagged intervals; diagnosis.json has all of them
+MOST_MISSING_FIGURES = 6  # recordings whose missing force is drawn: those flagged longest
+
+
+def missing_force(f: Findings) -> Iterator[Block]:
+    """Yield the conditions, the sizes, the curves and the intervals of the missing force.
+
+    Args:
+        f: Findings of a diagnosis.
+    """
+    where, verdict = f.answer["where"], f.answer["verdict"]
+    if where["region"]:
+        rows = []
+        for region in where["region"]:
+            statement = capitalize(format_sentence(region["statement"]))
+            rows.append([statement, format_number(region["p_value"], 1)])
+        header = ["condition", "probability of chance (p-value)"]
+        yield Table("When the force is missing", header, rows)
+    if where["axes"]:
+        yield _strengths(f)
+        if only_measurement_errors(f.answer):
+            yield Text("These forces are not real: they are the result of the measurement error.")
+    if f.missing:
+        yield from _missing_figures(f)
+    if not where["intervals"]:
+        return
+    if verdict == "nothing_missing":
+        unknown = f.answer["unknown"]
+        yield Text(
+            "An interval is flagged wherever the missing force exceeds the assumed disturbance "
+            "level. Together the intervals are not enough for a finding: no candidate effect "
+            "explains them clearly better than the vessel model alone, and the evidence for a "
+            "cause outside the candidates is not sufficient."
+        )
+        yield Note(
+            STATISTICS,
+            f"A cause outside the candidates gains {format_nats(unknown['gain_nats'])} of the "
+            f"{format_nats(unknown['told_from_nats'])} nats required.",
+        )
+    yield _interval_table(where["intervals"])
+
+
+def _strengths(f: Findings) -> Table:
+    """Return the table of the missing force of each axis."""
+    header, share = ["axis", "missing, rms", "standard deviation, rms"], _flagged_shares(f)
+    if share:
+        header.append("share of the time flagged")
+    rows = []
+    for axis, strength in f.answer["where"]["axes"].items():
+        row = [axis, *format_in_one_unit([strength["rms"], strength["sd"]], strength["unit"])]
+        if share:
+            row.append(f"{100 * share.get(axis, 0.0):.0f} %")
+        rows.append(row)
+    return Table("Force and moment that the retuned vessel does not explain", header, rows)
+
+
+def _interval_table(intervals: Sequence[IntervalEntry]) -> Table:
+    """Return the folded table of the longest flagged intervals, in the order of the answer."""
+    longest = sorted(intervals, key=lambda i: i["from_s"] - i["to_s"])[:MOST_INTERVALS]
+    rows = []
+    for i in intervals:
+        if i in longest:
+            rows.append([i["run"], i["axis"], f"{i['from_s']:.1f}", f"{i['to_s']:.1f}"])
+    title = f"The {len(rows)} longest of {len(intervals)} flagged intervals"
+    if len(intervals) == 1:
+        title = "The flagged interval"
+    elif len(intervals) == len(rows):
+        title = f"All {len(rows)} flagged intervals"
+    header = ["recording", "axis", "from [s]", "to [s]"]
+    return Table(title, header, rows, (1,), folded=True)
+
+
+def _flagged_shares(f: Findings) -> dict[str, float]:
+    """Return the share of the time of all recordings that is flagged, by axis."""
+    seconds = sum(float(m.t[-1] - m.t[0]) for m in f.missing)
+    flagged: dict[str, float] = {}
+    if not seconds:
+        return flagged
+    for i in f.answer["where"]["intervals"]:
+        flagged[i["axis"]] = flagged.get(i["axis"], 0.0) + (i["to_s"] - i["from_s"]) / seconds
+    return flagged
+
+
+def _missing_figures(f: Findings) -> Iterator[Block]:
+    """Yield the missing force over time of the recordings that are flagged longest."""
+    intervals = f.answer["where"]["intervals"]
+    flagged = {m.run: 0.0 for m in f.missing}
+    for interval in intervals:
+        if interval["run"] in flagged:
+            flagged[interval["run"]] += interval["to_s"] - interval["from_s"]
+    order = sorted(range(len(f.missing)), key=lambda i: -flagged[f.missing[i].run])
+    drawn: list[MissingForceCurve] = []
+    for i in sorted(order[:MOST_MISSING_FIGURES]):
+        drawn.append(f.missing[i])
+        if not f.has_added_effects:  # the corrected vessel is the retuned one
+            drawn[-1] = replace(f.missing[i], left={})
+    looks = {
+        "missing": "missing force",
+        "left": "missing force of the corrected vessel",
+        "band": "band of 2 standard deviations",
+        "flag": "flagged: the band does not contain zero",
+    }
+    if not any(m.left for m in drawn):
+        del looks["left"]
+    yield Figures(svg_plots.legend(looks), figures.missing_figures(drawn, intervals, f.missing))
+    if len(drawn) < len(f.missing):
+        yield Text(
+            f"The figures show the {len(drawn)} of {len(f.missing)} recordings that are flagged "
+            "longest."
+        )
