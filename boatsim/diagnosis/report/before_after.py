@@ -27,33 +27,31 @@ class _Unit(NamedTuple):
 def error_table(evaluation: Evaluation) -> Table | None:
     """Return the report's table of simulation errors before and after the diagnosis.
 
-    It compares the vessel model before, retuned and corrected over every recording.
-    None is returned if there are no errors.
+    It compares the vessel model before, retuned and corrected over every fitted recording; those of
+    the held-out ones have a table of their own. None is returned if there are no errors.
 
     Args:
         evaluation: Free runs of the models.
     """
-    if not evaluation.parts:
-        return None
     rows = []
     for part in evaluation.parts:
+        if not part.fitted:
+            continue
         unit = _unit_of(part.family)
         ratio = part.rms["patched"] / part.rms["recalibrated"]
-        data = "held out"
-        if part.fitted:
-            data = "fitted"
         errors = [unit.text(part.rms[model]) for model in (*MODELS, ALONE)]
         label = f"{unit.signal} [{unit.unit}]"
-        rows.append([part.name, data, label, *errors, f"{ratio:.2f}"])
+        rows.append([part.name, label, *errors, f"{ratio:.2f}"])
+    if not rows:
+        return None
     header = [
-        "part",
-        "data",
+        "fitted recording",
         "rms error of",
         *words_of_models(MODELS),
         "retuned to this part alone",
         "corrected / retuned",
     ]
-    return f"Free runs of {evaluation.horizon:g} s, part by part", header, rows
+    return f"Free runs of {evaluation.horizon:g} s over the fitted recordings", header, rows
 
 
 def limitation_sentences(
