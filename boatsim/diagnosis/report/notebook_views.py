@@ -13,6 +13,7 @@ from boatsim.diagnosis.free_runs import FreeRun
 from boatsim.diagnosis.report.figures import group_by_recording, model_error, unit_for_signal
 from boatsim.diagnosis.report.findings import Findings
 from boatsim.diagnosis.report.formatting import format_parameter, format_quantity, words_of_name
+from boatsim.diagnosis.report.model_names import MODEL_WORDS
 from boatsim.diagnosis.report.schema import Answer
 from boatsim.errors import BadInput
 from boatsim.physics.base import Array
@@ -28,10 +29,10 @@ if TYPE_CHECKING:
 
 # model -> name, and colours of the light report, distinguishable for colour-blind readers
 SHOWN = {
-    "recorded": ("recorded", "#9aa5ae"),
-    "nominal": ("before", "#c65102"),
-    "recalibrated": ("retuned", "#0067b1"),
-    "patched": ("corrected", "#00815c"),
+    "recorded": (MODEL_WORDS["recorded"], "#9aa5ae"),
+    "nominal": (MODEL_WORDS["nominal"], "#c65102"),
+    "recalibrated": (MODEL_WORDS["recalibrated"], "#0067b1"),
+    "patched": (MODEL_WORDS["patched"], "#00815c"),
 }
 FAMILIES = {
     "position_rms_m": ("position", "m"),
