@@ -5,7 +5,9 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "docs" / "_ext"))
 
+import page_commands as page_commands  # noqa: E402
 import reference as reference  # noqa: E402
+import results_charts as results_charts  # noqa: E402
 from page_commands import MARK as MARK  # noqa: E402
 from page_commands import ROOT as ROOT  # noqa: E402
 from page_commands import blocks as blocks  # noqa: E402

@@ -1,5 +1,9 @@
 """Run the commands of a documentation page and compare their output with what the page shows.
 
+`python docs/_ext/page_commands.py` runs all tutorials; `python docs/_ext/page_commands.py
+first_steps` runs one page. The exit code is 1 if an output differs from its page. A block that
+takes longer than `SLOW` is reported with its time and is no error.
+
 A shown line agrees with a printed one if the words are equal and the figures agree to one unit of
 the last digit shown. A page may omit lines of the output; "..." is good style but not required.
 """
@@ -8,6 +12,9 @@ import os
 import re
 import subprocess
 import sys
+import tempfile
+import time
+import warnings
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -23,6 +30,11 @@ BLOCK = re.compile(
     re.DOTALL,
 )
 TIMEOUT = 600  # [s] for one block
+SLOW = 60.0  # [s] a reader who follows a tutorial waits longer than this only with good reason
+
+
+class SlowBlock(UserWarning):
+    """A block of commands on a page took longer than `SLOW`."""
 
 
 @dataclass(frozen=True)
@@ -118,12 +130,16 @@ def failures(page: str, home: Path) -> Iterator[tuple[int, str]]:
 
     Yields:
         Line number and description of each difference; the run stops after a wrong exit code.
+
+    Warns:
+        SlowBlock: If a block takes longer than `SLOW`.
     """
     (home / "boatsim").symlink_to(ROOT)
     working_folder = str(home)
     folder_file = home / ".working_folder"
     for block in blocks(page):
         script = f'cd "{working_folder}"\n{block.commands}\npwd > {folder_file}\n'
+        begin = time.monotonic()
         result = subprocess.run(
             ["bash", "-euo", "pipefail", "-c", script],
             env=_environment(home),
@@ -133,6 +149,7 @@ def failures(page: str, home: Path) -> Iterator[tuple[int, str]]:
             text=True,
             timeout=TIMEOUT,
         )
+        _warn_if_slow(block, time.monotonic() - begin)
         if result.returncode != block.code:
             message = f"exit code {result.returncode} instead of {block.code}:\n{result.stdout}"
             yield block.line, message
@@ -140,6 +157,17 @@ def failures(page: str, home: Path) -> Iterator[tuple[int, str]]:
         if message := first_difference(block.shown, result.stdout.splitlines()):
             yield block.line, message
         working_folder = folder_file.read_text().strip()
+
+
+def _warn_if_slow(block: Block, seconds: float) -> None:
+    """Issue a `SlowBlock` warning if a block of commands took longer than `SLOW`."""
+    if seconds > SLOW:
+        command = block.commands.splitlines()[0]
+        warnings.warn(
+            f"line {block.line} took {seconds:.0f} s, more than {SLOW:.0f} s: {command}",
+            SlowBlock,
+            stacklevel=3,
+        )
 
 
 def _environment(home: Path) -> dict[str, str]:
@@ -153,4 +181,37 @@ def _environment(home: Path) -> dict[str, str]:
         "COLUMNS": "120",
         "TERM": "dumb",
     }
-    return os.environ | changes
+    environment = os.environ | changes
+    environment.pop("BOATSIM_DEBUG", None)  # set by docs/conf.py; a user's programs are compiled
+    return environment
+
+
+def run_tutorials(names: Sequence[str]) -> int:
+    """Run the commands of tutorials and print the differences and the slow blocks.
+
+    Args:
+        names: Names of pages in `docs/` without suffix; empty for all pages with `MARK`.
+
+    Returns:
+        Number of differences.
+    """
+    files = [ROOT / "docs" / f"{name}.md" for name in names]
+    different = 0
+    for file in files or sorted((ROOT / "docs").glob("*.md")):
+        page = file.read_text(encoding="utf-8")
+        if MARK not in page:
+            continue
+        begin = time.monotonic()
+        with tempfile.TemporaryDirectory() as home, warnings.catch_warnings(record=True) as slow:
+            warnings.simplefilter("always", SlowBlock)
+            for line, message in failures(page, Path(home)):
+                different += 1
+                print(f"{file.name}:{line}: {message}", flush=True)
+        for warning in slow:
+            print(f"{file.name}: warning: {warning.message}", flush=True)
+        print(f"{file.name}: {time.monotonic() - begin:.0f} s", flush=True)
+    return different
+
+
+if __name__ == "__main__":
+    sys.exit(bool(run_tutorials(sys.argv[1:])))

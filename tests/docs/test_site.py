@@ -14,7 +14,7 @@ from boatsim.physics.facts import WORDS
 from boatsim.physics.vessel import DiagnosisTable, ManoeuvringTable, VesselFile
 from boatsim.recordings.notes import KEYS, NOISE
 from boatsim.simulate.scenario import ScenarioFile
-from tests.pages import ROOT, blocks, first_difference, reference
+from tests.pages import ROOT, blocks, failures, first_difference, page_commands, reference
 
 DOCS = ROOT / "docs"
 REFERENCE = reference.pages()
@@ -164,3 +164,26 @@ def test_a_block_of_commands_is_read_with_its_exit_code_and_what_is_shown_below_
 def test_other_words_or_other_figures_are_a_difference(printed: list[str]) -> None:
     assert first_difference(["b 1", "a 0.25 m"], ["b 1", *printed])
     assert not first_difference(["a 0.25 m"], ["b 1", "  a  0.2512   m", "c"])
+
+
+def test_a_slow_block_of_commands_is_a_warning_with_its_time_and_no_failure(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(page_commands, "SLOW", 0.0)
+    with pytest.warns(page_commands.SlowBlock, match="line 2 took 0 s, more than 0 s: echo a"):
+        assert not list(failures("```sh\necho a\n```\n\n```\na\n```\n", tmp_path))
+
+
+def test_every_page_is_in_one_group_of_the_side_bar() -> None:
+    groups = re.findall(r":caption: (\w+)\n\n(.*?)```", TEXTS[DOCS / "index.md"], re.DOTALL)
+    assert [name for name, _ in groups] == [
+        "Start",
+        "Guides",
+        "Concepts",
+        "Reference",
+        "Results",
+        "Contributing",
+    ]
+    listed = [page for _, pages in groups for page in pages.split()]
+    pages = {file.stem for file in DOCS.glob("*.md")} - {"index"} | {"reference/index"}
+    assert sorted(listed) == sorted(pages)
