@@ -5,6 +5,7 @@ from math import nan
 from operator import attrgetter
 
 from boatsim.physics.base import Force, motion
+from boatsim.physics.debugging import python_function
 from boatsim.physics.signals import AXES, COMPONENTS, signals_of
 from boatsim.recordings.table import Notes, Recording
 from boatsim.simulate.camera import CAMERA_POSE, Frame
@@ -136,7 +137,7 @@ class RunLog:
         total = [0.0] * len(AXES)
         for effect in self._winds:
             # interpreted: a single call is not worth compiling
-            law = type(effect).law.py_func  # type: ignore[attr-defined]
+            law = python_function(type(effect).law)
             values: dict[str, float] = {}
             for role, channel in self.scenario.vessel.specified_bindings(effect).items():
                 values[role] = self._measured[channel] if isinstance(channel, str) else channel

@@ -18,7 +18,9 @@ from boatsim.physics.signals import Array
 WIDTH = 420  # units of a drawing, about one pixel each on a telephone
 LEFT, RIGHT, BOTTOM = 48, 16, 36  # margins of the axes
 ROW = 17  # height of a line of text
-LETTER = 6.1  # mean width of a letter of the labels
+GAP = 24  # between axes, for the numbers of the upper ones
+CONSTANT = 1e-9  # relative range below which a curve is a constant
+LETTER = 7.2  # widest mean width of a letter of the labels
 LONGEST_LABEL = 52  # characters of a line of a label beside its note
 STYLES = ("one", "two", "three")  # classes of the curves
 STYLE_SHEET = Path(__file__).parents[1] / "_static" / "site.css"
@@ -98,6 +100,8 @@ def line_chart(
     parts: list[str] = []
     top = 0.0
     for panel in axes:
+        if top:
+            top += GAP
         top = _draw_axes(parts, panel, (low, high), top, height)
     left = LEFT + (WIDTH - LEFT - RIGHT) / 2
     parts.append(_text(left, top + 31, x_label, "middle"))
@@ -110,7 +114,7 @@ def _draw_axes(
     """Append the drawing of one set of axes; return the place of its lower edge."""
     parts.append(_text(LEFT, top + 12, panel.label, "start"))
     top = _draw_legend(parts, panel, top + ROW) + 6
-    y_limits = panel.limits or axis_limits([curve.y for curve in panel.curves], zero=False)
+    y_limits = panel.limits or _limits(panel)
     right, low = WIDTH - RIGHT, top + height
 
     def x_at(value: float) -> float:
@@ -135,6 +139,15 @@ def _draw_axes(
             at = f'cx="{x_at(x):.1f}" cy="{y_at(y):.1f}" r="{size:.1f}"'
             parts.append(f'<circle class="point {look}" {at}/>')
     return low
+
+
+def _limits(panel: Axes) -> tuple[float, float]:
+    """Return the limits of the ordinate; those of a constant include zero."""
+    every = [curve.y for curve in panel.curves]
+    low, high = axis_limits(every, zero=False)
+    if high - low < CONSTANT * max(abs(low), abs(high)):
+        return axis_limits(every)
+    return low, high
 
 
 def _polyline(curve: Curve, x_at, y_at) -> str:  # type: ignore[no-untyped-def]

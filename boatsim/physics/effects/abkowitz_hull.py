@@ -88,6 +88,21 @@ class AbkowitzHull(Force):
     the approach speed the speed U is held, because the tests do not define the model there.
     """
 
+    formula: ClassVar[str] = (
+        r"\begin{aligned} X &= m \left(X' / m'_{11} \, U^2 / L - v_r r\right) \\ Y &= m "
+        r"\left(\dot v' \, U^2 / L + u_r r\right), \quad N = I_z \, \dot r' \, U^2 / L^2 "
+        r"\\ \begin{bmatrix} \dot v' \\ \dot r' \end{bmatrix} &= \begin{bmatrix} m'_{22} "
+        r"& m'_{23} \\ m'_{32} & m'_{33} \end{bmatrix}^{-1} \begin{bmatrix} Y' \\ N' "
+        r"\end{bmatrix} \\ X' &= X_u u' + X_{uu} u'^2 + X_{uuu} u'^3 + X_{vv} v'^2 + "
+        r"X_{rr} r'^2 + X_{rv} r' v' \\ &\quad + g \left(X_{\delta\delta} \delta^2 + "
+        r"X_{u\delta\delta} u' \delta^2 + X_{v\delta} v' \delta + X_{uv\delta} u' v' "
+        r"\delta\right) \\ Y' &= Y_v v' + Y_{vu} v' u' + Y_{vvv} v'^3 + Y_{vvr} v'^2 r' + "
+        r"Y_r r' + Y_{ru} r' u' + Y_0 + Y_{0u} u' + Y_{0uu} u'^2 \\ &\quad + g "
+        r"\left(Y_\delta \delta + Y_{u\delta} u' \delta + Y_{uu\delta} u'^2 \delta + "
+        r"Y_{\delta\delta\delta} \delta^3 + Y_{v\delta\delta} v' \delta^2 + Y_{vv\delta} "
+        r"v'^2 \delta\right) \\ u' &= (u_r - U_0) / U, \quad v' = v_r / U, \quad r' = r L "
+        r"/ U, \quad U = \max\left(\sqrt{u_r^2 + v_r^2},\; 0.3\, U_0\right) \end{aligned}"
+    )
     words: ClassVar[str] = (
         "hull and rudder forces as a polynomial in drift, rate of turn and rudder angle"
     )

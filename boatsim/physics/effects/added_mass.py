@@ -89,6 +89,13 @@ class AddedMass(Inertia, Force):
     `roll_share` times the roll inertia of the body, about the origin.
     """
 
+    formula: ClassVar[str] = (
+        r"\begin{aligned} \boldsymbol{\tau} &= -\mathbf{M}_A \dot{\boldsymbol{\nu}}_r - c "
+        r"\, \mathbf{C}_A(\boldsymbol{\nu}_r) \boldsymbol{\nu}_r \\ X_C &= -c \, Y_{\dot "
+        r"v} v_r r, \quad Y_C = c \, X_{\dot u} u_r r, \quad N_C = c \, (Y_{\dot v} - "
+        r"X_{\dot u}) \, u_r v_r \quad \text{(in the plane, sway added mass at the "
+        r"origin)} \end{aligned}"
+    )
     alone: ClassVar = True
     words: ClassVar[str] = "the water that moves with the hull adds inertia"
     refines: ClassVar[str] = "added_mass"
@@ -227,6 +234,10 @@ class AddedMassError(CoefficientRelease):
     Causes are another draught, shallow water or a formula that does not suit the hull.
     """
 
+    formula: ClassVar[str] = (
+        r"X_{\dot u} = k_u X_{\dot u}^0, \quad Y_{\dot v} = k_v Y_{\dot v}^0, \quad "
+        r"N_{\dot r} = k_r N_{\dot r}^0"
+    )
     words: ClassVar[str] = (
         "the added mass differs from its specified value: the hull floats deeper or shallower"
     )
@@ -261,6 +272,10 @@ class AddedMassCoriolis(CoefficientRelease):
     It adds `fraction` to the `coriolis` factor of the vessel's added mass.
     """
 
+    formula: ClassVar[str] = (
+        r"c = c^0 + \mathrm{fraction}, \quad N_C = c \, (Y_{\dot v} - X_{\dot u}) \, u_r "
+        r"v_r"
+    )
     words: ClassVar[str] = (
         "the water that moves with the hull turns it broadside to its course (Munk moment)"
     )
@@ -283,6 +298,10 @@ class AddedMassCoriolis(CoefficientRelease):
 class ShallowWater(CoefficientRelease):
     """Larger sway and yaw added mass and cross-flow drag in shallow water, by one factor k."""
 
+    formula: ClassVar[str] = (
+        r"Y_{\dot v} = k \, Y_{\dot v}^0, \quad N_{\dot r} = k \, N_{\dot r}^0, \quad C_D "
+        r"= k \, C_D^0"
+    )
     needs: ClassVar = ("sway", "yaw")
     confounded_with: ClassVar = ("added_mass_error",)
     words: ClassVar[str] = "shallow water increases the added mass and the drag in sway and yaw"

@@ -35,6 +35,7 @@ class ApproachBalance(Force):
     the approach speed `speed` [m/s], n0 the `shaft_rate` [1/s].
     """
 
+    formula: ClassVar[str] = r"X = -d_u \left(u_r - g \, U_0 \, \frac{n}{n_0}\right)"
     words: ClassVar[str] = "propeller and resistance hold the approach speed"
     shown_by: ClassVar[str] = "a straight run that starts at a slightly different speed"
     source: ClassVar[str] = (

@@ -47,6 +47,11 @@ class BilgeKeels(Force):
     [rad/s].
     """
 
+    formula: ClassVar[str] = (
+        r"\begin{aligned} K &= -\left(B_1 + B_2 |p|\right) p \\ B_1 &= \frac{8}{3 \pi} \, "
+        r"\frac{22.5}{\pi} \, \rho \, l \, b^2 a^2 f \, \omega, \quad B_2 = 2.4 \, \rho "
+        r"\, l \, b \, a^3 f^2 \end{aligned}"
+    )
     confounded_with: ClassVar = ("quadratic_damping",)
     words: ClassVar[str] = "bilge keels damp the roll, the more the larger its amplitude"
     shown_by: ClassVar[str] = "a roll decay from a large heel"

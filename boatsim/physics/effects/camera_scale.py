@@ -33,6 +33,10 @@ class CameraScale(Measurement):
     x_recorded = (1 + x_fraction) x,  y_recorded = (1 + y_fraction) y
     """
 
+    formula: ClassVar[str] = (
+        r"x_\mathrm{recorded} = (1 + \epsilon_x) \, x, \quad y_\mathrm{recorded} = (1 + "
+        r"\epsilon_y) \, y"
+    )
     of_columns: ClassVar = ("x_m", "y_m")
     ruled_out_by: ClassVar = {"position_fix": ("gnss", "inertial")}
     needs: ClassVar = ("surge", "sway")

@@ -31,6 +31,7 @@ class ClockOffset(Measurement):
     stamped too early.
     """
 
+    formula: ClassVar[str] = r"\boldsymbol{\eta}_\mathrm{recorded}(t) = \boldsymbol{\eta}(t - \tau)"
     words: ClassVar[str] = (
         "the clock of the poses differs from the clock of the commands (not physics)"
     )

@@ -104,6 +104,12 @@ class CrossFlowDrag(Force):
     heave and pitch; `surge_quadratic` is -X_u|u|.
     """
 
+    formula: ClassVar[str] = (
+        r"\begin{aligned} Y &= -\tfrac{1}{2} \rho \, T C_D \int w \, |w| \, \mathrm{d}x - "
+        r"d \int w \, \mathrm{d}x, \quad w = v_r + x r \\ N &= -\tfrac{1}{2} \rho \, T "
+        r"C_D \int x \, w \, |w| \, \mathrm{d}x - d \int x \, w \, \mathrm{d}x \\ X &= "
+        r"X_{|u|u} |u_r| u_r \end{aligned}"
+    )
     needs: ClassVar = ("sway", "yaw")
     words: ClassVar[str] = "the drag of the hull sections grows with the square of the cross flow"
     refines: ClassVar[str] = "damping"

@@ -25,6 +25,10 @@ def water_velocity(q: Any) -> tuple[float, float]:
 class Current(WaterFlow):
     """Uniform, steady current; all hydrodynamic forces act on the velocity relative to it."""
 
+    formula: ClassVar[str] = (
+        r"\begin{aligned} u_r &= u - \left(V_N \cos\psi + V_E \sin\psi\right) \\ v_r &= v "
+        r"- \left(V_E \cos\psi - V_N \sin\psi\right) \end{aligned}"
+    )
     ruled_out_by: ClassVar = {"still_water": (True,)}
     needs: ClassVar = ("surge", "sway")
     words: ClassVar[str] = "the water moves over the ground and carries the boat along"

@@ -101,6 +101,12 @@ class LinearDamping(Force):
     at which the sway damping acts. e_i is the speed at which a power law equals the linear one.
     """
 
+    formula: ClassVar[str] = (
+        r"\begin{aligned} X &= -d_u f(u_r), \quad Z = -d_w f(w_r), \quad K = -d_p f(p), "
+        r"\quad M = -d_q f(q) \\ Y &= Y_a + Y_r r, \quad N = -d_r f(r) + N_v v_r + a \, "
+        r"Y_a, \quad Y_a = -d_v f(v_r + a r) \\ f(\nu) &= \nu "
+        r"\left(\frac{|\nu|}{e}\right)^{n - 1} \end{aligned}"
+    )
     words: ClassVar[str] = "the water resists in proportion to the speed"
     refines: ClassVar[str] = "damping"
     shown_by: ClassVar[str] = "coasting down from a low speed"
@@ -178,6 +184,10 @@ def growing_damping(word: str, power: int, **spreads: float) -> dict[str, Parame
 QuadraticDamping = preset_effect(
     LinearDamping,
     "QuadraticDamping",
+    formula=(
+        r"X = -d_u |u_r| u_r, \quad Y = -d_v |v_r| v_r, \quad Z = -d_w |w_r| w_r, \quad K "
+        r"= -d_p |p| p, \quad M = -d_q |q| q, \quad N = -d_r |r| r"
+    ),
     words="damping grows with the square of the speed",
     shown_by="the same motion at a large and at a small amplitude",
     source=ITTC,
@@ -190,6 +200,10 @@ QuadraticDamping = preset_effect(
 CubicDamping = preset_effect(
     LinearDamping,
     "CubicDamping",
+    formula=(
+        r"X = -d_u u_r^3, \quad Y = -d_v v_r^3, \quad Z = -d_w w_r^3, \quad K = -d_p p^3, "
+        r"\quad M = -d_q q^3, \quad N = -d_r r^3"
+    ),
     words="damping grows with the cube of the speed",
     shown_by="the same motion at a large and at a small amplitude",
     source=ITTC,
@@ -208,6 +222,7 @@ class DampingError(CoefficientRelease):
     its own model.
     """
 
+    formula: ClassVar[str] = r"d_i = k_i \, d_i^0, \quad i = u, v, r, p"
     words: ClassVar[str] = (
         "the damping coefficients differ from their values by more than their specified uncertainty"
     )
@@ -251,6 +266,9 @@ class DampingError(CoefficientRelease):
 class LateralCentreShift(CoefficientRelease):
     """Shift of the centre of the linear sway damping, by skeg, trim or load."""
 
+    formula: ClassVar[str] = (
+        r"a = a^0 + \mathrm{shift}, \quad Y = -d_v (v_r + a r), \quad N = a \, Y"
+    )
     needs: ClassVar = ("sway", "yaw")
     words: ClassVar[str] = "the lateral resistance acts ahead of or behind the mass centre"
     refines: ClassVar[str] = "mass_centre"
@@ -311,6 +329,10 @@ class DampingExponent(CoefficientRelease):
     Both laws agree at one speed of each axis (`surge_equal`, `sway_equal`, `yaw_equal`).
     """
 
+    formula: ClassVar[str] = (
+        r"X_i = -d_i^0 \, \nu_i \left(\frac{|\nu_i|}{e_i}\right)^{n_i - 1}, \quad i = u, "
+        r"v, r"
+    )
     words: ClassVar[str] = "damping follows a power of the speed other than the first"
     refines: ClassVar[str] = "damping"
     shown_by: ClassVar[str] = "the same motion at a large and at a small amplitude"

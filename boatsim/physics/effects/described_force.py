@@ -39,6 +39,7 @@ class DescribedForce(SymbolicTerm):
     f1 to f3 are up to three factors of the state (`of`), g is the course in time (`acts`).
     """
 
+    formula: ClassVar[str] = r"F = c \, f_1 f_2 f_3 \, g(t)"
     words: ClassVar[str] = "a force that no effect of the library explains"
     shown_by: ClassVar[str] = "the manoeuvre in which it was found"
     law: ClassVar = law

@@ -49,6 +49,7 @@ class DescribedThrust(SymbolicTerm):
     f1 to f3 are up to three factors of the state (`of`), g is the course in time (`acts`).
     """
 
+    formula: ClassVar[str] = r"\Delta T = c \, f_1 f_2 f_3 \, g(t) \, T"
     words: ClassVar[str] = "a change of thrust that no effect of the library explains"
     shown_by: ClassVar[str] = "the same command, repeated"
     per_instance_of: ClassVar[str] = "thruster"

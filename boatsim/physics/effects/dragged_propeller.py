@@ -56,6 +56,12 @@ class DraggedPropeller(Force):
     s^2/m^2].
     """
 
+    formula: ClassVar[str] = (
+        r"\begin{aligned} \Delta T &= \begin{cases} D \, u_a |u_a| & T u_a < 0 \text{ and "
+        r"} D u_a^2 < |T| \\ -T & T u_a < 0 \text{ otherwise} \\ 0 & T u_a \ge 0 "
+        r"\end{cases} \\ u_a &= (u_r - y r) \cos\alpha + (v_r + x r) \sin\alpha "
+        r"\end{aligned}"
+    )
     words: ClassVar[str] = (
         "a propeller that works against the motion adds only the thrust beyond the drag it has "
         "when idle"

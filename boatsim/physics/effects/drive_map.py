@@ -49,6 +49,10 @@ class DriveMap(ChannelEffect):
     k is `at_span`, n the `exponent`. The result is added to the drive's own command.
     """
 
+    formula: ClassVar[str] = (
+        r"y = x + \operatorname{sgn}(s) \, k \left(\frac{|s| - s_0}{s_1 - s_0}\right)^n "
+        r"\quad \text{for } |s| > s_0, \quad s = \mathrm{source} - \mathrm{neutral}"
+    )
     words: ClassVar[str] = "a curve gives the output of the drive from its raw command"
     shown_by: ClassVar[str] = "a staircase of raw commands"
     acts_on: ClassVar[str] = "thrust"
@@ -114,6 +118,7 @@ PulseThrust = preset_effect(
 ShaftRpm = preset_effect(
     DriveMap,
     "ShaftRpm",
+    formula=r"n = x + k \, \frac{\mathrm{source}}{60}",
     words="the shaft rate is given in revolutions per minute",
     shown_by="any manoeuvre",
     acts_on="shaft",

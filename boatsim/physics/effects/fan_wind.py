@@ -62,6 +62,11 @@ class FanWind(Force):
     force.
     """
 
+    formula: ClassVar[str] = (
+        r"\begin{aligned} X &= \tfrac{1}{2} \rho \, U A_x a, \quad Y = \tfrac{1}{2} \rho "
+        r"\, U A_y b, \quad N = l \, Y, \quad U = \sqrt{a^2 + b^2} \\ a &= V \cos(\gamma "
+        r"- \psi) - u, \quad b = V \sin(\gamma - \psi) - v \end{aligned}"
+    )
     words: ClassVar[str] = "a steady wind exerts a drag and a yaw moment on the hull"
     shown_by: ClassVar[str] = "turning through all headings while holding the thrust"
     source: ClassVar[str] = "checked specification of Bayless 2017, section 7 (wind model [A])"

@@ -44,6 +44,12 @@ class FilteredSea(Force):
     `arm` [m].
     """
 
+    formula: ClassVar[str] = (
+        r"\begin{aligned} Y &= \sigma_Y n_1(t), \quad K = \sigma_K n_2(t) + l \, Y, \quad "
+        r"N = \sigma_N n_3(t) \\ n_i(s) &\sim \frac{2 \zeta \omega_0 s}{s^2 + 2 \zeta "
+        r"\omega_0 s + \omega_0^2} \quad \text{applied to white noise, with unit rms} "
+        r"\end{aligned}"
+    )
     words: ClassVar[str] = "waves exert independent narrow-band forces in sway, yaw and roll"
     shown_by: ClassVar[str] = "lying beam to the sea without steering"
     source: ClassVar[str] = (

@@ -41,6 +41,11 @@ class ForwardSpeedDamping(Force):
     acts.
     """
 
+    formula: ClassVar[str] = (
+        r"\begin{aligned} Y &= -d_v \left(|u_r| v_r + a \, u_r r\right), \quad K = -d_p "
+        r"|u_r| p \\ N &= -d_v \left(a \, u_r v_r + a^2 |u_r| r\right) - d_r |u_r| r "
+        r"\end{aligned}"
+    )
     needs: ClassVar = ("surge",)
     words: ClassVar[str] = "damping of sway, roll and yaw grows with the forward speed"
     refines: ClassVar[str] = "damping"

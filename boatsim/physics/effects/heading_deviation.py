@@ -50,6 +50,12 @@ class HeadingDeviation(Measurement):
     `cos` and `sin` [rad] are the coefficients C and B of the classical deviation formula.
     """
 
+    formula: ClassVar[str] = (
+        r"\begin{aligned} \psi_\mathrm{recorded} &= \psi + \Delta, \quad \Delta = A + C "
+        r"\cos\psi + B \sin\psi \\ u_\mathrm{recorded} &= u \cos\Delta + v \sin\Delta, "
+        r"\quad v_\mathrm{recorded} = v \cos\Delta - u \sin\Delta \\ r_\mathrm{recorded} "
+        r"&= r \left(1 + B \cos\psi - C \sin\psi\right) \end{aligned}"
+    )
     of_columns: ClassVar = ("psi_rad",)
     needs: ClassVar = ("surge", "yaw")
     words: ClassVar[str] = "the compass deviates with the heading (not physics)"
@@ -77,6 +83,10 @@ class HeadingDeviation(Measurement):
 HeadingOffset = preset_effect(
     HeadingDeviation,
     "HeadingOffset",
+    formula=(
+        r"\psi_\mathrm{recorded} = \psi + A, \quad u_\mathrm{recorded} = u \cos A + v "
+        r"\sin A, \quad v_\mathrm{recorded} = v \cos A - u \sin A"
+    ),
     words="the recorded heading has a constant error (not physics)",
     shown_by="a straight run ahead followed by one astern",
     source="misaligned compass or marker, or declination not applied",

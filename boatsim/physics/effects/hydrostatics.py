@@ -41,6 +41,11 @@ class Hydrostatics(Force):
     `displacement` [kg].
     """
 
+    formula: ClassVar[str] = (
+        r"\begin{aligned} Z &= -\rho g A_{wp} (z - x_F \theta) + (m - m_0) \, g, \quad K "
+        r"= -m g \, GM_T \, \phi \\ M &= x_F \, \rho g A_{wp} (z - x_F \theta) - m g \, "
+        r"GM_L \, \theta \end{aligned}"
+    )
     words: ClassVar[str] = "buoyancy restores the draught and the attitude of the hull"
     shown_by: ClassVar[str] = "a release from heave, heel or trim"
     source: ClassVar[str] = (

@@ -32,6 +32,9 @@ class JetSteering(Force):
     A positive angle delta turns the craft to starboard if `yaw` = N_delta is positive.
     """
 
+    formula: ClassVar[str] = (
+        r"Y = Y_\delta \delta, \quad K = K_\delta \delta, \quad N = N_\delta \delta"
+    )
     words: ClassVar[str] = "the steering force of the jet is proportional to its angle"
     shown_by: ClassVar[str] = "a zig-zag"
     source: ClassVar[str] = (

@@ -37,6 +37,11 @@ class LateFixes(Measurement):
     neglected; that part of a long latency appears as a delayed command.
     """
 
+    formula: ClassVar[str] = (
+        r"\begin{aligned} x_\mathrm{recorded} &= x - \tau \left(u \cos\psi_m - v "
+        r"\sin\psi_m\right) \\ y_\mathrm{recorded} &= y - \tau \left(u \sin\psi_m + v "
+        r"\cos\psi_m\right), \quad \psi_m = \psi - \tfrac{1}{2} \tau r \end{aligned}"
+    )
     of_columns: ClassVar = ("x_m", "y_m")
     needs: ClassVar = ("surge", "sway", "yaw")
     # one camera image gives position and heading at the same time

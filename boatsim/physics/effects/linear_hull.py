@@ -41,6 +41,10 @@ class LinearHull(Force):
     conservation of energy requires, and `arm` is zero.
     """
 
+    formula: ClassVar[str] = (
+        r"\begin{aligned} Y &= Y_v v_r + Y_r r, \quad N = N_v v_r + N_r r + N_\phi \phi "
+        r"\\ K &= -z_H Y + l \left(Y - m \, u_r r\right) \end{aligned}"
+    )
     words: ClassVar[str] = "drift and yaw rate cause a side force, a yaw moment and a heel"
     shown_by: ClassVar[str] = "a zig-zag at small rudder angles"
     source: ClassVar[str] = (

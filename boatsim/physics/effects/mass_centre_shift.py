@@ -61,6 +61,10 @@ class MassCentreShift(Inertia, Force):
     x_g is the `shift` [m], m the `hull_mass` [kg].
     """
 
+    formula: ClassVar[str] = (
+        r"X = m x_g r^2, \quad Y = -m x_g \dot r, \quad N = -m x_g (\dot v + u r) - m "
+        r"x_g^2 \dot r"
+    )
     needs: ClassVar = ("sway", "yaw")
     words: ClassVar[str] = "the mass centre lies ahead of or behind its modelled place"
     refines: ClassVar[str] = "mass_centre"

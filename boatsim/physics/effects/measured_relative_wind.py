@@ -35,6 +35,12 @@ class MeasuredRelativeWind(MeasuredWind):
     those of `measured_wind`.
     """
 
+    formula: ClassVar[str] = (
+        r"X = \tfrac{1}{2} \rho A_x U^2 \cos\gamma, \quad Y = \tfrac{1}{2} \rho A_y U^2 "
+        r"\sin\gamma, \quad N = (l + l_1 \cos\gamma) \, Y, \quad \gamma = "
+        r"\gamma_\mathrm{from} + \pi"
+    )
+
     # the reading is relative to the hull, so no frame of reference is needed
     tied_to: ClassVar[str] = ""
     law: ClassVar = law

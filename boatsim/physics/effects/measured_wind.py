@@ -41,6 +41,12 @@ class MeasuredWind(Force):
     length L and side area: arm = N1 L / C_Y and swing = 2 N2 L / C_Y.
     """
 
+    formula: ClassVar[str] = (
+        r"\begin{aligned} X &= \tfrac{1}{2} \rho A_x U^2 \cos\gamma, \quad Y = "
+        r"\tfrac{1}{2} \rho A_y U^2 \sin\gamma, \quad N = (l + l_1 \cos\gamma) \, Y \\ U "
+        r"\cos\gamma &= -V \cos(\gamma_\mathrm{from} - \psi) - u, \quad U \sin\gamma = -V "
+        r"\sin(\gamma_\mathrm{from} - \psi) - v \end{aligned}"
+    )
     words: ClassVar[str] = "the measured wind exerts a drag and a yaw moment on the hull"
     shown_by: ClassVar[str] = "turning through all headings while holding the thrust"
     source: ClassVar[str] = (

@@ -71,6 +71,15 @@ class MmgHull(Force):
     because the Coriolis force of the added mass is part of this effect.
     """
 
+    formula: ClassVar[str] = (
+        r"\begin{aligned} X &= q \left(-R'_0 f + X'_{vv} v'^2 + X'_{vr} v' r' + X'_{rr} "
+        r"r'^2 + X'_{vvvv} v'^4\right) + m_y v_r r \\ Y &= q \left(Y'_v v' + Y'_r r' + "
+        r"Y'_{vvv} v'^3 + Y'_{vvr} v'^2 r' + Y'_{vrr} v' r'^2 + Y'_{rrr} r'^3\right) - "
+        r"m_x u_r r \\ N &= q L \left(N'_v v' + N'_r r' + N'_{vvv} v'^3 + N'_{vvr} v'^2 "
+        r"r' + N'_{vrr} v' r'^2 + N'_{rrr} r'^3\right) \\ q &= \tfrac{1}{2} \rho L d \, "
+        r"U^2, \quad v' = v_r / U, \quad r' = r L / U, \quad f = \min(\max(2 u_r / U, "
+        r"-1), 1) \end{aligned}"
+    )
     words: ClassVar[str] = "hull forces as polynomials in drift and rate of turn (MMG)"
     shown_by: ClassVar[str] = "turning circles and zig-zags"
     source: ClassVar[str] = (

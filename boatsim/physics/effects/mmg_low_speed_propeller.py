@@ -126,6 +126,13 @@ class MmgLowSpeedPropeller(Force):
     above `aside_high`.
     """
 
+    formula: ClassVar[str] = (
+        r"\begin{aligned} X &= g \, \begin{cases} (1 - t_P) \, \rho \, n^2 D^4 \left(k_0 "
+        r"+ k_1 J + k_2 J |J|\right) & n \ge 0 \\ \rho \, n^2 D^4 \left(C_1 + C_2 "
+        r"J_s\right) & n < 0 \end{cases} \\ Y &= \tfrac{1}{2} g \, \rho L d \, (n D)^2 \, "
+        r"Y'(J_s), \quad N = \tfrac{1}{2} g \, \rho L^2 d \, (n D)^2 \, N'(J_s), \quad J "
+        r"= \frac{u_P}{n D}, \quad J_s = \frac{u_r}{n D} \end{aligned}"
+    )
     words: ClassVar[str] = (
         "thrust of a propeller ahead and astern, with a side force when it backs (MMG, low speed)"
     )

@@ -109,6 +109,13 @@ class MmgLowSpeedRudder(Force):
     u_R is the flow along the rudder (see the source for its cases), v_R = -gamma_R (v + l_R r).
     """
 
+    formula: ClassVar[str] = (
+        r"\begin{aligned} X &= -(1 - t_R) F_N \sin\delta, \quad Y = -(1 + a_H) F_N "
+        r"\cos\delta, \quad N = -(x_R + a_H x_H) F_N \cos\delta \\ F_N &= \tfrac{1}{2} "
+        r"\rho A_R f_\alpha \left(u_R^2 + v_R^2\right) \sin\alpha_R, \quad \alpha_R = "
+        r"\delta - \operatorname{atan2}(v_R, u_R), \quad v_R = -\gamma_R (v_r + l_R r) "
+        r"\end{aligned}"
+    )
     words: ClassVar[str] = (
         "a rudder in the slipstream of a propeller that may back (MMG, low speed)"
     )

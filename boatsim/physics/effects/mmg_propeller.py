@@ -77,6 +77,12 @@ class MmgPropeller(Force):
     1 - w_P = (1 - w_P0) (1 + (1 - exp(-C_1 |beta_P|)) (C_2 - 1)),  beta_P = beta - x_P' r'
     """
 
+    formula: ClassVar[str] = (
+        r"\begin{aligned} X &= g (1 - t_P) \, \rho \, n^2 D_P^4 \left(k_0 + k_1 J_P + k_2 "
+        r"J_P |J_P|\right), \quad J_P = \frac{u_r (1 - w_P)}{n D_P} \\ 1 - w_P &= (1 - "
+        r"w_{P0}) \left(1 + \left(1 - e^{-C_1 |\beta_P|}\right) (C_2 - 1)\right), \quad "
+        r"\beta_P = \beta - x'_P r' \end{aligned}"
+    )
     words: ClassVar[str] = "thrust of a propeller in the wake of the hull (MMG)"
     shown_by: ClassVar[str] = "turning circles, where the ship loses speed"
     source: ClassVar[str] = (

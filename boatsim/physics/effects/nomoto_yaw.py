@@ -40,6 +40,7 @@ class NomotoYaw(Force):
     `gain_later` and `time_constant_later`, for tests of adaptive control.
     """
 
+    formula: ClassVar[str] = r"N = I_z \, \frac{K \delta - r}{T}"
     words: ClassVar[str] = "the yaw rate follows the jet angle with a first-order lag"
     shown_by: ClassVar[str] = "steering steps"
     source: ClassVar[str] = (

@@ -37,6 +37,10 @@ class PlaningLag(Reaction):
     Steady speeds do not change, because the sum of the other forces is zero there.
     """
 
+    formula: ClassVar[str] = (
+        r"X = (\kappa - 1) \left(X_\mathrm{others} + m \, v_r r\right), \quad \kappa = "
+        r"\min\left(\max\left(\frac{u_r}{u_1}, \kappa_0\right), 1\right)"
+    )
     needs: ClassVar = ("surge",)
     words: ClassVar[str] = (
         "the craft changes its speed more slowly below planing speed; steady speeds do not change"

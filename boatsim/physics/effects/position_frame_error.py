@@ -50,6 +50,11 @@ class PositionFrameError(Measurement):
     y_recorded = y + forward sin(psi) + starboard cos(psi)
     """
 
+    formula: ClassVar[str] = (
+        r"\begin{aligned} x_\mathrm{recorded} &= x + a \cos\psi - b \sin\psi, \quad "
+        r"y_\mathrm{recorded} = y + a \sin\psi + b \cos\psi \\ u_\mathrm{recorded} &= u - "
+        r"b r, \quad v_\mathrm{recorded} = v + a r \end{aligned}"
+    )
     of_columns: ClassVar = ("x_m", "y_m")
     needs: ClassVar = ("sway", "yaw")
     words: ClassVar[str] = "recorded positions are those of another point of the hull (not physics)"

@@ -32,6 +32,11 @@ class PositionWander(DriftingMeasurement):
     Causes are clocks, atmosphere and multipath of satellite navigation, and the card of a compass.
     """
 
+    formula: ClassVar[str] = (
+        r"\dot e = -\frac{e}{\tau} + \sigma \sqrt{\frac{2}{\tau}} \, w(t), \quad "
+        r"x_\mathrm{recorded} = x + e_x, \quad y_\mathrm{recorded} = y + e_y, \quad "
+        r"\psi_\mathrm{recorded} = \psi + e_\psi"
+    )
     alone: ClassVar[bool] = True
     of_columns: ClassVar = ("x_m", "y_m")
     needs: ClassVar = ("surge", "sway")

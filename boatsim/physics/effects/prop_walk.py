@@ -37,6 +37,10 @@ class PropWalk(Force):
     the mount.
     """
 
+    formula: ClassVar[str] = (
+        r"Y = \begin{cases} c \, T & T \le 0 \\ s \, c \, T & T > 0 \end{cases}, \quad N "
+        r"= x \, Y"
+    )
     needs: ClassVar = ("sway",)
     words: ClassVar[str] = "the propellers push the stern sideways, most of all astern"
     shown_by: ClassVar[str] = "straight astern, then straight ahead"

@@ -60,6 +60,10 @@ class Propeller(Force):
     ahead.
     """
 
+    formula: ClassVar[str] = (
+        r"\begin{aligned} T &= g \, k \, n |n|, \quad X = T \cos\alpha, \quad Y = T "
+        r"\sin\alpha \\ K &= -z Y, \quad M = z X, \quad N = x Y - y X \end{aligned}"
+    )
     words: ClassVar[str] = (
         "the thrust of a propeller is proportional to the square of its shaft rate"
     )

@@ -56,6 +56,12 @@ class Push(Force):
     The bearing is one of the earth, or of the hull with `turns_with_hull` = 1.
     """
 
+    formula: ClassVar[str] = (
+        r"\begin{aligned} F &= F_0 + F_1 \sin(\omega t + \epsilon) \quad \text{for } t_1 "
+        r"\le t < t_2 \\ X &= X_0 + F \cos(\gamma - \psi), \quad Y = Y_0 + F \sin(\gamma "
+        r"- \psi) \\ K &= K_0 + l_h Y, \quad N = N_0 + l \, F \sin(\gamma - \psi) "
+        r"\end{aligned}"
+    )
     words: ClassVar[str] = "an external force acts on the hull during a time interval"
     shown_by: ClassVar[str] = "holding course and speed"
     law: ClassVar = law
@@ -102,6 +108,7 @@ ALWAYS = {"begin": -EVER, "end": EVER}
 SteadyForce = preset_effect(
     Push,
     "SteadyForce",
+    formula=r"X = X_0, \quad Y = Y_0, \quad K = K_0, \quad N = N_0",
     words="a constant force or moment acts on the hull, always in the same direction of the hull",
     shown_by="the same turn to port and to starboard",
     strength=("surge", "sway", "yaw", "roll"),
@@ -117,6 +124,11 @@ SteadyForce = preset_effect(
 Gust = preset_effect(
     Push,
     "Gust",
+    formula=(
+        r"\begin{aligned} F &= F_0 + F_1 \sin(\omega t + \epsilon) \\ X &= F \cos(\gamma "
+        r"- \psi), \quad Y = F \sin(\gamma - \psi), \quad K = l_h Y, \quad N = l \, Y "
+        r"\end{aligned}"
+    ),
     words="a sinusoidal force acts in one direction",
     shown_by="at rest without thrust",
     source="Y. Huang and Z. Ji, Autonomous boat dynamics, eq. 7",
@@ -132,6 +144,7 @@ class GustOffCentre(CoefficientRelease):
     origin.
     """
 
+    formula: ClassVar[str] = r"l = l^0 + \mathrm{arm}, \quad N = l \, Y_\mathrm{gust}"
     words: ClassVar[str] = (
         "the known disturbance also turns the boat: it acts away from the mass centre"
     )

@@ -86,6 +86,10 @@ class RateLimit(ChannelEffect):
     signal that reaches the actuator.
     """
 
+    formula: ClassVar[str] = (
+        r"\dot y = \begin{cases} R \operatorname{sgn}(x - y) & |x - y| > R \, T \\ (x - "
+        r"y) / T & \text{otherwise} \end{cases}"
+    )
     words: ClassVar[str] = "a signal follows its command at a limited rate"
     refines: ClassVar[str] = "lag"
     shown_by: ClassVar[str] = "large steps of the command"

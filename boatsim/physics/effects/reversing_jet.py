@@ -56,6 +56,10 @@ class ReversingJet(Force):
     angle.
     """
 
+    formula: ClassVar[str] = (
+        r"X = T_0 \left(\cos 2\beta + \mathrm{leak}\right), \quad N = N_\delta \left(\cos "
+        r"2\beta + \mathrm{leak}\right) \delta"
+    )
     words: ClassVar[str] = (
         "thrust and steering moment of an idling jet are proportional to cos 2 beta of its bucket"
     )
@@ -99,6 +103,7 @@ class JetLeak(CoefficientRelease):
     Thrust and moment then do not vanish at a bucket angle of 45 deg.
     """
 
+    formula: ClassVar[str] = r"\mathrm{leak} = \mathrm{leak}^0 + \mathrm{fraction}"
     words: ClassVar[str] = (
         "part of the jet leaks past the bucket and gives thrust ahead at every bucket angle"
     )

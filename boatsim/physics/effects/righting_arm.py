@@ -40,6 +40,7 @@ class RightingArm(Force):
     K = -stiffness (phi - list + cubic phi^3)
     """
 
+    formula: ClassVar[str] = r"K = -m g \, GM \left(\phi - \phi_0 + c \, \phi^3\right)"
     words: ClassVar[str] = "the restoring moment of buoyancy is proportional to the heel"
     shown_by: ClassVar[str] = "a roll decay"
     law: ClassVar = law
@@ -83,6 +84,7 @@ class RightingArm(Force):
 class MetacentricHeightError(CoefficientRelease):
     """Righting moment that differs from its specified value by a factor."""
 
+    formula: ClassVar[str] = r"GM = k \, GM^0"
     words: ClassVar[str] = (
         "the metacentric height differs from its value by more than its specified uncertainty"
     )
@@ -107,6 +109,10 @@ class MetacentricHeightError(CoefficientRelease):
 class RightingArmStiffening(CoefficientRelease):
     """Cubic term of the righting arm, so that the roll period depends on the amplitude."""
 
+    formula: ClassVar[str] = (
+        r"c = c^0 + \mathrm{cubic}, \quad K = -m g \, GM \left(\phi - \phi_0 + c \, "
+        r"\phi^3\right)"
+    )
     words: ClassVar[str] = (
         "the righting moment is not in proportion to the heel, so the roll period changes with "
         "amplitude"

@@ -33,6 +33,7 @@ class RollCoupling(Force):
     Y = Y_p p,  K = K_v v_r + K_r r,  N = N_p p
     """
 
+    formula: ClassVar[str] = r"Y = Y_p p, \quad K = K_v v_r + K_r r, \quad N = N_p p"
     words: ClassVar[str] = (
         "roll causes sway and yaw forces, and drift and yaw rate cause a roll moment"
     )

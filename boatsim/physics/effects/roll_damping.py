@@ -34,6 +34,7 @@ class RollDamping(Force):
     source.
     """
 
+    formula: ClassVar[str] = r"K = -2 \zeta \sqrt{m g \, GM \left(I_x - K_{\dot p}\right)} \; p"
     words: ClassVar[str] = "the roll damping is proportional to the roll rate"
     shown_by: ClassVar[str] = "a roll decay"
     source: ClassVar[str] = (

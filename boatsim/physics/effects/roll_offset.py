@@ -33,6 +33,7 @@ class RollOffset(Measurement):
     differs, because it is symmetric about upright and not about the zero of the instrument.
     """
 
+    formula: ClassVar[str] = r"\phi_\mathrm{recorded} = \phi + b"
     of_columns: ClassVar = ("phi_rad",)
     needs: ClassVar = ("roll",)
     words: ClassVar[str] = "the recorded roll has a constant error (not physics)"

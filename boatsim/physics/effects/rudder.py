@@ -51,6 +51,10 @@ class Rudder(Force):
     the mass centre. A positive angle then turns to starboard.
     """
 
+    formula: ClassVar[str] = (
+        r"Y = Y_\delta \delta, \quad K = K_\delta \delta, \quad N = N_\delta \delta, "
+        r"\quad |\delta| \le \delta_\mathrm{stall}"
+    )
     words: ClassVar[str] = "the rudder force is proportional to the rudder angle"
     shown_by: ClassVar[str] = "a zig-zag at small rudder angles"
     source: ClassVar[str] = (
@@ -129,6 +133,7 @@ class Rudder(Force):
 class RudderStall(CoefficientRelease):
     """Stall of the rudder: its force is constant beyond an angle."""
 
+    formula: ClassVar[str] = r"\delta_\mathrm{stall} = \mathrm{angle}"
     words: ClassVar[str] = "the rudder stalls: beyond an angle its force does not increase"
     shown_by: ClassVar[str] = "turns at small and at large rudder angles"
     source: ClassVar[str] = (

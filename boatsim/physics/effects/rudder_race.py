@@ -38,6 +38,10 @@ class RudderRace(Force):
     rudder increases in proportion to the thrust T at every speed. c is `normal_force_per_thrust`.
     """
 
+    formula: ClassVar[str] = (
+        r"F_N = c \max(T, 0) \sin\delta, \quad X = -F_N \sin\delta, \quad Y = s \, F_N "
+        r"\cos\delta, \quad N = x_R Y"
+    )
     needs: ClassVar = ("surge", "sway", "yaw")
     words: ClassVar[str] = (
         "the rudder is in the propeller slipstream: its force grows with the thrust, also at rest"

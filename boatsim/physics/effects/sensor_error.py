@@ -63,6 +63,8 @@ class SensorError(Measurement):
     that have a name: those of the channels that were recorded.
     """
 
+    formula: ClassVar[str] = r"y_\mathrm{recorded}(t) = (1 + \epsilon) \, y(t - \tau) + b + c \, t"
+
     column: ClassVar[str] = "r_radps"  # default channel; the only one of a special case
     special_case: ClassVar[bool] = False
     uses_time: ClassVar[bool] = True
@@ -126,6 +128,27 @@ class SensorError(Measurement):
 OFFSET_SPREAD, DRIFT_SPREAD, GAIN_SPREAD, DELAY_SPREAD = 0.05, 0.001, 0.1, 0.2
 
 
+SYMBOLS = {"phi": r"\phi", "theta": r"\theta", "psi": r"\psi"}  # those that are no letters
+
+
+def instrument_formula(channel: InstrumentChannel, freed: str) -> str:
+    """Return the law of one error of one recorded channel in LaTeX.
+
+    Args:
+        channel: The recorded channel.
+        freed: Parameter of the error: gain_fraction, offset, delay or drift.
+    """
+    symbol = channel.column.partition("_")[0]
+    symbol = SYMBOLS.get(symbol, symbol)
+    laws = {
+        "gain_fraction": rf"(1 + \epsilon) \, {symbol}(t)",
+        "offset": f"{symbol}(t) + b",
+        "delay": rf"{symbol}(t - \tau)",
+        "drift": rf"{symbol}(t) + c \, t",
+    }
+    return rf"{symbol}_\mathrm{{recorded}}(t) = {laws[freed]}"
+
+
 def special_case(
     channel: InstrumentChannel,
     freed: str,
@@ -151,6 +174,7 @@ def special_case(
     return {
         "frees": {freed: about},
         "fixed": dict.fromkeys(sorted(others), 0.0),
+        "formula": instrument_formula(channel, freed),
         "words": f"the recorded {channel.words} {words} (not physics)",
         "column": channel.column,
         "of_columns": (channel.column,),

@@ -123,6 +123,10 @@ class Servo(ChannelEffect):
     y' = rate sign(x - y)  while |x - y| > rate lag,  then  y' = (x - y) / lag,  |x| <= range
     """
 
+    formula: ClassVar[str] = (
+        r"\dot y = \begin{cases} R \operatorname{sgn}(x - y) & |x - y| > R \, T \\ (x - "
+        r"y) / T & \text{otherwise} \end{cases}, \quad |x| \le x_\mathrm{max}"
+    )
     words: ClassVar[str] = "the steering follows its command with limited rate and range"
     shown_by: ClassVar[str] = "fast steering reversals"
     source: ClassVar[str] = (

@@ -33,6 +33,7 @@ class SpeedHold(Force):
     Without other surge forces u_r stays exactly at `speed`, as linear manoeuvring models assume.
     """
 
+    formula: ClassVar[str] = r"X = -m \, v_r r - g (u_r - U)"
     words: ClassVar[str] = "the speed ahead through the water is held constant"
     shown_by: ClassVar[str] = "turning hard at constant power"
     source: ClassVar[str] = (

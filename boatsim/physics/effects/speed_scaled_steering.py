@@ -44,6 +44,11 @@ class SpeedScaledSteering(Force):
     e = u_r / U0.
     """
 
+    formula: ClassVar[str] = (
+        r"\begin{aligned} Y &= h_Y \left((|e| - 1) Y_v v_r + (e - 1) Y_r r\right) + c_Y "
+        r"(e |e| - 1) Y_\delta \delta \\ N &= h_N \left((e - 1) N_v v_r + (|e| - 1) N_r "
+        r"r\right) + c_N (e |e| - 1) N_\delta \delta, \quad e = u_r / U_0 \end{aligned}"
+    )
     words: ClassVar[str] = (
         "hull and rudder forces change with the forward speed instead of staying constant"
     )

@@ -61,6 +61,10 @@ class SteeringBacklash(ChannelEffect):
     `behind` sets the first angle: 0 in the middle of the play, 1 as reached from straight ahead.
     """
 
+    formula: ClassVar[str] = (
+        r"y(t) = \min\left(\max\left(y(t^-), x(t) - \tfrac{1}{2} b\right), x(t) + "
+        r"\tfrac{1}{2} b\right)"
+    )
     ruled_out_by: ClassVar = {"steering_measured": (True,)}
     words: ClassVar[str] = (
         "the steering linkage has play, so the angle lags when the steering reverses"

@@ -30,6 +30,7 @@ def law(m: Any, q: Any, s: Any, t: Any) -> Wrench:
 class SteeringDrag(Force):
     """Resistance proportional to the square of the rudder angle, X = X_delta_delta delta^2."""
 
+    formula: ClassVar[str] = r"X = X_{\delta\delta} \delta^2"
     words: ClassVar[str] = "the resistance grows with the square of the rudder angle"
     shown_by: ClassVar[str] = "large rudder angles that reverse before the ship turns"
     source: ClassVar[str] = (

@@ -53,6 +53,7 @@ class SteeringOffset(ChannelEffect):
     y = x + offset(side) + gain |x|
     """
 
+    formula: ClassVar[str] = r"y = x + b_\mathrm{side} + \epsilon |x|"
     words: ClassVar[str] = "the thrusters or rudders have a constant angle error"
     shown_by: ClassVar[str] = "straight runs ahead and astern"
     acts_on: ClassVar[str] = "angle"
@@ -92,6 +93,7 @@ class SteeringOffset(ChannelEffect):
 SteeringAsymmetry = preset_effect(
     SteeringOffset,
     "SteeringAsymmetry",
+    formula=r"y = x + \epsilon |x|",
     words="the same angle steers more strongly to one side than to the other",
     shown_by="turns with the same angle to both sides",
     source="C. Svendsen et al., IFAC MCMC 2012: yaw rates of right turns deviate from the model",

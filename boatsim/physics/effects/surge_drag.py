@@ -29,6 +29,7 @@ class SurgeDrag(Force):
     X = -(linear + quadratic |u_r|) u_r,  linear = -X_u,  quadratic = -X_u|u|
     """
 
+    formula: ClassVar[str] = r"X = X_u u_r + X_{|u|u} |u_r| u_r"
     words: ClassVar[str] = "resistance of the hull in surge"
     shown_by: ClassVar[str] = "coasting straight ahead"
     law: ClassVar = law

@@ -36,6 +36,7 @@ class SwayYawCoupling(Force):
     They are added to the Coriolis terms of the rigid body. N_uv alone is the Munk moment.
     """
 
+    formula: ClassVar[str] = r"X = X_{vr} v_r r, \quad Y = Y_{ur} u_r r, \quad N = N_{uv} u_r v_r"
     needs: ClassVar = ("surge", "sway", "yaw")
     words: ClassVar[str] = (
         "a moving hull has a side force when it turns and a yaw moment when it drifts"
@@ -59,6 +60,7 @@ class SwayYawCoupling(Force):
 SpeedLossInTurn = preset_effect(
     SwayYawCoupling,
     "SpeedLossInTurn",
+    formula=r"X = X_{vr} v_r r",
     words="a hull that drifts while it turns loses speed, in proportion to drift times yaw rate",
     shown_by="turning circles and large zig-zags with the propeller held",
     source="H. Yasukawa, Y. Yoshimura, J. Mar. Sci. Technol. 20, 2015: m_y + X_vr",

@@ -56,6 +56,11 @@ class Tether(Force):
     origin.
     """
 
+    formula: ClassVar[str] = (
+        r"\begin{aligned} F &= T_0 + k \max(d - l, 0) \quad \text{towards the anchor at "
+        r"the distance } d \\ X &= F_x - c \, u_r, \quad Y = F_y - c \, (v_r + a r), "
+        r"\quad N = a \, Y \end{aligned}"
+    )
     ruled_out_by: ClassVar = {"moored": (False,)}
     needs: ClassVar = ("surge", "sway")
     words: ClassVar[str] = "a line or cable pulls the boat towards a fixed point"

@@ -52,6 +52,7 @@ class ThrustDeadband(ChannelEffect):
     y = x - min(max(x, -width), width)
     """
 
+    formula: ClassVar[str] = r"y = x - \min(\max(x, -b), b)"
     words: ClassVar[str] = (
         "small thrust commands have no effect and all thrust is reduced by a constant"
     )

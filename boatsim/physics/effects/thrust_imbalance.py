@@ -38,6 +38,9 @@ class ThrustImbalance(ChannelEffect):
     T_port = (1 + f) T,  T_starboard = (1 - f) T,  f = `fraction`
     """
 
+    formula: ClassVar[str] = (
+        r"T_\mathrm{port} = (1 + f) \, T, \quad T_\mathrm{starboard} = (1 - f) \, T"
+    )
     words: ClassVar[str] = "one side pushes harder than the other for the same command"
     shown_by: ClassVar[str] = "straight runs ahead and astern with equal commands"
     acts_on: ClassVar[str] = "thrust|shaft"

@@ -72,6 +72,7 @@ def time_to_discontinuity(x: float, memory: Array, at: int, q: Any) -> float:
 class ThrustLag(ChannelEffect):
     """First-order lag of the thrust behind its command: time_constant y' = x - y."""
 
+    formula: ClassVar[str] = r"\tau \, \dot y = x - y"
     words: ClassVar[str] = "thrust follows its command with a first-order lag"
     refines: ClassVar[str] = "lag"
     shown_by: ClassVar[str] = "fast steps of the thrust"

@@ -53,6 +53,10 @@ class Thruster(Force):
     Without a steering channel the angle a is a constant, 0 straight ahead.
     """
 
+    formula: ClassVar[str] = (
+        r"\begin{aligned} X &= g \, T \cos\alpha, \quad Y = g \, T \sin\alpha \\ K &= -z "
+        r"Y, \quad M = z X, \quad N = x Y - y X \end{aligned}"
+    )
     words: ClassVar[str] = "thrust of a thruster, steered where it can be turned"
     shown_by: ClassVar[str] = "any manoeuvre"
     source: ClassVar[str] = (
@@ -80,6 +84,7 @@ class Thruster(Force):
 class ThrustGainError(CoefficientRelease):
     """Thrust of all drives that differs by one factor from its specified value."""
 
+    formula: ClassVar[str] = r"g = k \, g^0"
     words: ClassVar[str] = "all thrust is stronger or weaker than specified by one factor"
     refines: ClassVar[str] = "thrust"
     shown_by: ClassVar[str] = "runs at several thrust levels"

@@ -60,6 +60,13 @@ class WallEffect(Force):
     The walls are given in the facts of a recording (`walls_m`) or in the table of the effect.
     """
 
+    formula: ClassVar[str] = (
+        r"\begin{aligned} X_E &= F (n_N - n_S), \quad Y_E = F (n_E - n_W), \quad n_w = "
+        r"e^{-d_w / \lambda} \quad \text{for each wall } w \\ X &= X_E \cos\psi + Y_E "
+        r"\sin\psi - \mu \, d_u u_r, \quad Y = Y_E \cos\psi - X_E \sin\psi - \mu \, d_v "
+        r"v_r \\ N &= -\mu \, d_r r, \quad \mu = k \, (n_N + n_S + n_E + n_W) "
+        r"\end{aligned}"
+    )
     needs: ClassVar = ("surge", "sway")
     words: ClassVar[str] = (
         "near the walls of the tank the damping increases and the boat is drawn towards them"

@@ -54,6 +54,11 @@ class WaterJet(Force):
     to 4 (s0, s1, s2), linear above (m2, q2).
     """
 
+    formula: ClassVar[str] = (
+        r"X = g \, \frac{m \, P(h)}{\max(u_r, u_0)}, \quad P(h) = \begin{cases} m_1 "
+        r"\max(h, 1) + q_1 & h < 2 \\ s_0 + s_1 h + s_2 h^2 & 2 \le h < 4 \\ m_2 h + q_2 "
+        r"& h \ge 4 \end{cases}"
+    )
     words: ClassVar[str] = "the thrust of a water jet follows from the power that the throttle sets"
     shown_by: ClassVar[str] = "throttle steps"
     source: ClassVar[str] = (

@@ -71,6 +71,12 @@ class WaveForcing(RandomForce):
     sigma is the rms force of the axis, w0 the `frequency` [rad/s], z the `damping` of the filter.
     """
 
+    formula: ClassVar[str] = (
+        r"\begin{aligned} X &= \sigma_X n_1(t), \quad Y = \sigma_Y n_2(t), \quad K = "
+        r"\sigma_K n_3(t), \quad N = \sigma_N n_4(t) \\ n_i(s) &\sim \frac{2 \zeta "
+        r"\omega_0 s}{s^2 + 2 \zeta \omega_0 s + \omega_0^2} \quad \text{applied to white "
+        r"noise, with unit rms} \end{aligned}"
+    )
     ruled_out_by: ClassVar = {"no_waves": (True,)}
     words: ClassVar[str] = "waves exert narrow-band forces on the hull about one frequency"
     shown_by: ClassVar[str] = "at rest without thrust"

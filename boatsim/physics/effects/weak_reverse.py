@@ -52,6 +52,7 @@ class WeakReverse(ChannelEffect):
     T = astern_factor T_command  for T_command < 0
     """
 
+    formula: ClassVar[str] = r"y = \begin{cases} x & x \ge 0 \\ k \, x & x < 0 \end{cases}"
     words: ClassVar[str] = "the propellers push less astern than commanded"
     words_above: ClassVar[str] = "the propellers push more astern than commanded"
     shown_by: ClassVar[str] = "turning on the spot or swaying with one motor astern"

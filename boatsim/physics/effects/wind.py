@@ -38,6 +38,10 @@ class Wind(Force):
     g is the angle between the bow and the direction `toward` of the wind.
     """
 
+    formula: ClassVar[str] = (
+        r"X = e \, F \cos\gamma, \quad Y = F \sin\gamma, \quad N = (l + l_1 \cos\gamma) "
+        r"\, Y, \quad \gamma = \gamma_\mathrm{to} - \psi"
+    )
     ruled_out_by: ClassVar = {"indoors": (True,)}
     needs: ClassVar = ("surge", "sway")
     words: ClassVar[str] = "a steady wind pushes the hull in one direction of the world"

@@ -82,6 +82,11 @@ class YawRateWaves(RandomForce):
     I is the yaw inertia with the added one, d the linear yaw damping of the vessel.
     """
 
+    formula: ClassVar[str] = (
+        r"\begin{aligned} N &= \left(I_z - N_{\dot r}\right) \dot r_w + d_r r_w \\ r_w(s) "
+        r"&\sim \frac{\kappa s}{s^2 + 2 \lambda_w \omega_w s + \omega_w^2} \quad "
+        r"\text{applied to white noise} \end{aligned}"
+    )
     words: ClassVar[str] = "waves cause a narrow-band yaw rate about one frequency"
     shown_by: ClassVar[str] = "holding a heading"
     source: ClassVar[str] = "L. R. S. Theisen, R. Galeazzi, M. Blanke, IFAC CAMS 2013, equation 8"

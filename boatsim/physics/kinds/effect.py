@@ -47,6 +47,8 @@ class Effect(CheckedParameters):
     words: ClassVar[str] = ""
     # the same if the first fitted parameter exceeds its inactive value
     words_above: ClassVar[str] = ""
+    # the law in LaTeX, with SNAME symbols, as the reference shows it
+    formula: ClassVar[str] = ""
     shown_by: ClassVar[str] = ""  # manoeuvre in which the effect is most visible
     kind: ClassVar[str] = "physics"  # or "measurement"
     source: ClassVar[str] = ""  # paper, equation or table of the law
