@@ -171,9 +171,9 @@ def _draw_legend(parts: list[str], panel: Axes, top: float) -> float:
         wide = 34 + LETTER * len(curve.name)
         if used and left + wide > WIDTH:
             left, top = float(LEFT), top + ROW
-        parts.append(_path(f"curve {curve.style or style}", f"M{left} {top + 8}h22"))
+        parts.append(_path(f"curve {curve.style or style}", f"M{left:.1f} {top + 8:.1f}h22"))
         parts.append(_text(left + 27, top + 12, curve.name, "start"))
-        left, used = left + wide + 6, True
+        left, used = left + wide + 14, True
     return top + ROW if used else top
 
 

@@ -1,18 +1,19 @@
 """Examples of the effects' reference pages: a program for each effect, and what it prints.
 
 `python docs/_ext/effect_examples.py` runs all of them and writes their output to
-`effect_outputs.toml`; `python docs/_ext/effect_examples.py tether` runs one. A slow test compares
-the stored output with that of today. Nothing is compiled for these short runs (`BOATSIM_DEBUG`).
+`effect_outputs.toml`; `--check` compares their output with the stored one, as a slow test does;
+the names of effects show and run single examples. Nothing is compiled for these short runs
+(`BOATSIM_DEBUG`).
 """
 
 import contextlib
 import io
+import json
 import os
 import sys
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from textwrap import wrap
 
 os.environ.setdefault("BOATSIM_DEBUG", "1")
 
@@ -26,9 +27,11 @@ from effect_cases import (  # noqa: E402
     Case,
     all_cases,
 )
+from page_commands import first_difference  # noqa: E402
 
 OUTPUTS = Path(__file__).with_name("effect_outputs.toml")
-LINE = 96  # characters of a line of a program
+LONGEST_LINE = 92  # characters of a line of a program
+LONGEST_TABLE = 56  # characters of a table that is written in one line
 
 
 def program(name: str) -> str:
@@ -47,10 +50,12 @@ def program(name: str) -> str:
 
 def _vessel_lines(name: str, case: Case) -> list[str]:
     """Return the lines that load the vessel of a case, and change it by the effect."""
-    load = f", {case['load']!r}" if "load" in case else ""
-    lines = [f"boat = boatsim.load_vessel({case.get('vessel', VESSEL)!r}{load})"]
+    arguments = json.dumps(case.get("vessel", VESSEL))
+    if "load" in case:
+        arguments += f", {json.dumps(case['load'])}"
+    lines = [f"boat = boatsim.load_vessel({arguments})"]
     if "set" in case:
-        lines.append(f"boat = boat.with_parameters({case['set']!r})")
+        lines.append(f"boat = boat.with_parameters({_table(case['set'])})")
     if "add" in case:
         table = {"use": name, **case["add"]}
         return [*lines, f"changed = boat.with_effect({_table(table)})"]
@@ -60,12 +65,13 @@ def _vessel_lines(name: str, case: Case) -> list[str]:
 
 def _table(table: Mapping[str, object]) -> str:
     """Return a table as Python text, in several lines if it is long."""
-    text = repr(dict(table))
-    if len(text) < LINE - 30:
+    text = json.dumps(table)
+    if len(text) < LONGEST_TABLE:
         return text
-    lines = wrap(text[1:-1], LINE - 4, break_long_words=False, break_on_hyphens=False)
-    inside = "\n    ".join(lines)
-    return f"{{\n    {inside}\n}}"
+    lines = ["{"]
+    for key, value in table.items():
+        lines.append(f"    {json.dumps(key)}: {json.dumps(value)},")
+    return "\n".join([*lines, "}"])
 
 
 def _labels(case: Case) -> tuple[str, str]:
@@ -82,19 +88,29 @@ def _running_program(name: str, case: Case) -> str:
     goal = case.get("goal", GOALS.get(vessel))
     keys = f"duration={case.get('duration', DURATION)!r}"
     if vessel in STARTS:
-        keys += f", start={STARTS[vessel]!r}"
+        keys += f", start={json.dumps(STARTS[vessel])}"
     lines = ["import boatsim", "", *_vessel_lines(name, case)]
     if goal:
         lines.append(f"goal = [{_table(goal)}]")
         keys += ", goal=goal"
     before, after = _labels(case)
     lines += [
-        f"for label, vessel in (({before!r}, boat), ({after!r}, changed)):",
-        f"    scenario = boatsim.load_scenario({scenario!r}, vessel=vessel, {keys})",
-        f"    last = boatsim.run(scenario).recording[{column!r}][-1]",
+        f'for label, vessel in (("{before}", boat), ("{after}", changed)):',
+        *_call_lines(
+            "    scenario = boatsim.load_scenario", f'"{scenario}", vessel=vessel, {keys}'
+        ),
+        f'    last = boatsim.run(scenario).recording["{column}"][-1]',
         f'    print(f"{{label}}: {column} = {{last:.4g}}")',
     ]
     return "\n".join([*lines, ""])
+
+
+def _call_lines(function: str, arguments: str) -> list[str]:
+    """Return the lines of a call, with the arguments on a line of their own if they are long."""
+    if len(function) + len(arguments) < LONGEST_LINE:
+        return [f"{function}({arguments})"]
+    indent = " " * (len(function) - len(function.lstrip()))
+    return [f"{function}(", f"{indent}    {arguments}", f"{indent})"]
 
 
 def _law_program(name: str, case: Case) -> str:
@@ -110,24 +126,24 @@ def _law_program(name: str, case: Case) -> str:
     if "vessel" in case:
         before, after = _labels(case)
         lines += _vessel_lines(name, case)
-        pairs = f"(({before!r}, boat), ({after!r}, changed))"
-        effect = f"vessel.effect({own!r})"
+        pairs = f'(("{before}", boat), ("{after}", changed))'
+        effect = f'vessel.effect("{own}")'
         header = [f"for label, vessel in {pairs}:", f"    effect = {effect}"]
         if "add" in case and own == name:  # the vessel has it only after the change
-            header = [f"effect = changed.effect({own!r})"]
+            header = [f'effect = changed.effect("{own}")']
     else:
         lines = ["from boatsim.physics import base, content", ""]
         header = [
-            f"kind = content.load_class('effect', {name!r})",
+            f'kind = content.load_class("effect", "{name}")',
             f"less = {_table(law.get('before', {}))}",
             f"more = {_table(case['add'])}",
-            "for label, given in (('without', less), ('with', more)):",
+            'for label, given in (("without", less), ("with", more)):',
             "    effect = kind(**given)",
         ]
     lines += [
         f"motion = base.motion({moves})",
         *header,
-        f"    wrench = type(effect).law({arguments})",
+        *_call_lines("    wrench = type(effect).law", arguments),
         '    print(f"{label}: X = {wrench.X:.4g} N, Y = {wrench.Y:.4g} N, N = {wrench.N:.4g} N m")',
     ]
     return "\n".join([*lines, ""])
@@ -135,14 +151,15 @@ def _law_program(name: str, case: Case) -> str:
 
 def _measuring_program(name: str, case: Case) -> str:
     """Return a program that applies a measurement error to a motion."""
-    parameters = ", ".join(f"{key}={value!r}" for key, value in case["measures"].items())
+    parameters = ", ".join(f"{key}={json.dumps(x)}" for key, x in case["measures"].items())
     lines = [
         "import boatsim",
         "from boatsim.physics.content import load_class",
         "from boatsim.physics.signals import MeasuredMotion",
         "",
-        f"kind = load_class('effect', {name!r})",
-        f"error = kind({parameters}).with_all_parameters(boatsim.load_vessel({VESSEL!r}))",
+        f'kind = load_class("effect", "{name}")',
+        f"error = kind({parameters})",
+        f'error = error.with_all_parameters(boatsim.load_vessel("{VESSEL}"))',
     ]
     if "motion" not in case:
         lines.remove("from boatsim.physics.signals import MeasuredMotion")
@@ -157,8 +174,9 @@ def _measuring_program(name: str, case: Case) -> str:
     lines += [
         f"true = MeasuredMotion(*[0.0] * 12)._replace({moves})",
         f"recorded = kind.apply_measurement_error(true, {time}error.values())",
-        f"for signal in {tuple(case['see'])!r}:",
-        '    print(f"{signal}: true {getattr(true, signal):.4g}, recorded {getattr(recorded, signal):.4g}")',
+        f"for signal in {json.dumps(case['see'])}:",
+        "    values = getattr(true, signal), getattr(recorded, signal)",
+        '    print("{}: true {:.4g}, recorded {:.4g}".format(signal, *values))',
     ]
     return "\n".join([*lines, ""])
 
@@ -195,9 +213,36 @@ def store_outputs() -> None:
     OUTPUTS.write_text(text, encoding="utf-8")
 
 
-if __name__ == "__main__":
-    if not sys.argv[1:]:
+def differences() -> list[str]:
+    """Run all examples and return a description of each that prints something else than stored."""
+    found = []
+    stored = stored_outputs()
+    for name in sorted(all_cases()):
+        shown, printed = stored.get(name, "").splitlines(), output(name).splitlines()
+        if len(printed) != len(list(filter(None, shown))):
+            found.append(f"{name} prints {printed}, stored is {shown}")
+        elif message := first_difference(shown, printed):
+            found.append(f"{name}: {message}")
+    return found
+
+
+def main(names: Sequence[str]) -> int:
+    """Store the outputs, compare them (`--check`), or show single examples; return the exit code.
+
+    Args:
+        names: Names of effects, or `--check`, or nothing.
+    """
+    if not names:
         store_outputs()
-    for one in sys.argv[1:]:
-        print(program(one))
-        print(output(one))
+    if list(names) == ["--check"]:
+        found = differences()
+        print("\n".join(found))
+        return bool(found)
+    for name in names:
+        print(program(name))
+        print(output(name))
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

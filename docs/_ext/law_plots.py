@@ -346,5 +346,3 @@ def _payload_plot(case: Case) -> str:
     about = "Surge acceleration by a force of 1 N over the additional mass"
     title = "surge acceleration by 1 N [m/s²]"
     return line_chart([Axes(title, curves)], f"{words} [{unit}]", about)
-
-

@@ -12,6 +12,9 @@ from docutils.utils.math.latex2mathml import tex2mathml
 from sphinx.application import Sphinx
 from sphinx.util import logging
 
+# The bar of an absolute value, which browsers would set apart like a relation.
+BAR = '<mo stretchy="false">|</mo>'
+CLOSE_BAR = '<mo stretchy="false" lspace="0" rspace="0">|</mo>'
 log = logging.getLogger(__name__)
 
 
@@ -24,10 +27,11 @@ def convert(latex: str, node: nodes.Node, as_block: bool) -> str:
         as_block: Whether the formula stands on lines of its own.
     """
     try:
-        return str(tex2mathml(latex, as_block=as_block))
+        formula = str(tex2mathml(latex, as_block=as_block))
     except MathError as error:
         log.warning("formula %r: %s", latex, error, location=node)
         return f"<code>{escape(latex)}</code>"
+    return formula.replace(BAR, CLOSE_BAR)
 
 
 def visit_math(translator: Any, node: nodes.math) -> None:

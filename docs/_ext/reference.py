@@ -3,11 +3,13 @@
 Sphinx is imported only when the extension is set up, so that tests can read the pages without it.
 """
 
-import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+
+import effect_pages
+from page_markup import bullet_list, escaped, row, sentence, table_rows
 
 from boatsim.cli import app as program
 from boatsim.cli.catalogue import describe
@@ -60,21 +62,16 @@ def pages() -> dict[str, str]:
 
 def _entry_page(kind: str, name: str) -> str:
     """Return the page of an effect, controller, set of metrics or sensor."""
+    if kind == "effect":
+        return effect_pages.page(name)
     entry = class_entry(kind, name)
-    lines = [f"# {name}", "", f"{_sentence(entry.words)}.", ""]
+    lines = [f"# {name}", "", f"{sentence(entry.words)}.", ""]
     if entry.doc:
-        lines.extend(map(_escaped, entry.doc))
-        lines.append("")
+        lines += [*map(escaped, entry.doc), ""]
     if entry.facts:
-        for label, text in entry.facts:
-            lines.append(f"- **{label}**: {_escaped(text)}")
-        lines.append("")
+        lines += [*bullet_list(entry.facts), ""]
     if entry.parameters:
-        head, *rows = entry.parameters
-        lines += [_row(head), _row(["---"] * len(head))]
-        for row in rows:
-            lines.append(_row(map(_escaped, row)))
-        lines.append("")
+        lines += [*table_rows(entry.parameters), ""]
     return "\n".join([*lines, "```toml", *entry.example, "```", ""])
 
 
@@ -85,7 +82,7 @@ def _vessel_page(name: str) -> str:
     if "" in lines:
         lines = lines[: lines.index("")]
     words, *details = lines
-    page = [f"# {name}", "", f"{_sentence(words.strip()).rstrip('.')}.", "", "```text"]
+    page = [f"# {name}", "", f"{sentence(words.strip()).rstrip('.')}.", "", "```text"]
     for line in details:
         if not line.startswith("  file: "):
             page.append(line)
@@ -101,7 +98,7 @@ def _scenario_pages() -> Iterator[tuple[str, str]]:
         lines = [f"# {folder}", "", "| `boatsim run` | purpose |", "| --- | --- |"]
         for name in names:
             about = str(cases.read_scenario(name)[0].get("about", ""))
-            lines.append(_row((f"`{name}`", _escaped(about))))
+            lines.append(row((f"`{name}`", escaped(about))))
         yield f"scenarios/{folder}", "\n".join([*lines, ""])
 
 
@@ -126,7 +123,7 @@ def _setting_pages() -> Iterator[tuple[str, str]]:
     for group in fields(DEFAULT):
         settings = getattr(DEFAULT, group.name)
         summary = (type(settings).__doc__ or "").splitlines()[0]
-        lines = [f"# {group.name}", "", _escaped(summary), ""]
+        lines = [f"# {group.name}", "", escaped(summary), ""]
         lines += [
             "| setting | default | unit | range | reason |",
             "| --- | --- | --- | --- | --- |",
@@ -136,7 +133,7 @@ def _setting_pages() -> Iterator[tuple[str, str]]:
             limits = f"{about['low']:g} to {about['high']:g}"
             name = f"`{group.name}.{field.name}`"
             cells = (f"{field.default}", about["unit"], limits, about["reason"])
-            lines.append(_row((name, *map(_escaped, cells))))
+            lines.append(row((name, *map(escaped, cells))))
         yield f"settings/{group.name}", "\n".join([*lines, ""])
 
 
@@ -158,29 +155,14 @@ def _index(section: str, texts: Mapping[str, str]) -> str:
     return "\n".join([*lines, "", "```{toctree}", ":hidden:", "", *names, "```", ""])
 
 
-def _row(cells: Iterable[str]) -> str:
-    return f"| {' | '.join(cells)} |"
-
-
-def _sentence(text: str) -> str:
-    return _escaped(text[:1].upper() + text[1:])
-
-
-def _escaped(text: str) -> str:
-    """Escape what Markdown would interpret, except in backticks."""
-    escaped = []
-    for part in re.split(r"(`[^`]*`)", text):
-        if part.startswith("`"):
-            escaped.append(part)
-        else:
-            escaped.append(re.sub(r"([\\*_<>|\[\]$])", r"\\\1", part))
-    return "".join(escaped)
-
-
 def write(app: "Sphinx") -> None:
     """Write all pages that have changed, and remove those that no longer exist."""
     folder = Path(app.srcdir) / "reference"
-    texts = {folder / f"{name}.md": text for name, text in pages().items()}
+    texts = {}
+    for name, text in pages().items():
+        if name.startswith("effects/"):
+            text = effect_pages.with_plot(name.removeprefix("effects/"), text)
+        texts[folder / f"{name}.md"] = text
     for file in folder.glob("*/*.md"):
         if file not in texts:
             file.unlink()

@@ -97,12 +97,25 @@ class AbkowitzHull(Force):
         r"X_{rr} r'^2 + X_{rv} r' v' \\ &\quad + g \left(X_{\delta\delta} \delta^2 + "
         r"X_{u\delta\delta} u' \delta^2 + X_{v\delta} v' \delta + X_{uv\delta} u' v' "
         r"\delta\right) \\ Y' &= Y_v v' + Y_{vu} v' u' + Y_{vvv} v'^3 + Y_{vvr} v'^2 r' + "
-        r"Y_r r' + Y_{ru} r' u' + Y_0 + Y_{0u} u' + Y_{0uu} u'^2 \\ &\quad + g "
-        r"\left(Y_\delta \delta + Y_{u\delta} u' \delta + Y_{uu\delta} u'^2 \delta + "
-        r"Y_{\delta\delta\delta} \delta^3 + Y_{v\delta\delta} v' \delta^2 + Y_{vv\delta} "
-        r"v'^2 \delta\right) \\ u' &= (u_r - U_0) / U, \quad v' = v_r / U, \quad r' = r L "
-        r"/ U, \quad U = \max\left(\sqrt{u_r^2 + v_r^2},\; 0.3\, U_0\right) \end{aligned}"
+        r"Y_r r' + Y_{ru} r' u' \\ &\quad + g \left(Y_\delta \delta + Y_{u\delta} u' "
+        r"\delta + Y_{uu\delta} u'^2 \delta + Y_{\delta\delta\delta} \delta^3 + "
+        r"Y_{v\delta\delta} v' \delta^2 + Y_{vv\delta} v'^2 \delta\right) \\ &\quad + Y_0 "
+        r"+ Y_{0u} u' + Y_{0uu} u'^2 \\ u' &= (u_r - U_0) / U, \quad v' = v_r / U, \quad "
+        r"r' = r L / U \\ U &= \max\left(\sqrt{u_r^2 + v_r^2},\; 0.3 \, U_0\right) "
+        r"\end{aligned}"
     )
+    symbols: ClassVar = {
+        "length": "L",
+        "speed": "U_0",
+        "mass": "m",
+        "yaw_inertia": "I_z",
+        "gain": "g",
+        "m11": "m'_{11}",
+        "m22": "m'_{22}",
+        "m23": "m'_{23}",
+        "m32": "m'_{32}",
+        "m33": "m'_{33}",
+    }
     words: ClassVar[str] = (
         "hull and rudder forces as a polynomial in drift, rate of turn and rudder angle"
     )

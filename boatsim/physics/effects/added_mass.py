@@ -86,16 +86,24 @@ class AddedMass(Inertia, Force):
     M_A has the entries surge = -X_udot, sway = -Y_vdot, heave = -Z_wdot [kg] and roll = -K_pdot,
     pitch = -M_qdot, yaw = -N_rdot [kg m^2]. With `spheroid` = 1 surge, sway and yaw are those of a
     prolate spheroid of the vessel's length and draught (H. Lamb, Hydrodynamics, 1932), and roll is
-    `roll_share` times the roll inertia of the body, about the origin.
+    `roll_share` times the roll inertia of the body, about the origin. X_C, Y_C and N_C are the
+    Coriolis force in the plane, with the sway added mass at the origin.
     """
 
     formula: ClassVar[str] = (
-        r"\begin{aligned} \boldsymbol{\tau} &= -\mathbf{M}_A \dot{\boldsymbol{\nu}}_r - c "
-        r"\, \mathbf{C}_A(\boldsymbol{\nu}_r) \boldsymbol{\nu}_r \\ X_C &= -c \, Y_{\dot "
-        r"v} v_r r, \quad Y_C = c \, X_{\dot u} u_r r, \quad N_C = c \, (Y_{\dot v} - "
-        r"X_{\dot u}) \, u_r v_r \quad \text{(in the plane, sway added mass at the "
-        r"origin)} \end{aligned}"
+        r"\begin{aligned} \tau &= -\mathbf{M}_A \dot{\nu_r} - c \, \mathbf{C}_A(\nu_r) "
+        r"\nu_r \\ X_C &= -c \, Y_{\dot v} v_r r, \quad Y_C = c \, X_{\dot u} u_r r \\ "
+        r"N_C &= c \, (Y_{\dot v} - X_{\dot u}) \, u_r v_r \end{aligned}"
     )
+    symbols: ClassVar = {
+        "surge": r"-X_{\dot u}",
+        "sway": r"-Y_{\dot v}",
+        "heave": r"-Z_{\dot w}",
+        "roll": r"-K_{\dot p}",
+        "pitch": r"-M_{\dot q}",
+        "yaw": r"-N_{\dot r}",
+        "coriolis": "c",
+    }
     alone: ClassVar = True
     words: ClassVar[str] = "the water that moves with the hull adds inertia"
     refines: ClassVar[str] = "added_mass"
@@ -238,6 +246,7 @@ class AddedMassError(CoefficientRelease):
         r"X_{\dot u} = k_u X_{\dot u}^0, \quad Y_{\dot v} = k_v Y_{\dot v}^0, \quad "
         r"N_{\dot r} = k_r N_{\dot r}^0"
     )
+    symbols: ClassVar = {"surge_factor": "k_u", "sway_factor": "k_v", "yaw_factor": "k_r"}
     words: ClassVar[str] = (
         "the added mass differs from its specified value: the hull floats deeper or shallower"
     )
@@ -302,6 +311,7 @@ class ShallowWater(CoefficientRelease):
         r"Y_{\dot v} = k \, Y_{\dot v}^0, \quad N_{\dot r} = k \, N_{\dot r}^0, \quad C_D "
         r"= k \, C_D^0"
     )
+    symbols: ClassVar = {"factor": "k"}
     needs: ClassVar = ("sway", "yaw")
     confounded_with: ClassVar = ("added_mass_error",)
     words: ClassVar[str] = "shallow water increases the added mass and the drag in sway and yaw"

@@ -36,6 +36,7 @@ class ApproachBalance(Force):
     """
 
     formula: ClassVar[str] = r"X = -d_u \left(u_r - g \, U_0 \, \frac{n}{n_0}\right)"
+    symbols: ClassVar = {"damping": "d_u", "speed": "U_0", "shaft_rate": "n_0", "gain": "g"}
     words: ClassVar[str] = "propeller and resistance hold the approach speed"
     shown_by: ClassVar[str] = "a straight run that starts at a slightly different speed"
     source: ClassVar[str] = (

@@ -44,6 +44,7 @@ class AsternTimeConstant(Force):
         r"N = \left(\frac{1}{k} - 1\right) \left(N_\delta \cos(2 \beta) \, \delta - d_r "
         r"r\right) \quad \text{for } u_r < 0"
     )
+    symbols: ClassVar = {"factor": "k", "yaw": "d_r"}
     words: ClassVar[str] = (
         "going astern the craft turns with another time constant than going ahead"
     )

@@ -52,6 +52,14 @@ class BilgeKeels(Force):
         r"\frac{22.5}{\pi} \, \rho \, l \, b^2 a^2 f \, \omega, \quad B_2 = 2.4 \, \rho "
         r"\, l \, b \, a^3 f^2 \end{aligned}"
     )
+    symbols: ClassVar = {
+        "breadth": "b",
+        "length": "l",
+        "arm": "a",
+        "flow": "f",
+        "frequency": r"\omega",
+        "density": r"\rho",
+    }
     confounded_with: ClassVar = ("quadratic_damping",)
     words: ClassVar[str] = "bilge keels damp the roll, the more the larger its amplitude"
     shown_by: ClassVar[str] = "a roll decay from a large heel"

@@ -37,6 +37,7 @@ class CameraScale(Measurement):
         r"x_\mathrm{recorded} = (1 + \epsilon_x) \, x, \quad y_\mathrm{recorded} = (1 + "
         r"\epsilon_y) \, y"
     )
+    symbols: ClassVar = {"x_fraction": r"\epsilon_x", "y_fraction": r"\epsilon_y"}
     of_columns: ClassVar = ("x_m", "y_m")
     ruled_out_by: ClassVar = {"position_fix": ("gnss", "inertial")}
     needs: ClassVar = ("surge", "sway")

@@ -31,7 +31,8 @@ class ClockOffset(Measurement):
     stamped too early.
     """
 
-    formula: ClassVar[str] = r"\boldsymbol{\eta}_\mathrm{recorded}(t) = \boldsymbol{\eta}(t - \tau)"
+    formula: ClassVar[str] = r"\eta_\mathrm{recorded}(t) = \eta(t - \tau)"
+    symbols: ClassVar = {"pose_late": r"\tau"}
     words: ClassVar[str] = (
         "the clock of the poses differs from the clock of the commands (not physics)"
     )

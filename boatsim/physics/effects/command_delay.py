@@ -145,6 +145,7 @@ class CommandDelay(ChannelEffect):
     """Dead time between every command and its actuator: y(t) = x(t - delay)."""
 
     formula: ClassVar[str] = r"y(t) = x(t - \tau)"
+    symbols: ClassVar = {"delay": r"\tau"}
     words: ClassVar[str] = "commands take effect after a dead time"
     refines: ClassVar[str] = "lag"
     shown_by: ClassVar[str] = "fast steps of thrust and steering"

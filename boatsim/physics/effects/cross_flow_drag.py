@@ -110,6 +110,13 @@ class CrossFlowDrag(Force):
         r"C_D \int x \, w \, |w| \, \mathrm{d}x - d \int x \, w \, \mathrm{d}x \\ X &= "
         r"X_{|u|u} |u_r| u_r \end{aligned}"
     )
+    symbols: ClassVar = {
+        "section_drag_coefficient": "C_D",
+        "surge_quadratic": "-X_{|u|u}",
+        "draught": "T",
+        "density": r"\rho",
+        "linear": "d",
+    }
     needs: ClassVar = ("sway", "yaw")
     words: ClassVar[str] = "the drag of the hull sections grows with the square of the cross flow"
     refines: ClassVar[str] = "damping"

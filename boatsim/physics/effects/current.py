@@ -29,6 +29,7 @@ class Current(WaterFlow):
         r"\begin{aligned} u_r &= u - \left(V_N \cos\psi + V_E \sin\psi\right) \\ v_r &= v "
         r"- \left(V_E \cos\psi - V_N \sin\psi\right) \end{aligned}"
     )
+    symbols: ClassVar = {"north": "V_N", "east": "V_E"}
     ruled_out_by: ClassVar = {"still_water": (True,)}
     needs: ClassVar = ("surge", "sway")
     words: ClassVar[str] = "the water moves over the ground and carries the boat along"

@@ -107,6 +107,17 @@ class LinearDamping(Force):
         r"Y_a, \quad Y_a = -d_v f(v_r + a r) \\ f(\nu) &= \nu "
         r"\left(\frac{|\nu|}{e}\right)^{n - 1} \end{aligned}"
     )
+    symbols: ClassVar = {
+        "surge": "d_u",
+        "sway": "d_v",
+        "heave": "d_w",
+        "roll": "d_p",
+        "pitch": "d_q",
+        "yaw": "d_r",
+        "sway_by_yaw": "-Y_r",
+        "yaw_by_sway": "-N_v",
+        "sway_at": "a",
+    }
     words: ClassVar[str] = "the water resists in proportion to the speed"
     refines: ClassVar[str] = "damping"
     shown_by: ClassVar[str] = "coasting down from a low speed"
@@ -185,9 +196,18 @@ QuadraticDamping = preset_effect(
     LinearDamping,
     "QuadraticDamping",
     formula=(
-        r"X = -d_u |u_r| u_r, \quad Y = -d_v |v_r| v_r, \quad Z = -d_w |w_r| w_r, \quad K "
-        r"= -d_p |p| p, \quad M = -d_q |q| q, \quad N = -d_r |r| r"
+        r"\begin{aligned} X &= -d_u |u_r| u_r, \quad Y = -d_v |v_r| v_r, \quad Z = -d_w "
+        r"|w_r| w_r \\ K &= -d_p |p| p, \quad M = -d_q |q| q, \quad N = -d_r |r| r "
+        r"\end{aligned}"
     ),
+    symbols={
+        "surge": "d_u",
+        "sway": "d_v",
+        "heave": "d_w",
+        "roll": "d_p",
+        "pitch": "d_q",
+        "yaw": "d_r",
+    },
     words="damping grows with the square of the speed",
     shown_by="the same motion at a large and at a small amplitude",
     source=ITTC,
@@ -201,9 +221,17 @@ CubicDamping = preset_effect(
     LinearDamping,
     "CubicDamping",
     formula=(
-        r"X = -d_u u_r^3, \quad Y = -d_v v_r^3, \quad Z = -d_w w_r^3, \quad K = -d_p p^3, "
-        r"\quad M = -d_q q^3, \quad N = -d_r r^3"
+        r"\begin{aligned} X &= -d_u u_r^3, \quad Y = -d_v v_r^3, \quad Z = -d_w w_r^3 \\ "
+        r"K &= -d_p p^3, \quad M = -d_q q^3, \quad N = -d_r r^3 \end{aligned}"
     ),
+    symbols={
+        "surge": "d_u",
+        "sway": "d_v",
+        "heave": "d_w",
+        "roll": "d_p",
+        "pitch": "d_q",
+        "yaw": "d_r",
+    },
     words="damping grows with the cube of the speed",
     shown_by="the same motion at a large and at a small amplitude",
     source=ITTC,
@@ -223,6 +251,12 @@ class DampingError(CoefficientRelease):
     """
 
     formula: ClassVar[str] = r"d_i = k_i \, d_i^0, \quad i = u, v, r, p"
+    symbols: ClassVar = {
+        "surge_factor": "k_u",
+        "sway_factor": "k_v",
+        "yaw_factor": "k_r",
+        "roll_factor": "k_p",
+    }
     words: ClassVar[str] = (
         "the damping coefficients differ from their values by more than their specified uncertainty"
     )
@@ -333,6 +367,14 @@ class DampingExponent(CoefficientRelease):
         r"X_i = -d_i^0 \, \nu_i \left(\frac{|\nu_i|}{e_i}\right)^{n_i - 1}, \quad i = u, "
         r"v, r"
     )
+    symbols: ClassVar = {
+        "surge_exponent": "n_u",
+        "sway_exponent": "n_v",
+        "yaw_exponent": "n_r",
+        "surge_equal": "e_u",
+        "sway_equal": "e_v",
+        "yaw_equal": "e_r",
+    }
     words: ClassVar[str] = "damping follows a power of the speed other than the first"
     refines: ClassVar[str] = "damping"
     shown_by: ClassVar[str] = "the same motion at a large and at a small amplitude"

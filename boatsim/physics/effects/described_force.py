@@ -40,6 +40,7 @@ class DescribedForce(SymbolicTerm):
     """
 
     formula: ClassVar[str] = r"F = c \, f_1 f_2 f_3 \, g(t)"
+    symbols: ClassVar = {"coefficient": "c"}
     words: ClassVar[str] = "a force that no effect of the library explains"
     shown_by: ClassVar[str] = "the manoeuvre in which it was found"
     law: ClassVar = law

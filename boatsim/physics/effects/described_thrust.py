@@ -50,6 +50,7 @@ class DescribedThrust(SymbolicTerm):
     """
 
     formula: ClassVar[str] = r"\Delta T = c \, f_1 f_2 f_3 \, g(t) \, T"
+    symbols: ClassVar = {"coefficient": "c"}
     words: ClassVar[str] = "a change of thrust that no effect of the library explains"
     shown_by: ClassVar[str] = "the same command, repeated"
     per_instance_of: ClassVar[str] = "thruster"

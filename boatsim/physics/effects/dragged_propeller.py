@@ -62,6 +62,7 @@ class DraggedPropeller(Force):
         r"\end{cases} \\ u_a &= (u_r - y r) \cos\alpha + (v_r + x r) \sin\alpha "
         r"\end{aligned}"
     )
+    symbols: ClassVar = {"drag": "D"}
     words: ClassVar[str] = (
         "a propeller that works against the motion adds only the thrust beyond the drag it has "
         "when idle"

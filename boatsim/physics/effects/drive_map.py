@@ -53,6 +53,7 @@ class DriveMap(ChannelEffect):
         r"y = x + \operatorname{sgn}(s) \, k \left(\frac{|s| - s_0}{s_1 - s_0}\right)^n "
         r"\quad \text{for } |s| > s_0, \quad s = \mathrm{source} - \mathrm{neutral}"
     )
+    symbols: ClassVar = {"at_span": "k", "span": "s_1", "dead": "s_0", "exponent": "n"}
     words: ClassVar[str] = "a curve gives the output of the drive from its raw command"
     shown_by: ClassVar[str] = "a staircase of raw commands"
     acts_on: ClassVar[str] = "thrust"
@@ -119,6 +120,7 @@ ShaftRpm = preset_effect(
     DriveMap,
     "ShaftRpm",
     formula=r"n = x + k \, \frac{\mathrm{source}}{60}",
+    symbols={"at_span": "k"},
     words="the shaft rate is given in revolutions per minute",
     shown_by="any manoeuvre",
     acts_on="shaft",

@@ -76,10 +76,11 @@ class ExtraMass(Inertia, Force):
 
     formula: ClassVar[str] = (
         r"\begin{aligned} X &= -m \left(\dot u - v_P r + w_P q\right), \quad Y = -m "
-        r"\left(\dot v_P - w_P p + u r\right) \\ Z &= -m \left(\dot w_P - u q + v_P p - "
+        r"\left(\dot{v_P} - w_P p + u r\right) \\ Z &= -m \left(\dot{w_P} - u q + v_P p - "
         r"g\right), \quad M = -x Z, \quad N = x Y \\ v_P &= v + x r, \quad w_P = w - x q "
         r"\end{aligned}"
     )
+    symbols: ClassVar = {"mass": "m", "x": "x"}
     needs: ClassVar = ("surge",)
     words: ClassVar[str] = "the boat carries a mass that the model does not contain"
     refines: ClassVar[str] = "inertia"
@@ -127,6 +128,7 @@ class Payload(CoefficientRelease):
         r"m = m^0 + \Delta m, \quad I_i = I_i^0 \left(1 + \frac{\Delta m}{m^0}\right), "
         r"\quad i = x, y, z"
     )
+    symbols: ClassVar = {"mass": r"\Delta m"}
 
     # a hull that only rolls identifies the ratio of moment to inertia and nothing else
     needs: ClassVar = ("surge", "sway")

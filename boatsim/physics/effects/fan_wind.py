@@ -67,6 +67,13 @@ class FanWind(Force):
         r"\, U A_y b, \quad N = l \, Y, \quad U = \sqrt{a^2 + b^2} \\ a &= V \cos(\gamma "
         r"- \psi) - u, \quad b = V \sin(\gamma - \psi) - v \end{aligned}"
     )
+    symbols: ClassVar = {
+        "speed": "V",
+        "toward": r"\gamma",
+        "front": "A_x",
+        "side": "A_y",
+        "arm": "l",
+    }
     words: ClassVar[str] = "a steady wind exerts a drag and a yaw moment on the hull"
     shown_by: ClassVar[str] = "turning through all headings while holding the thrust"
     source: ClassVar[str] = "checked specification of Bayless 2017, section 7 (wind model [A])"

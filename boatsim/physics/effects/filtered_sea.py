@@ -50,6 +50,14 @@ class FilteredSea(Force):
         r"\omega_0 s + \omega_0^2} \quad \text{applied to white noise, with unit rms} "
         r"\end{aligned}"
     )
+    symbols: ClassVar = {
+        "sway": r"\sigma_Y",
+        "roll": r"\sigma_K",
+        "yaw": r"\sigma_N",
+        "frequency": r"\omega_0",
+        "damping": r"\zeta",
+        "arm": "l",
+    }
     words: ClassVar[str] = "waves exert independent narrow-band forces in sway, yaw and roll"
     shown_by: ClassVar[str] = "lying beam to the sea without steering"
     source: ClassVar[str] = (

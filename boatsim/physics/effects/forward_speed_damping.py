@@ -46,6 +46,7 @@ class ForwardSpeedDamping(Force):
         r"|u_r| p \\ N &= -d_v \left(a \, u_r v_r + a^2 |u_r| r\right) - d_r |u_r| r "
         r"\end{aligned}"
     )
+    symbols: ClassVar = {"sway": "d_v", "roll": "d_p", "yaw": "d_r", "at": "a"}
     needs: ClassVar = ("surge",)
     words: ClassVar[str] = "damping of sway, roll and yaw grows with the forward speed"
     refines: ClassVar[str] = "damping"

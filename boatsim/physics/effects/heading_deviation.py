@@ -56,6 +56,7 @@ class HeadingDeviation(Measurement):
         r"\quad v_\mathrm{recorded} = v \cos\Delta - u \sin\Delta \\ r_\mathrm{recorded} "
         r"&= r \left(1 + B \cos\psi - C \sin\psi\right) \end{aligned}"
     )
+    symbols: ClassVar = {"offset": "A", "cos": "C", "sin": "B"}
     of_columns: ClassVar = ("psi_rad",)
     needs: ClassVar = ("surge", "yaw")
     words: ClassVar[str] = "the compass deviates with the heading (not physics)"
@@ -87,6 +88,7 @@ HeadingOffset = preset_effect(
         r"\psi_\mathrm{recorded} = \psi + A, \quad u_\mathrm{recorded} = u \cos A + v "
         r"\sin A, \quad v_\mathrm{recorded} = v \cos A - u \sin A"
     ),
+    symbols={"offset": "A"},
     words="the recorded heading has a constant error (not physics)",
     shown_by="a straight run ahead followed by one astern",
     source="misaligned compass or marker, or declination not applied",

@@ -46,6 +46,14 @@ class Hydrostatics(Force):
         r"= -m g \, GM_T \, \phi \\ M &= x_F \, \rho g A_{wp} (z - x_F \theta) - m g \, "
         r"GM_L \, \theta \end{aligned}"
     )
+    symbols: ClassVar = {
+        "heave": r"\rho g A_{wp}",
+        "roll": r"m g \, GM_T",
+        "pitch": r"m g \, GM_L",
+        "flotation": "x_F",
+        "mass": "m",
+        "displacement": "m_0",
+    }
     words: ClassVar[str] = "buoyancy restores the draught and the attitude of the hull"
     shown_by: ClassVar[str] = "a release from heave, heel or trim"
     source: ClassVar[str] = (

@@ -108,17 +108,31 @@ class IrregularSea(Force):
     formula: ClassVar[str] = (
         r"\begin{aligned} S(\omega) &= \frac{5}{16} \, H_s^2 \, "
         r"\frac{\omega_m^4}{\omega^5} \exp\left(-\frac{5}{4} \, "
-        r"\frac{\omega_m^4}{\omega^4}\right), \quad \theta_i = \omega_i t - k_i (x "
-        r"\cos\gamma + y \sin\gamma) + \epsilon_i, \quad s_i = k_i \sqrt{2 S(\omega_i) "
-        r"\Delta\omega_i} \\ Y &= f_Y \, w \sin\gamma_r \sum_i e^{-k_i h} J_0(\kappa_i) "
-        r"\, s_i \sin\theta_i, \quad N = -f_N \, w \, \frac{L}{2} \sin\gamma_r \sum_i "
-        r"e^{-k_i h} J_1(\kappa_i) \, s_i \cos\theta_i \\ K &= f_K \, m g \, GM "
-        r"\sin\gamma_r \sum_i s_i \sin\theta_i + l \, Y, \quad w = \frac{\pi}{4} \rho g "
-        r"T^2 L, \quad \gamma_r = \gamma - \psi, \quad \kappa_i = \tfrac{1}{2} k_i L "
+        r"\frac{\omega_m^4}{\omega^4}\right) \\ s_i &= k_i \sqrt{2 S(\omega_i) "
+        r"\Delta\omega_i}, \quad \theta_i = \omega_i t - k_i (x \cos\gamma + y "
+        r"\sin\gamma) + \epsilon_i \\ Y &= f_Y \, w \sin\gamma_r \sum_i e^{-k_i h} "
+        r"J_0(\kappa_i) \, s_i \sin\theta_i \\ N &= -f_N \, w \, \frac{L}{2} \sin\gamma_r "
+        r"\sum_i e^{-k_i h} J_1(\kappa_i) \, s_i \cos\theta_i \\ K &= f_K \, m g \, GM "
+        r"\sin\gamma_r \sum_i s_i \sin\theta_i + l \, Y \\ w &= \frac{\pi}{4} \rho g T^2 "
+        r"L, \quad \gamma_r = \gamma - \psi, \quad \kappa_i = \tfrac{1}{2} k_i L "
         r"\cos\gamma_r \\ J_0(\kappa) &= \int_{-1}^{1} (1 - c \xi^2) \cos(\kappa \xi) \, "
-        r"\mathrm{d}\xi, \quad J_1(\kappa) = \int_{-1}^{1} (1 - c \xi^2) \, \xi "
-        r"\sin(\kappa \xi) \, \mathrm{d}\xi \end{aligned}"
+        r"\mathrm{d}\xi \\ J_1(\kappa) &= \int_{-1}^{1} (1 - c \xi^2) \, \xi \sin(\kappa "
+        r"\xi) \, \mathrm{d}\xi \end{aligned}"
     )
+    symbols: ClassVar = {
+        "significant_height": "H_s",
+        "toward": r"\gamma",
+        "sway": "f_Y",
+        "roll": "f_K",
+        "yaw": "f_N",
+        "taper": "c",
+        "centre_depth": "h",
+        "density": r"\rho",
+        "length": "L",
+        "draught": "T",
+        "stiffness": r"m g \, GM",
+        "arm": "l",
+    }
     words: ClassVar[str] = "wind waves exert sway, yaw and roll forces on the hull"
     shown_by: ClassVar[str] = "lying beam to the sea without steering"
     source: ClassVar[str] = (

@@ -35,6 +35,7 @@ class JetSteering(Force):
     formula: ClassVar[str] = (
         r"Y = Y_\delta \delta, \quad K = K_\delta \delta, \quad N = N_\delta \delta"
     )
+    symbols: ClassVar = {"sway": r"Y_\delta", "roll": r"K_\delta", "yaw": r"N_\delta"}
     words: ClassVar[str] = "the steering force of the jet is proportional to its angle"
     shown_by: ClassVar[str] = "a zig-zag"
     source: ClassVar[str] = (

@@ -42,6 +42,7 @@ class LateFixes(Measurement):
         r"\sin\psi_m\right) \\ y_\mathrm{recorded} &= y - \tau \left(u \sin\psi_m + v "
         r"\cos\psi_m\right), \quad \psi_m = \psi - \tfrac{1}{2} \tau r \end{aligned}"
     )
+    symbols: ClassVar = {"latency": r"\tau"}
     of_columns: ClassVar = ("x_m", "y_m")
     needs: ClassVar = ("surge", "sway", "yaw")
     # one camera image gives position and heading at the same time

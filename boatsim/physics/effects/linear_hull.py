@@ -45,6 +45,16 @@ class LinearHull(Force):
         r"\begin{aligned} Y &= Y_v v_r + Y_r r, \quad N = N_v v_r + N_r r + N_\phi \phi "
         r"\\ K &= -z_H Y + l \left(Y - m \, u_r r\right) \end{aligned}"
     )
+    symbols: ClassVar = {
+        "sway": "-Y_v",
+        "sway_by_yaw": "-Y_r",
+        "yaw_by_sway": "-N_v",
+        "yaw": "-N_r",
+        "yaw_by_heel": r"N_\phi",
+        "below": "z_H",
+        "arm": "l",
+        "mass": "m",
+    }
     words: ClassVar[str] = "drift and yaw rate cause a side force, a yaw moment and a heel"
     shown_by: ClassVar[str] = "a zig-zag at small rudder angles"
     source: ClassVar[str] = (

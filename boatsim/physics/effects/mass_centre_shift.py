@@ -65,6 +65,7 @@ class MassCentreShift(Inertia, Force):
         r"X = m x_g r^2, \quad Y = -m x_g \dot r, \quad N = -m x_g (\dot v + u r) - m "
         r"x_g^2 \dot r"
     )
+    symbols: ClassVar = {"shift": "x_g", "hull_mass": "m"}
     needs: ClassVar = ("sway", "yaw")
     words: ClassVar[str] = "the mass centre lies ahead of or behind its modelled place"
     refines: ClassVar[str] = "mass_centre"

@@ -40,6 +40,13 @@ class MeasuredRelativeWind(MeasuredWind):
         r"\sin\gamma, \quad N = (l + l_1 \cos\gamma) \, Y, \quad \gamma = "
         r"\gamma_\mathrm{from} + \pi"
     )
+    symbols: ClassVar = {
+        "front": "A_x",
+        "side": "A_y",
+        "arm": "l",
+        "swing": "l_1",
+        "density": r"\rho",
+    }
 
     # the reading is relative to the hull, so no frame of reference is needed
     tied_to: ClassVar[str] = ""

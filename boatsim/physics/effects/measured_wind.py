@@ -47,6 +47,13 @@ class MeasuredWind(Force):
         r"\cos\gamma &= -V \cos(\gamma_\mathrm{from} - \psi) - u, \quad U \sin\gamma = -V "
         r"\sin(\gamma_\mathrm{from} - \psi) - v \end{aligned}"
     )
+    symbols: ClassVar = {
+        "front": "A_x",
+        "side": "A_y",
+        "arm": "l",
+        "swing": "l_1",
+        "density": r"\rho",
+    }
     words: ClassVar[str] = "the measured wind exerts a drag and a yaw moment on the hull"
     shown_by: ClassVar[str] = "turning through all headings while holding the thrust"
     source: ClassVar[str] = (

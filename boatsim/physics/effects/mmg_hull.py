@@ -80,6 +80,13 @@ class MmgHull(Force):
         r"U^2, \quad v' = v_r / U, \quad r' = r L / U, \quad f = \min(\max(2 u_r / U, "
         r"-1), 1) \end{aligned}"
     )
+    symbols: ClassVar = {
+        "length": "L",
+        "draught": "d",
+        "density": r"\rho",
+        "m_x": "m_x",
+        "m_y": "m_y",
+    }
     words: ClassVar[str] = "hull forces as polynomials in drift and rate of turn (MMG)"
     shown_by: ClassVar[str] = "turning circles and zig-zags"
     source: ClassVar[str] = (

@@ -73,13 +73,21 @@ class MmgLowSpeedHull(Force):
 
     formula: ClassVar[str] = (
         r"\begin{aligned} X &= q \left(X'_0 \, u_r U + X'_{vr} L \, v_r r\right) + m_y "
-        r"v_r r, \quad X'_0 = X'_{0F} + (X'_{0A} - X'_{0F}) \, |\operatorname{atan2}(v_r, "
-        r"u_r)| / \pi \\ Y &= q \left(Y'_v \, v_r |u_r| + Y'_r L \, r u_r - \frac{C_D}{L} "
-        r"\int w \, |w| \, \mathrm{d}x\right) - m_x u_r r, \quad w = v_r + C_{rY} r x \\ "
+        r"v_r r, \quad q = \tfrac{1}{2} \rho L d \\ Y &= q \left(Y'_v \, v_r |u_r| + Y'_r "
+        r"L \, r u_r - \frac{C_D}{L} \int w_Y |w_Y| \, \mathrm{d}x\right) - m_x u_r r \\ "
         r"N &= q L \left(N'_v \, v_r u_r + N'_r L \, r |u_r| - \frac{C_D}{L^2} \int x \, "
-        r"w \, |w| \, \mathrm{d}x\right), \quad w = v_r + C_{rN} r x, \quad q = "
-        r"\tfrac{1}{2} \rho L d \end{aligned}"
+        r"w_N |w_N| \, \mathrm{d}x\right) \\ X'_0 &= X'_{0F} + (X'_{0A} - X'_{0F}) \, "
+        r"|\operatorname{atan2}(v_r, u_r)| / \pi \\ w_Y &= v_r + C_{rY} r x, \quad w_N = "
+        r"v_r + C_{rN} r x \end{aligned}"
     )
+    symbols: ClassVar = {
+        "length": "L",
+        "draught": "d",
+        "density": r"\rho",
+        "m_x": "m_x",
+        "m_y": "m_y",
+        "C_D": "C_D",
+    }
     words: ClassVar[str] = (
         "hull forces from rest to astern: linear lift and cross-flow drag (MMG, low speed)"
     )

@@ -133,6 +133,19 @@ class MmgLowSpeedPropeller(Force):
         r"Y'(J_s), \quad N = \tfrac{1}{2} g \, \rho L^2 d \, (n D)^2 \, N'(J_s), \quad J "
         r"= \frac{u_P}{n D}, \quad J_s = \frac{u_r}{n D} \end{aligned}"
     )
+    symbols: ClassVar = {
+        "length": "L",
+        "draught": "d",
+        "density": r"\rho",
+        "diameter": "D",
+        "thrust_deduction": "t_P",
+        "k0": "k_0",
+        "k1": "k_1",
+        "k2": "k_2",
+        "astern_C1": "C_1",
+        "astern_C2": "C_2",
+        "gain": "g",
+    }
     words: ClassVar[str] = (
         "thrust of a propeller ahead and astern, with a side force when it backs (MMG, low speed)"
     )

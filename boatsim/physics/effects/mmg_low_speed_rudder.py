@@ -111,11 +111,20 @@ class MmgLowSpeedRudder(Force):
 
     formula: ClassVar[str] = (
         r"\begin{aligned} X &= -(1 - t_R) F_N \sin\delta, \quad Y = -(1 + a_H) F_N "
-        r"\cos\delta, \quad N = -(x_R + a_H x_H) F_N \cos\delta \\ F_N &= \tfrac{1}{2} "
-        r"\rho A_R f_\alpha \left(u_R^2 + v_R^2\right) \sin\alpha_R, \quad \alpha_R = "
-        r"\delta - \operatorname{atan2}(v_R, u_R), \quad v_R = -\gamma_R (v_r + l_R r) "
-        r"\end{aligned}"
+        r"\cos\delta \\ N &= -(x_R + a_H x_H) F_N \cos\delta \\ F_N &= \tfrac{1}{2} \rho "
+        r"A_R f_\alpha \left(u_R^2 + v_R^2\right) \sin\alpha_R, \quad \alpha_R = \delta - "
+        r"\operatorname{atan2}(v_R, u_R) \\ v_R &= -\gamma_R (v_r + l_R r) \end{aligned}"
     )
+    symbols: ClassVar = {
+        "density": r"\rho",
+        "area": "A_R",
+        "slope": r"f_\alpha",
+        "steering_deduction": "t_R",
+        "hull_share": "a_H",
+        "hull_at": "x_H",
+        "rudder_at": "x_R",
+        "flow_at": "l_R",
+    }
     words: ClassVar[str] = (
         "a rudder in the slipstream of a propeller that may back (MMG, low speed)"
     )

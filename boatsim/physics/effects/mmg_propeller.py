@@ -83,6 +83,18 @@ class MmgPropeller(Force):
         r"w_{P0}) \left(1 + \left(1 - e^{-C_1 |\beta_P|}\right) (C_2 - 1)\right), \quad "
         r"\beta_P = \beta - x'_P r' \end{aligned}"
     )
+    symbols: ClassVar = {
+        "density": r"\rho",
+        "diameter": "D_P",
+        "thrust_deduction": "t_P",
+        "wake": "w_{P0}",
+        "wake_C1": "C_1",
+        "propeller_at": "x'_P",
+        "k0": "k_0",
+        "k1": "k_1",
+        "k2": "k_2",
+        "gain": "g",
+    }
     words: ClassVar[str] = "thrust of a propeller in the wake of the hull (MMG)"
     shown_by: ClassVar[str] = "turning circles, where the ship loses speed"
     source: ClassVar[str] = (

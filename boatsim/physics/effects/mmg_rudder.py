@@ -79,13 +79,27 @@ class MmgRudder(Force):
 
     formula: ClassVar[str] = (
         r"\begin{aligned} X &= -(1 - t_R) F_N \sin\delta, \quad Y = -(1 + a_H) F_N "
-        r"\cos\delta, \quad N = -(x_R + a_H x_H) F_N \cos\delta \\ F_N &= \tfrac{1}{2} "
-        r"\rho A_R f_\alpha \left(u_R^2 + v_R^2\right) \sin\alpha_R, \quad \alpha_R = "
-        r"\delta - \operatorname{atan2}(v_R, u_R), \quad v_R = U \gamma_R (\beta - l'_R "
-        r"r') \\ u_R &= \epsilon \sqrt{\eta \left(u_P + \kappa \Delta u\right)^2 + (1 - "
-        r"\eta) u_P^2}, \quad \Delta u = \sqrt{u_P^2 + 8 K_T n^2 D_P^2 / \pi} - u_P, "
-        r"\quad \eta = D_P / H_R \end{aligned}"
+        r"\cos\delta \\ N &= -(x_R + a_H x_H) F_N \cos\delta \\ F_N &= \tfrac{1}{2} \rho "
+        r"A_R f_\alpha \left(u_R^2 + v_R^2\right) \sin\alpha_R, \quad \alpha_R = \delta - "
+        r"\operatorname{atan2}(v_R, u_R) \\ v_R &= U \gamma_R (\beta - l'_R r') \\ u_R &= "
+        r"\epsilon \sqrt{\eta \left(u_P + \kappa \Delta u\right)^2 + (1 - \eta) u_P^2}, "
+        r"\quad \eta = D_P / H_R \\ \Delta u &= \sqrt{u_P^2 + 8 K_T n^2 D_P^2 / \pi} - "
+        r"u_P \end{aligned}"
     )
+    symbols: ClassVar = {
+        "density": r"\rho",
+        "diameter": "D_P",
+        "area": "A_R",
+        "span": "H_R",
+        "slope": r"f_\alpha",
+        "steering_deduction": "t_R",
+        "hull_share": "a_H",
+        "hull_at": "x_H",
+        "rudder_at": "x_R",
+        "flow_at": "l'_R",
+        "epsilon": r"\epsilon",
+        "kappa": r"\kappa",
+    }
     words: ClassVar[str] = "a rudder in the slipstream of a propeller (MMG)"
     shown_by: ClassVar[str] = "turning circles and zig-zags"
     source: ClassVar[str] = (

@@ -41,6 +41,7 @@ class NomotoYaw(Force):
     """
 
     formula: ClassVar[str] = r"N = I_z \, \frac{K \delta - r}{T}"
+    symbols: ClassVar = {"gain": "K", "time_constant": "T", "inertia": "I_z"}
     words: ClassVar[str] = "the yaw rate follows the jet angle with a first-order lag"
     shown_by: ClassVar[str] = "steering steps"
     source: ClassVar[str] = (

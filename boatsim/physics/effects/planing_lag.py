@@ -41,6 +41,7 @@ class PlaningLag(Reaction):
         r"X = (\kappa - 1) \left(X_\mathrm{others} + m \, v_r r\right), \quad \kappa = "
         r"\min\left(\max\left(\frac{u_r}{u_1}, \kappa_0\right), 1\right)"
     )
+    symbols: ClassVar = {"full_speed": "u_1", "least": r"\kappa_0", "hull_mass": "m"}
     needs: ClassVar = ("surge",)
     words: ClassVar[str] = (
         "the craft changes its speed more slowly below planing speed; steady speeds do not change"

@@ -55,6 +55,7 @@ class PositionFrameError(Measurement):
         r"y_\mathrm{recorded} = y + a \sin\psi + b \cos\psi \\ u_\mathrm{recorded} &= u - "
         r"b r, \quad v_\mathrm{recorded} = v + a r \end{aligned}"
     )
+    symbols: ClassVar = {"forward": "a", "starboard": "b"}
     of_columns: ClassVar = ("x_m", "y_m")
     needs: ClassVar = ("sway", "yaw")
     words: ClassVar[str] = "recorded positions are those of another point of the hull (not physics)"

@@ -33,10 +33,11 @@ class PositionWander(DriftingMeasurement):
     """
 
     formula: ClassVar[str] = (
-        r"\dot e = -\frac{e}{\tau} + \sigma \sqrt{\frac{2}{\tau}} \, w(t), \quad "
-        r"x_\mathrm{recorded} = x + e_x, \quad y_\mathrm{recorded} = y + e_y, \quad "
-        r"\psi_\mathrm{recorded} = \psi + e_\psi"
+        r"\begin{aligned} \dot e &= -\frac{e}{\tau} + \sigma \sqrt{\frac{2}{\tau}} \, "
+        r"w(t) \\ x_\mathrm{recorded} &= x + e_x, \quad y_\mathrm{recorded} = y + e_y, "
+        r"\quad \psi_\mathrm{recorded} = \psi + e_\psi \end{aligned}"
     )
+    symbols: ClassVar = {"position": r"\sigma", "time": r"\tau"}
     alone: ClassVar[bool] = True
     of_columns: ClassVar = ("x_m", "y_m")
     needs: ClassVar = ("surge", "sway")

@@ -41,6 +41,7 @@ class PropWalk(Force):
         r"Y = \begin{cases} c \, T & T \le 0 \\ s \, c \, T & T > 0 \end{cases}, \quad N "
         r"= x \, Y"
     )
+    symbols: ClassVar = {"side_force_per_thrust": "c", "ahead_share": "s"}
     needs: ClassVar = ("sway",)
     words: ClassVar[str] = "the propellers push the stern sideways, most of all astern"
     shown_by: ClassVar[str] = "straight astern, then straight ahead"

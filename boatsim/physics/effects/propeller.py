@@ -64,6 +64,7 @@ class Propeller(Force):
         r"\begin{aligned} T &= g \, k \, n |n|, \quad X = T \cos\alpha, \quad Y = T "
         r"\sin\alpha \\ K &= -z Y, \quad M = z X, \quad N = x Y - y X \end{aligned}"
     )
+    symbols: ClassVar = {"ahead": "k", "astern": "k", "x": "x", "y": "y", "z": "z", "gain": "g"}
     words: ClassVar[str] = (
         "the thrust of a propeller is proportional to the square of its shaft rate"
     )

@@ -62,6 +62,21 @@ class Push(Force):
         r"- \psi) \\ K &= K_0 + l_h Y, \quad N = N_0 + l \, F \sin(\gamma - \psi) "
         r"\end{aligned}"
     )
+    symbols: ClassVar = {
+        "surge": "X_0",
+        "sway": "Y_0",
+        "roll": "K_0",
+        "yaw": "N_0",
+        "begin": "t_1",
+        "end": "t_2",
+        "mean": "F_0",
+        "amplitude": "F_1",
+        "frequency": r"\omega",
+        "phase": r"\epsilon",
+        "toward": r"\gamma",
+        "arm": "l",
+        "heel_arm": "l_h",
+    }
     words: ClassVar[str] = "an external force acts on the hull during a time interval"
     shown_by: ClassVar[str] = "holding course and speed"
     law: ClassVar = law
@@ -109,6 +124,7 @@ SteadyForce = preset_effect(
     Push,
     "SteadyForce",
     formula=r"X = X_0, \quad Y = Y_0, \quad K = K_0, \quad N = N_0",
+    symbols={"surge": "X_0", "sway": "Y_0", "roll": "K_0", "yaw": "N_0"},
     words="a constant force or moment acts on the hull, always in the same direction of the hull",
     shown_by="the same turn to port and to starboard",
     strength=("surge", "sway", "yaw", "roll"),
@@ -129,6 +145,15 @@ Gust = preset_effect(
         r"- \psi), \quad Y = F \sin(\gamma - \psi), \quad K = l_h Y, \quad N = l \, Y "
         r"\end{aligned}"
     ),
+    symbols={
+        "mean": "F_0",
+        "amplitude": "F_1",
+        "frequency": r"\omega",
+        "phase": r"\epsilon",
+        "toward": r"\gamma",
+        "arm": "l",
+        "heel_arm": "l_h",
+    },
     words="a sinusoidal force acts in one direction",
     shown_by="at rest without thrust",
     source="Y. Huang and Z. Ji, Autonomous boat dynamics, eq. 7",

@@ -90,6 +90,7 @@ class RateLimit(ChannelEffect):
         r"\dot y = \begin{cases} R \operatorname{sgn}(x - y) & |x - y| > R \, T \\ (x - "
         r"y) / T & \text{otherwise} \end{cases}"
     )
+    symbols: ClassVar = {"rate": "R", "lag": "T"}
     words: ClassVar[str] = "a signal follows its command at a limited rate"
     refines: ClassVar[str] = "lag"
     shown_by: ClassVar[str] = "large steps of the command"

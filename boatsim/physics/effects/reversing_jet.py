@@ -60,6 +60,7 @@ class ReversingJet(Force):
         r"X = T_0 \left(\cos 2\beta + \mathrm{leak}\right), \quad N = N_\delta \left(\cos "
         r"2\beta + \mathrm{leak}\right) \delta"
     )
+    symbols: ClassVar = {"thrust": "T_0", "yaw": r"N_\delta"}
     words: ClassVar[str] = (
         "thrust and steering moment of an idling jet are proportional to cos 2 beta of its bucket"
     )

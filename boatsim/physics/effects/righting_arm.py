@@ -41,6 +41,7 @@ class RightingArm(Force):
     """
 
     formula: ClassVar[str] = r"K = -m g \, GM \left(\phi - \phi_0 + c \, \phi^3\right)"
+    symbols: ClassVar = {"stiffness": r"m g \, GM", "cubic": "c", "list": r"\phi_0"}
     words: ClassVar[str] = "the restoring moment of buoyancy is proportional to the heel"
     shown_by: ClassVar[str] = "a roll decay"
     law: ClassVar = law
@@ -85,6 +86,7 @@ class MetacentricHeightError(CoefficientRelease):
     """Righting moment that differs from its specified value by a factor."""
 
     formula: ClassVar[str] = r"GM = k \, GM^0"
+    symbols: ClassVar = {"factor": "k"}
     words: ClassVar[str] = (
         "the metacentric height differs from its value by more than its specified uncertainty"
     )

@@ -34,6 +34,12 @@ class RollCoupling(Force):
     """
 
     formula: ClassVar[str] = r"Y = Y_p p, \quad K = K_v v_r + K_r r, \quad N = N_p p"
+    symbols: ClassVar = {
+        "sway_by_roll": "-Y_p",
+        "roll_by_sway": "-K_v",
+        "roll_by_yaw": "-K_r",
+        "yaw_by_roll": "-N_p",
+    }
     words: ClassVar[str] = (
         "roll causes sway and yaw forces, and drift and yaw rate cause a roll moment"
     )

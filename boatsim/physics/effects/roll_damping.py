@@ -35,6 +35,7 @@ class RollDamping(Force):
     """
 
     formula: ClassVar[str] = r"K = -2 \zeta \sqrt{m g \, GM \left(I_x - K_{\dot p}\right)} \; p"
+    symbols: ClassVar = {"at_rest": r"\zeta", "stiffness": r"m g \, GM"}
     words: ClassVar[str] = "the roll damping is proportional to the roll rate"
     shown_by: ClassVar[str] = "a roll decay"
     source: ClassVar[str] = (

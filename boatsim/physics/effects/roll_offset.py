@@ -34,6 +34,7 @@ class RollOffset(Measurement):
     """
 
     formula: ClassVar[str] = r"\phi_\mathrm{recorded} = \phi + b"
+    symbols: ClassVar = {"offset": "b"}
     of_columns: ClassVar = ("phi_rad",)
     needs: ClassVar = ("roll",)
     words: ClassVar[str] = "the recorded roll has a constant error (not physics)"

@@ -55,6 +55,12 @@ class Rudder(Force):
         r"Y = Y_\delta \delta, \quad K = K_\delta \delta, \quad N = N_\delta \delta, "
         r"\quad |\delta| \le \delta_\mathrm{stall}"
     )
+    symbols: ClassVar = {
+        "sway": r"Y_\delta",
+        "roll": r"K_\delta",
+        "yaw": r"N_\delta",
+        "stall": r"\delta_\mathrm{stall}",
+    }
     words: ClassVar[str] = "the rudder force is proportional to the rudder angle"
     shown_by: ClassVar[str] = "a zig-zag at small rudder angles"
     source: ClassVar[str] = (

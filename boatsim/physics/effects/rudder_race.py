@@ -42,6 +42,7 @@ class RudderRace(Force):
         r"F_N = c \max(T, 0) \sin\delta, \quad X = -F_N \sin\delta, \quad Y = s \, F_N "
         r"\cos\delta, \quad N = x_R Y"
     )
+    symbols: ClassVar = {"normal_force_per_thrust": "c", "at": "x_R", "side": "s"}
     needs: ClassVar = ("surge", "sway", "yaw")
     words: ClassVar[str] = (
         "the rudder is in the propeller slipstream: its force grows with the thrust, also at rest"

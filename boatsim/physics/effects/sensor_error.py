@@ -64,6 +64,12 @@ class SensorError(Measurement):
     """
 
     formula: ClassVar[str] = r"y_\mathrm{recorded}(t) = (1 + \epsilon) \, y(t - \tau) + b + c \, t"
+    symbols: ClassVar = {
+        "gain_fraction": r"\epsilon",
+        "offset": "b",
+        "delay": r"\tau",
+        "drift": "c",
+    }
 
     column: ClassVar[str] = "r_radps"  # default channel; the only one of a special case
     special_case: ClassVar[bool] = False

@@ -127,6 +127,7 @@ class Servo(ChannelEffect):
         r"\dot y = \begin{cases} R \operatorname{sgn}(x - y) & |x - y| > R \, T \\ (x - "
         r"y) / T & \text{otherwise} \end{cases}, \quad |x| \le x_\mathrm{max}"
     )
+    symbols: ClassVar = {"range": r"x_\mathrm{max}", "rate": "R", "lag": "T"}
     words: ClassVar[str] = "the steering follows its command with limited rate and range"
     shown_by: ClassVar[str] = "fast steering reversals"
     source: ClassVar[str] = (

@@ -34,6 +34,7 @@ class SpeedHold(Force):
     """
 
     formula: ClassVar[str] = r"X = -m \, v_r r - g (u_r - U)"
+    symbols: ClassVar = {"speed": "U", "gain": "g", "mass": "m"}
     words: ClassVar[str] = "the speed ahead through the water is held constant"
     shown_by: ClassVar[str] = "turning hard at constant power"
     source: ClassVar[str] = (

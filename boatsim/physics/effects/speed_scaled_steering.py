@@ -49,6 +49,19 @@ class SpeedScaledSteering(Force):
         r"(e |e| - 1) Y_\delta \delta \\ N &= h_N \left((e - 1) N_v v_r + (|e| - 1) N_r "
         r"r\right) + c_N (e |e| - 1) N_\delta \delta, \quad e = u_r / U_0 \end{aligned}"
     )
+    symbols: ClassVar = {
+        "hull_sway": "h_Y",
+        "hull_yaw": "h_N",
+        "rudder_sway": "c_Y",
+        "rudder_yaw": "c_N",
+        "speed": "U_0",
+        "sway": "-Y_v",
+        "sway_by_yaw": "-Y_r",
+        "yaw_by_sway": "-N_v",
+        "yaw": "-N_r",
+        "steer_sway": r"Y_\delta",
+        "steer_yaw": r"N_\delta",
+    }
     words: ClassVar[str] = (
         "hull and rudder forces change with the forward speed instead of staying constant"
     )

@@ -65,6 +65,7 @@ class SteeringBacklash(ChannelEffect):
         r"y(t) = \min\left(\max\left(y(t^-), x(t) - \tfrac{1}{2} b\right), x(t) + "
         r"\tfrac{1}{2} b\right)"
     )
+    symbols: ClassVar = {"width": "b"}
     ruled_out_by: ClassVar = {"steering_measured": (True,)}
     words: ClassVar[str] = (
         "the steering linkage has play, so the angle lags when the steering reverses"

@@ -31,6 +31,7 @@ class SteeringDrag(Force):
     """Resistance proportional to the square of the rudder angle, X = X_delta_delta delta^2."""
 
     formula: ClassVar[str] = r"X = X_{\delta\delta} \delta^2"
+    symbols: ClassVar = {"drag": r"-X_{\delta\delta}"}
     words: ClassVar[str] = "the resistance grows with the square of the rudder angle"
     shown_by: ClassVar[str] = "large rudder angles that reverse before the ship turns"
     source: ClassVar[str] = (

@@ -54,6 +54,12 @@ class SteeringOffset(ChannelEffect):
     """
 
     formula: ClassVar[str] = r"y = x + b_\mathrm{side} + \epsilon |x|"
+    symbols: ClassVar = {
+        "port": r"b_\mathrm{port}",
+        "starboard": r"b_\mathrm{starboard}",
+        "middle": r"b_\mathrm{middle}",
+        "gain": r"\epsilon",
+    }
     words: ClassVar[str] = "the thrusters or rudders have a constant angle error"
     shown_by: ClassVar[str] = "straight runs ahead and astern"
     acts_on: ClassVar[str] = "angle"
@@ -94,6 +100,7 @@ SteeringAsymmetry = preset_effect(
     SteeringOffset,
     "SteeringAsymmetry",
     formula=r"y = x + \epsilon |x|",
+    symbols={"gain": r"\epsilon"},
     words="the same angle steers more strongly to one side than to the other",
     shown_by="turns with the same angle to both sides",
     source="C. Svendsen et al., IFAC MCMC 2012: yaw rates of right turns deviate from the model",

@@ -30,6 +30,7 @@ class SurgeDrag(Force):
     """
 
     formula: ClassVar[str] = r"X = X_u u_r + X_{|u|u} |u_r| u_r"
+    symbols: ClassVar = {"linear": "-X_u", "quadratic": "-X_{|u|u}"}
     words: ClassVar[str] = "resistance of the hull in surge"
     shown_by: ClassVar[str] = "coasting straight ahead"
     law: ClassVar = law

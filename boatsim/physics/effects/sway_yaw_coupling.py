@@ -37,6 +37,7 @@ class SwayYawCoupling(Force):
     """
 
     formula: ClassVar[str] = r"X = X_{vr} v_r r, \quad Y = Y_{ur} u_r r, \quad N = N_{uv} u_r v_r"
+    symbols: ClassVar = {"mass": "X_{vr}", "sway": "-Y_{ur}", "yaw": "-N_{uv}"}
     needs: ClassVar = ("surge", "sway", "yaw")
     words: ClassVar[str] = (
         "a moving hull has a side force when it turns and a yaw moment when it drifts"
@@ -61,6 +62,7 @@ SpeedLossInTurn = preset_effect(
     SwayYawCoupling,
     "SpeedLossInTurn",
     formula=r"X = X_{vr} v_r r",
+    symbols={"mass": "X_{vr}"},
     words="a hull that drifts while it turns loses speed, in proportion to drift times yaw rate",
     shown_by="turning circles and large zig-zags with the propeller held",
     source="H. Yasukawa, Y. Yoshimura, J. Mar. Sci. Technol. 20, 2015: m_y + X_vr",

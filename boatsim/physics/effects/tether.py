@@ -61,6 +61,7 @@ class Tether(Force):
         r"the distance } d \\ X &= F_x - c \, u_r, \quad Y = F_y - c \, (v_r + a r), "
         r"\quad N = a \, Y \end{aligned}"
     )
+    symbols: ClassVar = {"tension": "T_0", "stiffness": "k", "length": "l", "drag": "c", "at": "a"}
     ruled_out_by: ClassVar = {"moored": (False,)}
     needs: ClassVar = ("surge", "sway")
     words: ClassVar[str] = "a line or cable pulls the boat towards a fixed point"

@@ -53,6 +53,7 @@ class ThrustDeadband(ChannelEffect):
     """
 
     formula: ClassVar[str] = r"y = x - \min(\max(x, -b), b)"
+    symbols: ClassVar = {"width": "b"}
     words: ClassVar[str] = (
         "small thrust commands have no effect and all thrust is reduced by a constant"
     )

@@ -41,6 +41,7 @@ class ThrustImbalance(ChannelEffect):
     formula: ClassVar[str] = (
         r"T_\mathrm{port} = (1 + f) \, T, \quad T_\mathrm{starboard} = (1 - f) \, T"
     )
+    symbols: ClassVar = {"fraction": "f"}
     words: ClassVar[str] = "one side pushes harder than the other for the same command"
     shown_by: ClassVar[str] = "straight runs ahead and astern with equal commands"
     acts_on: ClassVar[str] = "thrust|shaft"

@@ -73,6 +73,7 @@ class ThrustLag(ChannelEffect):
     """First-order lag of the thrust behind its command: time_constant y' = x - y."""
 
     formula: ClassVar[str] = r"\tau \, \dot y = x - y"
+    symbols: ClassVar = {"time_constant": r"\tau"}
     words: ClassVar[str] = "thrust follows its command with a first-order lag"
     refines: ClassVar[str] = "lag"
     shown_by: ClassVar[str] = "fast steps of the thrust"

@@ -37,6 +37,7 @@ class ThrustLossWithSpeed(Force):
     """
 
     formula: ClassVar[str] = r"\Delta T = -g \left(l \, u_r + c \, u_r |u_r|\right) |T|"
+    symbols: ClassVar = {"loss": "l", "curve": "c"}
     words: ClassVar[str] = "the thrust of the propellers decreases with the speed of the boat"
     refines: ClassVar[str] = "thrust"
     shown_by: ClassVar[str] = "the same thrust command from rest and at full speed"

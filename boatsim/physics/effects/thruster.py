@@ -57,6 +57,7 @@ class Thruster(Force):
         r"\begin{aligned} X &= g \, T \cos\alpha, \quad Y = g \, T \sin\alpha \\ K &= -z "
         r"Y, \quad M = z X, \quad N = x Y - y X \end{aligned}"
     )
+    symbols: ClassVar = {"x": "x", "y": "y", "z": "z", "gain": "g"}
     words: ClassVar[str] = "thrust of a thruster, steered where it can be turned"
     shown_by: ClassVar[str] = "any manoeuvre"
     source: ClassVar[str] = (
@@ -85,6 +86,7 @@ class ThrustGainError(CoefficientRelease):
     """Thrust of all drives that differs by one factor from its specified value."""
 
     formula: ClassVar[str] = r"g = k \, g^0"
+    symbols: ClassVar = {"factor": "k"}
     words: ClassVar[str] = "all thrust is stronger or weaker than specified by one factor"
     refines: ClassVar[str] = "thrust"
     shown_by: ClassVar[str] = "runs at several thrust levels"

@@ -67,6 +67,14 @@ class WallEffect(Force):
         r"v_r \\ N &= -\mu \, d_r r, \quad \mu = k \, (n_N + n_S + n_E + n_W) "
         r"\end{aligned}"
     )
+    symbols: ClassVar = {
+        "damping_rise": "k",
+        "pull": "F",
+        "reach": r"\lambda",
+        "surge": "d_u",
+        "sway": "d_v",
+        "yaw": "d_r",
+    }
     needs: ClassVar = ("surge", "sway")
     words: ClassVar[str] = (
         "near the walls of the tank the damping increases and the boat is drawn towards them"

@@ -59,6 +59,18 @@ class WaterJet(Force):
         r"\max(h, 1) + q_1 & h < 2 \\ s_0 + s_1 h + s_2 h^2 & 2 \le h < 4 \\ m_2 h + q_2 "
         r"& h \ge 4 \end{cases}"
     )
+    symbols: ClassVar = {
+        "m1": "m_1",
+        "q1": "q_1",
+        "s0": "s_0",
+        "s1": "s_1",
+        "s2": "s_2",
+        "m2": "m_2",
+        "q2": "q_2",
+        "slowest": "u_0",
+        "gain": "g",
+        "mass": "m",
+    }
     words: ClassVar[str] = "the thrust of a water jet follows from the power that the throttle sets"
     shown_by: ClassVar[str] = "throttle steps"
     source: ClassVar[str] = (

@@ -77,6 +77,14 @@ class WaveForcing(RandomForce):
         r"\omega_0 s}{s^2 + 2 \zeta \omega_0 s + \omega_0^2} \quad \text{applied to white "
         r"noise, with unit rms} \end{aligned}"
     )
+    symbols: ClassVar = {
+        "surge": r"\sigma_X",
+        "sway": r"\sigma_Y",
+        "roll": r"\sigma_K",
+        "yaw": r"\sigma_N",
+        "frequency": r"\omega_0",
+        "damping": r"\zeta",
+    }
     ruled_out_by: ClassVar = {"no_waves": (True,)}
     words: ClassVar[str] = "waves exert narrow-band forces on the hull about one frequency"
     shown_by: ClassVar[str] = "at rest without thrust"

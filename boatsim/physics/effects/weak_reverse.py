@@ -53,6 +53,7 @@ class WeakReverse(ChannelEffect):
     """
 
     formula: ClassVar[str] = r"y = \begin{cases} x & x \ge 0 \\ k \, x & x < 0 \end{cases}"
+    symbols: ClassVar = {"astern_factor": "k"}
     words: ClassVar[str] = "the propellers push less astern than commanded"
     words_above: ClassVar[str] = "the propellers push more astern than commanded"
     shown_by: ClassVar[str] = "turning on the spot or swaying with one motor astern"

@@ -42,6 +42,13 @@ class Wind(Force):
         r"X = e \, F \cos\gamma, \quad Y = F \sin\gamma, \quad N = (l + l_1 \cos\gamma) "
         r"\, Y, \quad \gamma = \gamma_\mathrm{to} - \psi"
     )
+    symbols: ClassVar = {
+        "force": "F",
+        "toward": r"\gamma_\mathrm{to}",
+        "arm": "l",
+        "swing": "l_1",
+        "end_on": "e",
+    }
     ruled_out_by: ClassVar = {"indoors": (True,)}
     needs: ClassVar = ("surge", "sway")
     words: ClassVar[str] = "a steady wind pushes the hull in one direction of the world"

@@ -83,10 +83,16 @@ class YawRateWaves(RandomForce):
     """
 
     formula: ClassVar[str] = (
-        r"\begin{aligned} N &= \left(I_z - N_{\dot r}\right) \dot r_w + d_r r_w \\ r_w(s) "
-        r"&\sim \frac{\kappa s}{s^2 + 2 \lambda_w \omega_w s + \omega_w^2} \quad "
+        r"\begin{aligned} N &= \left(I_z - N_{\dot r}\right) \dot{r_w} + d_r r_w \\ "
+        r"r_w(s) &\sim \frac{\kappa s}{s^2 + 2 \lambda_w \omega_w s + \omega_w^2} \quad "
         r"\text{applied to white noise} \end{aligned}"
     )
+    symbols: ClassVar = {
+        "frequency": r"\omega_w",
+        "damping": r"\lambda_w",
+        "inertia": r"\left(I_z - N_{\dot r}\right)",
+        "drag": "d_r",
+    }
     words: ClassVar[str] = "waves cause a narrow-band yaw rate about one frequency"
     shown_by: ClassVar[str] = "holding a heading"
     source: ClassVar[str] = "L. R. S. Theisen, R. Galeazzi, M. Blanke, IFAC CAMS 2013, equation 8"

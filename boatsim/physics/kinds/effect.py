@@ -49,6 +49,8 @@ class Effect(CheckedParameters):
     words_above: ClassVar[str] = ""
     # the law in LaTeX, with SNAME symbols, as the reference shows it
     formula: ClassVar[str] = ""
+    # parameter -> its symbol in the formula, in LaTeX
+    symbols: ClassVar[Mapping[str, str]] = {}
     shown_by: ClassVar[str] = ""  # manoeuvre in which the effect is most visible
     kind: ClassVar[str] = "physics"  # or "measurement"
     source: ClassVar[str] = ""  # paper, equation or table of the law
