@@ -30,6 +30,16 @@ from effect_cases import (  # noqa: E402
 from page_commands import first_difference  # noqa: E402
 
 OUTPUTS = Path(__file__).with_name("effect_outputs.toml")
+SPECIAL_LINES = {  # last lines of examples of effects that change the time or add noise
+    "clock_offset": (
+        "latency = kind.motion_latency(error.values())",
+        'print(f"the pose of 10 s is stamped {10.0 + latency:.1f} s")',
+    ),
+    "position_wander": (
+        "drift = kind.instrument_drift(error.values())",
+        'print(f"rms error of a position: without 0 m, with {drift.position:.4g} m")',
+    ),
+}
 LONGEST_LINE = 92  # characters of a line of a program
 LONGEST_TABLE = 56  # characters of a table that is written in one line
 
@@ -70,7 +80,10 @@ def _table(table: Mapping[str, object]) -> str:
         return text
     lines = ["{"]
     for key, value in table.items():
-        lines.append(f"    {json.dumps(key)}: {json.dumps(value)},")
+        inner = json.dumps(value)
+        if isinstance(value, Mapping):
+            inner = _table(value).replace("\n", "\n    ")
+        lines.append(f"    {json.dumps(key)}: {inner},")
     return "\n".join([*lines, "}"])
 
 
@@ -137,7 +150,7 @@ def _law_program(name: str, case: Case) -> str:
             f'kind = content.load_class("effect", "{name}")',
             f"less = {_table(law.get('before', {}))}",
             f"more = {_table(case['add'])}",
-            'for label, given in (("without", less), ("with", more)):',
+            'for label, given in (("defaults", less), ("example", more)):',
             "    effect = kind(**given)",
         ]
     lines += [
@@ -163,10 +176,7 @@ def _measuring_program(name: str, case: Case) -> str:
     ]
     if "motion" not in case:
         lines.remove("from boatsim.physics.signals import MeasuredMotion")
-        what = "motion_latency"
-        if "position" in case["measures"]:
-            what = "instrument_drift"
-        return "\n".join([*lines, f"print(kind.{what}(error.values()))", ""])
+        return "\n".join([*lines, *SPECIAL_LINES[name], ""])
     moves = ", ".join(f"{key}={value!r}" for key, value in case["motion"].items())
     time = ""
     if case.get("plot", {}).get("shows") and _uses_time(name):
