@@ -13,7 +13,7 @@ from boatsim.cli.entry import Entry, class_entry
 from boatsim.files import array_of_tables
 from boatsim.physics import content
 from boatsim.physics.base import Effect
-from boatsim.physics.vessel import load_vessel
+from boatsim.physics.vessel import Vessel, load_vessel
 from boatsim.simulate import cases
 
 PLOT = "<!-- plot of the law -->"  # place of the plot, which is drawn only for the site
@@ -118,6 +118,12 @@ def _values(given: Mapping[str, Any], units: Mapping[str, str] | None = None) ->
 
 
 @cache
+def scenario_table(name: str) -> Mapping[str, Any]:
+    """Return the content of a scenario of the library, read once for all pages."""
+    return cases.read_scenario(name)[0]
+
+
+@cache
 def scenarios_by_effect() -> dict[str, str]:
     """Return the scenario that shows each effect best, by the name of the effect.
 
@@ -126,8 +132,8 @@ def scenarios_by_effect() -> dict[str, str]:
     """
     ranked: dict[str, tuple[int, int, str]] = {}
     for name in content.library_names("scenario"):
-        table = cases.read_scenario(name)[0]
-        vessel = load_vessel(str(table["vessel"]))
+        table = scenario_table(name)
+        vessel = scenario_vessel(str(table["vessel"]))
         settings: Any = table.get("set", {})
         own = {str(effect.get("use")) for effect in array_of_tables(table.get("effect"))}
         changed = {name_of for name_of in settings if vessel.effect(name_of)}
@@ -137,6 +143,12 @@ def scenarios_by_effect() -> dict[str, str]:
             rank = 1 if effect.name in changed else 2
             _keep_best(ranked, type(effect).type_name(), (rank, len(name), name))
     return {effect: place[2] for effect, place in ranked.items()}
+
+
+@cache
+def scenario_vessel(name: str) -> Vessel:
+    """Return a vessel of the library, read once for all scenarios."""
+    return load_vessel(name)
 
 
 def _keep_best(
@@ -152,7 +164,7 @@ def _scenario_section(name: str) -> list[str]:
     lines = ["## Scenario", ""]
     if scenario is None:
         return [*lines, "No shipped scenario contains this effect.", ""]
-    about = str(cases.read_scenario(scenario)[0].get("about", "")).rstrip(".")
+    about = str(scenario_table(scenario).get("about", "")).rstrip(".")
     folder = scenario.partition("/")[0]
     words = f"A scenario of [{folder}](../scenarios/{folder}.md) contains it: {escaped(about)}."
     return [*lines, words, "", "```sh", f"boatsim run {scenario}", "```", ""]

@@ -16,7 +16,6 @@ from boatsim.cli.catalogue import describe
 from boatsim.cli.entry import CLASSES, class_entry
 from boatsim.diagnosis.config import DEFAULT
 from boatsim.physics import content
-from boatsim.simulate import cases
 
 if TYPE_CHECKING:
     from sphinx.application import Sphinx
@@ -97,7 +96,7 @@ def _scenario_pages() -> Iterator[tuple[str, str]]:
     for folder, names in folders.items():
         lines = [f"# {folder}", "", "| `boatsim run` | purpose |", "| --- | --- |"]
         for name in names:
-            about = str(cases.read_scenario(name)[0].get("about", ""))
+            about = str(effect_pages.scenario_table(name).get("about", ""))
             lines.append(row((f"`{name}`", escaped(about))))
         yield f"scenarios/{folder}", "\n".join([*lines, ""])
 
