@@ -16,9 +16,9 @@ from boatsim.diagnosis.report.svg_plots import axis_limits, round_ticks
 from boatsim.physics.signals import Array
 
 WIDTH = 420  # units of a drawing, about one pixel each on a telephone
-LEFT, RIGHT, BOTTOM = 48, 16, 36  # margins of the axes
+LEFT, RIGHT, BOTTOM = 48, 16, 40  # margins of the axes
 ROW = 17  # height of a line of text
-GAP = 24  # between axes, for the numbers of the upper ones
+GAP = 27  # between axes, for the numbers of the upper ones
 CONSTANT = 1e-9  # relative range below which a curve is a constant
 LETTER = 7.2  # widest mean width of a letter of the labels
 LONGEST_LABEL = 52  # characters of a line of a label beside its note
@@ -104,7 +104,7 @@ def line_chart(
             top += GAP
         top = _draw_axes(parts, panel, (low, high), top, height)
     left = LEFT + (WIDTH - LEFT - RIGHT) / 2
-    parts.append(_text(left, top + 31, x_label, "middle"))
+    parts.append(_text(left, top + 35, x_label, "middle"))
     return _svg(parts, top + BOTTOM, about, in_file)
 
 
@@ -131,7 +131,7 @@ def _draw_axes(
     for value in round_ticks(*x_limits, 6):
         look = "zero" if value == 0.0 else "grid"
         parts.append(_path(look, f"M{x_at(value):.1f} {top:.1f}V{low:.1f}"))
-        parts.append(_text(x_at(value), low + 15, tick(value), "middle"))
+        parts.append(_text(x_at(value), low + 18, tick(value), "middle"))
     for style, curve in zip(STYLES, panel.curves, strict=False):
         look = curve.style or style
         parts.append(_path(f"curve {look}", _polyline(curve, x_at, y_at)))
