@@ -20,9 +20,9 @@ import numpy as np
 import boatsim
 from boatsim.cli.metric_table import print_rows
 from boatsim.cli.progress import report_campaign
-from boatsim.diagnosis.report.svg_plots import round_ticks
 from boatsim.physics.signals import Array
 from boatsim.sweeps.keys import Value
+from boatsim.view.svg_plots import round_ticks
 
 SCENARIOS = ["joystick_boat/sway_[1-4]", "joystick_boat/yaw_[1-4]"]
 FIRST, SECOND = "pid_autopilot", "l1_joystick"

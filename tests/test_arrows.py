@@ -33,7 +33,7 @@ HEAVY = {  # library -> the only modules that may import it
     "gymnasium": {f"learn.{name}" for name in ("registration", "single", "spaces", "vector")},
     "stable_baselines3": {"learn.sb3"},
     "rerun": {"view.rerun_log", "view.blueprint", "view.stream", "recordings.readers.rrd"},
-    "jinja2": {"diagnosis.report.html_page"},
+    "jinja2": {"view.html_page"},
     "ray": {"sweeps.workers.ray_cluster"},
     "pymavlink": {"recordings.logs.ardupilot"},
     "mcap": {"recordings.logs.mcap", "recordings.exporting.mcap"},

@@ -5,13 +5,13 @@ from pathlib import Path
 
 import numpy as np
 
-from boatsim.diagnosis.report.blocks import Figures, Heading, Items, Section, Table
-from boatsim.diagnosis.report.html_page import render_template
 from boatsim.files import replace_file
 from boatsim.sweeps.keys import Value
 from boatsim.sweeps.plots import controller_legend, group_by_controller, plot_metric
 from boatsim.sweeps.results import Results
 from boatsim.sweeps.text_tables import blank_repeats, format_values, result_tables
+from boatsim.view.html_page import render_template
+from boatsim.view.page_blocks import Figures, Heading, Items, Section, Table
 
 NAME = "report.html"
 TEMPLATE = Path(__file__).parent / "templates" / "sweep.html.j2"

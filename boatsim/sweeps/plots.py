@@ -7,11 +7,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from boatsim.diagnosis.report.svg_plots import SQUARE, Box, Line, Panel, axis_limits, figure, legend
 from boatsim.physics.signals import Array
 from boatsim.sweeps.axes import Axis
 from boatsim.sweeps.results import Results
 from boatsim.sweeps.summary import CONTROLLER
+from boatsim.view.svg_plots import SQUARE, Box, Line, Panel, axis_limits, figure, legend
 
 STYLES = ("one", "two", "three", "four")  # classes of the style sheet, one for each controller
 QUANTILES = (0.05, 0.25, 0.5, 0.75, 0.95)

@@ -1,51 +1,19 @@
 """The animation of a report: free runs as frames that the script of the page plays."""
 
 from collections.abc import Callable, Sequence
-from typing import TypedDict
 
 import numpy as np
 
 from boatsim.diagnosis.free_runs import FreeRun
 from boatsim.diagnosis.report.figures import unit_for_signal
 from boatsim.diagnosis.report.model_names import MODEL_WORDS
-from boatsim.diagnosis.report.svg_plots import evenly_spaced_rows
 from boatsim.physics.base import Array
+from boatsim.view.replay import Animation, Boat, Outline, playback_speed, rounded_or_none
+from boatsim.view.svg_plots import evenly_spaced_rows
 
 FRAMES = 1200
-LONGEST_ANIMATION = 40.0  # [s]; a longer recording is played faster
-SPEEDS = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000)  # times real time
 LONGEST_GAP = 3.0  # [s] between two position fixes that the animation interpolates
 ANGLES = ("phi_rad", "psi_rad")  # signals that rotate the outline of a boat
-
-Outline = list[tuple[float, float]]
-
-
-class Boat(TypedDict):
-    """A boat drawn in the animation of a report: its position and rotation in each frame.
-
-    Values are None where nothing was recorded.
-    """
-
-    look: str  # class of the style sheet
-    name: str  # words of the legend
-    x: list[float | None]
-    y: list[float | None]
-    turned: list[float | None]  # [rad] clockwise
-
-
-class Animation(TypedDict):
-    """Data of the report's animation, which the script of the HTML page plays.
-
-    It shows the recorded and the simulated motion of the vessel over time.
-    """
-
-    t: list[float]  # [s]; two equal times where a new free run starts
-    start: int  # first frame shown
-    rate: int  # times real time
-    plan: bool  # seen from above [m], with the distance from the recording as text
-    unit: str
-    outline: Outline  # to the right and down, in units of the vertical axis of the figure
-    boats: list[Boat]
 
 
 def animation_frames(
@@ -89,7 +57,7 @@ def animation_frames(
     return {
         "t": np.round(t, 3).tolist(),
         "start": int(np.argmin(np.abs(t - start))),
-        "rate": _playback_speed(float(t[-1] - t[0])),
+        "rate": playback_speed(float(t[-1] - t[0])),
         "plan": signal is None,
         "unit": unit,
         "outline": outline,
@@ -115,18 +83,10 @@ def _boat(
     return {
         "look": model,
         "name": MODEL_WORDS[model],
-        "x": _as_json(x, decimals),
-        "y": _as_json(y, decimals),
-        "turned": _as_json(turned, 3),
+        "x": rounded_or_none(x, decimals),
+        "y": rounded_or_none(y, decimals),
+        "turned": rounded_or_none(turned, 3),
     }
-
-
-def _playback_speed(seconds: float) -> int:
-    """Return the slowest speed at which the animation is short enough."""
-    for speed in SPEEDS:
-        if seconds <= speed * LONGEST_ANIMATION:
-            return speed
-    return SPEEDS[-1]
 
 
 def fill_short_gaps(t: Array, values: Array) -> Array:
@@ -147,11 +107,3 @@ def fill_short_gaps(t: Array, values: Array) -> Array:
     near = t[seen[after]] - t[seen[after - 1]] <= LONGEST_GAP
     within = (rows >= seen[0]) & (rows <= seen[-1])
     return np.where(np.isnan(values) & near & within, np.interp(t, t[seen], values[seen]), values)
-
-
-def _as_json(values: Array, decimals: int) -> list[float | None]:
-    """Return rounded numbers with None in the place of nan."""
-    rounded = np.round(values, decimals).astype(object)
-    rounded[~np.isfinite(values)] = None
-    numbers: list[float | None] = rounded.tolist()
-    return numbers

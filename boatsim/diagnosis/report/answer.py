@@ -23,7 +23,6 @@ from boatsim.diagnosis.report.assumptions import excluded_candidates, rules_entr
 from boatsim.diagnosis.report.confirmation import alone_entry, reason_unconfirmed
 from boatsim.diagnosis.report.described_terms import described_entries
 from boatsim.diagnosis.report.families import FAMILIES
-from boatsim.diagnosis.report.formatting import capitalize, join_words, sentence_in_per_cent
 from boatsim.diagnosis.report.layers import separate_layers
 from boatsim.diagnosis.report.parameters import parameter_key, reported_sd
 from boatsim.diagnosis.report.schema import (
@@ -48,6 +47,7 @@ from boatsim.diagnosis.search.ranking import Ranking
 from boatsim.physics.base import ChannelEffect, Effect
 from boatsim.physics.vessel import Vessel
 from boatsim.version import version
+from boatsim.view.formatting import capitalize, join_words, sentence_in_per_cent
 
 NEXT_SCENARIO = "next.toml"  # scenario of the next experiment, in the folder of the answer
 

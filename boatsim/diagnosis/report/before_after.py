@@ -6,9 +6,9 @@ import numpy as np
 
 from boatsim.diagnosis.evaluation import ALONE, MODELS, Evaluation, PartErrors
 from boatsim.diagnosis.problem import Problem
-from boatsim.diagnosis.report.formatting import format_odds
 from boatsim.diagnosis.report.model_names import words_of_models
 from boatsim.diagnosis.search.ranking import Ranking
+from boatsim.view.formatting import format_odds
 
 Table = tuple[str, list[str], list[list[str]]]  # title, header, rows
 

@@ -3,7 +3,8 @@
 from boatsim.diagnosis.evaluation import MODELS
 from boatsim.diagnosis.report.families import FAMILIES
 from boatsim.diagnosis.report.findings import Findings
-from boatsim.diagnosis.report.formatting import (
+from boatsim.diagnosis.report.model_names import words_of_models
+from boatsim.view.formatting import (
     format_in_one_unit,
     format_number,
     format_odds,
@@ -11,7 +12,6 @@ from boatsim.diagnosis.report.formatting import (
     join_words,
     words_of_name,
 )
-from boatsim.diagnosis.report.model_names import words_of_models
 
 EXPLANATION = (
     "(before: the model as given; retuned: its own numbers refitted; corrected: with the effect)"

@@ -4,22 +4,22 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from boatsim.diagnosis.report.blocks import (
-    Block,
-    Note,
-    Table,
-    without_empty_columns,
-)
 from boatsim.diagnosis.report.findings import Findings
-from boatsim.diagnosis.report.formatting import (
+from boatsim.diagnosis.report.sentences import (
+    effect_description,
+)
+from boatsim.view.formatting import (
     format_nats,
     format_probability,
     format_upper_limit,
     short_odds,
     words_of_name,
 )
-from boatsim.diagnosis.report.sentences import (
-    effect_description,
+from boatsim.view.page_blocks import (
+    Block,
+    Note,
+    Table,
+    without_empty_columns,
 )
 
 MOST_VISIBLE_CANDIDATES = 8  # rows of the ranking that are not folded

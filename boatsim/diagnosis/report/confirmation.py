@@ -6,12 +6,12 @@ from boatsim.diagnosis.open_set.confirmation import Errors
 from boatsim.diagnosis.open_set.decision import Judgement
 from boatsim.diagnosis.report.families import FAMILIES
 from boatsim.diagnosis.report.findings import Findings
-from boatsim.diagnosis.report.formatting import (
+from boatsim.diagnosis.report.schema import AloneEntry, EffectEntry, Family
+from boatsim.view.formatting import (
     format_in_one_unit,
     join_words,
     words_of_name,
 )
-from boatsim.diagnosis.report.schema import AloneEntry, EffectEntry, Family
 
 OPEN = (
     "Held-out recordings neither confirm nor contradict it: they are too short, do not excite it, "

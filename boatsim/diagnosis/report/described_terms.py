@@ -5,7 +5,13 @@ from collections.abc import Sequence
 from itertools import groupby
 
 from boatsim.diagnosis.description import Description, FittedTerm
-from boatsim.diagnosis.report.formatting import (
+from boatsim.diagnosis.report.schema import DescribedEntry, TermEntry
+from boatsim.physics.described_laws import EVER, SymbolicTerm
+from boatsim.physics.effects.described_force import DescribedForce
+from boatsim.physics.effects.described_thrust import DescribedThrust
+from boatsim.physics.terms import BEYOND, RIPPLES, UNITS, split_history_name
+from boatsim.physics.vessel import Vessel
+from boatsim.view.formatting import (
     format_number,
     format_quantity,
     format_unit,
@@ -14,12 +20,6 @@ from boatsim.diagnosis.report.formatting import (
     name_and_unit,
     words_of_name,
 )
-from boatsim.diagnosis.report.schema import DescribedEntry, TermEntry
-from boatsim.physics.described_laws import EVER, SymbolicTerm
-from boatsim.physics.effects.described_force import DescribedForce
-from boatsim.physics.effects.described_thrust import DescribedThrust
-from boatsim.physics.terms import BEYOND, RIPPLES, UNITS, split_history_name
-from boatsim.physics.vessel import Vessel
 
 FORCES = {
     "surge": "a force along the hull",

@@ -3,34 +3,10 @@
 import math
 from collections.abc import Iterator, Mapping
 
-from boatsim.diagnosis.report import figures, svg_plots
-from boatsim.diagnosis.report.blocks import (
-    STATISTICS,
-    Block,
-    Figures,
-    Heading,
-    Note,
-    Table,
-    Text,
-    without_empty_columns,
-)
+from boatsim.diagnosis.report import figures
 from boatsim.diagnosis.report.confirmation import effect_sentences
 from boatsim.diagnosis.report.families import FAMILIES
 from boatsim.diagnosis.report.findings import Findings
-from boatsim.diagnosis.report.formatting import (
-    capitalize,
-    format_cause_probability,
-    format_evidence,
-    format_in_one_unit,
-    format_nats,
-    format_number,
-    format_parameter,
-    format_quantity,
-    format_with_sd,
-    join_words,
-    short_odds,
-    words_of_name,
-)
 from boatsim.diagnosis.report.schema import (
     EffectEntry,
     ParameterEntry,
@@ -44,6 +20,31 @@ from boatsim.diagnosis.report.sentences import (
     improvement_on_held_out,
     in_per_cent,
     refined_rows,
+)
+from boatsim.view import svg_plots
+from boatsim.view.formatting import (
+    capitalize,
+    format_cause_probability,
+    format_evidence,
+    format_in_one_unit,
+    format_nats,
+    format_number,
+    format_parameter,
+    format_quantity,
+    format_with_sd,
+    join_words,
+    short_odds,
+    words_of_name,
+)
+from boatsim.view.page_blocks import (
+    STATISTICS,
+    Block,
+    Figures,
+    Heading,
+    Note,
+    Table,
+    Text,
+    without_empty_columns,
 )
 
 

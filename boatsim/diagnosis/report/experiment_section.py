@@ -3,16 +3,8 @@
 import math
 from collections.abc import Iterator, Sequence
 
-from boatsim.diagnosis.report.blocks import (
-    STATISTICS,
-    Block,
-    Items,
-    Note,
-    Table,
-    Text,
-)
 from boatsim.diagnosis.report.findings import Findings
-from boatsim.diagnosis.report.formatting import (
+from boatsim.view.formatting import (
     capitalize,
     evidence_strength,
     format_nats,
@@ -22,6 +14,14 @@ from boatsim.diagnosis.report.formatting import (
     join_words,
     name_and_unit,
     words_of_name,
+)
+from boatsim.view.page_blocks import (
+    STATISTICS,
+    Block,
+    Items,
+    Note,
+    Table,
+    Text,
 )
 
 

@@ -15,11 +15,11 @@ from boatsim.diagnosis.report.described_terms import (
     term_unit,
 )
 from boatsim.diagnosis.report.findings import MissingForceCurve
-from boatsim.diagnosis.report.formatting import capitalize, convenient_unit, format_number
 from boatsim.diagnosis.report.model_names import MODEL_WORDS
 from boatsim.diagnosis.report.schema import IntervalEntry
-from boatsim.diagnosis.report.svg_plots import SQUARE, Line, Panel, axis_limits, figure
 from boatsim.physics.base import Array
+from boatsim.view.formatting import capitalize, convenient_unit, format_number
+from boatsim.view.svg_plots import SQUARE, Line, Panel, axis_limits, figure
 
 MOST_CROSSINGS = 14  # zero crossings of an oscillation that are drawn
 BAND = 2.0  # [sd] half width of the bands

@@ -3,28 +3,29 @@
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
-from boatsim.diagnosis.report import figures, svg_plots
-from boatsim.diagnosis.report.blocks import (
-    STATISTICS,
-    Block,
-    Figures,
-    Note,
-    Table,
-    Text,
-)
+from boatsim.diagnosis.report import figures
 from boatsim.diagnosis.report.findings import Findings, MissingForceCurve
-from boatsim.diagnosis.report.formatting import (
+from boatsim.diagnosis.report.schema import (
+    IntervalEntry,
+)
+from boatsim.diagnosis.report.sentences import (
+    only_measurement_errors,
+)
+from boatsim.view import svg_plots
+from boatsim.view.formatting import (
     capitalize,
     format_in_one_unit,
     format_nats,
     format_number,
     format_sentence,
 )
-from boatsim.diagnosis.report.schema import (
-    IntervalEntry,
-)
-from boatsim.diagnosis.report.sentences import (
-    only_measurement_errors,
+from boatsim.view.page_blocks import (
+    STATISTICS,
+    Block,
+    Figures,
+    Note,
+    Table,
+    Text,
 )
 
 MOST_INTERVALS = 24  # rows of the table of flagged intervals; diagnosis.json has all of them

@@ -7,12 +7,12 @@ import numpy as np
 
 from boatsim.diagnosis.candidates import FURTHER
 from boatsim.diagnosis.problem import Fit, FreeParameter, Problem
-from boatsim.diagnosis.report.formatting import format_parameter, join_words, words_of_name
 from boatsim.diagnosis.report.parameters import parameter_key, reported_sd
 from boatsim.diagnosis.report.schema import EffectEntry, PossibleEntry, RefinedEntry
 from boatsim.diagnosis.significance import distance_from_zero, jointly_differ_from_zero
 from boatsim.physics.base import AXES, CoefficientChange, CoefficientRelease, Effect
 from boatsim.physics.vessel import number_sd, sd_of_refined_numbers
+from boatsim.view.formatting import format_parameter, join_words, words_of_name
 
 BODY_UNITS = {"mass": "kg"}  # all other numbers of the body are inertias
 INERTIA_UNIT = "kg m^2"

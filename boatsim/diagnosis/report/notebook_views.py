@@ -12,7 +12,6 @@ import numpy as np
 from boatsim.diagnosis.free_runs import FreeRun
 from boatsim.diagnosis.report.figures import group_by_recording, model_error, unit_for_signal
 from boatsim.diagnosis.report.findings import Findings
-from boatsim.diagnosis.report.formatting import format_parameter, format_quantity, words_of_name
 from boatsim.diagnosis.report.model_names import MODEL_WORDS
 from boatsim.diagnosis.report.schema import Answer
 from boatsim.errors import BadInput
@@ -22,6 +21,7 @@ from boatsim.recordings.notebook.figures import TRACK, Curve, Panel, draw_figure
 from boatsim.recordings.notebook.html_table import facts_table, table
 from boatsim.recordings.notebook.labels import words_of
 from boatsim.recordings.notebook.replay import replay_frame, track_of
+from boatsim.view.formatting import format_parameter, format_quantity, words_of_name
 
 if TYPE_CHECKING:
     import pyarrow as pa

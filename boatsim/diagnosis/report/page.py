@@ -4,11 +4,8 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from boatsim.diagnosis.checks.finding import LOG_NOT_BOAT
-from boatsim.diagnosis.report.blocks import Section, escape_markup, markdown_lines
 from boatsim.diagnosis.report.described_terms import effect_of_axis
 from boatsim.diagnosis.report.findings import Findings
-from boatsim.diagnosis.report.formatting import capitalize, join_words, words_of_name
-from boatsim.diagnosis.report.html_page import TEMPLATES, render_template
 from boatsim.diagnosis.report.replay_section import animated_replay
 from boatsim.diagnosis.report.sections import sections_of
 from boatsim.diagnosis.report.sentences import (
@@ -19,7 +16,11 @@ from boatsim.diagnosis.report.sentences import (
     verdict_sentences,
 )
 from boatsim.files import replace_file
+from boatsim.view.formatting import capitalize, join_words, words_of_name
+from boatsim.view.html_page import render_template
+from boatsim.view.page_blocks import Section, escape_markup, markdown_lines
 
+TEMPLATE = Path(__file__).parent / "templates" / "report.html.j2"
 VERDICTS = {  # verdict of the answer -> words at the top of the report
     "named": "Effect identified",
     "ambiguous": "Effect identified, with look-alikes",
@@ -62,7 +63,7 @@ def report_html(findings: Findings, sections: Sequence[Section]) -> str:
         sections: Sections of the report that have content.
     """
     return render_template(
-        TEMPLATES / "report.html.j2",
+        TEMPLATE,
         f=findings,
         verdict=_verdict(findings),
         answer=findings.answer,

@@ -1,13 +1,12 @@
 """The first figure of a report: recorded and simulated paths over held-out data, animated."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from math import cos, pi, sin
+from dataclasses import replace
 
 import numpy as np
 
 from boatsim.diagnosis.free_runs import FreeRun
-from boatsim.diagnosis.report.animation import Animation, Outline, animation_frames
+from boatsim.diagnosis.report.animation import animation_frames
 from boatsim.diagnosis.report.figures import (
     SIGNALS,
     group_by_recording,
@@ -16,35 +15,25 @@ from boatsim.diagnosis.report.figures import (
     signal_panel,
 )
 from boatsim.diagnosis.report.findings import Findings
-from boatsim.diagnosis.report.formatting import format_number, join_words
 from boatsim.diagnosis.report.model_names import MODEL_WORDS, words_of_models
-from boatsim.diagnosis.report.svg_plots import Panel, legend, stack_panels
+from boatsim.view.formatting import format_number, join_words
+from boatsim.view.replay import (
+    MARK,
+    MARK_SIZE,
+    SECTION,
+    SECTION_SIZE,
+    Outline,
+    Replay,
+    scaled_outline,
+    with_margin,
+)
+from boatsim.view.svg_plots import Panel, legend, stack_panels
 
 MOST_PATHS = 16  # consecutive free runs in a view from above
 MOST_COURSES = 4  # consecutive free runs of a signal over time, which may oscillate
-MARGIN = 0.06  # of the range of each axis, on each side
 SMALLEST, LARGEST = 0.08, 0.25  # length of the drawn boat, relative to the height of the figure
-SECTION_SIZE = 0.2  # size of the drawn midship section, relative to the height of the figure
-MARK_SIZE = 0.03  # size of the mark, relative to the height of the figure
 # outlines: to starboard and astern, relative to beam and length
 BOAT = ((0.0, -0.5), (0.5, -0.2), (0.5, 0.5), (-0.5, 0.5), (-0.5, -0.2))
-# to starboard and down
-SECTION = ((-0.5, -0.3), (0.5, -0.3), (0.5, 0.1), (0.3, 0.3), (-0.3, 0.3), (-0.5, 0.1))
-MARK = tuple((0.5 * cos(k * pi / 4), 0.5 * sin(k * pi / 4)) for k in range(8))
-
-
-@dataclass(frozen=True)
-class Replay:
-    """The animated figure of a report and its data; `legend` and `picture` are mark-up.
-
-    It shows recorded and simulated paths over held-out data.
-    """
-
-    title: str
-    about: str
-    legend: str
-    picture: str
-    film: Animation
 
 
 def animated_replay(f: Findings) -> Replay | None:
@@ -80,12 +69,12 @@ def _paths(f: Findings, runs: Sequence[FreeRun], models: Sequence[str]) -> Repla
     """Return paths seen from above."""
     drawn, worst = _around_largest_error(runs, "position", MOST_PATHS)
     panel = plan_view(drawn, models)
-    panel = replace(panel, x=_with_margin(panel.x), y=_with_margin(panel.y))
+    panel = replace(panel, x=with_margin(panel.x), y=with_margin(panel.y))
     height = panel.y[1] - panel.y[0]
     if "psi_rad" in runs[0].channels["recorded"]:
         outline, scale = _boat(height, f.size)
     else:
-        scale, outline = 1.0, _scaled_outline(MARK, MARK_SIZE * height, MARK_SIZE * height)
+        scale, outline = 1.0, scaled_outline(MARK, MARK_SIZE * height, MARK_SIZE * height)
     return Replay(
         _title("Paths", runs, models),
         _caption(runs, drawn, scale),
@@ -104,11 +93,11 @@ def _signals_over_time(
     for signal in signals:
         panels.append(signal_panel(drawn, signal, models))
     height = panels[0].y[1] - panels[0].y[0]
-    outline = _scaled_outline(MARK, MARK_SIZE * height, MARK_SIZE * height)
+    outline = scaled_outline(MARK, MARK_SIZE * height, MARK_SIZE * height)
     if signals[0] == "psi_rad":
         outline, _ = _boat(height, f.size)
     if signals[0] == "phi_rad":
-        outline = _scaled_outline(SECTION, SECTION_SIZE * height, SECTION_SIZE * height)
+        outline = scaled_outline(SECTION, SECTION_SIZE * height, SECTION_SIZE * height)
     return Replay(
         _title(join_words(SIGNALS[s] for s in signals).capitalize(), runs, models),
         _caption(runs, drawn, 1.0),
@@ -127,12 +116,6 @@ def _title(what: str, runs: Sequence[FreeRun], models: Sequence[str]) -> str:
 
 def _legend(models: Sequence[str]) -> str:
     return legend({model: MODEL_WORDS[model] for model in ("recorded", *models)})
-
-
-def _with_margin(limits: tuple[float, float]) -> tuple[float, float]:
-    """Return limits with room for boats at the ends of their paths."""
-    low, high = limits
-    return low - MARGIN * (high - low), high + MARGIN * (high - low)
 
 
 def _around_largest_error(
@@ -173,9 +156,4 @@ def _boat(height: float, size: tuple[float, float]) -> tuple[Outline, float]:
     """Return the outline of a boat of this length and beam [m], and its scale."""
     length, beam = size
     scale = float(np.clip(length, SMALLEST * height, LARGEST * height)) / length
-    return _scaled_outline(BOAT, scale * beam, scale * length), scale
-
-
-def _scaled_outline(shape: Sequence[tuple[float, float]], across: float, down: float) -> Outline:
-    """Return an outline in units of the figure, to four digits."""
-    return [(float(f"{across * a:.4g}"), float(f"{down * b:.4g}")) for a, b in shape]
+    return scaled_outline(BOAT, scale * beam, scale * length), scale

@@ -4,14 +4,6 @@ import math
 from collections.abc import Iterator, Sequence
 from itertools import repeat
 
-from boatsim.diagnosis.report.blocks import (
-    Block,
-    Heading,
-    Items,
-    Section,
-    Table,
-    Text,
-)
 from boatsim.diagnosis.report.candidate_sections import (
     limits_of_effects_not_found,
     ranking,
@@ -26,14 +18,6 @@ from boatsim.diagnosis.report.effect_sections import (
 from boatsim.diagnosis.report.experiment_section import next_experiment
 from boatsim.diagnosis.report.findings import Findings
 from boatsim.diagnosis.report.force_section import missing_force
-from boatsim.diagnosis.report.formatting import (
-    capitalize,
-    format_probability,
-    format_sentence,
-    format_with_sd,
-    join_words,
-    words_of_name,
-)
 from boatsim.diagnosis.report.glossary import glossary
 from boatsim.diagnosis.report.schema import (
     LogEntry,
@@ -44,6 +28,22 @@ from boatsim.diagnosis.report.sentences import (
     none_tested_reason,
 )
 from boatsim.diagnosis.report.validation_section import validation
+from boatsim.view.formatting import (
+    capitalize,
+    format_probability,
+    format_sentence,
+    format_with_sd,
+    join_words,
+    words_of_name,
+)
+from boatsim.view.page_blocks import (
+    Block,
+    Heading,
+    Items,
+    Section,
+    Table,
+    Text,
+)
 
 
 def sections_of(f: Findings) -> list[Section]:

@@ -8,7 +8,16 @@ from boatsim.diagnosis.report.confirmation import effect_sentences, recalibratio
 from boatsim.diagnosis.report.described_terms import effect_of_axis
 from boatsim.diagnosis.report.families import FAMILIES
 from boatsim.diagnosis.report.findings import Findings, setting_of
-from boatsim.diagnosis.report.formatting import (
+from boatsim.diagnosis.report.model_names import MODEL_WORDS
+from boatsim.diagnosis.report.schema import (
+    AmbientEntry,
+    Answer,
+    EffectEntry,
+    LeftOutEntry,
+    MeanEntry,
+    ParameterEntry,
+)
+from boatsim.view.formatting import (
     capitalize,
     format_cause_probability,
     format_in_one_unit,
@@ -19,15 +28,6 @@ from boatsim.diagnosis.report.formatting import (
     format_quantity,
     join_words,
     words_of_name,
-)
-from boatsim.diagnosis.report.model_names import MODEL_WORDS
-from boatsim.diagnosis.report.schema import (
-    AmbientEntry,
-    Answer,
-    EffectEntry,
-    LeftOutEntry,
-    MeanEntry,
-    ParameterEntry,
 )
 
 WAYS = {  # axis -> direction of a positive mean force, and of a negative one

@@ -8,22 +8,23 @@ import numpy as np
 
 from boatsim.diagnosis.evaluation import MODELS
 from boatsim.diagnosis.free_runs import FreeRun
-from boatsim.diagnosis.report import figures, svg_plots
-from boatsim.diagnosis.report.blocks import (
+from boatsim.diagnosis.report import figures
+from boatsim.diagnosis.report.confirmation import recalibration_sentences
+from boatsim.diagnosis.report.families import FAMILIES
+from boatsim.diagnosis.report.findings import Findings
+from boatsim.diagnosis.report.model_names import MODEL_WORDS, words_of_models
+from boatsim.view import svg_plots
+from boatsim.view.formatting import (
+    format_in_one_unit,
+    format_number,
+    join_words,
+)
+from boatsim.view.page_blocks import (
     Block,
     Figures,
     Table,
     Text,
 )
-from boatsim.diagnosis.report.confirmation import recalibration_sentences
-from boatsim.diagnosis.report.families import FAMILIES
-from boatsim.diagnosis.report.findings import Findings
-from boatsim.diagnosis.report.formatting import (
-    format_in_one_unit,
-    format_number,
-    join_words,
-)
-from boatsim.diagnosis.report.model_names import MODEL_WORDS, words_of_models
 
 MOST_HELD_OUT_FIGURES = 3  # held-out recordings that are drawn
 FREE_RUN_SIGNALS = {"position": "position", "heading": "psi_rad", "roll": "phi_rad"}

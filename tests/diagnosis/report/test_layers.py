@@ -12,13 +12,13 @@ from unmeasured import unmeasured
 from boatsim.diagnosis.candidates import diagnosis_program
 from boatsim.diagnosis.filter import NoiseLevels
 from boatsim.diagnosis.problem import Fit, Problem
-from boatsim.diagnosis.report.blocks import Table
 from boatsim.diagnosis.report.layers import Layers, separate_layers
 from boatsim.diagnosis.report.parameters import parameter_key, reported_sd
 from boatsim.diagnosis.report.schema import EffectEntry
 from boatsim.diagnosis.report.sections import sections_of
 from boatsim.diagnosis.report.sentences import console_lines, refined_rows, verdict_sentences
 from boatsim.physics import vessel
+from boatsim.view.page_blocks import Table
 from tests.diagnosis.report.test_page import planar
 
 ESTIMATED = (

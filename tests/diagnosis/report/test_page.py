@@ -15,7 +15,14 @@ from boatsim.diagnosis.description import Curve, FittedTerm
 from boatsim.diagnosis.report import page as report
 from boatsim.diagnosis.report.figures import part_with_largest_error
 from boatsim.diagnosis.report.findings import Findings, FreeRun, MissingForceCurve
-from boatsim.diagnosis.report.formatting import (
+from boatsim.diagnosis.report.page import LONGEST_HEADLINE
+from boatsim.diagnosis.report.schema import Answer, IntervalEntry
+from boatsim.diagnosis.report.sections import sections_of
+from boatsim.diagnosis.report.sentences import NONE_TESTED, verdict_sentences
+from boatsim.physics.content import library_names, load_class
+from boatsim.physics.effects.described_force import DescribedForce
+from boatsim.physics.effects.described_thrust import DescribedThrust
+from boatsim.view.formatting import (
     format_in_one_unit,
     format_nats,
     format_number,
@@ -28,14 +35,7 @@ from boatsim.diagnosis.report.formatting import (
     name_and_unit,
     sentence_in_per_cent,
 )
-from boatsim.diagnosis.report.page import LONGEST_HEADLINE
-from boatsim.diagnosis.report.schema import Answer, IntervalEntry
-from boatsim.diagnosis.report.sections import sections_of
-from boatsim.diagnosis.report.sentences import NONE_TESTED, verdict_sentences
-from boatsim.diagnosis.report.svg_plots import round_ticks, rows_of_extremes
-from boatsim.physics.content import library_names, load_class
-from boatsim.physics.effects.described_force import DescribedForce
-from boatsim.physics.effects.described_thrust import DescribedThrust
+from boatsim.view.svg_plots import round_ticks, rows_of_extremes
 
 VOID = {"meta", "br", "hr", "img", "input", "link"}
 MODELS = ("nominal", "recalibrated", "patched")

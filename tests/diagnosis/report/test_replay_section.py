@@ -10,10 +10,11 @@ import pytest
 
 from boatsim.diagnosis.loading import recording_order
 from boatsim.diagnosis.report import page as report
-from boatsim.diagnosis.report.animation import FRAMES, LONGEST_ANIMATION
+from boatsim.diagnosis.report.animation import FRAMES
 from boatsim.diagnosis.report.findings import Findings, FreeRun, MissingForceCurve
 from boatsim.diagnosis.report.replay_section import LARGEST, MOST_PATHS, SMALLEST, animated_replay
 from boatsim.diagnosis.report.sentences import mean_force_paragraph
+from boatsim.view.replay import LONGEST_REPLAY
 from tests import chrome
 from tests.diagnosis.report.test_page import MODELS, described, nothing, planar, rolling, unknown
 
@@ -207,9 +208,7 @@ def test_the_page_of_logs_of_an_hour_stays_small_and_its_film_can_be_watched(tmp
     assert (tmp_path / "report.html").stat().st_size < LIMIT
     found, _ = film_of(f)
     seconds = found.film["t"][-1] - found.film["t"][0]
-    assert (
-        seconds / found.film["rate"] <= LONGEST_ANIMATION and len(found.film["t"]) <= 1.1 * FRAMES
-    )
+    assert seconds / found.film["rate"] <= LONGEST_REPLAY and len(found.film["t"]) <= 1.1 * FRAMES
     assert f"The figure shows {MOST_PATHS} of" in found.about
 
 

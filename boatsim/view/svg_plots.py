@@ -13,8 +13,8 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from boatsim.diagnosis.report.formatting import format_number
 from boatsim.physics.base import Array
+from boatsim.view.formatting import format_number
 
 GRID = 2000  # units of the drawing along each edge; one is finer than a pixel
 POINTS = 500  # of a line; more are not visible
