@@ -403,11 +403,15 @@ def run(
         done = simulate(loaded, seed)
         metrics: Mapping[str, Metric] = all_metrics(done)
     else:
-        from boatsim.view.run_observers import rerun_observers  # rerun takes half a second
+        from boatsim.view.run_observers import (  # rerun takes half a second
+            page_observer,
+            rerun_observers,
+        )
 
         folder = Path(out)
         options = RunOptions(seed=seed)
-        done, metrics = run_into_folder(folder, loaded, options, rerun_observers(), in_memory=True)
+        observers = [*rerun_observers(), page_observer(loaded)]
+        done, metrics = run_into_folder(folder, loaded, options, observers, in_memory=True)
     camera = None
     if "yaw" in loaded.vessel.dof:
         camera = done.camera

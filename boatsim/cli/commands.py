@@ -7,6 +7,7 @@ import atexit
 import functools
 import os
 import re
+import shlex
 import sys
 import threading
 from collections.abc import Callable, Sequence
@@ -343,7 +344,10 @@ def run(
     content: Content = None,
     trust: Trusted = False,
 ) -> int:
-    """Run scenarios; print metrics; write recording.csv, norms.json, camera.csv and run.rrd."""
+    """Run scenarios; print metrics; write report.html, recording.csv, norms.json and run.rrd.
+
+    Each run has a folder. Open its report.html in a browser, or list all runs by boatsim open out.
+    """
     from boatsim.cli.run_many import ViewerOptions, run_all
 
     if speed is not None and not (live or serve):
@@ -564,7 +568,15 @@ def manoeuvre(
 
     with trusted_content(content, trust, [vessel]):
         scenario = manoeuvre_scenario(name, vessel, _split_loads(load), angle, speed, heading)
-        return run_manoeuvre(scenario, out or Path("out") / f"{scenario.vessel.name}_{name}")
+        folder = out or Path("out") / f"{scenario.vessel.name}_{name}"
+        settings = {"--angle": angle, "--heading": heading, "--speed": speed}
+        words = ["boatsim", "manoeuvre", name, "--vessel", vessel]
+        if load:
+            words += ["--load", ",".join(load)]
+        for option, value in settings.items():
+            if value is not None:
+                words += [option, f"{value:g}"]
+        return run_manoeuvre(scenario, folder, shlex.join(words))
 
 
 @app.command("list")

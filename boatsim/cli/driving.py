@@ -1,5 +1,6 @@
 """Implementation of `boatsim drive`: a run in real time, steered from a page in the browser."""
 
+import shlex
 import time
 import webbrowser
 from contextlib import ExitStack
@@ -15,7 +16,7 @@ from boatsim.drive.session import Session, folder_name
 from boatsim.drive.task import FILE, Task
 from boatsim.simulate.evaluation import RunEntry
 from boatsim.simulate.run_files import run_into_folder
-from boatsim.view.run_observers import rerun_observers
+from boatsim.view.run_observers import page_observer, rerun_observers
 from boatsim.view.viewer import has_display
 
 
@@ -44,8 +45,9 @@ def drive_vessel(
         print_note(f"drive in a browser on this machine: {server.address}")
         if browser or (browser is None and has_display()):
             webbrowser.open(server.address)
-        observers = rerun_observers(address)
         scenario = task.scenario_in_folder(folder)
+        command = shlex.join(["boatsim", "run", str(folder / FILE)])
+        observers = [*rerun_observers(address), page_observer(scenario, command)]
         done = run_into_folder(folder, scenario, observers=observers, steering=session)
         content = done.to_json()
         server.send_result({"folder": str(folder)})

@@ -1,6 +1,7 @@
 """Runs scenarios one after another or in parallel processes, with progress and one exit code."""
 
 import os
+import shlex
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor, wait
@@ -54,6 +55,16 @@ class Task:
     folder: Path
     seed: int | None
     controller: str | None = None
+
+    @property
+    def command(self) -> str:
+        """Command that repeats the run."""
+        words = ["boatsim", "run", self.address]
+        if self.controller is not None:
+            words += ["--controller", self.controller]
+        if self.seed is not None:
+            words += ["--seed", str(self.seed)]
+        return shlex.join(words)
 
 
 class PlannedRun(NamedTuple):
@@ -202,7 +213,7 @@ def open_viewer(serve: bool) -> Iterator[str | None]:
         yield address
 
 
-def run_manoeuvre(scenario: Scenario, folder: Path) -> int:
+def run_manoeuvre(scenario: Scenario, folder: Path, command: str) -> int:
     """Run a standard ship manoeuvre and print its metrics with the IMO limits.
 
     A missed limit does not change the exit code: the limits are for large ships.
@@ -210,17 +221,19 @@ def run_manoeuvre(scenario: Scenario, folder: Path) -> int:
     Args:
         scenario: Scenario of the manoeuvre.
         folder: Output folder.
+        command: Command that repeats the run.
 
     Returns:
         Exit code.
     """
     from boatsim.simulate.run_files import run_into_folder
-    from boatsim.view.run_observers import rerun_observers
+    from boatsim.view.run_observers import page_observer, rerun_observers
 
     tasks = [(scenario.name, scenario.file.duration)]
     with progress.report_runs(tasks, several=False) as report:
         options = RunOptions(progress=partial(report, 0))
-        content = run_into_folder(folder, scenario, options, rerun_observers()).to_json()
+        observers = [*rerun_observers(), page_observer(scenario, command)]
+        content = run_into_folder(folder, scenario, options, observers).to_json()
     print_metrics(content, folder)
     report_saturation(content)
     if content["complete"]:
@@ -315,13 +328,14 @@ def run_task(
     """
     try:
         from boatsim.simulate.run_files import run_into_folder
-        from boatsim.view.run_observers import rerun_observers
+        from boatsim.view.run_observers import page_observer, rerun_observers
 
         options = RunOptions(seed=task.seed, progress=report)
         if speed > 0.0:
             options = replace(options, pace=Pace(speed), refresh=LIVE_REFRESH)
         scenario = scenario or load_with_controller(task.address, task.controller)
-        done = run_into_folder(task.folder, scenario, options, rerun_observers(viewer))
+        observers = [*rerun_observers(viewer), page_observer(scenario, task.command)]
+        done = run_into_folder(task.folder, scenario, options, observers)
         return Outcome(task, done.to_json())
     except FAULTS as error:
         return Outcome(task, error=f"{task.name}: {one_line(error)}")

@@ -24,7 +24,7 @@ from boatsim.recordings.run_folder import METRICS
 from boatsim.recordings.table import Recording, csv_header, csv_rows
 from boatsim.simulate import evaluation
 from boatsim.simulate.engine import Engine
-from boatsim.simulate.evaluation import Metric, MetricEntry, RunEntry
+from boatsim.simulate.evaluation import Metric, RunEntry
 from boatsim.simulate.open_water import OpenWater
 from boatsim.simulate.real_time_pace import Pace
 from boatsim.simulate.run import Run, Simulation, build_engine, recording_notes, seed_or_default
@@ -42,8 +42,8 @@ class RunObserver(Protocol):
     def add_rows(self, rows: Recording) -> None:
         """Receive the new rows of the log of a run in progress."""
 
-    def finish(self, metrics: Mapping[str, MetricEntry]) -> None:
-        """Receive the metrics of a run at its end."""
+    def finish(self, result: RunEntry) -> None:
+        """Receive the content of norms.json at the end of a run."""
 
 
 # starts to observe a run of an engine; files of the observer go into the folder
@@ -158,7 +158,7 @@ def run_into_folder(
             result = RecordedRun(run, evaluation.all_metrics(run))
             content = result.to_json()
             for observer in started:
-                observer.finish(content["norms"])
+                observer.finish(content)
         _write_description(new, scenario, seed, run.complete, steering)
         write_metrics(new / METRICS, content)
     return result

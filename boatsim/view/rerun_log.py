@@ -20,7 +20,7 @@ import rerun as rr
 from boatsim.physics.signals import POSE, Array
 from boatsim.recordings.readers.rrd import SIGNALS, TIMELINE
 from boatsim.recordings.table import Notes, Recording
-from boatsim.simulate.evaluation import MISSED, NO_TOLERANCE, REPRODUCED, MetricEntry
+from boatsim.simulate.evaluation import MISSED, NO_TOLERANCE, REPRODUCED, MetricEntry, RunEntry
 from boatsim.simulate.tracking_errors import GOAL
 from boatsim.view import blueprint
 from boatsim.view.blueprint import WORLD
@@ -112,15 +112,15 @@ class RerunLog:
         ):
             self._write()
 
-    def finish(self, metrics: Mapping[str, MetricEntry]) -> None:
+    def finish(self, result: RunEntry) -> None:
         """Add the table of the run's metrics to the 3D log.
 
         Args:
-            metrics: Metrics by name, as in norms.json.
+            result: Content of norms.json.
         """
         self._write()
         if self.stream.has_receiver:
-            self._write_text(metrics_table(metrics))
+            self._write_text(metrics_table(result["norms"]))
 
     def close(self) -> None:
         """Write the remaining rows of the 3D log and close its file."""

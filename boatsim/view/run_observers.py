@@ -1,4 +1,4 @@
-"""Observers of a run that display it: the file run.rrd, and a live viewer."""
+"""Observers of a run that display it: run.rrd, a live viewer, and the page report.html."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -7,7 +7,9 @@ from pathlib import Path
 from boatsim.simulate.engine import Engine
 from boatsim.simulate.open_water import OpenWater
 from boatsim.simulate.run_files import RunObserver, StartObserver
+from boatsim.simulate.scenario import Scenario
 from boatsim.view.rerun_log import RerunLog
+from boatsim.view.run_page import RunPage
 from boatsim.view.scene import scene_from
 
 FILE = "run.rrd"
@@ -35,3 +37,19 @@ def rerun_observers(viewer: str | None = None) -> list[StartObserver]:
     if viewer is None:
         return [write_file]
     return [write_file, feed_viewer]
+
+
+def page_observer(scenario: Scenario, command: str = "") -> StartObserver:
+    """Return the observer of a run that writes its page report.html.
+
+    Args:
+        scenario: The scenario.
+        command: Command that repeats the run, which the page states; "" if there is none.
+    """
+
+    @contextmanager
+    def write_page(folder: Path, engine: Engine | OpenWater) -> Iterator[RunObserver]:
+        scene = scene_from(engine.model, engine.vessel, engine.tank)
+        yield RunPage(folder, scene, scenario, command)
+
+    return write_page

@@ -108,16 +108,21 @@ def legend(looks: Mapping[str, str]) -> str:
     return f'<ul class="legend">{"".join(items)}</ul>'
 
 
-def figure(panels: Sequence[Panel], title: str, wide: bool = False) -> str:
+def figure(
+    panels: Sequence[Panel], title: str, wide: bool = False, key: Mapping[str, str] | None = None
+) -> str:
     """Return a titled SVG figure of panels below each other, which share their abscissa.
 
     Args:
         panels: The panels; the last one has the numbers of the abscissa.
         title: Title of the figure.
         wide: Whether it takes the whole width of the page.
+        key: Words of the figure's own legend by class of the style sheet.
     """
     look = "chart wide" if wide else "chart"
     caption = f"<figcaption>{escape(title)}</figcaption>"
+    if key:
+        caption += legend(key)
     return f'<figure class="{look}">{caption}{stack_panels(panels)}</figure>'
 
 

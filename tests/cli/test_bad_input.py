@@ -27,7 +27,14 @@ WRITTEN = {
     "diagnose": DIAGNOSIS,
     "replay": {"replay.csv"},
     "compare": {"compare.csv", "compare.rrd"},
-    "run": {"recording.csv", "camera.csv", "recording.toml", "norms.json", "run.rrd"},
+    "run": {
+        "recording.csv",
+        "camera.csv",
+        "recording.toml",
+        "norms.json",
+        "run.rrd",
+        "report.html",
+    },
 }
 COMMON = {
     "deadline": None,

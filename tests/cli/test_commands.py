@@ -38,7 +38,7 @@ FIELDS = {
     "kind",
 }
 INTERRUPTED = "boatsim: interrupted; what was logged is kept\n"
-FILES = {"recording.csv", "camera.csv", "recording.toml", "norms.json", "run.rrd"}
+FILES = {"recording.csv", "camera.csv", "recording.toml", "norms.json", "run.rrd", "report.html"}
 PLAIN = """
 about = "Two seconds to starboard."
 vessel = "joystick_boat"

@@ -377,6 +377,7 @@ def test_what_was_driven_is_recorded_as_any_run(driven: Path) -> None:
         "camera.csv",
         "norms.json",
         "run.rrd",
+        "report.html",
         "recording.toml",
         "scenario.toml",
     } == {f.name for f in driven.iterdir()}

@@ -69,17 +69,14 @@ def logged(tmp_path):
     with RerunLog(tmp_path / "run.rrd", SCENE) as log:
         for piece in pieces(circle()):
             log.add_rows(piece)
-        log.finish(
-            {
-                "moved": {
-                    "value": 0.5,
-                    "unit": "m",
-                    "published": 0.4,
-                    "guard": [0.3, None],
-                    "ok": True,
-                }
-            }
-        )
+        metric = {
+            "value": 0.5,
+            "unit": "m",
+            "published": 0.4,
+            "guard": [0.3, None],
+            "ok": True,
+        }
+        log.finish({"norms": {"moved": metric}})
     return tmp_path / "run.rrd"
 
 
@@ -231,7 +228,7 @@ def test_the_outline_is_that_of_the_hull_from_above():
 def test_without_a_file_and_a_viewer_there_is_nothing_to_do():
     with RerunLog(None, SCENE) as log:
         log.add_rows(circle())
-        log.finish({})
+        log.finish({"norms": {}})
     assert not log.stream.has_receiver
 
 

@@ -98,6 +98,11 @@ function replayed(stage) {
     svg.append(hull);
     return hull;
   });
+  const cursors = film.cursor ? [...document.querySelectorAll('.plot[data-across="time [s]"]')].filter(p => !stage.contains(p)).map(p => {
+    const now = element("div", "now");
+    p.append(now);
+    return [now, ...p.dataset.x.split(" ").map(Number)];
+  }) : [];
   const first = film.t[0], last = film.t[film.t.length - 1];
   let time = film.t[film.start], playing = false, before = 0;
 
@@ -126,7 +131,10 @@ function replayed(stage) {
       if (!film.plan) return `${boat.name} ${formatted(places[i][1], y1 - y0, film.unit)}`;
       return i && places[0] ? `${boat.name} ${distance(Math.hypot(places[i][0] - places[0][0], places[i][1] - places[0][1]))} off` : "";
     });
-    output.textContent = [formatted(time, 100, "s"), ...words.filter(Boolean)].join(" \u00b7 ");
+    const numbers = (film.readouts || []).map(r => r.values[k] === null ? ""
+      : `${r.name} ${r.values[k].toFixed(r.decimals).replace("-", "\u2212")}${r.unit.startsWith("\u00b0") ? "" : "\u00a0"}${r.unit}`);
+    output.textContent = [formatted(time, 100, "s"), ...(film.readouts ? [] : words.filter(Boolean)), ...numbers.filter(Boolean)].join(" \u00b7 ");
+    for (const [now, low, high] of cursors) now.style.left = `${100 * Math.max(0, Math.min(1, (time - low) / (high - low)))}%`;
     slider.value = time;
   }
   function play(on) {
