@@ -44,6 +44,7 @@ MOST_SPEED = 1e6  # times real time; a larger value is a mistake
 COMMAND_GROUPS = {
     "Start here": ("demo",),
     "Simulate": ("run", "drive", "sweep", "test", "manoeuvre", "margins"),
+    "Look at results": ("open",),
     "Learn from recordings": ("import", "check", "diagnose", "replay", "compare", "export"),
     "Vessels and content": ("new", "list", "show"),
 }
@@ -487,6 +488,35 @@ def sweep(
     options = SweepOptions(vary or [], draw or [], runs, design, seed)
     with trusted_content(content, trust, scenarios):
         return run_sweep(scenarios, options, out, jobs, ray, norm or [])
+
+
+@app.command("open")
+@exits_with_code
+def open_(
+    folders: Annotated[
+        list[Path] | None,
+        typer.Argument(
+            metavar="FOLDER", help="Folder of a result, or folders of results [default: out]."
+        ),
+    ] = None,
+    out: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE", help="Index page to write [default: index.html there]."),
+    ] = None,
+    browser: Annotated[
+        bool | None,
+        typer.Option(
+            "--open/--no-open", help="Open the page in a browser [default: if there is a display]."
+        ),
+    ] = None,
+) -> int:
+    """Open the page of a run, diagnosis or sweep, or an index page of all results in a folder.
+
+    The path of the page is printed. The index lists each result in one line, the newest first.
+    """
+    from boatsim.cli.opening import open_results
+
+    return open_results(folders or [Path("out")], out, browser)
 
 
 @app.command()

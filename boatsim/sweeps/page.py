@@ -9,9 +9,11 @@ from boatsim.files import replace_file
 from boatsim.sweeps.keys import Value
 from boatsim.sweeps.plots import controller_legend, group_by_controller, plot_metric
 from boatsim.sweeps.results import Results
+from boatsim.sweeps.sentence import first_picture, what_came_out, what_varied
 from boatsim.sweeps.text_tables import blank_repeats, format_values, result_tables
 from boatsim.view.html_page import render_template
 from boatsim.view.page_blocks import Figures, Heading, Items, Section, Table
+from boatsim.view.run_facts import plain_name
 
 NAME = "report.html"
 TEMPLATE = Path(__file__).parent / "templates" / "sweep.html.j2"
@@ -31,7 +33,15 @@ def write_report(results: Results, folder: Path) -> None:
     sections = [*_table_sections(results), _failure_section(results), *_plot_sections(results)]
     sections = [section for section in sections if section.blocks]
     facts = _page_facts(results)
-    page = render_template(TEMPLATE, title=_page_title(results), facts=facts, sections=sections)
+    page = render_template(
+        TEMPLATE,
+        title=_page_title(results),
+        varied=what_varied(results),
+        came_out=what_came_out(results),
+        picture=first_picture(results),
+        facts=facts,
+        sections=sections,
+    )
     with replace_file(folder / NAME) as temporary:
         temporary.write_text(page, encoding="utf-8")
 
@@ -40,7 +50,7 @@ def _page_title(results: Results) -> str:
     names = results.plan.scenarios
     what = f"{len(names)} scenarios"
     if len(names) == 1:
-        what = names[0]
+        what = plain_name(names[0])
     return f"{what}: {len(results.numbers)} runs"
 
 
@@ -64,7 +74,7 @@ def _page_facts(results: Results) -> list[tuple[str, str]]:
 
 
 def _shorten(values: Sequence[Value]) -> list[str]:
-    texts = format_values(values)
+    texts = [plain_name(text) for text in format_values(values)]
     if len(texts) <= MOST_VALUES:
         return texts
     return [texts[0], texts[1], "...", texts[-1]]
@@ -93,7 +103,7 @@ def _plot_sections(results: Results) -> list[Section]:
     names = np.array([results.plan.points[number].scenario for number in results.point_numbers])
     sections = []
     for number, scenario in enumerate(scenarios, 1):
-        title = scenario if len(scenarios) > 1 else "Metrics against what varied"
+        title = plain_name(scenario) if len(scenarios) > 1 else "Metrics against what varied"
         section = Section(f"norms-{number}", title)
         rows = names == scenario
         legend = controller_legend(group_by_controller(results, rows))

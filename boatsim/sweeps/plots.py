@@ -102,7 +102,7 @@ def plot_metric(results: Results, name: str, rows: Array) -> list[str]:
         by_style = axis.target.name == CONTROLLER and len(metric.groups) < 2
         if len(axis.values) > 1 and not by_style:
             plots.append(_plot_axis(results, axis, metric))
-    for quantity, x, correlation in _rank_correlations(results, values, finite):
+    for quantity, x, correlation in rank_correlations(results, values, finite):
         plots.append(_plot_sampled(quantity, x, correlation, metric))
     return plots
 
@@ -174,10 +174,19 @@ def _shorten(label: str) -> str:
     return f"{label[: LONGEST_LABEL - 1]}…"
 
 
-def _rank_correlations(
+def rank_correlations(
     results: Results, values: Array, finite: Array
 ) -> list[tuple[str, Array, float]]:
-    """Sampled numbers (R,) with their rank correlation with a metric, the strongest first."""
+    """Return sampled numbers with their rank correlation with a metric, the strongest first.
+
+    Args:
+        results: Results of a sweep.
+        values: Values (R,) of the metric.
+        finite: Mask (R,) of the runs to use.
+
+    Returns:
+        Name, values (R,) and rank correlation of each sampled quantity that is a number.
+    """
     from scipy.stats import spearmanr
 
     found = []

@@ -50,9 +50,12 @@ def plain_name(name: str) -> str:
     """Return the name of content that may be given as the path of its file.
 
     Args:
-        name: Name or path, such as "my/controllers/course.py".
+        name: Name or path, such as "my/controllers/course.py" or "my/cases.toml:calm".
     """
-    if "/" in name or "\\" in name or name.endswith((".py", ".toml")):
+    path, colon, case = name.rpartition(":")
+    if colon and path.endswith(".toml"):
+        return case
+    if name.endswith((".py", ".toml")):
         return Path(name.replace("\\", "/")).stem
     return name
 

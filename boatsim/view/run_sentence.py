@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 
 from boatsim.simulate.evaluation import MISSED, MetricEntry, RunEntry
-from boatsim.view.formatting import format_number, join_words, words_of_name
+from boatsim.view.formatting import join_words, words_of_name
 
 MOST_NAMED = 3  # metrics outside their bands that the sentence names
 
@@ -36,15 +36,15 @@ def run_sentence(result: RunEntry) -> str:
     if not banded:
         sentence = _listed(metrics)
     elif not missed:
-        sentence = f"All {len(banded)} metrics with a regression band lie within it"
+        sentence = f"All {len(banded)} metrics lie within their regression bands"
         if len(banded) == 1:
-            sentence = "The metric with a regression band lies within it"
+            sentence = "The only metric with a regression band lies within it"
     else:
         kept = len(banded) - len(missed)
         named = [_outside(name, metrics[name]) for name in missed[:MOST_NAMED]]
         if len(missed) > MOST_NAMED:
             named.append(f"{len(missed) - MOST_NAMED} more")
-        sentence = f"{kept} of {len(banded)} metrics lie within their bands"
+        sentence = f"{kept} of {len(banded)} metrics lie within their regression bands"
         sentence += f"; outside: {join_words(named)}"
     differs = _differing(metrics)
     if differs:
@@ -77,7 +77,8 @@ def _value(entry: MetricEntry) -> str:
         return "without a value"
     unit = entry["unit"].replace("deg", "°")
     space = "" if unit.startswith("°") else " "
-    return f"{format_number(entry['value'])}{space}{unit}".rstrip()
+    number = f"{entry['value']:.3g}".replace("-", "−")
+    return f"{number}{space}{unit}".rstrip()
 
 
 def _differing(metrics: Mapping[str, MetricEntry]) -> str:
