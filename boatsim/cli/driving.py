@@ -3,7 +3,7 @@
 import shlex
 import time
 import webbrowser
-from contextlib import ExitStack
+from contextlib import ExitStack, suppress
 from pathlib import Path
 from statistics import median_high
 
@@ -12,7 +12,7 @@ from boatsim.cli.metric_table import print_metrics
 from boatsim.cli.run_many import ViewerOptions, open_viewer, report_saturation
 from boatsim.drive.driver_input import DriverInput
 from boatsim.drive.server import Server
-from boatsim.drive.session import Session, folder_name
+from boatsim.drive.session import NothingDriven, Session, folder_name
 from boatsim.drive.task import FILE, Task
 from boatsim.simulate.evaluation import RunEntry
 from boatsim.simulate.run_files import run_into_folder
@@ -36,12 +36,29 @@ def drive_vessel(
         Exit code.
     """
     folder = out or folder_name(task.vessel.name, time.time())
+    missing = [parent for parent in folder.parents if not parent.exists()]
+    try:
+        content, session = _drive(task, folder, browser, port, viewer)
+    except NothingDriven as reason:
+        for parent in missing:  # the innermost first
+            with suppress(OSError):
+                parent.rmdir()
+        print_error(str(reason))
+        return Exit.INTERRUPTED
+    return _print_result(content, folder, session)
+
+
+def _drive(
+    task: Task, folder: Path, browser: bool | None, port: int, viewer: ViewerOptions | None
+) -> tuple[RunEntry, Session]:
+    """Let a user drive; return the content of norms.json, and the session."""
     with ExitStack() as stack:
         server = stack.enter_context(Server(DriverInput(), port))
         address = None
         if viewer:
             address = stack.enter_context(open_viewer(viewer.serve))
         session = Session(task, server, print_note, address is not None)
+        session.show_preparation()
         print_note(f"drive in a browser on this machine: {server.address}")
         if browser or (browser is None and has_display()):
             webbrowser.open(server.address)
@@ -51,7 +68,7 @@ def drive_vessel(
         done = run_into_folder(folder, scenario, observers=observers, steering=session)
         content = done.to_json()
         server.send_result({"folder": str(folder)})
-    return _print_result(content, folder, session)
+    return content, session
 
 
 def _print_result(content: RunEntry, folder: Path, session: Session) -> int:

@@ -6,6 +6,7 @@ import json
 import os
 import secrets
 import threading
+import time
 from base64 import b64encode
 from collections.abc import Mapping
 from concurrent.futures import Future
@@ -21,6 +22,9 @@ from boatsim.errors import BoatsimError
 
 HERE = "127.0.0.1"
 LARGEST = 1024  # bytes of a message from the page; its messages have less than 200
+# [s] without any page, after one was open, from which the driver counts as gone: reloading a page
+# and reconnecting after a lost connection take a few seconds.
+ABANDONED = 10.0
 FAREWELL = 2.0  # [s] for the page to receive the result of the run
 # Close codes of the socket: another page drives already; a message is not one of this page.
 TAKEN, STRANGE = 4001, 4002
@@ -56,6 +60,7 @@ class Server:
         self._page = files("boatsim.drive").joinpath("page.html").read_text("utf-8")
         self._hello = self._frame = self._last = ""
         self._driver: Any = None
+        self._left_at: float | None = None  # when the last page was closed, if none is open
         self._up: Future[int] = Future()
         self._loop = asyncio.new_event_loop()
         self._thread = threading.Thread(target=self._run_event_loop, name="page", daemon=True)
@@ -78,6 +83,12 @@ class Server:
             self.send_result({"wrong": message})
         self._loop.call_soon_threadsafe(self._over.set)
         self._thread.join(FAREWELL + 1.0)
+
+    @property
+    def is_abandoned(self) -> bool:
+        """Whether the driver's page was closed some seconds ago and no page has come back."""
+        left = self._left_at
+        return left is not None and time.monotonic() - left > ABANDONED
 
     @property
     def address(self) -> str:
@@ -190,7 +201,7 @@ class Server:
         if self._driver is not None:
             await socket.close(TAKEN, "another page drives this boat already")
             return
-        self._driver = socket
+        self._driver, self._left_at = socket, None
         sending = asyncio.ensure_future(self._send_updates(socket))
         try:
             async for message in socket:
@@ -201,7 +212,7 @@ class Server:
                 raise
         finally:
             self.hands.release("page closed")
-            self._driver = None
+            self._driver, self._left_at = None, time.monotonic()
             sending.cancel()
 
     def _process_message(self, message: str | bytes) -> bool:

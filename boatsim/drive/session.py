@@ -10,16 +10,26 @@ from boatsim.drive.clock import Clock
 from boatsim.drive.server import Server
 from boatsim.drive.task import FILE, Task
 from boatsim.drive.telemetry import PageData
+from boatsim.errors import BoatsimError
 from boatsim.recordings.table import Recording
+from boatsim.simulate import world
 from boatsim.simulate.engine import Engine
 from boatsim.simulate.open_water import OpenWater
 from boatsim.simulate.run_options import LIVE_REFRESH, REFRESH, Listener
-from boatsim.simulate.scenario import OFF
+from boatsim.simulate.scenario import OFF, Scenario
 from boatsim.simulate.tracking_errors import TrackingErrorSums
+from boatsim.view.scene import Scene, scene_from
 
 FRAME = 0.04  # [s] between two frames of the page: 25 a second look smooth
 WAIT = 0.05  # [s] between two checks whether a driver has taken the sticks
 NO_DRIVER: Mapping[str, float] = {OFF: 1.0}  # goal while no driver holds the sticks
+
+
+class NothingDriven(BoatsimError):
+    """Raised if the page is closed before its driver has moved the sticks: no run is kept."""
+
+    def __init__(self) -> None:
+        super().__init__("the page was closed before the sticks were moved; nothing is saved")
 
 
 class Session:
@@ -58,11 +68,17 @@ class Session:
         self._end = 0.0
         self._away: list[str] = []  # time and reason of each release of the sticks
         self._moved = -1.0
+        self._driven = False  # whether the sticks have left the middle
+        self._painter = PageData(_scene_of(task.scenario), task.dials, task.scenario)
         self.replayable = True
         self.latencies: list[float] = []
 
+    def show_preparation(self) -> None:
+        """Show the vessel on the page while its equations are being compiled."""
+        self.server.send_initial_data(self._painter.initial_data(ready=False))
+
     def prepare_run(self, engine: Engine | OpenWater, stop: Callable[[], bool]) -> None:
-        """Show the vessel on the page and wait until a driver has taken the sticks.
+        """Tell the page that the vessel is ready and wait until a driver has taken the sticks.
 
         Args:
             engine: Engine of the run.
@@ -70,17 +86,25 @@ class Session:
 
         Raises:
             KeyboardInterrupt: The run is interrupted.
+            NothingDriven: The page was closed.
         """
-        self._painter = PageData(engine, self.task.dials, self.task.scenario)
-        self.server.send_initial_data(self._painter.initial_data())
+        self.server.send_initial_data(self._painter.initial_data(ready=True))
         while self.hands.release_reason and not self.server.ended and not stop():
+            if self.server.is_abandoned:
+                raise NothingDriven
             time.sleep(WAIT)
         if stop():  # The run has not started.
             raise KeyboardInterrupt
 
     def is_finished(self) -> bool:
-        """Return whether the driver has ended the run from the page."""
-        return self.server.ended
+        """Return whether the driver has ended the run, by the page's button or by closing it.
+
+        Raises:
+            NothingDriven: The page was closed before the sticks were moved.
+        """
+        if self.server.is_abandoned and not self._driven:
+            raise NothingDriven
+        return self.server.ended or self.server.is_abandoned
 
     def goal_at(self, t: float) -> Mapping[str, float]:
         """Return the controller's goals at a time, from the driver's sticks.
@@ -152,6 +176,7 @@ class Session:
         if sticks is None:
             self.task.dials.reset_heading()
         else:
+            self._driven = self._driven or any(sticks)
             goal = self.task.dials.goal_from_sticks(sticks, dt, self._heading)
         if goal != self._goal or not self._goals:
             self._store_goal(t, goal, moved)
@@ -168,6 +193,15 @@ class Session:
         self._goal, self._moved = goal, moved
         logged = None if goal is NO_DRIVER else goal
         self._goals.append((t, logged))
+
+
+def _scene_of(scenario: Scenario) -> Scene:
+    """Return the shapes of vessel and water, for which nothing has to be compiled."""
+    file, vessel = scenario.file, scenario.vessel
+    tank = world.open_water(vessel)
+    if file.tank and not file.is_compiled:
+        tank = world.Tank(**file.tank.model_dump())
+    return scene_from(world.build_model(vessel, tank, file.step), vessel, tank)
 
 
 def folder_name(vessel: str, now: float) -> Path:

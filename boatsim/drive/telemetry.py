@@ -10,37 +10,42 @@ from boatsim.drive.stick_mapping import HEADING, StickMappings
 from boatsim.physics.signals import measured_column_for_goal
 from boatsim.recordings.notes import unit_of
 from boatsim.recordings.table import Recording
-from boatsim.simulate.engine import Engine
-from boatsim.simulate.open_water import OpenWater
 from boatsim.simulate.scenario import Scenario
 from boatsim.simulate.tracking_errors import error_units
-from boatsim.view.scene import scene_from
+from boatsim.view.run_facts import plain_name
+from boatsim.view.scene import Scene
 
+# [s] which the compilation of a vessel usually takes, the first time only: 9 to 14 s were measured
+# for the shipped vessels on two busy cores. The page shows its progress by it.
+COMPILING = 12.0
 MOTION = ("x_m", "y_m", "psi_rad", "u_mps", "v_mps", "r_radps")
 
 
 class PageData:
     """Converts rows of a run's log into the data that the driver's page shows."""
 
-    def __init__(
-        self, engine: Engine | OpenWater, dials: StickMappings, scenario: Scenario
-    ) -> None:
+    def __init__(self, scene: Scene, dials: StickMappings, scenario: Scenario) -> None:
         """Create a painter.
 
         Args:
-            engine: Engine of the run.
+            scene: Shape of the vessel, and the water.
             dials: Goals or channels that the sticks set.
             scenario: The scenario.
         """
-        self._scene = scene_from(engine.model, scenario.vessel, engine.tank)
-        self._dials, self._scenario = dials, scenario
+        self._scene, self._dials, self._scenario = scene, dials, scenario
 
-    def initial_data(self) -> dict[str, object]:
-        """Return the page's data that do not change during the run: vessel, basin and dials."""
+    def initial_data(self, ready: bool) -> dict[str, object]:
+        """Return the page's data that do not change during the run: vessel, basin and dials.
+
+        Args:
+            ready: Whether the boat can be driven; False while it is still being compiled.
+        """
         scene, file = self._scene, self._scenario.file
         return {
             "vessel": scene.vessel,
-            "controller": str(file.controller["use"]),
+            "controller": plain_name(str(file.controller["use"])),
+            "ready": ready,
+            "usual_s": COMPILING,
             "about": file.about,
             "length": scene.length,
             "reach": scene.reach,
