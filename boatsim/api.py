@@ -407,10 +407,15 @@ def run(
             page_observer,
             rerun_observers,
         )
+        from boatsim.view.run_page import run_command
 
         folder = Path(out)
         options = RunOptions(seed=seed)
-        observers = [*rerun_observers(), page_observer(loaded)]
+        command = ""
+        if vessel is None and loaded.address:
+            chosen = None if controller is None else str(controller)
+            command = run_command(loaded.address, chosen, seed)
+        observers = [*rerun_observers(), page_observer(loaded, command)]
         done, metrics = run_into_folder(folder, loaded, options, observers, in_memory=True)
     camera = None
     if "yaw" in loaded.vessel.dof:

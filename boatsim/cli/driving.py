@@ -1,6 +1,5 @@
 """Implementation of `boatsim drive`: a run in real time, steered from a page in the browser."""
 
-import shlex
 import time
 import webbrowser
 from contextlib import ExitStack, suppress
@@ -17,6 +16,7 @@ from boatsim.drive.task import FILE, Task
 from boatsim.simulate.evaluation import RunEntry
 from boatsim.simulate.run_files import run_into_folder
 from boatsim.view.run_observers import page_observer, rerun_observers
+from boatsim.view.run_page import run_command
 from boatsim.view.viewer import has_display
 
 
@@ -63,8 +63,8 @@ def _drive(
         if browser or (browser is None and has_display()):
             webbrowser.open(server.address)
         scenario = task.scenario_in_folder(folder)
-        command = shlex.join(["boatsim", "run", str(folder / FILE)])
-        observers = [*rerun_observers(address), page_observer(scenario, command)]
+        page = page_observer(scenario, run_command(str(folder / FILE)))
+        observers = [*rerun_observers(address), page]
         done = run_into_folder(folder, scenario, observers=observers, steering=session)
         content = done.to_json()
         server.send_result({"folder": str(folder)})

@@ -1,7 +1,6 @@
 """Runs scenarios one after another or in parallel processes, with progress and one exit code."""
 
 import os
-import shlex
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor, wait
@@ -55,16 +54,6 @@ class Task:
     folder: Path
     seed: int | None
     controller: str | None = None
-
-    @property
-    def command(self) -> str:
-        """Command that repeats the run."""
-        words = ["boatsim", "run", self.address]
-        if self.controller is not None:
-            words += ["--controller", self.controller]
-        if self.seed is not None:
-            words += ["--seed", str(self.seed)]
-        return shlex.join(words)
 
 
 class PlannedRun(NamedTuple):
@@ -329,12 +318,14 @@ def run_task(
     try:
         from boatsim.simulate.run_files import run_into_folder
         from boatsim.view.run_observers import page_observer, rerun_observers
+        from boatsim.view.run_page import run_command
 
         options = RunOptions(seed=task.seed, progress=report)
         if speed > 0.0:
             options = replace(options, pace=Pace(speed), refresh=LIVE_REFRESH)
         scenario = scenario or load_with_controller(task.address, task.controller)
-        observers = [*rerun_observers(viewer), page_observer(scenario, task.command)]
+        command = run_command(task.address, task.controller, task.seed)
+        observers = [*rerun_observers(viewer), page_observer(scenario, command)]
         done = run_into_folder(task.folder, scenario, options, observers)
         return Outcome(task, done.to_json())
     except FAULTS as error:

@@ -9,7 +9,7 @@ from boatsim.files import replace_file
 from boatsim.sweeps.keys import Value
 from boatsim.sweeps.plots import controller_legend, group_by_controller, plot_metric
 from boatsim.sweeps.results import Results
-from boatsim.sweeps.sentence import first_picture, what_came_out, what_varied
+from boatsim.sweeps.sentence import Picture, first_picture, what_came_out, what_varied
 from boatsim.sweeps.text_tables import blank_repeats, format_values, result_tables
 from boatsim.view.html_page import render_template
 from boatsim.view.page_blocks import Figures, Heading, Items, Section, Table
@@ -30,7 +30,9 @@ def write_report(results: Results, folder: Path) -> None:
     Raises:
         OSError: The file cannot be written.
     """
-    sections = [*_table_sections(results), _failure_section(results), *_plot_sections(results)]
+    picture = first_picture(results)
+    plots = _plot_sections(results, picture)
+    sections = [*_table_sections(results), _failure_section(results), *plots]
     sections = [section for section in sections if section.blocks]
     facts = _page_facts(results)
     page = render_template(
@@ -38,7 +40,7 @@ def write_report(results: Results, folder: Path) -> None:
         title=_page_title(results),
         varied=what_varied(results),
         came_out=what_came_out(results),
-        picture=first_picture(results),
+        picture=picture,
         facts=facts,
         sections=sections,
     )
@@ -97,8 +99,9 @@ def _failure_section(results: Results) -> Section:
     return section
 
 
-def _plot_sections(results: Results) -> list[Section]:
-    """Plots of the metrics, a section for each scenario."""
+def _plot_sections(results: Results, picture: Picture | None) -> list[Section]:
+    """Plots of the metrics, a section for each scenario, without the picture at the top."""
+    first = picture.figure if picture else ""
     scenarios = results.plan.scenarios
     names = np.array([results.plan.points[number].scenario for number in results.point_numbers])
     sections = []
@@ -108,7 +111,8 @@ def _plot_sections(results: Results) -> list[Section]:
         rows = names == scenario
         legend = controller_legend(group_by_controller(results, rows))
         for metric in results.displayed_metrics:
-            if plots := plot_metric(results, metric, rows):
+            plots = [plot for plot in plot_metric(results, metric, rows) if plot != first]
+            if plots:
                 section.blocks.extend([Heading(metric), Figures(legend, plots)])
         sections.append(section)
     return sections

@@ -40,11 +40,13 @@ def key_in_words(key: str) -> str:
     """Return a varied scenario key in words: "the controller" for `controller.use`.
 
     Args:
-        key: Name of the key.
+        key: Name of the key; an operation at its end is a factor (*) or an added value (+).
     """
     if key == CONTROLLER:
         return "the controller"
-    return words_of_name(key).replace(".", " ")
+    words = words_of_name(key.rstrip("*+")).replace(".", " ")
+    ending = {"*": " factor", "+": " offset"}.get(key[-1:], "")
+    return f"{words}{ending}"
 
 
 def what_varied(results: Results) -> str:

@@ -1,5 +1,6 @@
 """report.html of a run: replay, metrics, signals over time, and how to repeat the run."""
 
+import shlex
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -28,6 +29,22 @@ FILES = (
     ("run.rrd", "the run in 3-D for the rerun viewer: rerun run.rrd"),
     ("scenario.toml", "the scenario with the goals of a driver"),
 )
+
+
+def run_command(address: str, controller: str | None = None, seed: int | None = None) -> str:
+    """Return the command that repeats a run.
+
+    Args:
+        address: Name or path of the scenario.
+        controller: Controller in place of the scenario's own, by name or path.
+        seed: Random seed; None for the scenario's own.
+    """
+    words = ["boatsim", "run", address]
+    if controller is not None:
+        words += ["--controller", controller]
+    if seed is not None:
+        words += ["--seed", str(seed)]
+    return shlex.join(words)
 
 
 class RunPage:

@@ -260,6 +260,8 @@ def _tick_label(p: Panel, value: float) -> str:
 
 
 def _area(p: Panel, x: Array, low: Array, high: Array) -> str:
+    known = np.isfinite(low) & np.isfinite(high)
+    x, low, high = x[known], low[known], high[known]
     rows = evenly_spaced_rows(len(x), POINTS)
     around = (
         _drawing_coordinates(p, x[rows], high[rows])

@@ -24,6 +24,8 @@ from boatsim.cli import app
 from boatsim.drive.background_tasks import background_listener
 from boatsim.drive.clock import Clock
 from boatsim.drive.driver_input import DEAD, PATIENCE, DriverInput, Sticks, beyond_dead_zone
+from boatsim.drive.server import ABANDONED, Server
+from boatsim.drive.session import Session
 from boatsim.drive.stick_mapping import stick_mappings_for
 from boatsim.drive.task import Task
 from boatsim.errors import BadInput
@@ -556,3 +558,99 @@ def test_keys_drive_too(opened, tmp_path: Path) -> None:
         page.run("document.getElementById('end').click()")
         assert running.wait(30) == 0
         page.close()
+
+
+@pytest.fixture
+def page_server() -> Iterator[Server]:
+    with Server(DriverInput()) as made:
+        yield made
+
+
+def phone(page: chrome.Page) -> None:
+    """The screen of a phone held upright."""
+    page.say(
+        "Emulation.setDeviceMetricsOverride",
+        width=390,
+        height=844,
+        deviceScaleFactor=1,
+        mobile=True,
+    )
+
+
+def test_while_the_boat_is_compiled_the_page_shows_it_and_takes_no_sticks(
+    opened, page_server: Server
+) -> None:
+    session = Session(Task(*JOYSTICK[:1], controller=JOYSTICK[2]), page_server, print)
+    session.show_preparation()
+    page = opened(page_server.address)
+    page.until("hello && !document.getElementById('ready').hidden")
+    assert "joystick_boat are being compiled" in page.run(
+        "document.getElementById('ready').textContent"
+    )
+    first = page.run("document.querySelector('#ready progress').value")
+    page.until(f"document.querySelector('#ready progress').value > {first}")
+    drawn = (
+        "[...$('sea').getContext('2d').getImageData(0, 0, $('sea').width, $('sea').height).data]"
+    )
+    assert page.run(f"new Set({drawn}).size") > 20  # water, grid and hull
+    assert page.run("$('end').disabled") and page_server.hands.sticks() is None
+    page_server.send_initial_data(session._painter.initial_data(ready=True))
+    page.until("document.getElementById('ready').hidden && !$('end').disabled")
+    until(lambda: page_server.hands.sticks() is not None)
+    page.close()
+
+
+def test_on_a_phone_water_sticks_and_the_button_are_on_the_first_screen(
+    opened, page_server: Server
+) -> None:
+    session = Session(Task("joystick_boat"), page_server, print)
+    page_server.send_initial_data(session._painter.initial_data(ready=True))
+    page = opened(page_server.address)
+    phone(page)
+    page.until("hello && hello.ready")
+    for part in ("left", "right", "end", "sea"):
+        box = page.run(f"JSON.stringify($('{part}').getBoundingClientRect())")
+        edges = json.loads(box)
+        assert 0 <= edges["top"] < edges["bottom"] <= 844, part
+        assert 0 <= edges["left"] < edges["right"] <= 390, part
+    assert page.run("$('sea').getBoundingClientRect().height") > 300
+    page.close()
+
+
+def test_a_page_closed_before_the_sticks_were_moved_ends_the_run_and_leaves_nothing(
+    opened, tmp_path: Path
+) -> None:
+    place = tmp_path / "new" / "run"
+    with driving(place, *JOYSTICK) as (running, address):
+        page = opened(address)
+        page.until("frame && frame.t > 0.1")
+        page.close()
+        _, told = running.communicate(timeout=ABANDONED + 40)
+    assert running.returncode == 130 and "nothing is saved" in told
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_page_that_is_closed_after_driving_ends_the_run_which_is_saved(
+    opened, tmp_path: Path
+) -> None:
+    with driving(tmp_path / "out", *JOYSTICK) as (running, address):
+        page = opened(address)
+        page.until("frame && frame.t > 0.1 && !frame.away")
+        page.run("push(0, -1.0, 0, 0)")
+        page.until("frame.goals[0][0] > 0.1")
+        page.close()
+        _, told = running.communicate(timeout=ABANDONED + 40)
+    assert running.returncode == 0, told
+    log = read(tmp_path / "out" / "recording.csv")
+    assert log.notes.facts["complete"] is True and log.t[-1] < ABANDONED + 30
+
+
+def test_a_page_that_is_loaded_again_goes_on_driving(opened, page_server: Server) -> None:
+    assert not page_server.is_abandoned  # nobody has come yet
+    page = opened(page_server.address)
+    page.close()
+    until(lambda: page_server._left_at is not None)
+    again = opened(page_server.address)
+    until(lambda: page_server._left_at is None)
+    assert not page_server.is_abandoned
+    again.close()

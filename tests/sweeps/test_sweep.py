@@ -392,6 +392,55 @@ def test_the_page_shows_every_norm_against_what_varied_and_fetches_nothing(
     assert not re.search(r"(src|href)=\"(?!#)", page)
 
 
+def first_screen(folder: Path) -> str:
+    """What the page shows before its sections, without mark-up around the words."""
+    page = (folder / "report.html").read_text()
+    return page[page.index("<header") : page.index("</header>")]
+
+
+def test_the_page_begins_with_what_varied_and_what_came_out(short: str, tmp_path: Path) -> None:
+    boatsim.sweep(short, {"start.x": "0:2:3"}, out=tmp_path / "out", jobs=1, norms="x_m_inf")
+    first = first_screen(tmp_path / "out")
+    assert "3 runs of short with start x from 0 to 2." in first
+    # the metric is the largest |x|, and the boat starts there and hardly moves
+    assert re.search(
+        r"X m inf is lowest at start x = 0 \(\S+ m\) and highest at 2 \(2\S* m\)", first
+    )
+    assert first.count("<figure") == 1 and "x_m_inf [m] over start.x" in first
+
+
+def test_the_first_sentence_names_the_sampled_quantity_that_matters(
+    short: str, tmp_path: Path
+) -> None:
+    sampled = {"start.x": "uniform(1,2)", "body.mass*": "uniform(1,1.01)"}
+    boatsim.sweep(short, draw=sampled, runs=12, out=tmp_path / "out", jobs=1, norms="x_m_inf")
+    first = first_screen(tmp_path / "out")
+    assert "12 random samples of start x and body mass factor" in first
+    assert re.search(r"it rises with start x \(rank correlation (1.00|0.9\d)\)", first)
+
+
+def test_the_first_sentence_compares_controllers(short: str, tmp_path: Path) -> None:
+    boatsim.sweep(
+        short,
+        {"controller.use": "l1_joystick,pid_autopilot"},
+        {"start.x": "uniform(1,2)"},
+        4,
+        out=tmp_path / "out",
+        jobs=1,
+    )
+    first = first_screen(tmp_path / "out")
+    assert "8 runs of short with the controller l1_joystick or pid_autopilot" in first
+    assert "4 random samples of start x" in first
+    assert re.search(r"lower with (l1_joystick|pid_autopilot) than with|does not differ", first)
+
+
+def test_failed_runs_are_counted_in_the_first_sentence(short: str, tmp_path: Path) -> None:
+    wild = tmp_path / "wild.toml"
+    wild.write_text(SHORT.replace("[[check]]", "[start]\nu = 1.0\n[[check]]"))
+    boatsim.sweep(str(wild), {"start.u": "0.1,1e9"}, out=tmp_path / "out", jobs=1, norms="x_m_inf")
+    assert "1 of them failed" in first_screen(tmp_path / "out")
+
+
 # Cut off
 # ------------------------------------------------------------------------------------------------------------
 
