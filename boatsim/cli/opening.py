@@ -36,7 +36,8 @@ def open_results(folders: Sequence[Path], out: Path | None, browser: bool | None
     if len(folders) > 1 or out is not None or not page.is_file():
         page = out or _common_folder(folders) / index_page.NAME
         entries = index_page.write_index(folders, page)
-        print_lines([f"{len(entries)} results in {', '.join(map(str, folders))}"])
+        ending = "" if len(entries) == 1 else "s"
+        print_lines([f"{len(entries)} result{ending} in {', '.join(map(str, folders))}"])
     print_lines([str(page)])
     if browser or (browser is None and has_display()):
         webbrowser.open(page.resolve().as_uri())

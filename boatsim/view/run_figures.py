@@ -234,12 +234,14 @@ def signal_panel(samples: Samples, plot: Plot, shafts: bool = False) -> Panel:
     if unit:
         label = f"{label} [{unit}]"
     names = ", ".join(curve.name for curve in plot.curves)
-    zero = unit not in ("°", "m") or largest == 0.0
+    limits = (-1.0, 1.0)  # of a signal that stays zero
+    if largest > 0.0:
+        limits = axis_limits([line.y for line in lines], zero=unit not in ("°", "m"))
     return Panel(
         label,
         tuple(lines),
         (float(samples.t[0]), max(samples.end, float(samples.t[0]) + 1e-9)),
-        axis_limits([line.y for line in lines], zero),
+        limits,
         "time [s]",
         about=f"{label} over time: {names}",
     )

@@ -40,6 +40,7 @@ from boatsim.view.thinned_log import Samples
 FRAMES = 800
 # smallest length of the drawn boat, relative to the height of the figure; a smaller one is enlarged
 SMALLEST = 0.06
+ROOM = 0.6  # [lengths] around the path that the figure shows
 WAYPOINTS = 60  # most different positions that count as waypoints; more are a reference track
 # signals that are animated over time where there is no path, the first one that the run has
 WITHOUT_PATH = ("phi_rad", "psi_rad", "theta_rad", "z_m", "u_mps", "r_radps")
@@ -70,7 +71,8 @@ def _path(samples: Samples, scene: Scene) -> Replay:
     x, y = samples.first["x_m"], samples.first["y_m"]
     lines = [Line("path", y, x, "path", t=samples.t)]
     dots, looks = [], {"path": "path"}
-    across, up = [y, np.array([y[0], y[0] + scene.length])], [x, np.array([x[0] + scene.length])]
+    room = ROOM * scene.length * np.array([[-1.0], [1.0]])  # for the boat at the ends of its path
+    across, up = [y + room], [x + room]
     goal = _goal_positions(samples)
     if goal is not None:
         goal_x, goal_y = goal
@@ -226,8 +228,8 @@ def _readouts(samples: Samples, rows: NDArray[np.int64]) -> list[Readout]:
         largest = float(np.nanmax(np.abs(values), initial=0.0))
         unit, factor = convenient_unit(unit_of(signal), largest)
         decimals = 1
-        if not unit.startswith("°"):
-            decimals = max(0, min(4, 2 - math.floor(math.log10(max(factor * largest, 1e-3)))))
+        if not unit.startswith("°") and largest > 0.0:
+            decimals = max(0, min(4, 2 - math.floor(math.log10(factor * largest))))
         shown = factor * values[rows]
         if signal == "psi_rad":
             shown = np.mod(shown, 360.0)

@@ -182,6 +182,15 @@ def test_a_boat_that_only_rolls_is_replayed_over_time(tmp_path: Path) -> None:
     np.testing.assert_allclose(film["boats"][0]["y"], roll, atol=0.02)
 
 
+def test_a_boat_that_lies_still_is_drawn_inside_the_figure(tmp_path: Path) -> None:
+    page = written(tmp_path / "out", "otter/turn", duration=1.0, goal=[])
+    film = film_of(page)
+    low, high = limits(page, "x, forward or north [m]")
+    down = [corner[1] for corner in film["outline"]]
+    assert low < -max(down) and -min(down) < high
+    assert limits(page, "Yaw rate [°/s]") == (-1.0, 1.0)
+
+
 def test_waypoints_of_the_scenario_are_marked(tmp_path: Path) -> None:
     page = written(tmp_path / "out", "catamaran/heading_90", duration=1.0)
     marks = re.findall(r'class="dots waypoint" d="([^"]*)"', page)
