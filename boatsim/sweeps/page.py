@@ -1,6 +1,6 @@
 """report.html of a sweep: its tables, and plots of every metric against what varied."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -13,7 +13,6 @@ from boatsim.sweeps.sentence import Picture, first_picture, what_came_out, what_
 from boatsim.sweeps.text_tables import blank_repeats, format_values, result_tables
 from boatsim.view.html_page import render_template
 from boatsim.view.page_blocks import Figures, Heading, Items, Section, Table
-from boatsim.view.run_facts import plain_name
 
 NAME = "report.html"
 TEMPLATE = Path(__file__).parent / "templates" / "sweep.html.j2"
@@ -52,14 +51,17 @@ def _page_title(results: Results) -> str:
     names = results.plan.scenarios
     what = f"{len(names)} scenarios"
     if len(names) == 1:
-        what = plain_name(names[0])
+        what = results.labels[names[0]]
     return f"{what}: {len(results.numbers)} runs"
 
 
 def _page_facts(results: Results) -> list[tuple[str, str]]:
     """Label and text of the facts at the head of the page."""
     plan = results.plan
-    axes = [f"{axis.target.name}: {', '.join(_shorten(axis.values))}" for axis in plan.axes]
+    axes = [
+        f"{axis.target.name}: {', '.join(_shorten(axis.values, results.labels))}"
+        for axis in plan.axes
+    ]
     sampled = [f"{one.target.name}: {one}" for one in plan.sampled]
     done = len(results.numbers)
     failed = f"{int(results.is_failed.sum())} of {done} runs"
@@ -75,8 +77,8 @@ def _page_facts(results: Results) -> list[tuple[str, str]]:
     return [(label, text) for label, text in facts.items() if text]
 
 
-def _shorten(values: Sequence[Value]) -> list[str]:
-    texts = [plain_name(text) for text in format_values(values)]
+def _shorten(values: Sequence[Value], labels: Mapping[str, str]) -> list[str]:
+    texts = format_values(values, labels)
     if len(texts) <= MOST_VALUES:
         return texts
     return [texts[0], texts[1], "...", texts[-1]]
@@ -106,7 +108,7 @@ def _plot_sections(results: Results, picture: Picture | None) -> list[Section]:
     names = np.array([results.plan.points[number].scenario for number in results.point_numbers])
     sections = []
     for number, scenario in enumerate(scenarios, 1):
-        title = plain_name(scenario) if len(scenarios) > 1 else "Metrics against what varied"
+        title = results.labels[scenario] if len(scenarios) > 1 else "Metrics against what varied"
         section = Section(f"norms-{number}", title)
         rows = names == scenario
         legend = controller_legend(group_by_controller(results, rows))

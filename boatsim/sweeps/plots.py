@@ -1,6 +1,6 @@
 """Plots of metrics against what varied: lines with bands over numbers, boxes over lists, points."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import product
 from typing import Any, NamedTuple
@@ -11,6 +11,7 @@ from boatsim.physics.signals import Array
 from boatsim.sweeps.axes import Axis
 from boatsim.sweeps.results import Results
 from boatsim.sweeps.summary import CONTROLLER
+from boatsim.sweeps.text_tables import format_values
 from boatsim.view.svg_plots import SQUARE, Box, Line, Panel, axis_limits, figure, legend
 
 STYLES = ("one", "two", "three", "four")  # classes of the style sheet, one for each controller
@@ -61,7 +62,8 @@ def group_by_controller(results: Results, rows: Array) -> list[Group]:
     names = dict.fromkeys(used.tolist())
     found = []
     for name, style in zip(names, STYLES, strict=False):
-        found.append(Group(name, style, rows & (used == name)))
+        label = results.labels.get(name, name)
+        found.append(Group(label, style, rows & (used == name)))
     return found
 
 
@@ -112,7 +114,7 @@ def _plot_axis(results: Results, axis: Axis, metric: _Metric) -> str:
     varied = results.column_values(name)
     title = metric.title
     if not axis.is_numeric:
-        return figure([_box_plot(axis, varied, metric)], f"{title} by {name}")
+        return figure([_box_plot(axis, varied, metric, results.labels)], f"{title} by {name}")
     x = np.array(sorted(map(float, axis.values)))
     numbers = np.array(varied, dtype=float)
     lines: list[Line] = []
@@ -140,7 +142,9 @@ def _quantiles(x: Array, numbers: Array, values: Array, rows: Array) -> Array:
     return spread
 
 
-def _box_plot(axis: Axis, varied: Sequence[Any], metric: _Metric) -> Panel:
+def _box_plot(
+    axis: Axis, varied: Sequence[Any], metric: _Metric, shown: Mapping[str, str]
+) -> Panel:
     """A box for each value of a list; those of several controllers stand side by side."""
     count = len(metric.groups)
     by_controller = axis.target.name == CONTROLLER
@@ -154,7 +158,7 @@ def _box_plot(axis: Axis, varied: Sequence[Any], metric: _Metric) -> Panel:
             low, lower, middle, upper, high = np.quantile(here, QUANTILES).tolist()
             ends = (low, lower, middle, upper, high)
             boxes.append(Box(group.style, at + offset, 0.8 * width, ends))
-    labels = tuple(map(_shorten, map(str, axis.values)))
+    labels = tuple(map(_shorten, format_values(axis.values, shown)))
     across = (-0.6, len(axis.values) - 0.4)
     return Panel(
         metric.title,

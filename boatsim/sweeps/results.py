@@ -15,6 +15,7 @@ from boatsim.physics.signals import Array
 from boatsim.sweeps import table
 from boatsim.sweeps.journal import Entry
 from boatsim.sweeps.plan import Plan
+from boatsim.view.run_facts import plain_names
 
 NAME = "sweep.parquet"
 
@@ -46,6 +47,14 @@ class Results:
             for name, (_, unit) in entry.get("norms", {}).items():
                 found[name] = unit
         return found
+
+    @cached_property
+    def labels(self) -> dict[str, str]:
+        """What is shown in place of the texts that a sweep varies: names in place of paths."""
+        labels = plain_names(self.plan.scenarios)
+        for axis in self.plan.axes:
+            labels |= plain_names([value for value in axis.values if isinstance(value, str)])
+        return labels
 
     @property
     def displayed_metrics(self) -> list[str]:

@@ -1,6 +1,6 @@
 """The first words and the first picture of a sweep's page: what was varied, and what came out."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -17,7 +17,6 @@ from boatsim.sweeps.results import Results
 from boatsim.sweeps.summary import CONTROLLER, Pair, compare_controllers
 from boatsim.sweeps.text_tables import format_number, format_values
 from boatsim.view.formatting import join_words, words_of_name
-from boatsim.view.run_facts import plain_name
 
 MOST_VALUES = 4  # of a list that the sentence names
 NOTABLE = 0.2  # range of a metric by its largest size; a smaller change is of little interest
@@ -56,14 +55,14 @@ def what_varied(results: Results) -> str:
         results: Results of a sweep.
     """
     plan, done = results.plan, len(results.numbers)
-    names = [plain_name(name) for name in plan.scenarios]
+    names = [results.labels[name] for name in plan.scenarios]
     where = names[0]
     if len(names) > 1:
         where = f"{len(names)} scenarios"
     changed = []
     for axis in plan.axes:
         if len(axis.values) > 1:
-            changed.append(f"{key_in_words(axis.target.name)} {_values(axis)}")
+            changed.append(f"{key_in_words(axis.target.name)} {_values(axis, results.labels)}")
     parts = []
     if changed:
         parts.append(f"with {join_words(changed)}")
@@ -80,9 +79,9 @@ def what_varied(results: Results) -> str:
     return f"{sentence}."
 
 
-def _values(axis: Axis) -> str:
+def _values(axis: Axis, labels: Mapping[str, str]) -> str:
     """Return the values of an axis in words."""
-    texts = [plain_name(text) for text in format_values(axis.values)]
+    texts = format_values(axis.values, labels)
     if axis.is_numeric:
         return f"from {texts[0]} to {texts[-1]}"
     if len(texts) > MOST_VALUES:
@@ -101,7 +100,7 @@ def what_came_out(results: Results) -> str:
     """
     pairs = compare_controllers(results)
     if pairs:
-        return _controllers_compared(pairs)
+        return _controllers_compared(pairs, results.labels)
     metric = headline_metric(results)
     if metric is None:
         return "No run reached a metric." if not results.units else "All metrics are constant."
@@ -185,9 +184,9 @@ def _clearest(pairs: Sequence[Pair]) -> Pair:
     return best
 
 
-def _controllers_compared(pairs: Sequence[Pair]) -> str:
+def _controllers_compared(pairs: Sequence[Pair], labels: Mapping[str, str]) -> str:
     pair = _clearest(pairs)
-    first, second = plain_name(pair.first), plain_name(pair.second)
+    first, second = labels.get(pair.first, pair.first), labels.get(pair.second, pair.second)
     metric = words_of_name(pair.norm)
     unit = f" {pair.unit}".rstrip()
     means = f"{_number(pair.of_second)} and {_number(pair.of_first)}{unit}"
@@ -239,8 +238,8 @@ def _over_list(results: Results, metric: str, axis: Axis) -> str:
     low, high = min(finite, key=finite.__getitem__), max(finite, key=finite.__getitem__)
     unit = f" {results.units[metric]}".rstrip()
     return (
-        f"The median of {words_of_name(metric)} is lowest with {plain_name(low)} "
-        f"({_number(finite[low])}{unit}) and highest with {plain_name(high)} "
+        f"The median of {words_of_name(metric)} is lowest with {results.labels.get(low, low)} "
+        f"({_number(finite[low])}{unit}) and highest with {results.labels.get(high, high)} "
         f"({_number(finite[high])}{unit})."
     )
 

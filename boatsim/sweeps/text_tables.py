@@ -1,6 +1,6 @@
 """Tables of a sweep as text, for the terminal and for report.html."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from operator import attrgetter
 
@@ -40,8 +40,8 @@ def result_tables(results: Results) -> list[TextTable]:
     others = [name for name in names if name != summary.CONTROLLER]
     every_table = [
         _spread_table(names, results),
-        *_pair_tables(others, summary.compare_controllers(results)),
-        _index_table(names, indices.sensitivity_indices(results)),
+        *_pair_tables(others, summary.compare_controllers(results), results.labels),
+        _index_table(names, indices.sensitivity_indices(results), results.labels),
     ]
     return list(filter(attrgetter("rows"), every_table))
 
@@ -52,21 +52,24 @@ def _spread_table(names: Sequence[str], results: Results) -> TextTable:
     if single:
         title, columns = "One run at each point", ["value"]
     rows = []
+    labels = results.labels
     for s in summary.metric_spreads(results):
         numbers = [format_number(s.mean)]
         if not single:
             numbers += map(format_number, (s.p5, s.p50, s.p95))
             numbers.append(f"{s.reached} of {s.runs}")
-        rows.append([*format_values(s.point), _with_unit(s.norm, s.unit), *numbers])
+        rows.append([*format_values(s.point, labels), _with_unit(s.norm, s.unit), *numbers])
     return TextTable("runs", title, [*names, "metric", *columns], rows, len(names) + 1)
 
 
-def _pair_tables(names: Sequence[str], pairs: Sequence[summary.Pair]) -> list[TextTable]:
+def _pair_tables(
+    names: Sequence[str], pairs: Sequence[summary.Pair], labels: Mapping[str, str]
+) -> list[TextTable]:
     """A table for each pair of controllers."""
     rows: dict[tuple[str, str], list[list[str]]] = {}
     for p in pairs:
         row = [
-            *format_values(p.point),
+            *format_values(p.point, labels),
             _with_unit(p.norm, p.unit),
             format_number(p.of_first),
             format_number(p.of_second),
@@ -75,7 +78,8 @@ def _pair_tables(names: Sequence[str], pairs: Sequence[summary.Pair]) -> list[Te
             f"{100 * p.second_lower:.0f} %",
             str(p.pairs),
         ]
-        rows.setdefault((p.first, p.second), []).append(row)
+        pair = labels.get(p.first, p.first), labels.get(p.second, p.second)
+        rows.setdefault(pair, []).append(row)
     found: list[TextTable] = []
     for number, (first, second) in enumerate(rows, 1):
         lower = [f"{first} lower", f"{second} lower"]
@@ -86,12 +90,14 @@ def _pair_tables(names: Sequence[str], pairs: Sequence[summary.Pair]) -> list[Te
     return found
 
 
-def _index_table(names: Sequence[str], found: Sequence[indices.Index]) -> TextTable:
+def _index_table(
+    names: Sequence[str], found: Sequence[indices.Index], labels: Mapping[str, str]
+) -> TextTable:
     rows = []
     for i in found:
         first = f"{i.first:.2f} ({i.first_low:.2f} to {i.first_high:.2f})"
         total = f"{i.total:.2f} ({i.total_low:.2f} to {i.total_high:.2f})"
-        rows.append([*format_values(i.point), i.norm, i.quantity, first, total])
+        rows.append([*format_values(i.point, labels), i.norm, i.quantity, first, total])
     head = [*names, "metric", "quantity", "first order", "total"]
     return TextTable("sobol", "Sobol indices (95 % interval)", head, rows, len(names) + 2)
 
@@ -124,13 +130,18 @@ def format_number(value: float) -> str:
     return f"{value:.4g}"
 
 
-def format_values(values: Sequence[Value]) -> list[str]:
+def format_values(values: Sequence[Value], labels: Mapping[str, str] | None = None) -> list[str]:
     """Return the values of varied scenario keys as texts.
 
     Args:
         values: Numbers, texts or truth values.
+        labels: What is shown in place of a text, such as the name of a file in place of its path.
     """
-    return [f"{value:.6g}" if isinstance(value, float) else str(value) for value in values]
+    texts = []
+    for value in values:
+        text = f"{value:.6g}" if isinstance(value, float) else str(value)
+        texts.append((labels or {}).get(text, text))
+    return texts
 
 
 def _with_unit(metric: str, unit: str) -> str:

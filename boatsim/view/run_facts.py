@@ -60,6 +60,18 @@ def plain_name(name: str) -> str:
     return name
 
 
+def plain_names(names: Sequence[str]) -> dict[str, str]:
+    """Return the plain names of names or paths, or themselves where two names would be equal.
+
+    Args:
+        names: Names or paths.
+    """
+    labels = {name: plain_name(name) for name in names}
+    if len(set(labels.values())) < len(labels):
+        return {name: name for name in labels}
+    return labels
+
+
 def _period(scenario: Scenario) -> str:
     return f"{1e3 * scenario.controller.period:.4g} ms"
 

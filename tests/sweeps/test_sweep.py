@@ -20,6 +20,7 @@ from scipy import stats
 
 import boatsim
 from boatsim.errors import BadInput
+from boatsim.physics.content import content_root
 from boatsim.simulate.cases import read_scenario
 from boatsim.simulate.run import run
 from boatsim.simulate.scenario import Scenario, from_table
@@ -432,6 +433,24 @@ def test_the_first_sentence_compares_controllers(short: str, tmp_path: Path) -> 
     assert "8 runs of short with the controller l1_joystick or pid_autopilot" in first
     assert "4 random samples of start x" in first
     assert re.search(r"lower with (l1_joystick|pid_autopilot) than with|does not differ", first)
+
+
+def test_files_are_shown_by_their_names_unless_two_have_the_same(
+    short: str, tmp_path: Path
+) -> None:
+    source = (content_root() / "controllers/l1_joystick.py").read_text()
+    for folder, name in (("a", "mine"), ("b", "mine"), ("b", "other")):
+        (tmp_path / folder).mkdir(exist_ok=True)
+        (tmp_path / folder / f"{name}.py").write_text(
+            source.replace("class L1Joystick", f"class {name.title()}")
+        )
+    paths = [str(tmp_path / "a" / "mine.py"), str(tmp_path / "b" / "other.py")]
+    boatsim.sweep(short, {"controller.use": paths}, out=tmp_path / "1", jobs=1, norms="x_m_inf")
+    page = (tmp_path / "1" / "report.html").read_text()
+    assert str(tmp_path) not in page and "the controller mine or other" in page
+    paths[1] = str(tmp_path / "b" / "mine.py")
+    boatsim.sweep(short, {"controller.use": paths}, out=tmp_path / "2", jobs=1, norms="x_m_inf")
+    assert f"the controller {paths[0]} or {paths[1]}" in (tmp_path / "2/report.html").read_text()
 
 
 def test_failed_runs_are_counted_in_the_first_sentence(short: str, tmp_path: Path) -> None:
