@@ -201,6 +201,7 @@ def _film(
             turned = samples.first[signal][rows]
     boat: Boat = {
         "look": "boat",
+        "name": "boat",
         "x": rounded_or_none(place[0][rows], decimals),
         "y": rounded_or_none(factor * place[1][rows], decimals),
         "turned": rounded_or_none(turned, 3),
