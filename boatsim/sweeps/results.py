@@ -50,7 +50,7 @@ class Results:
 
     @cached_property
     def labels(self) -> dict[str, str]:
-        """What is shown in place of the texts that a sweep varies: names in place of paths."""
+        """Varied text of the sweep -> text that is shown: the name of a file, not its path."""
         labels = plain_names(self.plan.scenarios)
         for axis in self.plan.axes:
             labels |= plain_names([value for value in axis.values if isinstance(value, str)])
