@@ -44,7 +44,7 @@ ABOUT = {  # captions of the folders in the picture
     "learn": "tasks for learners",
     "metrics": "metrics of a run",
     "warp": "boats on a GPU",
-    "view": "runs in rerun",
+    "view": "rerun and pages",
     "drive": "hands on the sticks",
     "diagnosis": "what was left out",
     "sweeps": "many runs",
