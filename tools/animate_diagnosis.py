@@ -19,7 +19,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from boatsim.diagnosis.report.formatting import format_in_one_unit
+from boatsim.view.formatting import format_in_one_unit
 
 SECONDS = 6.0  # length of the loop
 MOVING = 0.72  # share of the loop in which the boats move; then the last frame stands

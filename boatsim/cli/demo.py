@@ -12,7 +12,6 @@ from boatsim.cli.progress import report_stages
 from boatsim.diagnosis.pipeline import Diagnosis
 from boatsim.diagnosis.pipeline import diagnose as analyse
 from boatsim.diagnosis.report.brief import brief_lines
-from boatsim.diagnosis.report.formatting import join_words, sentence_in_per_cent
 from boatsim.diagnosis.report.output_files import write_diagnosis
 from boatsim.files import Table, read_toml, validate_table
 from boatsim.physics.base import Effect
@@ -22,6 +21,7 @@ from boatsim.simulate import scenario as scenarios
 from boatsim.simulate.run_files import CAMERA, run_into_folder
 from boatsim.simulate.run_options import RunOptions
 from boatsim.simulate.scenario import Scenario
+from boatsim.view.formatting import join_words, sentence_in_per_cent
 from boatsim.view.viewer import has_display
 
 FILE = "demo.toml"  # in the folder of the shipped scenarios

@@ -11,8 +11,8 @@ from typer.testing import CliRunner
 
 from boatsim.cli import app
 from boatsim.diagnosis.evaluation import MODELS
-from boatsim.diagnosis.report.formatting import format_in_one_unit
 from boatsim.simulate import scenario as scenarios
+from boatsim.view.formatting import format_in_one_unit
 from tests.pages import ROOT, figures, figures_agree
 from tools.animate_diagnosis import animated_picture
 
