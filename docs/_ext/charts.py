@@ -12,8 +12,8 @@ from math import isfinite
 from pathlib import Path
 from textwrap import wrap
 
-from boatsim.diagnosis.report.svg_plots import axis_limits, round_ticks
 from boatsim.physics.signals import Array
+from boatsim.view.svg_plots import axis_limits, round_ticks
 
 WIDTH = 420  # units of a drawing, about one pixel each on a telephone
 LEFT, RIGHT, BOTTOM = 48, 16, 40  # margins of the axes
