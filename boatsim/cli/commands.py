@@ -816,10 +816,11 @@ def check(
 @exits_with_code
 def import_(
     log: Annotated[
-        Path,
+        list[Path],
         typer.Argument(
-            metavar="LOG",
-            help="Log: ArduPilot .BIN, ROS .mcap, .bag, .db3, PX4 .ulg, NMEA .nmea, .csv, ...",
+            metavar="LOG...",
+            help="Log: ArduPilot .BIN, ROS .mcap, .bag, .db3, PX4 .ulg, NMEA .nmea, .csv, ... "
+            "Several logs of one run become one recording.",
         ),
     ],
     out: Annotated[

@@ -11,16 +11,17 @@ from boatsim.physics import vessel as vessels
 from boatsim.physics.content import vessel_address
 from boatsim.physics.vessel import Vessel
 from boatsim.recordings.importing.convert import convert, position_fix, recording_notes_text
-from boatsim.recordings.importing.log import Log, open_log
+from boatsim.recordings.importing.log import Log
 from boatsim.recordings.importing.mapping import read_map
 from boatsim.recordings.importing.mapping_proposal import VesselChannel, propose_map, signal_table
+from boatsim.recordings.importing.several_logs import open_logs
 from boatsim.recordings.table import read, write_csv
 
 CONVERTING, WRITING = 0.6, 0.8  # shares of the work done when these stages start, by experience
 
 
 def import_log(
-    log: Path,
+    logs: Sequence[Path],
     out: Path | None,
     map: Path | None,
     propose: Path | None,
@@ -30,7 +31,7 @@ def import_log(
     """List the signals of a log and propose a map, or convert the log to a recording with a map.
 
     Args:
-        log: Log of an autopilot, a ROS recording, ...
+        logs: Log of an autopilot, a ROS recording, ...; or several logs of one run.
         out: Recording to write; needed with `map`.
         map: Map from signals of the log to columns; None to propose one.
         propose: File for the proposed map; None to print it.
@@ -46,21 +47,26 @@ def import_log(
     if map is None:
         with report_stages() as report:
             report("reading the log")
-            opened = open_log(log)
-        return _propose_map(opened, propose, out, vessel, load)
+            opened = open_logs(logs)
+        return _propose_map(opened, logs, propose, out, vessel, load)
     if propose:
         raise BadInput("--propose writes a map, --map reads one; give one of them")
     if out is None:
-        raise BadInput(f"{log}: --map converts the log; name the recording with --out run.csv")
+        raise BadInput(f"{logs[0]}: --map converts the log; name the recording with --out run.csv")
     if out.suffix.lower() != ".csv":
         raise BadInput(f"--out {out}: recordings are written as CSV; use a name ending in .csv")
-    if out.resolve() in (log.resolve(), map.resolve()):
+    if out.resolve() in [file.resolve() for file in (*logs, map)]:
         raise BadInput(f"--out {out} would overwrite the input; give another name")
-    return _convert_log(log, out, map, vessel, load)
+    return _convert_logs(logs, out, map, vessel, load)
 
 
 def _propose_map(
-    log: Log, propose: Path | None, out: Path | None, vessel: str | None, load: Sequence[str]
+    log: Log,
+    files: Sequence[Path],
+    propose: Path | None,
+    out: Path | None,
+    vessel: str | None,
+    load: Sequence[str],
 ) -> int:
     if vessel:
         boat = vessels.load_vessel(vessel, load)
@@ -78,7 +84,8 @@ def _propose_map(
         return 0
     with replace_file(propose) as temporary:
         temporary.write_text(text, encoding="utf-8")
-    command = f"boatsim import {log.path} --map {propose} --out {out or 'run.csv'}"
+    names = " ".join(map(str, files))
+    command = f"boatsim import {names} --map {propose} --out {out or 'run.csv'}"
     print_lines(["", printable(f"written to {propose}: check every line, then: {command}")])
     return 0
 
@@ -92,13 +99,15 @@ def _turn_direction(boat: Vessel, channel: str) -> int:
     return (steer > 0.0) - (steer < 0.0)
 
 
-def _convert_log(path: Path, out: Path, map: Path, vessel: str | None, load: Sequence[str]) -> int:
+def _convert_logs(
+    paths: Sequence[Path], out: Path, map: Path, vessel: str | None, load: Sequence[str]
+) -> int:
     mapping = read_map(map)
     boat = _vessel_of_log(vessel, mapping.vessel, map, load)
     limits = boat.limits() if boat else {}
     with report_stages() as report:
         report("reading the log")
-        log = open_log(path)
+        log = open_logs(paths)
         report("resampling the signals to one time base", CONVERTING)
         recording = convert(log, mapping, str(map), limits)
         report("writing the recording", WRITING)

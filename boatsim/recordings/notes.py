@@ -24,8 +24,9 @@ NOISE = (
     "roll_rate_sd_radps",
 )
 AMBIENT = ("axes", "force_rms", "time_constant_s")
-TABLES = ("columns", "noise", "ambient", "coefficient_uncertainty", "facts", "set")
+TABLES = ("columns", "latency", "noise", "ambient", "coefficient_uncertainty", "facts", "set")
 KEYS = ("vessel", "load", "scale", "use", *TABLES, "runs")
+MAX_LATENCY = 60.0  # [s] a longer one is a wrong clock
 MAX_NUMBER = 1e300  # larger integers do not fit a float
 # Suffix of a column or key -> unit
 UNITS = {
@@ -91,6 +92,7 @@ class Notes:
         load: Load conditions.
         settings: Values of the vessel's effects in this run: effect -> parameter -> value.
         use: Part of the recording that is used, from and to [s].
+        latency: Column -> delay by which its values are older than their times [s].
         scale: Full-scale length / model length.
         noise: Standard deviation of the sensors, by the names in NOISE.
         ambient: The unmodelled disturbance.
@@ -102,6 +104,7 @@ class Notes:
     load: tuple[str, ...] = ()
     settings: Mapping[str, Mapping[str, object]] = field(default_factory=dict)
     use: tuple[float, float] | None = None
+    latency: dict[str, float] = field(default_factory=dict)
     scale: float | None = None
     noise: dict[str, float] = field(default_factory=dict)
     ambient: Ambient = field(default_factory=Ambient)
@@ -258,6 +261,14 @@ class _Reader:
             raise self.bad_value("use", "[from_s, to_s], two numbers of which the second is larger")
         return float(ends[0]), float(ends[1])
 
+    def read_latency(self) -> dict[str, float]:
+        inner = self.subtable_reader("latency")
+        found = inner.read_numbers()
+        for name, seconds in found.items():
+            if abs(seconds) > MAX_LATENCY:
+                raise inner.bad_value(name, f"-{MAX_LATENCY:g} to {MAX_LATENCY:g} s")
+        return found
+
     def read_columns(self) -> dict[str, str]:
         inner = self.subtable_reader("columns")
         columns: dict[str, str] = {}
@@ -317,6 +328,7 @@ class _Reader:
             load=_read_or_collect_mistake(mistakes, lambda: self.read_texts("load"), ()),
             settings=_read_or_collect_mistake(mistakes, self.read_settings, {}),
             use=_read_or_collect_mistake(mistakes, self.read_use, None),
+            latency=_read_or_collect_mistake(mistakes, self.read_latency, {}),
             scale=_read_or_collect_mistake(mistakes, self.read_scale, None),
             noise=_read_or_collect_mistake(
                 mistakes, lambda: self.subtable_reader("noise").read_numbers(low=0.0), {}

@@ -21,6 +21,7 @@ from boatsim.physics.content import import_library_module, library_names
 from boatsim.physics.signals import POSE, RATES, Array
 from boatsim.recordings import limits, units
 from boatsim.recordings.expression import Expression, parse
+from boatsim.recordings.latency import without_latency
 from boatsim.recordings.notebook.arrow import signal_table
 from boatsim.recordings.notebook.data_frame import data_frame
 from boatsim.recordings.notebook.views import recording_figure, recording_html, table_metadata
@@ -312,6 +313,7 @@ def read(
     if ignored:
         remarks.append(f"{path}: columns not used: {', '.join(ignored)}")
     recording = Recording(path.stem, raw.columns["t_s"], signals, found.notes, path, tuple(remarks))
+    recording = without_latency(recording, found.notes.latency)
     if len(part := recording.used()) < FEWEST_ROWS:
         raise file_error(
             path,

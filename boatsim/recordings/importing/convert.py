@@ -11,14 +11,14 @@ from pathlib import Path
 
 import numpy as np
 
-from boatsim.errors import BadInput, nearest_hint
+from boatsim.errors import BadInput, nearest_hint, unknown_name
 from boatsim.physics.base import Array
 from boatsim.physics.signals import POSE, RATES
 from boatsim.recordings.expression import Expression, parse
 from boatsim.recordings.importing.clocks import YEAR_2000, YEAR_2100
 from boatsim.recordings.importing.frames import local_position
 from boatsim.recordings.importing.log import Log, Signal, rate_of
-from boatsim.recordings.importing.mapping import Map, Position, Range
+from boatsim.recordings.importing.mapping import Curve, Map, Position, Range
 from boatsim.recordings.importing.resample import (
     MIN_LOST,
     Samples,
@@ -29,6 +29,7 @@ from boatsim.recordings.importing.resample import (
     nearest_samples,
     row_times,
 )
+from boatsim.recordings.importing.several_logs import Span, aligned, begin_line, sources
 from boatsim.recordings.raw_table import file_error, select_rows
 from boatsim.recordings.repeated_values import repeated_rows
 from boatsim.recordings.table import FEWEST_ROWS, MAX_GAP, Recording, allowed_gaps, is_command
@@ -45,6 +46,7 @@ FASTER = 1.5  # commands set the clock if their rate is this many times that of 
 ROW_TOLERANCE = 0.05  # a sample is in a row if it is nearer than this share of the step of the rows
 MAX_ROUNDS = 4
 MAX_ROWS = 5_000_000
+MAX_FILES = 20  # of which the remarks list the spans
 
 
 @dataclass(frozen=True)
@@ -66,6 +68,7 @@ class _Work:
     columns: dict[str, Column] = field(default_factory=dict)
     remarks: list[str] = field(default_factory=list)
     begin: float = 0.0  # [s] first time of the log
+    spans: Mapping[str, Span] = field(default_factory=dict)  # of each file of the log
 
     def remark(self, text: str) -> None:
         self.remarks.append(f"{self.log.path}: {text}")
@@ -86,17 +89,16 @@ def convert(
         BadInput: One line with the key of the map for a signal that does not exist or can not be
             converted.
     """
+    log = aligned(_with_time_of_map(log, map, file), map.begins, file)
     work = _Work(log, file, map, channels or {}, remarks=list(log.remarks))
-    starts = []
-    for signal in log.signals.values():
-        if np.isfinite(signal.t).any():
-            starts.append(float(np.nanmin(signal.t)))
-    work.begin = min(starts, default=0.0)
+    work.spans = sources(log)
+    work.begin = min((span.begin for span in work.spans.values()), default=0.0)
     if map.position:
         _add_position(work, map.position)
     disorder: dict[tuple[int, int, float], list[str]] = {}
     for name, what in map.columns.items():
         t, values = _column(work, name, what)
+        t = t - map.latency.get(name, 0.0)
         disorder.setdefault(count_disorder(t), []).append(name)
         is_held = name in work.channels or is_command(name) or name.startswith(HELD)
         work.columns[name] = Column(_check_not_empty(work, name, clean_samples(t, values)), is_held)
@@ -111,6 +113,7 @@ def convert(
             signals[name] = nearest_samples(rows, column.given, near)
     _remark_held(work, rows)
     rows, signals = _complete_rows(work, rows, signals)
+    _remark_spans(work, rows)
     _remark_times(work, rows)
     return Recording(
         log.path.stem,
@@ -150,29 +153,61 @@ def _signal(work: _Work, key: str, text: str) -> tuple[Signal, Expression]:
             f"{found.signal!r}{hint} (it has "
             f"{len(work.log.signals)}; boatsim import {work.log.path.name} lists them)"
         )
-    signal = work.log.signals[found.signal]
-    if work.map.time and key != "time":
-        clock, how = _signal(work, "time", work.map.time)
-        if len(clock.values) == len(signal.values):
-            signal = replace(signal, t=how.of(clock.values))
-    return signal, found
+    return work.log.signals[found.signal], found
 
 
-def _column(work: _Work, name: str, what: str | Range) -> tuple[Array, Array]:
+def _with_time_of_map(log: Log, map: Map, file: str) -> Log:
+    """The log with the times of the map. Raises BadInput."""
+    if not map.time:
+        return log
+    given = map.time
+    names = {signal.source for signal in log.signals.values()}
+    if isinstance(given, str):
+        given = dict.fromkeys(sorted(names)[:1], given)
+        if len(names) > 1:
+            raise BadInput(f"{file}: time is one expression; of several files write time.FILE")
+    signals = dict(log.signals)
+    for source, text in given.items():
+        if source not in names:
+            raise BadInput(f"{file}: {unknown_name('time: file', source, sorted(names))}")
+        clock, how = _signal(_Work(log, file, map, {}), "time", text)
+        t = how.of(clock.values)
+        for name, signal in signals.items():
+            if signal.source == source and len(signal.values) == len(t):
+                signals[name] = replace(signal, t=t)
+    return replace(log, signals=signals)
+
+
+def _column(work: _Work, name: str, what: str | Range | Curve) -> tuple[Array, Array]:
     if isinstance(what, str):
         signal, how = _signal(work, f"columns.{name}", what)
         return signal.t, how.of(signal.values)
     signal, how = _signal(work, f"columns.{name}.signal", what.signal)
     values = how.of(signal.values)
-    ends = sorted([(what.low, what.least), (what.neutral, 0.0), (what.high, what.most)])
-    if beyond := int(np.sum((values < ends[0][0]) | (values > ends[2][0]))):
+    if isinstance(what, Curve):
+        points = what.points
+    else:
+        points = sorted([(what.low, what.least), (what.neutral, 0.0), (what.high, what.most)])
+    lowest, highest = points[0][0], points[-1][0]
+    if beyond := int(np.sum((values < lowest) | (values > highest))):
         work.remark(
-            f"{name}: {beyond} of {len(values)} samples are outside {ends[0][0]:g} to "
-            f"{ends[2][0]:g} and are set to "
+            f"{name}: {beyond} of {len(values)} samples are outside {lowest:g} to "
+            f"{highest:g} and are set to "
             "the limit"
         )
-    of_signal, of_column = np.array(ends).T
+    if isinstance(what, Range):
+        return signal.t, _by_range(values, what)
+    of_signal, of_column = np.array(points).T
     return signal.t, np.interp(values, of_signal, of_column)
+
+
+def _by_range(values: Array, what: Range) -> Array:
+    """Values (N,) of a column by the range of its signal."""
+    ends = sorted([(what.low, -1.0), (what.neutral, 0.0), (what.high, 1.0)])
+    of_signal, of_share = np.array(ends).T
+    share = np.interp(values, of_signal, of_share)
+    full = np.where(share < 0.0, what.least, what.most)
+    return np.asarray(full * np.abs(share) ** what.exponent)
 
 
 def _add_position(work: _Work, position: Position) -> None:
@@ -209,7 +244,9 @@ def _add_position(work: _Work, position: Position) -> None:
     x, y = local_position(lat, lon, (radians(at[0]), radians(at[1])))
     work.remark(f"x_m and y_m are counted from latitude {at[0]:.8f}, longitude {at[1]:.8f}")
     for name, values in (("x_m", x), ("y_m", y)):
-        work.columns[name] = Column(clean_samples(t, values), False)
+        work.columns[name] = Column(
+            clean_samples(t - work.map.latency.get(name, 0.0), values), False
+        )
 
 
 def _rows_in_use(work: _Work, t: Array) -> "np.ndarray[tuple[int, ...], np.dtype[np.bool_]]":
@@ -263,7 +300,7 @@ def _row_times(work: _Work) -> tuple[Array, float]:
     begin = min(float(one.t[0]) for one in poses)
     for one in commands:
         begin = max(begin, float(one.t[0]))
-    end = max(float(one.t[-1]) for one in poses)
+    end = _last_time(work, max(float(one.t[-1]) for one in poses))
     if work.map.rate:
         if (end - begin) * work.map.rate > MAX_ROWS:
             raise BadInput(
@@ -282,7 +319,7 @@ def _row_times(work: _Work) -> tuple[Array, float]:
             work.log.path,
             f"poses and commands have {span} in common, in which the fastest has {len(rows)} "
             "samples; at least "
-            f"{FEWEST_ROWS} are needed",
+            f"{FEWEST_ROWS} are needed{_spans_hint(work)}",
         )
     _remark_rates(work, rows)
     if work.map.rate:
@@ -296,6 +333,38 @@ def _row_times(work: _Work) -> tuple[Array, float]:
     others.sort(key=lambda one: -one.rate)
     rows = row_times(rows, others, near)
     return rows[_rows_in_use(work, rows)], near
+
+
+def _last_time(work: _Work, end: float) -> float:
+    """The last time of rows [s]: after the end of a file its commands are not known."""
+    if len(work.spans) < 2:
+        return end
+    for name, what in work.map.columns.items():
+        if work.columns[name].held and not name.startswith(HELD):
+            text = what if isinstance(what, str) else what.signal
+            signal, _ = _signal(work, f"columns.{name}", text)
+            end = min(end, work.spans[signal.source].end)
+    return end
+
+
+def _spans_hint(work: _Work) -> str:
+    """The spans of several files, and the line that shifts one of them."""
+    if len(work.spans) < 2:
+        return ""
+    spans = [f"{name} {span.words()}" for name, span in work.spans.items()]
+    last = list(work.spans)[-1]
+    return f" ({'; '.join(spans)}); if a clock is wrong, write into {work.file}: {begin_line(last)}"
+
+
+def _remark_spans(work: _Work, rows: Array) -> None:
+    """Remark the part that several files have in common."""
+    for name, span in list(work.spans.items())[:MAX_FILES]:
+        if len(work.spans) > 1:
+            before, after = rows[0] - span.begin, span.end - rows[-1]
+            work.remark(
+                f"{name}: {span.words()}; {max(before, 0.0):.3g} s before and "
+                f"{max(after, 0.0):.3g} s after the rows are left out"
+            )
 
 
 def _remark_rates(work: _Work, rows: Array) -> None:

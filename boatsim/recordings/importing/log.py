@@ -33,6 +33,7 @@ class Signal:
         unit: Unit by the format; "" where it has none.
         about: Description by the format, such as "throttle left".
         pulse: Low, neutral and high value of an output, in the unit of the signal.
+        source: Name of the file, if the log has several.
     """
 
     t: Array
@@ -40,6 +41,7 @@ class Signal:
     unit: str = ""
     about: str = ""
     pulse: tuple[float, float, float] | None = None
+    source: str = ""
 
 
 @dataclass(frozen=True)

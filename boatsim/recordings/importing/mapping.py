@@ -1,19 +1,24 @@
 """The map from a log to a recording: the signal and unit of each column, in a TOML file."""
 
 from collections.abc import Mapping
+from itertools import pairwise
 from pathlib import Path
 
 from pydantic import Field, field_validator, model_validator
 
-from boatsim.errors import BadInput
+from boatsim.errors import BadInput, unknown_name
 from boatsim.files import Table, read_toml, validate_table
 from boatsim.physics.signals import POSE, RATES
+from boatsim.recordings.notes import MAX_LATENCY
 
 COMPUTED = ("t_s", "x_m", "y_m")  # columns that follow from the clock and from `position`
 
 
 class Range(Table):
-    """Piecewise linear conversion of a signal, such as a pulse of 1100 to 1900 us, to a column.
+    """Conversion of a signal with three known values, such as a pulse of 1100 to 1900 us.
+
+    On either side of neutral the column is the end of that side times the share of the way to it,
+    to the power of `exponent`.
 
     Attributes:
         signal: Expression of the signal.
@@ -22,6 +27,7 @@ class Range(Table):
         high: Value of the signal at `most`.
         least: Value of the column where the signal is low.
         most: Value of the column where the signal is high.
+        exponent: 1 for proportion, 2 for the thrust of a propeller of a number of revolutions.
     """
 
     signal: str
@@ -30,11 +36,33 @@ class Range(Table):
     high: float
     least: float = -1.0
     most: float = 1.0
+    exponent: float = Field(1.0, ge=0.5, le=3.0)
 
     @model_validator(mode="after")
     def _in_order(self) -> "Range":
         if not (self.low < self.neutral < self.high or self.low > self.neutral > self.high):
             raise ValueError("neutral must lie between low and high")
+        return self
+
+
+class Curve(Table):
+    """Conversion of a signal by a measured table, such as command against thrust.
+
+    Between two points the column is linear, beyond the first and the last it is that of this point.
+
+    Attributes:
+        signal: Expression of the signal.
+        points: Pairs [value of the signal, value of the column], by increasing signal.
+    """
+
+    signal: str
+    points: list[tuple[float, float]] = Field(min_length=2, max_length=100)
+
+    @model_validator(mode="after")
+    def _increase(self) -> "Curve":
+        for (first, _), (second, _) in pairwise(self.points):
+            if not first < second:
+                raise ValueError("points must be pairs [signal, column] by increasing signal")
         return self
 
 
@@ -69,33 +97,52 @@ class Map(Table):
         vessel: Name or path of the vessel.
         rate: Rate of the rows [Hz]; that of the fastest signal by default.
         use: Part of the log that is converted, from and to [s] since its begin.
-        time: Expression in s of the time of a table without a column of a known name.
+        time: Expression in s of the time of a table without a column of a known name; of several
+            files the expression of each by its name.
+        begins: File of a run in several files -> begin after that of the first file [s].
+        latency: Column -> delay by which its values are older than their times [s].
         position: Latitude and longitude.
-        columns: Column -> expression of a signal, or its `Range`.
+        columns: Column -> expression of a signal, its `Range`, or its `Curve`.
     """
 
     about: str = ""
     vessel: str | None = None
     rate: float | None = Field(None, gt=0.0, le=1000.0)
     use: tuple[float, float] | None = None
-    time: str | None = None
+    time: str | dict[str, str] | None = None
+    begins: dict[str, float] = {}
+    latency: dict[str, float] = {}
     position: Position | None = None
-    columns: dict[str, str | Range] = {}
+    columns: dict[str, str | Range | Curve] = {}
 
     @field_validator("columns", mode="before")
     @classmethod
     def _texts_or_ranges(cls, found: object) -> object:
         if not isinstance(found, dict):
             return found
+        columns = dict(found)
         for name, value in found.items():
             if isinstance(value, dict):
-                validate_table(Range, value, f"columns.{name}")
-            elif not isinstance(value, str | Range):
+                kind: type[Range | Curve] = Range
+                if "points" in value:
+                    kind = Curve
+                columns[name] = validate_table(kind, value, f"columns.{name}")
+            elif not isinstance(value, str | Range | Curve):
                 allowed = (
-                    '"[-] signal [* unit or number] [+ number]" or { signal, low, neutral, '
-                    "high, least, most }"
+                    '"[-] signal [* unit or number] [+ number]", { signal, low, neutral, '
+                    "high, least, most, exponent } or { signal, points }"
                 )
                 raise ValueError(f"{name} is {value!r}; allowed is {allowed}")
+        return columns
+
+    @field_validator("latency")
+    @classmethod
+    def _short(cls, found: dict[str, float]) -> dict[str, float]:
+        for name, seconds in found.items():
+            if not abs(seconds) <= MAX_LATENCY:
+                raise ValueError(
+                    f"{name} = {seconds:g}; allowed is -{MAX_LATENCY:g} to {MAX_LATENCY:g} s"
+                )
         return found
 
     @model_validator(mode="after")
@@ -105,6 +152,12 @@ class Map(Table):
                 raise ValueError("columns.t_s is what time makes; leave it out")
             if self.position and name in COMPUTED:
                 raise ValueError(f"columns.{name} is what position makes; leave it out")
+        known = set(self.columns)
+        if self.position:
+            known |= set(COMPUTED[1:])
+        for name in self.latency:
+            if name not in known:
+                raise ValueError(unknown_name("latency: column", name, sorted(known)))
         if self.use and not self.use[0] < self.use[1]:
             raise ValueError("use must be [from_s, to_s], the second larger")
         if not self.position and not set(self.columns) & {*POSE, *RATES}:

@@ -4,12 +4,14 @@ import re
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import filterfalse, repeat
+from typing import NamedTuple
 
 import numpy as np
 
 from boatsim.files import toml_key, toml_value
 from boatsim.recordings.expression import parse
 from boatsim.recordings.importing.log import Log, Signal, rate_of
+from boatsim.recordings.importing.several_logs import sources, unaligned
 from boatsim.recordings.importing.signal_classification import (
     HELM,
     PULSE,
@@ -24,6 +26,7 @@ from boatsim.recordings.notes import unit_of
 USUAL_PULSE = (1100.0, 1500.0, 1900.0)  # [us] low, neutral, high of most motor controllers
 MAX_ROW_RATE = 50.0  # [Hz] a higher rate of rows is not needed for the motion of boats
 MAX_LISTED = 400
+HELM_EXCESS = 1.05  # a wheel that turns farther than the rudder by more than this is geared to it
 # Column -> column of the signal and sign, for logs with z up (ROS, REP 103: x east, y north; x
 # forward, y port)
 FROM_ENU = {
@@ -170,6 +173,7 @@ def propose_map(
         )
     lines += [
         "# use = [0.0, 60.0]  # [s] since the log begins, the part to convert",
+        *_begin_lines(log),
         "",
         *body,
     ]
@@ -186,6 +190,20 @@ def propose_map(
                 *_further_columns(kind, sorted(moving, key=lambda g: g.name)),
             ]
     return "\n".join(lines) + "\n"
+
+
+def _begin_lines(log: Log) -> list[str]:
+    """Lines that state when the further files of a run begin, if their clocks do not show it."""
+    spans = sources(log)
+    if len(spans) < 2:
+        return []
+    first = next(iter(spans))
+    lines = [f"# begin of each file in s after that of {first}; UTC needs no line"]
+    for name in unaligned(spans, {}):
+        lines.append(f"begins.{toml_key(name)} = 0.0  # CHECK: no common clock, 0 is a guess")
+    if len(lines) == 1:
+        return []
+    return lines
 
 
 def _motion_lines(
@@ -520,31 +538,41 @@ def _channel_line(
         if turned:
             expression = f"-{expression}"
         return f"{toml_key(name)} = {toml_value(expression)}{note}"
-    ends, why = scale
     if turned:
         low, high = high, low
-    given = "low = {:g}, neutral = {:g}, high = {:g}".format(*ends)
-    if why:
-        note += f"; {why}"
+    given = "low = {:g}, neutral = {:g}, high = {:g}".format(*scale.ends)
+    if scale.why:
+        note += f"; {scale.why}"
     if drive and unit_of(drive.name) == "rad":
         note += (
             f"; CHECK: full helm is assumed to be {np.degrees(max(abs(low), abs(high))):.0f} deg"
         )
+    law = ""
+    if scale.exponent != 1.0:
+        law = f", exponent = {scale.exponent:g}"
     return (
         f"{toml_key(name)} = {{ signal = {toml_value(g.name)}, {given}, least = {low:g}, most = "
-        f"{high:g} }}{note}"
+        f"{high:g}{law} }}{note}"
     )
+
+
+class _Scale(NamedTuple):
+    """Conversion of a signal to a share of full command.
+
+    Low, neutral and high value of the signal, the source of these, and the exponent.
+    """
+
+    ends: tuple[float, float, float]
+    why: str
+    exponent: float = 1.0
 
 
 def _scale(
     g: Classification,
     values: "np.ndarray[tuple[int, ...], np.dtype[np.float64]]",
     drive: VesselChannel | None,
-) -> tuple[tuple[float, float, float], str] | None:
-    """Low, neutral and high of a signal in proportion to full command, and their source.
-
-    None for another signal.
-    """
+) -> _Scale | None:
+    """The scale of a signal that is a share of full command; None for another signal."""
     share = "in proportion to full command"
     if drive and g.name == drive.name:
         return None
@@ -552,25 +580,29 @@ def _scale(
         why = ""
         if drive:
             why = share
-        return g.signal.pulse, why
+        return _Scale(g.signal.pulse, why)
     if PULSE[0] <= values.min() and values.max() <= PULSE[1]:
-        return USUAL_PULSE, f"usual pulses of 1100 to 1900 us are assumed, {share}"
+        return _Scale(USUAL_PULSE, f"usual pulses of 1100 to 1900 us are assumed, {share}")
     largest = float(np.max(np.abs(values)))
-    if drive and _is_thrust_by_revolutions(drive, g):
-        why = (
-            "CHECK: full thrust is assumed at the most revolutions here; thrust grows with "
-            "their square"
-        )
-        return (-largest, 0.0, largest), why
-    if drive is None or unit_of(drive.name) and g.word and g.word != "percent":
+    if drive is None:
         return None
+    if _is_thrust_by_revolutions(drive, g):
+        why = "thrust by the square of the revolutions; CHECK: those of full thrust, here the most"
+        return _Scale((-largest, 0.0, largest), why, 2.0)
     span = max(abs(drive.low), abs(drive.high))
+    if g.word == "deg" and unit_of(drive.name) == "rad":
+        if np.radians(largest) <= HELM_EXCESS * span:
+            return None
+        why = "the wheel turns farther than the rudder; CHECK: full wheel, here the largest angle"
+        return _Scale((-largest, 0.0, largest), why)
+    if unit_of(drive.name) and g.word and g.word != "percent":
+        return None
     if g.word == "percent" and (span != 100.0 or unit_of(drive.name)):
-        return (-100.0, 0.0, 100.0), f"per cent, {share}"
+        return _Scale((-100.0, 0.0, 100.0), f"per cent, {share}")
     if g.name != drive.name and 1.5 < largest <= 100.0 and not 0.3 < largest / span < 1.01:
-        return (-100.0, 0.0, 100.0), f"per cent by its range, {share}"
+        return _Scale((-100.0, 0.0, 100.0), f"per cent by its range, {share}")
     if largest <= 1.01 and span > 2.0:
-        return (-1.0, 0.0, 1.0), f"-1 to 1, {share}"
+        return _Scale((-1.0, 0.0, 1.0), f"-1 to 1, {share}")
     return None
 
 

@@ -44,11 +44,11 @@ OUTPUTS = set(
     "rcou output outputs actuator actuators servo cmd command commanded thrust thruster "
     "thrusters throttle rudder "
     "steer steering motor motors pwm nozzle azimuth prop "
-    "propeller rpm rps shaft esc helm delta jet".split()
+    "propeller rpm rps shaft esc helm delta jet wheel tiller".split()
 )
 SENSED = set("actual measured feedback fb telemetry esc state rsa sensed".split())
 STICKS = set("rcin joy stick joystick manual pilot".split())
-HELM = set("rudder steer steering nozzle azimuth helm delta jet angle pos".split())
+HELM = set("rudder steer steering nozzle azimuth helm delta jet angle pos wheel tiller".split())
 SIDES = {
     **dict.fromkeys(("port", "left", "ps", "portside"), "port"),
     **dict.fromkeys(("starboard", "stbd", "right", "sb"), "starboard"),
@@ -83,8 +83,9 @@ NUMBERED = {
     *map(str, range(10)),
     *WORDS,
 }  # other words in the name of a shaft speed
-ANGLES = set("rudder steer steering nozzle azimuth helm delta".split())
+ANGLES = set("rudder steer steering nozzle azimuth helm delta wheel tiller".split())
 MAX_RUDDER = 1.6  # [rad] a larger rudder angle is in degrees
+MAX_WHEEL = 1080.0  # [deg] three turns from the middle; a larger number is no angle of a wheel
 COLUMNS = (*POSE, *RATES)
 
 
@@ -177,7 +178,7 @@ def classify_signal(
         if (
             not (signal.unit or word)
             and tokens & ANGLES
-            and MAX_RUDDER < float(np.max(np.abs(values))) <= 90.0
+            and MAX_RUDDER < float(np.max(np.abs(values))) <= _most_degrees(tokens)
         ):
             word, why = "deg", "degrees by its range"
         return Classification(name, signal, kind, word, moves + rate, why, tokens)
@@ -193,6 +194,13 @@ def classify_signal(
         + 2.0 * bool(tokens & {"attitude", "imu", "odom"})
     )
     return Classification(name, signal, column, word, moves + rate + own, why, tokens)
+
+
+def _most_degrees(tokens: frozenset[str]) -> float:
+    """The largest number that may be an angle of a rudder or of a steering wheel [deg]."""
+    if "wheel" in tokens:
+        return MAX_WHEEL
+    return 90.0
 
 
 def _angle(column: str, signal: Signal, tokens: frozenset[str], word: str) -> tuple[str, str]:
@@ -253,11 +261,20 @@ def _drive_kind(signal: Signal, tokens: frozenset[str]) -> str | None:
         or "n" in tokens
         and not tokens - NUMBERED
     )
-    if not driven or tokens & OTHER:
+    driven = driven or _is_share_of_a_side(signal, tokens)
+    if not driven or tokens & OTHER or "wheel" in tokens and tokens & SPEEDS:
         return None
     if tokens & SENSED and not tokens & {"cmd", "command", "commanded"}:
         return "actual"
     return "command"
+
+
+def _is_share_of_a_side(signal: Signal, tokens: frozenset[str]) -> bool:
+    """Whether a name has nothing but a side and per cent, as `left_pct`."""
+    if not side_of(tokens) or tokens - NUMBERED - set(LETTERS):
+        return False
+    units = map(WORDS.get, (signal.unit.lower(), *tokens))
+    return "percent" in units
 
 
 def _motion(last: list[str], tokens: frozenset[str], log: Log) -> str | None:

@@ -44,8 +44,10 @@ FIELDS: dict[str, dict[str, tuple[str, str]]] = {
     "RSA": {"rudder_starboard": ("rsa_starboard", "deg"), "rudder_port": ("rsa_port", "deg")},
     "RPM": {"shaft": ("speed", "rpm")},
     "VHW": {"speed_water": ("water_speed_knots", "kn")},
+    "ZDA": {},  # date, and the time if no fix has one
 }
 NUMBERED = {"RPM": "engine_no"}  # sentence -> attribute with the number of the device
+DATE_ONLY = "ZDA"  # its time is that of a fix and may be sent after the next one
 STATUS = {"RMC": "status", "GLL": "status"}  # "A" where the fix is valid
 SENTENCE = re.compile(r"[$!][A-Za-z]{1,5}[\w]*,[^\r\n]*")
 # Time of the logger: s or ms since 1970
@@ -83,8 +85,8 @@ def read(path: Path) -> Log:
     if counted is None:
         raise file_error(
             path,
-            "no sentence has a time (GGA, RMC, GLL, or a logger's stamp in front); a time is "
-            "needed",
+            "no sentence has a time (GGA, RMC, GLL, ZDA, or a logger's stamp in front); a time "
+            "is needed",
         )
     if counted:
         remarks.append(
@@ -123,6 +125,8 @@ def _sentences(
         if name in NUMBERED:
             name += f"[{_float(sentence, NUMBERED[name]):.0f}]"
         found.append((when, name, numbers))
+    if any(when is not None and name != DATE_ONLY for when, name, _ in found):
+        found = [kept for kept in found if kept[1] != DATE_ONLY]
     for i, (when, name, numbers) in enumerate(found):
         if when is not None:
             found[i] = (when + clock.midnight, name, numbers)
@@ -143,13 +147,26 @@ class _Clock:
         now = (
             of_day.hour * 3600.0 + of_day.minute * 60.0 + of_day.second + of_day.microsecond * 1e-6
         )
+        if now > self.last + 0.5 * DAY and self.days:  # sent after midnight, of before
+            return now + self.days - DAY
         if now < self.last - 0.5 * DAY:
             self.days += DAY
         self.last = now
-        day = getattr(sentence, "datestamp", None)
+        day = _date(sentence)
         if not self.midnight and isinstance(day, date):
             self.midnight = datetime.combine(day, time(), UTC).timestamp() - self.days
         return now + self.days
+
+
+def _date(sentence: Any) -> date | None:
+    """The date of a sentence; None without a valid one."""
+    try:
+        found = getattr(sentence, "datestamp", None)
+    except (TypeError, ValueError):  # the library makes the date of ZDA on request
+        return None
+    if isinstance(found, date):
+        return found
+    return None
 
 
 def _parse_line(line: str, parse: "Callable[..., Any]") -> Any:

@@ -50,6 +50,16 @@ rudder_rad -0.3 0.3 rad command -
 motor1 1100 1900 - command -
 rpm_port 0 800 - command rpm
 n1 0 10 - command -
+left_pct -100 100 - command percent
+right_pct 0 80 - command percent
+L_pct -100 100 - command percent
+Starboard_(%) -100 100 % command percent
+battery_pct 0 100 - nothing -
+wheel_deg -30 30 - command deg
+wheel -30 30 - command deg
+wheel -540 540 - command deg
+wheel_speed 0 5 - nothing -
+tiller -40 40 - command deg
 /cmd_vel.linear.x 0 1 m/s nothing -
 battery_voltage 11 12 - nothing -
 BARO.Temp 20 30 - nothing -
@@ -98,6 +108,36 @@ def test_channels_get_the_signals_of_their_side_and_per_cent_becomes_their_range
     ends = "low = -100, neutral = 0, high = 100, least = -27.7, most = 55.3"
     assert f'thrust_port_N = {{ signal = "motor_left", {ends} }}' in text
     assert f'thrust_starboard_N = {{ signal = "motor_right", {ends} }}' in text
+
+
+def test_per_cent_of_two_sides_are_shares_of_full_thrust_of_these_sides():
+    drives = [VesselChannel("thrust_port_N", -30.0, 60.0)]
+    drives.append(VesselChannel("thrust_starboard_N", -30.0, 60.0))
+    text = propose_map(log_of(right_pct=(-50.0, 90.0), left_pct=(-40.0, 80.0)), "v", drives)
+    ends = "low = -100, neutral = 0, high = 100, least = -30, most = 60"
+    assert f'thrust_port_N = {{ signal = "left_pct", {ends} }}' in text
+    assert f'thrust_starboard_N = {{ signal = "right_pct", {ends} }}' in text
+
+
+def test_revolutions_of_a_thruster_become_thrust_by_their_square():
+    text = propose_map(log_of(rpm=(0.0, 2400.0)), "v", [VesselChannel("thrust_motor_N", -30, 60)])
+    ends = "low = -2400, neutral = 0, high = 2400, least = -30, most = 60, exponent = 2"
+    assert f'thrust_motor_N = {{ signal = "rpm", {ends} }}' in text
+    text = propose_map(log_of(rpm=(0.0, 2400.0)), "v", [VesselChannel("n_motor_radps", 0, 252)])
+    assert 'n_motor_radps = "rpm * rpm"' in text
+
+
+@pytest.mark.parametrize(
+    ("limit", "line"),
+    [
+        (40.0, 'rudder_rad = "wheel * deg"'),
+        (20.0, '{ signal = "wheel", low = -30, neutral = 0, high = 30, least = -0.349066'),
+    ],
+)
+def test_a_wheel_is_the_angle_of_the_rudder_or_geared_to_it(limit, line):
+    most = np.radians(limit)
+    text = propose_map(log_of(wheel=(-30.0, 30.0)), "v", [VesselChannel("rudder_rad", -most, most)])
+    assert line in text
 
 
 def test_a_column_called_as_the_channel_is_that_channel_even_if_it_stands_still_and_no_other_kind_of_thing_is():

@@ -10,6 +10,7 @@ import shutil
 import struct
 import tomllib
 from contextlib import redirect_stderr, redirect_stdout
+from datetime import UTC, datetime
 from pathlib import Path
 
 import make_logs
@@ -191,10 +192,10 @@ def test_a_recording_of_ours_is_proposed_as_it_is():
 # --------------------------------------------------------------------------------------------------------
 
 
-def ran(*given: object) -> tuple[str, str]:
+def ran(log: Path, *given: object) -> tuple[str, str]:
     out, said = io.StringIO(), io.StringIO()
     with redirect_stdout(out), redirect_stderr(said):
-        assert import_log(*given, []) == 0  # type: ignore[arg-type]
+        assert import_log([log], *given, []) == 0  # type: ignore[arg-type]
     return out.getvalue(), said.getvalue()
 
 
@@ -265,7 +266,7 @@ def test_without_a_map_nothing_is_written(tmp_path):
     ran(LOGS / "px4.ulg", tmp_path / "run.csv", None, None, None)
     assert not list(tmp_path.iterdir())
     assert "--out" in line_of(
-        import_log, LOGS / "px4.ulg", None, tmp_path / "m.toml", None, None, []
+        import_log, [LOGS / "px4.ulg"], None, tmp_path / "m.toml", None, None, []
     )
 
 
@@ -273,7 +274,7 @@ def test_the_log_itself_is_never_written_over(tmp_path):
     log = tmp_path / "t.csv"
     shutil.copy(LOGS / "truth.csv", log)
     assert "would overwrite the input" in line_of(
-        import_log, log, log, tmp_path / "m.toml", None, None, []
+        import_log, [log], log, tmp_path / "m.toml", None, None, []
     )
 
 
@@ -655,3 +656,32 @@ def test_a_rate_whose_name_says_degrees_per_second_is_one(tmp_path, name):
     signal = open_log(tmp_path / "log.csv").signals[name]
     assert signal.unit in ("deg/s", "")
     assert f'r_radps = "{name} * degps"' in propose_map(open_log(tmp_path / "log.csv"))
+
+
+def nmea(body: str) -> str:
+    total = 0
+    for character in body:
+        total ^= ord(character)
+    return f"${body}*{total:02X}"
+
+
+@pytest.mark.parametrize("with_fixes", [True, False])
+def test_zda_gives_the_date_and_the_time_where_no_fix_has_one(tmp_path, with_fixes):
+    lines = []
+    for k in range(40):  # across midnight, with the date sent after the next fix
+        clock = (86380 + k) % 86400
+        text = f"{clock // 3600:02d}{clock // 60 % 60:02d}{clock % 60:02d}.00"
+        before = f"{(clock - 1) % 86400 // 3600:02d}{(clock - 1) % 86400 // 60 % 60:02d}"
+        before += f"{(clock - 1) % 60:02d}.00"
+        day = 26 if 86380 + k - with_fixes < 86400 else 27
+        if with_fixes:
+            lines.append(nmea(f"GPGGA,{text},5000.000,N,00800.{k:03d},E,1,08,1.0,0.0,M,0.0,M,,"))
+        lines.append(nmea(f"GPZDA,{before if with_fixes else text},{day},11,2026,00,00"))
+        lines.append(nmea(f"HEHDT,{10 + k}.0,T"))
+    path = tmp_path / "log.nmea"
+    path.write_text("\n".join(lines) + "\n")
+    log = open_log(path)
+    t = log.signals["HDT.heading"].t
+    begin = datetime(2026, 11, 26, 23, 59, 40, tzinfo=UTC).timestamp()
+    assert t == pytest.approx(begin + np.arange(40.0), abs=1e-3)
+    assert not [name for name in log.signals if "ZDA" in name]

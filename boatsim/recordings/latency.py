@@ -1,0 +1,90 @@
+"""Shift of late columns of a recording to the times at which they were true.
+
+No value is interpolated: each sample keeps its value and gets an earlier time. Where no row has
+that time the recording gets one more row, in which the other poses and rates are empty.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from boatsim.errors import BadInput, unknown_name
+from boatsim.physics.base import Array
+from boatsim.physics.signals import POSE, RATES
+from boatsim.recordings.importing.resample import (
+    Samples,
+    clean_samples,
+    mean_held_values,
+    nearest_samples,
+    row_times,
+)
+
+if TYPE_CHECKING:
+    from boatsim.recordings.table import Recording
+
+ON_ROW = 0.05  # a sample is in a row if it is nearer than this share of the step of the rows
+# Share of additional rows below which samples go to the nearest row: the clock only jitters
+FEW_ROWS = 0.15
+FIX = ("x_m", "y_m")  # columns of one measurement
+
+
+def without_latency(recording: "Recording", latency: Mapping[str, float]) -> "Recording":
+    """Return a recording whose late columns are moved to the times at which they were true.
+
+    Args:
+        recording: The recording as read.
+        latency: Column -> delay of its values [s]; the value of a row was true that much earlier.
+
+    Raises:
+        BadInput: A column does not exist, or x_m and y_m have different delays.
+    """
+    if not any(latency.values()):
+        return recording
+    place = recording.path or recording.name
+    for name in latency:
+        if name not in recording.signals:
+            raise BadInput(f"{place}: {unknown_name('latency: column', name, recording.signals)}")
+    if len({latency.get(name, 0.0) for name in FIX if name in recording.signals}) > 1:
+        raise BadInput(
+            f"{place}: latency: x_m and y_m are one measurement; allowed is one delay for both"
+        )
+    measured: dict[str, Samples] = {}
+    held: dict[str, Samples] = {}
+    for name, values in recording.signals.items():
+        samples = clean_samples(recording.t - latency.get(name, 0.0), values)
+        if name in (*POSE, *RATES) or np.isnan(values).any():
+            measured[name] = samples
+        else:
+            held[name] = samples
+    moved = [samples for name, samples in measured.items() if latency.get(name)]
+    rows, near = _rows(recording.t, moved)
+    rows = _common_rows(rows, [*measured.values(), *held.values()], near)
+    signals: dict[str, Array] = {}
+    for name in recording.signals:
+        if name in held:
+            signals[name] = mean_held_values(rows, held[name])
+        else:
+            signals[name] = nearest_samples(rows, measured[name], near)
+    return replace(recording, t=rows, signals=signals)
+
+
+def _rows(t: Array, moved: Sequence[Samples]) -> tuple[Array, float]:
+    """Times (N,) of the rows [s], and the largest distance of a sample from its row [s]."""
+    step = float(np.median(np.diff(t)))
+    near = ON_ROW * step
+    rows = row_times(t, moved, near)
+    if len(rows) > (1.0 + FEW_ROWS) * len(t):
+        return rows, near
+    return t, 0.5 * step
+
+
+def _common_rows(rows: Array, all_samples: Sequence[Samples], near: float) -> Array:
+    """The rows (N,) in which every column has begun and none has ended."""
+    begin, end = rows[0], rows[-1]
+    for samples in all_samples:
+        if len(samples.t):
+            begin = max(begin, float(samples.t[0]) - near)
+            end = min(end, float(samples.t[-1]) + near)
+    return np.asarray(rows[(rows >= begin) & (rows <= end)])

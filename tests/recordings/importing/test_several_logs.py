@@ -1,0 +1,161 @@
+"""One run in two files is one recording on one clock, and late columns get the time at which they were
+true."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from boatsim.errors import BadInput
+from boatsim.recordings.importing.convert import convert
+from boatsim.recordings.importing.mapping import parse_map
+from boatsim.recordings.importing.mapping_proposal import propose_map
+from boatsim.recordings.importing.several_logs import open_logs
+
+CHANNELS = {"thrust_motor_N": (-50.0, 100.0)}
+EPOCH = 1.75e9  # [s] since 1970
+COLUMNS = {"psi_rad": "heading * deg", "thrust_motor_N": "thrust"}
+
+
+def heading(t):
+    return 40.0 * np.sin(0.3 * t)
+
+
+def thrust(t):
+    return 50.0 + 40.0 * np.sin(0.5 * t)
+
+
+def write(path: Path, clock: str, t, start: float, **columns) -> Path:
+    table = np.column_stack([t - t[0] + start, *columns.values()])
+    lines = [",".join([clock, *columns]), *(",".join(f"{x:.6f}" for x in row) for row in table)]
+    path.write_text("\n".join(lines) + "\n")
+    return path
+
+
+def two_files(folder: Path, starts: tuple[float, float]) -> list[Path]:
+    """Instruments from 0 to 60 s, and the engine from 12.33 to 50.3 s of the same run."""
+    t, late = np.arange(0.0, 60.0, 0.1), np.arange(12.33, 50.33, 0.25)
+    return [
+        write(folder / "instruments.csv", "time", t, starts[0], heading=heading(t)),
+        write(folder / "engine.csv", "time", late, starts[1], thrust=thrust(late)),
+    ]
+
+
+def check_columns(run, begin: float) -> None:
+    """The columns are those of the run at the times of the rows, which begin `begin` s after it."""
+    t = run.t + begin
+    assert run["psi_rad"] == pytest.approx(np.radians(heading(t)), abs=1e-5)
+    held = 12.33 + 0.25 * np.floor((t - 12.33) / 0.25 + 1e-6)
+    inside = np.abs(t - held) < 0.149  # in the row of a change the command is a mean
+    assert run["thrust_motor_N"][inside] == pytest.approx(thrust(held[inside]), abs=1e-4)
+
+
+def test_two_files_in_utc_are_joined_by_their_times(tmp_path):
+    log = open_logs(two_files(tmp_path, (EPOCH, EPOCH + 12.33)))
+    run = convert(log, parse_map({"columns": COLUMNS}, "map.toml"), "map.toml", CHANNELS)
+    check_columns(run, 12.4)
+    assert run.t[-1] == pytest.approx(
+        50.0 - 12.4, abs=0.11
+    )  # no row after the end of the engine's file
+    remarks = " ".join(run.remarks)
+    assert "12.4 s before and 9.9 s after the rows are left out" in remarks
+    assert "engine.csv: 2025-06-15 15:06:52 to 2025-06-15 15:07:30 UTC" in remarks
+
+
+def test_two_clocks_need_a_begin_and_the_line_is_said(tmp_path):
+    log = open_logs(two_files(tmp_path, (EPOCH, 0.0)))
+    with pytest.raises(BadInput, match=r'\[begins\] / "engine.csv" = SECONDS'):
+        convert(log, parse_map({"columns": COLUMNS}, "map.toml"), "map.toml", CHANNELS)
+    table = {"begins": {"engine.csv": 12.33}, "columns": COLUMNS}
+    check_columns(convert(log, parse_map(table, "map.toml"), "map.toml", CHANNELS), 12.4)
+    with pytest.raises(BadInput, match="engine.csv"):
+        convert(
+            log, parse_map(table | {"begins": {"motor.csv": 1.0}}, "map.toml"), "map.toml", CHANNELS
+        )
+
+
+def test_files_of_different_hours_name_their_spans_and_the_line(tmp_path):
+    log = open_logs(two_files(tmp_path, (EPOCH, EPOCH + 3612.33)))
+    with pytest.raises(BadInput) as caught:
+        convert(log, parse_map({"columns": COLUMNS}, "map.toml"), "map.toml", CHANNELS)
+    assert "16:06:52" in str(caught.value) and '[begins] / "engine.csv"' in str(caught.value)
+
+
+def test_a_proposal_for_two_files_has_the_signals_of_both_and_the_begin(tmp_path):
+    text = propose_map(open_logs(two_files(tmp_path, (0.0, 0.0))), "v")
+    assert 'psi_rad = "heading * deg"' in text and 'begins."engine.csv" = 0.0  # CHECK' in text
+    text = propose_map(open_logs(two_files(tmp_path, (EPOCH, EPOCH))), "v")
+    assert "begins." not in text
+
+
+def test_a_name_that_both_files_have_gets_the_name_of_its_file(tmp_path):
+    t = np.arange(0.0, 10.0, 0.1)
+    files = [
+        write(tmp_path / "a.csv", "time", t, EPOCH, heading=heading(t), volt=t),
+        write(tmp_path / "b.csv", "time", t, EPOCH, thrust=thrust(t), volt=t),
+    ]
+    assert {"a.volt", "b.volt", "heading", "thrust"} <= open_logs(files).signals.keys()
+
+
+def test_the_time_of_each_file_may_be_an_expression(tmp_path):
+    t = np.arange(0.0, 30.0, 0.1)
+    files = [
+        write(tmp_path / "a.csv", "tick", t * 10.0, 0.0, heading=heading(t)),
+        write(tmp_path / "b.csv", "count", t * 1000.0, 0.0, thrust=thrust(t)),
+    ]
+    table = {
+        "time": {"a.csv": "tick * 0.1", "b.csv": "count * ms"},
+        "begins": {"b.csv": 0.0},
+        "columns": COLUMNS,
+    }
+    run = convert(open_logs(files), parse_map(table, "map.toml"), "map.toml", CHANNELS)
+    assert run["psi_rad"] == pytest.approx(np.radians(heading(run.t)), abs=1e-5)
+    assert run["thrust_motor_N"] == pytest.approx(thrust(run.t), abs=1e-4)
+
+
+def test_a_late_column_of_a_map_gets_the_time_at_which_it_was_true(tmp_path):
+    t = np.arange(0.0, 30.0, 0.1)
+    file = write(
+        tmp_path / "a.csv",
+        "time",
+        t,
+        0.0,
+        heading=heading(t - 0.4),
+        thrust=thrust(t),
+        psi_true=heading(t),
+    )
+    table = {"latency": {"psi_rad": 0.4}, "columns": COLUMNS}
+    run = convert(open_logs([file]), parse_map(table, "map.toml"), "map.toml", CHANNELS)
+    known = np.isfinite(run["psi_rad"])
+    assert known.sum() > 280
+    # the first row is that of the first command, 0.4 s after the first heading is true
+    assert run["psi_rad"][known] == pytest.approx(np.radians(heading(run.t[known])), abs=1e-5)
+    with pytest.raises(BadInput, match="latency: column 'x_m'"):
+        parse_map({"latency": {"x_m": 0.4}, "columns": COLUMNS}, "map.toml")
+
+
+def test_the_thrust_of_a_range_grows_with_the_power_that_the_map_states(tmp_path):
+    t = np.arange(0.0, 30.0, 0.1)
+    rpm = 2000.0 * np.sin(0.5 * t)
+    file = write(tmp_path / "a.csv", "time", t, 0.0, heading=heading(t), rpm=rpm)
+    ends = {"low": -2000, "neutral": 0, "high": 2000, "least": -50, "most": 100}
+    what = {"signal": "rpm", "exponent": 2.0, **ends}
+    table = {"columns": {"psi_rad": "heading * deg", "thrust_motor_N": what}}
+    run = convert(open_logs([file]), parse_map(table, "map.toml"), "map.toml", CHANNELS)
+    full = np.where(rpm > 0.0, 100.0, 50.0)
+    assert run["thrust_motor_N"] == pytest.approx(full * rpm * np.abs(rpm) / 2000.0**2, abs=1e-3)
+
+
+def test_a_curve_gives_the_thrust_of_a_measured_table(tmp_path):
+    t = np.arange(0.0, 30.0, 0.1)
+    stick = np.linspace(-1.0, 1.0, len(t))
+    file = write(tmp_path / "a.csv", "time", t, 0.0, heading=heading(t), stick=stick)
+    points = [[-1.0, -40.0], [-0.2, 0.0], [0.2, 0.0], [0.6, 30.0], [1.0, 100.0]]
+    table = {
+        "columns": {"psi_rad": "heading", "thrust_motor_N": {"signal": "stick", "points": points}}
+    }
+    run = convert(open_logs([file]), parse_map(table, "map.toml"), "map.toml", CHANNELS)
+    assert run["thrust_motor_N"] == pytest.approx(np.interp(stick, *np.transpose(points)), abs=1e-3)
+    table["columns"]["thrust_motor_N"]["points"] = points[::-1]
+    with pytest.raises(BadInput, match="by increasing signal"):
+        parse_map(table, "map.toml")
