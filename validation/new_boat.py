@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 
 from boatsim.newboat.from_log import FittedBoat, fit_boat
-from boatsim.newboat.particulars import Particulars, parse_particulars
+from boatsim.newboat.particulars import Options, Particulars, parse_particulars
 from boatsim.newboat.write import VESSEL, boat_files
 from boatsim.physics.base import Array
 from boatsim.physics.content import find_content_file
@@ -53,7 +53,8 @@ def three_metre_case(folder: Path) -> Case:
     for seed in (1, 2, 3):
         pushed_three_metre.write(folder / f"run_{seed}.csv", seed)
         logs[f"run_{seed}"] = dict(read_columns(folder / f"run_{seed}.csv"))
-    boat = parse_particulars("three_metre", 3.0, 1.6, 90.0, ["-1.2,-0.6,60", "-1.2,0.6,60"], [])
+    thrusters = Options(thrusters=["-1.2,-0.6,60", "-1.2,0.6,60"])
+    boat = parse_particulars("three_metre", 3.0, 1.6, 90.0, thrusters)
 
     def hand_made(where: Path) -> Path:
         where.mkdir(exist_ok=True)
@@ -73,9 +74,7 @@ def blueboat_case(_: Path) -> Case:
         1.2,
         0.77,
         15.0,
-        ["-0.45,-0.285,55.2,27.6", "-0.45,0.285,55.2,27.6"],
-        [],
-        hulls=2,
+        Options(thrusters=["-0.45,-0.285,55.2,27.6", "-0.45,0.285,55.2,27.6"], hulls=2),
     )
     logs = {}
     for path in recordings_of_set("blueboat_lake"):
@@ -106,10 +105,11 @@ def esso_osaka_case(_: Path) -> Case:
         data["Lpp_m"],
         data["beam_m"],
         data["mass_kg"],
-        [f"{at},0,{per * MOST**2}"],
-        [],
-        rudder=f"{rudder['x_from_midship_m'] - ahead},{rudder['area_m2']}",
-        draught=data["draught_m"],
+        Options(
+            thrusters=[f"{at},0,{per * MOST**2}"],
+            rudder=f"{rudder['x_from_midship_m'] - ahead},{rudder['area_m2']}",
+            draught=data["draught_m"],
+        ),
     )
     logs = {}
     for path in [

@@ -5,7 +5,7 @@ from dataclasses import fields
 from fnmatch import fnmatchcase
 from functools import partial
 from itertools import starmap
-from math import isnan
+from math import degrees, isnan
 from pathlib import Path
 
 from boatsim.cli.entry import CLASSES, class_entry
@@ -142,7 +142,8 @@ def _vessel_lines(name: str) -> list[str]:
         lines.append("  measured:")
         lines += _align_columns([(n, "", m.about) for n, m in boat.measured.items()], "    ")
     lines.append("  effects:")
-    lines += map(_effect_line, boat.effects)
+    for effect in boat.effects:
+        lines.append(_effect_line(boat, effect))
     if boat.loads:
         lines.append(f"  loads: {', '.join(boat.loads)}")
     if uncertainty := boat.diagnosis.coefficient_uncertainty:
@@ -177,8 +178,8 @@ def _align_columns(rows: Sequence[Sequence[str]], indent: str) -> list[str]:
     return lines
 
 
-def _effect_line(effect: Effect) -> str:
-    """Name of an effect, and its parameters that differ from their defaults, with units."""
+def _effect_line(boat: Vessel, effect: Effect) -> str:
+    """Name of an effect, its direction, and parameters that differ from their defaults."""
     kind = type(effect)
     name = effect.name
     if name != kind.type_name():
@@ -189,7 +190,27 @@ def _effect_line(effect: Effect) -> str:
         value = getattr(effect, key)
         if value != default[key] and not isnan(value):
             cells.append(f"{key} = {value:.4g} {param.unit}".rstrip())
+    cells += _thrust_direction(boat, effect)
     return f"    {name}: {', '.join(cells) or 'default values'}"
+
+
+def _thrust_direction(boat: Vessel, effect: Effect) -> list[str]:
+    """The direction of the thrust of a drive in words; [] for another effect."""
+    roles = type(effect).roles
+    drives = {"thrust", "shaft"} & set(roles)
+    if not drives or "angle" not in roles or roles["angle"].fixed is None:
+        return []
+    bound = boat.bindings(effect)
+    angle = bound.get("angle", roles["angle"].fixed)
+    if isinstance(angle, str):
+        direction = f"turned by {angle}"
+    elif angle == 0.0:
+        direction = "pushes ahead"
+    else:
+        side = "starboard" if angle > 0.0 else "port"
+        direction = f"pushes {abs(degrees(angle)):.3g} deg to {side}"
+    commands = [str(bound[role]) for role in sorted(drives) if role in bound]
+    return [direction, f"driven by {', '.join(commands)}"]
 
 
 def _scenario_lines(name: str) -> list[str]:

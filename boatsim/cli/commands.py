@@ -901,6 +901,21 @@ def new(
             metavar="X[,AREA]", help="Rudder: position forward of the CG [m], area [m^2]."
         ),
     ] = None,
+    tunnel: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="X,MAX_N",
+            help="Tunnel thruster, positive to starboard: position forward of the CG [m], full "
+            "thrust [N]. Repeatable.",
+        ),
+    ] = None,
+    helm: Annotated[
+        str | None,
+        typer.Option(
+            metavar="DEG[,DEG_PER_S]",
+            help="Largest angle and rate of the rudder or of steerable thrusters [default: 40].",
+        ),
+    ] = None,
     draught: Annotated[
         float | None,
         typer.Option(metavar="M", help="Draught [m] [default: from the displacement]."),
@@ -908,12 +923,42 @@ def new(
     hulls: Annotated[
         int, typer.Option(min=1, max=2, help="Number of hulls; 2 for a catamaran.")
     ] = 1,
+    hull_beam: Annotated[
+        float | None,
+        typer.Option(
+            metavar="M", help="Beam of one of two hulls [m] [default: a quarter of the beam]."
+        ),
+    ] = None,
+    balance: Annotated[
+        float | None,
+        typer.Option(
+            metavar="M", help="Balance point (CG) forward of the transom [m] [default: L/2]."
+        ),
+    ] = None,
+    depth: Annotated[
+        float | None, typer.Option(metavar="M", help="Depth of the water [m] [default: deep].")
+    ] = None,
     speed: Annotated[
         float | None, typer.Option(metavar="M/S", help="Top speed at full thrust [m/s].")
     ] = None,
     thrust: Annotated[
         float | None,
         typer.Option(metavar="N", help="Full thrust of each thruster without MAX_N [N]."),
+    ] = None,
+    rpm: Annotated[
+        float | None,
+        typer.Option(
+            metavar="RPM",
+            help="Full revolutions: thrusters are commanded by their shaft rate, thrust grows "
+            "with its square.",
+        ),
+    ] = None,
+    curve: Annotated[
+        str | None,
+        typer.Option(
+            metavar="COMMAND:N,...",
+            help="Measured thrust of each raw command, such as --curve=-100:-20,0:0,100:60.",
+        ),
     ] = None,
     from_log: Annotated[
         list[Path] | None,
@@ -930,21 +975,25 @@ def new(
     The folder gets vessel.toml with the rule behind every number, a hull drawing and a scenario.
     """
     from boatsim.cli.newboat import create_boat
-    from boatsim.newboat.particulars import parse_particulars
+    from boatsim.newboat.particulars import Options, parse_particulars
 
-    main_particulars = parse_particulars(
-        folder.resolve().name,
-        length,
-        beam,
-        mass,
-        thruster or [],
-        steered or [],
-        rudder,
-        draught,
-        hulls,
-        speed,
-        thrust,
+    options = Options(
+        thrusters=thruster or [],
+        steered=steered or [],
+        tunnels=tunnel or [],
+        rudder=rudder,
+        draught=draught,
+        hulls=hulls,
+        hull_beam=hull_beam,
+        speed=speed,
+        thrust=thrust,
+        rpm=rpm,
+        curve=curve,
+        helm=helm,
+        balance=balance,
+        depth=depth,
     )
+    main_particulars = parse_particulars(folder.resolve().name, length, beam, mass, options)
     return create_boat(folder, main_particulars, from_log or [], force)
 
 

@@ -3,14 +3,13 @@
 import math
 from collections.abc import Iterator
 
-from boatsim.newboat.particulars import Particulars
+from boatsim.newboat.particulars import MAX_ANGLE, Particulars
 from boatsim.newboat.vessel_text import (
-    MAX_ANGLE,
     approach_thrust_share,
+    differential_thrust,
     format_number,
     full_thrust,
-    steering_commands,
-    thrust_channel,
+    steering_angles,
 )
 
 STAGE_DURATION = 8.0  # [s] for a boat of the reference length, scaled by Froude's law for others
@@ -45,16 +44,22 @@ def _stage_commands(boat: Particulars) -> list[dict[str, float]]:
     """Commands of each stage, within the ranges of the channels."""
     full, _ = full_thrust(boat)
     pairs = list(zip(boat.named_thrusters(), full, strict=True))
-    steer = steering_commands(boat)
+    angles = steering_angles(boat)
+    by_thrust: dict[str, float] = {}
+    if not angles:
+        by_thrust = differential_thrust(boat)
     part = approach_thrust_share(boat)
+    limit = boat.helm.most
 
     def at(share: float, helm: float) -> dict[str, float]:
-        found = {thrust_channel(n): share * most for (n, _), most in pairs}
-        for channel, gain in steer.items():
-            found[channel] = found.get(channel, 0.0) + helm * gain
-        for (n, m), most in pairs:
-            least = m.largest_astern(most)
-            found[thrust_channel(n)] = min(max(found[thrust_channel(n)], -least), most)
+        found: dict[str, float] = {}
+        for (name, mount), most in pairs:
+            least = mount.largest_astern(most)
+            force = share * most + helm * by_thrust.get(name, 0.0)
+            force = min(max(force, -least), most)
+            found[boat.law.channel(name)] = boat.law.command(force, most, least)
+        for channel, gain in angles.items():
+            found[channel] = min(max(helm * gain, -limit), limit)
         return found
 
     slow, fast = 0.6 * part, 1.6 * part

@@ -4,12 +4,13 @@ import math
 from collections.abc import Iterator
 
 from boatsim.files import toml_value
-from boatsim.newboat.particulars import Mount, Particulars, Rudder
+from boatsim.newboat.particulars import MAX_ANGLE, Mount, Particulars, Rudder
 from boatsim.physics.estimate import (
     added_mass,
     displacement,
     inertia,
     resistance,
+    shallow_water,
     sway_yaw_damping,
     thrust,
 )
@@ -18,7 +19,6 @@ from boatsim.physics.estimate.base import DENSITY, Estimate
 
 OWNER = "the owner's"
 COMMENT_COLUMN = 32  # where comments begin
-MAX_ANGLE = 0.7  # [rad] 40 deg, the usual limit of rudders and outboards
 # Thrust at the approach of manoeuvres: this part of full thrust, but at most this many times the
 # resistance at service speed
 APPROACH_PART = 0.5
@@ -102,12 +102,8 @@ def full_thrust(boat: Particulars) -> tuple[list[float], bool]:
     return largest, all_given
 
 
-def thrust_channel(name: str) -> str:
-    """Return the name of the command channel for the thrust of a thruster.
-
-    Args:
-        name: Name of the thruster.
-    """
+def _thrust_channel(name: str) -> str:
+    """Name of the channel for the thrust of a thruster in newtons."""
     return f"thrust_{name}_N"
 
 
@@ -138,6 +134,11 @@ def _head_lines(boat: Particulars) -> Iterator[str]:
     if not boat.draught_given:
         rule = displacement.hull_draught(hull.length, hull.beam, hull.mass, hull.hulls).rule
     yield toml_line("draught", hull.draught, "m", rule)
+    if hull.hulls == 2:
+        breadth = displacement.hull_breadth(hull.beam, hull.hulls).rule
+        if boat.breadth_given:
+            breadth = OWNER
+        yield f"# breadth of one hull {format_number(hull.breadth)} m: {breadth}"
 
 
 def _body_lines(boat: Particulars) -> Iterator[str]:
@@ -146,9 +147,10 @@ def _body_lines(boat: Particulars) -> Iterator[str]:
     yield _estimate_line("roll_inertia", inertia.roll_inertia(hull), "kg m^2")
     yield _estimate_line("yaw_inertia", inertia.yaw_inertia(hull), "kg m^2")
     yield from ("", "[geometry]")
-    yield toml_line(
-        "cg_from_transom", 0.5 * hull.length, "m", "for the drawing: mass centre at mid-length"
-    )
+    place = "for the drawing: mass centre at mid-length"
+    if boat.mass_centre is not None:
+        place = OWNER
+    yield toml_line("cg_from_transom", boat.centre_from_transom, "m", place)
     yield toml_line(
         "cg_above_keel", hull.draught, "m", "for the drawing: mass centre in the waterline"
     )
@@ -157,28 +159,75 @@ def _body_lines(boat: Particulars) -> Iterator[str]:
 def _channel_lines(boat: Particulars) -> Iterator[str]:
     full, _ = full_thrust(boat)
     yield from ("", "[channels]")
+    angle = format_number(boat.helm.most)
+    unit = f"[rad] {math.degrees(boat.helm.most):.2g} deg"
+    if boat.helm.given:
+        unit = f"[rad] {math.degrees(boat.helm.most):.4g} deg, {OWNER}"
     for (name, mount), most in zip(boat.named_thrusters(), full, strict=True):
-        least = mount.largest_astern(most)
-        rule = OWNER
-        if mount.ahead is None:
-            rule = thrust.full_thrust(boat.hull).rule
-        if mount.astern is None:
-            rule = f"{rule}; the same astern"
-        low = "0.0"
-        if least != 0.0:
-            low = f"-{format_number(least)}"
-        limits = f'low = {low}, high = {format_number(most)}, about = "ahead positive"'
-        yield f"{thrust_channel(name)} = {{ {limits} }}  # [N] {rule}"
+        yield from _command_lines(boat, name, mount, most)
         if mount.turns:
             about = "positive pushes to starboard"
             yield (
-                f"{steer_channel(name)} = {{ low = -{MAX_ANGLE}, high = {MAX_ANGLE}, about = "
-                f'"{about}" }}  # [rad] 40 deg'
+                f"{steer_channel(name)} = {{ low = -{angle}, high = {angle}, about = "
+                f'"{about}" }}  # {unit}'
             )
+    for name, mount in boat.named_tunnels():
+        most_text = format_number(mount.ahead or 0.0)
+        about = "tunnel thruster, positive pushes to starboard"
+        limits = f'low = -{most_text}, high = {most_text}, about = "{about}"'
+        yield f"{_thrust_channel(name)} = {{ {limits} }}  # [N] {OWNER}"
     if boat.rudder is not None:
         side = "starboard" if boat.rudder.x < 0 else "port"
         turns = f'turns = "{side}"'
-        yield f"rudder_rad = {{ low = -{MAX_ANGLE}, high = {MAX_ANGLE}, {turns} }}  # [rad] 40 deg"
+        yield f"rudder_rad = {{ low = -{angle}, high = {angle}, {turns} }}  # {unit}"
+
+
+def _command_lines(boat: Particulars, name: str, mount: Mount, most: float) -> Iterator[str]:
+    """Lines of the command channels of a thruster."""
+    least = mount.largest_astern(most)
+    rule = _thrust_rule(boat, mount)
+    limits = f"low = {_negative(least)}, high = {format_number(most)}"
+    if boat.law.curve:
+        yield (
+            f'{_thrust_channel(name)} = {{ {limits}, about = "thrust beside that of the '
+            f'throttle" }}  # [N] {OWNER}'
+        )
+        low, high = boat.law.curve[0][0], boat.law.curve[-1][0]
+        neutral = ""
+        if not low <= 0.0 <= high:
+            neutral = f", neutral = {format_number(boat.law.neutral)}"
+        yield (
+            f"{boat.law.channel(name)} = {{ low = {format_number(low)}, high = "
+            f'{format_number(high)}{neutral}, about = "raw command of the thrust curve" }}'
+            f"  # {OWNER}"
+        )
+        return
+    if boat.law.rpm is None:
+        yield f'{_thrust_channel(name)} = {{ {limits}, about = "ahead positive" }}  # [N] {rule}'
+        return
+    rate = boat.law.full_rate
+    slowest = "0.0"
+    if least != 0.0:
+        slowest = _negative(rate)
+    limits = f'low = {slowest}, high = {format_number(rate)}, about = "shaft rate, ahead positive"'
+    yield f"{boat.law.channel(name)} = {{ {limits} }}  # [rad/s] {boat.law.rpm:g} rpm, {OWNER}"
+
+
+def _negative(value: float) -> str:
+    """The text of a number with the opposite sign."""
+    if value == 0.0:
+        return "0.0"
+    return f"-{format_number(value)}"
+
+
+def _thrust_rule(boat: Particulars, mount: Mount) -> str:
+    """The source of the largest thrusts of a thruster."""
+    rule = OWNER
+    if mount.ahead is None:
+        rule = thrust.full_thrust(boat.hull).rule
+    if mount.astern is None:
+        rule = f"{rule}; the same astern"
+    return rule
 
 
 def _effect_lines(boat: Particulars) -> Iterator[str]:
@@ -186,8 +235,11 @@ def _effect_lines(boat: Particulars) -> Iterator[str]:
     sway, yaw = sway_yaw_damping.damping_at_rest(hull)
     yield from ("", "[[effect]]", 'use = "added_mass"')
     yield _estimate_line("surge", added_mass.surge_added_mass(hull), "kg")
-    yield _estimate_line("sway", added_mass.sway_added_mass(hull), "kg")
-    yield _estimate_line("yaw", added_mass.yaw_added_mass(hull), "kg m^2")
+    yield _estimate_line("sway", _in_depth(boat, added_mass.sway_added_mass(hull)), "kg")
+    yield _estimate_line("yaw", _in_depth(boat, added_mass.yaw_added_mass(hull)), "kg m^2")
+    middle = "mid-length ahead of the mass centre"
+    if boat.mass_centre is not None:
+        yield toml_line("sway_at", boat.middle, "m", middle)
     linear, quadratic = resistance.surge_damping(hull, given_thrust(boat), boat.speed)
     yield from ("", "[[effect]]", 'use = "linear_damping"')
     yield _estimate_line("surge", linear, "N s/m")
@@ -200,25 +252,44 @@ def _effect_lines(boat: Particulars) -> Iterator[str]:
         _estimate_line("quadratic", quadratic, "N s^2/m^2"),
     )
     yield from ("", "[[effect]]", 'use = "cross_flow_drag"')
-    yield _estimate_line(
-        "section_drag_coefficient", sway_yaw_damping.section_drag_coefficient(), ""
-    )
+    section = _in_depth(boat, sway_yaw_damping.section_drag_coefficient())
+    yield _estimate_line("section_drag_coefficient", section, "")
+    if boat.mass_centre is not None:
+        yield toml_line("centre", boat.middle, "m", middle)
     yield toml_line("density", DENSITY, "kg/m^3", "fresh water")
     lift = sway_yaw_damping.lift_derivatives(hull)
     yield from ("", "[[effect]]", 'use = "forward_speed_damping"')
     yield _estimate_line("sway", lift.sway, "N s^2/m^2")
-    yield _estimate_line("at", lift.at, "m")
+    yield _estimate_line("at", Estimate(lift.at.value + boat.middle, lift.at.rule), "m")
     yield _estimate_line("yaw", lift.yaw, "N s^2")
-    for name, mount in boat.named_thrusters():
-        yield from _thruster_lines(name, mount)
-    yield from (
-        "",
-        "[[effect]]",
-        'use = "thrust_loss_with_speed"',
-        _estimate_line("loss", thrust.thrust_loss_with_speed(hull, boat.speed), "s/m"),
-    )
+    if boat.helm.rate is not None:
+        yield from ("", "[[effect]]", 'use = "steering_rate_limit"')
+        degrees = f"{math.degrees(boat.helm.rate):.3g} deg/s, {OWNER}"
+        yield toml_line("rate", boat.helm.rate, "rad/s", degrees)
+    full, _ = full_thrust(boat)
+    if boat.law.curve:
+        yield from _curve_lines(boat)
+    for (name, mount), most in zip(boat.named_thrusters(), full, strict=True):
+        if boat.law.rpm is None:
+            yield from _thruster_lines(name, mount)
+        else:
+            yield from _propeller_lines(boat, name, mount, most)
+    for name, mount in boat.named_tunnels():
+        yield from _tunnel_lines(name, mount)
+    yield from ("", "[[effect]]", 'use = "thrust_loss_with_speed"')
+    if boat.tunnels:  # a tunnel thruster has no axis along the flow
+        yield f"on = {toml_value([name for name, _ in boat.named_thrusters()])}"
+    yield _estimate_line("loss", thrust.thrust_loss_with_speed(hull, boat.speed), "s/m")
     if boat.rudder is not None:
         yield from _rudder_lines(boat, speed)
+
+
+def _in_depth(boat: Particulars, found: Estimate) -> Estimate:
+    """An estimate for deep water in the depth that the owner gave."""
+    if boat.depth is None:
+        return found
+    factor = shallow_water.shallow_water_factor(boat.hull.draught, boat.depth)
+    return Estimate(found.value * factor.value, f"{found.rule}; {factor.rule}")
 
 
 def rudder_design_speed(boat: Particulars) -> float:
@@ -252,9 +323,44 @@ def _thruster_lines(name: str, mount: Mount) -> Iterator[str]:
     steer = ""
     if mount.turns:
         steer = f', angle = "{steer_channel(name)}"'
-    yield f'on = {{ thrust = "{thrust_channel(name)}"{steer} }}'
+    yield f'on = {{ thrust = "{_thrust_channel(name)}"{steer} }}'
+    yield from _mount_lines(mount)
+
+
+def _mount_lines(mount: Mount) -> Iterator[str]:
     yield toml_line("x", mount.x, "m", f"{OWNER}, ahead of the mass centre")
     yield toml_line("y", mount.y, "m", f"{OWNER}, to starboard")
+
+
+def _propeller_lines(boat: Particulars, name: str, mount: Mount, most: float) -> Iterator[str]:
+    """Lines of a propeller, whose thrust grows with the square of its revolutions."""
+    yield from ("", "[[effect]]", 'use = "propeller"', f"name = {toml_value(name)}")
+    steer = ""
+    if mount.turns:
+        steer = f', angle = "{steer_channel(name)}"'
+    yield f'on = {{ shaft = "{boat.law.channel(name)}"{steer} }}'
+    rule = _thrust_rule(boat, mount)
+    for key, force in (("ahead", most), ("astern", mount.largest_astern(most))):
+        at_full = f"{format_number(force)} N at {boat.law.rpm:g} rpm: {rule}"
+        yield toml_line(key, force / boat.law.full_rate**2, "N s^2/rad^2", at_full)
+    yield from _mount_lines(mount)
+
+
+def _tunnel_lines(name: str, mount: Mount) -> Iterator[str]:
+    """Lines of a tunnel thruster, a thruster that points to starboard."""
+    yield from ("", "[[effect]]", 'use = "thruster"', f"name = {toml_value(name)}")
+    yield f'on = {{ thrust = "{_thrust_channel(name)}", angle = 1.5708 }}  # [rad] to starboard'
+    yield from _mount_lines(mount)
+
+
+def _curve_lines(boat: Particulars) -> Iterator[str]:
+    """Lines of the measured thrust by raw command."""
+    points = ", ".join(f"[{x:g}, {force:g}]" for x, force in boat.law.curve)
+    for name, _ in boat.named_thrusters():
+        yield from ("", "[[effect]]", 'use = "thrust_curve"', f'name = "curve_{name}"')
+        yield f'on = "{_thrust_channel(name)}"'
+        yield f'fed_by = "{boat.law.channel(name)}"'
+        yield f"points = [{points}]  # raw command, thrust [N]: {OWNER}"
 
 
 def _rudder_lines(boat: Particulars, speed: float) -> Iterator[str]:
@@ -284,10 +390,13 @@ def _rudder_lines(boat: Particulars, speed: float) -> Iterator[str]:
     yield toml_line("speed", speed, "m/s", "to which the coefficients above belong")
     yield toml_line("rudder_sway", 1.0, "", "the force grows with the square of the speed")
     yield toml_line("rudder_yaw", 1.0, "", "same")
-    if washed := _thruster_ahead_of_rudder(boat, blade):
+    washed = _thruster_ahead_of_rudder(boat, blade)
+    if washed and boat.law.rpm is not None:
+        yield "# no rudder_race: its law needs the thrust as a command, this boat has revolutions"
+    elif washed:
         found = rudders.slipstream_rudder_force()
         yield from ("", "[[effect]]", 'use = "rudder_race"')
-        yield f'on = {{ angle = "rudder_rad", thrust = "{thrust_channel(washed)}" }}'
+        yield f'on = {{ angle = "rudder_rad", thrust = "{_thrust_channel(washed)}" }}'
         yield toml_line("normal_force_per_thrust", found.value, "", found.rule)
 
 
@@ -323,25 +432,32 @@ def _manoeuvring_lines(boat: Particulars) -> Iterator[str]:
     ahead: list[str] = []
     astern: list[str] = []
     for (name, mount), most in zip(named, full, strict=True):
-        channel = thrust_channel(name)
-        ahead.append(f"{channel} = {format_number(part * most)}")
-        if (least := mount.largest_astern(most)) > 0.0 or mount.astern is None:
-            astern.append(f"{channel} = -{format_number(part * least)}")
+        channel, least = boat.law.channel(name), mount.largest_astern(most)
+        forward = boat.law.command(part * most, most, least)
+        ahead.append(f"{channel} = {format_number(forward)}")
+        if least > 0.0 or mount.astern is None:
+            backward = boat.law.command(-part * least, most, least)
+            astern.append(f"{channel} = {format_number(backward)}")
     rule = "half thrust"
     if part < APPROACH_PART:
         rule = "twice the resistance at an easy speed"
-    yield from ("", "[manoeuvring]", f"ahead = {{ {', '.join(ahead)} }}  # [N] {rule}")
+    unit = "[N] "
+    if boat.law.rpm is not None:
+        unit = "[rad/s] "
+    elif boat.law.curve:
+        unit = ""
+    yield from ("", "[manoeuvring]", f"ahead = {{ {', '.join(ahead)} }}  # {unit}{rule}")
     if astern:
-        yield f"astern = {{ {', '.join(astern)} }}  # [N]"
+        yield f"astern = {{ {', '.join(astern)} }}  # {unit}{rule}"
     if steer := steering_commands(boat):
         gains = ", ".join(f"{channel} = {format_number(gain)}" for channel, gain in steer.items())
         yield f"steer = {{ {gains} }}  # per rad of helm, positive to starboard"
 
 
-def steering_commands(boat: Particulars) -> dict[str, float]:
-    """Return the commands per rad of helm that steer a new boat.
+def steering_angles(boat: Particulars) -> dict[str, float]:
+    """Return the angle commands per rad of helm that steer a new boat: rudder or turned thrusters.
 
-    They are commands of the rudder, of turned thrusters or of differential thrust.
+    The result is empty for a boat with fixed thrusters alone.
 
     Args:
         boat: Particulars of the boat.
@@ -352,14 +468,44 @@ def steering_commands(boat: Particulars) -> dict[str, float]:
     for name, mount in boat.named_thrusters():
         if mount.turns:
             turning[steer_channel(name)] = -1.0 if mount.x <= 0 else 1.0
-    if turning:
-        return turning
+    return turning
+
+
+def differential_thrust(boat: Particulars) -> dict[str, float]:
+    """Return the thrust [N] per rad of helm, by thruster, that steers a boat with fixed thrusters.
+
+    Args:
+        boat: Particulars of the boat.
+    """
     full, _ = full_thrust(boat)
     part = approach_thrust_share(boat)
     gains: dict[str, float] = {}
     for (name, mount), most in zip(boat.named_thrusters(), full, strict=True):
         if mount.y != 0.0:
-            gains[thrust_channel(name)] = -math.copysign(part * most / MAX_ANGLE, mount.y)
+            gains[name] = -math.copysign(part * most / MAX_ANGLE, mount.y)
+    return gains
+
+
+def steering_commands(boat: Particulars) -> dict[str, float]:
+    """Return the commands per rad of helm that steer a new boat.
+
+    They are commands of the rudder, of turned thrusters or of differential thrust.
+
+    Args:
+        boat: Particulars of the boat.
+    """
+    if turning := steering_angles(boat):
+        return turning
+    full, _ = full_thrust(boat)
+    gains: dict[str, float] = {}
+    by_name = differential_thrust(boat)
+    for (name, mount), most in zip(boat.named_thrusters(), full, strict=True):
+        if name in by_name:
+            change = abs(by_name[name]) * MAX_ANGLE
+            least = mount.largest_astern(most)
+            neutral = boat.law.command(0.0, most, least)
+            step = (boat.law.command(change, most, least) - neutral) / MAX_ANGLE
+            gains[boat.law.channel(name)] = math.copysign(step, by_name[name])
     return gains
 
 
@@ -388,5 +534,6 @@ def _estimated_lines(boat: Particulars) -> Iterator[str]:
     yield toml_line("added_mass", ADDED_MASS_SD, "", "strip theory or regression")
     yield toml_line('"body.roll_inertia"', INERTIA_SD, "", "usual radius of gyration")
     yield toml_line('"body.yaw_inertia"', INERTIA_SD, "", "usual radius of gyration")
-    yield toml_line("mass_centre", UNKNOWN_SD, "", "assumed at mid-length")
+    if boat.mass_centre is None:
+        yield toml_line("mass_centre", UNKNOWN_SD, "", "assumed at mid-length")
     yield toml_line("lag", UNKNOWN_SD, "", "lags of motors and steering are assumed to be zero")

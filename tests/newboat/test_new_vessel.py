@@ -14,8 +14,9 @@ from typer.testing import CliRunner
 
 from boatsim.cli import app
 from boatsim.errors import BadInput
+from boatsim.newboat.drive_law import DriveLaw
 from boatsim.newboat.from_log import fit_boat, fitted_vessel_text
-from boatsim.newboat.particulars import Particulars, parse_particulars
+from boatsim.newboat.particulars import Options, Particulars, parse_particulars
 from boatsim.newboat.write import boat_files
 from boatsim.physics import vessel
 from boatsim.physics.base import motion
@@ -24,6 +25,8 @@ from boatsim.physics.effects.added_mass import AddedMass
 from boatsim.physics.effects.forward_speed_damping import ForwardSpeedDamping
 from boatsim.physics.estimate import added_mass, inertia, sway_yaw_damping
 from boatsim.physics.estimate.displacement import hull_particulars
+from boatsim.physics.estimate.shallow_water import shallow_water_factor
+from boatsim.physics.program import Program
 from boatsim.simulate import scenario, world
 from boatsim.simulate.run import run
 from tests import pushed_three_metre
@@ -34,6 +37,13 @@ BOATS = {
     "outboard": "--length 5 --beam 2 --mass 600 --draught 0.3 --steered -2.4,0,900,300 --speed 6",
     "ship": "--length 30 --beam 5 --mass 150000 --draught 2 --thruster -14,0,20000 --rudder -15",
     "catamaran": "--length 2 --beam 1.08 --mass 55 --hulls 2 --thruster -0.8,-0.4,120,66 --thruster -0.8,0.4,120,66",
+    "propellers": "--length 5 --beam 2 --mass 900 --thruster -2.2,-0.5,900,500 --thruster -2.2,0.5,900,500 --rpm 2400",
+    "ship_by_rpm": "--length 20 --beam 4 --mass 40000 --thruster -9,0,8000,5000 --rudder -9.5 --rpm 600 --helm 35,3 --tunnel 7,900",
+    "outboard_by_rpm": "--length 5 --beam 2 --mass 600 --steered -2.4,0,900,300 --rpm 5500 --helm 30,20",
+    "curve": "--length 3 --beam 1.6 --mass 90 --thruster -1.2,-0.6 --thruster -1.2,0.6 --curve=-100:-20,-10:0,10:0,50:15,100:60",
+    "pulses": "--length 3 --beam 1.6 --mass 90 --thruster -1.2,-0.6 --thruster -1.2,0.6 --curve=1100:-40,1500:0,1900:60",
+    "balanced": "--length 3 --beam 1.6 --mass 90 --thruster -1,-0.6 --thruster -1,0.6 --balance 1.3 --depth 0.2",
+    "narrow_hulls": "--length 2 --beam 1.08 --mass 55 --hulls 2 --hull-beam 0.2 --thruster -0.8,-0.4 --thruster -0.8,0.4",
     "bow": "--length 6 --beam 2 --mass 900 --steered -2.8,0.4,1e3 --steered -2.8,-0.4,1e3 --thruster 2,0,200",
 }
 
@@ -51,10 +61,10 @@ def boat(**changed: object) -> Particulars:
         "length": 3.0,
         "beam": 1.6,
         "mass": 90.0,
-        "thrusters": ["-1,0"],
-        "steered": [],
     }
-    return parse_particulars(**(said | changed))  # type: ignore[arg-type]
+    main = {key: changed.pop(key) for key in said if key in changed}
+    options = Options(**({"thrusters": ["-1,0"]} | changed))  # type: ignore[arg-type]
+    return parse_particulars(**(said | main), options=options)  # type: ignore[arg-type]
 
 
 # ---- rules
@@ -144,7 +154,8 @@ def test_every_number_of_a_boat_says_where_it_comes_from(name: str, tmp_path: Pa
 @pytest.mark.parametrize("name", BOATS)
 def test_the_file_states_which_numbers_are_estimates(name: str, tmp_path: Path) -> None:
     estimated = vessel.load_vessel(str(made(tmp_path / name, BOATS[name]))).estimated
-    assert {"damping", "thrust", "added_mass", "mass_centre", "lag"} <= set(estimated)
+    assert {"damping", "thrust", "added_mass", "lag"} <= set(estimated)
+    assert ("mass_centre" in estimated) == ("--balance" not in BOATS[name])
     assert "body.yaw_inertia" in estimated and "body.mass" not in estimated
 
 
@@ -156,6 +167,113 @@ def test_a_stated_top_speed_is_reached_at_full_thrust(tmp_path: Path) -> None:
     assert run(scenario.load(str(folder / "full.toml"))).recording["u_mps"][-1] == pytest.approx(
         6.0, rel=0.01
     )
+
+
+def settled(folder: Path, commands: dict[str, float]) -> dict[str, float]:
+    """Forces and moment of the drives of a boat at rest, long after their commands."""
+    found = vessel.load_vessel(str(folder))
+    program = Program(found)
+    act, memory = np.zeros(program.held_size), np.zeros(program.memory_size)
+    values, on = program.values(), program.switches()
+    for _ in range(3):
+        program.module.advance_actuators(
+            program.command_array(commands), memory, 1e4, values, on, act
+        )
+    return dict(zip(found.actuators, act.tolist(), strict=False))
+
+
+def test_the_thrust_of_revolutions_grows_with_their_square(tmp_path: Path) -> None:
+    folder = made(tmp_path / "propellers", BOATS["propellers"])
+    found = vessel.load_vessel(str(folder))
+    low, high = found.limits()["n_port_radps"]
+    assert high == pytest.approx(2400 * 2 * np.pi / 60, rel=1e-3) and low == -high
+    port = found.effect("port")
+    assert port is not None
+    for n, force in ((high, 900.0), (0.5 * high, 225.0), (low, -500.0)):
+        wrench = port.wrench(motion(), shaft=n)
+        assert wrench.X == pytest.approx(force, rel=2e-3)
+    ahead = found.manoeuvring.ahead["n_port_radps"]
+    assert 0.0 < ahead <= np.sqrt(0.5) * high * 1.001
+
+
+def test_a_tunnel_thruster_pushes_the_bow_to_starboard(tmp_path: Path) -> None:
+    folder = made(tmp_path / "ship", BOATS["ship_by_rpm"])
+    (folder / "bow.toml").write_text(
+        'vessel = "vessel.toml"\nduration = 20\ncontroller = { use = "open_loop" }\n[[goal]]\nthrust_bow_N = 900.0\n'
+    )
+    log = run(scenario.load(str(folder / "bow.toml"))).recording
+    early = int(np.searchsorted(log.t, 2.0))  # before the turning ship moves ahead
+    assert log["r_radps"][early] > 0.0 and log["v_mps"][early] > 0.0
+    assert abs(log["u_mps"][early]) < 0.1 * log["v_mps"][early]
+
+
+def test_a_vessel_is_shown_with_the_direction_of_each_thruster(tmp_path: Path) -> None:
+    folder = made(tmp_path / "ship", BOATS["ship_by_rpm"])
+    shown = CliRunner().invoke(app, ["show", str(folder)]).output
+    assert "pushes 90 deg to starboard, driven by thrust_bow_N" in shown
+    assert "pushes ahead, driven by n_motor_radps" in shown
+    shown = CliRunner().invoke(app, ["show", "joystick_boat"]).output
+    assert "turned by steer_port_rad, driven by thrust_port_N" in shown
+
+
+def test_the_range_and_rate_of_a_helm_are_those_of_the_owner(tmp_path: Path) -> None:
+    found = vessel.load_vessel(str(made(tmp_path / "ship", BOATS["ship_by_rpm"])))
+    assert found.limits()["rudder_rad"] == pytest.approx(
+        (-np.radians(35), np.radians(35)), rel=1e-3
+    )
+    limit = found.effect("steering_rate_limit")
+    assert limit is not None and limit.rate == pytest.approx(np.radians(3.0), rel=1e-3)  # type: ignore[attr-defined]
+
+
+def test_a_curve_gives_the_thrust_of_its_table_and_commands_for_a_thrust(tmp_path: Path) -> None:
+    folder = made(tmp_path / "curve", BOATS["curve"])
+    for command, force in ((-100.0, -20.0), (5.0, 0.0), (30.0, 7.5), (75.0, 37.5)):
+        act = settled(folder, {"throttle_port": command})
+        assert act["thrust_port_N"] == pytest.approx(force, abs=1e-6)
+    law = DriveLaw(curve=((-100.0, -20.0), (-10.0, 0.0), (10.0, 0.0), (50.0, 15.0), (100.0, 60.0)))
+    for force in (-20.0, -3.0, 0.0, 2.0, 15.0, 40.0):
+        back = np.interp(law.command(force, 60.0, 20.0), *np.transpose(law.curve))
+        assert back == pytest.approx(force, abs=1e-9)
+    assert law.neutral == 0.0
+    pulses = vessel.load_vessel(str(made(tmp_path / "pulses", BOATS["pulses"])))
+    assert pulses.commands["throttle_port"].neutral == 1500.0
+
+
+def test_a_plate_across_a_channel_has_the_added_mass_of_its_potential_flow() -> None:
+    """Potential jump 4 h / pi arcosh(cos(pi y / 2 h) / cos(pi T / 2 h)) of a plate of half width T in
+    a channel of half width h, in a stream of unit speed: integrated over the plate."""
+    assert shallow_water_factor(0.1, 10.0).value == pytest.approx(1.0, abs=1e-3)
+    for depth in (1.1, 1.5, 3.0):
+        y = np.sin(np.linspace(-0.5 * np.pi, 0.5 * np.pi, 20001))
+        ratio = np.cos(0.5 * np.pi * y / depth) / np.cos(0.5 * np.pi / depth)
+        jump = 4.0 * depth / np.pi * np.arccosh(np.maximum(ratio, 1.0))
+        mass = float(np.trapezoid(jump, y))
+        assert shallow_water_factor(1.0, depth).value == pytest.approx(mass / np.pi, rel=1e-4)
+
+
+def test_a_balance_point_moves_the_middle_of_the_hull_and_depth_adds_water(tmp_path: Path) -> None:
+    found = vessel.load_vessel(str(made(tmp_path / "b", BOATS["balanced"])))
+    plain = vessel.load_vessel(
+        str(made(tmp_path / "p", BOATS["balanced"].partition(" --balance")[0]))
+    )
+    values = {}
+    for name, one in (("given", found), ("plain", plain)):
+        mass, drag, lift = map(
+            one.effect, ("added_mass", "cross_flow_drag", "forward_speed_damping")
+        )
+        values[name] = (mass.sway_at, drag.centre, lift.at, mass.sway)  # type: ignore[union-attr]
+    assert values["given"][:2] == pytest.approx((0.2, 0.2))
+    assert values["given"][2] - values["plain"][2] == pytest.approx(0.2, abs=1e-3)
+    factor = shallow_water_factor(found.draught, 0.2).value
+    assert values["given"][3] == pytest.approx(factor * values["plain"][3], rel=1e-3)
+    assert found.geometry["cg_from_transom"] == 1.3
+
+
+def test_the_beam_of_a_hull_sets_how_deep_a_catamaran_lies() -> None:
+    narrow = boat(hulls=2, hull_beam=0.2, thrusters=["-1,0"])
+    wide = boat(hulls=2, hull_beam=0.4, thrusters=["-1,0"])
+    assert narrow.hull.draught == pytest.approx(2.0 * wide.hull.draught)
+    assert narrow.hull.hull_spacing == pytest.approx(1.4)
 
 
 @pytest.mark.parametrize(
@@ -172,6 +290,19 @@ def test_a_stated_top_speed_is_reached_at_full_thrust(tmp_path: Path) -> None:
         ({"draught": 0.01}, "lies at least"),
         ({"rudder": "0"}, "--rudder 0"),
         ({"name": "a b"}, "allowed are letters"),
+        ({"rpm": -5.0}, "--rpm -5; allowed is more than 0"),
+        ({"helm": "100"}, "--helm 100; allowed is an angle of more than 0 to 90 deg"),
+        ({"helm": "30,0"}, "allowed is a rate of more than 0"),
+        ({"tunnels": ["1"]}, "--tunnel 1; allowed is X,MAX_N"),
+        ({"tunnels": ["9,50"]}, "--tunnel 9,50; allowed is a place within the length"),
+        ({"curve": "0:0,100:60,50:30"}, "by increasing command and thrust"),
+        ({"curve": "0-0"}, "allowed are 2 to 8 pairs COMMAND:N"),
+        ({"curve": "0:0,1:5", "rpm": 100.0}, "leave out --rpm and --thrust"),
+        ({"curve": "0:0,1:5", "thrusters": ["-1,0,60"]}, "leave out MAX_N and ASTERN_N"),
+        ({"balance": 4.0}, "--balance 4; allowed is more than 0 to 3"),
+        ({"depth": 0.01}, "--depth 0.01; allowed is more than the draught"),
+        ({"hull_beam": 0.3}, "allowed with --hulls 2 only"),
+        ({"hull_beam": 0.9, "hulls": 2}, "allowed is up to half of the beam, 0.8"),
     ],
 )
 def test_what_can_not_be_a_boat_is_refused_in_one_line(

@@ -24,7 +24,9 @@ def hull_breadth(beam: float, hulls: int) -> Estimate:
     )
 
 
-def hull_draught(length: float, beam: float, mass: float, hulls: int) -> Estimate:
+def hull_draught(
+    length: float, beam: float, mass: float, hulls: int, breadth: float | None = None
+) -> Estimate:
     """Estimate the draught [m] at which a boat of given size and mass floats.
 
     It is the draught at the usual block coefficient of small hulls.
@@ -34,15 +36,21 @@ def hull_draught(length: float, beam: float, mass: float, hulls: int) -> Estimat
         beam: Beam overall [m].
         mass: Mass [kg].
         hulls: Number of hulls, 1 or 2.
+        breadth: Breadth of one hull [m]; None: estimated.
     """
-    value = mass / (DENSITY * BLOCK * hulls * length * hull_breadth(beam, hulls).value)
+    value = mass / (DENSITY * BLOCK * hulls * length * (breadth or hull_breadth(beam, hulls).value))
     return Estimate(
         value, f"mass / (rho C_b L B), C_b = {BLOCK:g} as a pontoon of the Otter (MSS otter.m)"
     )
 
 
 def hull_particulars(
-    length: float, beam: float, mass: float, hulls: int, stated: float | None
+    length: float,
+    beam: float,
+    mass: float,
+    hulls: int,
+    stated: float | None,
+    breadth: float | None = None,
 ) -> HullParticulars:
     """Return a boat's main particulars; breadth and, if not given, draught are estimated.
 
@@ -52,6 +60,7 @@ def hull_particulars(
         mass: Mass [kg].
         hulls: Number of hulls, 1 or 2.
         stated: Specified draught [m]; None: estimated.
+        breadth: Specified breadth of one hull [m]; None: estimated.
 
     Raises:
         BadInput: Mass and size do not fit together.
@@ -60,9 +69,9 @@ def hull_particulars(
         length,
         beam,
         mass,
-        stated or hull_draught(length, beam, mass, hulls).value,
+        stated or hull_draught(length, beam, mass, hulls, breadth).value,
         hulls,
-        hull_breadth(beam, hulls).value,
+        breadth or hull_breadth(beam, hulls).value,
     )
     if found.block_coefficient > FULLEST + 1e-9:
         raise BadInput(

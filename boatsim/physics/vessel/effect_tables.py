@@ -62,5 +62,5 @@ def _toml_value(value: object) -> object:
     if isinstance(value, Mapping):
         return dict(value)
     if isinstance(value, tuple):
-        return list(value)
+        return list(map(_toml_value, value))
     return value
