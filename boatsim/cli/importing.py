@@ -8,6 +8,7 @@ from boatsim.cli.progress import report_stages
 from boatsim.errors import BadInput, printable
 from boatsim.files import read_toml, replace_file
 from boatsim.physics import vessel as vessels
+from boatsim.physics.base import ChannelEffect
 from boatsim.physics.content import vessel_address
 from boatsim.physics.vessel import Vessel
 from boatsim.recordings.importing.convert import convert, position_fix, recording_notes_text
@@ -71,7 +72,10 @@ def _propose_map(
     if vessel:
         boat = vessels.load_vessel(vessel, load)
         drives = []
+        fed = _fed_channels(boat) - log.signals.keys()
         for channel, (low, high) in boat.limits().items():
+            if channel in fed:
+                continue
             drives.append(VesselChannel(channel, low, high, _turn_direction(boat, channel)))
         text = propose_map(log, vessel, drives, boat.dof, boat.columns)
     else:
@@ -88,6 +92,15 @@ def _propose_map(
     command = f"boatsim import {names} --map {propose} --out {out or 'run.csv'}"
     print_lines(["", printable(f"written to {propose}: check every line, then: {command}")])
     return 0
+
+
+def _fed_channels(boat: Vessel) -> set[str]:
+    """Channels whose signal a raw command gives, which logs have in their place."""
+    fed: set[str] = set()
+    for effect in boat.effects:
+        if isinstance(effect, ChannelEffect) and effect.fed_by:
+            fed.update(effect.on)
+    return fed
 
 
 def _turn_direction(boat: Vessel, channel: str) -> int:

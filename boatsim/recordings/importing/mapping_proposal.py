@@ -535,6 +535,8 @@ def _channel_line(
     scale = _scale(g, values, drive)
     if scale is None:
         expression = _expression_with_unit(g, name)
+        if drive and _is_raw_command(g, values, drive):
+            expression = g.name
         if turned:
             expression = f"-{expression}"
         return f"{toml_key(name)} = {toml_value(expression)}{note}"
@@ -574,7 +576,7 @@ def _scale(
 ) -> _Scale | None:
     """The scale of a signal that is a share of full command; None for another signal."""
     share = "in proportion to full command"
-    if drive and g.name == drive.name:
+    if drive and (g.name == drive.name or _is_raw_command(g, values, drive)):
         return None
     if g.signal.pulse:
         why = ""
@@ -604,6 +606,22 @@ def _scale(
     if largest <= 1.01 and span > 2.0:
         return _Scale((-1.0, 0.0, 1.0), f"-1 to 1, {share}")
     return None
+
+
+def _is_raw_command(
+    g: Classification,
+    values: "np.ndarray[tuple[int, ...], np.dtype[np.float64]]",
+    drive: VesselChannel,
+) -> bool:
+    """Whether a signal is the raw command of a channel without a unit, such as per cent or pulses.
+
+    The file of the vessel converts it to thrust.
+    """
+    if unit_of(drive.name) or g.word not in ("percent", "us"):
+        return False
+    if g.word == "percent" and max(abs(drive.low), abs(drive.high)) != 100.0:
+        return False
+    return bool(drive.low <= values.min() and values.max() <= drive.high)
 
 
 def _expression_with_unit(g: Classification, name: str) -> str:

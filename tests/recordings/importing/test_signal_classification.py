@@ -127,6 +127,15 @@ def test_revolutions_of_a_thruster_become_thrust_by_their_square():
     assert 'n_motor_radps = "rpm * rpm"' in text
 
 
+def test_a_raw_command_of_the_vessel_is_not_scaled():
+    drives = [VesselChannel("throttle_motor", -100.0, 100.0)]
+    text = propose_map(log_of(throttle_pct=(-50.0, 90.0)), "v", drives)
+    assert 'throttle_motor = "throttle_pct"  #' in text
+    pulses = Log(Path("log"), {"motor": Signal(T, np.linspace(1150.0, 1800.0, 600), "us")})
+    text = propose_map(pulses, "v", [VesselChannel("throttle_motor", 1100.0, 1900.0)])
+    assert 'throttle_motor = "motor"  #' in text
+
+
 @pytest.mark.parametrize(
     ("limit", "line"),
     [
