@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from boatsim.diagnosis import pipeline
 from boatsim.diagnosis.checks.data_cleaning import drop_faulty_values
 from boatsim.diagnosis.config import Given, from_settings
-from boatsim.diagnosis.loading import open_recording
+from boatsim.diagnosis.free_runs import FreeRun
+from boatsim.diagnosis.loading import open_parts, open_recording
 from boatsim.diagnosis.replay import join_free_runs, replay_recording
 from boatsim.diagnosis.report import output_files
 from boatsim.diagnosis.report.notebook_views import (
@@ -577,11 +578,12 @@ def replay(
     >>> sorted(simulated.signals)
     ['psi_rad', 'segment', 'x_m', 'y_m']
     """
-    opened, replayed_vessel = open_recording(
-        Path(recording), _optional_text(vessel), _name_list(load)
-    )
-    opened = drop_faulty_values(opened, replayed_vessel)
-    return join_free_runs(replay_recording(opened, replayed_vessel, horizon))
+    parts, replayed_vessel = open_parts(Path(recording), _optional_text(vessel), _name_list(load))
+    stretches: list[FreeRun] = []
+    for part in parts:
+        cleaned = drop_faulty_values(part, replayed_vessel)
+        stretches += replay_recording(cleaned, replayed_vessel, horizon)
+    return join_free_runs(stretches)
 
 
 def sweep(

@@ -14,7 +14,7 @@ from boatsim.diagnosis.checks.data_cleaning import drop_faulty_values
 from boatsim.diagnosis.checks.entry import entry_text
 from boatsim.diagnosis.config import from_settings
 from boatsim.diagnosis.free_runs import FreeRun, free_runs, rms_errors
-from boatsim.diagnosis.loading import open_recording
+from boatsim.diagnosis.loading import open_parts, open_recording
 from boatsim.diagnosis.log_check import correction_hint
 from boatsim.diagnosis.pipeline import diagnose as analyse
 from boatsim.diagnosis.replay import fit_noise_only, free_run_columns, replay_recording
@@ -109,10 +109,13 @@ def replay(run: Path, vessel: str | None, load: list[str], horizon: float, out: 
     """
     with report_stages() as report:
         report("reading the recording")
-        recording, boat = open_recording(run, vessel, load)
-        recording = drop_faulty_values(recording, boat)
-        stretches = replay_recording(recording, boat, horizon, report)
-    print_notes(recording.remarks)
+        parts, boat = open_parts(run, vessel, load)
+        stretches, remarks = list[FreeRun](), list[str]()
+        for part in parts:
+            cleaned = drop_faulty_values(part, boat)
+            remarks += cleaned.remarks
+            stretches += replay_recording(cleaned, boat, horizon, report)
+    print_notes(tuple(dict.fromkeys(remarks)))
     _write_replay(stretches, out / "replay.csv")
     for family, found in rms_errors(stretches).items():
         count = f"{len(stretches)} free runs of {horizon:g} s"

@@ -11,7 +11,12 @@ from boatsim.physics import vessel as vessels
 from boatsim.physics.base import ChannelEffect
 from boatsim.physics.content import vessel_address
 from boatsim.physics.vessel import Vessel
-from boatsim.recordings.importing.convert import convert, position_fix, recording_notes_text
+from boatsim.recordings.importing.convert import (
+    convert,
+    position_fix,
+    recording_notes_text,
+    use_line,
+)
 from boatsim.recordings.importing.log import Log
 from boatsim.recordings.importing.mapping import read_map
 from boatsim.recordings.importing.mapping_proposal import VesselChannel, propose_map, signal_table
@@ -129,7 +134,9 @@ def _convert_logs(
     span = f"{len(recording)} rows over {recording.t[-1]:.6g} s"
     print_lines([printable(f"written to {out}: {span}; {', '.join(recording.signals)}")])
     if boat is not None:
-        _write_vessel(out, boat, position_fix(mapping))
+        _write_vessel(out, boat, position_fix(mapping), recording.notes.use)
+    elif recording.notes.use:
+        print_note(f"write into {out.parent / 'recording.toml'}: {use_line(recording.notes.use)}")
     try:
         read(out, limits, boat.columns if boat else None)
     except BadInput as error:
@@ -151,13 +158,15 @@ def _vessel_of_log(
         return vessels.load_vessel(mapped, load)
 
 
-def _write_vessel(out: Path, boat: Vessel, fix: str | None) -> None:
+def _write_vessel(
+    out: Path, boat: Vessel, fix: str | None, use: Sequence[tuple[float, float]]
+) -> None:
     """Write the vessel of a recording to recording.toml in its folder.
 
     The recording is added to an existing file that has no notes on it; notes on it are kept.
     """
     file = out.parent / "recording.toml"
-    text = recording_notes_text(out, vessel_address(boat.file), fix)
+    text = recording_notes_text(out, vessel_address(boat.file), fix, use)
     try:
         with replace_file(file) as temporary:
             temporary.write_text(_notes_before(file, out.stem) + text, encoding="utf-8")

@@ -75,29 +75,36 @@ def load(
     """
     paths = list(map(recording_file, (*request.runs, *request.hold_out)))
     _check_distinct(paths)
-    opened, own_vessels = list[Recording](), list[Vessel]()
+    opened, own_vessels, names = list[Recording](), list[Vessel](), list[str]()
+    first = 0  # number of parts of the recordings to fit
     count = "1 recording"
     if len(paths) > 1:
         count = f"{len(paths)} recordings"
-    for i, path in enumerate(paths):
+    for i, (path, name) in enumerate(zip(paths, _distinct_names(paths), strict=True)):
         report(f"reading {count}", i / len(paths))
-        recording, vessel = open_recording(path, request.vessel, request.load, config)
-        facts = {**request.facts, **recording.notes.facts}
-        notes = replace(recording.notes, facts=facts)
-        opened.append(replace(recording, notes=notes))
-        own_vessels.append(vessel)
+        parts, vessel = open_parts(path, request.vessel, request.load, config)
+        for number, recording in enumerate(parts, 1):
+            facts = {**request.facts, **recording.notes.facts}
+            notes = replace(recording.notes, facts=facts)
+            opened.append(replace(recording, notes=notes))
+            own_vessels.append(vessel)
+            if len(parts) > 1:
+                names.append(f"{name} (part {number})")
+            else:
+                names.append(name)
+        if i < len(request.runs):
+            first = len(opened)
     report("checking the log", 1.0)
     check_same_vessel(own_vessels)
     duration = data_cleaning.total_duration(opened)
     findings, cleaned, remarks = list[Finding](), list[Recording](), list[str]()
     by_path: dict[Path | None, Vessel] = {}
-    for recording, vessel, name in zip(opened, own_vessels, _distinct_names(paths), strict=True):
+    for recording, vessel, name in zip(opened, own_vessels, names, strict=True):
         by_path[recording.path] = vessel
         clean = data_cleaning.clean_recording(recording, vessel, duration, config)
         findings += run_checks.check_recording(recording, clean, vessel, config.checks)
         cleaned.append(replace(clean, name=name))
         remarks += clean.remarks
-    first = len(request.runs)
     fitted, held_out, note = split_recordings(cleaned[:first], cleaned[first:])
     return Loaded(
         fitted,
@@ -173,6 +180,34 @@ def vessel_for(
     return vessels.load_vessel(alike[0], conditions, notes.settings)
 
 
+def open_parts(
+    path: Path,
+    vessel: str | None,
+    load_conditions: Sequence[str],
+    config: DiagnosisConfig = DEFAULT,
+) -> tuple[list[Recording], Vessel]:
+    """Read the parts of a recording that its notes select by `use`, each as a recording.
+
+    Args:
+        path: File of the recording.
+        vessel: Name of the vessel; None: that of the recording's notes.
+        load_conditions: Names of load conditions.
+        config: Settings of the diagnosis.
+
+    Returns:
+        The parts and their vessel.
+
+    Raises:
+        BadInput: The file or its vessel cannot be used.
+    """
+    found = vessel_for(path, vessel, load_conditions, config)
+    recording = read(path, found.limits(), found.columns)
+    parts = []
+    for part in recording.parts():
+        parts.append(data_cleaning.prepare_recording(part, found, config.checks))
+    return parts, found
+
+
 def open_recording(
     path: Path,
     vessel: str | None,
@@ -180,6 +215,8 @@ def open_recording(
     config: DiagnosisConfig = DEFAULT,
 ) -> tuple[Recording, Vessel]:
     """Read a recording from a file, with the column names and command limits of its vessel.
+
+    Of several parts that its notes select it is the longest one.
 
     Args:
         path: File of the recording.

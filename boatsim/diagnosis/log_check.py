@@ -19,10 +19,10 @@ from boatsim.recordings.table import Recording, read
 
 @dataclass(frozen=True)
 class _Checked:
-    """Findings of one file, and its recording if that may be mapped to the vessel."""
+    """Findings of one file, and its parts if these may be mapped to the vessel."""
 
     findings: tuple[Finding, ...] = ()
-    recording: Recording | None = None
+    parts: tuple[Recording, ...] = ()
     refused: BadInput | None = None
 
 
@@ -56,8 +56,7 @@ def check_files(
         findings += checked.findings
         if checked.refused:
             refused.append(checked.refused)
-        if checked.recording:
-            usable.append(checked.recording)
+        usable += checked.parts
     if usable:
         try:
             loaded = Loaded(usable, (), vessels, "")
@@ -80,18 +79,24 @@ def _check_file(path: Path, vessel: Vessel) -> _Checked:
     table: list[Finding] = []
     try:
         table = list(run_checks.check_table(path, vessel, DEFAULT.checks))
-        recording = read(path, vessel.limits(), vessel.columns)
-        opened = data_cleaning.prepare_recording(recording, vessel, DEFAULT.checks)
+        opened = []
+        for part in read(path, vessel.limits(), vessel.columns).parts():
+            opened.append(data_cleaning.prepare_recording(part, vessel, DEFAULT.checks))
     except BadInput as error:
         return _Checked(tuple(table), refused=None if table else error)
-    duration = data_cleaning.total_duration([opened])
-    cleaned = data_cleaning.clean_recording(opened, vessel, duration)
-    findings = (
-        *table,
-        *run_checks.check_recording(opened, cleaned, vessel, DEFAULT.checks),
-        *run_checks.check_identifiability(opened, vessel, DEFAULT.checks),
-    )
-    return _Checked(findings, None if table else replace(cleaned, name=str(path)))
+    duration = data_cleaning.total_duration(opened)
+    findings, parts = list(table), list[Recording]()
+    for number, part in enumerate(opened, 1):
+        cleaned = data_cleaning.clean_recording(part, vessel, duration)
+        findings += run_checks.check_recording(part, cleaned, vessel, DEFAULT.checks)
+        findings += run_checks.check_identifiability(part, vessel, DEFAULT.checks)
+        name = str(path)
+        if len(opened) > 1:
+            name = f"{path} (part {number})"
+        parts.append(replace(cleaned, name=name))
+    if table:
+        parts = []
+    return _Checked(tuple(findings), tuple(parts))
 
 
 def correction_hint(

@@ -23,7 +23,7 @@ from boatsim.diagnosis.checks.initial_actuator_state import with_initial_actuato
 from boatsim.diagnosis.filter import map_recording, prior_levels
 from boatsim.diagnosis.fit import converge, unfitted_hypothesis
 from boatsim.diagnosis.free_runs import free_runs, rms_errors
-from boatsim.diagnosis.loading import open_recording
+from boatsim.diagnosis.loading import open_parts
 from boatsim.diagnosis.problem import Fit, Problem, free_parameter_values
 from boatsim.diagnosis.report import patched_vessel
 from boatsim.diagnosis.search.ranking import fit_baseline
@@ -98,12 +98,17 @@ def fit_boat(
         BadInput: If a recording can not be used.
     """
     report(f"reading {len(logs) + len(held_out)} logs")
-    opened = [open_recording(path, str(vessel_file), ()) for path in (*logs, *held_out)]
-    boat = opened[0][1]
-    duration = total_duration([r for r, _ in opened])
-    cleaned = [clean_recording(r, boat, duration) for r, _ in opened]
+    opened: list[Recording] = []
+    fitted = 0  # number of parts of the logs
+    for path in (*logs, *held_out):
+        parts, boat = open_parts(path, str(vessel_file), ())
+        opened += parts
+        if path in logs:
+            fitted = len(opened)
+    duration = total_duration(opened)
+    cleaned = [clean_recording(part, boat, duration) for part in opened]
     if held_out:
-        first, last = cleaned[: len(logs)], cleaned[len(logs) :]
+        first, last = cleaned[:fitted], cleaned[fitted:]
     else:
         first, last = map(list, zip(*map(_split_recording, cleaned), strict=True))
     report("compiling, or loading what was compiled before", 0.05)

@@ -91,7 +91,7 @@ class Notes:
         vessel: Name or path of the vessel.
         load: Load conditions.
         settings: Values of the vessel's effects in this run: effect -> parameter -> value.
-        use: Part of the recording that is used, from and to [s].
+        use: Parts of the recording that are used, each from and to [s]; () for all of it.
         latency: Column -> delay by which its values are older than their times [s].
         scale: Full-scale length / model length.
         noise: Standard deviation of the sensors, by the names in NOISE.
@@ -103,7 +103,7 @@ class Notes:
     vessel: str | None = None
     load: tuple[str, ...] = ()
     settings: Mapping[str, Mapping[str, object]] = field(default_factory=dict)
-    use: tuple[float, float] | None = None
+    use: tuple[tuple[float, float], ...] = ()
     latency: dict[str, float] = field(default_factory=dict)
     scale: float | None = None
     noise: dict[str, float] = field(default_factory=dict)
@@ -253,13 +253,26 @@ class _Reader:
         read = partial(self.read_number, low=low)
         return dict(zip(self.content, map(read, self.content), strict=True))
 
-    def read_use(self) -> tuple[float, float] | None:
+    def read_use(self) -> tuple[tuple[float, float], ...]:
         if "use" not in self.content:
-            return None
-        ends = _numbers(self.content["use"])
-        if len(ends) != 2 or not ends[0] < ends[1]:
-            raise self.bad_value("use", "[from_s, to_s], two numbers of which the second is larger")
-        return float(ends[0]), float(ends[1])
+            return ()
+        given = self.content["use"]
+        if isinstance(given, list) and any(isinstance(part, list) for part in given):
+            parts = given
+        else:
+            parts = [given]
+        found: list[tuple[float, float]] = []
+        for part in parts:
+            ends = _numbers(part)
+            after = not found or (ends and ends[0] > found[-1][1])
+            if len(ends) != 2 or not ends[0] < ends[1] or not after:
+                raise self.bad_value(
+                    "use",
+                    "[from_s, to_s], two numbers of which the second is larger, or a list of "
+                    "these in order of time",
+                )
+            found.append((float(ends[0]), float(ends[1])))
+        return tuple(found)
 
     def read_latency(self) -> dict[str, float]:
         inner = self.subtable_reader("latency")
@@ -327,7 +340,7 @@ class _Reader:
             vessel=_read_or_collect_mistake(mistakes, lambda: self.read_text("vessel"), None),
             load=_read_or_collect_mistake(mistakes, lambda: self.read_texts("load"), ()),
             settings=_read_or_collect_mistake(mistakes, self.read_settings, {}),
-            use=_read_or_collect_mistake(mistakes, self.read_use, None),
+            use=_read_or_collect_mistake(mistakes, self.read_use, ()),
             latency=_read_or_collect_mistake(mistakes, self.read_latency, {}),
             scale=_read_or_collect_mistake(mistakes, self.read_scale, None),
             noise=_read_or_collect_mistake(

@@ -49,6 +49,7 @@ COMMAND = re.compile(
 HUGE = 1e12  # larger times, positions, speeds and commands are mistakes
 MAX_GAP = 60.0  # [s] between rows; no filter follows a vessel over a longer gap
 MISSPELT = 0.8  # similarity from which an unknown column is a misspelt name
+MAX_PARTS = 5  # of a recording with gaps that a message proposes to use
 # Share of empty rows from which a pose or rate is measured less often than rows are written
 SPARSE_SHARE = 0.1
 # Share of a channel's range by which a rounded command may exceed its limit
@@ -194,11 +195,33 @@ class Recording:
             orders=self.orders or TimedCommands(self.t, commands),
         )
 
+    def parts(self) -> list["Recording"]:
+        """Return the parts of a recording that its notes select by `use`, or the whole recording.
+
+        The notes of each part select this part alone.
+        """
+        if not self.notes.use:
+            return [self]
+        found = []
+        for part in self.notes.use:
+            found.append(replace(self.between(*part), notes=replace(self.notes, use=(part,))))
+        return found
+
     def used(self) -> "Recording":
-        """Return the part of a recording that its notes select by `use`, or the whole recording."""
-        if self.notes.use:
-            return self.between(*self.notes.use)
-        return self
+        """Return the part of a recording that its notes select by `use`, or the whole recording.
+
+        Of several parts it is the longest one, and a remark states it.
+        """
+        parts = self.parts()
+        if len(parts) == 1:
+            return parts[0]
+        longest = max(parts, key=lambda part: float(np.ptp(part.t)))
+        begin, end = longest.notes.use[0]
+        note = (
+            f"{self.path or self.name}: of {len(parts)} parts to use the longest one is used here, "
+            f"{begin:g} to {end:g} s"
+        )
+        return replace(longest, remarks=(*longest.remarks, note))
 
     def to_arrow(self) -> "pa.Table":
         """Return the columns of the recording as a table of Arrow, `t_s` first.
@@ -301,7 +324,8 @@ def read(
     used = _used_rows(raw, found.notes.use)  # rows outside may have faults
     _check_cells(used, needed)
     mistakes: list[str] = []
-    for check in (_check_time, _check_units, partial(_check_limits, channels=channels)):
+    check_time = partial(_check_time, use=found.notes.use)
+    for check in (check_time, _check_units, partial(_check_limits, channels=channels)):
         try:
             check(used)
         except BadInput as error:
@@ -314,12 +338,14 @@ def read(
         remarks.append(f"{path}: columns not used: {', '.join(ignored)}")
     recording = Recording(path.stem, raw.columns["t_s"], signals, found.notes, path, tuple(remarks))
     recording = without_latency(recording, found.notes.latency)
-    if len(part := recording.used()) < FEWEST_ROWS:
-        raise file_error(
-            path,
-            f"has {len(part)} rows in its part to use {found.notes.use}; at least {FEWEST_ROWS} "
-            "needed",
-        )
+    for part in recording.parts():
+        if len(part) < FEWEST_ROWS:
+            [interval] = part.notes.use or [(part.t[0], part.t[-1])]
+            raise file_error(
+                path,
+                f"has {len(part)} rows in its part to use {list(interval)}; at least {FEWEST_ROWS} "
+                "needed",
+            )
     return recording
 
 
@@ -460,11 +486,14 @@ def is_command(name: str) -> bool:
     return COMMAND.match(name) is not None
 
 
-def _used_rows(raw: Raw, use: tuple[float, float] | None) -> Raw:
+def _used_rows(raw: Raw, use: Sequence[tuple[float, float]]) -> Raw:
     """The rows of a table that the notes select; all rows if they select too few."""
-    if use is None:
+    if not use:
         return raw
-    inside = (raw.columns["t_s"] >= use[0] - 1e-9) & (raw.columns["t_s"] <= use[1] + 1e-9)
+    t = raw.columns["t_s"]
+    inside = np.zeros(len(t), dtype=np.bool_)
+    for begin, end in use:
+        inside |= (t >= begin - 1e-9) & (t <= end + 1e-9)
     if inside.sum() < FEWEST_ROWS:
         return raw
     rows = np.asarray(raw.rows)[inside].tolist()
@@ -560,18 +589,21 @@ def _span(t: Array) -> str:
     return f"{t[0]:g} to {t[-1]:g} s"
 
 
-def _check_time(raw: Raw) -> None:
+def _check_time(raw: Raw, use: Sequence[tuple[float, float]]) -> None:
     t = raw.columns["t_s"]
     stuck = np.diff(t) <= 0.0
     if stuck.any():
         index = int(np.argmax(stuck)) + 1
         message = f"time {t[index]:g} s after {t[index - 1]:g} s; it must increase from row to row"
         raise file_error(raw.path, message, raw.rows[index], "t_s")
-    if (apart := np.diff(t) > MAX_GAP).any():
+    apart = np.diff(t) > MAX_GAP
+    for begin, _ in use:  # between two parts to use
+        apart &= (t[:-1] >= begin - 1e-9) | (t[1:] < begin - 1e-9)
+    if apart.any():
         index = int(np.argmax(apart)) + 1
         advice = "is it in seconds?"
         if 2 * int(apart.sum()) < len(apart):
-            advice = f"use = {_longest_part(t, apart)} in recording.toml selects the longest part"
+            advice = f"use = {_parts_between(t, apart)} in recording.toml selects what is between"
         message = (
             f"{t[index] - t[index - 1]:g} s after the row before, at most {MAX_GAP:g} s "
             f"are allowed; {advice}"
@@ -579,11 +611,12 @@ def _check_time(raw: Raw) -> None:
         raise file_error(raw.path, message, raw.rows[index], "t_s")
 
 
-def _longest_part(t: Array, apart: NDArray[np.bool_]) -> list[float]:
-    """First and last time [s] of the longest part of a recording between gaps."""
+def _parts_between(t: Array, apart: NDArray[np.bool_]) -> list[list[float]]:
+    """First and last time [s] of the longest parts between gaps, in order of time."""
     parts = np.split(t, np.flatnonzero(apart) + 1)
-    longest = max(parts, key=np.ptp)
-    return [float(longest[0]), float(longest[-1])]
+    parts.sort(key=np.ptp, reverse=True)
+    kept = [part for part in parts[:MAX_PARTS] if len(part) >= FEWEST_ROWS] or parts[:1]
+    return sorted([float(part[0]), float(part[-1])] for part in kept)
 
 
 def _check_units(raw: Raw) -> None:

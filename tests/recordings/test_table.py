@@ -326,7 +326,7 @@ def test_notes_come_from_the_nearest_folder_above_and_a_run_overrides_them(tmp_p
         vessel="trial_boat",
         load=("light",),
         settings={"cross_flow_drag": {"section_drag_coefficient": 1.1}},
-        use=(0.5, 2.9),
+        use=((0.5, 2.9),),
         noise={"position_sd_m": 0.005, "heading_sd_rad": 0.01},
         ambient={"axes": ["surge", "sway"], "force_rms": [0.01, 0.02], "time_constant_s": 2.0},
         facts={"forward_speed_mps": 0.97, "fan": "north wall"},
@@ -551,10 +551,32 @@ def test_a_hole_is_answered_by_the_part_to_use_and_that_part_is_read(tmp_path: P
         for i, line in enumerate(lines(60))
     ]
     path = file(tmp_path, HEADER + "".join(lines(30) + after))
-    with pytest.raises(BadInput, match=r"use = \[100\.0, 105\.9\] in recording\.toml"):
+    with pytest.raises(BadInput, match=r"use = \[\[0\.0, 2\.9\], \[100\.0, 105\.9\]\] in rec"):
         read(path)
     (tmp_path / "recording.toml").write_text("use = [100.0, 105.9]\n")
     assert len(read(path).used()) == 60
+    (tmp_path / "recording.toml").write_text("use = [[0.0, 2.9], [100.0, 105.9]]\n")
+    run = read(path)
+    assert [len(part) for part in run.parts()] == [30, 60]
+    assert [part.notes.use for part in run.parts()] == [((0.0, 2.9),), ((100.0, 105.9),)]
+    assert len(run.used()) == 60 and "the longest one is used here" in run.used().remarks[-1]
+
+
+@pytest.mark.parametrize(
+    "use", ["[[5.0, 9.0], [0.0, 3.0]]", "[[0.0, 3.0], 4.0]", "[]", "[3.0, 1.0]"]
+)
+def test_parts_to_use_are_intervals_in_order_of_time(tmp_path: Path, use: str) -> None:
+    path = file(tmp_path, HEADER + "".join(lines(60)))
+    (tmp_path / "recording.toml").write_text(f"use = {use}\n")
+    with pytest.raises(BadInput, match="or a list of these in order of time"):
+        read(path)
+
+
+def test_a_part_to_use_with_few_rows_is_refused_by_its_interval(tmp_path: Path) -> None:
+    path = file(tmp_path, HEADER + "".join(lines(60)))
+    (tmp_path / "recording.toml").write_text("use = [[0.0, 3.0], [5.0, 5.3]]\n")
+    with pytest.raises(BadInput, match=r"4 rows in its part to use \[5\.0, 5\.3\]"):
+        read(path)
 
 
 def test_faults_outside_of_the_part_to_use_do_not_matter(tmp_path: Path) -> None:

@@ -17,6 +17,7 @@ from boatsim.diagnosis.checks.recorded_rates import check_recorded_rates
 from boatsim.diagnosis.checks.saturation import check_saturation
 from boatsim.diagnosis.checks.time_unit import check_time_unit
 from boatsim.diagnosis.config import ChecksConfig
+from boatsim.errors import BadInput
 from boatsim.physics.vessel import Vessel
 from boatsim.recordings.table import Recording, read_unchecked
 
@@ -49,16 +50,28 @@ def check_table(path: Path, vessel: Vessel, config: ChecksConfig) -> list[Findin
         BadInput: The file is not a table.
     """
     recording, _ = read_unchecked(path, vessel.columns)
-    use = recording.notes.use
-    if use and ((recording.t >= use[0]) & (recording.t <= use[1])).any():
-        recording = recording.used()
+    try:
+        parts = recording.parts()
+    except BadInput:  # no rows in a part to use
+        parts = [recording]
+    found: list[Finding] = []
+    for part in parts:
+        known = {(finding.name, finding.changes) for finding in found}
+        for finding in _check_part(part, vessel, config):
+            if (finding.name, finding.changes) not in known:
+                found.append(finding)
+    return _of_run(found, path)
+
+
+def _check_part(recording: Recording, vessel: Vessel, config: ChecksConfig) -> list[Finding]:
+    """Findings of a part of a file; each check sees the corrections of those before."""
     found: list[Finding] = []
     for check in TABLE_CHECKS:
         new = check(recording, vessel, config)
         for finding in new:
             recording = apply_changes(recording, finding.changes)
         found += new
-    return _of_run(found, path)
+    return found
 
 
 def check_recording(

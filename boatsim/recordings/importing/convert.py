@@ -3,7 +3,7 @@
 Remarks of the recording list all samples that were left out or held.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
 from math import degrees, isfinite, radians
@@ -30,6 +30,7 @@ from boatsim.recordings.importing.resample import (
     row_times,
 )
 from boatsim.recordings.importing.several_logs import Span, aligned, begin_line, sources
+from boatsim.recordings.notes import Notes
 from boatsim.recordings.raw_table import file_error, select_rows
 from boatsim.recordings.repeated_values import repeated_rows
 from boatsim.recordings.table import FEWEST_ROWS, MAX_GAP, Recording, allowed_gaps, is_command
@@ -119,6 +120,7 @@ def convert(
         log.path.stem,
         np.round(rows - rows[0], 6),
         signals,
+        notes=Notes(use=_parts_of_rows(work, rows)),
         remarks=tuple(work.remarks),
         path=log.path,
     )
@@ -250,10 +252,23 @@ def _add_position(work: _Work, position: Position) -> None:
 
 
 def _rows_in_use(work: _Work, t: Array) -> "np.ndarray[tuple[int, ...], np.dtype[np.bool_]]":
-    if work.map.use is None:
+    """The rows from the first to the last part to use; the notes select the parts among them."""
+    if not work.map.use:
         return np.ones(len(t), dtype=np.bool_)
     since = t - work.begin
-    return np.asarray((since >= work.map.use[0] - 1e-9) & (since <= work.map.use[1] + 1e-9))
+    first, last = work.map.use[0][0], work.map.use[-1][1]
+    return np.asarray((since >= first - 1e-9) & (since <= last + 1e-9))
+
+
+def _parts_of_rows(work: _Work, rows: Array) -> tuple[tuple[float, float], ...]:
+    """The parts to use by the clock of the rows, if the map has several."""
+    if len(work.map.use) < 2:
+        return ()
+    shift = float(rows[0]) - work.begin
+    parts = []
+    for begin, end in work.map.use:
+        parts.append((round(max(begin - shift, 0.0), 6), round(end - shift, 6)))
+    return tuple(parts)
 
 
 def _check_not_empty(work: _Work, name: str, given: Samples) -> Samples:
@@ -453,7 +468,10 @@ def _remark_times(work: _Work, rows: Array) -> None:
         where = float(rows[int(np.argmax(steps))] - rows[0])
         more = ""
         if longest > MAX_GAP:
-            more = "; a diagnosis refuses it: cut the log with use = [from_s, to_s]"
+            more = (
+                "; a diagnosis refuses it: write into recording.toml use = "
+                f"[[0, {where:.6g}], [{where + longest:.6g}, {rows[-1] - rows[0]:.6g}]]"
+            )
         work.remark(f"there is a gap of {longest:.3g} s at t = {where:.3f} s{more}")
 
 
@@ -464,21 +482,31 @@ def position_fix(map: Map) -> str | None:
     return None
 
 
-def recording_notes_text(path: Path, vessel: str, fix: str | None) -> str:
+def recording_notes_text(
+    path: Path, vessel: str, fix: str | None, use: Sequence[tuple[float, float]] = ()
+) -> str:
     """Return the text of a recording.toml.
 
     Args:
         path: File of the recording.
         vessel: Name or path of the vessel.
         fix: The fact `position_fix`, None if unknown.
+        use: Parts of the recording that are used [s]; () for all of it.
     """
     key = path.stem
     if not (key.replace("_", "").replace("-", "").isalnum() and key.isascii()):
         key = f'"{_quote(key)}"'
     lines = [f"[runs.{key}]", f'vessel = "{_quote(vessel)}"']
+    if use:
+        lines.append(use_line(use))
     if fix:
         lines.append(f'facts.position_fix = "{fix}"')
     return "\n".join(lines) + "\n"
+
+
+def use_line(use: Sequence[tuple[float, float]]) -> str:
+    """Return the line of a recording.toml that selects parts of a recording."""
+    return f"use = {list(map(list, use))}"
 
 
 def _quote(text: str) -> str:

@@ -1,5 +1,6 @@
 """The map from a log to a recording: the signal and unit of each column, in a TOML file."""
 
+import math
 from collections.abc import Mapping
 from itertools import pairwise
 from pathlib import Path
@@ -96,7 +97,7 @@ class Map(Table):
         about: Description.
         vessel: Name or path of the vessel.
         rate: Rate of the rows [Hz]; that of the fastest signal by default.
-        use: Part of the log that is converted, from and to [s] since its begin.
+        use: Part of the log that is converted, from and to [s] since its begin, or a list of these.
         time: Expression in s of the time of a table without a column of a known name; of several
             files the expression of each by its name.
         begins: File of a run in several files -> begin after that of the first file [s].
@@ -108,7 +109,7 @@ class Map(Table):
     about: str = ""
     vessel: str | None = None
     rate: float | None = Field(None, gt=0.0, le=1000.0)
-    use: tuple[float, float] | None = None
+    use: tuple[tuple[float, float], ...] = ()
     time: str | dict[str, str] | None = None
     begins: dict[str, float] = {}
     latency: dict[str, float] = {}
@@ -135,6 +136,13 @@ class Map(Table):
                 raise ValueError(f"{name} is {value!r}; allowed is {allowed}")
         return columns
 
+    @field_validator("use", mode="before")
+    @classmethod
+    def _one_or_several(cls, found: object) -> object:
+        if isinstance(found, list | tuple) and found and not isinstance(found[0], list | tuple):
+            return [found]
+        return found
+
     @field_validator("latency")
     @classmethod
     def _short(cls, found: dict[str, float]) -> dict[str, float]:
@@ -158,8 +166,14 @@ class Map(Table):
         for name in self.latency:
             if name not in known:
                 raise ValueError(unknown_name("latency: column", name, sorted(known)))
-        if self.use and not self.use[0] < self.use[1]:
-            raise ValueError("use must be [from_s, to_s], the second larger")
+        last = -math.inf
+        for begin, end in self.use:
+            if not last < begin < end:
+                raise ValueError(
+                    "use must be [from_s, to_s], the second larger, or a list of these in order "
+                    "of time"
+                )
+            last = end
         if not self.position and not set(self.columns) & {*POSE, *RATES}:
             raise ValueError(
                 f"no pose: give position, or at least one column of {', '.join((*POSE, *RATES))}"

@@ -1,13 +1,14 @@
 """One run in two files is one recording on one clock, and late columns get the time at which they were
 true."""
 
+import tomllib
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from boatsim.errors import BadInput
-from boatsim.recordings.importing.convert import convert
+from boatsim.recordings.importing.convert import convert, recording_notes_text
 from boatsim.recordings.importing.mapping import parse_map
 from boatsim.recordings.importing.mapping_proposal import propose_map
 from boatsim.recordings.importing.several_logs import open_logs
@@ -159,3 +160,16 @@ def test_a_curve_gives_the_thrust_of_a_measured_table(tmp_path):
     table["columns"]["thrust_motor_N"]["points"] = points[::-1]
     with pytest.raises(BadInput, match="by increasing signal"):
         parse_map(table, "map.toml")
+
+
+def test_several_parts_of_a_log_to_use_become_those_of_the_recording(tmp_path):
+    t = np.arange(0.0, 30.0, 0.1)
+    file = write(tmp_path / "a.csv", "time", t, 0.0, heading=heading(t), thrust=thrust(t))
+    table = {"use": [[5.0, 10.0], [15.0, 20.0]], "columns": COLUMNS}
+    run = convert(open_logs([file]), parse_map(table, "map.toml"), "map.toml", CHANNELS)
+    assert run.t[-1] == pytest.approx(15.0, abs=0.11)
+    assert np.allclose(run.notes.use, [[0.0, 5.0], [10.0, 15.0]], atol=0.11)
+    text = recording_notes_text(tmp_path / "run.csv", "v", None, run.notes.use)
+    assert tomllib.loads(text)["runs"]["run"]["use"] == [list(part) for part in run.notes.use]
+    with pytest.raises(BadInput, match="in order of time"):
+        parse_map(table | {"use": [[5.0, 10.0], [9.0, 20.0]]}, "map.toml")
