@@ -139,9 +139,12 @@ class Map(Table):
     @field_validator("use", mode="before")
     @classmethod
     def _one_or_several(cls, found: object) -> object:
-        if isinstance(found, list | tuple) and found and not isinstance(found[0], list | tuple):
-            return [found]
-        return found
+        if not isinstance(found, list | tuple):
+            return found
+        parts = found
+        if found and not isinstance(found[0], list | tuple):
+            parts = [found]
+        return tuple(tuple(part) if isinstance(part, list) else part for part in parts)
 
     @field_validator("latency")
     @classmethod
