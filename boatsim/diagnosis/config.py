@@ -600,6 +600,19 @@ class ChecksConfig:
         6, "count", "Reinterpretations with refitted coefficients, the likeliest ones.", low=1
     )
     compare_max_faults: int = setting(2, "count", "Faults of one log that are sought.", low=1)
+    late_min_delay: float = setting(
+        0.1, "s", "Smallest delay of positions or heading that is sought, on a hull of 1.2 m."
+    )
+    late_max_delay: float = setting(2.0, "s", "Largest such delay, on a hull of 1.2 m.", low=0.1)
+    late_min_durations: float = setting(
+        8.0, "1", "Duration of a recording in largest delays, so that enough of it remains."
+    )
+    late_max_rivals: int = setting(
+        4, "count", "Effects that may together explain a log on time in place of a delay.", low=1
+    )
+    late_rival_gain: float = setting(
+        3.0, "nats", "Evidence that each of them must add, as for an effect of a new vessel."
+    )
     rotation_coarse_step: float = setting(
         15.0, "deg", "Distance between the rotations of the heading compared first.", low=1.0
     )

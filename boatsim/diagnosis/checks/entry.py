@@ -6,13 +6,15 @@ from pathlib import Path
 from boatsim.diagnosis.checks.finding import (
     LOG_NOT_BOAT,
     Finding,
-    column_lines,
+    change_lines,
     recording_toml_lines,
 )
 from boatsim.diagnosis.report.schema import LogEntry
 from boatsim.physics.vessel import Vessel
 from boatsim.recordings.expression import Expression
 from boatsim.recordings.table import read_unchecked
+
+COLUMNS_TABLE = "[columns]"
 
 
 def column_sources(path: str, vessel: Vessel) -> Mapping[str, Expression]:
@@ -49,7 +51,7 @@ def log_entry(finding: Finding, sources: Mapping[str, Expression]) -> LogEntry:
         "spans_s": list(map(list, finding.spans)),
         "lines": recording_toml_lines(finding, sources),
         "alternatives": [
-            {"words": words, "lines": column_lines(changes, sources)}
+            {"words": words, "lines": _without_header(change_lines(changes, sources))}
             for words, changes in finding.alternatives
         ],
     }
@@ -58,6 +60,24 @@ def log_entry(finding: Finding, sources: Mapping[str, Expression]) -> LogEntry:
     if finding.kind == "fault":
         entry["words"] = LOG_NOT_BOAT
     return entry
+
+
+def _without_header(lines: list[str]) -> list[str]:
+    """Lines without the header of the table `[columns]`, to which they belong by default."""
+    if lines[:1] == [COLUMNS_TABLE]:
+        return lines[1:]
+    return lines
+
+
+def alternative_lines(lines: Sequence[str]) -> list[str]:
+    """Return the lines of an alternative correction with the header of their table.
+
+    Args:
+        lines: Lines of an alternative in the form of diagnosis.json.
+    """
+    if lines and lines[0].startswith("["):
+        return list(lines)
+    return [COLUMNS_TABLE, *lines]
 
 
 def entry_text(entry: LogEntry) -> list[str]:
@@ -75,7 +95,7 @@ def entry_text(entry: LogEntry) -> list[str]:
     if entry["lines"]:
         lines.append(f"  write into recording.toml: {on_one_line(entry['lines'])}")
     for other in entry["alternatives"]:
-        toml = on_one_line(["[columns]", *other["lines"]])
+        toml = on_one_line(alternative_lines(other["lines"]))
         lines.append(f"  or, if {other['words']}: {toml}")
     if "remedy" in entry:
         lines.append(f"  {entry['remedy']}")

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from boatsim.diagnosis.config import ChecksConfig
 from boatsim.physics.base import Array
 from boatsim.recordings.expression import UNITS, Expression
+from boatsim.recordings.latency import without_latency
 from boatsim.recordings.table import Recording
 
 Kind = Literal["fault", "mended", "limit"]
@@ -22,12 +23,16 @@ UNITS_BY_NAME = ("deg", "percent", "ms", "us", "ns", "rpm", "rev")
 
 @dataclass(frozen=True)
 class Change:
-    """A correction of one recorded column: `column` = `source` times `factor` plus `offset`."""
+    """A correction of one recorded column: `column` = `source` times `factor` plus `offset`.
+
+    With a `delay` each value of the column belongs to the time that much earlier.
+    """
 
     column: str
     source: str  # a column of the recording before the change
     factor: float = 1.0
     offset: float = 0.0
+    delay: float = 0.0  # [s]
 
 
 @dataclass(frozen=True)
@@ -86,6 +91,11 @@ def scaled(names: Iterable[str], factor: float, offset: float = 0.0) -> tuple[Ch
     return tuple(Change(name, name, factor, offset) for name in names)
 
 
+def delay_changes(columns: Iterable[str], seconds: float) -> tuple[Change, ...]:
+    """Return corrections that remove a delay [s] from each of some recorded columns."""
+    return tuple(Change(column, column, delay=seconds) for column in columns)
+
+
 def changed_columns(changes: Iterable[Change]) -> set[str]:
     """Return the names of the recorded columns that corrections overwrite."""
     return {change.column for change in changes}
@@ -127,7 +137,11 @@ def apply_changes(recording: Recording, changes: Sequence[Change]) -> Recording:
         orders = replace(orders, signals=changed(orders.signals))
     signals = changed({"t_s": recording.t, **recording.signals})
     t = signals.pop("t_s")
-    return replace(recording, t=t, signals=signals, orders=orders)
+    delays: dict[str, float] = {}
+    for change in changes:
+        if change.delay and change.column in signals:
+            delays[change.column] = change.delay
+    return without_latency(replace(recording, t=t, signals=signals, orders=orders), delays)
 
 
 def apply_to_all(recordings: Iterable[Recording], changes: Sequence[Change]) -> list[Recording]:
@@ -144,6 +158,8 @@ def column_lines(changes: Sequence[Change], sources: Mapping[str, Expression]) -
     """
     lines = []
     for change in changes:
+        if change.delay:
+            continue
         source = sources.get(change.source, Expression(change.source))
         expression = Expression(
             source.signal,
@@ -187,7 +203,24 @@ def recording_toml_lines(finding: Finding, sources: Mapping[str, Expression]) ->
     if finding.use:
         begin, end = finding.use
         lines.append(f"use = [{begin:.9g}, {end:.9g}]")
-    columns = column_lines(finding.changes, sources)
+    return lines + change_lines(finding.changes, sources)
+
+
+def change_lines(changes: Sequence[Change], sources: Mapping[str, Expression]) -> list[str]:
+    """Return the lines of recording.toml, with their tables, that make changes of columns.
+
+    Args:
+        changes: Corrections of columns: another unit or sign, or a delay.
+        sources: Expressions from which the columns are computed so far.
+    """
+    lines = []
+    columns = column_lines(changes, sources)
     if columns:
         lines += ["[columns]", *columns]
+    delays = []
+    for change in changes:
+        if change.delay:
+            delays.append(f"{change.column} = {change.delay:.4g}")
+    if delays:
+        lines += ["[latency]", *delays]
     return lines

@@ -5,7 +5,7 @@ Such a velocity has another sign or unit, a delay, or belongs to another point o
 
 import numpy as np
 
-from boatsim.diagnosis.checks.finding import PLANAR_POSE, Change, Finding
+from boatsim.diagnosis.checks.finding import PLANAR_POSE, Change, Finding, delay_changes
 from boatsim.diagnosis.config import ChecksConfig
 from boatsim.diagnosis.priors import froude_time
 from boatsim.physics.base import Array
@@ -143,17 +143,37 @@ def _check_delay(
     large = residuals[0] > config.rates_min_difference * float(np.mean(rate**2))
     if abs(best) < least or abs(best) == most or not clear or not large:
         return []
-    sense = "behind" if best > 0 else "ahead of"
     removed = 100.0 * (1.0 - residuals[best] / residuals[0])
+    delay = abs(best) * step
+    late, others, alternatives = _late_columns(name, best > 0, delay)
+    sense = "behind" if best > 0 else "ahead of"
     return [
         Finding(
             "velocity_late",
-            f"{name} is {abs(best) * step:.3g} s {sense} x_m, y_m, psi_rad. This delay explains "
-            f"{removed:.0f} % of their difference",
+            f"{name} is {delay:.3g} s {sense} {others}. This delay explains {removed:.0f} % of "
+            "their difference",
             probability=config.probability_likely,
-            changes=(_ignore_column(name),),
+            changes=delay_changes(late, delay),
+            alternatives=alternatives,
         )
     ]
+
+
+def _late_columns(
+    name: str, behind: bool, delay: float
+) -> tuple[tuple[str, ...], str, tuple[tuple[str, tuple[Change, ...]], ...]]:
+    """Late columns, those that a rate is compared with, and other columns that may be late.
+
+    No instrument is early: where a rate is ahead of a pose, the pose is late.
+    """
+    if name == "r_radps":
+        if behind:
+            return (name,), "psi_rad", ()
+        words = "x_m and y_m come from the same instrument as psi_rad"
+        return ("psi_rad",), "psi_rad", ((words, delay_changes(PLANAR_POSE, delay)),)
+    if behind:
+        return (name,), "x_m, y_m, psi_rad", ()
+    return ("x_m", "y_m"), "x_m, y_m, psi_rad", ()
 
 
 def _check_lever(

@@ -13,6 +13,14 @@ from boatsim.view.formatting import (
     words_of_name,
 )
 
+# Delay of a sensor -> its columns
+LATE_COLUMNS = {
+    "late_fixes": ("x_m", "y_m"),
+    "heading_delay": ("psi_rad",),
+    "roll_delay": ("phi_rad",),
+    "pitch_delay": ("theta_rad",),
+    "heave_delay": ("z_m",),
+}
 OPEN = (
     "Held-out recordings neither confirm nor contradict it: they are too short, do not excite it, "
     "or require it only if other numbers of the vessel change too."
@@ -48,7 +56,17 @@ def effect_sentences(effect: EffectEntry) -> list[str]:
         found.append(f"On held-out data adding it {join_words(changes)}.")
     if not effect.get("confirmed", True):
         found.append(OPEN)
+    if effect["name"] in LATE_COLUMNS:
+        found.append(_latency_line(effect))
     return found
+
+
+def _latency_line(effect: EffectEntry) -> str:
+    """The lines of recording.toml that remove the delay of a sensor."""
+    [delay] = effect["parameters"].values()
+    columns = LATE_COLUMNS[effect["name"]]
+    lines = " / ".join(f"{column} = {delay['value']:.3g}" for column in columns)
+    return f"Write into recording.toml: [latency] / {lines}"
 
 
 def _changes(alone: Mapping[Family, AloneEntry]) -> list[str]:

@@ -4,6 +4,7 @@ import math
 from collections.abc import Iterator, Sequence
 from itertools import repeat
 
+from boatsim.diagnosis.checks.entry import alternative_lines
 from boatsim.diagnosis.report.candidate_sections import (
     limits_of_effects_not_found,
     ranking,
@@ -92,7 +93,7 @@ def _corrections(e: LogEntry) -> tuple[tuple[str, str], ...]:
     if e["lines"]:
         lines.append(("Write into recording.toml", " / ".join(e["lines"])))
     for other in e["alternatives"]:
-        lines.append((f"Or, if {other['words']}", " / ".join(["[columns]", *other["lines"]])))
+        lines.append((f"Or, if {other['words']}", " / ".join(alternative_lines(other["lines"]))))
     return tuple(lines)
 
 
