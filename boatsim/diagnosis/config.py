@@ -544,6 +544,24 @@ class ChecksConfig:
     percent_max_range: float = setting(
         0.5, "1", "Commands up to 100 are per cent if 100 is less than this part of the limit."
     )
+    per_cent_min_rounded: float = setting(
+        0.99,
+        "1",
+        "Share of the commands with one decimal at most, as per cent are written.",
+        high=1.0,
+    )
+    per_cent_min_ratio: float = setting(
+        1.15,
+        "1",
+        "Ratio of full thrust ahead and astern from which per cent in place of newtons looks like "
+        "a weak reverse.",
+        low=1.0,
+    )
+    per_cent_min_lead: float = setting(
+        3.0,
+        "nats",
+        "Lead over newtons with a weak reverse, which has the same motion with more parameters.",
+    )
     heading_min_offset: float = setting(
         0.3, "rad", "Angle between heading and course from which reinterpretations are compared."
     )

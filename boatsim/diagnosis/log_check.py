@@ -9,6 +9,7 @@ from boatsim.diagnosis.checks.entry import column_sources, log_entry, on_one_lin
 from boatsim.diagnosis.checks.finding import LOG_NOT_BOAT, Finding
 from boatsim.diagnosis.checks.hypothesis_test import compare_reinterpretations
 from boatsim.diagnosis.checks.late_sensors import check_late_sensors
+from boatsim.diagnosis.checks.per_cent_commands import check_per_cent_commands
 from boatsim.diagnosis.config import DEFAULT
 from boatsim.diagnosis.loading import Loaded, check_same_vessel, vessel_for
 from boatsim.diagnosis.question import pose_question
@@ -63,6 +64,8 @@ def check_files(
             loaded = Loaded(usable, (), vessels, "")
             question = pose_question(loaded, with_candidates=False)
             compared = compare_reinterpretations(usable, question.map_recording, question.problem)
+            if not compared:
+                compared = check_per_cent_commands(usable, question.problem)
             if not compared and not any(f.name == "velocity_late" for f in findings):
                 compared = check_late_sensors(usable, question.problem)
             findings += [replace(f, run=str(usable[0].path)) for f in compared]

@@ -14,6 +14,7 @@ from boatsim.errors import BadInput, unknown_name
 from boatsim.files import Value, home_folder, read_toml
 from boatsim.physics.facts import first_invalid
 from boatsim.physics.signals import AXES
+from boatsim.recordings.conversion import Curve, Range, conversion_of
 
 T = TypeVar("T")
 NOISE = (
@@ -118,13 +119,14 @@ class NotesFile:
 
     Attributes:
         notes: The notes.
-        columns: Signal -> expression of the file's column: "-delta", "heading_deg * deg".
+        columns: Signal -> expression of the file's column: "-delta", "heading_deg * deg"; or the
+            range or curve by which it follows from one.
         remarks: Messages about unknown keys.
         folder: Folder of the file, from which its paths start; None without a file.
     """
 
     notes: Notes = field(default_factory=Notes)
-    columns: dict[str, str] = field(default_factory=dict)
+    columns: dict[str, str | Range | Curve] = field(default_factory=dict)
     remarks: tuple[str, ...] = ()
     folder: Path | None = None
 
@@ -282,10 +284,13 @@ class _Reader:
                 raise inner.bad_value(name, f"-{MAX_LATENCY:g} to {MAX_LATENCY:g} s")
         return found
 
-    def read_columns(self) -> dict[str, str]:
+    def read_columns(self) -> dict[str, str | Range | Curve]:
         inner = self.subtable_reader("columns")
-        columns: dict[str, str] = {}
-        for name in inner.content:
+        columns: dict[str, str | Range | Curve] = {}
+        for name, value in inner.content.items():
+            if isinstance(value, dict):
+                columns[name] = conversion_of(value, f"{self.file}: {inner.prefix}{name}")
+                continue
             column = inner.read_text(name)
             if column is not None:
                 columns[name] = column
@@ -355,8 +360,8 @@ class _Reader:
             facts=_read_or_collect_mistake(mistakes, lambda: self.all_facts(facts), {}),
         )
         noise = {name: sd for name, sd in notes.noise.items() if name in NOISE}
-        columns: dict[str, str] = _read_or_collect_mistake(
-            mistakes, self.read_columns, dict[str, str]()
+        columns: dict[str, str | Range | Curve] = _read_or_collect_mistake(
+            mistakes, self.read_columns, {}
         )
         if mistakes:
             raise BadInput(join_mistakes(mistakes, self.file))

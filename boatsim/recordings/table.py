@@ -20,6 +20,7 @@ from boatsim.files import replace_file
 from boatsim.physics.content import import_library_module, library_names
 from boatsim.physics.signals import POSE, RATES, Array
 from boatsim.recordings import limits, units
+from boatsim.recordings.conversion import Curve, Range
 from boatsim.recordings.expression import Expression, parse
 from boatsim.recordings.latency import without_latency
 from boatsim.recordings.notebook.arrow import signal_table
@@ -58,6 +59,23 @@ ROUNDING = 1e-3
 
 class SignalMissing(BadInput):
     """Raised if a requested signal is not in a recording."""
+
+
+@dataclass(frozen=True)
+class Converted:
+    """A column by a conversion of an expression of another column."""
+
+    how: Expression
+    conversion: Range | Curve
+
+    @property
+    def signal(self) -> str:
+        """Name of the column from which this one follows."""
+        return self.how.signal
+
+    def of(self, values: Array) -> Array:
+        """Return the values (N,) of the column."""
+        return self.conversion.of(self.how.of(values))
 
 
 @dataclass(frozen=True)
@@ -372,7 +390,11 @@ def read_unchecked(
         raise _too_few_rows(raw)
     signals = dict(raw.columns)
     t = signals.pop("t_s")
-    return Recording(path.stem, t, signals, found.notes, path), made
+    linear: dict[str, Expression] = {}
+    for name, how in made.items():
+        if isinstance(how, Expression):
+            linear[name] = how
+    return Recording(path.stem, t, signals, found.notes, path), linear
 
 
 def write_csv(recording: Recording, path: Path | str) -> None:
@@ -434,18 +456,21 @@ def _read_raw(path: Path) -> Raw:
 
 
 def _rename_columns(
-    raw: Raw, of_vessel: Mapping[str, str], of_notes: Mapping[str, str]
-) -> tuple[Raw, Mapping[str, Expression], tuple[str, ...]]:
+    raw: Raw, of_vessel: Mapping[str, str], of_notes: Mapping[str, str | Range | Curve]
+) -> tuple[Raw, Mapping[str, Expression | Converted], tuple[str, ...]]:
     """The table with names of signals, their expressions, and a remark on unknown columns.
 
     A mapping of the vessel whose column does not exist is ignored; one of the notes with a misspelt
     column is an error.
     """
-    made: dict[str, Expression] = {}
+    made: dict[str, Expression | Converted] = {}
     absent: list[str] = []
-    for ours, words in {**of_vessel, **of_notes}.items():
+    for ours, given in {**of_vessel, **of_notes}.items():
+        words = given if isinstance(given, str) else given.signal
         try:
-            found = parse(words, raw.columns)
+            found: Expression | Converted = parse(words, raw.columns)
+            if isinstance(found, Expression) and not isinstance(given, str):
+                found = Converted(found, given)
         except BadInput as error:
             raise BadInput(
                 f"{raw.path} by its recording.toml: columns.{ours} = {words!r}: {error}"

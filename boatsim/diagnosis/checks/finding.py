@@ -33,6 +33,7 @@ class Change:
     factor: float = 1.0
     offset: float = 0.0
     delay: float = 0.0  # [s]
+    factor_below: float | None = None  # of negative values, if it is another one
 
 
 @dataclass(frozen=True)
@@ -128,8 +129,13 @@ def apply_changes(recording: Recording, changes: Sequence[Change]) -> Recording:
     def changed(columns: Mapping[str, Array]) -> dict[str, Array]:
         result = dict(columns)
         for change in changes:
-            if change.source in columns:
-                result[change.column] = columns[change.source] * change.factor + change.offset
+            if change.source not in columns:
+                continue
+            values = columns[change.source]
+            factor: float | Array = change.factor
+            if change.factor_below is not None:
+                factor = np.where(values < 0.0, change.factor_below, change.factor)
+            result[change.column] = values * factor + change.offset
         return result
 
     orders = recording.orders
@@ -161,6 +167,9 @@ def column_lines(changes: Sequence[Change], sources: Mapping[str, Expression]) -
         if change.delay:
             continue
         source = sources.get(change.source, Expression(change.source))
+        if change.factor_below is not None:
+            lines.append(_range_line(change, source))
+            continue
         expression = Expression(
             source.signal,
             change.factor * source.factor,
@@ -168,6 +177,16 @@ def column_lines(changes: Sequence[Change], sources: Mapping[str, Expression]) -
         )
         lines.append(f'{change.column} = "{_expression_text(expression, change.column)}"')
     return lines
+
+
+def _range_line(change: Change, source: Expression) -> str:
+    """The line of a column with one factor above zero and another one below it, for per cent."""
+    signal = _expression_text(source, change.source)
+    least, most = -100.0 * (change.factor_below or 0.0), 100.0 * change.factor
+    return (
+        f'{change.column} = {{ signal = "{signal}", low = -100, neutral = 0, high = 100, '
+        f"least = {least:g}, most = {most:g} }}"
+    )
 
 
 def _expression_text(expression: Expression, column: str) -> str:

@@ -14,11 +14,12 @@ import numpy as np
 from boatsim.errors import BadInput, nearest_hint, unknown_name
 from boatsim.physics.base import Array
 from boatsim.physics.signals import POSE, RATES
+from boatsim.recordings.conversion import Curve, Range
 from boatsim.recordings.expression import Expression, parse
 from boatsim.recordings.importing.clocks import YEAR_2000, YEAR_2100
 from boatsim.recordings.importing.frames import local_position
 from boatsim.recordings.importing.log import Log, Signal, rate_of
-from boatsim.recordings.importing.mapping import Curve, Map, Position, Range
+from boatsim.recordings.importing.mapping import Map, Position
 from boatsim.recordings.importing.resample import (
     MIN_LOST,
     Samples,
@@ -186,30 +187,14 @@ def _column(work: _Work, name: str, what: str | Range | Curve) -> tuple[Array, A
         return signal.t, how.of(signal.values)
     signal, how = _signal(work, f"columns.{name}.signal", what.signal)
     values = how.of(signal.values)
-    if isinstance(what, Curve):
-        points = what.points
-    else:
-        points = sorted([(what.low, what.least), (what.neutral, 0.0), (what.high, what.most)])
-    lowest, highest = points[0][0], points[-1][0]
+    lowest, highest = what.ends
     if beyond := int(np.sum((values < lowest) | (values > highest))):
         work.remark(
             f"{name}: {beyond} of {len(values)} samples are outside {lowest:g} to "
             f"{highest:g} and are set to "
             "the limit"
         )
-    if isinstance(what, Range):
-        return signal.t, _by_range(values, what)
-    of_signal, of_column = np.array(points).T
-    return signal.t, np.interp(values, of_signal, of_column)
-
-
-def _by_range(values: Array, what: Range) -> Array:
-    """Values (N,) of a column by the range of its signal."""
-    ends = sorted([(what.low, -1.0), (what.neutral, 0.0), (what.high, 1.0)])
-    of_signal, of_share = np.array(ends).T
-    share = np.interp(values, of_signal, of_share)
-    full = np.where(share < 0.0, what.least, what.most)
-    return np.asarray(full * np.abs(share) ** what.exponent)
+    return signal.t, what.of(values)
 
 
 def _add_position(work: _Work, position: Position) -> None:

@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Mapping
-from itertools import pairwise
 from pathlib import Path
 
 from pydantic import Field, field_validator, model_validator
@@ -10,61 +9,10 @@ from pydantic import Field, field_validator, model_validator
 from boatsim.errors import BadInput, unknown_name
 from boatsim.files import Table, read_toml, validate_table
 from boatsim.physics.signals import POSE, RATES
+from boatsim.recordings.conversion import Curve, Range, conversion_of
 from boatsim.recordings.notes import MAX_LATENCY
 
 COMPUTED = ("t_s", "x_m", "y_m")  # columns that follow from the clock and from `position`
-
-
-class Range(Table):
-    """Conversion of a signal with three known values, such as a pulse of 1100 to 1900 us.
-
-    On either side of neutral the column is the end of that side times the share of the way to it,
-    to the power of `exponent`.
-
-    Attributes:
-        signal: Expression of the signal.
-        low: Value of the signal at `least`.
-        neutral: Value of the signal at 0.
-        high: Value of the signal at `most`.
-        least: Value of the column where the signal is low.
-        most: Value of the column where the signal is high.
-        exponent: 1 for proportion, 2 for the thrust of a propeller of a number of revolutions.
-    """
-
-    signal: str
-    low: float
-    neutral: float
-    high: float
-    least: float = -1.0
-    most: float = 1.0
-    exponent: float = Field(1.0, ge=0.5, le=3.0)
-
-    @model_validator(mode="after")
-    def _in_order(self) -> "Range":
-        if not (self.low < self.neutral < self.high or self.low > self.neutral > self.high):
-            raise ValueError("neutral must lie between low and high")
-        return self
-
-
-class Curve(Table):
-    """Conversion of a signal by a measured table, such as command against thrust.
-
-    Between two points the column is linear, beyond the first and the last it is that of this point.
-
-    Attributes:
-        signal: Expression of the signal.
-        points: Pairs [value of the signal, value of the column], by increasing signal.
-    """
-
-    signal: str
-    points: list[tuple[float, float]] = Field(min_length=2, max_length=100)
-
-    @model_validator(mode="after")
-    def _increase(self) -> "Curve":
-        for (first, _), (second, _) in pairwise(self.points):
-            if not first < second:
-                raise ValueError("points must be pairs [signal, column] by increasing signal")
-        return self
 
 
 class Position(Table):
@@ -124,10 +72,7 @@ class Map(Table):
         columns = dict(found)
         for name, value in found.items():
             if isinstance(value, dict):
-                kind: type[Range | Curve] = Range
-                if "points" in value:
-                    kind = Curve
-                columns[name] = validate_table(kind, value, f"columns.{name}")
+                columns[name] = conversion_of(value, f"columns.{name}")
             elif not isinstance(value, str | Range | Curve):
                 allowed = (
                     '"[-] signal [* unit or number] [+ number]", { signal, low, neutral, '

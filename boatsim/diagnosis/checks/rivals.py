@@ -1,0 +1,113 @@
+"""Comparison of a fault of a log with effects of the vessel that would look alike.
+
+A fault is reported only if a log without it is far more likely than the log as recorded on a vessel
+that also has these effects.
+"""
+
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass
+
+from boatsim.diagnosis.candidates import program_with_candidates
+from boatsim.diagnosis.checks.finding import Change, apply_to_all
+from boatsim.diagnosis.checks.initial_actuator_state import with_initial_actuators
+from boatsim.diagnosis.config import ChecksConfig
+from boatsim.diagnosis.filter import map_recording, prior_levels
+from boatsim.diagnosis.fit import converge, unfitted_hypothesis
+from boatsim.diagnosis.problem import Fit, Problem, free_parameter_values
+from boatsim.diagnosis.search.ranking import fit_baseline
+from boatsim.physics.program import Program
+from boatsim.recordings.table import Recording
+
+
+@dataclass(frozen=True)
+class FaultComparison:
+    """Recordings whose columns may have a fault, and the estimation problem of the vessel.
+
+    Attributes:
+        recordings: Prepared and cleaned recordings.
+        problem: The problem with the vessel as specified.
+        lost: Time at the end of each recording that is not compared [s].
+    """
+
+    recordings: Sequence[Recording]
+    problem: Problem
+    lost: float = 0.0
+
+    def with_changes(self, changes: Sequence[Change], program: Program | None = None) -> Problem:
+        """Return the problem of the recordings with changes of columns.
+
+        Args:
+            changes: The changes.
+            program: Program with further effects; None: that of the vessel as specified.
+
+        Raises:
+            BadInput: A changed recording can not be mapped to the vessel.
+        """
+        first = self.problem
+        used = program or first.program
+        levels = prior_levels(used.vessel, self.recordings, first.config)
+        changed = apply_to_all(self.recordings, changes)
+        mapped = []
+        for before, after in zip(self.recordings, changed, strict=True):
+            part = after.between(before.t[0] + 1e-6, before.t[-1] - self.lost)
+            one = map_recording(part, used, config=first.config)
+            mapped.append(with_initial_actuators(one, levels, first.config.checks))
+        return Problem(mapped, levels, first.uncertainty, None, first.config)
+
+    def with_rivals(self, names: Collection[str]) -> Program:
+        """Return the program of the vessel with the effects that may look like a fault."""
+        return program_with_candidates(self.problem.program.vessel, names)
+
+    @property
+    def required_gain(self) -> float:
+        """Evidence that the log without its fault must gain [nats]."""
+        config = self.problem.config.checks
+        rows = sum(map(len, self.recordings))
+        return max(config.compare_min_gain, config.compare_min_gain_per_row * rows)
+
+
+def refitted(problem: Problem) -> Fit:
+    """Return the fit of the vessel with refitted coefficients and without further effects."""
+    return fit_baseline(problem).recalibrated
+
+
+def best_rival(problem: Problem, config: ChecksConfig, enough: float) -> Fit:
+    """Return the fit of a vessel with the effects that explain a log best, added one by one.
+
+    Args:
+        problem: The problem, whose program has the effects.
+        config: Thresholds of the quality checks.
+        enough: Evidence from which no further effect is needed [nats].
+    """
+    best = refitted(problem)
+    left = list(problem.program.candidate_names)
+    for _ in range(config.late_max_rivals):
+        if not left or best.evidence > enough:
+            break
+        fits: dict[str, Fit] = {}
+        for name in left:
+            fits[name] = converge(problem, _start(problem, best, (*best.effects, name)))
+        name = max(fits, key=lambda each: fits[each].evidence)
+        if not fits[name].evidence > best.evidence + config.late_rival_gain:
+            break
+        best = fits[name]
+        left.remove(name)
+    return best
+
+
+def with_effects_of(problem: Problem, rival: Fit, effects: Sequence[str]) -> Fit:
+    """Return the fit of another problem with effects of a rival.
+
+    Args:
+        problem: The problem of the log without its fault.
+        rival: Fit to the log as recorded.
+        effects: Names of the effects, all or some of those of the rival.
+    """
+    return converge(problem, _start(problem, rival, effects))
+
+
+def _start(problem: Problem, found: Fit, effects: Sequence[str]) -> Fit:
+    """A hypothesis with some effects before its fit, with the values of another fit."""
+    free = problem.parameters(effects)
+    values = free_parameter_values(free, found.values())
+    return unfitted_hypothesis(tuple(effects), free, values, found.levels)

@@ -1,0 +1,100 @@
+"""Conversions of a signal to a column that are not linear: ranges and measured curves."""
+
+from collections.abc import Mapping
+from itertools import pairwise
+
+import numpy as np
+from pydantic import Field, model_validator
+
+from boatsim.files import Table, validate_table
+from boatsim.physics.base import Array
+
+
+class Range(Table):
+    """Conversion of a signal with three known values, such as a pulse of 1100 to 1900 us.
+
+    On either side of neutral the column is the end of that side times the share of the way to it,
+    to the power of `exponent`.
+
+    Attributes:
+        signal: Expression of the signal.
+        low: Value of the signal at `least`.
+        neutral: Value of the signal at 0.
+        high: Value of the signal at `most`.
+        least: Value of the column where the signal is low.
+        most: Value of the column where the signal is high.
+        exponent: 1 for proportion, 2 for the thrust of a propeller of a number of revolutions.
+    """
+
+    signal: str
+    low: float
+    neutral: float
+    high: float
+    least: float = -1.0
+    most: float = 1.0
+    exponent: float = Field(1.0, ge=0.5, le=3.0)
+
+    @model_validator(mode="after")
+    def _in_order(self) -> "Range":
+        if not (self.low < self.neutral < self.high or self.low > self.neutral > self.high):
+            raise ValueError("neutral must lie between low and high")
+        return self
+
+    def of(self, values: Array) -> Array:
+        """Return the values (N,) of the column of a signal (N,), constant beyond its ends."""
+        ends = sorted([(self.low, -1.0), (self.neutral, 0.0), (self.high, 1.0)])
+        of_signal, of_share = np.array(ends).T
+        share = np.interp(values, of_signal, of_share)
+        full = np.where(share < 0.0, self.least, self.most)
+        return np.asarray(full * np.abs(share) ** self.exponent)
+
+    @property
+    def ends(self) -> tuple[float, float]:
+        """Smallest and largest value of the signal that is not set to a limit."""
+        return min(self.low, self.high), max(self.low, self.high)
+
+
+class Curve(Table):
+    """Conversion of a signal by a measured table, such as command against thrust.
+
+    Between two points the column is linear, beyond the first and the last it is that of this point.
+
+    Attributes:
+        signal: Expression of the signal.
+        points: Pairs [value of the signal, value of the column], by increasing signal.
+    """
+
+    signal: str
+    points: list[tuple[float, float]] = Field(min_length=2, max_length=100)
+
+    @model_validator(mode="after")
+    def _increase(self) -> "Curve":
+        for (first, _), (second, _) in pairwise(self.points):
+            if not first < second:
+                raise ValueError("points must be pairs [signal, column] by increasing signal")
+        return self
+
+    def of(self, values: Array) -> Array:
+        """Return the values (N,) of the column of a signal (N,), constant beyond its ends."""
+        of_signal, of_column = np.array(self.points).T
+        return np.asarray(np.interp(values, of_signal, of_column))
+
+    @property
+    def ends(self) -> tuple[float, float]:
+        """Smallest and largest value of the signal that is not set to a limit."""
+        return self.points[0][0], self.points[-1][0]
+
+
+def conversion_of(table: Mapping[str, object], label: str) -> Range | Curve:
+    """Return the conversion of a table, a `Curve` if it has points, else a `Range`.
+
+    Args:
+        table: The table.
+        label: File and key in messages.
+
+    Raises:
+        BadInput: The table is neither.
+    """
+    if "points" in table:
+        return validate_table(Curve, table, label)
+    return validate_table(Range, table, label)
