@@ -558,9 +558,17 @@ class ChecksConfig:
         low=1.0,
     )
     per_cent_min_lead: float = setting(
-        3.0,
+        1.0,
         "nats",
-        "Lead over newtons with a weak reverse, which has the same motion with more parameters.",
+        "Lead over newtons with a weak reverse, which gives the same motion with one more "
+        "number: per cent lead by 2 to 7 nats, and a weak reverse that is not the ratio of full "
+        "thrust by -39 nats.",
+    )
+    per_cent_min_levels: int = setting(
+        10,
+        "count",
+        "Different commands from which their rounding is no choice of the pilot.",
+        low=1,
     )
     heading_min_offset: float = setting(
         0.3, "rad", "Angle between heading and course from which reinterpretations are compared."

@@ -114,7 +114,7 @@ def _likeliest_delay(compared: FaultComparison, step: float) -> _Delay | None:
             if np.isfinite(value) and value > best.value:
                 best = _Delay(name, one.seconds, value)
     at_the_end = best.seconds > compared.lost - 2.0 * step
-    if at_the_end or best.value - base < compared.required_gain:
+    if at_the_end or best.value - base < config.compare_min_lead:
         return None
     return best
 
@@ -124,7 +124,7 @@ def _findings(compared: FaultComparison, suspect: _Delay, step: float) -> list[F
     config = compared.problem.config.checks
     vessel = compared.problem.program.vessel
     best = _refined_delay(compared, suspect, step)
-    if best.value - refitted(compared.with_changes(())).evidence < compared.required_gain:
+    if best.value - refitted(compared.with_changes(())).evidence < config.compare_min_lead:
         return []
     program = compared.with_rivals(RIVALS)
     enough = best.value + compared.required_gain

@@ -106,6 +106,8 @@ def _look_like_per_cent(
     largest = float(np.abs(values).max(initial=0.0))
     if not config.percent_min_command <= largest <= FULL * (1.0 + 1e-6):
         return False
+    if len(np.unique(values)) < config.per_cent_min_levels:
+        return False
     tenths = 10.0 * values
     rounded = np.abs(tenths - np.round(tenths)) < 1e-6
     return bool(rounded.mean() >= config.per_cent_min_rounded)
@@ -114,4 +116,5 @@ def _look_like_per_cent(
 def _has_other_scale(vessel: Vessel, name: str, config: ChecksConfig) -> bool:
     """Whether per cent and newtons of a channel differ, and differently ahead and astern."""
     command = vessel.commands[name]
-    return abs(np.log(command.high / -command.low)) > np.log(config.per_cent_min_ratio)
+    ratio = command.high / -command.low
+    return max(ratio, 1.0 / ratio) > config.per_cent_min_ratio
