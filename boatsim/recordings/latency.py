@@ -5,8 +5,6 @@ that time the recording gets one more row, in which the other poses and rates ar
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -21,53 +19,56 @@ from boatsim.recordings.importing.resample import (
     row_times,
 )
 
-if TYPE_CHECKING:
-    from boatsim.recordings.table import Recording
-
 ON_ROW = 0.05  # a sample is in a row if it is nearer than this share of the step of the rows
 # Share of additional rows below which samples go to the nearest row: the clock only jitters
 FEW_ROWS = 0.15
 FIX = ("x_m", "y_m")  # columns of one measurement
 
 
-def without_latency(recording: "Recording", latency: Mapping[str, float]) -> "Recording":
-    """Return a recording whose late columns are moved to the times at which they were true.
+def shifted_columns(
+    t: Array, signals: Mapping[str, Array], latency: Mapping[str, float], place: str
+) -> tuple[Array, dict[str, Array]]:
+    """Return the rows of a recording whose late columns have the times at which they were true.
 
     Args:
-        recording: The recording as read.
+        t: Times (N,) of the rows [s].
+        signals: Name -> values (N,).
         latency: Column -> delay of its values [s]; the value of a row was true that much earlier.
+        place: Name of the recording in messages.
+
+    Returns:
+        Times (M,) [s] and values (M,) of all signals.
 
     Raises:
         BadInput: A column does not exist, or x_m and y_m have different delays.
     """
     if not any(latency.values()):
-        return recording
-    place = recording.path or recording.name
+        return t, dict(signals)
     for name in latency:
-        if name not in recording.signals:
-            raise BadInput(f"{place}: {unknown_name('latency: column', name, recording.signals)}")
-    if len({latency.get(name, 0.0) for name in FIX if name in recording.signals}) > 1:
+        if name not in signals:
+            raise BadInput(f"{place}: {unknown_name('latency: column', name, signals)}")
+    if len({latency.get(name, 0.0) for name in FIX if name in signals}) > 1:
         raise BadInput(
             f"{place}: latency: x_m and y_m are one measurement; allowed is one delay for both"
         )
     measured: dict[str, Samples] = {}
     held: dict[str, Samples] = {}
-    for name, values in recording.signals.items():
-        samples = clean_samples(recording.t - latency.get(name, 0.0), values)
+    for name, values in signals.items():
+        samples = clean_samples(t - latency.get(name, 0.0), values)
         if name in (*POSE, *RATES) or np.isnan(values).any():
             measured[name] = samples
         else:
             held[name] = samples
     moved = [samples for name, samples in measured.items() if latency.get(name)]
-    rows, near = _rows(recording.t, moved)
+    rows, near = _rows(t, moved)
     rows = _common_rows(rows, [*measured.values(), *held.values()], near)
-    signals: dict[str, Array] = {}
-    for name in recording.signals:
+    shifted: dict[str, Array] = {}
+    for name in signals:
         if name in held:
-            signals[name] = mean_held_values(rows, held[name])
+            shifted[name] = mean_held_values(rows, held[name])
         else:
-            signals[name] = nearest_samples(rows, measured[name], near)
-    return replace(recording, t=rows, signals=signals)
+            shifted[name] = nearest_samples(rows, measured[name], near)
+    return rows, shifted
 
 
 def _rows(t: Array, moved: Sequence[Samples]) -> tuple[Array, float]:

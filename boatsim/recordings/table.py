@@ -22,7 +22,7 @@ from boatsim.physics.signals import POSE, RATES, Array
 from boatsim.recordings import limits, units
 from boatsim.recordings.conversion import Curve, Range
 from boatsim.recordings.expression import Expression, parse
-from boatsim.recordings.latency import without_latency
+from boatsim.recordings.latency import shifted_columns
 from boatsim.recordings.notebook.arrow import signal_table
 from boatsim.recordings.notebook.data_frame import data_frame
 from boatsim.recordings.notebook.views import recording_figure, recording_html, table_metadata
@@ -213,6 +213,19 @@ class Recording:
             orders=self.orders or TimedCommands(self.t, commands),
         )
 
+    def without_latency(self, latency: Mapping[str, float]) -> "Recording":
+        """Return a recording whose late columns are moved to the times at which they were true.
+
+        Args:
+            latency: Column -> delay of its values [s].
+
+        Raises:
+            BadInput: A column does not exist, or x_m and y_m have different delays.
+        """
+        place = str(self.path or self.name)
+        t, signals = shifted_columns(self.t, self.signals, latency, place)
+        return replace(self, t=t, signals=signals)
+
     def parts(self) -> list["Recording"]:
         """Return the parts of a recording that its notes select by `use`, or the whole recording.
 
@@ -355,7 +368,7 @@ def read(
     if ignored:
         remarks.append(f"{path}: columns not used: {', '.join(ignored)}")
     recording = Recording(path.stem, raw.columns["t_s"], signals, found.notes, path, tuple(remarks))
-    recording = without_latency(recording, found.notes.latency)
+    recording = recording.without_latency(found.notes.latency)
     for part in recording.parts():
         if len(part) < FEWEST_ROWS:
             [interval] = part.notes.use or [(part.t[0], part.t[-1])]

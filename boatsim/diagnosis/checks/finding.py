@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 from boatsim.diagnosis.config import ChecksConfig
 from boatsim.physics.base import Array
 from boatsim.recordings.expression import UNITS, Expression
-from boatsim.recordings.latency import without_latency
 from boatsim.recordings.table import Recording
 
 Kind = Literal["fault", "mended", "limit"]
@@ -147,7 +146,7 @@ def apply_changes(recording: Recording, changes: Sequence[Change]) -> Recording:
     for change in changes:
         if change.delay and change.column in signals:
             delays[change.column] = change.delay
-    return without_latency(replace(recording, t=t, signals=signals, orders=orders), delays)
+    return replace(recording, t=t, signals=signals, orders=orders).without_latency(delays)
 
 
 def apply_to_all(recordings: Iterable[Recording], changes: Sequence[Change]) -> list[Recording]:
