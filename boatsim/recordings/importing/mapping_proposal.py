@@ -324,8 +324,17 @@ def _command_lines(
         lines.append(_channel_line(drive.name, g, drive, sense) + why)
     for g in moving:
         if g not in taken:
-            lines.append(f"# not used: {_without_control_characters(g.name)}")
+            lines.append(_unused_line(g, drives))
     return lines, taken
+
+
+def _unused_line(g: Classification, drives: Sequence[VesselChannel]) -> str:
+    """A comment on a command that is not used, with the line of revolutions of a thruster."""
+    for drive in drives:
+        same_side = side_of(frozenset(tokens_of(drive.name))) == side_of(g.tokens)
+        if same_side and _is_thrust_by_revolutions(drive, g):
+            return f"# or by revolutions: {_channel_line(drive.name, g, drive)}"
+    return f"# not used: {_without_control_characters(g.name)}"
 
 
 def _match_channels(

@@ -119,6 +119,16 @@ def test_per_cent_of_two_sides_are_shares_of_full_thrust_of_these_sides():
     assert f'thrust_starboard_N = {{ signal = "right_pct", {ends} }}' in text
 
 
+def test_revolutions_beside_per_cent_are_offered_as_another_line():
+    drives = [VesselChannel("thrust_port_N", -30.0, 60.0)]
+    drives.append(VesselChannel("thrust_starboard_N", -30.0, 60.0))
+    signals = {f"{side}_pct": (-50.0, 90.0) for side in ("left", "right")}
+    signals |= {f"rpm_{side}": (-900.0, 2000.0) for side in ("left", "right")}
+    text = propose_map(log_of(**signals), "v", drives)
+    assert 'thrust_port_N = { signal = "left_pct"' in text
+    assert '# or by revolutions: thrust_port_N = { signal = "rpm_left"' in text
+
+
 def test_revolutions_of_a_thruster_become_thrust_by_their_square():
     text = propose_map(log_of(rpm=(0.0, 2400.0)), "v", [VesselChannel("thrust_motor_N", -30, 60)])
     ends = "low = -2400, neutral = 0, high = 2400, least = -30, most = 60, exponent = 2"
