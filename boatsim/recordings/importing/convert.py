@@ -361,8 +361,9 @@ def _remark_spans(work: _Work, rows: Array) -> None:
     for name, span in list(work.spans.items())[:MAX_FILES]:
         if len(work.spans) > 1:
             before, after = rows[0] - span.begin, span.end - rows[-1]
+            file = work.log.path.with_name(name)
             work.remarks.append(
-                f"{work.log.path.with_name(name)}: {span.words()}; {max(before, 0.0):.3g} s before and "
+                f"{file}: {span.words()}; {max(before, 0.0):.3g} s before and "
                 f"{max(after, 0.0):.3g} s after the rows are left out"
             )
 

@@ -6,12 +6,15 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from typer.testing import CliRunner
 
+from boatsim.cli.commands import app
 from boatsim.errors import BadInput
 from boatsim.recordings.importing.convert import convert, recording_notes_text
 from boatsim.recordings.importing.mapping import parse_map
 from boatsim.recordings.importing.mapping_proposal import propose_map
 from boatsim.recordings.importing.several_logs import open_logs
+from boatsim.recordings.table import read
 
 CHANNELS = {"thrust_motor_N": (-50.0, 100.0)}
 EPOCH = 1.75e9  # [s] since 1970
@@ -173,3 +176,18 @@ def test_several_parts_of_a_log_to_use_become_those_of_the_recording(tmp_path):
     assert tomllib.loads(text)["runs"]["run"]["use"] == [list(part) for part in run.notes.use]
     with pytest.raises(BadInput, match="in order of time"):
         parse_map(table | {"use": [[5.0, 10.0], [9.0, 20.0]]}, "map.toml")
+
+
+def test_the_command_joins_two_files_by_the_map_that_it_proposed(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    files = [path.name for path in two_files(tmp_path, (EPOCH, EPOCH + 12.33))]
+    done = CliRunner().invoke(app, ["import", *files, "--propose", "map.toml"])
+    assert done.exit_code == 0, done.output
+    assert "boatsim import instruments.csv engine.csv --map map.toml" in done.output
+    text = Path("map.toml").read_text().replace("throttle", "thrust_motor_N")
+    Path("map.toml").write_text(text)
+    done = CliRunner().invoke(app, ["import", *files, "--map", "map.toml", "--out", "run/run.csv"])
+    assert done.exit_code == 0, done.output
+    check_columns(read("run/run.csv"), 12.4)
+    done = CliRunner().invoke(app, ["import", *files, "--map", "map.toml", "--out", "engine.csv"])
+    assert done.exit_code == 2 and "would overwrite the input" in done.output
