@@ -88,6 +88,11 @@ class ThrustCurve(ChannelEffect):
     words: ClassVar[str] = "a measured table gives the thrust from the raw command of the drive"
     shown_by: ClassVar[str] = "a staircase of raw commands"
     source: ClassVar[str] = "a bollard pull test of the drive"
+    formula: ClassVar[str] = (
+        r"T = k \left(T_i + (T_{i+1} - T_i)\,\frac{c - c_i}{c_{i+1} - c_i}\right),"
+        r"\qquad c_i \le c \le c_{i+1}"
+    )
+    symbols: ClassVar = {"factor": "k"}
     acts_on: ClassVar[str] = "thrust"
     stage: ClassVar[int] = MAPS
     transform_signal: ClassVar = transform_signal
