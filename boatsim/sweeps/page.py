@@ -44,7 +44,7 @@ def write_report(results: Results, folder: Path) -> None:
         sections=sections,
     )
     with replace_file(folder / NAME) as temporary:
-        temporary.write_text(page, encoding="utf-8")
+        temporary.write_text(page, encoding="utf-8", errors="replace")
 
 
 def _page_title(results: Results) -> str:

@@ -49,7 +49,7 @@ def write_index(folders: Sequence[Path], path: Path) -> list[IndexEntry]:
         raise BadInput(f"{path}: is no index page of boatsim and is kept; use --out FILE")
     page = index_html(found, ", ".join(folder.resolve().name for folder in folders), path.parent)
     with replace_file(path) as temporary:
-        temporary.write_text(page, encoding="utf-8")
+        temporary.write_text(page, encoding="utf-8", errors="replace")
     return found
 
 

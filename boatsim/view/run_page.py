@@ -83,7 +83,7 @@ class RunPage:
         samples = self._log.samples()
         page = run_html(self._scenario, result, samples, self._scene, self._command, self._files())
         with replace_file(self._folder / NAME) as temporary:
-            temporary.write_text(page, encoding="utf-8")
+            temporary.write_text(page, encoding="utf-8", errors="replace")
 
     def _files(self) -> list[tuple[str, str]]:
         """Return the files of the run with their contents; norms.json is written after the page."""
