@@ -27,6 +27,7 @@ from boatsim.cli.exits import LONGEST, one_line, print_error
 from boatsim.cli.run_many import plan_runs
 from boatsim.diagnosis.candidates import library_for
 from boatsim.diagnosis.loading import vessel_for
+from boatsim.drive.connections import HANDSHAKE_TIME, MOST_WAITING
 from boatsim.drive.driver_input import PATIENCE, DriverInput, Sticks
 from boatsim.drive.server import LARGEST as MESSAGE
 from boatsim.drive.server import STRANGE, TAKEN, Server
@@ -620,6 +621,21 @@ def test_21_one_drives_and_a_second_page_is_told_so(server: Server) -> None:
         '{"sticks": "abc", "moved": 0}',
         b"\xff\xfe",
         "x" * 5000,
+        '{"sticks": [%s, 0, 0], "moved": 0}' % ("9" * 400),
+        '{"sticks": [0, 0, 0], "moved": -%s}' % ("9" * 400),
+        '{"sticks": [0, 0, 0], "moved": 1e308}',
+        '{"sticks": [0, 0, 0], "moved": null}',
+        '{"sticks": [0, 0, 0], "moved": "1"}',
+        '{"sticks": [true, 0, 0], "moved": 0}',
+        '{"sticks": ["0.5", 0, 0], "moved": 0}',
+        '{"sticks": [[0], 0, 0], "moved": 0}',
+        '{"sticks": {"a": 0, "b": 0, "c": 0}, "moved": 0}',
+        '{"sticks": "010", "moved": 0}',
+        '{"sticks": [0, 0, 0], "moved": 0, "more": 0}',
+        '{"end": 1}',
+        '{"hidden": "true"}',
+        "null",
+        "9" * 400,
     ],
 )
 def test_22_what_is_no_message_of_the_page_ends_the_socket_and_moves_nothing(
@@ -630,7 +646,37 @@ def test_22_what_is_no_message_of_the_page_ends_the_socket_and_moves_nothing(
         with pytest.raises(Exception, match=f"{STRANGE}|1009|1007"):
             page.recv(5)
     until(lambda: server._driver is None)
-    assert server.hands.sticks() is None
+    assert server.hands.sticks() is None and not server.ended
+
+
+def test_23_connections_that_send_nothing_are_few_and_short_and_do_not_stop_the_driver(
+    server: Server,
+) -> None:
+    with dialled(server) as driver:
+        driver.send(json.dumps({"sticks": [0, 0, 0], "moved": 1.0}))
+        silent = [socket.create_connection(("127.0.0.1", server.port)) for _ in range(100)]
+        assert answer(server.address) == 200  # a new page is served all the same
+        until(lambda: sum(map(is_open, silent)) <= MOST_WAITING)
+        for surge in (0.0, 0.5):
+            driver.send(json.dumps({"sticks": [surge, 0, 0], "moved": 2.0}))
+        until(lambda: server.hands.sticks() not in (None, Sticks()))
+        for one in silent:
+            one.settimeout(HANDSHAKE_TIME + 3.0)
+            assert one.recv(1) == b""
+            one.close()
+        driver.send(json.dumps({"end": True}))
+        until(lambda: server.ended)
+
+
+def is_open(connection: socket.socket) -> bool:
+    """Whether the other side has left a connection open on which it sends nothing."""
+    connection.setblocking(False)
+    try:
+        return connection.recv(1, socket.MSG_PEEK) != b""
+    except BlockingIOError:
+        return True
+    except ConnectionError:
+        return False
 
 
 def until(true: Callable[[], bool], seconds: float = 10.0) -> None:
@@ -675,7 +721,7 @@ def test_every_line_of_the_page_has_its_test() -> None:
         int(n)
         for n in re.findall(r"^def test_(\d+)_", HERE.read_text(encoding="utf-8"), re.MULTILINE)
     }
-    assert lines == tests == set(range(1, 23))
+    assert lines == tests == set(range(1, 24))
 
 
 def test_the_page_states_the_limits_that_are() -> None:
@@ -692,5 +738,6 @@ def test_the_page_states_the_limits_that_are() -> None:
         f"{MAX_TOML_BYTES >> 20} MiB, {MAX_DEPTH} nested tables" in said
         and f"at most {LONGEST} characters" in said
     )
+    assert f"At most {MOST_WAITING} connections" in said and f"{HANDSHAKE_TIME:g} s" in said
     assert f"at most {MESSAGE} bytes" in said and f"silent for {PATIENCE:g} s" in said
     assert limits.MEMORY_PER_BYTE == 12 and limits.MAX_HEADER_BYTES == 1 << 20

@@ -13,11 +13,12 @@ from concurrent.futures import Future
 from contextlib import suppress
 from hashlib import sha256
 from importlib.resources import files
-from math import isfinite
 from re import DOTALL, search
 from typing import Any
 
-from boatsim.drive.driver_input import DriverInput, Sticks
+from boatsim.drive.connections import HANDSHAKE_TIME, WaitingConnections, server_logger
+from boatsim.drive.driver_input import DriverInput
+from boatsim.drive.messages import Movement, parse_message
 from boatsim.errors import BoatsimError
 
 HERE = "127.0.0.1"
@@ -61,6 +62,7 @@ class Server:
         self._hello = self._frame = self._last = ""
         self._driver: Any = None
         self._left_at: float | None = None  # when the last page was closed, if none is open
+        self._waiting = WaitingConnections()
         self._up: Future[int] = Future()
         self._loop = asyncio.new_event_loop()
         self._thread = threading.Thread(target=self._run_event_loop, name="page", daemon=True)
@@ -132,6 +134,7 @@ class Server:
 
     def _run_event_loop(self) -> None:
         asyncio.set_event_loop(self._loop)
+        self._loop.set_exception_handler(self._waiting.handle_loop_error)
         try:
             self._loop.run_until_complete(self._serve_until_closed())
         except BaseException as error:
@@ -147,6 +150,10 @@ class Server:
             HERE,
             self._wanted,
             process_request=self._respond,
+            create_connection=self._waiting.connection_class(self._sockets.ServerConnection),
+            logger=server_logger(),
+            open_timeout=HANDSHAKE_TIME,
+            backlog=self._waiting.most,
             max_size=LARGEST,
             compression=None,
             server_header=None,
@@ -156,6 +163,7 @@ class Server:
         ) as server:
             self._up.set_result(next(iter(server.sockets)).getsockname()[1])
             await self._over.wait()
+            self._waiting.closed = True
             if self._driver is not None and self._last:
                 with suppress(TimeoutError):
                     await asyncio.wait_for(self._driver.wait_closed(), FAREWELL)
@@ -202,6 +210,7 @@ class Server:
             await socket.close(TAKEN, "another page drives this boat already")
             return
         self._driver, self._left_at = socket, None
+        self._waiting.remove(socket)
         sending = asyncio.ensure_future(self._send_updates(socket))
         try:
             async for message in socket:
@@ -217,21 +226,14 @@ class Server:
 
     def _process_message(self, message: str | bytes) -> bool:
         """Process a message; return whether it has the form of the page's messages."""
-        try:
-            data = json.loads(message)
-            if data == {"end": True}:
-                self.ended = True
-            elif data == {"hidden": True}:
-                self.hands.release("page hidden")
-            else:
-                surge, sway, yaw = map(float, data["sticks"])
-                sticks, moved = Sticks(surge, sway, yaw), float(data["moved"])
-                if not all(isfinite(x) and abs(x) <= 1.0 for x in sticks) or not isfinite(moved):
-                    return False
-                self.hands.store_sticks(sticks, moved)
-        except (ValueError, TypeError, KeyError, RecursionError):
-            return False
-        return True
+        parsed = parse_message(message)
+        if isinstance(parsed, Movement):
+            self.hands.store_sticks(parsed.sticks, parsed.moved)
+        elif parsed == "end":
+            self.ended = True
+        elif parsed == "hidden":
+            self.hands.release("page hidden")
+        return parsed is not None
 
     async def _send_updates(self, socket: Any) -> None:
         """Send the greeting, then the latest frame whenever it has changed."""

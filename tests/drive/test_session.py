@@ -4,6 +4,7 @@ they are let go."""
 import asyncio
 import json
 import re
+import resource
 import socket
 import subprocess
 import sys
@@ -424,6 +425,25 @@ def test_goals_too_many_for_a_file_are_left_out_of_it_and_what_they_are_of_stays
     assert "l1_joystick" in str(task.scenario_toml([], 800.0)) and "from" not in str(
         task.scenario_toml([], 800.0)
     )
+
+
+def test_a_flood_of_connections_without_file_descriptors_costs_neither_driver_nor_log(
+    tmp_path: Path,
+) -> None:
+    out = tmp_path / "out"
+    with driving(out, "otter", "--seconds", "60") as (running, page):
+        used = len(list(Path(f"/proc/{running.pid}/fd").iterdir()))
+        resource.prlimit(running.pid, resource.RLIMIT_NOFILE, (used + 12, used + 12))
+        port = int(page.split(":")[2].partition("/")[0])
+        flood = [socket.create_connection(("127.0.0.1", port)) for _ in range(100)]
+        course = {0.0: (0, 0, 0), 1.0: (0.5, 0, 0), 3.0: (0, 0, 0)}
+        asyncio.run(_moved(page, course))
+        errors = running.communicate(timeout=60)[1]
+        for one in flood:
+            one.close()
+    assert running.returncode == 0 and "Traceback" not in errors and "accept" not in errors
+    log = read(out / "recording.csv")
+    assert log.t[-1] >= 3.0 and np.nanmax(log["sent_n_port_radps"]) > 10.0
 
 
 def test_a_port_that_is_taken_is_one_line(tmp_path: Path) -> None:
