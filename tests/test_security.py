@@ -38,6 +38,7 @@ from boatsim.physics.program import Program
 from boatsim.recordings import limits
 from boatsim.recordings.notes import notes_for
 from boatsim.recordings.table import read
+from boatsim.simulate import hull_assets, hull_xml_check
 from boatsim.view import viewer
 
 HERE = Path(__file__)
@@ -686,6 +687,26 @@ def until(true: Callable[[], bool], seconds: float = 10.0) -> None:
         time.sleep(0.01)
 
 
+@pytest.mark.parametrize(
+    "inside",
+    [
+        '<keyframe><key qpos="0"/></keyframe>',
+        '<worldbody><replicate count="100000000"><geom size="1"/></replicate></worldbody>',
+        '<asset><hfield nrow="100000" ncol="100000" size="1 1 1 1"/></asset>',
+        '<asset><mesh name="m" file="pipe.stl"/></asset>',
+        f"<worldbody>{5001 * '<geom/>'}</worldbody>",
+    ],
+)
+def test_24_a_hull_without_end_is_refused(tmp_path: Path, inside: str) -> None:
+    place = boats.written(tmp_path, "test_boat", boats.ROLL)
+    os.mkfifo(place / "pipe.stl")
+    (place / "hull.xml").write_text(f"<mujoco>{inside}</mujoco>")
+    (tmp_path / "still.toml").write_text(f'vessel = "test_boat/"\n{STILL}')
+    done = boatsim("run", tmp_path / "still.toml", "--out", tmp_path / "out")
+    assert done.exit_code == 2 and done.stderr.count("\n") == 1 and "test_boat/" in done.stderr
+    assert not (tmp_path / "out").exists()
+
+
 class Resources(HTMLParser):
     """Every address that a page names, and every script or style that stands in a tag."""
 
@@ -721,7 +742,7 @@ def test_every_line_of_the_page_has_its_test() -> None:
         int(n)
         for n in re.findall(r"^def test_(\d+)_", HERE.read_text(encoding="utf-8"), re.MULTILINE)
     }
-    assert lines == tests == set(range(1, 24))
+    assert lines == tests == set(range(1, 25))
 
 
 def test_the_page_states_the_limits_that_are() -> None:
@@ -739,5 +760,9 @@ def test_the_page_states_the_limits_that_are() -> None:
         and f"at most {LONGEST} characters" in said
     )
     assert f"At most {MOST_WAITING} connections" in said and f"{HANDSHAKE_TIME:g} s" in said
+    assert f"at most {hull_xml_check.MOST_ELEMENTS} elements" in said
+    assert f"{hull_xml_check.LARGEST >> 20} MiB of XML" in said
+    assert f"{hull_assets.LARGEST >> 20} MiB of meshes" in said
+    assert f"{hull_xml_check.MOST_CELLS / 1e6:.3g} million pixels" in said
     assert f"at most {MESSAGE} bytes" in said and f"silent for {PATIENCE:g} s" in said
     assert limits.MEMORY_PER_BYTE == 12 and limits.MAX_HEADER_BYTES == 1 << 20

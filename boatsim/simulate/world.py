@@ -1,10 +1,12 @@
 """Builds the MuJoCo model of a vessel in a tank. Axes are MuJoCo's: z up, y to port."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TypeAlias
+from warnings import catch_warnings, filterwarnings
 
 import mujoco
 import numpy as np
@@ -13,7 +15,8 @@ from boatsim.errors import BadInput, BadPhysics, unknown_name
 from boatsim.physics.content import content_root
 from boatsim.physics.signals import Array
 from boatsim.physics.vessel import Vessel
-from boatsim.simulate.hull_xml_check import check_hull_file
+from boatsim.simulate.hull_assets import check_assets
+from boatsim.simulate.hull_xml_check import check_hull_file, check_hull_text
 
 Model: TypeAlias = mujoco.MjModel  # for modules that must not import mujoco
 SMALLEST, LARGEST = 1e-3, 1e6  # [m] of a tank
@@ -103,21 +106,48 @@ def build_model(
     spec.option.disableflags |= mujoco.mjtDisableBit.mjDSBL_AUTORESET
     spec.nuserdata = userdata
     size_tank(spec, tank, vessel)
-    hull = add_hull(spec, vessel)
-    set_inertia(hull, vessel)
-    add_joints(hull, vessel)
-    if tank.walls:
-        add_contacts(spec, wall_solref or SOFT_WALL, friction)
-    if not show:
-        remove_visual_parts(spec)
-    try:
-        model = spec.compile()
-    except ValueError as error:  # sizes, masses and meshes of the hull: the tank is ours
-        raise BadInput(
-            f"{Path(vessel.path) / vessel.hull}: no hull that MuJoCo can build: {error}"
-        ) from None
+    with _without_warnings():
+        hull = add_hull(spec, vessel)
+        set_inertia(hull, vessel)
+        add_joints(hull, vessel)
+        if tank.walls:
+            add_contacts(spec, wall_solref or SOFT_WALL, friction)
+        if not show:
+            remove_visual_parts(spec)
+        model = _compile(spec, vessel)
     check_mass_matrix(model, vessel)
     return model
+
+
+def _compile(spec: mujoco.MjSpec, vessel: Vessel) -> mujoco.MjModel:
+    """Compile a specification; raises BadInput for sizes, masses and meshes of the hull."""
+    try:
+        return spec.compile()
+    except (ValueError, RuntimeError, mujoco.FatalError) as error:  # the tank is ours
+        reason = " ".join(str(error).split())
+        raise BadInput(
+            f"{Path(vessel.path) / vessel.hull}: no hull that MuJoCo can build: {reason}"
+        ) from None
+
+
+@contextmanager
+def _without_warnings() -> Iterator[None]:
+    """Drop MuJoCo's warnings that options of a hull differ from those of the tank, which apply.
+
+    MuJoCo would print them and write them to a file in the working folder.
+    """
+    before = mujoco.get_mju_user_warning()
+    mujoco.set_mju_user_warning(_ignore_warning)
+    try:
+        with catch_warnings():
+            filterwarnings("ignore", message=r"(?s).*when attaching")
+            yield
+    finally:
+        mujoco.set_mju_user_warning(before)
+
+
+def _ignore_warning(_: str) -> None:
+    """Drop a warning of MuJoCo."""
 
 
 def size_tank(spec: mujoco.MjSpec, tank: Tank, vessel: Vessel) -> None:
@@ -214,7 +244,9 @@ def read_drawing(path: Path, vessel: Vessel) -> tuple[mujoco.MjSpec, tuple[float
     Raises:
         BadInput: If MuJoCo can not read it or it has no hull.
     """
-    if not vessel.hull_xml:
+    if vessel.hull_xml:
+        check_hull_text(vessel.hull_xml, path)
+    else:
         check_hull_file(path)
     try:
         if vessel.hull_xml:
@@ -224,6 +256,7 @@ def read_drawing(path: Path, vessel: Vessel) -> tuple[mujoco.MjSpec, tuple[float
         bodies = [body.name for body in drawing.bodies]
         for part in (*drawing.geoms, *drawing.sites, *drawing.meshes):
             _ = part.name  # raises an error unless it is UTF-8
+        check_assets(drawing, path)
     except (ValueError, TypeError) as error:  # a TypeError for a path that is not UTF-8
         reason = " ".join(str(error).split())
         if isinstance(error, TypeError):
