@@ -280,7 +280,7 @@ def load_class(
         name: Name, or path of a .py file.
         base_folder: Folder of the file that names the class; relative paths start there.
         named: Whether the user gives the name directly; then a Python file outside trusted folders
-            may run.
+            may run if the name is its path, and not one in the folders of the user's content.
 
     Raises:
         BadInput: If there is no such class, or its file is not trusted.
@@ -292,11 +292,11 @@ def load_class(
             path = find_content_file("controller", name, base_folder)
         else:
             path = _user_file(kind, name, base_folder)
-        name = path.stem
         if path.parent == content_root() / KINDS["controller"]:
-            module = import_module_file(path, f"boatsim.controllers.{name}")
+            module = import_module_file(path, f"boatsim.controllers.{path.stem}")
         else:
-            module = _user_module(path, named)
+            module = _user_module(path, named and _is_named_file(path, name, base_folder))
+        name = path.stem
     found = getattr(module, camel_case(name), None)
     if not isinstance(found, type):
         raise BadInput(f"{module.__file__}: no class {camel_case(name)} in it")
@@ -316,6 +316,12 @@ def _user_file(kind: str, name: str, base_folder: Path | None) -> Path:
     if found is None:
         raise BadInput(unknown_name(kind, name, all_names(kind)))
     return found
+
+
+def _is_named_file(path: Path, name: str, base_folder: Path | None) -> bool:
+    """Whether a name is the path of a file, so that no link in a content folder leads to it."""
+    file = (base_folder or Path()) / (name if name.endswith(".py") else f"{name}.py")
+    return file.is_file() and file.resolve() == path.resolve()
 
 
 def effect_address(effect: type) -> str:

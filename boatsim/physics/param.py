@@ -1,7 +1,7 @@
 """Numbers that files may set: bounds, unit and description, checked on construction."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import field, fields
 from typing import NamedTuple, Self, TypeVar
 
@@ -230,6 +230,34 @@ def code_parameter(words: str) -> float:
     return field(default=UNSET, kw_only=True, repr=False, metadata={"param": about, "ours": True})
 
 
+def _wrong_type(value: object, declared: object) -> str:
+    """What is allowed in place of a value of a file; "" if it has the declared type.
+
+    Numbers are checked with their bounds, and other types by the class that declares them.
+    """
+    if declared in (str, "str") and not isinstance(value, str):
+        return "a text"
+    if declared in (bool, "bool") and not isinstance(value, bool):
+        return "true or false"
+    if declared == Sequence[str] and not _is_text_or_texts(value):
+        return "a name or a list of names"
+    if declared == dict[str, float] and not _is_table_of_numbers(value):
+        return "a table of numbers"
+    return ""
+
+
+def _is_text_or_texts(value: object) -> bool:
+    if isinstance(value, list | tuple):
+        return all(isinstance(one, str) for one in value)
+    return isinstance(value, str)
+
+
+def _is_table_of_numbers(value: object) -> bool:
+    if not isinstance(value, Mapping):
+        return False
+    return all(type(one) in (int, float) and math.isfinite(one) for one in value.values())
+
+
 class CheckedParameters:
     """Base class of settings that checks the bounds of `param` fields.
 
@@ -256,13 +284,16 @@ class CheckedParameters:
             BadInput: A setting does not exist (the message contains the nearest valid name), or a
                 value is not allowed.
         """
-        names = []
+        types: dict[str, object] = {}
         for declared in fields(cls):  # type: ignore[arg-type]
             if declared.init and "ours" not in declared.metadata:
-                names.append(declared.name)
-        for key in settings:
-            if key not in names:
-                raise BadInput(unknown_name(f"{cls.__name__}: setting", key, names))
+                types[declared.name] = declared.type
+        for key, value in settings.items():
+            if key not in types:
+                raise BadInput(unknown_name(f"{cls.__name__}: setting", str(key), types))
+            allowed = _wrong_type(value, types[key])
+            if allowed:
+                raise BadInput(f"{cls.__name__}: {key} = {value!r}; allowed is {allowed}")
         return cls(**settings)
 
     def __post_init__(self) -> None:

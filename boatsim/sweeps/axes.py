@@ -7,9 +7,11 @@ from math import isfinite
 import numpy as np
 
 from boatsim.errors import BadInput
+from boatsim.files import INTEGER_LIMIT
 from boatsim.sweeps.keys import Target, Value, parse_target
 
 MOST_VALUES = 100_000  # of one axis; more is a mistake in the number
+MOST_DIGITS = 18  # of an integer, so that it has at most 64 bits
 SIGNIFICANT_DIGITS = 12  # of a value, so that 0.1 is not written as 0.10000000000000001
 
 
@@ -73,6 +75,13 @@ def make_axis(key: str, values: str | Sequence[Value]) -> Axis:
             values = _parse_range(key, values)
         else:
             values = parse_values(values)
+    for value in values:
+        if not isinstance(value, bool | int | float | str):
+            raise BadInput(
+                f"--vary {key}: {value!r} is no value; allowed are numbers, texts, true and false"
+            )
+        if isinstance(value, int) and abs(value) >= INTEGER_LIMIT:
+            raise BadInput(f"--vary {key}: an integer has more than 64 bits")
     if not values or len(set(values)) < len(values):
         raise BadInput(f"--vary {key}: {len(values)} values, of which two are equal")
     return Axis(parse_target(key), tuple(values))
@@ -83,6 +92,9 @@ def parse_values(text: str) -> list[Value]:
 
     Args:
         text: Values; each is true, false, a number, or else a text.
+
+    Raises:
+        BadInput: An integer has more than 64 bits.
     """
     return list(map(_parse_value, text.split(",")))
 
@@ -91,6 +103,11 @@ def _parse_value(text: str) -> Value:
     text = text.strip()
     if text in ("true", "false"):
         return text == "true"
+    digits = text.lstrip("+-")
+    if digits.isdecimal() and len(digits) > MOST_DIGITS:
+        raise BadInput(
+            f"{text[:12]}... is an integer of {len(digits)} digits; allowed are {MOST_DIGITS}"
+        )
     for kind in (int, float):
         try:
             return kind(text)
@@ -112,6 +129,8 @@ def _parse_range(key: str, text: str) -> list[Value]:
     low, high, count = map(float, numbers)
     if count != int(count) or not 2 <= count <= MOST_VALUES:
         raise BadInput(f"--vary {key}={text}: COUNT = {count:g}; allowed are 2 to {MOST_VALUES}")
+    if not isfinite(high - low):
+        raise BadInput(f"--vary {key}={text}: allowed are ends whose difference is a number")
     if low == high or (log and min(low, high) <= 0.0):
         both = ", both above 0" if log else ""
         raise BadInput(f"--vary {key}={text}: allowed are two different ends{both}")

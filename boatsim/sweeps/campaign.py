@@ -8,6 +8,7 @@ from typing import Any
 
 from boatsim.interruption import deferred_signals
 from boatsim.progress import Report, ignore_progress
+from boatsim.sweeps.entries import AnyEntry
 from boatsim.sweeps.journal import Entry, Journal
 from boatsim.sweeps.workers.base import Backend, Task, Work
 
@@ -43,6 +44,7 @@ class Campaign:
         tasks: Number and argument of each task.
         work: Function that performs a task.
         label: Word for several tasks, in progress messages.
+        form: Form of the results.
     """
 
     folder: Path
@@ -51,6 +53,7 @@ class Campaign:
     tasks: Iterable[Task]
     work: Work
     label: str
+    form: type[AnyEntry] = AnyEntry
 
 
 def run_campaign(campaign: Campaign, backend: Backend, report: Report = ignore_progress) -> Outcome:
@@ -62,11 +65,12 @@ def run_campaign(campaign: Campaign, backend: Backend, report: Report = ignore_p
         report: Function to call with the progress.
 
     Raises:
-        BadInput: The folder belongs to another campaign, or is in use.
+        BadInput: The folder belongs to another campaign or is in use, or its journal is damaged.
         OSError: The journal cannot be written.
     """
     count = campaign.count
-    with Journal(campaign.folder, campaign.about) as journal, deferred_signals() as stop:
+    opened = Journal(campaign.folder, campaign.about, campaign.form, count)
+    with opened as journal, deferred_signals() as stop:
         before = len(journal.done)
         start = monotonic()
         failed = sum(entry["failure"] is not None for entry in journal.done.values())

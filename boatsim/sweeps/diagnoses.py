@@ -17,6 +17,7 @@ from boatsim.errors import BadInput, BoatsimError
 from boatsim.progress import Report, ignore_progress
 from boatsim.sweeps import table
 from boatsim.sweeps.campaign import Campaign, Outcome, run_campaign
+from boatsim.sweeps.entries import DiagnosisEntry
 from boatsim.sweeps.journal import Entry
 from boatsim.sweeps.runs import failure_entry
 from boatsim.sweeps.workers.base import Backend
@@ -121,7 +122,8 @@ def diagnose_all(
     for path, name in zip(paths, output_folders(paths), strict=True):
         tasks.append(DiagnosisTask(str(path), options, str(folder / name)))
     report(LABEL, 0.0, "starting")
-    campaign = Campaign(folder, about, len(paths), enumerate(tasks), diagnose_task, LABEL)
+    numbered = enumerate(tasks)
+    campaign = Campaign(folder, about, len(paths), numbered, diagnose_task, LABEL, DiagnosisEntry)
     done = run_campaign(campaign, backend, report)
     units: dict[str, str] = {}
     for entry in done.entries.values():

@@ -8,6 +8,7 @@ from boatsim.errors import BadInput, unknown_name
 from boatsim.progress import Report, ignore_progress
 from boatsim.sweeps import page
 from boatsim.sweeps.campaign import Campaign, run_campaign
+from boatsim.sweeps.entries import RunEntry
 from boatsim.sweeps.plan import Plan
 from boatsim.sweeps.results import Results
 from boatsim.sweeps.runs import perform_run
@@ -49,7 +50,8 @@ def run_plan(
     for name in metrics:
         if name not in known:
             raise BadInput(unknown_name("metric", name, known))
-    campaign = Campaign(folder, plan.definition(), plan.run_count, plan.tasks(), perform_run, LABEL)
+    about, tasks = plan.definition(), plan.tasks()
+    campaign = Campaign(folder, about, plan.run_count, tasks, perform_run, LABEL, RunEntry)
     done = run_campaign(campaign, choose_backend(jobs, ray), report)
     results = Results(plan, done.entries, tuple(metrics))
     results.write(folder)

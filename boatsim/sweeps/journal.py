@@ -6,13 +6,14 @@ was killed while it wrote, is ignored and overwritten.
 
 import json
 import os
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from fcntl import LOCK_EX, LOCK_NB, flock
 from pathlib import Path
 from typing import IO, Any, Self
 
 from boatsim.errors import BadInput
-from boatsim.files import AppendedFile
+from boatsim.files import AppendedFile, validate_table
+from boatsim.sweeps.entries import AnyEntry
 
 NAME = "journal.jsonl"
 Entry = Mapping[str, Any]  # result of a task, as JSON holds it
@@ -27,18 +28,29 @@ class Journal:
         done: Result of each finished task, by its number.
     """
 
-    def __init__(self, folder: Path, about: Mapping[str, Any]) -> None:
+    def __init__(
+        self,
+        folder: Path,
+        about: Mapping[str, Any],
+        form: type[AnyEntry] = AnyEntry,
+        count: int | None = None,
+    ) -> None:
         """Open or create the journal of a folder.
 
         Args:
             folder: Folder of the campaign.
             about: Definition of the campaign.
+            form: Form of the results.
+            count: Number of tasks; None if it is unknown.
 
         Raises:
-            BadInput: The folder belongs to another campaign, or another process uses it.
+            BadInput: The folder belongs to another campaign, another process uses it, or a result
+                is damaged.
         """
         folder.mkdir(parents=True, exist_ok=True)
         path = folder / NAME
+        if path.exists() and not path.is_file():
+            raise BadInput(f"{path} is no regular file; choose another --out")
         file = os.fdopen(os.open(path, os.O_RDWR | os.O_CREAT, 0o666), "r+b", buffering=0)
         self.done: dict[int, Entry] = {}
         try:
@@ -46,10 +58,10 @@ class Journal:
             first, entries, size = _read_journal(file)
             if size:
                 _check_same(folder, first, about)
+            self.done = _checked_entries(path, entries, form, count)
         except BaseException:
             file.close()
             raise
-        self.done = {entry["run"]: entry for entry in entries}
         file.truncate(size)
         self._growing = AppendedFile(file, path, size)
         if not size:
@@ -99,7 +111,7 @@ def _read_journal(file: IO[bytes]) -> tuple[bytes, list[Entry], int]:
         if size:
             try:
                 entries.append(json.loads(line))
-            except ValueError:  # written while the machine lost its power
+            except (ValueError, RecursionError):  # written while the machine lost its power
                 break
         else:
             first = line
@@ -107,14 +119,30 @@ def _read_journal(file: IO[bytes]) -> tuple[bytes, list[Entry], int]:
     return first, entries, size
 
 
+def _checked_entries(
+    path: Path, entries: Sequence[Entry], form: type[AnyEntry], count: int | None
+) -> dict[int, Entry]:
+    """Results by the number of their task; raises BadInput for the first with a mistake."""
+    checked: dict[int, Entry] = {}
+    for number, entry in enumerate(entries, 2):  # the first line is the definition
+        try:
+            found = validate_table(form, entry, f"{path}, line {number}")
+            if count is not None and found.run >= count:
+                raise BadInput(f"{path}, line {number}: run = {found.run}; there are {count}")
+        except BadInput as error:
+            raise BadInput(f"{error}; delete the line to compute it again") from None
+        checked[found.run] = found.model_dump(mode="json", exclude_unset=True)
+    return checked
+
+
 def _check_same(folder: Path, first: bytes, about: Mapping[str, Any]) -> None:
     """Raise BadInput for the first difference between two campaigns."""
     try:
         stored = json.loads(first)
-    except ValueError:
-        raise BadInput(
-            f"{folder / NAME} is not a journal of boatsim; choose another --out"
-        ) from None
+    except (ValueError, RecursionError):
+        stored = None
+    if not isinstance(stored, dict):
+        raise BadInput(f"{folder / NAME} is not a journal of boatsim; choose another --out")
     old = _flatten(stored)
     new = _flatten(json.loads(_encode_line(about)))
     for key in new | old:

@@ -26,6 +26,7 @@ KeyPath: TypeAlias = "tuple[str | int, ...]"  # keys and indices that lead to a 
 Operation = Literal["", "+", "*"]  # replace the specified value, add to it, or multiply it
 
 OF_VESSEL = ("body", "geometry")  # tables of a vessel's file, which [set.body] changes
+MOST_DIGITS = 9  # of the number of a [[goal]] that are read; no scenario has so many
 NONE = "none"  # value that removes a table
 NOT_VARIED = ("about", "norms", "noise_widens_guards", "check")
 
@@ -208,8 +209,8 @@ def _find_effect(
 def _find_goal(table: ScenarioTable, rest: Sequence[str]) -> KeyPath:
     """Path of `goal.u_mps`, the only [[goal]] with that key, or of `goal.2.u_mps`, the second."""
     goals = array_of_tables(table.get("goal"))
-    if rest and rest[0].isdigit():
-        number = int(rest[0])
+    if rest and rest[0].isdecimal():
+        number = int(rest[0][:MOST_DIGITS])
         if not 1 <= number <= len(goals):
             raise BadInput(
                 f"goal.{number}: there is no such [[goal]]; the scenario has {len(goals)}, "

@@ -10,7 +10,7 @@ import numpy as np
 
 from boatsim.errors import BadInput, unknown_name
 from boatsim.physics.signals import Array
-from boatsim.sweeps.axes import parse_values
+from boatsim.sweeps.axes import is_number, parse_values
 from boatsim.sweeps.keys import Target, Value, parse_target
 
 CALL = re.compile(r"(\w+)\s*\((.*)\)")
@@ -175,7 +175,7 @@ def make_sampled_key(key: str, call: str) -> SampledKey:
 def _check_numbers(option: str, name: str, values: Sequence[Value]) -> None:
     distribution = DISTRIBUTIONS[name]
     expected = ", ".join(distribution.numbers)
-    finite = [value for value in values if isinstance(value, int | float) and isfinite(value)]
+    finite = [value for value in values if is_number(value) and isfinite(float(value))]
     if len(finite) < len(values) or len(values) != len(distribution.numbers):
         raise BadInput(f"{option}: {name} takes numbers: {expected}")
     if fault := distribution.fault(*values):

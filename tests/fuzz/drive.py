@@ -9,11 +9,11 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass, field
 from types import FrameType
+from typing import Any
 
 from hypothesis import HealthCheck, Phase, given, seed, settings
 from hypothesis import strategies as st
 
-from tests.fuzz.mutate import Edit, edits
 from tests.fuzz.readers import Reader
 
 PATIENCE = 10.0  # [s] for one file; a longer wait is a hang
@@ -99,8 +99,8 @@ def _round(reader: Reader, count: int, number: int, found: Found) -> None:
         phases=[Phase.generate],
         suppress_health_check=list(HealthCheck),
     )
-    @given(st.sampled_from(reader.seeds()), edits(reader.between))
-    def one(content: bytes, changes: list[Edit]) -> None:
+    @given(st.sampled_from(reader.seeds()), reader.edits)
+    def one(content: bytes, changes: list[Any]) -> None:
         for change in changes:
             content = change.of(content)
         begin = time.perf_counter()

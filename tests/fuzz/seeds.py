@@ -1,5 +1,6 @@
 """Whole files that mutations begin from, and what stands whole beside a mutated one."""
 
+import json
 import re
 import shutil
 import tempfile
@@ -13,6 +14,9 @@ import rerun as rr
 from pyarrow import parquet
 
 from boatsim.physics.content import content_root
+from boatsim.sweeps.axes import make_axis
+from boatsim.sweeps.plan import Plan, make_plan
+from boatsim.sweeps.sampled_keys import make_sampled_key
 
 DATA = Path(__file__).parents[1] / "data"
 LOGS = DATA / "logs"
@@ -83,7 +87,7 @@ TABLE = "Time [s];Latitude;Longitude;Heading;Rate [deg/s];Port;Starboard\n"
 def folder() -> Path:
     """Where mutated files lie, gone with the process; what stands beside them is whole."""
     place = Path(_kept().name)
-    for name in ("noted", "boat", "hull", "map", "bag", "bag_about"):
+    for name in ("noted", "boat", "hull", "map", "bag", "bag_about", "sweep"):
         (place / name).mkdir()
     (place / "noted" / "run.csv").write_bytes(csv_file())
     boat = content_root() / "models" / "trial_boat"
@@ -149,6 +153,87 @@ def notes() -> list[bytes]:
 def scenarios() -> list[bytes]:
     """Scenarios, one with all that one may have."""
     return [SCENARIO.encode(), *files(*(f"scenarios/{path}" for path in SCENARIOS))()]
+
+
+DESCRIBED = """
+[[effect]]
+use = "described_force"
+name = "swirl"
+axis = "yaw"
+of = ["surge_speed", "abs_yaw_rate"]
+acts = "within"
+coefficient = 0.3
+begin = 1.0
+end = 9.0
+[[effect]]
+use = "servo"
+name = "slow"
+on = ["steer_port_rad"]
+[[effect]]
+use = "command_delay"
+on = ["thrust_port_N", "thrust_starboard_N"]
+delay = 0.1
+"""
+
+
+def vessels() -> list[bytes]:
+    """Vessels, with effects of many kinds."""
+    names = ("trial_boat", "joystick_boat", "kvlcc2_mmg", "mariner", "otter")
+    whole = files(*(f"models/{name}/vessel.toml" for name in names))()
+    return [*whole, whole[0] + DESCRIBED.encode()]
+
+
+OF_EXPRESSIONS = "joystick_boat/berth"
+EXPRESSIONS = (
+    "vary fan_wind.speed=0:0.5:3",
+    "vary controller.use=l1_joystick,pid_autopilot",
+    "vary body.mass*=0.9:1.1:5:log",
+    "vary goal.1.sway_mps+=0.01,0.02",
+    "vary load=heavy,light",
+    "vary start.x,start.y=0.1,-0.1",
+    "draw linear_damping.surge*=normal(1.0, 0.1)",
+    "draw seed=choice(1, 2, 3)",
+    "draw body.mass=truncated(5, 1, 4, 6)",
+    "draw current.north=lognormal(0.1, 0.3)",
+    "draw sensors.speed_sd=loguniform(0.001, 0.1)",
+    "draw start.psi=triangular(-1, 0, 1)",
+    "column -Heading * deg + 90 * deg",
+    "column Port / 60 * rpm - 0.5",
+)
+
+
+def expressions() -> list[bytes]:
+    """Texts of a command line."""
+    return [text.encode() for text in EXPRESSIONS]
+
+
+ABOUT = {"boatsim": "1", "scenarios": ["a"], "vary": {"body.mass": [5.0, 6.0]}, "seed": 0}
+NORMS = {"yaw_rate_rms": [0.2, "deg/s"], "heading_at_end": [None, "deg"]}
+
+
+@cache
+def plan() -> Plan:
+    """The sweep of the journals."""
+    sampled = make_sampled_key("start.psi", "normal(0, 0.1)")
+    return make_plan([OF_EXPRESSIONS], [make_axis("body.mass", [5.0, 6.0])], [sampled], 4, 0)
+
+
+def journals() -> list[bytes]:
+    """A sweep that has begun, with and without a failure."""
+    lines: list[object] = [ABOUT]
+    for run in range(4):
+        lines.append({"run": run, "failure": None, "met": True, "norms": NORMS})
+    failed = [*lines, {"run": 5, "failure": "diverged"}]
+    return ["".join(f"{json.dumps(one)}\n" for one in some).encode() for some in (lines, failed)]
+
+
+def messages() -> list[bytes]:
+    """What a page sends."""
+    return [
+        b'{"sticks": [0, 0, 0], "moved": 1.7e9}\n{"sticks": [0.5, -1, 1], "moved": 1732000000.123}',
+        b'{"hidden": true}',
+        b'{"end": true}',
+    ]
 
 
 def table() -> str:
