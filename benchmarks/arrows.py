@@ -22,7 +22,7 @@ from boatsim.physics.content import PACKAGES
 HOME = Path(__file__).parents[1]
 OUT = HOME / "docs" / "arrows.svg"
 LAYERS = (  # a module may import from its own folder and from those in the lines above it
-    "errors files quiet interruption version progress atomic_folder",
+    "errors arguments files quiet interruption version progress atomic_folder",
     "physics",
     "recordings control",
     "simulate",

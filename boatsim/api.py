@@ -2,14 +2,25 @@
 
 Everything is available as `boatsim.NAME` and imported at first use. Units are SI and radians, axes
 are SNAME, as in files. Input that can not be used raises `boatsim.errors.BadInput` with a message
-of one line.
+of one line, an argument of a wrong type a `TypeError` with its name.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, get_args
 
+from boatsim.arguments import (
+    check_instance,
+    checked_choice,
+    checked_mapping,
+    checked_name,
+    checked_names,
+    checked_number,
+    checked_whole,
+    optional_name,
+    type_error,
+)
 from boatsim.diagnosis import pipeline
 from boatsim.diagnosis.checks.data_cleaning import drop_faulty_values
 from boatsim.diagnosis.config import Given, from_settings
@@ -49,7 +60,7 @@ from boatsim.sweeps.designs import Design
 from boatsim.sweeps.execute import run_plan
 from boatsim.sweeps.indices import Index, sensitivity_indices
 from boatsim.sweeps.keys import Value
-from boatsim.sweeps.plan import make_plan
+from boatsim.sweeps.plan import MOST_RUNS, make_plan
 from boatsim.sweeps.results import Results
 from boatsim.sweeps.sampled_keys import make_sampled_key
 from boatsim.sweeps.summary import Pair, Spread, compare_controllers, metric_spreads
@@ -59,6 +70,8 @@ if TYPE_CHECKING:
     import pyarrow as pa
     from matplotlib.figure import Figure
 
+LONGEST_HORIZON = 86400.0  # [s] of a free run, as of a scenario
+MOST_JOBS = 10_000  # processes of a sweep; more is a mistake
 # Name of shipped content, or path of a file or folder
 Name = str | Path
 Names = Name | Sequence[Name]
@@ -230,7 +243,7 @@ class Diagnosis:
         Args:
             folder: Folder of the files; it is created if needed.
         """
-        output_files.write_diagnosis(self.result, Path(folder))
+        output_files.write_diagnosis(self.result, Path(checked_name("folder", folder)))
 
     def __repr__(self) -> str:
         """Verdict and sentence; all results would fill pages."""
@@ -336,7 +349,7 @@ def load_vessel(name: Name, load: Names = ()) -> Vessel:
     >>> vessel.dof, vessel.length
     (('surge', 'sway', 'yaw'), 1.25)
     """
-    return vessels.load_vessel(str(name), _name_list(load))
+    return vessels.load_vessel(checked_name("name", name), checked_names("load", load))
 
 
 def load_scenario(
@@ -362,7 +375,9 @@ def load_scenario(
     >>> scenario.vessel.body.mass, len(boatsim.run(scenario).recording.t)
     (6.0, 251)
     """
-    return load_with_controller(str(name), _optional_text(controller), vessel, changes)
+    _check_vessel(vessel)
+    own = optional_name("controller", controller)
+    return load_with_controller(checked_name("name", name), own, vessel, changes)
 
 
 def run(
@@ -396,6 +411,10 @@ def run(
     >>> float(done.recording["y_m"][-1]) > 0.9  # [m] to starboard
     True
     """
+    _check_vessel(vessel)
+    out = optional_name("out", out)
+    if seed is not None:
+        seed = checked_whole("seed", seed)
     if out is not None and vessel is not None and not _matches_its_file(vessel):
         vessel = vessel.save(f"{out}_vessel")
     loaded = _resolve_scenario(scenario, controller, vessel)
@@ -436,7 +455,10 @@ def _resolve_scenario(
 ) -> Scenario:
     """The scenario of a name with another controller or vessel, or the given `Scenario`."""
     if not isinstance(given, Scenario):
-        return load_with_controller(str(given), _optional_text(controller), vessel)
+        if not isinstance(given, Name):
+            raise type_error("scenario", given, "a name, a path or a Scenario")
+        name, own = checked_name("scenario", given), optional_name("controller", controller)
+        return load_with_controller(name, own, vessel)
     if controller is not None or vessel is not None:
         raise BadInput(
             f"{given.name}: controller and vessel are allowed with the name of a scenario only; "
@@ -462,10 +484,11 @@ def read(path: Name, vessel: Name | None = None, load: Names = ()) -> Recording:
     >>> log.notes.vessel, log.unit("psi_rad")
     ('joystick_boat', 'rad')
     """
-    file = Path(path)
+    file = Path(checked_name("path", path))
+    own, loads = optional_name("vessel", vessel), checked_names("load", load)
     if vessel is None and not notes_for(file).notes.vessel:
         return table.read(file)
-    recording, _ = open_recording(file, _optional_text(vessel), _name_list(load))
+    recording, _ = open_recording(file, own, loads)
     return recording
 
 
@@ -493,9 +516,10 @@ def export(recording: Name | Recording | Run, path: Name) -> int:
     """
     if isinstance(recording, Run):
         recording = recording.recording
+    file = Path(checked_name("path", path))
     if not isinstance(recording, Recording):
-        recording = read(recording_file(recording))
-    return write_mcap(recording, Path(path))
+        recording = read(recording_file(Path(checked_name("recording", recording))))
+    return write_mcap(recording, file)
 
 
 def diagnose(
@@ -539,16 +563,21 @@ def diagnose(
     True
     >>> found.write("out/diagnosis")
     """
+    if horizon is not None:
+        horizon = _checked_horizon(horizon)
+    changed: Mapping[str, Any] = {}
+    if settings is not None:
+        changed = checked_mapping("settings", settings)
     return Diagnosis(
         pipeline.diagnose(
-            runs=_path_list(runs),
-            hold_out=_path_list(hold_out),
-            vessel=_optional_text(vessel),
-            load=_name_list(load),
-            library=_name_list(library),
-            without=_name_list(without),
+            runs=_path_list("runs", runs),
+            hold_out=_path_list("hold_out", hold_out),
+            vessel=optional_name("vessel", vessel),
+            load=checked_names("load", load),
+            library=checked_names("library", library),
+            without=checked_names("without", without),
             horizon=horizon,
-            config=from_settings(settings or {}),
+            config=from_settings(changed),
         )
     )
 
@@ -578,7 +607,9 @@ def replay(
     >>> sorted(simulated.signals)
     ['psi_rad', 'segment', 'x_m', 'y_m']
     """
-    parts, replayed_vessel = open_parts(Path(recording), _optional_text(vessel), _name_list(load))
+    horizon = _checked_horizon(horizon)
+    file, own = Path(checked_name("recording", recording)), optional_name("vessel", vessel)
+    parts, replayed_vessel = open_parts(file, own, checked_names("load", load))
     stretches: list[FreeRun] = []
     for part in parts:
         cleaned = drop_faulty_values(part, replayed_vessel)
@@ -633,26 +664,43 @@ def sweep(
     ('|heading_at_end|', 'l1_joystick', 4)
     """
     axes = []
-    for key, values in (vary or {}).items():
-        if not isinstance(values, str):
-            values = list(values)
-        axes.append(make_axis(key, values))
-    sampled = [make_sampled_key(key, law) for key, law in (draw or {}).items()]
-    plan = make_plan(_name_list(scenarios), axes, sampled, runs, seed, design)
-    return Sweep(*run_plan(plan, Path(out), jobs, ray, _name_list(norms), report), Path(out))
+    for key, values in checked_mapping("vary", vary or {}).items():
+        axes.append(make_axis(key, _checked_values(f"vary[{key!r}]", values)))
+    sampled = []
+    for key, law in checked_mapping("draw", draw or {}).items():
+        if not isinstance(law, str):
+            raise type_error(f"draw[{key!r}]", law, 'a distribution such as "normal(0.7, 0.05)"')
+        sampled.append(make_sampled_key(key, law))
+    runs, seed = checked_whole("runs", runs, 1, MOST_RUNS), checked_whole("seed", seed)
+    checked_choice("design", design, get_args(Design))
+    if jobs is not None:
+        jobs = checked_whole("jobs", jobs, 1, MOST_JOBS)
+    if ray is not None:
+        check_instance("ray", ray, str, "an address")
+    if not callable(report):
+        raise type_error("report", report, "a function")
+    folder, metrics = Path(checked_name("out", out)), checked_names("norms", norms)
+    plan = make_plan(checked_names("scenarios", scenarios), axes, sampled, runs, seed, design)
+    return Sweep(*run_plan(plan, folder, jobs, ray, metrics, report), folder)
 
 
-def _path_list(names: Names) -> list[Path]:
-    return list(map(Path, _name_list(names)))
+def _checked_values(argument: str, values: object) -> str | list[Any]:
+    """Values along an axis of a sweep."""
+    if isinstance(values, str):
+        return values
+    if not isinstance(values, Iterable) or isinstance(values, bytes | Mapping):
+        raise type_error(argument, values, 'a list of values or "LOW:HIGH:COUNT"')
+    return list(values)
 
 
-def _optional_text(name: Name | None) -> str | None:
-    if name is None:
-        return None
-    return str(name)
+def _checked_horizon(horizon: object) -> float:
+    return checked_number("horizon", horizon, 1e-3, LONGEST_HORIZON, "s")
 
 
-def _name_list(names: Names) -> list[str]:
-    if isinstance(names, str | Path):
-        return [str(names)]
-    return list(map(str, names))
+def _check_vessel(vessel: object) -> None:
+    if vessel is not None:
+        check_instance("vessel", vessel, Vessel, "a Vessel, such as boatsim.load_vessel returns")
+
+
+def _path_list(argument: str, names: object) -> list[Path]:
+    return list(map(Path, checked_names(argument, names)))

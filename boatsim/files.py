@@ -9,10 +9,11 @@ from contextlib import contextmanager, suppress
 from datetime import date, time
 from itertools import repeat
 from pathlib import Path
-from typing import IO, TypeAlias, TypeVar
+from typing import IO, TYPE_CHECKING, TypeAlias, TypeVar
 
 from pydantic import BaseModel, ConfigDict, ValidationError
 
+from boatsim.arguments import shown
 from boatsim.errors import BadInput, unknown_name
 
 # A value of TOML or JSON, as tomllib and json read it; a datetime is a date
@@ -31,7 +32,26 @@ DOTTED = re.compile(
 KINDS_OF_VALUE = ("float", "bool", "str", "int")
 
 
-class Table(BaseModel):
+if TYPE_CHECKING:
+    from pydantic._internal._model_construction import ModelMetaclass as TableType
+else:
+
+    class TableType(type(BaseModel)):
+        """Class of the models of TOML tables: those built in Python raise BadInput for mistakes."""
+
+        def __call__(cls, *args: object, **values: object) -> object:
+            """Return a table with these values.
+
+            Raises:
+                BadInput: With the name of the first value that is not allowed.
+            """
+            try:
+                return super().__call__(*args, **values)
+            except ValidationError as error:
+                raise BadInput(f"{cls.__name__}: {_first_mistake(cls, error)}") from None
+
+
+class Table(BaseModel, metaclass=TableType):
     """Base class of the models of TOML tables, which reject unknown keys and non-finite numbers."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
@@ -108,6 +128,8 @@ def validate_table(model: type[T], data: Mapping[str, object], file: str) -> T:
         return model.model_validate_json(json.dumps(data, default=_plain_value), strict=True)
     except ValidationError as error:
         raise BadInput(f"{file}: {_first_mistake(model, error)}") from None
+    except (TypeError, ValueError, RecursionError) as error:  # of json: a key is no text, a circle
+        raise BadInput(f"{file}: {' '.join(str(error).split())}") from None
 
 
 def _plain_value(value: object) -> object:
@@ -141,7 +163,7 @@ def _first_mistake(model: type[BaseModel], error: ValidationError) -> str:
     message = first["msg"].removeprefix("Value error, ").lower()
     if not place:
         return message
-    return f"{place} = {first['input']!r}; {message}"
+    return f"{place} = {shown(first['input'])}; {message}"
 
 
 def _allowed_keys(model: type[BaseModel], place: tuple[int | str, ...]) -> list[str]:

@@ -166,6 +166,25 @@ def test_2_content_runs_and_its_names_resolve(tmp_path: Path) -> None:
     )
 
 
+@pytest.mark.parametrize(
+    "arguments", [["list", "effects"], ["show", "slime"], ["show", "slime.py"]]
+)
+def test_6_a_link_in_a_content_folder_runs_nothing_outside(
+    tmp_path: Path, arguments: list[str]
+) -> None:
+    outside = tmp_path / "outside"
+    outside.mkdir()
+    (outside / "slime.py").write_text(EFFECT)
+    own = tmp_path / "own" / "effects"
+    own.mkdir(parents=True)
+    (own / "slime.py").symlink_to(outside / "slime.py")
+    done = boatsim(*arguments, "--content", tmp_path / "own")
+    assert done.exit_code == 2 and "slime.py is not run" in done.stderr
+    assert done.stderr.count("\n") == 1 and not (outside / "slime.ran").exists()
+    shown = boatsim("show", "slime", "--content", tmp_path / "own", "--content", outside)
+    assert shown.exit_code == 0 and (outside / "slime.ran").exists()
+
+
 def test_3_trust_lets_run_what_lies_beside_the_files_of_the_command_line_and_nothing_else(
     tmp_path: Path,
 ) -> None:

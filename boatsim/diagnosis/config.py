@@ -11,6 +11,7 @@ from dataclasses import Field, dataclass, field, fields, replace
 from math import inf, isfinite
 from typing import Any, TypeAlias
 
+from boatsim.arguments import shown
 from boatsim.errors import BadInput, unknown_name
 
 Number: TypeAlias = int | float
@@ -1704,7 +1705,7 @@ def _check_value(name: str, one: "Field[Any]", given: Given) -> Number | tuple[N
     else:
         values = [given]
     if len(values) != len(one.default):
-        raise BadInput(f"setting {name} = {given}: {len(one.default)} numbers are needed")
+        raise BadInput(f"setting {name} = {shown(given)}: {len(one.default)} numbers are needed")
     return tuple(_check_number(name, one, value) for value in values)
 
 
@@ -1714,12 +1715,12 @@ def _check_number(name: str, one: "Field[Any]", given: object) -> Number:
     whole = isinstance(first, int)
     about = one.metadata
     allowed = f"{'an integer' if whole else 'a number'} from {about['low']:g} to {about['high']:g}"
-    refused = BadInput(f"setting {name} = {given}: allowed is {allowed} [{about['unit']}]")
+    refused = BadInput(f"setting {name} = {shown(given)}: allowed is {allowed} [{about['unit']}]")
     if isinstance(given, bool) or not isinstance(given, str | int | float):
         raise refused
     try:
         value = float(given)
-    except ValueError:
+    except (ValueError, OverflowError):
         raise refused from None
     if not isfinite(value) or not about["low"] <= value <= about["high"]:
         raise refused

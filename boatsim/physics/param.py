@@ -1,16 +1,19 @@
 """Numbers that files may set: bounds, unit and description, checked on construction."""
 
 import math
+import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import field, fields
 from typing import NamedTuple, Self, TypeVar
 
+from boatsim.arguments import shown
 from boatsim.errors import BadInput, unknown_name
 
 N = TypeVar("N", bound=float)  # int or float
 # A parameter without a value. For a vessel it is set by `follows`, by `Effect.derived_parameters`
 # or to 0.
 UNSET = math.nan
+LARGEST_FLOAT = sys.float_info.max
 
 
 class Param(NamedTuple):
@@ -231,7 +234,7 @@ def code_parameter(words: str) -> float:
 
 
 def _wrong_type(value: object, declared: object) -> str:
-    """What is allowed in place of a value of a file; "" if it has the declared type.
+    """Words for the declared type of a value of a file; "" if it has that type.
 
     Numbers are checked with their bounds, and other types by the class that declares them.
     """
@@ -255,7 +258,7 @@ def _is_text_or_texts(value: object) -> bool:
 def _is_table_of_numbers(value: object) -> bool:
     if not isinstance(value, Mapping):
         return False
-    return all(type(one) in (int, float) and math.isfinite(one) for one in value.values())
+    return all(type(one) in (int, float) and abs(one) <= LARGEST_FLOAT for one in value.values())
 
 
 class CheckedParameters:
@@ -293,7 +296,7 @@ class CheckedParameters:
                 raise BadInput(unknown_name(f"{cls.__name__}: setting", str(key), types))
             allowed = _wrong_type(value, types[key])
             if allowed:
-                raise BadInput(f"{cls.__name__}: {key} = {value!r}; allowed is {allowed}")
+                raise BadInput(f"{cls.__name__}: {key} = {shown(value)}; allowed is {allowed}")
         return cls(**settings)
 
     def __post_init__(self) -> None:
@@ -302,9 +305,10 @@ class CheckedParameters:
             if value is UNSET:
                 continue
             is_number = isinstance(value, int | float) and not isinstance(value, bool)
-            if not is_number or not math.isfinite(value):
+            if not is_number or not abs(value) <= LARGEST_FLOAT:  # nan, or an integer beyond it
                 raise BadInput(
-                    f"{type(self).__name__}.{name} = {value!r}; allowed is a number ({about.words})"
+                    f"{type(self).__name__}.{name} = {shown(value)}; "
+                    f"allowed is a number ({about.words})"
                 )
             if not about.low <= value <= about.high:
                 raise BadInput(

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from boatsim.arguments import check_instance, checked_names, checked_number, number_array
 from boatsim.errors import BadInput, unknown_name
 from boatsim.files import replace_file
 from boatsim.physics.content import import_library_module, library_names
@@ -122,6 +123,23 @@ class Recording:
     remarks: tuple[str, ...] = ()
     orders: TimedCommands | None = None
 
+    def __post_init__(self) -> None:
+        check_instance("name", self.name, str, "a text")
+        check_instance("notes", self.notes, Notes, "Notes")
+        check_instance("signals", self.signals, Mapping, "a mapping")
+        if not isinstance(self.t, np.ndarray):
+            object.__setattr__(self, "t", number_array("t", self.t))
+        if self.t.ndim != 1:
+            raise BadInput(f"t of shape {self.t.shape}; allowed are times (N,)")
+        for name, values in self.signals.items():
+            if not isinstance(values, np.ndarray):
+                values = number_array(f"signals[{name!r}]", values)
+                object.__setattr__(self, "signals", {**self.signals, name: values})
+            if values.shape != self.t.shape:
+                raise BadInput(
+                    f"signals[{name!r}] of shape {values.shape}; allowed is {self.t.shape}, as t"
+                )
+
     def __len__(self) -> int:
         return len(self.t)
 
@@ -131,12 +149,14 @@ class Recording:
 
     def __getitem__(self, name: str) -> Array:
         """Return the values (N,) of a signal. Raises SignalMissing."""
+        check_instance("name", name, str, "a text")
         if name not in self.signals:
             raise SignalMissing(unknown_name(f"{self.name}: signal", name, self.signals))
         return self.signals[name]
 
     def unit(self, name: str) -> str:
         """Return the unit of a signal by its name's suffix; "" for a number without a unit."""
+        check_instance("name", name, str, "a text")
         return unit_of(name)
 
     def between(self, from_s: float, to_s: float) -> "Recording":
@@ -144,6 +164,8 @@ class Recording:
 
         Raises BadInput if it has no rows.
         """
+        for argument, value in (("from_s", from_s), ("to_s", to_s)):
+            check_instance(argument, value, int | float | np.number, "a number")
         inside = (self.t >= from_s - 1e-9) & (self.t <= to_s + 1e-9)
         if not inside.any():
             message = (
@@ -165,6 +187,9 @@ class Recording:
         Args:
             rate: Rows per second of the result, approximately [Hz].
         """
+        rate = checked_number("rate", rate, 1e-9, 1e9, "Hz")
+        if len(self.t) < 2:
+            return self
         measured, commands = _motion_and_others(self.signals)
         if any(np.isnan(values).any() for values in measured.values()):
             return self._thinned_each(rate, measured, commands)
@@ -295,11 +320,10 @@ class Recording:
         Raises:
             BadInput: If a signal does not exist, or matplotlib is not installed.
         """
-        if isinstance(signals, str):
-            signals = [signals]
-        for name in signals:
+        given = checked_names("signals", signals)
+        for name in given:
             self[name]  # raises for a name that does not exist
-        selected = signals or _motion_and_commands(self.signals)
+        selected = given or _motion_and_commands(self.signals)
         return recording_figure(self.name, self.t, self.signals, selected)
 
     def _repr_html_(self) -> str:

@@ -5,7 +5,7 @@ vessels and threads, to the last bit. One vessel is a batch of n = 1.
 """
 
 import os
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from functools import cache, cached_property, partial
 from operator import index
@@ -14,6 +14,16 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from boatsim.arguments import (
+    check_instance,
+    checked_mapping,
+    checked_number,
+    checked_whole,
+    number_array,
+    shown,
+    type_error,
+    whole_array,
+)
 from boatsim.errors import BadInput, unknown_name
 from boatsim.physics.commands import clip_to_channel_ranges, clipped_commands
 from boatsim.physics.kernel.records import FleetArrays, VesselNumbers
@@ -33,6 +43,9 @@ BODY = {
 }
 UNINTERRUPTED = 1_000_000  # steps of all vessels together between two chances to interrupt
 MOST_STEPS = 10**12  # more would take days for a single vessel
+MOST_BOATS = 10**8  # a boat takes 1 kB
+MOST_THREADS = 4096  # a computer has fewer
+SHORTEST_STEP, LONGEST_STEP = 1e-9, 86400.0  # [s]
 FAR = 10.0  # widths of a channel's range outside it from which a command is an error
 TURN = 256  # vessels that a thread steps at a time, so that their data stay in its core's cache
 
@@ -53,15 +66,31 @@ def _check_command(vessel: Vessel, name: str, values: ArrayLike) -> None:
     limits = vessel.limits()
     if name not in limits:
         return
-    try:
-        given = np.asarray(values, dtype=float)
-    except (TypeError, ValueError):
-        raise BadInput(f"{vessel.name}: {name} = {values!r}; allowed is a number") from None
+    given = number_array(f"{vessel.name}: {name}", values)
     low, high = limits[name]
     reach = FAR * (high - low)
     far = (given < low - reach) | (given > high + reach)
     if far.any():
         raise BadInput(f"{vessel.name}: {name} = {given[far][0]:g}; allowed {low:g} to {high:g}")
+
+
+def checked_vessels(vessels: object) -> list[Vessel]:
+    """Return the argument `vessels`, one or several, as a list.
+
+    Raises:
+        TypeError: It is something else.
+        BadInput: It is empty.
+    """
+    if isinstance(vessels, Vessel):
+        return [vessels]
+    if not isinstance(vessels, Iterable):
+        raise type_error("vessels", vessels, "a Vessel or a list of them")
+    several = list(vessels)
+    for one in several:
+        check_instance("vessels", one, Vessel, "a Vessel or a list of them")
+    if not several:
+        raise BadInput("vessels is empty; allowed is at least one")
+    return several
 
 
 class Batch:
@@ -104,16 +133,12 @@ class Batch:
         Raises:
             BadInput: If the vessels differ in more than numbers, or a number is not valid.
         """
-        self.vessels = [vessels] if isinstance(vessels, Vessel) else list(vessels)
-        self.n = len(self.vessels) if n is None else n
-        if not self.vessels or self.n < 1:
-            raise BadInput(
-                f"a batch of {self.n} boats of {len(self.vessels)} vessels; "
-                "allowed is at least one of each"
-            )
-        if not step > 0.0:
-            raise BadInput(f"step = {step:g} s; allowed is more than 0")
-        self.step, self.threads = step, threads or len(os.sched_getaffinity(0))
+        self.vessels = checked_vessels(vessels)
+        self.n = len(self.vessels) if n is None else checked_whole("n", n, 1, MOST_BOATS)
+        self.step = checked_number("step", step, SHORTEST_STEP, LONGEST_STEP, "s")
+        self.threads = len(os.sched_getaffinity(0))
+        if threads is not None:
+            self.threads = checked_whole("threads", threads, 1, MOST_THREADS)
         self.programs = [Program(v) for v in self.vessels]
         self.program = self.programs[0]
         self.code = self.program.module
@@ -122,7 +147,9 @@ class Batch:
         self._on, self._none = self.program.switches(), np.zeros(self.code.NQ)
         self._seeds = np.zeros(self.n, dtype=int)
         if seeds is not None:
-            self._seeds = np.asarray(seeds, dtype=int)
+            self._seeds = whole_array("seeds", seeds)
+            if self._seeds.min(initial=0) < 0:
+                raise BadInput(f"seeds = {shown(seeds)}; allowed are numbers from 0")
         if self._seeds.shape != (self.n,):
             raise BadInput(f"{self._seeds.size} seeds for {self.n} boats; allowed is one for each")
         self.t = np.zeros(self.n)  # [s]
@@ -258,7 +285,7 @@ class Batch:
             BadInput: If the name is unknown or a value out of bounds.
         """
         chosen, (rows, place, about) = self._boat_numbers(boats), self._find_parameter(parameter)
-        given = self._value_per_boat(parameter, np.asarray(values, dtype=float), chosen)
+        given = self._value_per_boat(parameter, number_array(parameter, values), chosen)
         if not ((given >= about.low) & (given <= about.high)).all():
             wrong = given[~((given >= about.low) & (given <= about.high))][0]
             allowed = f"{about.low:g} to {about.high:g} {about.unit}".rstrip()
@@ -286,7 +313,7 @@ class Batch:
             BadInput: If a number does not exist.
         """
         chosen = self._boat_numbers(boats)
-        numbers = self._value_per_boat("vessel", np.asarray(vessel, dtype=int), chosen)
+        numbers = self._value_per_boat("vessel", whole_array("vessel", vessel), chosen)
         for number in np.unique(numbers):
             if not 0 <= number < len(self.vessels):
                 raise BadInput(f"vessel {number}; allowed 0 to {len(self.vessels) - 1}")
@@ -322,15 +349,22 @@ class Batch:
         Raises:
             BadInput: If the step does not divide the interval, or a command is not finite.
         """
+        interval = checked_number("interval", interval, self.step, LONGEST_STEP, "s")
+        t0 = checked_number("t0", t0)
         substeps = round(interval / self.step)
         if substeps < 1 or abs(substeps * self.step - interval) > 1e-9 * interval:
             raise BadInput(f"step {self.step:g} s does not divide the interval {interval:g} s")
-        p = self._values[0] if values is None else values
-        commands = np.ascontiguousarray(
-            clip_to_channel_ranges(self.vessels[0], np.asarray(commands, dtype=float))
-        )
+        p = self._values[0]
+        if values is not None:
+            p = np.ascontiguousarray(self._shaped("values", values, self._values[0].shape))
+        rows = number_array("commands", commands)
+        width = len(self.vessels[0].inputs)
+        if rows.ndim != 2 or not len(rows) or rows.shape[1] != width:
+            raise BadInput(f"commands of shape {rows.shape}; allowed is (N, {width})")
+        commands = np.ascontiguousarray(clip_to_channel_ranges(self.vessels[0], rows))
+        begin = self._shaped("start", start, (self._y.shape[1],))
         model = VesselNumbers(self.program.body, p, self._on)
-        plant = self.program.vessel_state(self.program.joint_rates(np.array(start, dtype=float)))
+        plant = self.program.vessel_state(self.program.joint_rates(begin))
         self.code.settle_actuators(commands[0], plant.memory, p, self._on, plant.act)
         out = np.empty((len(commands) + 1, len(plant.y)))
         self.code.rollout(model, plant, commands, t0, self.step, substeps, out)
@@ -354,16 +388,28 @@ class Batch:
         Raises:
             BadInput: If a channel does not exist.
         """
+        steps = _checked_steps(steps)
+        begin = self._shaped("start", start, (self._y.shape[1],))
+        checked_mapping("commands", commands)
+        self._clip(commands, np.arange(1))
         p = self._values[0]
         act = np.zeros(self.program.held_size)
         k = np.zeros(self.code.K)
         memory = np.zeros(self.program.memory_size)
         self.code.settle_actuators(self.program.command_array(commands), memory, p, self._on, act)
         self.code.compute_mass_constants(self.program.body, p, self._on, k)
-        y = self.program.joint_rates(np.array(start, dtype=float))
+        y = self.program.joint_rates(begin)
         self.code.steps(0.0, y, self.step, steps, act, p, self._on, k)
         state: Array = self.program.body_rates(y[None])[0]
         return state
+
+    @staticmethod
+    def _shaped(argument: str, value: object, shape: tuple[int, ...]) -> Array:
+        """An argument that is an array of finite numbers of a shape. Raises BadInput."""
+        given = number_array(argument, value)
+        if given.shape != shape or not np.isfinite(given).all():
+            raise BadInput(f"{argument} of shape {given.shape}; allowed are finite numbers {shape}")
+        return given
 
     def _sample(self, program: Program, boats: Boats) -> None:
         """Parameters of effects with random parameters, by the seed of each vessel."""
@@ -409,11 +455,18 @@ class Batch:
         """Numbers of vessels, from numbers or a mask. Raises BadInput."""
         if boats is None:
             return np.arange(self.n)
-        given = np.asarray(boats)
+        try:
+            given = np.asarray(boats)
+        except ValueError:  # rows of different lengths
+            given = np.zeros((0, 0))
+        if given.ndim > 1:
+            raise BadInput(f"boats = {shown(boats)}; allowed are numbers or a mask of boats")
         if given.dtype == bool:
+            if given.shape != (self.n,):
+                raise BadInput(f"boats is a mask of shape {given.shape}; allowed is ({self.n},)")
             chosen = np.flatnonzero(given)
         else:
-            chosen = np.atleast_1d(given).astype(np.int64)
+            chosen = np.atleast_1d(whole_array("boats", boats))
         for number in (chosen.min(initial=0), chosen.max(initial=0)):
             if not 0 <= number < self.n:
                 raise BadInput(f"boat {number}; allowed 0 to {self.n - 1}")
@@ -431,7 +484,7 @@ class Batch:
 
     def _state_rows(self, states: ArrayLike, boats: Boats) -> Array:
         """One state per vessel. Raises BadInput."""
-        given = np.asarray(states, dtype=float)
+        given = number_array("states", states)
         if (
             given.shape not in ((self._y.shape[1],), (len(boats), self._y.shape[1]))
             or not np.isfinite(given).all()
@@ -446,10 +499,13 @@ class Batch:
         """Commands (k, C) in force when these are sent. Raises BadInput."""
         vessel = self.vessels[0]
         if isinstance(commands, Mapping):
+            checked_mapping("commands", commands)
             for name, value in commands.items():
                 _check_command(vessel, name, value)
+                if np.ndim(value) > 0:
+                    raise BadInput(f"commands: {name} = {shown(value)}; allowed is one number")
             return clipped_commands(vessel, commands)
-        given, width = np.asarray(commands, dtype=float), len(vessel.commands)
+        given, width = number_array("commands", commands), len(vessel.commands)
         fits = given.shape[:-1] in ((), (1,), boats.shape)
         if not (given.ndim and fits and given.shape[-1] in (width, len(vessel.inputs))):
             raise BadInput(
@@ -473,6 +529,7 @@ class Batch:
 
     def _find_parameter(self, parameter: str) -> tuple[Array, int, Param]:
         """Array of a parameter, its column there, and its description. Raises BadInput."""
+        check_instance("parameter", parameter, str, "a text such as 'body.mass'")
         if parameter in BODY:
             return (self._body, *BODY[parameter])
         if parameter not in self._parameters:

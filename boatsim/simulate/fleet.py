@@ -11,13 +11,20 @@ from math import inf
 import numpy as np
 from numpy.typing import ArrayLike
 
+from boatsim.arguments import (
+    check_instance,
+    checked_number,
+    checked_whole,
+    type_error,
+    whole_array,
+)
 from boatsim.control.base import Controller
 from boatsim.control.compiled import CompiledController
 from boatsim.errors import BadInput
 from boatsim.physics.commands import command_row
 from boatsim.physics.signals import Array, signals_of
 from boatsim.physics.vessel import Vessel
-from boatsim.simulate.batch import Batch
+from boatsim.simulate.batch import MOST_BOATS, Batch, checked_vessels
 from boatsim.simulate.fleet_control import (
     CompiledControl,
     FleetControl,
@@ -27,6 +34,8 @@ from boatsim.simulate.fleet_control import (
 )
 from boatsim.simulate.scenario import Scenario
 
+LONGEST_RUN = 1e8  # [s], three years
+MOST_LOGGED = 10**8  # states of a log
 AHEAD = 64  # [periods] for which noise is sampled at a time
 
 
@@ -91,16 +100,17 @@ class Fleet:
         Raises:
             BadInput: If a controller is of another kind, or scenario and numbers do not fit.
         """
+        check_instance("scenario", scenario, Scenario, "a Scenario of boatsim.load_scenario")
         file = scenario.file
         if vessels is None:
             vessels = scenario.vessel
-        kinds = [vessels] if isinstance(vessels, Vessel) else list(vessels)
-        count = len(kinds) if n is None else n
+        kinds = checked_vessels(vessels)
+        count = len(kinds) if n is None else checked_whole("n", n, 1, MOST_BOATS)
         if seeds is None:
             seeds = range(file.seed, file.seed + count)
-        self.seeds = np.asarray(seeds, dtype=int)
-        if len(self.seeds) != count:
-            raise BadInput(f"{len(self.seeds)} seeds for {count} boats; allowed is one for each")
+        self.seeds = whole_array("seeds", list(seeds) if isinstance(seeds, range) else seeds)
+        if self.seeds.shape != (count,):
+            raise BadInput(f"{self.seeds.size} seeds for {count} boats; allowed is one for each")
         if scenario.has_off_goal:
             raise BadInput(
                 f"{scenario.name}: a goal has off = true; a fleet is steered all the time"
@@ -109,6 +119,7 @@ class Fleet:
         self.batch = Batch(kinds, count, file.step, threads=threads, seeds=self.seeds.tolist())
         given = scenario.controller if controller is None else controller
         self._each = list(given) if isinstance(given, Sequence) else [given]
+        self._check_controllers()
         first = self._each[0]
         self._period = scenario.controller.period
         if isinstance(first, Controller):
@@ -123,6 +134,16 @@ class Fleet:
         self._aboard = FleetControl(self.batch, scenario.sensors, self._steps, saturated)
         self._controlled = self._make_control()
         self.reset()
+
+    def _check_controllers(self) -> None:
+        """Raise TypeError or BadInput unless there are controllers, or one function."""
+        if not self._each:
+            raise BadInput("controller is empty; allowed is at least one")
+        several: list[object] = list(self._each)
+        for one in several:
+            is_function = callable(one) and len(several) == 1
+            if not isinstance(one, Controller) and not is_function:
+                raise type_error("controller", one, "controllers or one function")
 
     def reset(self, starts: ArrayLike | None = None) -> None:
         """Put all vessels of the fleet at a start and restart their noise.
@@ -161,8 +182,15 @@ class Fleet:
         """
         if seconds is None:
             seconds = self.scenario.file.duration
+        seconds = checked_number("seconds", seconds, 0.0, LONGEST_RUN, "s")
+        log = _checked_interval(log)
         last = round(seconds / self._period)
         every = max(1, round(min(log, last * self._period) / self._period))
+        if last // every * len(self.batch) > MOST_LOGGED:
+            raise BadInput(
+                f"log = {log:g} s; {last // every} rows of {len(self.batch)} boats are more than "
+                f"{MOST_LOGGED:g}"
+            )
         at = [*range(0, last, every), last]
         vessel, shape = self.batch.vessels[0], (len(at), len(self.batch))
         t = np.empty(len(at))
@@ -202,6 +230,13 @@ class Fleet:
                 "one that passes its goals on, and functions over all boats"
             )
         return GoalsAsCommands(self._aboard)
+
+
+def _checked_interval(log: object) -> float:
+    """Time between two logged rows [s], which may be infinite."""
+    if isinstance(log, float) and log == inf:
+        return inf
+    return checked_number("log", log, 0.0, LONGEST_RUN, "s")
 
 
 def _sensor_generator(seed: int) -> np.random.Generator:

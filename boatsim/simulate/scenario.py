@@ -11,6 +11,7 @@ from typing import Annotated, Literal, Self, TypeVar
 
 from pydantic import Field, field_validator, model_validator
 
+from boatsim.arguments import check_instance, checked_name
 from boatsim.control.base import Controller
 from boatsim.errors import BadInput, unknown_name
 from boatsim.files import Table, validate_table
@@ -213,6 +214,8 @@ class Scenario:
         Raises:
             BadInput: For keys and values that are not allowed.
         """
+        check_instance("vessel", vessel, Vessel, "a Vessel")
+        name = checked_name("name", name)
         return from_table(settings, ScenarioLocation(Path(f"{name}.toml")), vessel)
 
     @cached_property

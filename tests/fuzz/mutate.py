@@ -34,6 +34,12 @@ VALUES = [
         '"current"',
         "surge",
         "name",
+        "100000000",
+        "keyframe",
+        "replicate",
+        "freejoint",
+        "hfield",
+        "pipe.stl",
     )
 ]
 LINES = [
@@ -59,6 +65,10 @@ LINES = [
         "\u202e",
         "\udcff",
         "ü",
+        '<replicate count="100000000">',
+        "<keyframe><key qpos='0'/></keyframe>",
+        '<include file="hull.xml"/>',
+        '<mesh name="q" file="pipe.stl"/>',
         "'''",
     )
 ]

@@ -32,10 +32,10 @@ from boatsim.sweeps.results import Results
 from boatsim.sweeps.sampled_keys import parse_sampled_key
 from boatsim.sweeps.summary import metric_spreads
 from boatsim.sweeps.text_tables import result_tables
-from tests.fuzz import seeds
+from tests.fuzz import calls, seeds
 from tests.fuzz.mutate import edits
 from tests.fuzz.seeds import LOGS, files
-from tests.fuzz.tables import lines_edits, toml_edits
+from tests.fuzz.tables import call_edits, lines_edits, toml_edits
 
 TEXT, XML = b" ,;=\n[]{}", b" ,;=\n[]{}<>\"'/"  # what stands between words
 
@@ -88,6 +88,11 @@ def _vessel(path: Path) -> object:
 
 
 def _hull(path: Path) -> object:
+    return world.build_model(vessel.load_vessel(f"{path.parent}/"))
+
+
+def _drawn(path: Path) -> object:
+    """A hull with a mesh and a texture of which one is changed."""
     return world.build_model(vessel.load_vessel(f"{path.parent}/"))
 
 
@@ -187,9 +192,13 @@ READERS = {
     "expressions": Reader("expression.txt", seeds.expressions, _expression, b" ,;=:()+*.\n"),
     "journal.jsonl": Reader("sweep/journal.jsonl", seeds.journals, _journal, b' ,:[]{}"\n'),
     "journal entries": Reader("sweep/journal.jsonl", seeds.journals, _journal, changes=lines_edits),
+    "calls": Reader("call.json", calls.calls, calls.call, changes=call_edits),
     "messages": Reader("message.json", seeds.messages, _message, b' ,:[]{}"\n'),
     "message values": Reader("message.json", seeds.messages, _message, changes=lines_edits),
     "hull.xml": Reader("hull/hull.xml", files("models/trial_boat/hull.xml"), _hull, XML),
+    "mesh.obj": Reader("drawn/mesh.obj", files("models/joystick_boat/fittings.obj"), _drawn),
+    "mesh.stl": Reader("drawn/mesh.stl", lambda: [seeds.stl_file()], _drawn, b""),
+    "texture.png": Reader("drawn/texture.png", lambda: [seeds.png_file()], _drawn, b""),
     "scenario.toml": Reader(
         "scenario.toml", seeds.scenarios, lambda path: scenario.load(str(path))
     ),

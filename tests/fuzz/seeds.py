@@ -1,9 +1,12 @@
 """Whole files that mutations begin from, and what stands whole beside a mutated one."""
 
 import json
+import os
 import re
 import shutil
+import struct
 import tempfile
+import zlib
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
@@ -87,9 +90,15 @@ TABLE = "Time [s];Latitude;Longitude;Heading;Rate [deg/s];Port;Starboard\n"
 def folder() -> Path:
     """Where mutated files lie, gone with the process; what stands beside them is whole."""
     place = Path(_kept().name)
-    for name in ("noted", "boat", "hull", "map", "bag", "bag_about", "sweep"):
+    for name in ("noted", "boat", "hull", "map", "bag", "bag_about", "sweep", "drawn"):
         (place / name).mkdir()
     (place / "noted" / "run.csv").write_bytes(csv_file())
+    (place / "drawn" / "hull.xml").write_text(DRAWN)
+    (place / "drawn" / "mesh.obj").write_bytes(files("models/joystick_boat/fittings.obj")()[0])
+    (place / "drawn" / "mesh.stl").write_bytes(stl_file())
+    (place / "drawn" / "texture.png").write_bytes(png_file())
+    os.mkfifo(place / "hull" / "pipe.stl")
+    shutil.copy(content_root() / "models" / "trial_boat" / "vessel.toml", place / "drawn")
     boat = content_root() / "models" / "trial_boat"
     (place / "boat" / "hull.xml").write_bytes((boat / "hull.xml").read_bytes())
     shutil.copy(boat / "vessel.toml", place / "hull")
@@ -140,6 +149,41 @@ def rrd_file() -> bytes:
         stream.flush()
         stream.disconnect()
     return path.read_bytes()
+
+
+DRAWN = """<mujoco><asset>
+<mesh name="m" file="mesh.obj"/><mesh name="s" file="mesh.stl"/>
+<texture name="t" type="2d" file="texture.png"/><material name="t" texture="t"/>
+</asset><worldbody><body name="hull">
+<geom type="mesh" mesh="m" material="t"/><geom type="mesh" mesh="s"/>
+</body></worldbody></mujoco>"""
+
+
+def stl_file() -> bytes:
+    """A tetrahedron."""
+    corners = ((0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1))
+    triangles = b""
+    for left_out in range(4):
+        chosen = [corner for i, corner in enumerate(corners) if i != left_out]
+        numbers = [0.0, 0.0, 0.0]
+        for corner in chosen:
+            numbers += corner
+        triangles += struct.pack("<12fH", *numbers, 0)
+    return bytes(80) + struct.pack("<I", 4) + triangles
+
+
+def png_file() -> bytes:
+    """An image of 4 by 4 pixels."""
+    rows = zlib.compress((b"\0" + 12 * b"\x7f") * 4)
+    file = b"\x89PNG\r\n\x1a\n"
+    for kind, data in (
+        (b"IHDR", struct.pack(">IIBBBBB", 4, 4, 8, 2, 0, 0, 0)),
+        (b"IDAT", rows),
+        (b"IEND", b""),
+    ):
+        file += struct.pack(">I", len(data)) + kind + data
+        file += struct.pack(">I", zlib.crc32(kind + data))
+    return file
 
 
 def notes() -> list[bytes]:

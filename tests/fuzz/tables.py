@@ -12,7 +12,7 @@ from typing import Any
 
 from hypothesis import strategies as st
 
-ANY = [
+ANY: list[Any] = [
     None,
     True,
     False,
@@ -57,6 +57,29 @@ ANY = [
     date(1979, 5, 27),
     time(7, 32),
 ]
+OBJECTS = [  # of `tests.fuzz.calls`
+    f"{{{name}}}"
+    for name in (
+        "object",
+        "bytes",
+        "set",
+        "array",
+        "complex",
+        "type",
+        "function",
+        "generator",
+        "numpy int",
+        "numpy float",
+        "numpy bool",
+        "circle",
+        "mixed keys",
+        "vessel",
+        "scenario",
+        "body",
+        "log",
+    )
+]
+ANY += OBJECTS
 KINDS = ["value", "value", "value", "value", "scale", "drop", "copy", "key", "list", "table", "add"]
 FACTORS = (-1.0, 0.0, 1e-9, 1e9, 1e300)
 Path = tuple[str | int, ...]
@@ -154,11 +177,19 @@ class Edits:
 
 
 def table_edits(
-    parse: Callable[[bytes], Any], dump: Callable[[Any], str], most: int = 3
+    parse: Callable[[bytes], Any],
+    dump: Callable[[Any], str],
+    most: int = 3,
+    *,
+    calls: bool = False,
 ) -> st.SearchStrategy[list[Edits]]:
-    """A few changes of a tree."""
+    """A few changes of a tree, with objects of Python in arguments of calls."""
     share = st.floats(0.0, 1.0, allow_nan=False)
-    one = st.builds(TableEdit, st.sampled_from(KINDS), share, share, st.integers(0, len(ANY) - 1))
+    values = list(range(len(ANY) - len(OBJECTS)))
+    if calls:
+        values = list(range(len(ANY)))
+        values.remove(ANY.index("/"))  # a call may write there
+    one = st.builds(TableEdit, st.sampled_from(KINDS), share, share, st.sampled_from(values))
     several = st.lists(one, min_size=1, max_size=most).map(tuple)
     return several.map(lambda changes: [Edits(changes, parse, dump)])
 
@@ -179,6 +210,11 @@ def lines_edits() -> st.SearchStrategy[list[Edits]]:
         lambda file: [json.loads(line) for line in file.decode().splitlines()],
         lambda tree: "".join(f"{json.dumps(line, default=str)}\n" for line in tree),
     )
+
+
+def call_edits() -> st.SearchStrategy[list[Edits]]:
+    """Changes of the arguments of a call; objects that JSON lacks are texts in braces."""
+    return table_edits(json.loads, lambda tree: json.dumps(tree, default=str), 2, calls=True)
 
 
 def toml(tree: Any) -> str:

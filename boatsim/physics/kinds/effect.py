@@ -4,13 +4,13 @@ from collections import namedtuple
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
 from functools import cache
-from math import cos, isfinite, sin
+from math import cos, sin
 from operator import attrgetter
 from typing import Any, ClassVar, NamedTuple, Protocol, Self
 
 from boatsim.errors import BadInput
 from boatsim.physics.content import snake_case
-from boatsim.physics.param import UNSET, CheckedParameters
+from boatsim.physics.param import LARGEST_FLOAT, UNSET, CheckedParameters
 
 # groups of numbers of a vessel that may be estimates
 REFINED_GROUPS = ("damping", "thrust", "lag", "mass_centre", "inertia", "added_mass", "restoring")
@@ -112,7 +112,9 @@ class Effect(CheckedParameters):
             on = (on,)
         if isinstance(on, Mapping):
             numbers = [c for c in on.values() if not isinstance(c, str)]
-            if wants_table and all(type(c) in (int, float) and isfinite(c) for c in numbers):
+            if wants_table and all(
+                type(c) in (int, float) and abs(c) <= LARGEST_FLOAT for c in numbers
+            ):
                 return dict(on)
             raise refusal
         names = isinstance(on, list | tuple) and all(isinstance(c, str) for c in on)

@@ -1,7 +1,7 @@
 """The `Vessel` dataclass: a vessel in one load condition, from a file or from Python."""
 
 import dataclasses
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from math import inf
 from pathlib import Path
@@ -9,6 +9,14 @@ from typing import Any, Self
 
 import tomlkit
 
+from boatsim.arguments import (
+    check_instance,
+    checked_mapping,
+    checked_name,
+    checked_names,
+    checked_number,
+    type_error,
+)
 from boatsim.errors import BadInput, unknown_name
 from boatsim.files import replace_file, validate_table
 from boatsim.physics.content import vessel_address
@@ -23,6 +31,8 @@ from boatsim.physics.vessel.effect_tables import effect_from_table, effect_table
 from boatsim.physics.vessel.estimated import check_estimated
 from boatsim.physics.vessel.plain_hull import hull_xml
 from boatsim.physics.vessel.schema import (
+    LARGEST_HULL,
+    SMALLEST_HULL,
     Body,
     CommandChannel,
     DiagnosisTable,
@@ -193,10 +203,12 @@ class Vessel(ChannelBindings):
             BadInput: For keys and values that are not allowed, or an effect that names an unknown
                 channel.
         """
+        name = checked_name("name", name)
+        checked_number("length", length, SMALLEST_HULL, LARGEST_HULL, "m")
         table: dict[str, object] = {
             "about": name,
             "source": "Python",
-            "freedoms": list(dof),
+            "freedoms": checked_names("dof", dof),
             "length": length,
             "beam": beam,
             "draught": draught,
@@ -230,7 +242,19 @@ class Vessel(ChannelBindings):
             BadInput: If an effect names a channel that does not exist then.
         """
         changed = dataclasses.replace(self, **changes)
+        changed._check_fields()
         return changed._with_effects(changed.effects)
+
+    def _check_fields(self) -> None:
+        """Raise BadInput or TypeError for a field that a file could not have."""
+        table = {key: getattr(self, key) for key in SAME_IN_FILE}
+        table |= {"channels": self.commands, "freedoms": checked_names("dof", self.dof)}
+        for name in ("name", "path", "file"):
+            checked_name(name, getattr(self, name))
+        check_instance("body", self.body, Body, "a Body")
+        check_instance("diagnosis", self.diagnosis, DiagnosisTable, "a DiagnosisTable")
+        check_instance("manoeuvring", self.manoeuvring, ManoeuvringTable, "a ManoeuvringTable")
+        validate_table(VesselFile, table, self.name)
 
     def with_effect(self, effect: Effect | Mapping[str, object]) -> Self:
         """Return a copy of the vessel with one more effect.
@@ -252,6 +276,7 @@ class Vessel(ChannelBindings):
         Raises:
             BadInput: If there is no such effect, or another effect needs it.
         """
+        check_instance("name", name, str, "a text")
         names = self.names_of(name)
         if not names:
             raise BadInput(unknown_name(f"{self.name}: effect", name, self._effect_names()))
@@ -269,9 +294,11 @@ class Vessel(ChannelBindings):
             BadInput: For an unknown name, or a value out of bounds.
         """
         changed = self
-        values = dict(parameters)
+        values = {}
+        for name, table in checked_mapping("parameters", parameters).items():
+            values[name] = dict(checked_mapping(f"parameters[{name!r}]", table))
         if "body" in values:
-            table = self.body.model_dump(exclude_none=True) | dict(values.pop("body"))
+            table = self.body.model_dump(exclude_none=True) | values.pop("body")
             changed = dataclasses.replace(
                 self, body=validate_table(Body, table, f"{self.name}: body")
             )
@@ -293,10 +320,11 @@ class Vessel(ChannelBindings):
             BadInput: For a channel that the vessel does not measure.
         """
         measured = dict(self.measured)
-        for name, value in values.items():
+        for name, value in checked_mapping("values", values).items():
             if name not in measured:
                 raise BadInput(unknown_name(f"{self.name}: measured", name, measured))
-            measured[name] = measured[name].model_copy(update={"neutral": value})
+            neutral = checked_number(f"values[{name!r}]", value)
+            measured[name] = measured[name].model_copy(update={"neutral": neutral})
         return dataclasses.replace(self, measured=measured)
 
     def with_completed_effect(self, effect: Effect) -> Self:
@@ -354,8 +382,12 @@ class Vessel(ChannelBindings):
 
     def _with_effects(self, effects: Sequence[Effect | Mapping[str, object]]) -> Self:
         """Return the vessel with these effects, each completed by those before it, and check it."""
+        given: object = effects
+        if not isinstance(given, Iterable) or isinstance(given, str | bytes | Mapping):
+            raise type_error("effects", given, "a list of effects")
         vessel = dataclasses.replace(self, effects=())
-        for effect in map(self._effect_from, effects):
+        for effect in effects:
+            effect = self._effect_from(effect, "effects")
             if effect.filled:
                 unset = dict.fromkeys(effect.filled, UNSET)
                 effect = effect.with_values({**unset, "filled": frozenset()})
@@ -363,10 +395,13 @@ class Vessel(ChannelBindings):
         vessel.check(self.name)
         return vessel
 
-    def _effect_from(self, effect: Effect | Mapping[str, object]) -> Effect:
+    def _effect_from(
+        self, effect: Effect | Mapping[str, object], argument: str = "effect"
+    ) -> Effect:
         if isinstance(effect, Effect):
             return effect
-        return effect_from_table(effect, self.name, self.path)
+        table = checked_mapping(argument, effect)
+        return effect_from_table(table, self.name, self.path)
 
     def _effect_names(self) -> list[str]:
         return [effect.name for effect in self.effects]
@@ -417,7 +452,7 @@ class Vessel(ChannelBindings):
         Returns:
             The saved vessel, as `load_vessel` reads it.
         """
-        place = Path(folder).resolve()
+        place = Path(checked_name("folder", folder)).resolve()
         table = self._table(place)
         with replace_file(place / FILE_NAME) as temporary:
             temporary.write_text(tomlkit.dumps(table), encoding="utf-8")
