@@ -349,7 +349,7 @@ class Batch:
         Raises:
             BadInput: If the step does not divide the interval, or a command is not finite.
         """
-        interval = checked_number("interval", interval, self.step, LONGEST_STEP, "s")
+        interval = checked_number("interval", interval, 0.0, LONGEST_STEP, "s")
         t0 = checked_number("t0", t0)
         substeps = round(interval / self.step)
         if substeps < 1 or abs(substeps * self.step - interval) > 1e-9 * interval:
@@ -390,8 +390,8 @@ class Batch:
         """
         steps = _checked_steps(steps)
         begin = self._shaped("start", start, (self._y.shape[1],))
-        checked_mapping("commands", commands)
-        self._clip(commands, np.arange(1))
+        for name, value in checked_mapping("commands", commands).items():
+            self._shaped(f"commands: {name}", value, ())
         p = self._values[0]
         act = np.zeros(self.program.held_size)
         k = np.zeros(self.code.K)
@@ -405,10 +405,10 @@ class Batch:
 
     @staticmethod
     def _shaped(argument: str, value: object, shape: tuple[int, ...]) -> Array:
-        """An argument that is an array of finite numbers of a shape. Raises BadInput."""
+        """An argument that is an array of numbers of a shape. Raises BadInput."""
         given = number_array(argument, value)
-        if given.shape != shape or not np.isfinite(given).all():
-            raise BadInput(f"{argument} of shape {given.shape}; allowed are finite numbers {shape}")
+        if given.shape != shape:
+            raise BadInput(f"{argument} of shape {given.shape}; allowed is {shape}")
         return given
 
     def _sample(self, program: Program, boats: Boats) -> None:

@@ -19,7 +19,12 @@ WATCHED = [
     "boatsim.physics.vessel",
     "boatsim.physics.content",
 ]
-WATCHED += ["boatsim.simulate.scenario", "boatsim.simulate.world"]
+WATCHED += [
+    "boatsim.simulate.scenario",
+    "boatsim.simulate.world",
+    "boatsim.simulate.hull_xml_check",
+]
+WATCHED += ["boatsim.arguments", "boatsim.drive.messages", "boatsim.sweeps"]
 WATCHED += ["mcap", "pymavlink.DFReader", "pynmea2", "pyulog", "rosbags"]
 LONGEST = 1 << 18  # [bytes] of a file that is tried
 MOST_MEMORY = 2048  # [MB]

@@ -7,6 +7,7 @@ from tests.fuzz.drive import drive
 from tests.fuzz.readers import READERS
 
 COUNT = 40
+TOLERANT = ("mesh.obj",)  # MuJoCo leaves out lines of a mesh that it does not know
 
 
 @pytest.mark.parametrize("name", READERS)
@@ -14,7 +15,8 @@ def test_a_mutated_file_ends_in_a_value_or_one_clear_line(name: str) -> None:
     count = round(COUNT * READERS[name].share)
     found = drive(READERS[name], count)
     assert not found.broken, f"{found.broken[0].content!r}: {found.broken[0].error!r}"
-    assert found.refused and found.files >= count // 2  # hypothesis leaves out what it has had
+    assert found.refused or name in TOLERANT
+    assert found.files >= count // 2  # hypothesis leaves out what it has had
 
 
 @pytest.mark.parametrize("name", READERS)

@@ -152,7 +152,7 @@ def test_boats_in_waves_take_their_courses_from_their_seeds():
         (lambda b: b.reset([1.0, 2.0]), "states of shape (2,)"),
         (lambda b: b.reset(boats=[2]), "boat 2; allowed 0 to 1"),
         (lambda b: Batch([BOAT, vessel.load_vessel("otter")]), "otter"),
-        (lambda b: Batch(BOAT, 0), "at least one"),
+        (lambda b: Batch(BOAT, 0), "n = 0; allowed 1 to"),
     ],
 )
 def test_what_can_not_be_is_refused_in_one_line(act, said):

@@ -95,7 +95,7 @@ def test_a_controller_that_is_not_compiled_and_a_channel_that_is_not_there_are_r
         Fleet(SWAY, 2, controller=lambda sense, goal: {"pwm_prt": 1.0}).run(0.1)
     with pytest.raises(BadInput, match="one for each"):
         Fleet(SWAY, 2, seeds=[1])
-    with pytest.raises(BadInput, match="at least one"):
+    with pytest.raises(BadInput, match="n = 0; allowed 1 to"):
         Fleet(SWAY, 0)
     with pytest.raises(BadInput, match="several kinds"):
         Fleet(SWAY, 2, controller=[SWAY.controller, RIVAL.controller])

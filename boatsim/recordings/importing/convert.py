@@ -18,7 +18,7 @@ from boatsim.recordings.conversion import Curve, Range
 from boatsim.recordings.expression import Expression, parse
 from boatsim.recordings.importing.clocks import YEAR_2000, YEAR_2100
 from boatsim.recordings.importing.frames import local_position
-from boatsim.recordings.importing.log import Log, Signal, rate_of
+from boatsim.recordings.importing.log import HUGE, Log, Signal, rate_of
 from boatsim.recordings.importing.mapping import Map, Position
 from boatsim.recordings.importing.resample import (
     MIN_LOST,
@@ -103,7 +103,7 @@ def convert(
         t = t - map.latency.get(name, 0.0)
         disorder.setdefault(count_disorder(t), []).append(name)
         is_held = name in work.channels or is_command(name) or name.startswith(HELD)
-        work.columns[name] = Column(_check_not_empty(work, name, clean_samples(t, values)), is_held)
+        work.columns[name] = Column(_check_values(work, name, clean_samples(t, values)), is_held)
     _remark_disorder(work, disorder)
     _drop_repeats(work)
     rows, near = _row_times(work)
@@ -256,9 +256,14 @@ def _parts_of_rows(work: _Work, rows: Array) -> tuple[tuple[float, float], ...]:
     return tuple(parts)
 
 
-def _check_not_empty(work: _Work, name: str, given: Samples) -> Samples:
+def _check_values(work: _Work, name: str, given: Samples) -> Samples:
     if not len(given.t):
         raise BadInput(f"{work.file}: columns.{name} has no number in {work.log.path.name}")
+    largest = float(np.abs(given.values).max())
+    if largest >= HUGE:
+        raise BadInput(
+            f"{work.file}: columns.{name} = {largest:.3g}; no measurement is as large as {HUGE:g}"
+        )
     return given
 
 
