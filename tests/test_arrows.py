@@ -24,7 +24,7 @@ FOR_CONTROLLERS = set(  # plain laws, ready to move to a boat
     "control.identification control.helm control.compiled control.axis control.joystick control.motor_check".split()
 )
 HEAVY = {  # library -> the only modules that may import it
-    "mujoco": {f"simulate.{name}" for name in ("world", "engine", "env")}
+    "mujoco": {f"simulate.{name}" for name in ("world", "hull_assets", "engine", "env")}
     | {"warp.on_mujoco", "physics.compiler_internals"},
     "mujoco_warp": {"warp.on_mujoco"},
     "warp": {"warp.runtime"},
