@@ -109,6 +109,7 @@ def test_the_picture_shows_every_import_from_folder_to_folder_once() -> None:
         "__init__",
         "__main__",
         "api",
+        "arguments",
         "errors",
         "files",
         "atomic_folder",
