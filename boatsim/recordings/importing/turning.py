@@ -10,6 +10,7 @@ import numpy as np
 from boatsim.physics.base import Array
 from boatsim.recordings.importing.signal_classification import Classification
 
+TIME_DIGITS = 6  # decimals of a time [s]; two samples in one microsecond are one
 MIN_CORRELATION = 0.3  # with the turning, of a signal that steers
 # By which the score of the helm (correlation with turning less that with speed) must exceed all
 # others
@@ -75,7 +76,7 @@ class Turning:
 def _sorted_samples(g: Classification) -> tuple[Array, Array]:
     """Times and values of a signal, sorted and one per time."""
     finite = np.isfinite(g.signal.values) & np.isfinite(g.signal.t)
-    t, order = np.unique(g.signal.t[finite], return_index=True)
+    t, order = np.unique(np.round(g.signal.t[finite], TIME_DIGITS), return_index=True)
     return t, g.signal.values[finite][order]
 
 
@@ -89,7 +90,7 @@ def _speed(best: Mapping[str, Sequence[Classification]]) -> tuple[Array, Array]:
         return np.empty(0), np.empty(0)
     north, east, t = pair[0].signal.values, pair[1].signal.values, pair[0].signal.t
     there = np.isfinite(north) & np.isfinite(east) & np.isfinite(t)
-    t, rows = np.unique(t[there], return_index=True)
+    t, rows = np.unique(np.round(t[there], TIME_DIGITS), return_index=True)
     if len(t) < 3:
         return np.empty(0), np.empty(0)
     wide = 1.0
