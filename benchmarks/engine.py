@@ -117,7 +117,9 @@ def measure_stepping() -> list[Figure]:
         "floor": Variant("floor", 40_000, lambda: coast("floor", 40_000)),
         "python": Variant("python", 5_000, lambda: coast("python", 5_000)),
         "twin": Variant(
-            "twin", 1_000_000, lambda: compiled_engine.hold_commands(start, COMMANDS, 1_000_000)
+            "twin",
+            1_000_000,
+            lambda: compiled_engine.hold_commands(start, COMMANDS, 1_000_000),
         ),
         "six": Variant("six", 300_000, lambda: six.hold_commands([0.0] * 12, SHAFTS, 300_000)),
     }

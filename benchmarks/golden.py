@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from boatsim.files import replace_file
-from boatsim.physics.content import library_names
+from boatsim.physics.content import shipped_content_names
 from boatsim.physics.signals import STATE
 from boatsim.simulate import scenario
 from boatsim.simulate.baselines import TOLERANCE, round_to_nine_digits, values_agree
@@ -45,7 +45,7 @@ def scenarios_with_metrics() -> list[str]:
     """Return the scenarios that have metrics."""
     return [
         name
-        for name in library_names("scenario")
+        for name in shipped_content_names("scenario")
         if (file := scenario.load(name).file).measure or file.check
     ]
 

@@ -19,7 +19,7 @@ import numpy as np
 
 import boatsim
 from boatsim.cli.metric_table import print_rows
-from boatsim.cli.progress import report_campaign
+from boatsim.cli.progress import show_task_progress
 from boatsim.physics.signals import Array
 from boatsim.sweeps.keys import Value
 from boatsim.view.svg_plots import round_ticks
@@ -69,7 +69,7 @@ def main(arguments: list[str] | None = None) -> int:
     )
     given = parser.parse_args(arguments)
     told = [name for names in NORMS.values() for name in names]
-    with report_campaign() as report:
+    with show_task_progress() as report:
         done = boatsim.sweep(
             SCENARIOS,
             VARIED,

@@ -194,7 +194,10 @@ def boatsim_runs(
         engine.reset(moving, commands)
         engine.advance_without_actuators(steps)
 
-    return {"twin": lambda: compiled.hold_commands(start, commands, steps), "engine": on_mujoco}
+    return {
+        "twin": lambda: compiled.hold_commands(start, commands, steps),
+        "engine": on_mujoco,
+    }
 
 
 PEERS: dict[str, Callable[[], Pair]] = {

@@ -88,7 +88,9 @@ def _crossing(x: Array, level: float) -> float:
 
 def neutral_angle(load: str, spacing: str) -> float:
     """Return the inward angle [deg] at which opposite thrusts of both motors cause no yaw moment."""
-    port, starboard = vessel.load_vessel("joystick_boat", [load, spacing]).effects_of("thruster")
+    port, starboard = vessel.load_vessel("joystick_boat", [load, spacing]).effects_of_type(
+        "thruster"
+    )
     assert isinstance(port, Force) and isinstance(starboard, Force)
     resistance = port.x + ARM[load]  # type: ignore[attr-defined]  # [m] centre of lateral resistance ahead of the CG
 

@@ -63,7 +63,7 @@ from boatsim.sweeps.keys import Value
 from boatsim.sweeps.plan import MOST_RUNS, make_plan
 from boatsim.sweeps.results import Results
 from boatsim.sweeps.sampled_keys import make_sampled_key
-from boatsim.sweeps.summary import Pair, Spread, compare_controllers, metric_spreads
+from boatsim.sweeps.summary import Pair, Spread, compare_controllers, metric_statistics
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -316,7 +316,7 @@ class Sweep:
     @property
     def spreads(self) -> list[Spread]:
         """Mean and quantiles of each metric at each point of the sweep's parameter grid."""
-        return metric_spreads(self.results)
+        return metric_statistics(self.results)
 
     @property
     def pairs(self) -> list[Pair]:

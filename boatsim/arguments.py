@@ -12,7 +12,7 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from boatsim.errors import BadInput, unknown_name
+from boatsim.errors import BadInput, unknown_name_message
 
 T = TypeVar("T")
 LONGEST = 80  # characters of a value in a message
@@ -169,7 +169,7 @@ def checked_choice(argument: str, value: object, allowed: Sequence[str]) -> str:
     if not isinstance(value, str):
         raise type_error(argument, value, " or ".join(map(repr, allowed)))
     if value not in allowed:
-        raise BadInput(unknown_name(argument, value, allowed))
+        raise BadInput(unknown_name_message(argument, value, allowed))
     return value
 
 

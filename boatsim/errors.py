@@ -50,7 +50,7 @@ class BadPhysics(BoatsimError):
     """Raised for a model that cannot be simulated: its mass matrix or its state is not valid."""
 
 
-def unknown_name(what: str, found: str, allowed: Iterable[str]) -> str:
+def unknown_name_message(what: str, found: str, allowed: Iterable[str]) -> str:
     """Return the error message for a name that does not exist, with the nearest valid name.
 
     Args:
@@ -99,7 +99,7 @@ def nearest_hint(found: str, allowed: Iterable[str]) -> str:
     return f"; did you mean {near!r}?" if near else ""
 
 
-def printable(text: str, longest: int | None = None) -> str:
+def escape_for_terminal(text: str, longest: int | None = None) -> str:
     """Return a text for a terminal, with control and direction characters written as escapes.
 
     Args:

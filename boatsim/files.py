@@ -14,7 +14,7 @@ from typing import IO, TYPE_CHECKING, TypeAlias, TypeVar
 from pydantic import BaseModel, ConfigDict, ValidationError
 
 from boatsim.arguments import shown
-from boatsim.errors import BadInput, unknown_name
+from boatsim.errors import BadInput, unknown_name_message
 
 # A value of TOML or JSON, as tomllib and json read it; a datetime is a date
 Value: TypeAlias = (
@@ -157,7 +157,7 @@ def _first_mistake(model: type[BaseModel], error: ValidationError) -> str:
         what = "key"
         if table:
             what = f"key in [{table}]"
-        return unknown_name(what, str(first["loc"][-1]), _allowed_keys(model, first["loc"]))
+        return unknown_name_message(what, str(first["loc"][-1]), _allowed_keys(model, first["loc"]))
     if first["type"] == "missing":
         return f"{place} is missing"
     message = first["msg"].removeprefix("Value error, ").lower()

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from math import exp, nan
 from typing import Any, ClassVar
 
-from boatsim.control.adaptive import LinearSystem, l1_norm, unfiltered_system
+from boatsim.control.adaptive import LinearSystem, l1_norm, uncertainty_to_state_system
 from boatsim.control.adaptive_loop import (
     adapt_loop,
     compute_loop_input,
@@ -151,7 +151,7 @@ class L1Cruise(CompiledController):
         The part of the uncertainty that the low-pass filter cancels is subtracted. The input gain
         is the lowest one. The system's L1 norm is that of the published design.
         """
-        return unfiltered_system([[-self.pole]], [1.0], OMEGA[0] * self.bandwidth)
+        return uncertainty_to_state_system([[-self.pole]], [1.0], OMEGA[0] * self.bandwidth)
 
     def l1_condition(self) -> float:
         """Return the left side of the L1-norm stability condition of the speed loop.

@@ -194,7 +194,7 @@ class L1JoystickBlind(AdaptiveJoystick):
     def _dead_reckon(self, commands: Mapping[str, float], stick: float) -> None:
         """Advance reckoned speed and distance by one period."""
         pwm = int(commands["pwm_port"]), int(commands["pwm_starboard"])
-        push = self.wrench_of_setting(Setting(*pwm, round(degrees(commands["steer_port_rad"]))))
+        push = self.wrench_for_commands(Setting(*pwm, round(degrees(commands["steer_port_rad"]))))
         self._u += self.period * self._scale * push.X / self.mass
         self._x += self.period * (self._u - stick)
 

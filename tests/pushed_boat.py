@@ -8,7 +8,7 @@ import numpy as np
 from scipy.integrate import odeint
 
 from boatsim.diagnosis.candidates import library_for
-from boatsim.diagnosis.filter import map_recording, prior_levels
+from boatsim.diagnosis.filter import map_recording, prior_noise_levels
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.diagnosis.search.ranking import fit_baseline
 from boatsim.physics import vessel
@@ -79,7 +79,7 @@ def laid(*recordings: Recording) -> tuple[Problem, Fit]:
     program = Program(BOAT, library_for(BOAT).compiled)
     problem = Problem(
         [map_recording(r, program) for r in recordings],
-        prior_levels(BOAT, recordings),
+        prior_noise_levels(BOAT, recordings),
         {"damping": 0.05, "thrust": 0.05},
     )
     return problem, fit_baseline(problem)[1]

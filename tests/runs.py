@@ -5,13 +5,15 @@ from functools import cache
 from math import nan
 from typing import Any
 
-from boatsim.physics.content import library_names
+from boatsim.physics.content import shipped_content_names
 from boatsim.simulate import scenario
 from boatsim.simulate.cases import read_scenario
 from boatsim.simulate.evaluation import Metric, requested_metrics
 from boatsim.simulate.run import run
 
-SHIPPED = tuple(name for name in library_names("scenario") if name.startswith("joystick_boat/"))
+SHIPPED = tuple(
+    name for name in shipped_content_names("scenario") if name.startswith("joystick_boat/")
+)
 TESTS = (
     "sway_1",
     "sway_2",

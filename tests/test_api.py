@@ -251,7 +251,7 @@ def test_changes_of_a_vessel(tmp_path: Path) -> None:
             wrong()
 
 
-@pytest.mark.parametrize("name", content.library_names("vessel"))
+@pytest.mark.parametrize("name", content.shipped_content_names("vessel"))
 def test_every_vessel_is_the_same_after_saving(name: str, tmp_path: Path) -> None:
     vessel = boatsim.load_vessel(name)
     for load in ((), *((one,) for one in vessel.loads)):

@@ -129,8 +129,14 @@ def test_a_change_of_a_vessel_names_what_is_wrong(
         (lambda b: b.rollout(np.zeros(6), np.zeros((3, 6)), "x"), "interval = 'x'"),
         (lambda b: b.rollout(np.zeros(6), np.zeros((3, 6)), 0.1, [1.0]), "values of shape (1,)"),
         (lambda b: b.hold_commands([0.0], {}, 3), "start of shape (1,)"),
-        (lambda b: b.hold_commands(np.zeros(6), {}, 1e3), "steps = 1000.0; allowed is a whole"),
-        (lambda b: b.hold_commands(np.zeros(6), {"pwm": 1.0}, 3), "did you mean 'pwm_port'?"),
+        (
+            lambda b: b.hold_commands(np.zeros(6), {}, 1e3),
+            "steps = 1000.0; allowed is a whole",
+        ),
+        (
+            lambda b: b.hold_commands(np.zeros(6), {"pwm": 1.0}, 3),
+            "did you mean 'pwm_port'?",
+        ),
     ],
 )
 def test_a_batch_names_the_argument_before_compiled_code_gets_it(

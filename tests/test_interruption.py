@@ -22,7 +22,7 @@ from boatsim import interruption
 from boatsim.atomic_folder import atomic_folder
 from boatsim.files import AppendedFile, replace_file
 from boatsim.interruption import deferred_signals
-from boatsim.physics.content import library_names, load_class
+from boatsim.physics.content import load_class, shipped_content_names
 from boatsim.physics.signals import STATE as OF_HULLS
 from boatsim.quiet import SIGNALS
 from boatsim.recordings.table import Notes, Recording, read
@@ -415,7 +415,7 @@ def test_a_log_in_a_file_is_the_one_in_memory(count: int, tmp_path: Path) -> Non
     assert not list(tmp_path.iterdir())  # it has no name
 
 
-MEASURES = library_names("measure")
+MEASURES = shipped_content_names("measure")
 
 
 @pytest.mark.parametrize("rows", [0, 1, 2, 5])

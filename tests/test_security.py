@@ -31,7 +31,7 @@ from boatsim.drive.connections import HANDSHAKE_TIME, MOST_WAITING
 from boatsim.drive.driver_input import PATIENCE, DriverInput, Sticks
 from boatsim.drive.server import LARGEST as MESSAGE
 from boatsim.drive.server import STRANGE, TAKEN, Server
-from boatsim.errors import BadInput, BoatsimError, printable
+from boatsim.errors import BadInput, BoatsimError, escape_for_terminal
 from boatsim.files import MAX_DEPTH, MAX_TOML_BYTES, read_toml
 from boatsim.physics import cache, content, trust, vessel
 from boatsim.physics.program import Program
@@ -413,7 +413,7 @@ def test_14_what_steers_a_terminal_is_shown_as_an_escape(
 ) -> None:
     print_error("a\x1b[2Jb\u202ec\u200bd\udcffe\nf")
     assert capsys.readouterr().err == "boatsim: a\\x1b[2Jb\\u202ec\\u200bd\\udcffe\\nf\n"
-    assert printable("Königsberg, 5 °") == "Königsberg, 5 °"
+    assert escape_for_terminal("Königsberg, 5 °") == "Königsberg, 5 °"
 
 
 def test_14_an_ascii_terminal_gets_escapes(tmp_path: Path) -> None:
@@ -450,7 +450,10 @@ def test_16_a_run_is_served_to_this_machine_alone(monkeypatch: pytest.MonkeyPatc
     ended = subprocess.Popen([sys.executable, "-c", ""], start_new_session=True)
     ended.wait()
     monkeypatch.setattr(viewer, "_start_rerun", lambda *options: asked.extend(options) or ended)
-    with pytest.raises(BoatsimError, match="does not start"), viewer.viewer_for(serve=True):
+    with (
+        pytest.raises(BoatsimError, match="does not start"),
+        viewer.start_or_find_viewer(serve=True),
+    ):
         pass
     assert asked[asked.index("--bind") + 1] == "127.0.0.1"
 
@@ -462,7 +465,7 @@ def test_16_a_window_listens_to_this_machine_alone(monkeypatch: pytest.MonkeyPat
     monkeypatch.setattr(viewer, "_start_rerun", lambda *options: asked.extend(options) or ended)
     monkeypatch.setattr(viewer, "_is_listening", lambda port: False)
     monkeypatch.setenv("DISPLAY", ":99")
-    with viewer.viewer_for(serve=False) as shown:
+    with viewer.start_or_find_viewer(serve=False) as shown:
         assert shown is None
     assert asked[asked.index("--bind") + 1] == "127.0.0.1"
 

@@ -27,9 +27,9 @@ from boatsim.diagnosis.experiment_design.next_experiment import (
     Plan,
     all_plans,
     best_plan,
-    open_question,
+    undecided_hypotheses,
 )
-from boatsim.diagnosis.filter import axes_of, map_recording, prior_levels
+from boatsim.diagnosis.filter import dof_in_state_order, map_recording, prior_noise_levels
 from boatsim.diagnosis.problem import Problem, froude_scale
 from boatsim.diagnosis.search.ranking import Ranking, rank
 from boatsim.physics import vessel
@@ -101,7 +101,10 @@ def perturbed_boat(truth: str, rng: np.random.Generator) -> Boat:
             value = about.inactive_value + (away if inside else -away) * spread
             values[program().parameter_index(truth, name)] = np.clip(value, about.low, about.high)
     return Boat(
-        values, program().switches([truth]), rng.uniform(*POSITION_SD), rng.uniform(*HEADING_SD)
+        values,
+        program().effect_switches([truth]),
+        rng.uniform(*POSITION_SD),
+        rng.uniform(*HEADING_SD),
     )
 
 
@@ -139,8 +142,8 @@ def record_boat(
     memory, act = np.zeros(program().memory_size), np.zeros(program().held_size)
     code.settle_actuators(commands[0], memory, boat.values, boat.on, act)
     about = program().vessel.diagnosis
-    rms = np.array([about.ambient[axis] for axis in axes_of(program().vessel)])
-    kept = np.exp(-1.0 / RATE / priors.time_constant(program().vessel))
+    rms = np.array([about.ambient[axis] for axis in dof_in_state_order(program().vessel)])
+    kept = np.exp(-1.0 / RATE / priors.assumed_correlation_time(program().vessel))
     force, rows = rms * rng.standard_normal(3), []
     for i in range(len(commands)):
         rows.append(y[:3].copy())
@@ -168,7 +171,7 @@ def diagnose(recordings: Sequence[Recording]) -> tuple[Problem, Ranking]:
     uncertainty = priors.coefficient_uncertainty(boat)
     problem = Problem(
         [map_recording(r, program()) for r in recordings],
-        prior_levels(boat, recordings),
+        prior_noise_levels(boat, recordings),
         uncertainty,
     )
     return problem, rank(problem, tuple(e.name for e in program().candidates))
@@ -194,7 +197,7 @@ def run_case(truth: str, seed: int) -> Outcome:
     first = record_boat("first", boat, *gentle_driving(rng, SHORT), rng)
     again = record_boat("same kind", boat, *gentle_driving(rng, LONG), rng)
     problem, before = diagnose([first])
-    question = open_question(before, problem.config)
+    question = undecided_hypotheses(before, problem.config)
     plan = best_plan(problem, *question)
     _, same = diagnose([first, again])
     after = other = same

@@ -35,7 +35,12 @@ from rich.table import Table
 from boatsim.diagnosis import priors
 from boatsim.diagnosis.candidates import library_for
 from boatsim.diagnosis.config import DEFAULT
-from boatsim.diagnosis.filter import axes_of, map_recording, prior_levels, shared_noise
+from boatsim.diagnosis.filter import (
+    dof_in_state_order,
+    map_recording,
+    prior_noise_levels,
+    shared_noise,
+)
 from boatsim.diagnosis.loading import open_recording
 from boatsim.diagnosis.locate.missing_force import missing_force
 from boatsim.diagnosis.locate.regions import Region, regions
@@ -75,7 +80,7 @@ def problem_of(trial: Path) -> Problem:
     uncertainty = priors.coefficient_uncertainty(boat)
     return Problem(
         tracks,
-        prior_levels(boat, recordings),
+        prior_noise_levels(boat, recordings),
         uncertainty | recordings[0].notes.coefficient_uncertainty,
     )
 
@@ -95,7 +100,7 @@ def locate_force(trial: Path) -> LocatedForce:
     seconds = time.process_time() - begin
     samples = []
     columns = []
-    for axis in axes_of(problem.program.vessel):
+    for axis in dof_in_state_order(problem.program.vessel):
         columns.append(f"{axis}_{'Nm' if axis in ('roll', 'yaw') else 'N'}")
     for k, force in zip(RUNS, forces, strict=True):
         truth = np.genfromtxt(trial / f"missing_force_{k}.csv", delimiter=",", names=True)
@@ -162,7 +167,10 @@ def main() -> None:
     trials = {t.name: locate_force(t) for t in folders}
     console = Console()
     console.print(
-        table(list(trials.values()), axes_of(open_recording(folders[0] / "run_1.csv", None, ())[1]))
+        table(
+            list(trials.values()),
+            dof_in_state_order(open_recording(folders[0] / "run_1.csv", None, ())[1]),
+        )
     )
     none = {n: t for n, t in trials.items() if t.causes == (NOTHING,)}
     accidents = sum(bool(t.regions) for t in none.values())

@@ -17,7 +17,7 @@ import numpy as np
 
 from boatsim.diagnosis.log_check import check_files
 from boatsim.diagnosis.pipeline import diagnose
-from boatsim.diagnosis.priors import froude_time
+from boatsim.diagnosis.priors import froude_time_scale
 from boatsim.errors import BadInput
 from boatsim.physics import vessel as vessels
 from boatsim.physics.base import Array
@@ -46,7 +46,7 @@ class Fault:
 
 def simulate_log(boat: Vessel, seed: int, lasts: float = LASTS) -> Columns:
     """Return a good log: positions and heading with noise, and the commands."""
-    rng, slow = np.random.default_rng(seed), froude_time(boat)
+    rng, slow = np.random.default_rng(seed), froude_time_scale(boat)
     rows, held = round(lasts * RATE), round(HOLDS * RATE)
     compiled = Batch(boat, step=slow / RATE / SUBSTEPS)
     levels = []

@@ -8,8 +8,8 @@ from itertools import starmap
 from math import degrees, isnan
 from pathlib import Path
 
-from boatsim.cli.entry import CLASSES, class_entry
-from boatsim.errors import BadInput, unknown_name
+from boatsim.cli.entry import CLASSES, describe_class
+from boatsim.errors import BadInput, unknown_name_message
 from boatsim.files import array_of_tables, read_toml
 from boatsim.physics import content, vessel
 from boatsim.physics.base import Effect
@@ -40,7 +40,7 @@ def list_content(kind: str | None, like: str | None = None) -> list[str]:
     every_name: list[str] = []
     for plural in kinds:
         one = plural.removesuffix("s")
-        names = content.all_names(one)
+        names = content.all_content_names(one)
         every_name += names
         if like is not None:
             names = list(filter(partial(_is_similar, like=like), names))
@@ -53,7 +53,7 @@ def list_content(kind: str | None, like: str | None = None) -> list[str]:
         for name in names:
             lines.append(f"  {name:{width}}  {_summarise_item(one, name)}")
     if like is not None and not lines:
-        raise BadInput(unknown_name(what, like, every_name))
+        raise BadInput(unknown_name_message(what, like, every_name))
     return lines
 
 
@@ -91,18 +91,18 @@ def describe(name: str) -> list[str]:
         return _scenario_lines(name)
     found = []
     for kind in CLASSES:
-        if name in content.all_names(kind):
+        if name in content.all_content_names(kind):
             found.append(_class_lines(kind, name))
-    if name in content.all_names("vessel") or (Path(name) / "vessel.toml").is_file():
+    if name in content.all_content_names("vessel") or (Path(name) / "vessel.toml").is_file():
         found.append(_vessel_lines(name))
-    scenarios = content.all_names("scenario")
+    scenarios = content.all_content_names("scenario")
     if name in scenarios or any(one.rpartition("/")[2] == name for one in scenarios):
         found.append(_scenario_lines(name))
     if not found:
         every_name = set(scenarios).union(
-            content.all_names("vessel"), *map(content.all_names, CLASSES)
+            content.all_content_names("vessel"), *map(content.all_content_names, CLASSES)
         )
-        raise BadInput(unknown_name("name", name, every_name))
+        raise BadInput(unknown_name_message("name", name, every_name))
     lines = found[0]
     for more in found[1:]:
         lines += ["", *more]
@@ -111,7 +111,7 @@ def describe(name: str) -> list[str]:
 
 def _class_lines(kind: str, name: str) -> list[str]:
     """Description of an effect, controller, measure or sensor."""
-    item = class_entry(kind, name)
+    item = describe_class(kind, name)
     lines = [f"{item.name}: {kind}", f"  {item.words}"]
     lines += map(str.rstrip, map("  {}".format, item.doc))
     lines += starmap("  {}: {}".format, item.facts)
@@ -153,7 +153,7 @@ def _vessel_lines(name: str) -> list[str]:
         lines.append(f"  uncertainty: {', '.join(shares)}")
     address = boat.name
     file = boat.name
-    if content.vessel_address(boat.file).endswith(".toml"):  # the vessel of a user
+    if content.vessel_reference(boat.file).endswith(".toml"):  # the vessel of a user
         address = name
         file = name
         if not name.endswith(".toml"):

@@ -7,7 +7,7 @@ from boatsim.cli.exits import Exit, one_line, print_error, print_lines
 from boatsim.diagnosis.checks.entry import entry_text
 from boatsim.diagnosis.checks.finding import LOG_NOT_BOAT
 from boatsim.diagnosis.log_check import check_files
-from boatsim.errors import printable
+from boatsim.errors import escape_for_terminal
 
 NO_FINDINGS = "the checks found nothing wrong with this recording"
 
@@ -37,7 +37,7 @@ def print_checks(runs: list[Path], vessel: str | None, load: list[str]) -> int:
         if any(entry["kind"] == "fault" for entry in wrong):
             summary = LOG_NOT_BOAT
         if wrong or not refused:
-            print_lines([f"{printable(str(path))}: {summary}"])
+            print_lines([f"{escape_for_terminal(str(path))}: {summary}"])
         for entry in wrong:
             print_lines(map("  {}".format, entry_text(entry)))
         for entry in entries:

@@ -663,7 +663,7 @@ def margins(
 
     with trusted_content(content):
         made = load_class("controller", controller, named=True)()
-        print(control_margins.format_margins(control_margins.margin_rows(made)))
+        print(control_margins.format_margins(control_margins.stability_margins(made)))
 
 
 @app.command()

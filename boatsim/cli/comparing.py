@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from boatsim.cli.exits import print_lines
 from boatsim.cli.metric_table import explain_missing_values, format_value, print_table
-from boatsim.errors import printable
+from boatsim.errors import escape_for_terminal
 from boatsim.files import replace_file
 
 if TYPE_CHECKING:
@@ -55,8 +55,8 @@ def compare_runs(runs: Sequence[FinishedRun]) -> None:
         folder = folder.parent
     path = Path(os.path.relpath(folder)) / "compare.rrd"
     _write_compare_rrd(path, heads, runs, rows)
-    print_lines(printable(f"written to {run.folder}") for run in runs)
-    print_lines([printable(f"all boats: {path}")])
+    print_lines(escape_for_terminal(f"written to {run.folder}") for run in runs)
+    print_lines([escape_for_terminal(f"all boats: {path}")])
 
 
 def _run_headings(runs: Sequence[FinishedRun]) -> list[tuple[str, ...]]:
@@ -140,16 +140,18 @@ def _print_comparison(
     from rich.table import Table
     from rich.text import Text
 
-    table = Table(title=Text(printable(_table_title(runs))), pad_edge=False)
+    table = Table(title=Text(escape_for_terminal(_table_title(runs))), pad_edge=False)
     for heading in ("metric", "kind"):
         table.add_column(heading, no_wrap=True)
     for head in heads:
-        table.add_column(Text("\n".join(map(printable, head))), justify="right", no_wrap=True)
+        table.add_column(
+            Text("\n".join(map(escape_for_terminal, head))), justify="right", no_wrap=True
+        )
     for row in rows:
         texts = []
         for cell in row:
             style = "bold" if BEST in cell else ""
-            texts.append(Text(printable(cell), style))
+            texts.append(Text(escape_for_terminal(cell), style))
         table.add_row(*texts)
     print_table(table)
     used = " ".join(chain.from_iterable(row[2:] for row in rows))
@@ -161,7 +163,7 @@ def _print_comparison(
             entries[f"{'/'.join(head)}: {name}"] = entry
     console = Console()
     for line in filter(None, [legend, *explain_missing_values(entries)]):
-        console.print(Text(printable(line)), soft_wrap=True)
+        console.print(Text(escape_for_terminal(line)), soft_wrap=True)
 
 
 def _table_title(runs: Sequence[FinishedRun]) -> str:
@@ -181,7 +183,7 @@ def _write_compare_rrd(
     rows: Sequence[Sequence[str]],
 ) -> None:
     """Write compare.rrd from the recordings in the folders of the runs."""
-    from boatsim.view.rerun_log import log_side_by_side
+    from boatsim.view.rerun_log import write_comparison_log
 
     joined = map("_".join, heads)
     names = _make_unique([re.sub(r"\W", "_", name) for name in joined])
@@ -189,7 +191,7 @@ def _write_compare_rrd(
     for row in rows:
         markdown += f"| {' | '.join(map(str.strip, row))} |\n"
     with replace_file(path) as temporary:
-        log_side_by_side(
+        write_comparison_log(
             temporary, dict(zip(names, _load_recorded_boats(runs), strict=True)), markdown
         )
 
@@ -214,7 +216,7 @@ def _load_recorded_boats(runs: Sequence[FinishedRun]) -> "list[Boat]":
     from boatsim.simulate.controllers import load_with_controller
     from boatsim.view import water
     from boatsim.view.rerun_log import Boat
-    from boatsim.view.scene import scene_from
+    from boatsim.view.scene import scene_from_model
 
     logs = [read(run.folder / "recording.csv") for run in runs]
     names = [run.content["scenario"] for run in runs]
@@ -224,9 +226,9 @@ def _load_recorded_boats(runs: Sequence[FinishedRun]) -> "list[Boat]":
         vessel = scenario.vessel
         if scenario.file.tank:
             tank = world.Tank(**scenario.file.tank.model_dump())
-            scene = scene_from(world.build_model(vessel, tank), vessel, tank)
+            scene = scene_from_model(world.build_model(vessel, tank), vessel, tank)
         else:
-            scene = water.open_water_scene(vessel, {"all": logs})
+            scene = water.comparison_scene(vessel, {"all": logs})
         goals = ""
         if names.index(names[index]) == index:
             goals = "goal"

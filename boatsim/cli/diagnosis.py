@@ -242,4 +242,6 @@ def _write_compare_rrd(
         "simulated": [Recording("simulated", recording.t, dict(simulated))],
     }
     with replace_file(path) as temporary:
-        rerun_log.log_overlay(temporary, boats, None, [], water.open_water_scene(boat, boats))
+        rerun_log.write_diagnosis_log(
+            temporary, boats, None, [], water.comparison_scene(boat, boats)
+        )

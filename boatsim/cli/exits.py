@@ -5,7 +5,7 @@ from collections.abc import Iterable
 from enum import IntEnum
 from io import TextIOWrapper
 
-from boatsim.errors import BoatsimError, printable
+from boatsim.errors import BoatsimError, escape_for_terminal
 from boatsim.quiet import CODE
 
 LONGEST = 300  # characters of a printed error or note; the middle of a longer one is cut
@@ -43,7 +43,7 @@ def print_error(message: str) -> None:
     Args:
         message: What is wrong.
     """
-    print(printable(f"boatsim: {message}", LONGEST), file=sys.stderr)
+    print(escape_for_terminal(f"boatsim: {message}", LONGEST), file=sys.stderr)
 
 
 def print_note(message: str) -> None:
@@ -52,7 +52,7 @@ def print_note(message: str) -> None:
     Args:
         message: The note.
     """
-    print(printable(f"note: {message}", LONGEST), file=sys.stderr)
+    print(escape_for_terminal(f"note: {message}", LONGEST), file=sys.stderr)
 
 
 def print_notes(messages: Iterable[str]) -> None:
@@ -72,7 +72,7 @@ def print_lines(lines: Iterable[str]) -> None:
         lines: Lines, in which control characters are escaped.
     """
     text = "\n".join(lines)
-    print("\n".join(map(printable, text.split("\n"))))
+    print("\n".join(map(escape_for_terminal, text.split("\n"))))
 
 
 def escape_unencodable() -> None:

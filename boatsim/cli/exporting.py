@@ -5,7 +5,7 @@ from pathlib import Path
 
 from boatsim.api import read
 from boatsim.cli.exits import print_lines, print_notes
-from boatsim.errors import BadInput, printable
+from boatsim.errors import BadInput, escape_for_terminal
 from boatsim.recordings.exporting.mcap import SUFFIX, write_mcap
 
 
@@ -31,5 +31,7 @@ def export_recording(path: Path, out: Path | None, vessel: str | None, load: Seq
     recording = read(path, vessel, load)
     count = write_mcap(recording, out)
     print_notes(recording.remarks)
-    print_lines([printable(f"written to {out}: {len(recording)} rows in {count} messages")])
+    print_lines(
+        [escape_for_terminal(f"written to {out}: {len(recording)} rows in {count} messages")]
+    )
     return 0

@@ -5,15 +5,15 @@ from pathlib import Path
 
 from boatsim.cli.exits import print_lines, print_note, print_notes
 from boatsim.cli.progress import report_stages
-from boatsim.errors import BadInput, printable
+from boatsim.errors import BadInput, escape_for_terminal
 from boatsim.files import read_toml, replace_file
 from boatsim.physics import vessel as vessels
 from boatsim.physics.base import ChannelEffect
-from boatsim.physics.content import vessel_address
+from boatsim.physics.content import vessel_reference
 from boatsim.physics.vessel import Vessel
 from boatsim.recordings.importing.convert import (
-    convert,
-    position_fix,
+    convert_log,
+    position_fix_type,
     recording_notes_text,
     use_line,
 )
@@ -95,7 +95,9 @@ def _propose_map(
         temporary.write_text(text, encoding="utf-8")
     names = " ".join(map(str, files))
     command = f"boatsim import {names} --map {propose} --out {out or 'run.csv'}"
-    print_lines(["", printable(f"written to {propose}: check every line, then: {command}")])
+    print_lines(
+        ["", escape_for_terminal(f"written to {propose}: check every line, then: {command}")]
+    )
     return 0
 
 
@@ -127,14 +129,14 @@ def _convert_logs(
         report("reading the log")
         log = open_logs(paths)
         report("resampling the signals to one time base", CONVERTING)
-        recording = convert(log, mapping, str(map), limits)
+        recording = convert_log(log, mapping, str(map), limits)
         report("writing the recording", WRITING)
         write_csv(recording, out)
     print_notes(recording.remarks)
     span = f"{len(recording)} rows over {recording.t[-1]:.6g} s"
-    print_lines([printable(f"written to {out}: {span}; {', '.join(recording.signals)}")])
+    print_lines([escape_for_terminal(f"written to {out}: {span}; {', '.join(recording.signals)}")])
     if boat is not None:
-        _write_vessel(out, boat, position_fix(mapping), recording.notes.use)
+        _write_vessel(out, boat, position_fix_type(mapping), recording.notes.use)
     elif recording.notes.use:
         print_note(f"write into {out.parent / 'recording.toml'}: {use_line(recording.notes.use)}")
     try:
@@ -166,7 +168,7 @@ def _write_vessel(
     The recording is added to an existing file that has no notes on it; notes on it are kept.
     """
     file = out.parent / "recording.toml"
-    text = recording_notes_text(out, vessel_address(boat.file), fix, use)
+    text = recording_notes_text(out, vessel_reference(boat.file), fix, use)
     try:
         with replace_file(file) as temporary:
             temporary.write_text(_notes_before(file, out.stem) + text, encoding="utf-8")
@@ -175,7 +177,7 @@ def _write_vessel(
         lines = " / ".join(text.splitlines())
         print_note(f"{file} exists and is kept; for this recording it should contain: {lines}")
         return
-    print_lines([printable(f"written to {file}: {boat.name}")])
+    print_lines([escape_for_terminal(f"written to {file}: {boat.name}")])
 
 
 def _notes_before(file: Path, run: str) -> str:

@@ -4,7 +4,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
-from boatsim.errors import printable
+from boatsim.errors import escape_for_terminal
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -28,13 +28,13 @@ def print_metrics(run: "RunEntry", folder: Path) -> None:
     words = f"{run['scenario']}, {run['controller']}, seed {run['seed']}"
     if not run["complete"]:
         words += ", interrupted"
-    title = Text(printable(words))
+    title = Text(escape_for_terminal(words))
     metrics = run["norms"]
     table = Table(title=title, pad_edge=False, show_edge=False)
     for heading, justify in _column_alignments(metrics.values()).items():
         table.add_column(heading, justify=justify, no_wrap=True)
     for name, metric in metrics.items():
-        cells = {"metric": printable(name), **_format_cells(metric)}
+        cells = {"metric": escape_for_terminal(name), **_format_cells(metric)}
         table.add_row(*(cells[str(column.header)] for column in table.columns))
     console = Console()
     console.print(table if metrics else title)
@@ -43,7 +43,7 @@ def print_metrics(run: "RunEntry", folder: Path) -> None:
         *explain_missing_values(metrics),
         f"written to {folder}",
     ]:
-        console.print(Text(printable(line)), soft_wrap=True)
+        console.print(Text(escape_for_terminal(line)), soft_wrap=True)
 
 
 def _column_alignments(metrics: Iterable["MetricEntry"]) -> dict[str, Literal["left", "right"]]:
@@ -143,12 +143,12 @@ def print_rows(title: str, head: Sequence[str], rows: Sequence[Sequence[str]], l
     from rich.table import Table
     from rich.text import Text
 
-    table = Table(title=Text(printable(title)), pad_edge=False)
+    table = Table(title=Text(escape_for_terminal(title)), pad_edge=False)
     for index, heading in enumerate(head):
         side: Literal["left", "right"] = "left" if index < left else "right"
-        table.add_column(Text(printable(heading)), justify=side, no_wrap=True)
+        table.add_column(Text(escape_for_terminal(heading)), justify=side, no_wrap=True)
     for row in rows:
-        table.add_row(*map(Text, map(printable, row)))
+        table.add_row(*map(Text, map(escape_for_terminal, row)))
     print_table(table)
 
 

@@ -6,7 +6,7 @@ from contextlib import contextmanager
 from time import monotonic
 from typing import TYPE_CHECKING
 
-from boatsim.errors import printable
+from boatsim.errors import escape_for_terminal
 from boatsim.progress import Report
 
 if TYPE_CHECKING:
@@ -65,7 +65,7 @@ def _report_lines() -> Report:
 
 
 @contextmanager
-def report_campaign() -> Iterator[Report]:
+def show_task_progress() -> Iterator[Report]:
     """Show the progress of many tasks within the block: a bar, or a line every few seconds.
 
     Yields:
@@ -118,7 +118,7 @@ def print_progress(line: str) -> None:
     Args:
         line: The line.
     """
-    print(printable(f"progress: {line}"), file=sys.stderr, flush=True)
+    print(escape_for_terminal(f"progress: {line}"), file=sys.stderr, flush=True)
 
 
 @contextmanager
@@ -151,7 +151,7 @@ def _show_bar(paced: "_Pace | None" = None) -> Iterator[Report]:
         if paced:
             paced.note(done)
             left = paced.time_left(done)
-        bars.update(row, description=printable(words), completed=done, left=left)
+        bars.update(row, description=escape_for_terminal(words), completed=done, left=left)
 
     with _activate(bars):
         yield report

@@ -186,9 +186,9 @@ def open_viewer(serve: bool) -> Iterator[str | None]:
     Yields:
         Address to which a run sends its data; None without a viewer.
     """
-    from boatsim.view.viewer import HERE, PAGE, viewer_for
+    from boatsim.view.viewer import HERE, PAGE, start_or_find_viewer
 
-    with viewer_for(serve) as viewer:
+    with start_or_find_viewer(serve) as viewer:
         if viewer is None:
             print_error(
                 "no viewer can be shown (check the display); the run continues without one. "

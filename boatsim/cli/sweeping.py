@@ -8,7 +8,7 @@ from pathlib import Path
 
 from boatsim.cli.exits import Exit, print_error, print_lines
 from boatsim.cli.metric_table import print_rows
-from boatsim.cli.progress import report_campaign
+from boatsim.cli.progress import show_task_progress
 from boatsim.sweeps import diagnoses
 from boatsim.sweeps.axes import parse_axis
 from boatsim.sweeps.designs import Design
@@ -69,7 +69,7 @@ def run_sweep(
     axes = list(map(parse_axis, options.vary))
     sampled = list(map(parse_sampled_key, options.draw))
     plan = make_plan(scenarios, axes, sampled, options.runs, options.seed, options.design)
-    with report_campaign() as report:
+    with show_task_progress() as report:
         results, complete = run_plan(plan, out, jobs, ray, metrics, report)
     _print_results(results, out)
     if complete:
@@ -84,7 +84,7 @@ def _print_results(results: Results, out: Path) -> None:
         print_rows(table.title, table.head, blank_repeats(table)[:MOST_ROWS], table.left)
         if len(table.rows) > MOST_ROWS:
             print_lines([f"{len(table.rows) - MOST_ROWS} more rows are in report.html"])
-    if failed := int(results.is_failed.sum()):
+    if failed := int(results.failed_mask.sum()):
         print_lines([f"{failed} of {len(results.numbers)} runs failed:"])
         for reason, count in islice(results.failure_counts.items(), MOST_REASONS):
             print_lines([f"  {count} times: {reason}"])
@@ -116,7 +116,7 @@ def diagnose_each(
         BadInput: An argument is wrong.
     """
     paths = diagnoses.find_recordings(inputs)
-    with report_campaign() as report:
+    with show_task_progress() as report:
         done = diagnoses.diagnose_all(paths, options, out, choose_backend(jobs, ray), report)
     rows = []
     for number, entry in done.entries.items():

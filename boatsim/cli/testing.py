@@ -11,7 +11,7 @@ from time import monotonic
 from boatsim.cli import progress
 from boatsim.cli.exits import FAULTS, Exit, one_line, print_error
 from boatsim.cli.metric_table import format_value
-from boatsim.errors import BadInput, printable
+from boatsim.errors import BadInput, escape_for_terminal
 from boatsim.files import replace_file
 from boatsim.simulate import baselines
 from boatsim.simulate.baselines import Baseline, BaselinesFile
@@ -176,7 +176,7 @@ def _print_cases(folder: Path, cases: Sequence[Case]) -> None:
     from rich.table import Table
     from rich.text import Text
 
-    table = Table(title=Text(printable(str(folder))), pad_edge=False)
+    table = Table(title=Text(escape_for_terminal(str(folder))), pad_edge=False)
     table.add_column("scenario", no_wrap=True)
     table.add_column("metrics", justify="right", no_wrap=True)
     table.add_column("faults", justify="right", no_wrap=True)
@@ -188,12 +188,12 @@ def _print_cases(folder: Path, cases: Sequence[Case]) -> None:
     }
     for case in cases:
         counts = str(len(case.metrics)), str(len(case.failures))
-        table.add_row(Text(printable(case.name)), *counts, states[case.code])
+        table.add_row(Text(escape_for_terminal(case.name)), *counts, states[case.code])
     console = Console()
     console.print(table)
     for case in cases:
         for line in case.failures:
-            console.print(Text(printable(f"{case.name}: {line}")), soft_wrap=True)
+            console.print(Text(escape_for_terminal(f"{case.name}: {line}")), soft_wrap=True)
 
 
 def _cases_to_json(folder: Path, cases: Sequence[Case]) -> dict[str, object]:
@@ -226,21 +226,21 @@ def _write_junit(folder: Path, cases: Sequence[Case], path: Path) -> None:
         "errors": str(codes.count(Exit.BAD_INPUT)),
         "time": f"{sum(case.seconds for case in cases):.3f}",
     }
-    suite_name = printable(folder.resolve().name)
+    suite_name = escape_for_terminal(folder.resolve().name)
     top = xml.Element("testsuites", {"name": "boatsim", **total})
     suite = xml.SubElement(top, "testsuite", {"name": suite_name, **total})
     for case in cases:
         about = {
             "classname": suite_name,
-            "name": printable(case.name),
+            "name": escape_for_terminal(case.name),
             "time": f"{case.seconds:.3f}",
         }
         entry = xml.SubElement(suite, "testcase", about)
         if case.error:
-            message = printable(case.error)
+            message = escape_for_terminal(case.error)
             xml.SubElement(entry, "error", message=message, type="BadInput").text = message
         elif case.failures:
-            lines = list(map(printable, case.failures))
+            lines = list(map(escape_for_terminal, case.failures))
             failure = xml.SubElement(entry, "failure", message=lines[0], type="Norm")
             failure.text = "\n".join(lines)
     xml.indent(top)

@@ -6,7 +6,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from boatsim.cli.progress import pause_progress
-from boatsim.errors import printable
+from boatsim.errors import escape_for_terminal
 
 
 @contextmanager
@@ -58,7 +58,8 @@ def _is_interactive() -> bool:
 
 
 def _ask_to_trust(folder: Path) -> bool:
-    question = f"boatsim: a file names Python files in {printable(str(folder))}. Run them? [y/N] "
+    place = escape_for_terminal(str(folder))
+    question = f"boatsim: a file names Python files in {place}. Run them? [y/N] "
     with pause_progress():
         print(question, end="", file=sys.stderr, flush=True)
         return sys.stdin.readline().strip().lower() in ("y", "yes")

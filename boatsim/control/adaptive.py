@@ -255,7 +255,7 @@ class LinearSystem:
     c: Array
 
 
-def unfiltered_system(am: ArrayLike, b: ArrayLike, bandwidth: float) -> LinearSystem:
+def uncertainty_to_state_system(am: ArrayLike, b: ArrayLike, bandwidth: float) -> LinearSystem:
     """Return the linear system from an uncertainty to the state of an L1 adaptive loop.
 
     It is (sI - Am)^-1 b (1 - C(s)) with the low-pass filter C = bandwidth / (s + bandwidth): the
@@ -518,7 +518,7 @@ class LoopChannel:
         """
         if self.pid is not None:
             return None
-        return l1_norm(unfiltered_system([[-self.pole]], [1.0], gain * self.bandwidth))
+        return l1_norm(uncertainty_to_state_system([[-self.pole]], [1.0], gain * self.bandwidth))
 
 
 @dataclass(frozen=True)

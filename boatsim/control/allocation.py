@@ -229,7 +229,7 @@ def allocate(
     if difference == 0.0:
         d, spread, share = 0.0, moment / q.half_spacing, TURN_SHARE
     else:
-        d, spread = steering_for_sway(q, difference, moment)
+        d, spread = angle_and_thrust_difference(q, difference, moment)
         share = HOLD_SHARE
     spread = limit(spread, -q.largest_difference, q.largest_difference)
     port, starboard = split_thrust(q, surge / cos(d), spread, share * abs(spread) + room)
@@ -237,7 +237,7 @@ def allocate(
 
 
 @lean
-def steering_for_sway(q: Any, difference: float, moment: float) -> tuple[float, float]:
+def angle_and_thrust_difference(q: Any, difference: float, moment: float) -> tuple[float, float]:
     """Return inward angle [rad] and thrust difference D [N] of two outboards for a sway demand.
 
     D is increased if no angle gives the demanded yaw moment otherwise.
@@ -432,7 +432,7 @@ class Outboards(CheckedParameters):
         """
         return thrust_at(self.nominal, pwm)
 
-    def to_setting(self, drive: Drive) -> Setting:
+    def commands_for_thrusts(self, drive: Drive) -> Setting:
         """Return the PWM and servo commands for thrusts and angle of the outboards.
 
         They are rounded, and limited to what motors and servos accept.
@@ -454,7 +454,7 @@ class Outboards(CheckedParameters):
         """
         return Push(*nominal_wrench(self.nominal, drive.port, drive.starboard, drive.angle))
 
-    def wrench_of_setting(self, setting: Setting) -> Push:
+    def wrench_for_commands(self, setting: Setting) -> Push:
         """Return the nominal force and yaw moment of the outboards under given commands.
 
         They are the input of a state predictor.

@@ -23,7 +23,7 @@ __all__ = [
     "CompiledController",
     "Records",
     "add_nested_records",
-    "as_table",
+    "view_as_array",
     "indices_of_names",
     "lean",
     "merged",
@@ -155,7 +155,7 @@ class CompiledController(Controller):
         return self._memory[0]
 
 
-def as_table(records: Records) -> Array:
+def view_as_array(records: Records) -> Array:
     """Return a record array of numbers as a plain array (a view), one row for each record.
 
     Args:

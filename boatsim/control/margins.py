@@ -5,7 +5,7 @@ from math import degrees
 
 from boatsim.control.adaptive import LoopChannel, SampledChannel, l1_condition, loop_margins
 from boatsim.errors import BadInput
-from boatsim.physics.content import library_names, load_class, snake_case
+from boatsim.physics.content import load_class, shipped_content_names, snake_case
 
 HEADINGS = (
     "channel",
@@ -36,7 +36,7 @@ class Row:
     stable: bool
 
 
-def margin_rows(controller: object) -> list[Row]:
+def stability_margins(controller: object) -> list[Row]:
     """Return the stability margins of a controller's loops, for several true input gains each.
 
     Args:
@@ -50,7 +50,7 @@ def margin_rows(controller: object) -> list[Row]:
         asked = snake_case(type(controller).__name__)
         able = [
             name
-            for name in library_names("controller")
+            for name in shipped_content_names("controller")
             if hasattr(load_class("controller", name), "feedback_loops")
         ]
         raise BadInput(
@@ -85,7 +85,7 @@ def format_margins(rows: list[Row]) -> str:
     """Return a table of stability margins as text, with the L1-norm condition of each L1 loop.
 
     Args:
-        rows: Rows of `margin_rows`.
+        rows: Rows of `stability_margins`.
     """
     lines = ["  ".join((f"{HEADINGS[0]:10}", *HEADINGS[1:]))]
     lines += ["  ".join(_format_row(row)).rstrip() for row in rows]

@@ -12,9 +12,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from boatsim.errors import BadInput, unknown_name
+from boatsim.errors import BadInput, unknown_name_message
 from boatsim.physics.base import ChannelEffect, CoefficientRelease, Effect, Measurement
-from boatsim.physics.content import library_names, load_class
+from boatsim.physics.content import load_class, shipped_content_names
 from boatsim.physics.facts import WANDER, describe_fact, excluding_fact
 from boatsim.physics.program import Program
 from boatsim.physics.vessel import Vessel, check_bindings
@@ -149,9 +149,9 @@ def _exclusions_by_vessel(vessel: Vessel) -> dict[str, str]:
     """The vessel's own reasons for excluding candidates. Raises BadInput for an unknown name."""
     reasons = {}
     for name, why in vessel.diagnosis.leave_out.items():
-        if name not in library_names("effect"):
+        if name not in shipped_content_names("effect"):
             where = f"{vessel.name}: diagnosis.leave_out"
-            raise BadInput(unknown_name(where, name, library_names("effect")))
+            raise BadInput(unknown_name_message(where, name, shipped_content_names("effect")))
         reasons[name] = f"the vessel's reason: {why}"
     return reasons
 
@@ -167,7 +167,7 @@ def placeholders(vessel: Vessel) -> tuple[Effect, ...]:
     found, taken = list[Effect](), {e.name for e in vessel.effects}
     for idea, (prefix, number) in PLACEHOLDERS.items():
         kind: type[Effect] = load_class("effect", idea)
-        if kind.per_instance_of and not vessel.effects_of(kind.per_instance_of):
+        if kind.per_instance_of and not vessel.effects_of_type(kind.per_instance_of):
             continue
         free = (f"{prefix}{k}" for k in count(1) if f"{prefix}{k}" not in taken)
         for name in islice(free, number):
@@ -195,7 +195,7 @@ def _both_sides_of_lag(effect: Effect, vessel: Vessel) -> tuple[Effect, ...]:
 
 def _sources(vessel: Vessel, own: Sequence[str]) -> Iterator[_Source]:
     """Every effect of the library, those that the vessel requests, and those of the user."""
-    for name in library_names("effect"):
+    for name in shipped_content_names("effect"):
         yield _Source({"use": name}, load_class("effect", name), False)
     for table in vessel.diagnosis.also:
         yield _Source(table, load_class("effect", str(table.get("use")), vessel.path), True)
@@ -301,12 +301,12 @@ def instantiate_candidate(
         and not issubclass(kind, CoefficientRelease)
     ):
         given["name"] = FURTHER + kind.type_name()
-    effect = effect_at_zero(kind, facts, given).with_all_parameters(vessel)
+    effect = instantiate_neutral_effect(kind, facts, given).with_all_parameters(vessel)
     check_bindings(replace(vessel, effects=(*vessel.effects, effect)), vessel.name)
     return effect
 
 
-def effect_at_zero(
+def instantiate_neutral_effect(
     kind: type[Effect],
     facts: Mapping[str, object] | None = None,
     given: Mapping[str, object] | None = None,
@@ -331,7 +331,7 @@ def effect_at_zero(
     return kind.from_settings(settings | dict(given or {}))
 
 
-def names_without(library: Library, without: Sequence[str]) -> tuple[str, ...]:
+def candidate_names_except(library: Library, without: Sequence[str]) -> tuple[str, ...]:
     """Return the names of the tested candidate effects except the given ones.
 
     The excluded effects stay in the compiled program, so that nothing has to be compiled again.
@@ -345,8 +345,8 @@ def names_without(library: Library, without: Sequence[str]) -> tuple[str, ...]:
     """
     tested = library.tested
     for name in without:
-        if name not in tested and name not in library_names("effect"):
-            raise BadInput(unknown_name("--without", name, tested))
+        if name not in tested and name not in shipped_content_names("effect"):
+            raise BadInput(unknown_name_message("--without", name, tested))
     return tuple(n for n in tested if n not in without and base_name(n) not in without)
 
 

@@ -12,7 +12,7 @@ from math import inf, isfinite
 from typing import Any, TypeAlias
 
 from boatsim.arguments import shown
-from boatsim.errors import BadInput, unknown_name
+from boatsim.errors import BadInput, unknown_name_message
 
 Number: TypeAlias = int | float
 Plain: TypeAlias = Number | list[Number]  # a setting as JSON has it
@@ -1664,7 +1664,7 @@ def from_settings(settings: Mapping[str, Given]) -> DiagnosisConfig:
     config = DEFAULT
     for name, given in settings.items():
         if name not in declared:
-            raise BadInput(unknown_name("setting", name, declared))
+            raise BadInput(unknown_name_message("setting", name, declared))
         group, one = declared[name]
         changed = replace(getattr(config, group), **{one.name: _check_value(name, one, given)})
         config = replace(config, **{group: changed})

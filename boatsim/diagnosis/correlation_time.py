@@ -23,7 +23,7 @@ from boatsim.physics.base import Array
 EXACT = 1e-12  # [m, rad] lower bound of an error, so that its logarithm is finite
 
 
-def with_correlation_time(problem: Problem, found: Fit) -> Problem:
+def select_correlation_time(problem: Problem, found: Fit) -> Problem:
     """Return an estimation problem with the latent force's correlation time that predicts best.
 
     The latent force is the unmodelled force that the Kalman filter estimates. Cross-validation
@@ -36,7 +36,7 @@ def with_correlation_time(problem: Problem, found: Fit) -> Problem:
     Returns:
         The same object if the correlation time does not change.
     """
-    seconds = correlation_time(problem, found)
+    seconds = cross_validated_correlation_time(problem, found)
     if seconds == problem.ambient.time_constant:
         return problem
     return problem_with_correlation_time(problem, problem.recordings, seconds, problem.horizon)
@@ -55,7 +55,7 @@ def problem_with_correlation_time(
         seconds: Correlation time of the latent force in the new problem [s].
         horizon: Its length of free runs [s].
     """
-    ambient = problem.ambient.with_time_constant(seconds)
+    ambient = problem.ambient.with_other_correlation_time(seconds)
     return Problem(
         recordings,
         ambient,
@@ -66,7 +66,7 @@ def problem_with_correlation_time(
     )
 
 
-def correlation_time(problem: Problem, found: Fit) -> float:
+def cross_validated_correlation_time(problem: Problem, found: Fit) -> float:
     """Return the correlation time [s] of the latent (unmodelled) force that predicts best.
 
     Half and double the usual time are tried by cross-validation, and further multiples if they
@@ -168,7 +168,7 @@ def cross_validation_errors(problem: Problem, start: Fit, seconds: float) -> Arr
         Geometric mean of the rms of position [m] and of heading or roll [rad]; nan where one was
         not recorded.
     """
-    levels = start.levels.with_time_constant(seconds)
+    levels = start.levels.with_other_correlation_time(seconds)
     begin = replace(start, levels=levels, evidence=-np.inf)
     first, second = split_in_halves(problem.recordings)
     durations = [float(np.ptp(mapped.times)) for mapped in (*first, *second)]

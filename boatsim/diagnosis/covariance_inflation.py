@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from boatsim.diagnosis.fit import TINY, jacobian
-from boatsim.diagnosis.problem import Fit, Problem, priors_of
+from boatsim.diagnosis.problem import Fit, Problem, prior_arrays
 
 
 def inflate_covariance(problem: Problem, found: Fit) -> Fit:
@@ -29,12 +29,12 @@ def inflate_covariance(problem: Problem, found: Fit) -> Fit:
     blocks = list(blocks_of_rows(problem, config.stretch * found.levels.time_constant))
     if len(blocks) < config.fewest_stretches or not found.free:
         return found
-    on = problem.program.switches(found.effects)
+    on = problem.program.effect_switches(found.effects)
     passes = problem.filter(found.free, found.theta, on, found.levels)
     white = passes.whitened
     J = jacobian(problem, found.free, found.theta, on, found.levels, passes)
     gradients = np.array([J[rows].T @ white[rows] for rows in blocks])  # (blocks, F)
-    sd = priors_of(found.free).sd
+    sd = prior_arrays(found.free).sd
     inverse = found.covariance / np.outer(sd, sd)
     sandwich = inverse @ (np.eye(len(sd)) + gradients.T @ gradients) @ inverse
     ratio = np.diag(sandwich) / np.maximum(np.diag(inverse), TINY)

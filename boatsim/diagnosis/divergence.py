@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from boatsim.diagnosis.filter import FilterPass, MappedRecording, axes_of
+from boatsim.diagnosis.filter import FilterPass, MappedRecording, dof_in_state_order
 from boatsim.diagnosis.locate.missing_force import FORCE_UNITS, MissingForce
 from boatsim.diagnosis.problem import FilterPasses, Fit, Problem
 from boatsim.physics.base import Array
@@ -37,7 +37,7 @@ class Divergence:
     unit: str
 
 
-def is_lost(problem: Problem, fit: Fit) -> bool:
+def has_diverged(problem: Problem, fit: Fit) -> bool:
     """Return whether a fitted vessel model cannot follow the recordings it was fitted to.
 
     Also true if its evidence or covariance is not finite.
@@ -51,7 +51,7 @@ def is_lost(problem: Problem, fit: Fit) -> bool:
     return not _follows(problem, _passes(problem, fit))
 
 
-def follow_recordings(problem: Problem, recordings: Sequence[MappedRecording]) -> Fit:
+def raise_latent_force_level(problem: Problem, recordings: Sequence[MappedRecording]) -> Fit:
     """Return the nominal vessel model with a latent force large enough to follow recordings.
 
     No parameter is fitted. The level of the latent (unmodelled) force is raised step by step, each
@@ -124,7 +124,7 @@ def first_rows_are_finite(problem: Problem, recordings: Sequence[MappedRecording
 
 
 def _passes(problem: Problem, fit: Fit) -> FilterPasses:
-    on = problem.program.switches(fit.effects)
+    on = problem.program.effect_switches(fit.effects)
     with np.errstate(over="ignore", invalid="ignore"):
         return problem.filter(fit.free, fit.theta, on, fit.levels)
 
@@ -189,7 +189,7 @@ def _divergence(
     problem: Problem, mapped: MappedRecording, passed: FilterPass, force: MissingForce, row: int
 ) -> Divergence:
     """The axis and the size of the missing force from a row on."""
-    axes = axes_of(problem.program.vessel)
+    axes = dof_in_state_order(problem.program.vessel)
     since = float(mapped.times[row])
     window = _window(problem)
     near = (force.t > since - 0.5 * window) & (force.t < since + window)

@@ -72,7 +72,7 @@ def evaluate(problem: Problem, ranking: Ranking, held_out: Sequence[MappedRecord
         held_out: Held-out recordings, at least one.
     """
     horizon = free_run_horizon(problem, held_out)
-    everything = in_order([*problem.recordings, *held_out])
+    everything = sort_by_input_order([*problem.recordings, *held_out])
     missing = missing_force(problem, ranking.recalibrated, everything)
     remaining = residual_force(problem, ranking.best, everything)
     fits = compared_fits(ranking)
@@ -90,7 +90,7 @@ def evaluate(problem: Problem, ranking: Ranking, held_out: Sequence[MappedRecord
     )
 
 
-def in_order(recordings: Sequence[MappedRecording]) -> list[MappedRecording]:
+def sort_by_input_order(recordings: Sequence[MappedRecording]) -> list[MappedRecording]:
     """Return mapped recordings in the order in which the user gave them.
 
     The thirds of a single recording that was split are returned in order of time.

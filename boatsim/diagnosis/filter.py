@@ -30,7 +30,7 @@ from boatsim.physics.kernel.records import (
 )
 from boatsim.physics.particulars import GRAVITY
 from boatsim.physics.program import Program
-from boatsim.physics.signals import AXES, NOISE, Array, Signal, signals_of
+from boatsim.physics.signals import AXES, NOISE, Array, Signal, motion_signals
 from boatsim.physics.vessel import Vessel
 from boatsim.recordings.table import FEWEST_ROWS, HUGE, Recording
 
@@ -64,7 +64,7 @@ class NoiseLevels:
     # (NQ,) lower bound of the rms of the latent force when a recording begins
     initial_force: Array = field(default_factory=lambda: np.zeros(1))
 
-    def with_time_constant(self, seconds: float) -> "NoiseLevels":
+    def with_other_correlation_time(self, seconds: float) -> "NoiseLevels":
         """Return noise levels with another correlation time of the latent (unmodelled) force.
 
         Its rms is changed so that its effect on slow motion stays the same.
@@ -192,7 +192,7 @@ class MappedRecording:
     @cached_property
     def inertia(self) -> Array:
         """(NQ,) mass or moment of inertia of the nominal hull with added mass [kg, kg m^2]."""
-        return inertia_of(self.program, self.values, self.program.switches())
+        return inertia_with_added_mass(self.program, self.values, self.program.effect_switches())
 
     @cached_property
     def step(self) -> float:
@@ -203,13 +203,13 @@ class MappedRecording:
         if self.specified_step is not None:
             return self.specified_step
         config, motion = self.config, self._motion
-        usual = config.filter_step * priors.froude_time(self.program.vessel)
+        usual = config.filter_step * priors.froude_time_scale(self.program.vessel)
         stable = config.decay_step / max(motion.decay_rate, 1e-9)
         return min(usual, stable, motion.largest_step)
 
     @cached_property
     def _motion(self) -> HullMotion:
-        return hull_motion(self.program, self.values, self.commands[0], self.config)
+        return hull_time_scales(self.program, self.values, self.commands[0], self.config)
 
     @property
     def stiff(self) -> bool:
@@ -422,7 +422,9 @@ class MappedRecording:
         Returns:
             Rms (NQ,) [N, N m], and rms (NQ,) at the first row.
         """
-        force = np.asarray(levels.force * inertia_of(self.program, values, on) / self.inertia)
+        force = np.asarray(
+            levels.force * inertia_with_added_mass(self.program, values, on) / self.inertia
+        )
         return force, np.maximum(force, levels.initial_force)
 
     def _run(
@@ -497,7 +499,7 @@ def _writable(view: Array) -> Array:
 
 def _estimated_initial(mapped: MappedRecording) -> InitialState:
     """Estimate the initial state from measured positions and, where there are none, rates."""
-    axes = axes_of(mapped.program.vessel)
+    axes = dof_in_state_order(mapped.program.vessel)
     nq = mapped.program.module.NQ
     mean, covariance, rates = np.zeros(3 * nq), np.zeros((3 * nq, 3 * nq)), np.zeros(nq)
     for c, code in enumerate(mapped.codes):
@@ -565,7 +567,7 @@ def free_run_segments(times: Array, horizon: float) -> tuple[list[int], list[int
     return starts, ends
 
 
-def axes_of(vessel: Vessel) -> tuple[str, ...]:
+def dof_in_state_order(vessel: Vessel) -> tuple[str, ...]:
     """Return the degrees of freedom of a vessel in the order of the Kalman filter's state."""
     return tuple(axis for axis in AXES if axis in vessel.dof)
 
@@ -593,10 +595,10 @@ def map_recording(
         BadInput: A column is missing that the vessel needs, or too few rows remain.
     """
     vessel = program.vessel
-    axes = axes_of(vessel)
+    axes = dof_in_state_order(vessel)
     where = _name_of(recording)
     found, families, codes = list[Signal](), list[str](), list[int]()
-    for signal in signals_of(vessel.dof):
+    for signal in motion_signals(vessel.dof):
         if signal.column in recording.signals:
             found.append(signal)
             families.append(signal.noise)
@@ -615,7 +617,7 @@ def map_recording(
     commands = np.zeros((len(recording), 1))
     if vessel.inputs:
         commands = clipped_recorded_commands(vessel, recording.signals, len(recording))
-    facts = facts_of(vessel, recording)
+    facts = merged_facts(vessel, recording)
     mapped = MappedRecording(
         recording.name,
         program,
@@ -643,7 +645,7 @@ def map_recording(
 
 def _speed_of_share(mapped: MappedRecording, share: float) -> float:
     """Speed [m/s] along x or y that a share of the rows exceeds; rms of recorded velocities."""
-    axes = axes_of(mapped.program.vessel)
+    axes = dof_in_state_order(mapped.program.vessel)
     speeds = []
     for c, code in enumerate(mapped.codes.tolist()):
         recorded = np.isfinite(mapped.measured[:, c])
@@ -663,7 +665,7 @@ def _check_columns(recording: Recording, vessel: Vessel, found: Sequence[Signal]
         missing = ["psi_rad"]
     missing = missing or _missing_inputs(recording, vessel)
     if not missing and all(s.rate for s in found):
-        missing = [signals_of(vessel.dof)[0].column]
+        missing = [motion_signals(vessel.dof)[0].column]
     if missing:
         raise BadInput(
             f"{_name_of(recording)}: column {missing[0]} is missing, without which "
@@ -689,7 +691,7 @@ def _commands_at_own_times(recording: Recording, vessel: Vessel) -> tuple[Array,
     return command_changes(t, clipped_recorded_commands(vessel, signals, len(t)))
 
 
-def hull_motion(
+def hull_time_scales(
     program: Program, values: Array, command: Array, config: FilterConfig
 ) -> HullMotion:
     """Return the fastest decay rate and the largest integration step of the nominal hull.
@@ -703,7 +705,7 @@ def hull_motion(
         command: (K,) commands in force.
         config: Settings of the filter.
     """
-    code, on = program.module, program.switches()
+    code, on = program.module, program.effect_switches()
     nq = code.NQ
     constants, memory = np.zeros(code.K), np.zeros(program.memory_size)
     actuators = np.zeros(program.held_size)
@@ -725,7 +727,7 @@ def hull_motion(
     return HullMotion(decay_rate, largest_step)
 
 
-def inertia_of(program: Program, values: Array, on: Array) -> Array:
+def inertia_with_added_mass(program: Program, values: Array, on: Array) -> Array:
     """Return the mass or moment of inertia (NQ,) with added mass of each degree of freedom.
 
     The unit is kg or kg m^2.
@@ -861,7 +863,7 @@ def specified_noise(recording: Recording) -> dict[str, float]:
     return noise
 
 
-def facts_of(vessel: Vessel, recording: Recording) -> dict[str, Any]:
+def merged_facts(vessel: Vessel, recording: Recording) -> dict[str, Any]:
     """Return the facts known about a recording: those of the vessel file, overridden by its notes.
 
     Facts are for example the forward speed, or the walls of the tank.
@@ -874,7 +876,7 @@ def _name_of(recording: Recording) -> str:
     return str(recording.path or recording.name)
 
 
-def prior_levels(
+def prior_noise_levels(
     vessel: Vessel, recordings: Sequence[Recording], config: DiagnosisConfig = DEFAULT
 ) -> NoiseLevels:
     """Return the assumed levels of sensor noise and of the latent (unmodelled) force before a fit.
@@ -889,7 +891,7 @@ def prior_levels(
     Raises:
         BadInput: The notes specify a level out of range.
     """
-    axes, recording = axes_of(vessel), recordings[0]
+    axes, recording = dof_in_state_order(vessel), recordings[0]
     where, notes = _name_of(recording), recording.notes.ambient
     specified = notes.get("force_rms", {})
     if not isinstance(specified, Mapping):
@@ -908,7 +910,7 @@ def prior_levels(
                 f"{where} on {vessel.name}: ambient force in {axis} = {rms:g}, what is tolerated; "
                 f"allowed is more than 0, at most {HUGE:g}"
             )
-    usual = priors.time_constant(vessel, config.load)
+    usual = priors.assumed_correlation_time(vessel, config.load)
     time_constant = float(notes.get("time_constant_s", usual))
     if not 0 < time_constant < HUGE:
         raise BadInput(

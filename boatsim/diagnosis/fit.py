@@ -7,14 +7,14 @@ from math import erf, log, sqrt
 import numpy as np
 
 from boatsim.diagnosis.filter import NoiseLevels
-from boatsim.diagnosis.noise_levels import fit_force, log_force_prior
+from boatsim.diagnosis.noise_levels import fit_latent_force_level, log_force_prior
 from boatsim.diagnosis.problem import (
     FilterPasses,
     Fit,
     FreeParameter,
     Problem,
     free_parameter_values,
-    priors_of,
+    prior_arrays,
 )
 from boatsim.physics.base import Array
 
@@ -46,7 +46,7 @@ def fit(problem: Problem, found: Fit, converged: bool = False) -> Fit:
         new = new or bool(parameter.searched and v == parameter.sd**2)  # never fitted
     if not new and not converged:
         found = gauss_newton(problem, found, config.first_steps, config.refit_gain)
-    found = fit_force(problem, found, config.fine_gain if new else config.rough_gain)
+    found = fit_latent_force_level(problem, found, config.fine_gain if new else config.rough_gain)
     return gauss_newton(problem, found, config.last_steps, config.step_gain)
 
 
@@ -84,8 +84,8 @@ def remove_effect(problem: Problem, found: Fit, name: str) -> Fit:
     effects = tuple(n for n in found.effects if n != name)
     free = problem.parameters(effects)
     theta = free_parameter_values(free, found.values())
-    nothing = priors_of(free).mean
-    on = problem.program.switches(effects)
+    nothing = prior_arrays(free).mean
+    on = problem.program.effect_switches(effects)
     for _ in range(problem.config.fit.halvings):
         if np.isfinite(problem.log_likelihood(free, theta, on, found.levels)):
             break
@@ -118,7 +118,7 @@ class ParameterSpace:
     """
 
     def __init__(self, free: Sequence[FreeParameter]) -> None:
-        self.mean, self.sd, self.low, self.high = priors_of(free)
+        self.mean, self.sd, self.low, self.high = prior_arrays(free)
 
     def clip(self, theta: Array) -> Array:
         """Return parameter values (F,) limited to their bounds."""
@@ -201,7 +201,9 @@ def log_prior(free: Sequence[FreeParameter], theta: Array) -> float:
     return found
 
 
-def log_truncation(free: Sequence[FreeParameter], theta: Array, covariance: Array) -> float:
+def log_truncation_probability(
+    free: Sequence[FreeParameter], theta: Array, covariance: Array
+) -> float:
     """Return the log of the share of a normal posterior that lies within one-sided bounds.
 
     It corrects the Laplace evidence of parameters that are limited on one side.
@@ -260,7 +262,7 @@ def gauss_newton(problem: Problem, start: Fit, iterations: int, enough: float) -
         The fit with its covariance and its Laplace evidence.
     """
     config = problem.config.fit
-    on = problem.program.switches(start.effects)
+    on = problem.program.effect_switches(start.effects)
     space = ParameterSpace(start.free)
     hypothesis = _Hypothesis(problem, start.free, on, start.levels, space)
     here = hypothesis.evaluate_at(space.clip(start.theta))
@@ -303,7 +305,7 @@ def gauss_newton(problem: Problem, start: Fit, iterations: int, enough: float) -
     covariance = space.covariance(information)
     evidence = here.score - 0.5 * float(np.linalg.slogdet(information)[1])
     evidence += log_force_prior(problem, start.levels)
-    evidence += log_truncation(start.free, here.theta, covariance)
+    evidence += log_truncation_probability(start.free, here.theta, covariance)
     return replace(start, theta=here.theta, covariance=covariance, evidence=evidence)
 
 

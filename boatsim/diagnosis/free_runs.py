@@ -81,7 +81,7 @@ def free_runs(
         runs = {}
         for name, fit in fits.items():
             values = problem.values(mapped, fit.free, fit.theta)
-            on = problem.program.switches(fit.effects)
+            on = problem.program.effect_switches(fit.effects)
             runs[name] = mapped.free_runs(values, on, fit.levels, horizon)
         for i, (begin, end) in enumerate(
             zip(*free_run_segments(mapped.times, horizon), strict=True)

@@ -5,14 +5,14 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from boatsim.diagnosis.checks import data_cleaning, run_checks
-from boatsim.diagnosis.checks.entry import column_sources, log_entry, on_one_line
+from boatsim.diagnosis.checks.entry import column_sources, finding_entry, on_one_line
 from boatsim.diagnosis.checks.finding import LOG_NOT_BOAT, Finding
 from boatsim.diagnosis.checks.hypothesis_test import compare_reinterpretations
 from boatsim.diagnosis.checks.late_sensors import check_late_sensors
 from boatsim.diagnosis.checks.per_cent_commands import check_per_cent_commands
 from boatsim.diagnosis.config import DEFAULT
 from boatsim.diagnosis.loading import Loaded, check_same_vessel, vessel_for
-from boatsim.diagnosis.question import pose_question
+from boatsim.diagnosis.question import set_up_estimation_problem
 from boatsim.diagnosis.report.schema import LogEntry
 from boatsim.errors import BadInput
 from boatsim.physics.vessel import Vessel
@@ -62,7 +62,7 @@ def check_files(
     if usable:
         try:
             loaded = Loaded(usable, (), vessels, "")
-            question = pose_question(loaded, with_candidates=False)
+            question = set_up_estimation_problem(loaded, with_candidates=False)
             compared = compare_reinterpretations(usable, question.map_recording, question.problem)
             if not compared:
                 compared = check_per_cent_commands(usable, question.problem)
@@ -76,7 +76,7 @@ def check_files(
         for finding in findings:
             if finding.run == str(path):
                 sources = column_sources(finding.run, vessels[path])
-                entries[path].append(log_entry(finding, sources))
+                entries[path].append(finding_entry(finding, sources))
     return entries, refused
 
 
@@ -129,7 +129,7 @@ def correction_hint(
         except BadInput:
             return ""
         for finding in findings:
-            entry = log_entry(finding, column_sources(finding.run, own))
+            entry = finding_entry(finding, column_sources(finding.run, own))
             if entry["lines"]:
                 name, lines = entry["name"].replace("_", " "), on_one_line(entry["lines"])
                 return f"; {LOG_NOT_BOAT}: {name}, write into recording.toml {lines}"

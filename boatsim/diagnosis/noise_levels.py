@@ -8,7 +8,7 @@ import numpy as np
 from boatsim.diagnosis.coordinate_search import maximize
 from boatsim.diagnosis.filter import NoiseLevels
 from boatsim.diagnosis.priors import CHI_SQUARE_MEDIAN
-from boatsim.diagnosis.problem import FilterPasses, Fit, Problem, priors_of
+from boatsim.diagnosis.problem import FilterPasses, Fit, Problem, prior_arrays
 from boatsim.physics.base import Array, DriftingMeasurement
 
 # first steps along a coordinate, in logarithms of levels and prior sds of parameters
@@ -68,7 +68,7 @@ def _noise_prior(problem: Problem, logs: Array, specified: Array) -> float:
     return float(np.sum(((logs - specified) / problem.config.fit.noise_sd) ** 2))
 
 
-def fit_force(problem: Problem, found: Fit, enough: float | None = None) -> Fit:
+def fit_latent_force_level(problem: Problem, found: Fit, enough: float | None = None) -> Fit:
     """Refit the level of the latent (unmodelled) force on each axis; keep the other parameters.
 
     The spectra of the fit's stochastic forces are fitted together with it. If the fit contains the
@@ -82,10 +82,10 @@ def fit_force(problem: Problem, found: Fit, enough: float | None = None) -> Fit:
     """
     if enough is None:
         enough = problem.config.fit.rough_gain
-    on = problem.program.switches(found.effects)
+    on = problem.program.effect_switches(found.effects)
     searched = [j for j, f in enumerate(found.free) if f.searched]
     free = [found.free[j] for j in searched]
-    mean, sd, low, high = priors_of(free)
+    mean, sd, low, high = prior_arrays(free)
     families: list[str] = []
     if any(isinstance(problem.candidates[name], DriftingMeasurement) for name in found.effects):
         families = _families(problem)
@@ -125,7 +125,7 @@ def fit_noise(problem: Problem, found: Fit) -> Fit:
     config, prior_levels = problem.config.fit, problem.ambient
     families = _families(problem)
     n = len(prior_levels.force)
-    on = problem.program.switches(found.effects)
+    on = problem.program.effect_switches(found.effects)
     specified = _log_noise(prior_levels, families)
     sensed = []
     for family in families:
@@ -162,7 +162,7 @@ def fit_noise(problem: Problem, found: Fit) -> Fit:
     )
 
 
-def fit_time_constant(problem: Problem, found: Fit) -> NoiseLevels:
+def fit_latent_force_spectrum(problem: Problem, found: Fit) -> NoiseLevels:
     """Fit level and correlation time of the latent (unmodelled) force; keep all parameters.
 
     They are used to locate a missing force in time.
@@ -175,12 +175,12 @@ def fit_time_constant(problem: Problem, found: Fit) -> NoiseLevels:
         The noise levels with the fitted level and correlation time.
     """
     config = problem.config.fit
-    on = problem.program.switches(found.effects)
+    on = problem.program.effect_switches(found.effects)
     usual = np.log(problem.ambient.time_constant)
     about = problem.filter(found.free, found.theta, on, found.levels)
 
     def levels(x: Array) -> NoiseLevels:
-        other = found.levels.with_time_constant(float(np.exp(x[1])))
+        other = found.levels.with_other_correlation_time(float(np.exp(x[1])))
         return replace(other, force=other.force * np.exp(x[0]))
 
     def score(x: Array) -> float:

@@ -18,29 +18,29 @@ from threadpoolctl import threadpool_limits
 from boatsim.diagnosis import loading
 from boatsim.diagnosis.checks.finding import Finding
 from boatsim.diagnosis.checks.hypothesis_test import compare_reinterpretations
-from boatsim.diagnosis.checks.initial_actuator_state import with_initial_actuators
+from boatsim.diagnosis.checks.initial_actuator_state import infer_initial_actuator_state
 from boatsim.diagnosis.config import DEFAULT, DiagnosisConfig
-from boatsim.diagnosis.correlation_time import with_correlation_time
+from boatsim.diagnosis.correlation_time import select_correlation_time
 from boatsim.diagnosis.covariance_inflation import inflate_covariance
-from boatsim.diagnosis.divergence import is_lost
+from boatsim.diagnosis.divergence import has_diverged
 from boatsim.diagnosis.evaluation import Evaluation, evaluate
 from boatsim.diagnosis.experiment_design import next_experiment
 from boatsim.diagnosis.filter import MappedRecording, map_recording
 from boatsim.diagnosis.loading import Loaded, Request
-from boatsim.diagnosis.open_set.decision import Decision, undecided
+from boatsim.diagnosis.open_set.decision import Decision, decision_without_fit
 from boatsim.diagnosis.open_set.decision import decide as judge_names
 from boatsim.diagnosis.problem import Problem
-from boatsim.diagnosis.question import Question, compile_program, pose_question
-from boatsim.diagnosis.recalibration import recalibrate
+from boatsim.diagnosis.question import Question, compile_program, set_up_estimation_problem
+from boatsim.diagnosis.recalibration import decide_recalibration
 from boatsim.diagnosis.report.answer import compose_answer
 from boatsim.diagnosis.report.findings import Findings
-from boatsim.diagnosis.report.results import findings_of
+from boatsim.diagnosis.report.results import collect_findings
 from boatsim.diagnosis.report.schema import Answer
 from boatsim.diagnosis.search.budget import BudgetSpentError, SearchBudget
 from boatsim.diagnosis.search.ranking import Baseline, Ranking, fit_baseline, rank
 from boatsim.diagnosis.symbolic.residual_description import describe as describe_residual
-from boatsim.diagnosis.symbolic.slots import write_term
-from boatsim.diagnosis.without_fit import unknown_cause
+from boatsim.diagnosis.symbolic.slots import set_placeholder_term
+from boatsim.diagnosis.without_fit import results_without_fit
 from boatsim.files import Value
 from boatsim.physics.vessel import Vessel
 from boatsim.progress import Report, ignore_progress, report_part_of
@@ -92,10 +92,12 @@ class Diagnosis:
             noise: Sensor noise, as standard deviations by family; None: that of its notes.
         """
         mapped = map_recording(recording, self.problem.program, noise, config=self.problem.config)
-        mapped = with_initial_actuators(mapped, self.problem.ambient, self.problem.config.checks)
+        mapped = infer_initial_actuator_state(
+            mapped, self.problem.ambient, self.problem.config.checks
+        )
         if self.ranking.description:
             for term in self.ranking.description.terms:
-                write_term(self.problem, term.term.name, term.term, [mapped])
+                set_placeholder_term(self.problem, term.term.name, term.term, [mapped])
         return mapped
 
 
@@ -153,7 +155,7 @@ def diagnose_loaded(
     Raises:
         BadInput: The recordings cannot be used.
     """
-    question = pose_question(loaded, config)
+    question = set_up_estimation_problem(loaded, config)
     report("compiling, or loading what was compiled before")
     compile_program(question.problem)
     begin = time.perf_counter()
@@ -174,7 +176,7 @@ def _fit_and_select(
 ) -> Diagnosis | None:
     """Run all stages after the checks; None if the vessel's own fit does not follow."""
     base = fit(question)
-    if is_lost(question.problem, base.recalibrated):
+    if has_diverged(question.problem, base.recalibrated):
         return None
     selection = select(question, base, loaded, report_part_of(report, *SELECTING))
     decision = decide(question, selection)
@@ -182,7 +184,7 @@ def _fit_and_select(
     report("planning what to record next", DESCRIBING[1])
     next_plan = plan(decision, ranking)
     report("free runs", EVALUATING)
-    ranking = adopt(question, decision, ranking)
+    ranking = adopt_refitted_coefficients(question, decision, ranking)
     evaluation = validate(question, decision, ranking)
     stages = Stages(decision, ranking, evaluation, next_plan)
     return _compose(loaded, question, findings, stages, begin)
@@ -193,8 +195,8 @@ def _diagnose_without_fit(
 ) -> Diagnosis:
     """Return the diagnosis of recordings that no fit follows. Raises BadInput."""
     where = str(loaded.fitted[0].path or loaded.fitted[0].name)
-    ranking, evaluation = unknown_cause(question.problem, question.held_out, where)
-    stages = Stages(undecided(question.problem, ranking), ranking, evaluation)
+    ranking, evaluation = results_without_fit(question.problem, question.held_out, where)
+    stages = Stages(decision_without_fit(question.problem, ranking), ranking, evaluation)
     return _compose(loaded, question, findings, stages, begin)
 
 
@@ -231,7 +233,7 @@ def _compose(
         seconds,
     )
     problem = stages.decision.problem
-    shown = findings_of(answer, loaded, question, problem, *stages[1:])
+    shown = collect_findings(answer, loaded, question, problem, *stages[1:])
     return Diagnosis(shown, loaded.vessel, problem, stages.ranking, loaded.remarks, stages.plan)
 
 
@@ -299,7 +301,7 @@ def select(
     if budget.spent:
         return Selection(problem, _with_skipped(ranking, TIME_NOT_CHOSEN))
     report("choosing the correlation time of the latent force", 1.0)
-    again = with_correlation_time(problem, ranking.best)
+    again = select_correlation_time(problem, ranking.best)
     if again is problem:
         return Selection(problem, ranking)
     report("selecting again with that correlation time", 1.0)
@@ -363,7 +365,9 @@ def describe(question: Question, decision: Decision, report: Report = ignore_pro
     )
 
 
-def adopt(question: Question, decision: Decision, ranking: Ranking) -> Ranking:
+def adopt_refitted_coefficients(
+    question: Question, decision: Decision, ranking: Ranking
+) -> Ranking:
     """Decide which refitted coefficients replace those of the vessel file.
 
     They are adopted if the recordings determine them, and if they do not make simulations of
@@ -383,7 +387,7 @@ def adopt(question: Question, decision: Decision, ranking: Ranking) -> Ranking:
     refitted = ranking.recalibrated
     if not best.effects:
         refitted = best
-    found = recalibrate(problem, ranking.nominal, refitted, question.held_out)
+    found = decide_recalibration(problem, ranking.nominal, refitted, question.held_out)
     if not best.effects:
         best = found.fit
     return replace(ranking, best=best, recalibrated=found.fit, recalibration=found)
@@ -413,5 +417,5 @@ def plan(decision: Decision, ranking: Ranking) -> next_experiment.Plan | None:
         ranking: Selected and described effects.
     """
     before = replace(decision.ranking, named=ranking.named)
-    question = next_experiment.open_question(before, decision.problem.config)
+    question = next_experiment.undecided_hypotheses(before, decision.problem.config)
     return next_experiment.best_plan(decision.problem, *question)

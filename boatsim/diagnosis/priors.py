@@ -22,7 +22,7 @@ CHI_SQUARE_MEDIAN = 0.455  # of the square of a standard normal variable
 UNCERTAIN = ("damping", "thrust", "restoring", "wind")
 
 
-def froude_time(vessel: Vessel) -> float:
+def froude_time_scale(vessel: Vessel) -> float:
     """Return the factor by which times on a vessel are longer than on a hull of 1.2 m.
 
     Times scale with the square root of the length (Froude's law).
@@ -49,7 +49,7 @@ def assumed_disturbance(vessel: Vessel, config: LoadConfig = DEFAULT.load) -> di
     return by_rule | {str(axis): rms for axis, rms in vessel.diagnosis.ambient.items()}
 
 
-def time_constant(vessel: Vessel, config: LoadConfig = DEFAULT.load) -> float:
+def assumed_correlation_time(vessel: Vessel, config: LoadConfig = DEFAULT.load) -> float:
     """Return the assumed correlation time [s] of the unmodelled force on a vessel.
 
     It scales with the square root of the vessel's length (Froude's law).
@@ -58,7 +58,7 @@ def time_constant(vessel: Vessel, config: LoadConfig = DEFAULT.load) -> float:
         vessel: Vessel whose length sets the scale.
         config: Settings of the rule.
     """
-    return config.correlation_time * froude_time(vessel)
+    return config.correlation_time * froude_time_scale(vessel)
 
 
 def default_horizon(vessel: Vessel, config: LoadConfig = DEFAULT.load) -> float:
@@ -70,7 +70,7 @@ def default_horizon(vessel: Vessel, config: LoadConfig = DEFAULT.load) -> float:
         vessel: Vessel whose [diagnosis] table may override the rule.
         config: Settings of the rule.
     """
-    return vessel.diagnosis.horizon or float(f"{config.horizon * froude_time(vessel):.3g}")
+    return vessel.diagnosis.horizon or float(f"{config.horizon * froude_time_scale(vessel):.3g}")
 
 
 def used_sample_rate(
@@ -86,7 +86,7 @@ def used_sample_rate(
         duration: Duration of all recordings together [s].
         config: Settings of the rule.
     """
-    usual = config.row_rate / froude_time(vessel)
+    usual = config.row_rate / froude_time_scale(vessel)
     share = max(config.least_row_share, config.enough_rows / max(usual * duration, 1.0))
     return vessel.diagnosis.rate or usual * min(1.0, share)
 
@@ -151,10 +151,10 @@ def estimate_sensor_noise(
     for order in config.noise_orders:
         squares = [np.diff(y, order) ** 2 / comb(2 * order, order) for y in signals]
         found.append(float(np.sqrt(np.median(np.concatenate(squares)) / CHI_SQUARE_MEDIAN)))
-    return max(min(found), config.finest_noise * noise_unit(vessel, sensors[0].column))
+    return max(min(found), config.finest_noise * noise_reference_scale(vessel, sensors[0].column))
 
 
-def noise_unit(vessel: Vessel, column: str) -> float:
+def noise_reference_scale(vessel: Vessel, column: str) -> float:
     """Return the reference scale for the noise of a sensor column of a vessel.
 
     It is the vessel's length [m] for distances and one radian for angles; for rates it is divided

@@ -136,7 +136,7 @@ class Priors(NamedTuple):
     high: Array
 
 
-def priors_of(free: Sequence[FreeParameter]) -> Priors:
+def prior_arrays(free: Sequence[FreeParameter]) -> Priors:
     """Return the prior means, standard deviations and bounds of free parameters as arrays.
 
     Args:
@@ -157,7 +157,7 @@ def free_parameter_values(
         free: Free parameters of a hypothesis.
         values: Values by effect and name of the parameter.
     """
-    theta = priors_of(free).mean
+    theta = prior_arrays(free).mean
     for i, parameter in enumerate(free):
         theta[i] = values.get((parameter.effect, parameter.name), theta[i])
     return theta

@@ -9,18 +9,18 @@ import numpy as np
 from boatsim.diagnosis import priors
 from boatsim.diagnosis.candidates import (
     Library,
+    candidate_names_except,
     library_for,
-    names_without,
     with_specified_position_drift,
     without_excluded_effects,
 )
-from boatsim.diagnosis.checks.initial_actuator_state import with_initial_actuators
+from boatsim.diagnosis.checks.initial_actuator_state import infer_initial_actuator_state
 from boatsim.diagnosis.config import DEFAULT, DiagnosisConfig
 from boatsim.diagnosis.filter import (
     MappedRecording,
     NoiseLevels,
     map_recording,
-    prior_levels,
+    prior_noise_levels,
     relative_noise,
     shared_noise,
 )
@@ -52,7 +52,7 @@ class RecordingMapper:
         """
         program = self.programs[recording.path]
         mapped = map_recording(recording, program, self.noise, noise_ratio, self.config)
-        return with_initial_actuators(mapped, self.levels, self.config.checks)
+        return infer_initial_actuator_state(mapped, self.levels, self.config.checks)
 
 
 @dataclass(frozen=True)
@@ -66,7 +66,7 @@ class Question:
     candidates: tuple[str, ...]  # names of the effects that are tested
 
 
-def pose_question(
+def set_up_estimation_problem(
     loaded: Loaded, config: DiagnosisConfig = DEFAULT, *, with_candidates: bool = True
 ) -> Question:
     """Set up the estimation problem of a diagnosis from recordings that have been read.
@@ -92,7 +92,7 @@ def pose_question(
         libraries[path] = library_for(known, loaded.library, facts, columns)
         candidates = libraries[path].compiled if with_candidates else ()
         programs[path] = Program(known, candidates)
-    levels = prior_levels(vessel, loaded.fitted, config)
+    levels = prior_noise_levels(vessel, loaded.fitted, config)
     noise = shared_noise(vessel, loaded.fitted, config)
     mapper = RecordingMapper(programs, noise, levels, config)
     fitted = [mapper(recording) for recording in loaded.fitted]
@@ -102,7 +102,7 @@ def pose_question(
         held_out.append(mapper(recording, ratio))
     problem = Problem(fitted, levels, uncertainty, loaded.horizon, config)
     library = libraries[first.path]
-    names = names_without(library, loaded.without)
+    names = candidate_names_except(library, loaded.without)
     return Question(problem, tuple(held_out), mapper, library, names)
 
 
@@ -126,7 +126,7 @@ def compile_program(problem: Problem) -> None:
     Args:
         problem: The estimation problem: recordings, vessel model, candidate effects and priors.
     """
-    nominal, on = problem.nominal_hypothesis(), problem.program.switches()
+    nominal, on = problem.nominal_hypothesis(), problem.program.effect_switches()
     mapped = problem.recordings[0]
     values = problem.values(mapped, nominal.free, nominal.theta)
     mapped.free_runs(values, on, problem.ambient, float(np.ptp(mapped.times)))

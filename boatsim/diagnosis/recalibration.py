@@ -14,7 +14,7 @@ from boatsim.diagnosis.config import FitConfig
 from boatsim.diagnosis.filter import MappedRecording
 from boatsim.diagnosis.fit import gauss_newton
 from boatsim.diagnosis.free_runs import FreeRun, free_run_horizon, free_runs, rms_errors
-from boatsim.diagnosis.problem import Fit, Problem, priors_of
+from boatsim.diagnosis.problem import Fit, Problem, prior_arrays
 from boatsim.diagnosis.search import generalization
 from boatsim.physics.base import Array
 
@@ -41,7 +41,7 @@ class Recalibration:
     refitted: Mapping[str, float]
 
 
-def recalibrate(
+def decide_recalibration(
     problem: Problem, written: Fit, refitted: Fit, held_out: Sequence[MappedRecording]
 ) -> Recalibration:
     """Decide which refitted coefficients of a vessel replace the values of its file.
@@ -57,7 +57,7 @@ def recalibrate(
     """
     kept = undetermined_coefficients(refitted, problem.config.fit)
     names = tuple(f"{refitted.free[i].effect}.{refitted.free[i].name}" for i in kept)
-    found = keep_undetermined(problem, refitted)
+    found = fix_undetermined_coefficients(problem, refitted)
     horizon = free_run_horizon(problem, held_out)
     runs = free_runs(problem, {WRITTEN: written, REFITTED: found}, held_out, horizon)
     adopted = not is_harmful(problem, runs)
@@ -68,7 +68,7 @@ def recalibrate(
     return Recalibration(found, names, adopted, errors)
 
 
-def keep_undetermined(problem: Problem, found: Fit) -> Fit:
+def fix_undetermined_coefficients(problem: Problem, found: Fit) -> Fit:
     """Return a fit in which coefficients that the recordings do not determine are held fixed.
 
     They have the value of the vessel file, and the other parameters are refitted. Levels and
@@ -82,7 +82,7 @@ def keep_undetermined(problem: Problem, found: Fit) -> Fit:
     kept = undetermined_coefficients(found, problem.config.fit)
     if not kept:
         return found
-    theta = priors_of(found.free).mean
+    theta = prior_arrays(found.free).mean
     rest = [i for i in range(len(found.free)) if i not in kept]
     if rest:
         free = tuple(found.free[i] for i in rest)
@@ -107,7 +107,7 @@ def undetermined_coefficients(found: Fit, config: FitConfig) -> list[int]:
         found: Converged fit of the vessel model with some candidate effects.
         config: Largest posterior sd of a determined coefficient, in prior sds.
     """
-    variance = priors_of(found.free).sd ** 2
+    variance = prior_arrays(found.free).sd ** 2
     covariance = found.covariance.copy()
     coefficients = [i for i, f in enumerate(found.free) if f.relative]
     kept = list[int]()

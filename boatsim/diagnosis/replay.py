@@ -6,8 +6,8 @@ from dataclasses import replace
 import numpy as np
 
 from boatsim.diagnosis.candidates import program_to_replay
-from boatsim.diagnosis.checks.initial_actuator_state import with_initial_actuators
-from boatsim.diagnosis.filter import map_recording, prior_levels
+from boatsim.diagnosis.checks.initial_actuator_state import infer_initial_actuator_state
+from boatsim.diagnosis.filter import map_recording, prior_noise_levels
 from boatsim.diagnosis.free_runs import FreeRun, free_runs
 from boatsim.diagnosis.noise_levels import fit_noise
 from boatsim.diagnosis.problem import Fit, Problem
@@ -99,8 +99,8 @@ def fit_noise_only(
     """
     report("compiling, or loading what was compiled before", 0.1)
     program, acting = program_to_replay(vessel)
-    levels = prior_levels(vessel, [recording])
-    mapped = with_initial_actuators(map_recording(recording, program), levels)
+    levels = prior_noise_levels(vessel, [recording])
+    mapped = infer_initial_actuator_state(map_recording(recording, program), levels)
     problem = Problem([mapped], levels, {})
     report("fitting the noise", 0.3)
     return problem, fit_noise(problem, replace(problem.nominal_hypothesis(), effects=acting))

@@ -4,9 +4,13 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from boatsim.diagnosis.divergence import divergences, first_rows_are_finite, follow_recordings
-from boatsim.diagnosis.evaluation import MODELS, Evaluation, in_order
-from boatsim.diagnosis.filter import MappedRecording, axes_of
+from boatsim.diagnosis.divergence import (
+    divergences,
+    first_rows_are_finite,
+    raise_latent_force_level,
+)
+from boatsim.diagnosis.evaluation import MODELS, Evaluation, sort_by_input_order
+from boatsim.diagnosis.filter import MappedRecording, dof_in_state_order
 from boatsim.diagnosis.free_runs import FreeRun, free_run_horizon, free_runs, rms_errors
 from boatsim.diagnosis.locate.missing_force import MissingForce, residual_force
 from boatsim.diagnosis.locate.residual_structure import CONSTANT, Structure
@@ -19,7 +23,7 @@ from boatsim.recordings.table import HUGE
 LARGEST_GAIN = 1e9
 
 
-def unknown_cause(
+def results_without_fit(
     problem: Problem, held_out: Sequence[MappedRecording], where: str
 ) -> tuple[Ranking, Evaluation]:
     """Return the results of a diagnosis in which the fits of the vessel model diverge.
@@ -35,11 +39,11 @@ def unknown_cause(
     Raises:
         BadInput: The model cannot be evaluated at all.
     """
-    everything = in_order([*problem.recordings, *held_out])
+    everything = sort_by_input_order([*problem.recordings, *held_out])
     if not first_rows_are_finite(problem, everything):
         raise _not_evaluated(problem, where)
     with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
-        fit = follow_recordings(problem, everything)
+        fit = raise_latent_force_level(problem, everything)
         forces = _finite_forces(residual_force(problem, fit, everything))
         if not any(len(force.t) for force in forces):
             raise BadInput(
@@ -51,10 +55,10 @@ def unknown_cause(
         horizon = free_run_horizon(problem, held_out)
         runs = _finite_runs(problem, fit, held_out, horizon)
         before = problem.on(everything).log_likelihood(
-            fit.free, fit.theta, problem.program.switches(()), problem.ambient
+            fit.free, fit.theta, problem.program.effect_switches(()), problem.ambient
         )
     gain = float(np.nan_to_num(fit.evidence - before, nan=LARGEST_GAIN, posinf=LARGEST_GAIN))
-    nothing = Structure(axes_of(problem.program.vessel)[0], CONSTANT, 0.0, 1.0, 0, False)
+    nothing = Structure(dof_in_state_order(problem.program.vessel)[0], CONSTANT, 0.0, 1.0, 0, False)
     ranking = Ranking(
         nominal=fit,
         recalibrated=fit,

@@ -86,10 +86,10 @@ class DriverInput:
         """Return the stick deflections beyond the dead zone; None if no driver holds the sticks."""
         if self.release_reason:
             return None
-        return Sticks(*map(beyond_dead_zone, self._message.sticks))
+        return Sticks(*map(apply_dead_zone, self._message.sticks))
 
 
-def beyond_dead_zone(deflection: float) -> float:
+def apply_dead_zone(deflection: float) -> float:
     """Return a stick deflection measured from the end of the dead zone, rounded to STEPS.
 
     Args:

@@ -18,7 +18,7 @@ from boatsim.simulate.open_water import OpenWater
 from boatsim.simulate.run_options import LIVE_REFRESH, REFRESH, Listener
 from boatsim.simulate.scenario import OFF, Scenario
 from boatsim.simulate.tracking_errors import TrackingErrorSums
-from boatsim.view.scene import Scene, scene_from
+from boatsim.view.scene import Scene, scene_from_model
 
 FRAME = 0.04  # [s] between two frames of the page: 25 a second look smooth
 WAIT = 0.05  # [s] between two checks whether a driver has taken the sticks
@@ -201,7 +201,7 @@ def _scene_of(scenario: Scenario) -> Scene:
     tank = world.open_water(vessel)
     if file.tank and not file.is_compiled:
         tank = world.Tank(**file.tank.model_dump())
-    return scene_from(world.build_model(vessel, tank, file.step), vessel, tank)
+    return scene_from_model(world.build_model(vessel, tank, file.step), vessel, tank)
 
 
 def folder_name(vessel: str, now: float) -> Path:

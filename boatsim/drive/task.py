@@ -10,7 +10,7 @@ import tomlkit
 from boatsim.drive.stick_mapping import StickMappings, stick_mappings_for
 from boatsim.errors import BadInput
 from boatsim.files import MAX_TOML_BYTES, Value
-from boatsim.physics.content import find_content_file, library_names
+from boatsim.physics.content import find_content_file, shipped_content_names
 from boatsim.simulate.cases import ScenarioLocation, find_scenarios, read_scenario
 from boatsim.simulate.controllers import controller_table
 from boatsim.simulate.scenario import OFF, Scenario, from_table
@@ -149,7 +149,7 @@ def _environment_table(
 
 def _vessel_reference(name: str, path: Path) -> str:
     """Name of a vessel of the library, or its absolute path."""
-    if name in library_names("vessel"):
+    if name in shipped_content_names("vessel"):
         return name
     return str(path.resolve())
 
@@ -157,7 +157,7 @@ def _vessel_reference(name: str, path: Path) -> str:
 def _scenario_address(vessel: str, scenario: str) -> str:
     """Address of a scenario given by name, by its name for this vessel, or by file."""
     own = f"{vessel}/{scenario}"
-    if own in library_names("scenario"):
+    if own in shipped_content_names("scenario"):
         return own
     found = find_scenarios(scenario)
     if len(found) > 1:

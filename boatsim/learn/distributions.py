@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.special import ndtri
 
-from boatsim.errors import BadInput, unknown_name
+from boatsim.errors import BadInput, unknown_name_message
 from boatsim.physics.signals import Array
 
 CALL = re.compile(r"\s*(\w+)\s*\(([^,]+),([^,]+)\)\s*")
@@ -81,7 +81,7 @@ def make_sampled_parameter(key: str, text: str) -> SampledParameter:
         raise BadInput(f"vary {key} = {text!r}; allowed is {allowed}, a number, or for load a list")
     name = call[1]
     if name not in DISTRIBUTIONS:
-        raise BadInput(unknown_name(f"vary {key}: distribution", name, DISTRIBUTIONS))
+        raise BadInput(unknown_name_message(f"vary {key}: distribution", name, DISTRIBUTIONS))
     family = DISTRIBUTIONS[name]
     try:
         first = float(call[2])

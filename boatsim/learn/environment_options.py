@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from typing import TypedDict, Unpack
 
-from boatsim.errors import BadInput, unknown_name
+from boatsim.errors import BadInput, unknown_name_message
 from boatsim.learn.play import MakeWorld, TaskSimulation, make_batch_world
 from boatsim.learn.tasks.base import Task
 from boatsim.learn.tasks.berth import Berth
@@ -15,7 +15,7 @@ from boatsim.simulate import scenario as scenarios
 from boatsim.simulate.world import Tank
 
 TASKS: Mapping[str, type[Task]] = {
-    task.idea(): task for task in (Berth, HoldStation, FollowPath, Joystick)
+    task.task_name(): task for task in (Berth, HoldStation, FollowPath, Joystick)
 }
 
 
@@ -50,11 +50,11 @@ def make_simulation(
         BadInput: An argument is unknown or wrong.
     """
     if task not in TASKS:
-        raise BadInput(unknown_name("task", task, TASKS))
+        raise BadInput(unknown_name_message("task", task, TASKS))
     known = EnvironmentOptions.__annotations__
     for key in options:
         if key not in known:
-            raise BadInput(unknown_name(f"{task}: argument", key, list(known)))
+            raise BadInput(unknown_name_message(f"{task}: argument", key, list(known)))
     try:
         rules = TASKS[task].from_settings(options.get("settings", {}))
         varied, tank = _make_variation_and_tank(options)

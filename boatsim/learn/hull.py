@@ -74,7 +74,7 @@ class Scale:
     speed: float  # [m/s] one length after the start from rest under full thrust
 
 
-def scale_of(vessel: Vessel, full_ahead: Array) -> Scale:
+def task_scale(vessel: Vessel, full_ahead: Array) -> Scale:
     """Return length, beam and attainable speed of a vessel, by which a learning task is scaled.
 
     The speed is reached one length after the start from rest under full thrust.

@@ -72,5 +72,5 @@ def _command_row(sent: Mapping[str, float], play: TaskSimulation) -> list[float]
     channels = play.vessel.commands
     for name in sent:
         if name not in channels:
-            raise BadInput(play.vessel.unknown_command(name))
+            raise BadInput(play.vessel.unknown_command_message(name))
     return [sent.get(name, channel.neutral) for name, channel in channels.items()]

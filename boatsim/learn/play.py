@@ -14,7 +14,7 @@ from boatsim.errors import BadInput
 from boatsim.learn import episode_random
 from boatsim.learn.actions import Controls, make_controls
 from boatsim.learn.backends import Boats, World
-from boatsim.learn.hull import Hulls, Motion, planar_state_indices, scale_of
+from boatsim.learn.hull import Hulls, Motion, planar_state_indices, task_scale
 from boatsim.learn.tasks.base import Signal, Task
 from boatsim.learn.variation import Variation
 from boatsim.physics.signals import Array
@@ -91,7 +91,7 @@ class TaskSimulation:
         self.vessel = variation.boats[0]
         self.controls: Controls = make_controls(self.vessel, type(task).use)
         task.check_actions(self.vessel.name, self.controls.names)
-        self.scale = scale_of(self.vessel, self.controls.commands(self.controls.ahead))
+        self.scale = task_scale(self.vessel, self.controls.commands(self.controls.ahead))
         self.tank = tank or task.basin(self.scale)
         self.world = world(variation.boats, n, step, self.tank)
         self.commands = np.tile(self.controls.neutral, (n, 1))  # present commands

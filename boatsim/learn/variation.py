@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from boatsim.errors import BadInput, unknown_name
+from boatsim.errors import BadInput, unknown_name_message
 from boatsim.learn.backends import Boats, World
 from boatsim.learn.distributions import SampledParameter, make_sampled_parameter
 from boatsim.physics import vessel as vessels
@@ -179,10 +179,10 @@ def _effect_and_parameter(boat: Vessel, key: str) -> tuple[Effect, str]:
     effect = boat.effect(owner)
     if effect is None:
         names = [effect.name for effect in boat.effects]
-        raise BadInput(unknown_name(f"vary: {boat.name}: effect", owner, names))
+        raise BadInput(unknown_name_message(f"vary: {boat.name}: effect", owner, names))
     params = type(effect).params()
     if name not in params:
-        raise BadInput(unknown_name(f"vary: {owner}: number", name, params))
+        raise BadInput(unknown_name_message(f"vary: {owner}: number", name, params))
     return effect, name
 
 

@@ -6,7 +6,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from boatsim.errors import BadInput, unknown_name
+from boatsim.errors import BadInput, unknown_name_message
 from boatsim.physics.base import param
 from boatsim.recordings.notes import unit_of
 from boatsim.recordings.table import Recording
@@ -56,7 +56,7 @@ class Settling(MetricSet):
         highest deviation from it in the final interval.
         """
         if self.signal not in log.signals:
-            raise BadInput(unknown_name("settling: signal", self.signal, log.signals))
+            raise BadInput(unknown_name_message("settling: signal", self.signal, log.signals))
         rows_between(log)
         t, x = log.t - log.t[0], log[self.signal] - self.target
         if not (t >= self.late).any():

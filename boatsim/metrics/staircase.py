@@ -5,7 +5,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from boatsim.metrics.step_response import rise_time, time_of_share
+from boatsim.metrics.step_response import rise_time, time_to_fraction
 from boatsim.physics.base import param
 from boatsim.recordings.notes import unit_of
 from boatsim.recordings.table import Recording
@@ -80,7 +80,7 @@ class Staircase(MetricSet):
             if not rows.any():
                 raise TooShort(f"{log.name}: no rows from {begin:g} s on")
             t, done = log.t[rows] - begin, (log[self.signal][rows] - self.bottom) / self.height - i
-            found[f"time_95_{i + 1}"] = time_of_share(t, done, 0.95)
+            found[f"time_95_{i + 1}"] = time_to_fraction(t, done, 0.95)
             found[f"rise_{i + 1}"] = rise_time(t, done)
             worst["overshoot"] = max(worst["overshoot"], float(done.max() - 1.0) * abs(self.height))
             worst["end_error"] = max(worst["end_error"], abs(float(done[-1] - 1.0) * self.height))

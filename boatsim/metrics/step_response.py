@@ -75,8 +75,8 @@ class StepResponse(MetricSet):
         if y[0] == self.target:  # no step
             return {"end": float(y[-1])}
         done = (y - y[0]) / (self.target - y[0])
-        found = {f"time_{share}": time_of_share(t, done, 0.01 * share) for share in (50, 90, 95)}
-        found["time_63"] = time_of_share(t, done, 1.0 - np.exp(-1.0))
+        found = {f"time_{share}": time_to_fraction(t, done, 0.01 * share) for share in (50, 90, 95)}
+        found["time_63"] = time_to_fraction(t, done, 1.0 - np.exp(-1.0))
         found["rise"] = rise_time(t, done)
         found["settle"] = settling_time(t, done)
         errors = {
@@ -90,7 +90,7 @@ class StepResponse(MetricSet):
         )
 
 
-def time_of_share(t: Array, done: Array, share: float) -> float | None:
+def time_to_fraction(t: Array, done: Array, share: float) -> float | None:
     """Return the time at which a step response first reaches a given fraction of the step.
 
     None if it never does.
@@ -116,8 +116,8 @@ def rise_time(t: Array, done: Array) -> float | None:
         t: Times (N,) since the step [s].
         done: Fraction of the step (N,) reached at these times.
     """
-    tenth = time_of_share(t, done, 0.1)
-    most = time_of_share(t, done, 0.9)
+    tenth = time_to_fraction(t, done, 0.1)
+    most = time_to_fraction(t, done, 0.9)
     if tenth is None or most is None:
         return None
     return most - tenth

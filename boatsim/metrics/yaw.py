@@ -6,7 +6,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from boatsim.errors import BadInput, unknown_name
+from boatsim.errors import BadInput, unknown_name_message
 from boatsim.physics.base import Array, param
 from boatsim.recordings.table import Recording
 from boatsim.simulate.camera import Camera
@@ -53,7 +53,7 @@ class Yaw(CameraMetricSet):
         """
         super().check_camera(camera)
         if self.mark not in camera.marks:
-            raise BadInput(unknown_name("yaw: mark", self.mark, camera.marks))
+            raise BadInput(unknown_name_message("yaw: mark", self.mark, camera.marks))
 
     def explain_missing_value(self, metric: str, log: Recording) -> str:
         """Explain in words that a full turn is incomplete, with the largest heading change."""

@@ -19,8 +19,8 @@ from threadpoolctl import threadpool_limits
 from boatsim.diagnosis import priors
 from boatsim.diagnosis.candidates import program_with_candidates
 from boatsim.diagnosis.checks.data_cleaning import clean_recording, total_duration
-from boatsim.diagnosis.checks.initial_actuator_state import with_initial_actuators
-from boatsim.diagnosis.filter import map_recording, prior_levels
+from boatsim.diagnosis.checks.initial_actuator_state import infer_initial_actuator_state
+from boatsim.diagnosis.filter import map_recording, prior_noise_levels
 from boatsim.diagnosis.fit import converge, unfitted_hypothesis
 from boatsim.diagnosis.free_runs import free_runs, rms_errors
 from boatsim.diagnosis.loading import open_parts
@@ -163,8 +163,8 @@ def _make_problems(
 ) -> tuple[Problem, Problem]:
     """The estimation problems of the fitted and the held-out parts."""
     program = program_with_candidates(boat, (*OF_BOAT, *OF_DAY))
-    levels = prior_levels(boat, first)
-    mapped = [with_initial_actuators(map_recording(r, program), levels) for r in first]
+    levels = prior_noise_levels(boat, first)
+    mapped = [infer_initial_actuator_state(map_recording(r, program), levels) for r in first]
     problem = Problem(mapped, levels, priors.coefficient_uncertainty(boat))
     return problem, problem.on([map_recording(r, program) for r in last])
 

@@ -14,7 +14,7 @@ from boatsim.physics.vessel import Vessel
 SLACK = 1e-6  # share of a channel's range by which rounding may exceed it
 
 
-def command_row(vessel: Vessel, given: Mapping[str, float]) -> Array:
+def input_vector(vessel: Vessel, given: Mapping[str, float]) -> Array:
     """Return an array (inputs,) of all inputs of a vessel, with commands given by name.
 
     Values are not limited to the allowed ranges. Inputs are the commands in the vessel's order,
@@ -29,7 +29,7 @@ def command_row(vessel: Vessel, given: Mapping[str, float]) -> Array:
     """
     for name in given:
         if name not in vessel.commands:
-            raise BadInput(vessel.unknown_command(name))
+            raise BadInput(vessel.unknown_command_message(name))
     sent = [given.get(name, channel.neutral) for name, channel in vessel.commands.items()]
     sent += [measured.neutral for measured in vessel.measured.values()]
     return np.array(sent, dtype=float)
@@ -45,7 +45,7 @@ def clipped_commands(vessel: Vessel, given: Mapping[str, float]) -> Array:
     Raises:
         BadInput: The vessel has no such command, or a value is not finite.
     """
-    return clip_to_channel_ranges(vessel, command_row(vessel, given))
+    return clip_to_channel_ranges(vessel, input_vector(vessel, given))
 
 
 def clipped_recorded_commands(vessel: Vessel, signals: Mapping[str, Array], count: int) -> Array:
@@ -63,7 +63,7 @@ def clipped_recorded_commands(vessel: Vessel, signals: Mapping[str, Array], coun
         BadInput: A value is not finite.
     """
     columns = []
-    for name, neutral in zip(vessel.inputs, command_row(vessel, {}).tolist(), strict=True):
+    for name, neutral in zip(vessel.inputs, input_vector(vessel, {}).tolist(), strict=True):
         columns.append(signals.get(name, np.full(count, neutral)))
     return clip_to_channel_ranges(vessel, np.column_stack(columns))
 

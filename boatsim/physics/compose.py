@@ -13,7 +13,12 @@ from math import cos, sin
 from textwrap import indent
 
 from boatsim.errors import BadInput
-from boatsim.physics.content import effect_address, import_library_module, library_names, load_class
+from boatsim.physics.content import (
+    effect_reference,
+    import_library_module,
+    load_class,
+    shipped_content_names,
+)
 from boatsim.physics.debugging import is_compiled
 from boatsim.physics.kinds.channel import WHOLE, ChannelEffect
 from boatsim.physics.kinds.effect import Effect, EffectKind, LawCall, ProgramFunction
@@ -27,7 +32,7 @@ def effect_kinds() -> list[type[EffectKind]]:
     There is one for each file of `boatsim/physics/kinds`.
     """
     found: list[type[EffectKind]] = []
-    for name in library_names("kind"):
+    for name in shipped_content_names("kind"):
         module = import_library_module("kind", name)
         for value in vars(module).values():
             is_kind = (
@@ -89,7 +94,7 @@ class Composition:
             signals = (self._signals_text(number),) if type(effect).roles else ()
             return [LawCall(number, own, signals + held)]
         calls = []
-        for carrier in self.vessel.carrier_effects(effect):
+        for carrier in self.vessel.host_effects(effect):
             i = self.effects.index(carrier)
             carried = self._carrier_signals(i, type(effect).per_instance_of)
             calls.append(LawCall(number, own, (carried, self._parameters_text(i), *held)))
@@ -255,7 +260,7 @@ class Composition:
         yield "    Wrench,"
         yield ")"
         yield ""
-        yield f"E = effect_classes({[effect_address(type(e)) for e in self.effects]!r})"
+        yield f"E = effect_classes({[effect_reference(type(e)) for e in self.effects]!r})"
         for i, effect in enumerate(self.effects):
             if f"V{i}" in used:
                 yield f"V{i} = E[{i}].values_type()  # {_comment_text(effect.name)}"
@@ -316,6 +321,6 @@ def effect_classes(addresses: Sequence[str]) -> list[type[Effect]]:
 
     Args:
         addresses: Name of each effect in the library, or path of its file
-            (`content.effect_address`).
+            (`content.effect_reference`).
     """
     return [load_class("effect", a) for a in addresses]

@@ -16,7 +16,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-from boatsim.errors import BadInput, unknown_name
+from boatsim.errors import BadInput, unknown_name_message
 from boatsim.files import array_of_tables, read_toml
 from boatsim.physics import trust
 
@@ -49,7 +49,7 @@ def content_root() -> Path:
     return packed if packed.is_dir() else package.parent
 
 
-def library_names(kind: str) -> list[str]:
+def shipped_content_names(kind: str) -> list[str]:
     """Return the names of all shipped vessels, or of all shipped content of another kind.
 
     Kinds are, for example, "vessel", "controller", "scenario" and "effect". Scenarios have names of
@@ -85,7 +85,7 @@ def _effect_files() -> dict[str, str]:
     return files
 
 
-def user_names(kind: str) -> list[str]:
+def user_content_names(kind: str) -> list[str]:
     """Return the names of vessels, effects or other content that the user's own folders add."""
     found: set[str] = set()
     for folder in trust.user_content_folders() if kind in USER_FOLDERS else ():
@@ -97,15 +97,15 @@ def user_names(kind: str) -> list[str]:
             found.update(file.parent.name for file in files)
         else:
             found.update(file.stem for file in inside.glob("[!_]*.py"))
-    return sorted(found - set(library_names(kind)))
+    return sorted(found - set(shipped_content_names(kind)))
 
 
-def all_names(kind: str) -> list[str]:
+def all_content_names(kind: str) -> list[str]:
     """Return the names of all vessels, or of all content of another kind.
 
     Both shipped content and that of the user's own folders count.
     """
-    return sorted([*library_names(kind), *user_names(kind)])
+    return sorted([*shipped_content_names(kind), *user_content_names(kind)])
 
 
 def full_scenario_name(kind: str, name: str) -> str:
@@ -118,7 +118,7 @@ def full_scenario_name(kind: str, name: str) -> str:
     """
     if kind != "scenario" or not name or "/" in name or name.endswith(".toml"):
         return name
-    found = [n for n in all_names(kind) if n.rpartition("/")[2] == name]
+    found = [n for n in all_content_names(kind) if n.rpartition("/")[2] == name]
     if len(found) > 1:
         raise BadInput(f"several scenarios are called {name}; give one of {', '.join(found)}")
     return found[0] if found else name
@@ -145,7 +145,7 @@ def find_content_file(kind: str, name: str, base_folder: Path | None = None) -> 
             return found
     if name.endswith((".py", ".toml")):
         raise BadInput(f"{name}: no such file")
-    raise BadInput(unknown_name(kind, name, all_names(kind)))
+    raise BadInput(unknown_name_message(kind, name, all_content_names(kind)))
 
 
 def _by_path(kind: str, name: str, base_folder: Path | None) -> Path | None:
@@ -154,7 +154,7 @@ def _by_path(kind: str, name: str, base_folder: Path | None) -> Path | None:
     path = (base_folder or Path()) / name
     if path.suffix == suffix and path.is_file():
         return path.resolve()
-    if base_folder and kind == "controller" and name not in library_names(kind):
+    if base_folder and kind == "controller" and name not in shipped_content_names(kind):
         controller = base_folder / f"{name}{suffix}"
         if controller.is_file():
             return controller.resolve()
@@ -164,7 +164,7 @@ def _by_path(kind: str, name: str, base_folder: Path | None) -> Path | None:
 
 
 def _in_library(kind: str, name: str, base_folder: Path | None) -> Path | None:
-    if name not in library_names(kind):
+    if name not in shipped_content_names(kind):
         return None
     folder = content_root() / KINDS[kind]
     if kind == "scenario":
@@ -285,7 +285,7 @@ def load_class(
     Raises:
         BadInput: If there is no such class, or its file is not trusted.
     """
-    if kind in PACKAGES and name in library_names(kind):
+    if kind in PACKAGES and name in shipped_content_names(kind):
         module = import_library_module(kind, name)
     else:
         if kind == "controller":
@@ -314,7 +314,7 @@ def _user_file(kind: str, name: str, base_folder: Path | None) -> Path:
     path = (base_folder or Path()) / (name if name.endswith(".py") else f"{name}.py")
     found = path if path.is_file() else _in_user_content(kind, name)
     if found is None:
-        raise BadInput(unknown_name(kind, name, all_names(kind)))
+        raise BadInput(unknown_name_message(kind, name, all_content_names(kind)))
     return found
 
 
@@ -324,7 +324,7 @@ def _is_named_file(path: Path, name: str, base_folder: Path | None) -> bool:
     return file.is_file() and file.resolve() == path.resolve()
 
 
-def effect_address(effect: type) -> str:
+def effect_reference(effect: type) -> str:
     """Return the text by which a file refers to the class of an effect.
 
     It is the name of an effect of the library, or else the path of the file that defines the
@@ -335,7 +335,7 @@ def effect_address(effect: type) -> str:
     return str(Path(sys.modules[effect.__module__].__file__ or "").resolve())
 
 
-def vessel_address(file: Path) -> str:
+def vessel_reference(file: Path) -> str:
     """Return the text by which a saved file refers to a vessel.
 
     It is the name of a shipped vessel, or the absolute path of another vessel.toml.

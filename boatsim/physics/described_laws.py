@@ -7,7 +7,7 @@ from typing import ClassVar
 from boatsim.errors import BadInput
 from boatsim.physics import terms
 from boatsim.physics.base import UNSET, Boat, Force, SignalHistory, param
-from boatsim.physics.param import code_parameter
+from boatsim.physics.param import name_code_parameter
 from boatsim.physics.particulars import GRAVITY
 
 EVER = 1e12  # [s] beyond any clock, also one that counts from 1970
@@ -66,12 +66,12 @@ class SymbolicTerm(Force, SignalHistory):
         UNSET, low=1e-9, high=1e3, unit="", words="speed [SI] within which a factor sign_ changes"
     )
 
-    first: float = code_parameter("first factor")
-    second: float = code_parameter("second factor")
-    third: float = code_parameter("third factor")
-    course: float = code_parameter("course in time")
-    looks_at: float = code_parameter("signal whose history is used")
-    looks: float = code_parameter("kind of history")
+    first: float = name_code_parameter("first factor")
+    second: float = name_code_parameter("second factor")
+    third: float = name_code_parameter("third factor")
+    course: float = name_code_parameter("course in time")
+    looks_at: float = name_code_parameter("signal whose history is used")
+    looks: float = name_code_parameter("kind of history")
 
     def __post_init__(self) -> None:
         super().__post_init__()

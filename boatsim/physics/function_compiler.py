@@ -70,7 +70,7 @@ def is_plain(kind: Any) -> bool:
 
 
 @cache
-def remembering(context: Context) -> RememberingContext:
+def caching_typing_context(context: Context) -> RememberingContext:
     """Return numba's typing context extended by a cache; one extension per original context."""
     return RememberingContext(context)
 
@@ -133,7 +133,7 @@ class InnerCompiler(CompilerBase):
 
     def __init__(self, typingctx: Context, *args: Any) -> None:
         """Take the arguments of numba's compiler, and cache the types of operators."""
-        super().__init__(remembering(typingctx), *args)
+        super().__init__(caching_typing_context(typingctx), *args)
 
     def define_pipelines(self) -> list[Any]:
         """Return numba's compiler passes, of which the last one translates to linkable LLVM code.

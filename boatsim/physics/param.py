@@ -7,7 +7,7 @@ from dataclasses import field, fields
 from typing import NamedTuple, Self, TypeVar
 
 from boatsim.arguments import shown
-from boatsim.errors import BadInput, unknown_name
+from boatsim.errors import BadInput, unknown_name_message
 
 N = TypeVar("N", bound=float)  # int or float
 # A parameter without a value. For a vessel it is set by `follows`, by `Effect.derived_parameters`
@@ -220,7 +220,7 @@ def replacement_parameter(
     )
 
 
-def code_parameter(words: str) -> float:
+def name_code_parameter(words: str) -> float:
     """Declare an internal parameter of an effect: a number that stands for a name.
 
     A compiled law needs numbers, for example for an axis or a channel. `Effect.derived_parameters`
@@ -293,7 +293,7 @@ class CheckedParameters:
                 types[declared.name] = declared.type
         for key, value in settings.items():
             if key not in types:
-                raise BadInput(unknown_name(f"{cls.__name__}: setting", str(key), types))
+                raise BadInput(unknown_name_message(f"{cls.__name__}: setting", str(key), types))
             allowed = _wrong_type(value, types[key])
             if allowed:
                 raise BadInput(f"{cls.__name__}: {key} = {shown(value)}; allowed is {allowed}")

@@ -65,7 +65,7 @@ class Program:
         """Parameters (P,) of all effects of the program in one array, in SI units."""
         return np.array([v for e in self.effects for v in e.values()], dtype=float)
 
-    def switches(self, active: Sequence[str] = ()) -> Array:
+    def effect_switches(self, active: Sequence[str] = ()) -> Array:
         """Return an array (E,) that says which effects act: 1 for active effects, else 0.
 
         The vessel's own effects are always active.
@@ -112,7 +112,7 @@ class Program:
         Args:
             active: Names of the candidate effects that act.
         """
-        return VesselNumbers(self.body, self.values(), self.switches(active))
+        return VesselNumbers(self.body, self.values(), self.effect_switches(active))
 
     def vessel_state(
         self, y: Array, memory: Array | None = None, force: Array | None = None
@@ -171,7 +171,7 @@ class Program:
         self._python_functions["jacobian"](state, J)
         return J
 
-    def body_rates(self, states: Array) -> Array:
+    def to_body_velocities(self, states: Array) -> Array:
         """Convert states (N, 2 NQ) from joint rates to body-axes velocities."""
         out = np.empty(states.shape)
         seen = self._vectorised("pose_and_velocities")(states.T)
@@ -179,8 +179,10 @@ class Program:
             out[:, i] = seen[k]
         return out
 
-    def joint_rates(self, states: Array) -> Array:
-        """Convert states from body-axes velocities to joint rates: the inverse of `body_rates`.
+    def to_joint_rates(self, states: Array) -> Array:
+        """Convert states from body-axes velocities to joint rates.
+
+        It is the inverse of `to_body_velocities`.
 
         Args:
             states: States (N, 2 NQ), or one state (2 NQ,).

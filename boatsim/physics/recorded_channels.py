@@ -56,7 +56,7 @@ INSTRUMENT_CHANNELS = (
 
 
 @merged
-def replaced_if(condition: bool, value: float, other: float) -> float:
+def select_if(condition: bool, value: float, other: float) -> float:
     """Return `value` if the condition holds, else `other`; an expression for compiled code."""
     if condition:
         return value
@@ -73,18 +73,18 @@ def with_channel(m: MeasuredMotion, channel: np.int64, value: float) -> Measured
         value: Its new value, in the unit of the channel.
     """
     return MeasuredMotion(
-        replaced_if(channel == X, value, m.x),
-        replaced_if(channel == Y, value, m.y),
-        replaced_if(channel == Z, value, m.z),
-        replaced_if(channel == PHI, value, m.phi),
-        replaced_if(channel == THETA, value, m.theta),
-        replaced_if(channel == PSI, value, m.psi),
-        replaced_if(channel == U, value, m.u),
-        replaced_if(channel == V, value, m.v),
-        replaced_if(channel == W, value, m.w),
-        replaced_if(channel == P, value, m.p),
-        replaced_if(channel == Q, value, m.q),
-        replaced_if(channel == R, value, m.r),
+        select_if(channel == X, value, m.x),
+        select_if(channel == Y, value, m.y),
+        select_if(channel == Z, value, m.z),
+        select_if(channel == PHI, value, m.phi),
+        select_if(channel == THETA, value, m.theta),
+        select_if(channel == PSI, value, m.psi),
+        select_if(channel == U, value, m.u),
+        select_if(channel == V, value, m.v),
+        select_if(channel == W, value, m.w),
+        select_if(channel == P, value, m.p),
+        select_if(channel == Q, value, m.q),
+        select_if(channel == R, value, m.r),
     )
 
 
@@ -107,14 +107,14 @@ def channel_rate(m: MeasuredMotion, channel: np.int64, delay: float) -> float:
     if channel == X or channel == Y:
         middle = m.psi - 0.5 * delay * m.r
         c, s = cos(middle), sin(middle)
-        return replaced_if(channel == X, c * m.u - s * m.v, s * m.u + c * m.v)
+        return select_if(channel == X, c * m.u - s * m.v, s * m.u + c * m.v)
     if channel == Z:
         return (m.v * sin(m.phi) + m.w * cos(m.phi)) * cos(m.theta) - m.u * sin(m.theta)
     if channel == PHI:
         return m.p + (m.q * sin(m.phi) + m.r * cos(m.phi)) * tan(m.theta)
     if channel == THETA:
         return m.q * cos(m.phi) - m.r * sin(m.phi)
-    return replaced_if(channel == PSI, m.r, 0.0)
+    return select_if(channel == PSI, m.r, 0.0)
 
 
 @merged

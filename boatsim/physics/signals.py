@@ -58,7 +58,7 @@ RATES = tuple(s.column for s in STATE[6:])
 NOISE = {s.noise: s.noise_sd for s in STATE}
 
 
-def signals_of(dof: tuple[str, ...]) -> tuple[Signal, ...]:
+def motion_signals(dof: tuple[str, ...]) -> tuple[Signal, ...]:
     """Return the motion signals of a vessel: its coordinates, then their rates.
 
     They have the order of `AXES`.

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numba import njit
 
-from boatsim.errors import BadInput, unknown_name
+from boatsim.errors import BadInput, unknown_name_message
 from boatsim.physics.kernel.compiling import apart
 from boatsim.physics.signals import SignalSegment, Wrench, first_order_lag, longest_lag_step, wrench
 
@@ -300,7 +300,7 @@ def factor_codes(what: str, of: Sequence[str], held: Sequence[str]) -> tuple[flo
         elif name in factor_names(held):
             found.append(float(RECALLED + name.startswith("abs_")))
         else:
-            raise BadInput(unknown_name(f"{what}: of", name, factor_names(held)))
+            raise BadInput(unknown_name_message(f"{what}: of", name, factor_names(held)))
     return (*found, *[0.0] * (MOST_FACTORS - len(found)))
 
 
@@ -318,5 +318,5 @@ def index_code(what: str, word: str, words: Sequence[str]) -> float:
         BadInput: The name is not allowed.
     """
     if word not in words:
-        raise BadInput(unknown_name(what, word, words))
+        raise BadInput(unknown_name_message(what, word, words))
     return float(words.index(word))

@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from boatsim.errors import BadInput, unknown_name
+from boatsim.errors import BadInput, unknown_name_message
 from boatsim.physics.base import Array
 from boatsim.physics.signals import POSE, RATES
 from boatsim.recordings.importing.resample import (
@@ -46,7 +46,7 @@ def shifted_columns(
         return t, dict(signals)
     for name in latency:
         if name not in signals:
-            raise BadInput(f"{place}: {unknown_name('latency: column', name, signals)}")
+            raise BadInput(f"{place}: {unknown_name_message('latency: column', name, signals)}")
     if len({latency.get(name, 0.0) for name in FIX if name in signals}) > 1:
         raise BadInput(
             f"{place}: latency: x_m and y_m are one measurement; allowed is one delay for both"

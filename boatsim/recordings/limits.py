@@ -23,17 +23,17 @@ CGROUP_LIMITS = (
 )
 
 
-def check_file(path: Path) -> None:
+def check_file_size(path: Path) -> None:
     """Check that a recording's file is small enough to be read into memory."""
     size = path.stat().st_size
     if size > MAX_FILE_BYTES:
         raise file_error(
             path, f"has {size / 1e9:.1f} GB; a recording has at most {MAX_FILE_BYTES / 1e9:.1f} GB"
         )
-    check_memory(path, MEMORY_PER_BYTE * size)
+    check_free_memory(path, MEMORY_PER_BYTE * size)
 
 
-def check_shape(path: Path, columns: int, cells: int = 0) -> None:
+def check_table_size(path: Path, columns: int, cells: int = 0) -> None:
     """Check that a table has few enough columns and cells to be read into memory.
 
     `cells` is 0 where the number of cells is not known yet.
@@ -45,10 +45,10 @@ def check_shape(path: Path, columns: int, cells: int = 0) -> None:
         raise file_error(path, f"has {columns} columns; a recording has at most {MAX_COLUMNS}")
     if cells > MAX_CELLS:
         raise file_error(path, f"has {cells:.3g} cells; a recording has at most {MAX_CELLS:.3g}")
-    check_memory(path, BYTES_PER_CELL * cells)
+    check_free_memory(path, BYTES_PER_CELL * cells)
 
 
-def check_memory(path: Path, needed: float) -> None:
+def check_free_memory(path: Path, needed: float) -> None:
     """Check that the memory needed to read a file [bytes] is free. Raises BadInput if it is not."""
     free = free_memory()
     if needed > free:

@@ -10,7 +10,7 @@ from pathlib import Path
 from stat import S_IWOTH
 from typing import TypedDict, TypeVar
 
-from boatsim.errors import BadInput, unknown_name
+from boatsim.errors import BadInput, unknown_name_message
 from boatsim.files import Value, home_folder, read_toml
 from boatsim.physics.facts import first_invalid
 from boatsim.physics.signals import AXES
@@ -98,7 +98,7 @@ class Notes:
         noise: Standard deviation of the sensors, by the names in NOISE.
         ambient: The unmodelled disturbance.
         coefficient_uncertainty: Relative standard deviation of the model's coefficients, by kind.
-        facts: Facts such as `walls_m` and `position_fix`, and free text.
+        facts: Facts such as `walls_m` and `position_fix_type`, and free text.
     """
 
     vessel: str | None = None
@@ -255,7 +255,7 @@ class _Reader:
         read = partial(self.read_number, low=low)
         return dict(zip(self.content, map(read, self.content), strict=True))
 
-    def read_use(self) -> tuple[tuple[float, float], ...]:
+    def read_used_interval(self) -> tuple[tuple[float, float], ...]:
         if "use" not in self.content:
             return ()
         given = self.content["use"]
@@ -302,7 +302,9 @@ class _Reader:
             found["axes"] = list(inner.read_texts("axes"))
         for axis in found.get("axes", ()):
             if axis not in AXES:
-                raise BadInput(f"{self.file}: {unknown_name('ambient.axes: axis', axis, AXES)}")
+                raise BadInput(
+                    f"{self.file}: {unknown_name_message('ambient.axes: axis', axis, AXES)}"
+                )
         if "time_constant_s" in inner.content:
             found["time_constant_s"] = inner.read_number("time_constant_s", low=0.0)
         if "force_rms" in inner.content:
@@ -345,7 +347,7 @@ class _Reader:
             vessel=_read_or_collect_mistake(mistakes, lambda: self.read_text("vessel"), None),
             load=_read_or_collect_mistake(mistakes, lambda: self.read_texts("load"), ()),
             settings=_read_or_collect_mistake(mistakes, self.read_settings, {}),
-            use=_read_or_collect_mistake(mistakes, self.read_use, ()),
+            use=_read_or_collect_mistake(mistakes, self.read_used_interval, ()),
             latency=_read_or_collect_mistake(mistakes, self.read_latency, {}),
             scale=_read_or_collect_mistake(mistakes, self.read_scale, None),
             noise=_read_or_collect_mistake(

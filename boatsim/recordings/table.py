@@ -16,9 +16,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from boatsim.arguments import check_instance, checked_names, checked_number, number_array
-from boatsim.errors import BadInput, unknown_name
+from boatsim.errors import BadInput, unknown_name_message
 from boatsim.files import replace_file
-from boatsim.physics.content import import_library_module, library_names
+from boatsim.physics.content import import_library_module, shipped_content_names
 from boatsim.physics.signals import POSE, RATES, Array
 from boatsim.recordings import limits, units
 from boatsim.recordings.conversion import Curve, Range
@@ -151,7 +151,7 @@ class Recording:
         """Return the values (N,) of a signal. Raises SignalMissing."""
         check_instance("name", name, str, "a text")
         if name not in self.signals:
-            raise SignalMissing(unknown_name(f"{self.name}: signal", name, self.signals))
+            raise SignalMissing(unknown_name_message(f"{self.name}: signal", name, self.signals))
         return self.signals[name]
 
     def unit(self, name: str) -> str:
@@ -475,10 +475,10 @@ def _read_raw(path: Path) -> Raw:
     if not path.is_file():
         raise file_error(path, "there is no such file")
     try:
-        limits.check_file(path)
+        limits.check_file_size(path)
         suffix = path.suffix.removeprefix(".").lower()
         format = "csv"
-        if suffix in library_names("reader"):
+        if suffix in shipped_content_names("reader"):
             format = suffix
         found = import_library_module("reader", format).read(path)
         if not isinstance(found, Raw):
@@ -486,7 +486,7 @@ def _read_raw(path: Path) -> Raw:
                 path,
                 f"read of the reader {format}.py returns {type(found).__name__}; allowed is Raw",
             )
-        limits.check_shape(path, len(found.columns))
+        limits.check_table_size(path, len(found.columns))
         return found
     except OSError as error:
         raise file_error(path, f"can not be read ({error.strerror})") from error
@@ -586,7 +586,7 @@ def _check_cells(raw: Raw, needed: list[str]) -> None:
             raise file_error(raw.path, f"{cell!r} is not a number", row, name)
     columns = dict(zip(needed, map(raw.columns.__getitem__, needed), strict=True))
     _check_overlap(raw, columns)
-    allowed = allowed_gaps(columns)
+    allowed = allowed_empty_rows(columns)
     first: list[tuple[int, str]] = []
     for name, values in columns.items():
         unusable = ~(np.abs(values) < HUGE) & ~allowed.get(name, False)
@@ -603,7 +603,7 @@ def _check_cells(raw: Raw, needed: list[str]) -> None:
         raise _too_few_rows(raw)
 
 
-def allowed_gaps(
+def allowed_empty_rows(
     columns: Mapping[str, Array],
 ) -> dict[str, "np.ndarray[tuple[int], np.dtype[np.bool_]]"]:
     """Return the rows (N,) in which each pose and rate of a table may be empty.
@@ -682,7 +682,7 @@ def _parts_between(t: Array, apart: NDArray[np.bool_]) -> list[list[float]]:
 
 
 def _check_units(raw: Raw) -> None:
-    for name, index in units.columns_in_degrees(raw.columns).items():
+    for name, index in units.find_columns_in_degrees(raw.columns).items():
         message = (
             f"{raw.columns[name][index]:g} looks like degrees; allowed are radians "
             f"({unit_of(name)})"

@@ -32,7 +32,7 @@ MIN_WRAPS = 2  # one large step may be an outlier
 ANGLES = {"r_radps": "psi_rad", "p_radps": "phi_rad"}  # rate -> its integral
 
 
-def columns_in_degrees(columns: Mapping[str, Array]) -> dict[str, int]:
+def find_columns_in_degrees(columns: Mapping[str, Array]) -> dict[str, int]:
     """Return the columns of a table that hold degrees although their names promise radians.
 
     The motion decides. Rows at which time does not increase are ignored.
@@ -61,11 +61,11 @@ def _in_degrees(columns: Mapping[str, Array]) -> dict[str, int]:
             continue
         rows, t, values, others = _rows_with_values(columns, name)
         if name == "psi_rad":
-            index = heading_in_degrees(t, values, others)
+            index = find_heading_in_degrees(t, values, others)
         elif name == "phi_rad":
-            index = roll_in_degrees(t, values, others.get("p_radps"))
+            index = find_roll_in_degrees(t, values, others.get("p_radps"))
         else:
-            index = rate_in_degrees(t, values, others.get(ANGLES[name]))
+            index = find_rate_in_degrees(t, values, others.get(ANGLES[name]))
         if index is not None:
             found[name] = int(rows[index])
     return found
@@ -81,7 +81,7 @@ def _rows_with_values(
     return rows, selected["t_s"], selected[name], others
 
 
-def heading_in_degrees(t: Array, psi: Array, signals: Mapping[str, Array]) -> int | None:
+def find_heading_in_degrees(t: Array, psi: Array, signals: Mapping[str, Array]) -> int | None:
     """Return a row that shows that a recorded heading is in degrees, None if it is in radians.
 
     Recorded rates and the course made good decide by their ratio to the changes of the heading.
@@ -99,7 +99,7 @@ def heading_in_degrees(t: Array, psi: Array, signals: Mapping[str, Array]) -> in
     if abs(steps[largest - 1]) > 3.0 * math.pi:  # radians wrap by 2 pi, degrees by 360
         return largest
     if "r_radps" in signals:
-        turned = integral(t, signals["r_radps"])
+        turned = cumulative_integral(t, signals["r_radps"])
         # The heading is not unwrapped, for fast turning in degrees looks like wraps
         if _is_near(_ratio(turned, psi), DEGREES):
             return largest
@@ -129,14 +129,14 @@ def _is_wrapped_in_radians(psi: Array, steps: Array) -> bool:
     return one_turn and inside and int(np.sum(np.abs(steps) > math.pi)) >= MIN_WRAPS
 
 
-def rate_in_degrees(t: Array, rate: Array, angle: Array | None) -> int | None:
+def find_rate_in_degrees(t: Array, rate: Array, angle: Array | None) -> int | None:
     """Decide whether a recorded angular rate (N,) is in degrees per second.
 
     Returns a row that shows it, None for radians per second.
     """
     largest = int(np.argmax(np.abs(rate)))
     if angle is not None:
-        ratio = _ratio(np.unwrap(angle), integral(t, rate))
+        ratio = _ratio(np.unwrap(angle), cumulative_integral(t, rate))
         if _is_near(ratio, DEGREES):
             return largest
         if _is_near(ratio, 1.0):
@@ -146,7 +146,7 @@ def rate_in_degrees(t: Array, rate: Array, angle: Array | None) -> int | None:
     return None
 
 
-def roll_in_degrees(t: Array, phi: Array, rate: Array | None) -> int | None:
+def find_roll_in_degrees(t: Array, phi: Array, rate: Array | None) -> int | None:
     """Decide whether a recorded roll angle (N,) is in degrees.
 
     Returns a row that shows it, None for radians.
@@ -154,12 +154,12 @@ def roll_in_degrees(t: Array, phi: Array, rate: Array | None) -> int | None:
     largest = int(np.argmax(np.abs(phi)))
     if abs(phi[largest]) > MAX_ROLL:
         return largest
-    if rate is not None and _is_near(_ratio(integral(t, rate), phi), DEGREES):
+    if rate is not None and _is_near(_ratio(cumulative_integral(t, rate), phi), DEGREES):
         return largest
     return None
 
 
-def integral(t: Array, rate: Array) -> Array:
+def cumulative_integral(t: Array, rate: Array) -> Array:
     """Return the time integral (N,) of a rate from the first row on, by the trapezoidal rule.
 
     Args:

@@ -24,7 +24,7 @@ from boatsim.arguments import (
     type_error,
     whole_array,
 )
-from boatsim.errors import BadInput, unknown_name
+from boatsim.errors import BadInput, unknown_name_message
 from boatsim.physics.commands import clip_to_channel_ranges, clipped_commands
 from boatsim.physics.kernel.records import FleetArrays, VesselNumbers
 from boatsim.physics.kinds.effect import Effect
@@ -144,7 +144,7 @@ class Batch:
         self.code = self.program.module
         self._check_same_program()
         self._values = [p.values() for p in self.programs]
-        self._on, self._none = self.program.switches(), np.zeros(self.code.NQ)
+        self._on, self._none = self.program.effect_switches(), np.zeros(self.code.NQ)
         self._seeds = np.zeros(self.n, dtype=int)
         if seeds is not None:
             self._seeds = whole_array("seeds", seeds)
@@ -202,7 +202,7 @@ class Batch:
     @property
     def states(self) -> Array:
         """Present states of all vessels (n, 2 NQ): coordinates and body rates over ground."""
-        return self.program.body_rates(self._y)
+        return self.program.to_body_velocities(self._y)
 
     @property
     def actuators(self) -> Array:
@@ -238,7 +238,7 @@ class Batch:
         """
         chosen = self._boat_numbers(boats)
         self._y[chosen] = (
-            0.0 if states is None else self.program.joint_rates(self._state_rows(states, chosen))
+            0.0 if states is None else self.program.to_joint_rates(self._state_rows(states, chosen))
         )
         self._commands[chosen] = self._clip({} if commands is None else commands, chosen)
         self.t[chosen] = 0.0
@@ -364,11 +364,11 @@ class Batch:
         commands = np.ascontiguousarray(clip_to_channel_ranges(self.vessels[0], rows))
         begin = self._shaped("start", start, (self._y.shape[1],))
         model = VesselNumbers(self.program.body, p, self._on)
-        plant = self.program.vessel_state(self.program.joint_rates(begin))
+        plant = self.program.vessel_state(self.program.to_joint_rates(begin))
         self.code.settle_actuators(commands[0], plant.memory, p, self._on, plant.act)
         out = np.empty((len(commands) + 1, len(plant.y)))
         self.code.rollout(model, plant, commands, t0, self.step, substeps, out)
-        return self.program.body_rates(out)
+        return self.program.to_body_velocities(out)
 
     def hold_commands(
         self, start: Sequence[float], commands: Mapping[str, float], steps: int
@@ -398,9 +398,9 @@ class Batch:
         memory = np.zeros(self.program.memory_size)
         self.code.settle_actuators(self.program.command_array(commands), memory, p, self._on, act)
         self.code.compute_mass_constants(self.program.body, p, self._on, k)
-        y = self.program.joint_rates(begin)
+        y = self.program.to_joint_rates(begin)
         self.code.steps(0.0, y, self.step, steps, act, p, self._on, k)
-        state: Array = self.program.body_rates(y[None])[0]
+        state: Array = self.program.to_body_velocities(y[None])[0]
         return state
 
     @staticmethod
@@ -534,7 +534,9 @@ class Batch:
             return (self._body, *BODY[parameter])
         if parameter not in self._parameters:
             names = [*self._parameters, *BODY]
-            raise BadInput(unknown_name(f"{self.vessels[0].name}: parameter", parameter, names))
+            raise BadInput(
+                unknown_name_message(f"{self.vessels[0].name}: parameter", parameter, names)
+            )
         return (self._p, *self._parameters[parameter])
 
     def _check_same_program(self) -> None:

@@ -17,10 +17,15 @@ from fnmatch import fnmatchcase
 from itertools import chain
 from pathlib import Path
 
-from boatsim.errors import BadInput, unknown_name
+from boatsim.errors import BadInput, unknown_name_message
 from boatsim.files import Value, array_of_tables, read_toml
 from boatsim.physics import trust
-from boatsim.physics.content import all_names, content_root, find_content_file, full_scenario_name
+from boatsim.physics.content import (
+    all_content_names,
+    content_root,
+    find_content_file,
+    full_scenario_name,
+)
 
 NAME = re.compile(r"[\w.+-]+")
 # files in a folder of scenarios that are none
@@ -90,10 +95,10 @@ def find_scenarios(given: str) -> list[str]:
     Raises:
         BadInput: If there is none.
     """
-    shipped = all_names("scenario")
+    shipped = all_content_names("scenario")
     if not given:
         raise BadInput(
-            f"the name of a scenario is empty; {unknown_name('scenario', given, shipped)}"
+            f"the name of a scenario is empty; {unknown_name_message('scenario', given, shipped)}"
         )
     if given in shipped:
         return [given]
@@ -168,7 +173,7 @@ def find_scenario(given: str, base_folder: Path | None = None) -> ScenarioLocati
     names = case_names(path)
     if named:
         if case not in names:
-            raise BadInput(unknown_name(f"{path.name}: case", case, names))
+            raise BadInput(unknown_name_message(f"{path.name}: case", case, names))
         return ScenarioLocation(path, case)
     if not names:
         return ScenarioLocation(path)
@@ -231,7 +236,9 @@ def _find_base(given: Value, place: ScenarioLocation) -> ScenarioLocation:
         if given in names:
             return ScenarioLocation(place.path, given)
         if "/" not in given and ".toml" not in given:
-            raise BadInput(unknown_name("scenario", given, [*names, *all_names("scenario")]))
+            raise BadInput(
+                unknown_name_message("scenario", given, [*names, *all_content_names("scenario")])
+            )
         return find_scenario(given, place.path.parent)
     except BadInput as error:
         raise BadInput(f"{place.label}: base: {error}") from None

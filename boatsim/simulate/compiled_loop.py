@@ -170,7 +170,7 @@ def function_pointers(
 
 
 @cache
-def compiled_loop(kinds: tuple[Any, ...], loop: Any) -> Any:
+def compile_loop(kinds: tuple[Any, ...], loop: Any) -> Any:
     """Return the compiled simulation of control periods, `run_periods`, for given argument types.
 
     Each combination of types has its own function: numba would try every call on the types of the

@@ -72,12 +72,12 @@ class ControlLoop:
         self._due = 0.0  # [s] when the next control period begins
         self._early = inf  # [s] when the controller acts within its period
         start = scenario.file.start
-        self.state = State(**start.state_values())
+        self.state = State(**start.initial_state_values())
         with self.name_controller_in_errors() as controller:
             controller.reset()
             engine.reset(self.state, {**controller.initial_commands(), **start.commands})
             self._store_sent_commands()
-        self._many_periods = MultiPeriodStep.if_possible(scenario, engine, self._imu)
+        self._many_periods = MultiPeriodStep.create_if_possible(scenario, engine, self._imu)
         self._due += scenario.controller.period
         self._sense_and_control()
 
@@ -145,7 +145,7 @@ class ControlLoop:
         many, t = self._many_periods, self.state.t
         if many is None:
             return
-        periods = many.complete_periods(t, until)
+        periods = many.count_complete_periods(t, until)
         if not periods or abs(self._due - t - many.period) > TIME_TOLERANCE:
             return
         with self.name_controller_in_errors():

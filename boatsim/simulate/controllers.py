@@ -5,7 +5,7 @@ from typing import Any
 
 from boatsim.control.base import Sense
 from boatsim.errors import BadInput
-from boatsim.physics.content import find_content_file, library_names, load_class
+from boatsim.physics.content import find_content_file, load_class, shipped_content_names
 from boatsim.physics.vessel import Vessel
 from boatsim.simulate.cases import read_scenario
 from boatsim.simulate.control_loop import controller_error
@@ -62,7 +62,7 @@ def controller_table(controller: str, own: object) -> Mapping[str, Any]:
     load_class("controller", controller, named=True)
     use = (
         controller
-        if controller in library_names("controller")
+        if controller in shipped_content_names("controller")
         else str(find_content_file("controller", controller))
     )
     if isinstance(own, Mapping) and own.get("use") == use:

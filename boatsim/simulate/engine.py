@@ -71,7 +71,7 @@ class Engine(Stepper):
         self._k = np.zeros(self.code.K)
         self.code.compute_mass_constants(self.program.body, self._values, self._on, self._k)
         size = len(self._values) + self.code.K + self.program.held_size + 2
-        with no_callback():
+        with without_passive_callback():
             self.model = world.build_model(vessel, self.tank, step, size, **options)
             self.data = mujoco.MjData(self.model)
         joints = [self.model.joint(i).name for i in range(self.model.njnt)]
@@ -227,7 +227,7 @@ def _ignore_warning(_: str) -> None:
 
 
 @contextmanager
-def no_callback() -> Iterator[None]:
+def without_passive_callback() -> Iterator[None]:
     """Remove MuJoCo's passive-force callback within a `with` block.
 
     A callback in Python prevents the compilation of models.
@@ -240,4 +240,4 @@ def no_callback() -> Iterator[None]:
         mujoco.set_mjcb_passive(saved)
 
 
-__all__ = ["Engine", "State", "installed_callback", "no_callback", "python_callback"]
+__all__ = ["Engine", "State", "installed_callback", "without_passive_callback", "python_callback"]

@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike
 from boatsim.control.allocation import STICK
 from boatsim.errors import BadInput, BadPhysics
 from boatsim.physics.base import Array
-from boatsim.physics.signals import signals_of
+from boatsim.physics.signals import motion_signals
 from boatsim.physics.vessel import Vessel
 from boatsim.simulate import scenario as scenarios
 from boatsim.simulate.engine import Engine, State, installed_callback
@@ -224,7 +224,7 @@ class BoatTask(control.Task):
         start, length = self.scenario.file.start, self.scenario.vessel.length
         x, y, psi = self._random.uniform(-self.scatter, self.scatter, 3) * (length, length, 1.0)
         scattered = {"x": start.x + x, "y": start.y + y, "psi": start.psi + psi}
-        state = State(**{**start.state_values(), **scattered})
+        state = State(**{**start.initial_state_values(), **scattered})
         physics.engine.reset(
             state, {**self.scenario.controller.initial_commands(), **start.commands}
         )
@@ -249,7 +249,9 @@ class BoatTask(control.Task):
         The pose is in start axes, velocities are in body axes. Units are part of the names.
         """
         state, actual, goal = physics.engine.state, physics.engine.actuators, self._goal(physics)
-        values = {s.column: getattr(state, s.symbol) for s in signals_of(self.scenario.vessel.dof)}
+        values = {
+            s.column: getattr(state, s.symbol) for s in motion_signals(self.scenario.vessel.dof)
+        }
         values |= {f"actual_{name}": value for name, value in actual.items()}
         values |= {f"goal_{name}": value for name, value in zip(STICK, goal, strict=True)}
         return OrderedDict((name, np.float64(value)) for name, value in values.items())

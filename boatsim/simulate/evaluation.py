@@ -8,7 +8,7 @@ from typing import TypedDict
 
 import numpy as np
 
-from boatsim.errors import BadInput, unknown_name
+from boatsim.errors import BadInput, unknown_name_message
 from boatsim.physics.base import Array
 from boatsim.recordings.table import Recording
 from boatsim.simulate import tracking_errors
@@ -297,7 +297,7 @@ def signal_norm(t: Array, x: Array, kind: str) -> float:
 
 def _check_metric(log: Recording, check: CheckTable) -> Metric:
     if check.signal not in log.signals:
-        raise BadInput(unknown_name("[[check]] signal", check.signal, log.signals))
+        raise BadInput(unknown_name_message("[[check]] signal", check.signal, log.signals))
     value = signal_norm(log.t, log[check.signal], check.norm)
     unit = log.unit(check.signal)
     if check.norm == "l2":

@@ -21,8 +21,8 @@ from boatsim.arguments import (
 from boatsim.control.base import Controller
 from boatsim.control.compiled import CompiledController
 from boatsim.errors import BadInput
-from boatsim.physics.commands import command_row
-from boatsim.physics.signals import Array, signals_of
+from boatsim.physics.commands import input_vector
+from boatsim.physics.signals import Array, motion_signals
 from boatsim.physics.vessel import Vessel
 from boatsim.simulate.batch import MOST_BOATS, Batch, checked_vessels
 from boatsim.simulate.fleet_control import (
@@ -157,9 +157,9 @@ class Fleet:
             commands.update(self._each[0].initial_commands())
         commands.update(start.commands)
         if starts is None:
-            motion = start.state_values()
-            starts = [motion[signal.symbol] for signal in signals_of(vessel.dof)]
-        self.batch.reset(starts, command_row(vessel, commands))
+            motion = start.initial_state_values()
+            starts = [motion[signal.symbol] for signal in motion_signals(vessel.dof)]
+        self.batch.reset(starts, input_vector(vessel, commands))
         self._aboard.saturated[:] = 0.0
         self._aboard.random = list(map(_sensor_generator, self.seeds.tolist()))
         self._periods = 0
@@ -202,7 +202,7 @@ class Fleet:
             t[i] = self._periods * self._period
             states[i] = self.batch.states
             commands[i] = self.batch.commands
-        columns = tuple(signal.column for signal in signals_of(vessel.dof))
+        columns = tuple(signal.column for signal in motion_signals(vessel.dof))
         return FleetLog(t, columns, states, vessel.inputs, commands)
 
     def _advance(self, periods: int) -> None:

@@ -9,9 +9,15 @@ import numba
 import numpy as np
 from numpy.typing import ArrayLike
 
-from boatsim.control.compiled import SENSE, CompiledController, Records, as_table, indices_of_names
+from boatsim.control.compiled import (
+    SENSE,
+    CompiledController,
+    Records,
+    indices_of_names,
+    view_as_array,
+)
 from boatsim.errors import BadInput
-from boatsim.physics.commands import SLACK, command_row
+from boatsim.physics.commands import SLACK, input_vector
 from boatsim.physics.debugging import DEBUG
 from boatsim.physics.signals import Array
 from boatsim.simulate import compiled_loop
@@ -87,7 +93,7 @@ class GoalsAsCommands:
         """Advance the fleet by one control period per goal, with the goals as commands."""
         for goal, same in groupby(goals):
             steps = len(list(same)) * self.aboard.steps
-            self.aboard.send_commands(command_row(self.aboard.batch.vessels[0], goal), steps)
+            self.aboard.send_commands(input_vector(self.aboard.batch.vessels[0], goal), steps)
 
 
 class FunctionControl:
@@ -110,14 +116,14 @@ class FunctionControl:
         everyone, boat = np.arange(len(batch)), batch.vessels[0]
         noise = self.aboard.next_noise(everyone, len(goals))
         for i, goal in enumerate(goals):
-            batch.sense(as_table(self._sense))
+            batch.sense(view_as_array(self._sense))
             compiled_loop.add_sensor_errors_to_boats(
-                everyone, as_table(self._sense), numbers, noise, i
+                everyone, view_as_array(self._sense), numbers, noise, i
             )
-            orders = np.tile(command_row(boat, {}), (len(batch), 1))
+            orders = np.tile(input_vector(boat, {}), (len(batch), 1))
             for name, values in self.function(self._sense, goal).items():
                 if name not in boat.commands:
-                    raise BadInput(boat.unknown_command(name))
+                    raise BadInput(boat.unknown_command_message(name))
                 orders[:, boat.inputs.index(name)] = values
             self.aboard.send_commands(orders, self.aboard.steps)
 
@@ -157,7 +163,7 @@ class CompiledControl:
         self._sense = np.zeros(n, SENSE)
         self._goal, self._sent = (np.zeros(n, t) for t in kind.record_types())
         self._felt, self._wanted, self.orders = (
-            as_table(r) for r in (self._sense, self._goal, self._sent)
+            view_as_array(r) for r in (self._sense, self._goal, self._sent)
         )
         self.places = indices_of_names(kind.commands, boat.inputs)
         self._low, self._high = aboard.limits
@@ -212,4 +218,4 @@ class CompiledControl:
             self._run = compiled_loop.run_periods
         else:
             kinds = tuple(pointer.kind for pointer in self._pointers)
-            self._run = compiled_loop.compiled_loop(kinds, numba.typeof(loop))
+            self._run = compiled_loop.compile_loop(kinds, numba.typeof(loop))

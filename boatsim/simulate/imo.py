@@ -25,7 +25,7 @@ class OvershootLimit(NamedTuple):
     offset: float  # [deg]
     slope: float  # [deg/s]
 
-    def limit_angle(self, length: float, speed: float) -> float:
+    def overshoot_limit(self, length: float, speed: float) -> float:
         """Return the IMO limit of an overshoot [deg] for a ship's length [m], speed [m/s]."""
         ratio = length / speed
         if ratio < 10.0:
@@ -56,8 +56,8 @@ def imo_limits(manoeuvre: str, angle: float, length: float, speed: float) -> dic
     if manoeuvre == "zigzag" and abs(angle) == 10.0:
         return {
             "track_to_reversal": TRACK_TO_10,
-            "first_overshoot": FIRST_OVERSHOOT_10.limit_angle(length, speed),
-            "second_overshoot": SECOND_OVERSHOOT_10.limit_angle(length, speed),
+            "first_overshoot": FIRST_OVERSHOOT_10.overshoot_limit(length, speed),
+            "second_overshoot": SECOND_OVERSHOOT_10.overshoot_limit(length, speed),
         }
     if manoeuvre == "zigzag" and abs(angle) == 20.0:
         return {"first_overshoot": OVERSHOOT_20}

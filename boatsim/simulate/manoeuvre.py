@@ -12,11 +12,11 @@ from pathlib import Path
 
 import numpy as np
 
-from boatsim.errors import BadInput, unknown_name
+from boatsim.errors import BadInput, unknown_name_message
 from boatsim.files import Value
 from boatsim.physics import vessel as vessels
-from boatsim.physics.content import vessel_address
-from boatsim.physics.signals import Array, signals_of
+from boatsim.physics.content import vessel_reference
+from boatsim.physics.signals import Array, motion_signals
 from boatsim.physics.vessel import ManoeuvringTable, Vessel
 from boatsim.simulate import imo, scenario
 from boatsim.simulate.batch import Batch
@@ -67,7 +67,7 @@ def manoeuvre_scenario(
         BadInput: If the manoeuvre or vessel does not exist or do not fit.
     """
     if manoeuvre not in ANGLES:
-        raise BadInput(unknown_name("manoeuvre", manoeuvre, ANGLES))
+        raise BadInput(unknown_name_message("manoeuvre", manoeuvre, ANGLES))
     _check_heading(manoeuvre, heading)
     vessel = vessels.load_vessel(name, loads)
     usual = ANGLES[manoeuvre] if angle is None else angle
@@ -77,7 +77,7 @@ def manoeuvre_scenario(
         )
     raw: dict[str, Value] = {
         "about": f"{manoeuvre.replace('_', ' ')} of {vessel.name}",
-        "vessel": vessel_address(vessel.file),
+        "vessel": vessel_reference(vessel.file),
         "load": list(loads),
         "sensors": {"ideal": True},
     }
@@ -131,7 +131,7 @@ def complete_manoeuvring_table(vessel: Vessel) -> ManoeuvringTable:
     given, channels = vessel.manoeuvring, vessel.commands
     for name in (*given.ahead, *given.astern, *given.steer):
         if name not in channels:
-            raise BadInput(f"{vessel.name}: [manoeuvring] {vessel.unknown_command(name)}")
+            raise BadInput(f"{vessel.name}: [manoeuvring] {vessel.unknown_command_message(name)}")
     ahead, astern, steer = dict(given.ahead), dict(given.astern), dict(given.steer)
     transverse = transverse_thrusters(vessel)
     thrusters: list[str] = []
@@ -362,7 +362,7 @@ def _roll_period(vessel: Vessel) -> float:
     guess = 2.0 * float(np.sqrt(vessel.beam))
     compiled = Batch(vessel, step=guess / 400)
     start = [0.0] * (2 * _dof_count(vessel))
-    roll = [signal.symbol for signal in signals_of(vessel.dof)].index("phi")
+    roll = [signal.symbol for signal in motion_signals(vessel.dof)].index("phi")
     start[roll] = radians(1.0)
     rows = np.tile(compiled.program.command_array({}), (8000, 1))
     phi = compiled.rollout(start, rows, guess / 400)[:, roll]

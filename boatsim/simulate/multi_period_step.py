@@ -48,7 +48,7 @@ class MultiPeriodStep:
         law: CompiledController,
         imu: np.random.Generator,
     ) -> None:
-        """Compile the loop; use `if_possible` instead, which checks the conditions.
+        """Compile the loop; use `create_if_possible` instead, which checks the conditions.
 
         Args:
             scenario: The scenario.
@@ -64,7 +64,7 @@ class MultiPeriodStep:
         self._law = CompiledControl(self._aboard, [law], law.memory)
 
     @classmethod
-    def if_possible(
+    def create_if_possible(
         cls, scenario: Scenario, engine: Stepper, imu: np.random.Generator
     ) -> "MultiPeriodStep | None":
         """Return an object that simulates several control periods of a run in one call, or None.
@@ -91,7 +91,7 @@ class MultiPeriodStep:
             return None
         return cls(scenario, engine, law, imu)
 
-    def complete_periods(self, t: float, until: float) -> int:
+    def count_complete_periods(self, t: float, until: float) -> int:
         """Return how many control periods from time t [s] end at least a step before `until` [s].
 
         Returns:

@@ -7,7 +7,7 @@ from warnings import catch_warnings, simplefilter
 
 import numpy as np
 
-from boatsim.errors import BadInput, unknown_name
+from boatsim.errors import BadInput, unknown_name_message
 from boatsim.recordings.table import Notes, Recording, SignalMissing
 from boatsim.simulate.camera import Frame
 from boatsim.simulate.camera_log import CameraLog
@@ -214,7 +214,9 @@ class Simulation:
         first = self._log.table.recording(self._scenario.name, Notes())
         for check in self._scenario.file.check:
             if check.signal not in first.signals:
-                raise BadInput(unknown_name("[[check]] signal", check.signal, first.signals))
+                raise BadInput(
+                    unknown_name_message("[[check]] signal", check.signal, first.signals)
+                )
         if self._scenario.measure is None:
             return
         t = np.linspace(first.t[0], first.t[0] + self._scenario.file.duration, STILL)

@@ -19,7 +19,7 @@ from boatsim.atomic_folder import atomic_folder
 from boatsim.errors import BadInput
 from boatsim.files import AppendedFile, replace_file, toml_key, toml_value
 from boatsim.interruption import deferred_signals
-from boatsim.physics.content import vessel_address
+from boatsim.physics.content import vessel_reference
 from boatsim.recordings.run_folder import METRICS
 from boatsim.recordings.table import Recording, csv_header, csv_rows
 from boatsim.simulate import evaluation
@@ -289,7 +289,7 @@ def notes_toml(scenario: Scenario, seed: int, complete: bool, facts: Mapping[str
         facts: Further entries for the table [facts].
     """
     notes = recording_notes(scenario)
-    address = vessel_address(scenario.vessel.file)
+    address = vessel_reference(scenario.vessel.file)
     lines = [f"vessel = {toml_value(address)}", f"load = {toml_value(list(notes.load))}"]
     for effect, values in notes.settings.items():
         lines += _toml_table(f"set.{toml_key(effect)}", values)

@@ -6,7 +6,7 @@ from operator import attrgetter
 
 from boatsim.physics.base import Force, motion
 from boatsim.physics.debugging import python_function
-from boatsim.physics.signals import AXES, COMPONENTS, signals_of
+from boatsim.physics.signals import AXES, COMPONENTS, motion_signals
 from boatsim.recordings.table import Notes, Recording
 from boatsim.simulate.camera import CAMERA_POSE, Frame
 from boatsim.simulate.camera_log import mark_columns
@@ -52,7 +52,7 @@ class RunLog:
             estimates = list(controller.estimates())
         self._references = [name for name in estimates if name.startswith(REFERENCE)]
         self._estimates = [name for name in estimates if not name.startswith(REFERENCE)]
-        self._signals_text = signals_of(vessel.dof)
+        self._signals_text = motion_signals(vessel.dof)
         self._motion_of = attrgetter(*(signal.symbol for signal in self._signals_text))
         self._axes = [i for i, axis in enumerate(AXES) if axis in vessel.dof]
         self._readings: dict[str, str] = {}  # reading of a further sensor -> its column

@@ -13,7 +13,7 @@ from pydantic import Field, field_validator, model_validator
 
 from boatsim.arguments import check_instance, checked_name
 from boatsim.control.base import Controller
-from boatsim.errors import BadInput, unknown_name
+from boatsim.errors import BadInput, unknown_name_message
 from boatsim.files import Table, validate_table
 from boatsim.physics import vessel as vessels
 from boatsim.physics.content import load_class
@@ -64,7 +64,7 @@ class StartTable(Table):
     # at which the actuators are settled; others are the controller's initial ones, or neutral
     commands: dict[str, float] = {}
 
-    def state_values(self) -> dict[str, float]:
+    def initial_state_values(self) -> dict[str, float]:
         """Return pose and velocities at the start, keyed by their symbols in the engine's state."""
         return {s.symbol: float(getattr(self, s.symbol)) for s in STATE}
 
@@ -387,7 +387,7 @@ def _check_goals(file: ScenarioFile, vessel: Vessel, controller: Controller) -> 
     for goal in file.goal:
         for key in goal:
             if key not in RESERVED and key not in allowed:
-                raise BadInput(unknown_name("[[goal]] key", key, [*RESERVED, *allowed]))
+                raise BadInput(unknown_name_message("[[goal]] key", key, [*RESERVED, *allowed]))
             channel, value = vessel.commands.get(key), goal[key]
             if channel and isinstance(value, float) and not channel.low <= value <= channel.high:
                 raise BadInput(
@@ -405,7 +405,7 @@ def _check_goals(file: ScenarioFile, vessel: Vessel, controller: Controller) -> 
     if unknown := [c for c in type(controller).commands if c not in vessel.commands]:
         raise BadInput(
             f"controller {file.controller['use']} sets {unknown[0]}; "
-            f"{vessel.unknown_command(unknown[0])}"
+            f"{vessel.unknown_command_message(unknown[0])}"
         )
 
 
@@ -445,7 +445,7 @@ def _check_metrics(file: ScenarioFile, camera: Camera, measure: MetricSet | None
         units = {name: measure.unit(name) for name in type(measure).units} | units
     for name, table in file.norms.items():
         if name not in units:
-            raise BadInput(unknown_name("[norms] key", name, units))
+            raise BadInput(unknown_name_message("[norms] key", name, units))
         try:
             table.factor(units[name])
         except BadInput as error:

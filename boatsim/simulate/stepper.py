@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from boatsim.errors import BadInput, BadPhysics
-from boatsim.physics.commands import clip_to_channel_ranges, command_row, saturated_channels
+from boatsim.physics.commands import clip_to_channel_ranges, input_vector, saturated_channels
 from boatsim.physics.program import Program
 from boatsim.physics.signals import Array, Wrench
 from boatsim.physics.vessel import Vessel
@@ -60,7 +60,7 @@ class Stepper(ABC):
         self.program = Program(vessel)
         self.code = self.program.module
         self._values = self.program.values()
-        self._on = self.program.switches()
+        self._on = self.program.effect_switches()
         self._commands = np.zeros(len(vessel.inputs))
         self._memory = np.zeros(self.program.memory_size)
         self._act = np.zeros(self.program.held_size)
@@ -68,7 +68,7 @@ class Stepper(ABC):
         # mean of each actuator over the last step
         self._mean = np.zeros(len(self._actuators))
         self._places = {name: i for i, name in enumerate(vessel.commands)}
-        self._neutral = command_row(vessel, {}).tolist()
+        self._neutral = input_vector(vessel, {}).tolist()
         self._limits = list(vessel.limits().values())
         self.sent = list(self._neutral)
 
@@ -112,7 +112,7 @@ class Stepper(ABC):
         """
         state = state or State()
         self._set_joint_state(
-            state.t, self.program.joint_rates(np.array(state[1:])[list(self.code.SHOWS)])
+            state.t, self.program.to_joint_rates(np.array(state[1:])[list(self.code.SHOWS)])
         )
         self._memory[:] = 0.0
         self.command(commands or {})
@@ -137,7 +137,7 @@ class Stepper(ABC):
         sent = list(self._neutral)
         for name, value in commands.items():
             if name not in self._places:
-                raise BadInput(self.vessel.unknown_command(name))
+                raise BadInput(self.vessel.unknown_command_message(name))
             sent[self._places[name]] = float(value)
         if not isfinite(sum(sent)):
             clip_to_channel_ranges(

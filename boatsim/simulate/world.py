@@ -11,7 +11,7 @@ from warnings import catch_warnings, filterwarnings
 import mujoco
 import numpy as np
 
-from boatsim.errors import BadInput, BadPhysics, unknown_name
+from boatsim.errors import BadInput, BadPhysics, unknown_name_message
 from boatsim.physics.content import content_root
 from boatsim.physics.signals import Array
 from boatsim.physics.vessel import Vessel
@@ -105,7 +105,7 @@ def build_model(
     # the engine reports a diverging motion as an error
     spec.option.disableflags |= mujoco.mjtDisableBit.mjDSBL_AUTORESET
     spec.nuserdata = userdata
-    size_tank(spec, tank, vessel)
+    set_tank_geometry(spec, tank, vessel)
     with _without_warnings():
         hull = add_hull(spec, vessel)
         set_inertia(hull, vessel)
@@ -150,7 +150,7 @@ def _ignore_warning(_: str) -> None:
     """Drop a warning of MuJoCo."""
 
 
-def size_tank(spec: mujoco.MjSpec, tank: Tank, vessel: Vessel) -> None:
+def set_tank_geometry(spec: mujoco.MjSpec, tank: Tank, vessel: Vessel) -> None:
     """Set size and position of water, walls, fan and cameras in a MuJoCo specification."""
     a, b, d = tank.length / 2, tank.width / 2, tank.depth
     middle, high = (RIM - d) / 2, (RIM + d) / 2  # walls stand on the floor and rise above the water
@@ -264,7 +264,9 @@ def read_drawing(path: Path, vessel: Vessel) -> tuple[mujoco.MjSpec, tuple[float
         raise BadInput(f"{path}: no hull that MuJoCo can read: {reason}") from None
     if drawing.body("hull") is None:
         raise BadInput(
-            unknown_name(f"{path}: body", "hull", (name for name in bodies if name != "world"))
+            unknown_name_message(
+                f"{path}: body", "hull", (name for name in bodies if name != "world")
+            )
         )
     drawn_for = drawing.numeric("drawn_for")
     if drawn_for is None:

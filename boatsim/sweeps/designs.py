@@ -17,7 +17,7 @@ from boatsim.physics.signals import Array
 Design = Literal["random", "latin", "sobol"]
 
 
-def design_matrix(design: Design, names: Sequence[str], runs: int, seed: int) -> Array:
+def sampling_design(design: Design, names: Sequence[str], runs: int, seed: int) -> Array:
     """Return the sampling design of a sweep: probabilities (N, D) for N samples of D quantities.
 
     A value of a quantity is the quantile of its distribution at such a probability.

@@ -4,7 +4,7 @@ import os
 from collections.abc import Sequence
 from pathlib import Path
 
-from boatsim.errors import BadInput, unknown_name
+from boatsim.errors import BadInput, unknown_name_message
 from boatsim.progress import Report, ignore_progress
 from boatsim.sweeps import page
 from boatsim.sweeps.campaign import Campaign, run_campaign
@@ -13,7 +13,7 @@ from boatsim.sweeps.plan import Plan
 from boatsim.sweeps.results import Results
 from boatsim.sweeps.runs import perform_run
 from boatsim.sweeps.workers.base import Backend
-from boatsim.sweeps.workers.in_process import run_here
+from boatsim.sweeps.workers.in_process import run_in_this_process
 from boatsim.sweeps.workers.processes import Processes
 from boatsim.sweeps.workers.ray_cluster import Cluster
 
@@ -46,10 +46,10 @@ def run_plan(
         OSError: A file cannot be written.
     """
     report(LABEL, 0.0, "starting")
-    known = plan.run_corners_briefly()
+    known = plan.smoke_test_corners()
     for name in metrics:
         if name not in known:
-            raise BadInput(unknown_name("metric", name, known))
+            raise BadInput(unknown_name_message("metric", name, known))
     about, tasks = plan.definition(), plan.tasks()
     campaign = Campaign(folder, about, plan.run_count, tasks, perform_run, LABEL, RunEntry)
     done = run_campaign(campaign, choose_backend(jobs, ray), report)
@@ -73,5 +73,5 @@ def choose_backend(jobs: int | None, ray: str | None) -> Backend:
     if jobs is None:
         jobs = len(os.sched_getaffinity(0))
     if jobs == 1:
-        return run_here
+        return run_in_this_process
     return Processes(jobs)

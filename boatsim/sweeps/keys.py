@@ -11,10 +11,10 @@ from math import isfinite
 from operator import attrgetter
 from typing import Literal, NamedTuple, TypeAlias
 
-from boatsim.errors import BadInput, unknown_name
+from boatsim.errors import BadInput, unknown_name_message
 from boatsim.files import array_of_tables
 from boatsim.physics import vessel as vessels
-from boatsim.physics.content import all_names, library_names, load_class
+from boatsim.physics.content import all_content_names, load_class, shipped_content_names
 from boatsim.physics.kinds.effect import Effect
 from boatsim.simulate.cases import ScenarioLocation
 from boatsim.simulate.controllers import controller_table
@@ -84,7 +84,7 @@ def parse_target(text: str) -> Target:
     return Target(keys, operation)
 
 
-def find_slots(
+def find_target_values(
     table: ScenarioTable, place: ScenarioLocation, target: Target
 ) -> tuple[ScenarioTable, list[Slot]]:
     """Find the values in a scenario's table that an axis or a sampled quantity of a sweep changes.
@@ -185,7 +185,7 @@ def _find_effect(
 ) -> tuple[ScenarioTable, list[KeyPath]]:
     """Values of effects of the scenario, of the vessel, or of one added from the library."""
     name = rest[0] if rest else ""
-    if len(rest) == 1 and name in library_names("effect"):
+    if len(rest) == 1 and name in shipped_content_names("effect"):
         kind: type[Effect] = load_class("effect", name)
         raise BadInput(f"{key} is an effect; add one of its parameters: {', '.join(kind.params())}")
     effects = array_of_tables(table.get("effect"))
@@ -196,14 +196,14 @@ def _find_effect(
     own = vessel.names_of(name)
     if own:
         return table, [("set", one, *rest[1:]) for one in own]
-    library = all_names("effect")
+    library = all_content_names("effect")
     if name in library:
         added = {**table, "effect": [*effects, {"use": name}]}
         return added, [("effect", len(scenario_effects), *rest[1:])]
     allowed = set(ScenarioFile.model_fields).difference(NOT_VARIED)
     allowed |= {*OF_VESSEL, *scenario_effects, *library}
     allowed.update(map(attrgetter("name"), vessel.effects))
-    raise BadInput(unknown_name("key", name, allowed))
+    raise BadInput(unknown_name_message("key", name, allowed))
 
 
 def _find_goal(table: ScenarioTable, rest: Sequence[str]) -> KeyPath:
@@ -235,7 +235,7 @@ def _sensor_index(table: ScenarioTable, name: Sequence[str], key: str) -> int:
     """Index of a [[sensor]]."""
     sensors = [str(sensor.get("use")) for sensor in array_of_tables(table.get("sensor"))]
     if not name or name[0] not in sensors:
-        raise BadInput(unknown_name(f"{key}: sensor", name[0] if name else "", sensors))
+        raise BadInput(unknown_name_message(f"{key}: sensor", name[0] if name else "", sensors))
     return sensors.index(name[0])
 
 

@@ -64,7 +64,7 @@ def _page_facts(results: Results) -> list[tuple[str, str]]:
     ]
     sampled = [f"{one.target.name}: {one}" for one in plan.sampled]
     done = len(results.numbers)
-    failed = f"{int(results.is_failed.sum())} of {done} runs"
+    failed = f"{int(results.failed_mask.sum())} of {done} runs"
     if done < plan.run_count:
         failed += f" (of {plan.run_count}: interrupted)"
     facts = {

@@ -21,8 +21,8 @@ from boatsim.simulate.evaluation import metric_names
 from boatsim.simulate.run import run
 from boatsim.simulate.scenario import from_table
 from boatsim.sweeps.axes import Axis
-from boatsim.sweeps.designs import Design, design_matrix, noise_seed
-from boatsim.sweeps.keys import ScenarioTable, Slot, Target, Value, find_slots, set_values
+from boatsim.sweeps.designs import Design, noise_seed, sampling_design
+from boatsim.sweeps.keys import ScenarioTable, Slot, Target, Value, find_target_values, set_values
 from boatsim.sweeps.runs import RunTask
 from boatsim.sweeps.sampled_keys import SampledKey
 from boatsim.version import version
@@ -82,7 +82,7 @@ class Plan:
     def probabilities(self) -> Array:
         """Probabilities (N, D) at which the D sampled distributions are inverted for N samples."""
         names = list(map(attrgetter("target.name"), self.sampled))
-        return design_matrix(self.design, names, self.runs, self.seed)
+        return sampling_design(self.design, names, self.runs, self.seed)
 
     @cached_property
     def samples(self) -> list[tuple[Value, ...]]:
@@ -142,7 +142,7 @@ class Plan:
         scenario = (point.scenario,) if len(self.scenarios) > 1 else ()
         return (*scenario, *point.values, *sample)
 
-    def seed_of(self, number: int) -> int | None:
+    def run_seed(self, number: int) -> int | None:
         """Return the noise seed of a run of the sweep.
 
         The result is None where the seed itself is varied or sampled.
@@ -159,9 +159,9 @@ class Plan:
         for number in range(self.run_count):
             point = self.points[number // len(self.samples)]
             table = self._apply_sample(point, self.samples[number % len(self.samples)])
-            yield number, RunTask(table, point.place, self.seed_of(number))
+            yield number, RunTask(table, point.place, self.run_seed(number))
 
-    def run_corners_briefly(self) -> set[str]:
+    def smoke_test_corners(self) -> set[str]:
         """Start a short run at each corner of the grid, with sampled quantities at their medians.
 
         This finds mistakes in keys and values, and compiles the vessels, before the sweep begins.
@@ -205,11 +205,11 @@ class Plan:
         own, place = read_scenario(name)
         table: ScenarioTable = own
         for axis, value in zip(self.axes, values, strict=True):
-            table, slots = find_slots(table, place, axis.target)
+            table, slots = find_target_values(table, place, axis.target)
             table = set_values(table, place, slots, axis.target.operation, value)
         sampled = []
         for one in self.sampled:
-            table, slots = find_slots(table, place, one.target)
+            table, slots = find_target_values(table, place, one.target)
             sampled.append(slots)
         return Point(name, values, table, place, tuple(sampled))
 

@@ -77,7 +77,7 @@ class Results:
         return np.array(self.numbers, dtype=int) % len(self.plan.samples)
 
     @cached_property
-    def is_failed(self) -> Array:
+    def failed_mask(self) -> Array:
         """Whether each run of the sweep failed (R,)."""
         return np.array([reason is not None for reason in self._failures], dtype=bool)
 
@@ -120,7 +120,7 @@ class Results:
         for index, name in enumerate(self.plan.columns):
             columns[name] = list(map(itemgetter(index), rows))
         if "seed" not in self.plan.columns:
-            columns["seed"] = list(map(self.plan.seed_of, self.numbers))
+            columns["seed"] = list(map(self.plan.run_seed, self.numbers))
         for name in self.units:
             columns[name] = self._metric_values(name)
         columns["guards_met"] = [entry.get("met") for entry in self.entries.values()]

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from boatsim.errors import BadInput, unknown_name
+from boatsim.errors import BadInput, unknown_name_message
 from boatsim.physics.signals import Array
 from boatsim.sweeps.axes import is_number, parse_values
 from boatsim.sweeps.keys import Target, Value, parse_target
@@ -168,7 +168,7 @@ def make_sampled_key(key: str, call: str) -> SampledKey:
         _check_numbers(option, name, values)
     else:
         names = [*DISTRIBUTIONS, CHOICE]
-        raise BadInput(f"{option}: {unknown_name('distribution', name, names)}")
+        raise BadInput(f"{option}: {unknown_name_message('distribution', name, names)}")
     return SampledKey(parse_target(key), name, tuple(values))
 
 

@@ -74,7 +74,7 @@ def what_varied(results: Results) -> str:
     if done < plan.run_count:
         counted = f"{done} of {plan.run_count} planned runs of {where}"
     sentence = " ".join([counted, " and ".join(parts)]).strip()
-    if failed := int(results.is_failed.sum()):
+    if failed := int(results.failed_mask.sum()):
         sentence += f"; {failed} of them failed"
     return f"{sentence}."
 

@@ -77,7 +77,7 @@ class Pair(NamedTuple):
     second_lower: float
 
 
-def metric_spreads(results: Results) -> list[Spread]:
+def metric_statistics(results: Results) -> list[Spread]:
     """Return mean and quantiles of every metric at every grid point of a sweep where it has values.
 
     Args:
@@ -85,7 +85,7 @@ def metric_spreads(results: Results) -> list[Spread]:
     """
     found: list[Spread] = []
     for point, rows in _points_with_runs(results):
-        failed = int(results.is_failed[rows].sum())
+        failed = int(results.failed_mask[rows].sum())
         runs = int(rows.sum())
         for name in results.displayed_metrics:
             values = results.metrics[name][rows]

@@ -53,7 +53,7 @@ def _spread_table(names: Sequence[str], results: Results) -> TextTable:
         title, columns = "One run at each point", ["value"]
     rows = []
     labels = results.labels
-    for s in summary.metric_spreads(results):
+    for s in summary.metric_statistics(results):
         numbers = [format_number(s.mean)]
         if not single:
             numbers += map(format_number, (s.p5, s.p50, s.p95))

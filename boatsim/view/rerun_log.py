@@ -164,7 +164,7 @@ class RerunLog:
         self.stream.flush()
 
 
-def log_overlay(
+def write_diagnosis_log(
     path: Path | str,
     boats: Mapping[str, Sequence[Recording]],
     missing: Recording | None,
@@ -242,7 +242,7 @@ class Boat(NamedTuple):
     goals: str
 
 
-def log_side_by_side(path: Path | str, boats: Mapping[str, Boat], metrics: str) -> None:
+def write_comparison_log(path: Path | str, boats: Mapping[str, Boat], metrics: str) -> None:
     """Write compare.rrd: several runs in one scene, each in its own colour, and their signals.
 
     The first vessel is drawn as a hull in its tank, the others as outlines, so that small distances

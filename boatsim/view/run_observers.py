@@ -10,7 +10,7 @@ from boatsim.simulate.run_files import RunObserver, StartObserver
 from boatsim.simulate.scenario import Scenario
 from boatsim.view.rerun_log import RerunLog
 from boatsim.view.run_page import RunPage
-from boatsim.view.scene import scene_from
+from boatsim.view.scene import scene_from_model
 
 FILE = "run.rrd"
 
@@ -24,13 +24,13 @@ def rerun_observers(viewer: str | None = None) -> list[StartObserver]:
 
     @contextmanager
     def write_file(folder: Path, engine: Engine | OpenWater) -> Iterator[RunObserver]:
-        scene = scene_from(engine.model, engine.vessel, engine.tank)
+        scene = scene_from_model(engine.model, engine.vessel, engine.tank)
         with RerunLog(folder / FILE, scene) as log:
             yield log
 
     @contextmanager
     def feed_viewer(folder: Path, engine: Engine | OpenWater) -> Iterator[RunObserver]:
-        scene = scene_from(engine.model, engine.vessel, engine.tank)
+        scene = scene_from_model(engine.model, engine.vessel, engine.tank)
         with RerunLog(None, scene, viewer) as log:
             yield log
 
@@ -49,7 +49,7 @@ def page_observer(scenario: Scenario, command: str = "") -> StartObserver:
 
     @contextmanager
     def write_page(folder: Path, engine: Engine | OpenWater) -> Iterator[RunObserver]:
-        scene = scene_from(engine.model, engine.vessel, engine.tank)
+        scene = scene_from_model(engine.model, engine.vessel, engine.tank)
         yield RunPage(folder, scene, scenario, command)
 
     return write_page

@@ -95,7 +95,7 @@ class Scene:
         return np.asarray(points[np.append(corners, corners[0])], dtype=float)
 
 
-def scene_from(model: "Model", vessel: "Vessel", tank: "Tank") -> Scene:
+def scene_from_model(model: "Model", vessel: "Vessel", tank: "Tank") -> Scene:
     """Return the scene of a 3D log for a vessel in a tank, with the shapes of its MuJoCo model.
 
     Args:

@@ -39,7 +39,7 @@ class Viewer:
 
 
 @contextmanager
-def viewer_for(serve: bool) -> Iterator[Viewer | None]:
+def start_or_find_viewer(serve: bool) -> Iterator[Viewer | None]:
     """Start or find a rerun viewer for a block.
 
     Args:

@@ -9,14 +9,14 @@ from boatsim.physics.base import Array
 from boatsim.physics.vessel import Vessel
 from boatsim.recordings.table import Recording
 from boatsim.simulate import world
-from boatsim.view.scene import Scene, scene_from
+from boatsim.view.scene import Scene, scene_from_model
 
 SMALLEST = 0.08  # length of a drawn vessel at least, as a share of the size of all paths
 MARGIN = 1.0  # lengths of the drawn vessel around all paths
 BEYOND = 4.0  # size of the water by the size of the view
 
 
-def open_water_scene(vessel: Vessel, runs: Mapping[str, Sequence[Recording]]) -> Scene:
+def comparison_scene(vessel: Vessel, runs: Mapping[str, Sequence[Recording]]) -> Scene:
     """Return the scene in which several runs are drawn together, with water around all their paths.
 
     Vessels are enlarged where the paths are long.
@@ -38,7 +38,7 @@ def open_water_scene(vessel: Vessel, runs: Mapping[str, Sequence[Recording]]) ->
     length, width = x_high - x_low + margin, y_high - y_low + margin
     far = BEYOND * max(length, width)
     tank = world.Tank(far, far, vessel.draught * 2, walls=False, centre=centre)
-    scene = scene_from(world.build_model(vessel, tank), vessel, tank).enlarge_vessels(times)
+    scene = scene_from_model(world.build_model(vessel, tank), vessel, tank).enlarge_vessels(times)
     return replace(scene, tank=(length, width, *centre))
 
 

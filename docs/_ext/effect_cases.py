@@ -51,7 +51,7 @@ RATES = {"z": "w", "phi": "p", "theta": "q", "psi": "r"}  # coordinate -> its ra
 def all_cases() -> dict[str, Case]:
     """Return the case of every effect of the library by name; effects without one are missing."""
     found = dict(tomllib.loads(FILE.read_text(encoding="utf-8")))
-    for name in content.library_names("effect"):
+    for name in content.shipped_content_names("effect"):
         kind = content.load_class("effect", name)
         if name not in found and issubclass(kind, SensorError):
             found[name] = _channel_case(kind)

@@ -9,7 +9,7 @@ from effect_cases import VESSEL, Case, all_cases
 from effect_examples import program, stored_outputs
 from page_markup import bullet_list, escaped, sentence, table_rows
 
-from boatsim.cli.entry import Entry, class_entry
+from boatsim.cli.entry import Entry, describe_class
 from boatsim.files import array_of_tables
 from boatsim.physics import content
 from boatsim.physics.base import Effect
@@ -31,7 +31,7 @@ def page(name: str) -> str:
     Args:
         name: Name of the effect.
     """
-    entry = class_entry("effect", name)
+    entry = describe_class("effect", name)
     kind = content.load_class("effect", name)
     summary, *rest = _paragraphs(entry)
     lines = [f"# {name}", "", f"{sentence(entry.words)}.", ""]
@@ -131,7 +131,7 @@ def scenarios_by_effect() -> dict[str, str]:
     that before one whose vessel has it.
     """
     ranked: dict[str, tuple[int, int, str]] = {}
-    for name in content.library_names("scenario"):
+    for name in content.shipped_content_names("scenario"):
         table = scenario_table(name)
         vessel = scenario_vessel(str(table["vessel"]))
         settings: Any = table.get("set", {})

@@ -171,7 +171,7 @@ def _laws(name: str, case: Case) -> list[tuple[str, Effect, Vessel]]:
         return [("", effect.with_values(spec.get("set", {})), changed)]
     found = []
     for words, vessel in (("as specified", vessel_of(case)), ("changed", changed)):
-        effect = vessel.effect(own) or vessel.effects_of(own)[0]
+        effect = vessel.effect(own) or vessel.effects_of_type(own)[0]
         found.append((words, effect.with_values(spec.get("set", {})), vessel))
     return found
 
@@ -210,7 +210,7 @@ def _carrier(effect: Effect, vessel: Vessel) -> Effect:
     kind = type(effect)
     if not kind.per_instance_of:
         return effect
-    return vessel.effects_of(kind.per_instance_of)[0]
+    return vessel.effects_of_type(kind.per_instance_of)[0]
 
 
 def _command(case: Case, t: Array) -> Array:
@@ -228,7 +228,7 @@ def _channel_plot(name: str, case: Case) -> str:
     """Return the plot of an effect between a command and an actuator."""
     spec = case["plot"]
     changed = changed_vessel(name, case)
-    effect: Any = changed.effect(name) or changed.effects_of(name)[0]
+    effect: Any = changed.effect(name) or changed.effects_of_type(name)[0]
     factor, unit = 1.0, spec["unit"]
     if unit == "rad":
         factor, unit = _shown_unit(unit)

@@ -33,10 +33,6 @@ TIMEOUT = 600  # [s] for one block
 SLOW = 60.0  # [s] a reader who follows a tutorial waits longer than this only with good reason
 
 
-class SlowBlock(UserWarning):
-    """A block of commands on a page took longer than `SLOW`."""
-
-
 @dataclass(frozen=True)
 class Block:
     """A block of commands on a page.
@@ -132,7 +128,7 @@ def failures(page: str, home: Path) -> Iterator[tuple[int, str]]:
         Line number and description of each difference; the run stops after a wrong exit code.
 
     Warns:
-        SlowBlock: If a block takes longer than `SLOW`.
+        UserWarning: If a block takes longer than `SLOW`.
     """
     (home / "boatsim").symlink_to(ROOT)
     working_folder = str(home)
@@ -160,12 +156,11 @@ def failures(page: str, home: Path) -> Iterator[tuple[int, str]]:
 
 
 def _warn_if_slow(block: Block, seconds: float) -> None:
-    """Issue a `SlowBlock` warning if a block of commands took longer than `SLOW`."""
+    """Issue a warning if a block of commands took longer than `SLOW`."""
     if seconds > SLOW:
         command = block.commands.splitlines()[0]
         warnings.warn(
             f"line {block.line} took {seconds:.0f} s, more than {SLOW:.0f} s: {command}",
-            SlowBlock,
             stacklevel=3,
         )
 
@@ -203,12 +198,12 @@ def run_tutorials(names: Sequence[str]) -> int:
             continue
         begin = time.monotonic()
         with tempfile.TemporaryDirectory() as home, warnings.catch_warnings(record=True) as slow:
-            warnings.simplefilter("always", SlowBlock)
+            warnings.simplefilter("always", UserWarning)
             for line, message in failures(page, Path(home)):
                 different += 1
                 print(f"{file.name}:{line}: {message}", flush=True)
         for warning in slow:
-            print(f"{file.name}: warning: {warning.message}", flush=True)
+            print(f"{file.name}: warning: {warning.decode_message}", flush=True)
         print(f"{file.name}: {time.monotonic() - begin:.0f} s", flush=True)
     return different
 

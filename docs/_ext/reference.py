@@ -13,7 +13,7 @@ from page_markup import bullet_list, escaped, row, sentence, table_rows
 
 from boatsim.cli import app as program
 from boatsim.cli.catalogue import describe
-from boatsim.cli.entry import CLASSES, class_entry
+from boatsim.cli.entry import CLASSES, describe_class
 from boatsim.diagnosis.config import DEFAULT
 from boatsim.physics import content
 
@@ -48,9 +48,9 @@ def pages() -> dict[str, str]:
     """Return all pages: path below `reference/` without the suffix -> text."""
     texts = dict(_command_pages())
     for kind in CLASSES:
-        for name in content.library_names(kind):
+        for name in content.shipped_content_names(kind):
             texts[f"{kind}s/{name}"] = _entry_page(kind, name)
-    for name in content.library_names("vessel"):
+    for name in content.shipped_content_names("vessel"):
         texts[f"vessels/{name}"] = _vessel_page(name)
     texts |= dict(_scenario_pages())
     texts |= dict(_setting_pages())
@@ -63,7 +63,7 @@ def _entry_page(kind: str, name: str) -> str:
     """Return the page of an effect, controller, set of metrics or sensor."""
     if kind == "effect":
         return effect_pages.page(name)
-    entry = class_entry(kind, name)
+    entry = describe_class(kind, name)
     lines = [f"# {name}", "", f"{sentence(entry.words)}.", ""]
     if entry.doc:
         lines += [*map(escaped, entry.doc), ""]
@@ -91,7 +91,7 @@ def _vessel_page(name: str) -> str:
 def _scenario_pages() -> Iterator[tuple[str, str]]:
     """Yield a page for each folder of scenarios."""
     folders: dict[str, list[str]] = {}
-    for name in content.library_names("scenario"):
+    for name in content.shipped_content_names("scenario"):
         folders.setdefault(name.partition("/")[0], []).append(name)
     for folder, names in folders.items():
         lines = [f"# {folder}", "", "| `boatsim run` | purpose |", "| --- | --- |"]

@@ -28,11 +28,11 @@ def run(app: Sphinx, name: str, source: list[str]) -> None:
     if not app.config.run_tutorials or page_commands.MARK not in source[0]:
         return
     with tempfile.TemporaryDirectory() as home, warnings.catch_warnings(record=True) as slow:
-        warnings.simplefilter("always", page_commands.SlowBlock)
+        warnings.simplefilter("always", UserWarning)
         for line, message in page_commands.failures(source[0], Path(home)):
             log.warning(message, location=(name, line))
     for warning in slow:
-        print(f"{name}: {warning.message}", file=sys.stderr)
+        print(f"{name}: {warning.decode_message}", file=sys.stderr)
 
 
 def setup(app: Sphinx) -> dict[str, Any]:

@@ -19,7 +19,7 @@ from typer.testing import CliRunner
 
 from boatsim.cli import app
 from boatsim.cli.commands import COMMAND_GROUPS
-from boatsim.errors import unknown_name
+from boatsim.errors import unknown_name_message
 from boatsim.physics.content import content_root
 
 DIAGNOSIS = {"diagnosis.json", "report.html", "report.md", "patched.toml", "diagnosis.rrd"}
@@ -591,7 +591,9 @@ def test_a_command_that_does_not_exist_is_answered_by_the_one_that_is_meant(
 
 
 def test_a_word_of_users_is_answered_by_the_name() -> None:
-    assert "did you mean 'psi_rad'?" in unknown_name("key", "heading", ["psi_rad", "sway_mps"])
+    assert "did you mean 'psi_rad'?" in unknown_name_message(
+        "key", "heading", ["psi_rad", "sway_mps"]
+    )
 
 
 @pytest.mark.parametrize(

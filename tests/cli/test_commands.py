@@ -282,7 +282,7 @@ def test_list_has_a_line_about_everything(kind: str) -> None:
     lines = [line.split(maxsplit=1) for line in result.stdout.splitlines()[1:]]
     assert result.exit_code == 0 and [
         name for name, about in lines if about
-    ] == content.library_names(kind)
+    ] == content.shipped_content_names(kind)
     assert result.stdout.strip() in boatsim("list").stdout
 
 
@@ -361,7 +361,7 @@ def test_a_shipped_scenario_is_a_script(tmp_path: Path) -> None:
     assert {f.name for f in (tmp_path / "out" / "joystick_boat" / "berth").iterdir()} == FILES
 
 
-@pytest.mark.parametrize("name", content.library_names("scenario"))
+@pytest.mark.parametrize("name", content.shipped_content_names("scenario"))
 def test_every_shipped_scenario_can_be_executed(name: str) -> None:
     file = content.find_content_file("scenario", name)
     assert os.access(file, os.X_OK) and file.read_text().startswith(

@@ -158,7 +158,7 @@ def test_the_first_of_many_tasks_which_waits_for_the_compiler_does_not_count(
 ) -> None:
     now = [0.0]
     monkeypatch.setattr(progress, "monotonic", lambda: now[0])
-    with progress.report_campaign() as report:
+    with progress.show_task_progress() as report:
         for time, done in ((100.0, 1), (110.0, 2), (130.0, 4)):
             now[0] = time
             report("runs", done / 10, f"{done} of 10")

@@ -26,7 +26,7 @@ from boatsim.control.adaptive import (
     project_interval,
     solve_lyapunov,
     step_response,
-    unfiltered_system,
+    uncertainty_to_state_system,
 )
 from boatsim.errors import BadInput
 
@@ -149,17 +149,19 @@ def test_l1_norm_adds_inputs_and_takes_the_largest_output() -> None:
 
 def test_l1_norm_of_a_double_pole() -> None:
     """The low-pass as fast as the model: s/(s + 2)^2, integral of |1 - 2 t| e^{-2t} = 1/e."""
-    assert l1_norm(unfiltered_system([[-2.0]], [1.0], 2.0)) == pytest.approx(exp(-1.0), rel=1e-6)
+    assert l1_norm(uncertainty_to_state_system([[-2.0]], [1.0], 2.0)) == pytest.approx(
+        exp(-1.0), rel=1e-6
+    )
 
 
 def test_l1_norm_of_an_unstable_system_is_refused() -> None:
     with pytest.raises(BadInput, match="stable"):
-        l1_norm(unfiltered_system([[0.1]], [1.0], 2.0))
+        l1_norm(uncertainty_to_state_system([[0.1]], [1.0], 2.0))
 
 
 def test_l1_norms_of_example_a() -> None:
     """A box of +-10 for both unknowns has |th1| + |th2| up to 20."""
-    assert l1_norm_of_outputs(unfiltered_system(AM, (0.0, 1.0), 160.0)) == pytest.approx(
+    assert l1_norm_of_outputs(uncertainty_to_state_system(AM, (0.0, 1.0), 160.0)) == pytest.approx(
         [0.006008, 0.014740], abs=5e-7
     )
     for bandwidth, value, digit in (
@@ -167,7 +169,7 @@ def test_l1_norms_of_example_a() -> None:
         (60.0, 0.756, 5e-4),
         (30.0, 1.437, 5e-4),
     ):
-        found = l1_condition(l1_norm(unfiltered_system(AM, (0.0, 1.0), bandwidth)), 20.0)
+        found = l1_condition(l1_norm(uncertainty_to_state_system(AM, (0.0, 1.0), bandwidth)), 20.0)
         assert found == pytest.approx(value, abs=digit)
 
 
@@ -176,7 +178,7 @@ def test_l1_condition_of_the_water_jet_cruise_control() -> None:
     print)."""
 
     def condition(k: float) -> float:
-        return l1_condition(l1_norm(unfiltered_system([[-1.4]], [1.0], 0.1 * k)), 1.7716)
+        return l1_condition(l1_norm(uncertainty_to_state_system([[-1.4]], [1.0], 0.1 * k)), 1.7716)
 
     assert condition(12.04) > 1.0 > condition(12.14)
     assert condition(35.0) == pytest.approx(0.55, abs=5e-3)

@@ -142,7 +142,7 @@ def test_no_demand_exceeds_the_motors_or_the_servos(
     for thrust in drive[:2]:
         assert -astern - 1e-12 <= thrust <= ahead + 1e-12
     assert abs(drive.port - drive.starboard) <= 0.9 + 1e-12
-    setting = OURS.to_setting(drive)
+    setting = OURS.commands_for_thrusts(drive)
     assert max(abs(setting.pwm_port), abs(setting.pwm_starboard)) <= PWM_MAX
     assert 0 <= setting.degrees <= 45
 
@@ -200,17 +200,17 @@ def test_a_motor_gives_less_astern() -> None:
 
 def test_applied_push_is_that_of_the_rounded_setting() -> None:
     drive = Drive(0.3, -0.3, radians(20.4))
-    setting = OURS.to_setting(drive)
+    setting = OURS.commands_for_thrusts(drive)
     assert setting == (90, -134, 20)
     rounded = Drive(90 / 150 * 0.5, -134 / 150 * 0.335, radians(20))
-    assert OURS.wrench_of_setting(setting) == pytest.approx(OURS.nominal_wrench(rounded))
-    assert OURS.wrench_of_setting(OURS.to_setting(Drive(5.0, 5.0, 0.0))).X == pytest.approx(
-        2 * 0.85
-    )
+    assert OURS.wrench_for_commands(setting) == pytest.approx(OURS.nominal_wrench(rounded))
+    assert OURS.wrench_for_commands(
+        OURS.commands_for_thrusts(Drive(5.0, 5.0, 0.0))
+    ).X == pytest.approx(2 * 0.85)
 
 
 def test_commands_are_mirror_angles_by_name() -> None:
-    assert OURS.to_setting(Drive(0.5, -0.335, radians(30))).commands() == pytest.approx(
+    assert OURS.commands_for_thrusts(Drive(0.5, -0.335, radians(30))).commands() == pytest.approx(
         {
             "pwm_port": 150,
             "pwm_starboard": -150,

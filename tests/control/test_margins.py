@@ -32,14 +32,14 @@ class Described:
 
 
 def test_yaw_loop_of_the_joystick_controller() -> None:
-    rows = margins.margin_rows(Described(YAW))
+    rows = margins.stability_margins(Described(YAW))
     printed = [(f"{r.crossover:.1f}", f"{r.phase_deg:.0f}", f"{r.delay_s:.2f}") for r in rows]
     assert printed == [("1.4", "30", "0.37"), ("2.3", "42", "0.32"), ("3.7", "46", "0.22")]
     assert all(r.stable for r in rows)
 
 
 def test_l1_norm_of_the_joystick_controller_is_worst_at_the_lowest_gain() -> None:
-    rows = margins.margin_rows(Described(YAW))
+    rows = margins.stability_margins(Described(YAW))
     assert max(r.norm or nan for r in rows) == rows[0].norm == pytest.approx(0.616, abs=5e-4)
     assert rows[0].slope == pytest.approx(1.62, abs=5e-3)
     assert rows[0].needed == 1.4
@@ -82,7 +82,7 @@ def test_a_sampled_boat_bears_the_delay_of_the_table_and_not_much_more(gain: flo
     """The table takes the adaptation for instant; the sampled law answers less and bears up to 0.1
     s more."""
     bearable = int(
-        {r.input_gain: r.delay_s for r in margins.margin_rows(Described(YAW))}[gain] / PERIOD
+        {r.input_gain: r.delay_s for r in margins.stability_margins(Described(YAW))}[gain] / PERIOD
     )
     assert largest_late_heading(gain, bearable) < 1e-3
     assert largest_late_heading(gain, bearable + 3) > 0.1
@@ -91,7 +91,7 @@ def test_a_sampled_boat_bears_the_delay_of_the_table_and_not_much_more(gain: flo
 def test_pid_channel_has_no_l1_norm() -> None:
     """PD on an undamped boat, no delay: |kp + j kd w| = w^2 at the crossover."""
     kp, kd = 0.6, 1.1
-    row = margins.margin_rows(Described(LoopChannel("yaw", pid=(kp, 0.0, kd))))[0]
+    row = margins.stability_margins(Described(LoopChannel("yaw", pid=(kp, 0.0, kd))))[0]
     assert (row.norm, row.slope, row.needed) == (None, None, None)
     assert row.crossover**4 == pytest.approx(kp**2 + (kd * row.crossover) ** 2, rel=1e-9)
     line = margins.format_margins([row]).splitlines()[1]
@@ -101,14 +101,14 @@ def test_pid_channel_has_no_l1_norm() -> None:
 def test_unstable_loop_is_said_to_be_unstable() -> None:
     """Routh: a PID on a double integrator needs kp kd > ki."""
     steady, runaway = (LoopChannel("yaw", pid=(0.5, ki, 1.0)) for ki in (0.49, 0.51))
-    rows = margins.margin_rows(Described(steady, runaway))
+    rows = margins.stability_margins(Described(steady, runaway))
     assert [r.stable for r in rows] == [True] * 3 + [False] * 3
     assert "unstable" in margins.format_margins(rows).splitlines()[-1]
 
 
 def test_text_judges_the_l1_condition_at_the_worst_gain() -> None:
     weak = LoopChannel("surge", pole=1.4, bandwidth=0.5, input_gain=(0.5, 1.0, 1.8))
-    text = margins.format_margins(margins.margin_rows(Described(YAW, weak)))
+    text = margins.format_margins(margins.stability_margins(Described(YAW, weak)))
     yaw, surge = text.splitlines()[-2:]
     assert "0.616" in yaw and "1.62" in yaw and "condition met" in yaw
     assert "0.982" in surge and "not met" in surge
@@ -116,17 +116,17 @@ def test_text_judges_the_l1_condition_at_the_worst_gain() -> None:
 
 def test_damping_of_the_boat_lowers_the_slope_needed() -> None:
     damped = LoopChannel("yaw", pole=1.4, bandwidth=2.0, damping=0.9)
-    assert margins.margin_rows(Described(damped))[0].needed == pytest.approx(0.5)
+    assert margins.stability_margins(Described(damped))[0].needed == pytest.approx(0.5)
 
 
 def test_controller_without_channels_names_those_that_have() -> None:
     with pytest.raises(
         BadInput, match=r"'open_loop' describes no feedback_loops \(these do: .*l1_joystick"
     ):
-        margins.margin_rows(load_class("controller", "open_loop")())
+        margins.stability_margins(load_class("controller", "open_loop")())
 
 
 def test_shipped_joystick_controller_prints_the_published_norm() -> None:
-    rows = margins.margin_rows(load_class("controller", "l1_joystick")())
+    rows = margins.stability_margins(load_class("controller", "l1_joystick")())
     assert [r.norm for r in rows if r.channel == "yaw"][0] == pytest.approx(0.616, abs=5e-4)
     assert [round(r.delay_s, 2) for r in rows if r.channel == "yaw"] == [0.37, 0.32, 0.22]

@@ -107,7 +107,7 @@ def test_what_rides_on_thrusters_rides_on_propellers_by_their_rate() -> None:
     program = Program(otter, candidates=(walk,))
     act, still = np.zeros(program.held_size), np.zeros(2 * program.module.NQ)
     sent = program.command_array({"n_port_radps": 50.0, "n_starboard_radps": -50.0})
-    off, on = program.switches(), program.switches(["prop_walk"])
+    off, on = program.effect_switches(), program.effect_switches(["prop_walk"])
     program.module.settle_actuators(sent, np.zeros(program.memory_size), program.values(), off, act)
     values = np.concatenate([program.values(), program.body])
     first = np.int64(0)

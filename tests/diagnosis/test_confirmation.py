@@ -8,11 +8,16 @@ from pushed_boat import BOAT, push, sail
 
 from boatsim.diagnosis.candidates import library_for
 from boatsim.diagnosis.config import DEFAULT
-from boatsim.diagnosis.filter import MappedRecording, map_recording, prior_levels
+from boatsim.diagnosis.filter import MappedRecording, map_recording, prior_noise_levels
 from boatsim.diagnosis.fit import converge, unfitted_hypothesis
-from boatsim.diagnosis.open_set.confirmation import Errors, Outcome, errors_of_each, outcome_of
-from boatsim.diagnosis.open_set.consistency import Factor, consistency_of
-from boatsim.diagnosis.problem import Fit, Problem, priors_of
+from boatsim.diagnosis.open_set.confirmation import (
+    Errors,
+    Outcome,
+    confirmation_outcome,
+    held_out_effect_errors,
+)
+from boatsim.diagnosis.open_set.consistency import Factor, effect_consistency
+from boatsim.diagnosis.problem import Fit, Problem, prior_arrays
 from boatsim.diagnosis.search.ranking import fit_baseline
 from boatsim.physics.base import Array
 from boatsim.physics.program import Program
@@ -46,27 +51,27 @@ def fitted() -> tuple[Problem, Fit, Fit]:
     recordings = [sail("a", 1, weak_astern)[0], sail("b", 2, weak_astern)[0]]
     problem = Problem(
         [map_recording(r, PROGRAM) for r in recordings],
-        prior_levels(BOAT, recordings),
+        prior_noise_levels(BOAT, recordings),
         {"damping": 0.05, "thrust": 0.05},
     )
     _, without = fit_baseline(problem)
     free = problem.parameters((ONLY,))
-    start = unfitted_hypothesis((ONLY,), free, priors_of(free).mean, without.levels)
+    start = unfitted_hypothesis((ONLY,), free, prior_arrays(free).mean, without.levels)
     return problem, without, converge(problem, start)
 
 
 def outcome(fitted: tuple[Problem, Fit, Fit], held_out: MappedRecording) -> Outcome:
     problem, without, best = fitted
-    signs = consistency_of(problem, best, {ONLY: without}, [held_out])
-    errors = errors_of_each(problem, best, {ONLY: without}, [held_out])
-    return outcome_of(problem.candidates[ONLY], errors[ONLY], signs[ONLY], DEFAULT.decide)
+    signs = effect_consistency(problem, best, {ONLY: without}, [held_out])
+    errors = held_out_effect_errors(problem, best, {ONLY: without}, [held_out])
+    return confirmation_outcome(problem.candidates[ONLY], errors[ONLY], signs[ONLY], DEFAULT.decide)
 
 
 def test_a_true_effect_is_confirmed_and_alone_reduces_the_errors(fitted) -> None:
     problem, without, best = fitted
     held_out = map_recording(sail("c", 3, weak_astern)[0], PROGRAM)
     assert outcome(fitted, held_out) == "confirmed"
-    for pair in errors_of_each(problem, best, {ONLY: without}, [held_out])[ONLY].values():
+    for pair in held_out_effect_errors(problem, best, {ONLY: without}, [held_out])[ONLY].values():
         assert pair.with_effect < 0.7 * pair.without
 
 
@@ -78,11 +83,13 @@ def test_a_boat_without_the_effect_does_not_confirm_it(fitted) -> None:
 def test_an_effect_that_held_out_recordings_require_in_another_size_is_not_refuted(fitted) -> None:
     problem, without, best = fitted
     held_out = map_recording(sail("c", 3, weak_astern)[0], PROGRAM)
-    signs = consistency_of(problem, best, {ONLY: without}, [held_out])[ONLY]
+    signs = effect_consistency(problem, best, {ONLY: without}, [held_out])[ONLY]
     worse = {"position_rms_m": Errors(0.1, 0.2)}
     for sd, expected in ((0.1, "open"), (0.4, "unconfirmed")):
         own = replace(signs, held_out=Factor(0.8, sd), held_out_gain=-3.0)
-        assert outcome_of(problem.candidates[ONLY], worse, own, DEFAULT.decide) == expected
+        assert (
+            confirmation_outcome(problem.candidates[ONLY], worse, own, DEFAULT.decide) == expected
+        )
 
 
 def test_recordings_that_do_not_excite_an_effect_are_no_evidence_against_it(fitted) -> None:

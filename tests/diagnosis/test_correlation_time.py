@@ -12,21 +12,21 @@ from real_boat import Real, recorded
 
 from boatsim.diagnosis import correlation_time, pipeline, priors
 from boatsim.diagnosis.config import DEFAULT
-from boatsim.diagnosis.filter import map_recording, prior_levels
+from boatsim.diagnosis.filter import map_recording, prior_noise_levels
 from boatsim.errors import BadInput
 from boatsim.files import read_toml
 from boatsim.physics import vessel
-from boatsim.physics.content import find_content_file, library_names
+from boatsim.physics.content import find_content_file, shipped_content_names
 from boatsim.physics.program import Program
 from boatsim.recordings.table import Notes, Recording, write_csv
 
 
-@pytest.mark.parametrize("name", library_names("vessel"))
+@pytest.mark.parametrize("name", shipped_content_names("vessel"))
 def test_no_vessel_states_one_and_the_usual_one_goes_by_froudes_law(name: str) -> None:
     text = read_toml(find_content_file("vessel", name))
     assert "time_constant" not in text.get("diagnosis", {})
     boat = vessel.load_vessel(name)
-    assert priors.time_constant(boat) == pytest.approx(np.sqrt(boat.length / 1.2))
+    assert priors.assumed_correlation_time(boat) == pytest.approx(np.sqrt(boat.length / 1.2))
 
 
 def test_a_vessel_file_that_states_one_is_told_so(tmp_path: Path) -> None:
@@ -59,8 +59,11 @@ def test_it_is_halved_or_doubled_as_long_as_that_predicts_clearly_better(
     )
     problem: Any = SimpleNamespace(ambient=SimpleNamespace(time_constant=1.0), config=DEFAULT)
     named: Any = SimpleNamespace(effects=("wind",))
-    assert correlation_time.correlation_time(problem, named) == taken
-    assert correlation_time.correlation_time(problem, SimpleNamespace(effects=())) == 1.0  # type: ignore[arg-type]
+    assert correlation_time.cross_validated_correlation_time(problem, named) == taken
+    assert (
+        correlation_time.cross_validated_correlation_time(problem, SimpleNamespace(effects=()))
+        == 1.0
+    )  # type: ignore[arg-type]
 
 
 def test_what_swings_from_run_to_run_is_not_clearly_less() -> None:
@@ -88,7 +91,7 @@ def test_a_single_recording_is_halved_in_time_and_each_row_is_in_one_half() -> N
 @pytest.mark.slow
 def test_what_a_recordings_notes_state_is_a_fact(tmp_path: Path) -> None:
     assert (
-        prior_levels(
+        prior_noise_levels(
             vessel.load_vessel("trial_boat"), [Recording("r", np.zeros(1), {})]
         ).time_constant
         == 1.0

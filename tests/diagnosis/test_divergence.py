@@ -9,10 +9,10 @@ import pytest
 from pushed_boat import BOAT, laid, sail
 
 from boatsim.diagnosis import loading, pipeline
-from boatsim.diagnosis.divergence import divergences, follow_recordings, is_lost
+from boatsim.diagnosis.divergence import divergences, has_diverged, raise_latent_force_level
 from boatsim.diagnosis.loading import Loaded, Request
 from boatsim.diagnosis.locate.missing_force import residual_force
-from boatsim.diagnosis.without_fit import unknown_cause
+from boatsim.diagnosis.without_fit import results_without_fit
 from boatsim.errors import BadInput
 from boatsim.physics.base import Array
 from boatsim.recordings.table import Recording, write_csv
@@ -68,9 +68,9 @@ def test_a_moment_too_large_for_any_fit_is_an_unknown_cause_in_yaw_from_its_begi
 
 def test_a_good_fit_is_not_lost_and_its_disturbance_is_not_raised() -> None:
     problem, recalibrated = laid(sail("run", 3, nothing)[0])
-    assert not is_lost(problem, recalibrated)
-    assert is_lost(problem, replace(recalibrated, evidence=-np.inf))
-    followed = follow_recordings(problem, problem.recordings)
+    assert not has_diverged(problem, recalibrated)
+    assert has_diverged(problem, replace(recalibrated, evidence=-np.inf))
+    followed = raise_latent_force_level(problem, problem.recordings)
     np.testing.assert_array_equal(followed.levels.force, problem.ambient.force)
     forces = residual_force(problem, followed, problem.recordings)
     assert len(divergences(problem, problem.recordings, forces)) == 1
@@ -94,7 +94,7 @@ def test_forces_that_are_never_finite_are_refused_in_one_line() -> None:
     [mapped] = problem.recordings
     broken = replace(mapped, values=np.full_like(mapped.values, np.nan))
     with pytest.raises(BadInput, match=r"run.csv: the forces of trial_boat are not finite"):
-        unknown_cause(problem.on([broken]), [broken], "run.csv")
+        results_without_fit(problem.on([broken]), [broken], "run.csv")
 
 
 def test_a_jump_of_the_position_is_a_fault_of_the_log_and_not_of_its_unit(tmp_path: Path) -> None:

@@ -9,7 +9,7 @@ from jet_craft import Craft, sailed
 
 from boatsim.diagnosis.candidates import program_with_candidates
 from boatsim.diagnosis.coordinate_search import maximize
-from boatsim.diagnosis.filter import map_recording, prior_levels
+from boatsim.diagnosis.filter import map_recording, prior_noise_levels
 from boatsim.diagnosis.fit import broyden_update
 from boatsim.physics import vessel
 from boatsim.physics.base import Array
@@ -73,8 +73,10 @@ def test_the_filter_follows_drag_that_dies_out_faster_than_its_steps_and_as_shor
         values = laid.values.copy()
         # 15 /s at 5 m/s; at rest the craft has less than 1 /s
         values[program.parameter_index("cubic_damping", "surge")] = 90.0
-        levels = prior_levels(boat, [run])
-        said.append(laid.log_likelihood(values, program.switches(("cubic_damping",)), levels))
+        levels = prior_noise_levels(boat, [run])
+        said.append(
+            laid.log_likelihood(values, program.effect_switches(("cubic_damping",)), levels)
+        )
     assert np.isfinite(said).all() and said[0] == pytest.approx(said[1], abs=3.0)
 
 
@@ -85,7 +87,9 @@ def test_a_recording_that_begins_at_full_speed_is_followed_from_its_first_row_on
     del run.signals["u_mps"]
     program = program_with_candidates(boat, ["cubic_damping"])
     laid = map_recording(run, program)
-    means, covariances, _ = laid.smooth(laid.values, program.switches(), prior_levels(boat, [run]))
+    means, covariances, _ = laid.smooth(
+        laid.values, program.effect_switches(), prior_noise_levels(boat, [run])
+    )
     assert laid.initial.rates[0] == pytest.approx(24.0, abs=1.5)  # of noisy fixes a second apart
     speed, sd = (
         means[0, program.module.NQ],
@@ -94,7 +98,7 @@ def test_a_recording_that_begins_at_full_speed_is_followed_from_its_first_row_on
     assert speed == pytest.approx(24.0, abs=4.0 * sd) and sd < 0.5
     still = replace(laid.initial, rates=np.zeros(4))
     laid = replace(laid, specified_initial=still)
-    assert laid.smooth(laid.values, program.switches(), prior_levels(boat, [run]))[0][
+    assert laid.smooth(laid.values, program.effect_switches(), prior_noise_levels(boat, [run]))[0][
         0, 4
     ] == pytest.approx(speed, abs=0.1 * sd)  # however wrong the guess
 
@@ -110,7 +114,9 @@ def test_a_recording_without_positions_begins_at_the_speeds_that_it_shows() -> N
     assert laid.initial.rates[:2] == pytest.approx(
         [24.0 * np.cos(2.0), 24.0 * np.sin(2.0)], abs=0.5
     )
-    means = laid.smooth(laid.values, program.switches(), prior_levels(boat, [run])).means
+    means = laid.smooth(
+        laid.values, program.effect_switches(), prior_noise_levels(boat, [run])
+    ).means
     assert np.hypot(*means[0, 4:6]) == pytest.approx(24.0, abs=0.3)
 
 
@@ -118,8 +124,8 @@ def test_the_order_of_independent_calls_changes_no_number() -> None:
     boat = vessel.load_vessel("jet_ski")
     run = sailed(Craft(), np.full(60, 4.0), np.repeat([0.1, -0.1], 30), 24.0)
     program = program_with_candidates(boat, ["cubic_damping"])
-    laid, levels = map_recording(run, program), prior_levels(boat, [run])
-    on, more = program.switches(), program.switches(("cubic_damping",))
+    laid, levels = map_recording(run, program), prior_noise_levels(boat, [run])
+    on, more = program.effect_switches(), program.effect_switches(("cubic_damping",))
     rough = replace(levels, force=2.0 * levels.force)
 
     def everything(first: bool) -> list[Array]:

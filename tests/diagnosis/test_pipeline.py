@@ -14,12 +14,17 @@ from scipy.stats import multivariate_normal
 from boatsim.cli import diagnosis as commands
 from boatsim.diagnosis import loading, pipeline
 from boatsim.diagnosis.candidates import program_with_candidates
-from boatsim.diagnosis.filter import NoiseLevels, free_run_segments, map_recording, prior_levels
+from boatsim.diagnosis.filter import (
+    NoiseLevels,
+    free_run_segments,
+    map_recording,
+    prior_noise_levels,
+)
 from boatsim.diagnosis.problem import froude_scale
 from boatsim.diagnosis.report.parameters import parameter_key
 from boatsim.errors import BadInput
 from boatsim.physics import vessel
-from boatsim.physics.content import effect_address, load_class
+from boatsim.physics.content import effect_reference, load_class
 from boatsim.physics.program import Program
 from boatsim.recordings import table as recording
 from boatsim.recordings.table import Notes, Recording
@@ -48,7 +53,7 @@ def test_filter_and_smoother_equal_the_dense_gaussian_of_the_same_linear_model()
     rec = roll_recording()
     found = map_recording(rec, Program(boat))
     levels = NoiseLevels(np.array([3.0]), 1.5, {"roll_sd_rad": 1e-3})
-    on = found.program.switches()
+    on = found.program.effect_switches()
     values = found.values
     # the same model written down here: d/dt (phi, p, K) and its exact discretisation
     inertia, damping, stiffness = 115.6 + 19.8, 6.7, 822.3
@@ -95,7 +100,7 @@ def test_one_outlier_moves_neither_states_nor_evidence_much():
     levels = NoiseLevels(np.array([3.0]), 1.5, {"roll_sd_rad": 1e-3})
     program = Program(boat)
     laid = (map_recording(r, program) for r in (clean, spoilt))
-    first, second = (t.smooth(t.values, program.switches(), levels)[0] for t in laid)
+    first, second = (t.smooth(t.values, program.effect_switches(), levels)[0] for t in laid)
     assert np.abs(first[:, 0] - second[:, 0]).max() < 2e-3
 
 
@@ -109,7 +114,7 @@ def test_evidence_has_no_step_where_a_measurement_becomes_an_outlier():
         spoilt = replace(spoilt, signals={"phi_rad": spoilt["phi_rad"].copy()})
         spoilt["phi_rad"][20] += off
         laid = map_recording(spoilt, program)
-        return laid.log_likelihood(laid.values, program.switches(), levels)
+        return laid.log_likelihood(laid.values, program.effect_switches(), levels)
 
     off = np.linspace(0.004, 0.02, 161)  # through the gate, which is at 5 sd
     found = np.array([likelihood(x) for x in off])
@@ -157,8 +162,11 @@ def test_likelihood_hangs_neither_on_the_filters_step_nor_on_a_delay_that_merely
     joystick,
 ):
     recording = driven(joystick.vessel)
-    laid, levels = map_recording(recording, joystick), prior_levels(joystick.vessel, [recording])
-    nothing, delayed = joystick.switches(), joystick.switches(["command_delay"])
+    laid, levels = (
+        map_recording(recording, joystick),
+        prior_noise_levels(joystick.vessel, [recording]),
+    )
+    nothing, delayed = joystick.effect_switches(), joystick.effect_switches(["command_delay"])
     split = laid.values.copy()
     split[joystick.parameter_index("command_delay", "delay")] = 1e-5
     by_step = []
@@ -170,7 +178,11 @@ def test_likelihood_hangs_neither_on_the_filters_step_nor_on_a_delay_that_merely
 
 
 def test_a_ramp_ends_where_the_signal_that_pwm_is_turned_into_is_reached(joystick):
-    code, values, on = joystick.module, joystick.values(), joystick.switches(["command_delay"])
+    code, values, on = (
+        joystick.module,
+        joystick.values(),
+        joystick.effect_switches(["command_delay"]),
+    )
     values[joystick.parameter_index("command_delay", "delay")] = 1e-5
     (
         values[joystick.parameter_index("thrust_lag", "time_constant")],
@@ -317,11 +329,11 @@ def test_patched_file_gives_the_fitted_motion_back(folder):
     best = found.ranking.best
     first = fitted.free_runs(
         found.problem.values(fitted, best.free, best.theta),
-        fitted.program.switches(best.effects),
+        fitted.program.effect_switches(best.effects),
         best.levels,
         6.0,
     )
-    second = own.free_runs(own.values, own.program.switches(), best.levels, 6.0)
+    second = own.free_runs(own.values, own.program.effect_switches(), best.levels, 6.0)
     for (_, a), (_, b) in zip(first, second, strict=True):
         assert np.abs(a - b).max() < 1e-6
 
@@ -486,7 +498,7 @@ def test_own_preset_of_a_shipped_law_is_found_by_its_own_file(tmp_path):
         "from boatsim.physics.effects.damping import LinearDamping\n"
         'Weed = preset_effect(LinearDamping, "Weed", words="weed", fixed={"roll_exponent": 3.0})\n'
     )
-    assert effect_address(load_class("effect", str(file), named=True)) == str(file.resolve())
+    assert effect_reference(load_class("effect", str(file), named=True)) == str(file.resolve())
 
 
 @pytest.mark.slow

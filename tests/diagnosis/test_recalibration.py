@@ -9,9 +9,9 @@ from pushed_boat import BOAT, COMMANDS, DAMPING, Missing, sail
 
 from boatsim.diagnosis.candidates import library_for
 from boatsim.diagnosis.config import DEFAULT
-from boatsim.diagnosis.filter import NoiseLevels, map_recording, prior_levels
+from boatsim.diagnosis.filter import NoiseLevels, map_recording, prior_noise_levels
 from boatsim.diagnosis.problem import Fit, FreeParameter, Problem
-from boatsim.diagnosis.recalibration import recalibrate, undetermined_coefficients
+from boatsim.diagnosis.recalibration import decide_recalibration, undetermined_coefficients
 from boatsim.diagnosis.report.patched_vessel import write_patched_vessel
 from boatsim.diagnosis.search.ranking import fit_baseline
 from boatsim.physics.base import Array
@@ -43,7 +43,7 @@ def at_rest(seed: int) -> Recording:
 def problem_of(recording: Recording) -> Problem:
     return Problem(
         [map_recording(recording, PROGRAM)],
-        prior_levels(BOAT, [recording]),
+        prior_noise_levels(BOAT, [recording]),
         {"damping": 0.3, "thrust": 0.1},
     )
 
@@ -63,7 +63,7 @@ def test_a_recording_without_excitation_leaves_all_coefficients_as_in_the_file()
     problem = problem_of(at_rest(1))
     held_out = [map_recording(at_rest(2), PROGRAM)]
     nominal, refitted = fit_baseline(problem)
-    found = recalibrate(problem, nominal, refitted, held_out)
+    found = decide_recalibration(problem, nominal, refitted, held_out)
     assert len(found.undetermined) == len(refitted.free)
     assert np.all(found.fit.theta == 1.0)
 
@@ -75,7 +75,7 @@ def test_coefficients_are_adopted_only_if_held_out_data_agree(
     problem = problem_of(sail("fitted", 1, draggy)[0])
     held_out = [map_recording(sail("held out", 2, held_out_boat)[0], PROGRAM)]
     nominal, refitted = fit_baseline(problem)
-    found = recalibrate(problem, nominal, refitted, held_out)
+    found = decide_recalibration(problem, nominal, refitted, held_out)
     assert found.adopted is adopted
     drag = [i for i, f in enumerate(refitted.free) if "damping" in f.effect]
     if adopted:

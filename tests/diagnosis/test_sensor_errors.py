@@ -55,7 +55,7 @@ def test_sensor_errors_are_candidates_where_their_columns_were_recorded_and_nowh
 def test_every_special_case_is_a_candidate_of_a_boat_with_all_freedoms_and_all_columns() -> None:
     boat = vessel.load_vessel("otter")
     special = {}
-    for name in content.library_names("effect"):
+    for name in content.shipped_content_names("effect"):
         kind = content.load_class("effect", name)
         if issubclass(kind, SensorError) and kind is not SensorError:
             special[name] = kind

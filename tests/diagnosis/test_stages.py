@@ -11,7 +11,7 @@ from boatsim.diagnosis import loading, pipeline
 from boatsim.diagnosis.config import DEFAULT
 from boatsim.diagnosis.evaluation import MODELS
 from boatsim.diagnosis.loading import Loaded, Request
-from boatsim.diagnosis.question import Question, pose_question
+from boatsim.diagnosis.question import Question, set_up_estimation_problem
 from boatsim.diagnosis.report.answer import compose_answer
 from boatsim.diagnosis.search.ranking import Baseline
 from boatsim.errors import BadInput
@@ -36,7 +36,7 @@ def loaded(tmp_path_factory: pytest.TempPathFactory) -> Loaded:
 
 @pytest.fixture(scope="module")
 def question(loaded: Loaded) -> Question:
-    return replace(pose_question(loaded, FAST), candidates=(ONLY,))
+    return replace(set_up_estimation_problem(loaded, FAST), candidates=(ONLY,))
 
 
 @pytest.fixture(scope="module")
@@ -75,7 +75,7 @@ def test_later_stages_take_the_results_of_earlier_ones(
     decision = pipeline.decide(question, selection)
     assert len(decision.judgements) == len(selection.ranking.named)
     ranking = replace(pipeline.describe(question, decision), description=None)
-    ranking = pipeline.adopt(question, decision, ranking)
+    ranking = pipeline.adopt_refitted_coefficients(question, decision, ranking)
     evaluation = pipeline.validate(question, decision, ranking)
     assert set(MODELS) <= set(evaluation.free_runs[0].channels)
     plan = pipeline.plan(decision, ranking)

@@ -14,7 +14,7 @@ from boatsim.diagnosis.filter import (
     InitialState,
     MappedRecording,
     NoiseLevels,
-    inertia_of,
+    inertia_with_added_mass,
     map_recording,
 )
 from boatsim.physics import vessel
@@ -49,7 +49,7 @@ def likelihood(x: Array, every: float, rms: float) -> float:
         values[program.parameter_index("position_wander", name)] = value
     families = {"position_sd_m": NOISE, "heading_sd_rad": 0.01}
     levels = NoiseLevels(np.full(3, 1e-9), 1.0, families)
-    return float(laid.log_likelihood(values, program.switches(["position_wander"]), levels))
+    return float(laid.log_likelihood(values, program.effect_switches(["position_wander"]), levels))
 
 
 def test_likelihood_is_that_of_the_normal_distribution_written_out() -> None:
@@ -80,13 +80,14 @@ def test_added_mass_does_not_calm_the_water() -> None:
     heavier = values.copy()
     heavier[program.parameter_index("extra_mass", "mass")] = boat.body.mass
     light, heavy = (
-        inertia_of(program, v, program.switches(["extra_mass"])) for v in (values, heavier)
+        inertia_with_added_mass(program, v, program.effect_switches(["extra_mass"]))
+        for v in (values, heavier)
     )
     assert heavy[0] == pytest.approx(light[0] + boat.body.mass)
     x = np.random.default_rng(0).normal(0.0, 0.003, 200)
     _, laid = laid_at_rest(x, 0.2)
     levels = NoiseLevels(np.full(3, 0.05), 1.0, {"position_sd_m": 0.003, "heading_sd_rad": 0.01})
-    on = program.switches(["extra_mass"])
+    on = program.effect_switches(["extra_mass"])
     still, moved = (laid.log_likelihood(v, on, levels) for v in (values, heavier))
     assert (
         moved < still

@@ -9,7 +9,7 @@ import pytest
 from boatsim.physics import content
 from tests.pages import ROOT, effect_cases, effect_examples, reference
 
-EFFECTS = content.library_names("effect")
+EFFECTS = content.shipped_content_names("effect")
 PAGES = reference.pages()
 
 

@@ -24,13 +24,13 @@ from typer.testing import CliRunner
 from boatsim.cli import app
 from boatsim.drive.background_tasks import background_listener
 from boatsim.drive.clock import Clock
-from boatsim.drive.driver_input import DEAD, PATIENCE, DriverInput, Sticks, beyond_dead_zone
+from boatsim.drive.driver_input import DEAD, PATIENCE, DriverInput, Sticks, apply_dead_zone
 from boatsim.drive.server import ABANDONED, Server
 from boatsim.drive.session import Session
 from boatsim.drive.stick_mapping import stick_mappings_for
 from boatsim.drive.task import Task
 from boatsim.errors import BadInput
-from boatsim.physics.content import library_names
+from boatsim.physics.content import shipped_content_names
 from boatsim.recordings.table import Recording, read
 from boatsim.simulate import scenario, tracking_errors
 from boatsim.simulate.manoeuvre import complete_manoeuvring_table
@@ -88,14 +88,11 @@ def test_a_page_that_falls_silent_holds_no_sticks() -> None:
 
 @given(ways)
 def test_a_stick_is_dead_about_the_middle_and_whole_at_its_ends(way: float) -> None:
+    assert (apply_dead_zone(way) == 0.0) if abs(way) < DEAD else (apply_dead_zone(way) * way >= 0.0)
     assert (
-        (beyond_dead_zone(way) == 0.0) if abs(way) < DEAD else (beyond_dead_zone(way) * way >= 0.0)
+        abs(apply_dead_zone(way)) <= 1.0 and apply_dead_zone(1.0) == -apply_dead_zone(-1.0) == 1.0
     )
-    assert (
-        abs(beyond_dead_zone(way)) <= 1.0
-        and beyond_dead_zone(1.0) == -beyond_dead_zone(-1.0) == 1.0
-    )
-    assert beyond_dead_zone(-way) == -beyond_dead_zone(way)
+    assert apply_dead_zone(-way) == -apply_dead_zone(way)
 
 
 # What they set
@@ -105,7 +102,7 @@ def test_a_stick_is_dead_about_the_middle_and_whole_at_its_ends(way: float) -> N
 def of_hands() -> list[str]:
     """Vessels that can be driven by their channels."""
     found = []
-    for name in library_names("vessel"):
+    for name in shipped_content_names("vessel"):
         try:
             Task(name)
         except BadInput:
@@ -232,7 +229,7 @@ def test_while_a_goal_is_off_commands_are_neutral_and_the_controller_begins_anew
     assert abs(log["psi_rad"][-1] - log["psi_rad"][log.t >= 7.99][0]) < 0.1 < log["psi_rad"][-1]
 
 
-@pytest.mark.parametrize("name", library_names("controller"))
+@pytest.mark.parametrize("name", shipped_content_names("controller"))
 def test_a_controller_tells_the_same_estimates_after_it_was_reset(name: str) -> None:
     from boatsim.physics.content import load_class
 

@@ -236,4 +236,4 @@ def _without_runs(plan: Any, *_: object) -> tuple[Any, bool]:
 
 def _without_fit(loaded: Any, _: object, config: Any) -> Any:
     """In place of a diagnosis: what it does before it fits."""
-    return pipeline.pose_question(loaded, config)
+    return pipeline.set_up_estimation_problem(loaded, config)

@@ -18,7 +18,7 @@ from boatsim.drive.messages import Movement, parse_message
 from boatsim.errors import BadInput
 from boatsim.physics import vessel
 from boatsim.recordings import expression, table
-from boatsim.recordings.importing.convert import convert
+from boatsim.recordings.importing.convert import convert_log
 from boatsim.recordings.importing.log import Log, open_log
 from boatsim.recordings.importing.mapping import read_map
 from boatsim.recordings.importing.mapping_proposal import propose_map, signal_table
@@ -27,10 +27,10 @@ from boatsim.simulate.cases import read_scenario
 from boatsim.sweeps.axes import parse_axis
 from boatsim.sweeps.entries import RunEntry
 from boatsim.sweeps.journal import Journal
-from boatsim.sweeps.keys import Target, Value, find_slots, set_values
+from boatsim.sweeps.keys import Target, Value, find_target_values, set_values
 from boatsim.sweeps.results import Results
 from boatsim.sweeps.sampled_keys import parse_sampled_key
-from boatsim.sweeps.summary import metric_spreads
+from boatsim.sweeps.summary import metric_statistics
 from boatsim.sweeps.text_tables import result_tables
 from tests.fuzz import calls, seeds
 from tests.fuzz.mutate import edits
@@ -103,7 +103,7 @@ def _log(path: Path) -> object:
     signal_table(log)
     file = path.with_name("proposed.toml")
     file.write_text(text, encoding="utf-8")
-    return convert(log, read_map(file), "map.toml")
+    return convert_log(log, read_map(file), "map.toml")
 
 
 def _bag(path: Path) -> object:
@@ -111,7 +111,7 @@ def _bag(path: Path) -> object:
 
 
 def _map(path: Path) -> object:
-    return convert(_whole_log(), read_map(path), str(path), {"n_port_radps": (-104.0, 104.0)})
+    return convert_log(_whole_log(), read_map(path), str(path), {"n_port_radps": (-104.0, 104.0)})
 
 
 @cache
@@ -141,7 +141,7 @@ def _expression(path: Path) -> object:
 def _with_value(target: Target, value: Value) -> object:
     """The scenario of an expression with another value."""
     table, place = read_scenario(seeds.OF_EXPRESSIONS)
-    table, slots = find_slots(table, place, target)
+    table, slots = find_target_values(table, place, target)
     return scenario.from_table(set_values(table, place, slots, target.operation, value), place)
 
 
@@ -152,7 +152,7 @@ def _journal(path: Path) -> object:
         entries = dict(sorted(journal.done.items()))
     results = Results(plan, entries)
     results.write(path.parent)
-    return results.columns(), results.metrics, metric_spreads(results), result_tables(results)
+    return results.columns(), results.metrics, metric_statistics(results), result_tables(results)
 
 
 def _message(path: Path) -> object:

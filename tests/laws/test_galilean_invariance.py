@@ -9,7 +9,7 @@ from boatsim.physics import content, vessel
 from boatsim.physics.base import Array
 from boatsim.physics.effects.current import Current
 from boatsim.physics.program import Program
-from boatsim.physics.signals import signals_of
+from boatsim.physics.signals import motion_signals
 from boatsim.physics.vessel import Vessel
 from boatsim.simulate.batch import Batch
 
@@ -18,7 +18,7 @@ HELD = 5.0  # [s] each row of commands
 TOLERANCE = 1e-9  # [m, rad, m/s, rad/s] of a run of minutes in which ships go hundreds of metres
 CASES = [
     (name, load)
-    for name in content.library_names("vessel")
+    for name in content.shipped_content_names("vessel")
     for load in ([], *([one] for one in vessel.load_vessel(name).loads))
     if "surge"
     in vessel.load_vessel(name).dof  # a hull that only rolls about a fixed axis is carried nowhere
@@ -48,17 +48,17 @@ def start_of(boat: Vessel) -> Array:
     """Under way, drifting, turning and heeled."""
     U = 0.15 * np.sqrt(9.81 * boat.length)
     state = {"psi": 0.4, "phi": 0.05, "u": U, "v": 0.1 * U, "r": 0.1 * U / boat.length, "p": 0.02}
-    return np.array([state.get(signal.symbol, 0.0) for signal in signals_of(boat.dof)])
+    return np.array([state.get(signal.symbol, 0.0) for signal in motion_signals(boat.dof)])
 
 
 def carried(program: Program, states: Array, t: Array, by: float = 1.0) -> Array:
     """States (N, 2 NQ) as seen by one who sails the other way, with velocity -by * (NORTH, EAST)
     over the ground."""
-    seen, nq = np.array([program.joint_rates(state) for state in states]), states.shape[1] // 2
+    seen, nq = np.array([program.to_joint_rates(state) for state in states]), states.shape[1] // 2
     flow = by * np.array([NORTH, EAST])
     seen[:, :2] += np.outer(t, flow)
     seen[:, nq : nq + 2] += flow
-    return program.body_rates(seen)
+    return program.to_body_velocities(seen)
 
 
 def sails_as_in_still_water(boat: Vessel) -> None:

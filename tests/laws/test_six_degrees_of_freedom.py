@@ -13,7 +13,7 @@ from scipy.integrate import quad, solve_ivp
 from boatsim.physics import vessel
 from boatsim.physics.base import Array
 from boatsim.physics.kernel.equations import has_hull_fixed_axes
-from boatsim.physics.signals import AXES, signals_of
+from boatsim.physics.signals import AXES, motion_signals
 from boatsim.physics.vessel import Vessel
 from boatsim.simulate.batch import Batch
 from boatsim.simulate.engine import Engine, State
@@ -405,7 +405,9 @@ def test_engine_and_twin_follow_lagrange_in_any_set_of_freedoms(
     full[free] = pose[free]
     J = jacobian(full, free, tilting)
     nu = J @ rate[free]
-    moving = dict(zip((s.symbol for s in signals_of(dof)), [*pose[free], *nu[free]], strict=True))
+    moving = dict(
+        zip((s.symbol for s in motion_signals(dof)), [*pose[free], *nu[free]], strict=True)
+    )
     engine.reset(State(**moving))
     engine.advance(300)
     found = solve_ivp(
@@ -419,7 +421,7 @@ def test_engine_and_twin_follow_lagrange_in_any_set_of_freedoms(
     full[free] = found[: len(free)]
     J = jacobian(full, free, tilting)
     wanted = [*found[: len(free)], *(J @ np.linalg.solve(J.T @ M @ J, found[len(free) :]))[free]]
-    at_end = [getattr(engine.state, s.symbol) for s in signals_of(dof)]
+    at_end = [getattr(engine.state, s.symbol) for s in motion_signals(dof)]
     assert at_end == pytest.approx(wanted, rel=1e-6, abs=2e-6)
     rolled = compiled.rollout(list(moving.values()), np.zeros((30, 0)), 0.1)[-1]
     assert at_end == pytest.approx(rolled, rel=1e-10, abs=1e-10)

@@ -20,7 +20,7 @@ from boatsim.newboat.particulars import Options, Particulars, parse_particulars
 from boatsim.newboat.write import boat_files
 from boatsim.physics import vessel
 from boatsim.physics.base import motion
-from boatsim.physics.content import library_names
+from boatsim.physics.content import shipped_content_names
 from boatsim.physics.effects.added_mass import AddedMass
 from boatsim.physics.effects.forward_speed_damping import ForwardSpeedDamping
 from boatsim.physics.estimate import added_mass, inertia, sway_yaw_damping
@@ -174,7 +174,7 @@ def settled(folder: Path, commands: dict[str, float]) -> dict[str, float]:
     found = vessel.load_vessel(str(folder))
     program = Program(found)
     act, memory = np.zeros(program.held_size), np.zeros(program.memory_size)
-    values, on = program.values(), program.switches()
+    values, on = program.values(), program.effect_switches()
     for _ in range(3):
         program.module.advance_actuators(
             program.command_array(commands), memory, 1e4, values, on, act
@@ -416,7 +416,7 @@ def test_a_list_is_narrowed_to_names_with_a_word_or_like_a_pattern() -> None:
 
 def test_the_bare_name_of_a_scenario_is_enough_where_one_only_has_it() -> None:
     assert scenario.load("sway_1").name == "joystick_boat/sway_1"
-    bare = Counter(name.rpartition("/")[2] for name in library_names("scenario"))
+    bare = Counter(name.rpartition("/")[2] for name in shipped_content_names("scenario"))
     shared = next(name for name, times in bare.items() if times > 1)
     with pytest.raises(BadInput, match=f"several scenarios are called {shared}; give one of "):
         scenario.load(shared)

@@ -14,14 +14,17 @@ from real_catamaran import Real, navigation, recording
 from boatsim.cli import diagnosis as commands
 from boatsim.control.base import Sense
 from boatsim.diagnosis import pipeline
-from boatsim.diagnosis.checks.position_frame import drop_rotated_positions, rotated_share
+from boatsim.diagnosis.checks.position_frame import (
+    drop_rotated_positions,
+    position_rotation_fraction,
+)
 from boatsim.errors import BadInput
 from boatsim.metrics.arrival import Arrival
 from boatsim.metrics.speed_reached import SpeedReached
 from boatsim.metrics.turning_radius import TurningRadius
 from boatsim.physics import vessel
 from boatsim.physics.base import Array, Wrench, motion
-from boatsim.physics.content import library_names, load_class
+from boatsim.physics.content import load_class, shipped_content_names
 from boatsim.physics.effects.added_mass import AddedMassError
 from boatsim.physics.effects.damping import DampingExponent
 from boatsim.physics.effects.extra_mass import Payload
@@ -37,7 +40,7 @@ from boatsim.simulate.evaluation import requested_metrics
 from boatsim.simulate.run import Run, run
 from boatsim.simulate.run_files import run_into_folder
 
-SHIPPED = [name for name in library_names("scenario") if name.startswith("catamaran/")]
+SHIPPED = [name for name in shipped_content_names("scenario") if name.startswith("catamaran/")]
 TABLE_III = {
     0: (2.4, 2.7),
     45: (2.6, 2.8),
@@ -443,7 +446,10 @@ def test_honest_positions_stay(trial: int) -> None:
     toward, steady = TRIALS[trial]
     rows = Real(gust=(steady, 5.0, toward)).run(navigation(20.0, 0.0), 12.0, held=0.05)
     honest = recording("honest", rows, seed=trial)
-    assert drop_rotated_positions(honest) is honest and abs(rotated_share(honest)[0]) < 0.05
+    assert (
+        drop_rotated_positions(honest) is honest
+        and abs(position_rotation_fraction(honest)[0]) < 0.05
+    )
     # a fast velocity log, an antenna off the mass centre, a turned compass and a current are other
     # errors than this
     x, y, psi, u = (honest[n] for n in ("x_m", "y_m", "psi_rad", "u_mps"))

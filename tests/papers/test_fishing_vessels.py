@@ -22,7 +22,7 @@ from benchmarks.martin_vessels import (
 )
 from boatsim.physics import particulars, vessel
 from boatsim.physics.base import Array
-from boatsim.physics.signals import signals_of
+from boatsim.physics.signals import motion_signals
 from boatsim.physics.vessel import Vessel
 from boatsim.simulate.batch import Batch
 
@@ -329,7 +329,10 @@ def test_sway_added_mass_heels_one_way_as_printed_or_both_ways_as_energy_demands
 
 def on_twin(boat: Vessel, rudder: Array, waves: Array) -> Array:
     """(N + 1, 5) states of the run in the twin."""
-    compiled, symbols = Batch(boat, step=0.02), [signal.symbol for signal in signals_of(boat.dof)]
+    compiled, symbols = (
+        Batch(boat, step=0.02),
+        [signal.symbol for signal in motion_signals(boat.dof)],
+    )
     y = np.array([speed_of(boat) if n == "u" else 0.0 for n in symbols])
     at, values, rows = (
         [compiled.program.parameter_index("push", n) for n in WAVES],

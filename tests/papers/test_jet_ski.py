@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from jet_craft import STEERING, Craft, power, solved
 
-from boatsim.control.adaptive import l1_norm, project_interval, unfiltered_system
+from boatsim.control.adaptive import l1_norm, project_interval, uncertainty_to_state_system
 from boatsim.control.adaptive_loop import (
     adapt_estimates,
     adapt_loop,
@@ -24,7 +24,7 @@ from boatsim.control.adaptive_loop import (
 from boatsim.control.jet import JET_Q2, power_at_throttle, throttle_for_power
 from boatsim.physics import vessel
 from boatsim.physics.base import Force, SignalSegment, Wrench, motion, segment_mean
-from boatsim.physics.content import library_names, load_class
+from boatsim.physics.content import load_class, shipped_content_names
 from boatsim.physics.effects.jet_steering import JetSteering
 from boatsim.physics.effects.nomoto_yaw import NomotoYaw
 from boatsim.physics.effects.push import Push
@@ -32,7 +32,7 @@ from boatsim.physics.effects.rate_limit import RateLimit
 from boatsim.physics.effects.roll_coupling import RollCoupling
 from boatsim.physics.effects.steering_offset import SteeringAsymmetry
 from boatsim.physics.effects.water_jet import WaterJet
-from boatsim.physics.signals import signals_of
+from boatsim.physics.signals import motion_signals
 from boatsim.simulate import scenario
 from boatsim.simulate.batch import Batch
 from boatsim.simulate.engine import Engine, State
@@ -180,7 +180,7 @@ def test_engine_and_twin_follow_an_integration_of_the_printed_equations(
     assert [getattr(s, n) for n in names] == pytest.approx(truth.tolist(), abs=1e-6)
     compiled = Batch(CRAFT, step=0.01)
     rows = np.tile(compiled.program.command_array({"throttle": throttle, "jet_rad": jet}), (100, 1))
-    ours = [signal.symbol for signal in signals_of(CRAFT.dof)]
+    ours = [signal.symbol for signal in motion_signals(CRAFT.dof)]
     end = compiled.rollout([start[n] for n in ours], rows, 0.1)[-1]
     assert end == pytest.approx([getattr(s, n) for n in ours], abs=1e-8)
 
@@ -276,10 +276,12 @@ def test_l1_norm_condition_of_the_cruise_control() -> None:
     assert at[11.9] > 1.0 > at[12.3]  # threshold 12.1 +- 0.2, published 12.2
     assert at[35.0] == pytest.approx(0.55, abs=0.01)
     assert [at[k] for k in at] == pytest.approx([condition(k) for k in at], rel=1e-6)
-    assert l1_norm(unfiltered_system([[-1.4]], [1.0], 3.5)) * 1.7716 == pytest.approx(at[35.0])
+    assert l1_norm(uncertainty_to_state_system([[-1.4]], [1.0], 3.5)) * 1.7716 == pytest.approx(
+        at[35.0]
+    )
 
 
-NAMES = [name for name in library_names("scenario") if name.startswith("jet_ski/")]
+NAMES = [name for name in shipped_content_names("scenario") if name.startswith("jet_ski/")]
 
 
 def test_staircase_first_four_steps_are_alike_and_the_last_saturates() -> None:

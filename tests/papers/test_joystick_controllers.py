@@ -8,7 +8,7 @@ import pytest
 
 from boatsim.control.adaptive import Predictor
 from boatsim.control.base import Sense
-from boatsim.control.margins import margin_rows
+from boatsim.control.margins import stability_margins
 from boatsim.errors import BadInput
 from boatsim.physics.content import load_class
 
@@ -392,7 +392,7 @@ def test_saturation_does_not_wind_the_pid_up() -> None:
 
 @RIVALS
 def test_loops_bear_two_more_periods_of_delay(controller: Any) -> None:
-    rows = margin_rows(controller())
+    rows = stability_margins(controller())
     assert {row.channel for row in rows} == {"yaw", "surge"}
     assert all(row.stable and row.delay_s > 0.16 for row in rows)
 
@@ -408,7 +408,7 @@ def test_loops_bear_two_more_periods_of_delay(controller: Any) -> None:
 def test_every_channel_meets_the_l1_condition_for_every_input_gain(
     name: str, channels: set[str]
 ) -> None:
-    rows = margin_rows(load_class("controller", name)())
+    rows = stability_margins(load_class("controller", name)())
     assert {row.channel for row in rows} == channels
     assert all(row.norm * row.needed < 1.0 and row.stable and row.delay_s > 0.16 for row in rows)
 

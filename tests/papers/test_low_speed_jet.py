@@ -20,7 +20,7 @@ from boatsim.metrics.heading_hold import HeadingHold
 from boatsim.metrics.step_response import StepResponse
 from boatsim.physics import vessel
 from boatsim.physics.base import Array, Wrench, motion
-from boatsim.physics.content import library_names, load_class
+from boatsim.physics.content import load_class, shipped_content_names
 from boatsim.physics.effects.astern_time_constant import AsternTimeConstant
 from boatsim.physics.effects.reversing_jet import JetLeak, ReversingJet
 from boatsim.physics.effects.yaw_rate_waves import WAVES, YawRateWaves, wave_component
@@ -34,7 +34,7 @@ Heading = load_class("controller", "l1_heading_discrete")
 ASTERN = 0.9599  # [rad] bucket at 55 deg
 T_N, T_S = 1.67, 0.1  # [s]
 F22 = exp(-T_S / T_N)
-SHIPPED = [n for n in library_names("scenario") if n.startswith("jet_ski/low_")]
+SHIPPED = [n for n in shipped_content_names("scenario") if n.startswith("jet_ski/low_")]
 
 
 @cache

@@ -28,7 +28,7 @@ from boatsim.control.identification import (
 from boatsim.errors import BadInput
 from boatsim.metrics.settling import Settling
 from boatsim.physics.base import Array
-from boatsim.physics.content import library_names, load_class
+from boatsim.physics.content import load_class, shipped_content_names
 from boatsim.recordings.table import Recording
 from boatsim.simulate import scenario
 from boatsim.simulate.run import run
@@ -642,7 +642,11 @@ def test_shipped_vessel_sails_as_the_discrete_ship_of_the_thesis() -> None:
 
 @pytest.mark.parametrize(
     "name",
-    [n for n in library_names("scenario") if n.split("/")[0] in martin.VESSELS and "/seas" in n],
+    [
+        n
+        for n in shipped_content_names("scenario")
+        if n.split("/")[0] in martin.VESSELS and "/seas" in n
+    ],
 )
 def test_scenarios_and_table_set_the_autopilots_alike(name: str) -> None:
     vessel, test = name.split("/")

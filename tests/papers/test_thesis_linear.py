@@ -15,7 +15,7 @@ from boatsim.cli import diagnosis as commands
 from boatsim.metrics.sway_hold import SwayHold
 from boatsim.physics import vessel
 from boatsim.physics.base import Array, Wrench
-from boatsim.physics.content import library_names
+from boatsim.physics.content import shipped_content_names
 from boatsim.recordings.table import Recording
 from boatsim.simulate import scenario
 from boatsim.simulate.engine import Engine, State
@@ -25,7 +25,7 @@ from boatsim.simulate.run_files import run_into_folder
 
 SHIPPED = [
     name.removeprefix("thesis_linear/")
-    for name in library_names("scenario")
+    for name in shipped_content_names("scenario")
     if name.startswith("thesis_linear/")
 ]
 A = {  # T10 to T14, states v and r

@@ -14,7 +14,7 @@ from boatsim.diagnosis.filter import map_recording
 from boatsim.errors import BadInput
 from boatsim.physics import vessel
 from boatsim.physics.commands import clipped_commands, clipped_recorded_commands
-from boatsim.physics.content import library_names, load_class
+from boatsim.physics.content import load_class, shipped_content_names
 from boatsim.physics.program import Program
 from boatsim.physics.vessel import Vessel
 from boatsim.recordings import table
@@ -140,7 +140,7 @@ def test_a_boat_left_alone_stays_where_it_is() -> None:
     assert np.hypot(engine.state.x, engine.state.y) < 1e-9
 
 
-@pytest.mark.parametrize("name", library_names("vessel"))
+@pytest.mark.parametrize("name", shipped_content_names("vessel"))
 def test_every_vessel_takes_its_own_neutral(name: str) -> None:
     boat = vessel.load_vessel(name)
     assert clipped_commands(boat, {}).tolist() == [c.neutral for c in boat.commands.values()]

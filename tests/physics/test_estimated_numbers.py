@@ -11,7 +11,7 @@ from boatsim.errors import BadInput
 from boatsim.physics import content, vessel
 from boatsim.physics.base import Effect
 from boatsim.physics.kinds.effect import REFINED_GROUPS
-from boatsim.physics.vessel import sd_of_refined_numbers
+from boatsim.physics.vessel import sd_of_corrected_estimates
 
 TABLE = """
 [estimated]
@@ -59,7 +59,7 @@ def test_a_wrong_key_or_value_gives_one_line(line: str, message: str, tmp_path: 
     assert "\n" not in str(error.value)
 
 
-@pytest.mark.parametrize("name", content.library_names("effect"))
+@pytest.mark.parametrize("name", content.shipped_content_names("effect"))
 def test_every_effect_refines_a_known_group_or_none(name: str) -> None:
     kind: type[Effect] = content.load_class("effect", name)
     assert kind.refines in ("", *REFINED_GROUPS)
@@ -84,8 +84,8 @@ def test_an_effect_refines_numbers_that_are_estimated(
     line: str, effect: str, sd: float | None, tmp_path: Path
 ) -> None:
     loaded = of(f"[estimated]\n{line}\n", tmp_path)
-    assert sd_of_refined_numbers(candidate(effect, loaded), loaded, loaded.estimated) == sd
-    assert sd_of_refined_numbers(candidate(effect, loaded), loaded, {}) is None
+    assert sd_of_corrected_estimates(candidate(effect, loaded), loaded, loaded.estimated) == sd
+    assert sd_of_corrected_estimates(candidate(effect, loaded), loaded, {}) is None
 
 
 def test_an_estimate_is_the_prior_of_the_coefficients(tmp_path: Path) -> None:

@@ -10,8 +10,8 @@ from numba.core.registry import cpu_target
 from numba.core.typing import Context
 
 from boatsim.physics.debugging import DEBUG
-from boatsim.physics.function_compiler import is_plain, remembering
-from boatsim.physics.kernel.compiling import compiled_by, lean
+from boatsim.physics.function_compiler import caching_typing_context, is_plain
+from boatsim.physics.kernel.compiling import lean, njit_for_compiled_callers
 
 pytestmark = pytest.mark.skipif(DEBUG, reason="nothing is compiled")
 VECTOR = types.Array(types.float64, 1, "C")
@@ -24,9 +24,9 @@ def twice(x: float) -> float:
 
 
 def test_a_function_that_only_compiled_code_calls_gets_no_machine_code() -> None:
-    inner = compiled_by()(twice)
+    inner = njit_for_compiled_callers()(twice)
 
-    @compiled_by()
+    @njit_for_compiled_callers()
     def outer(x: float) -> float:
         return inner(x) + 1.0
 
@@ -45,9 +45,9 @@ def test_both_forms_of_a_function_give_the_same_numbers() -> None:
             total += sin(value * x) / (1.0 + x)
         return total
 
-    function = compiled_by()(law)
+    function = njit_for_compiled_callers()(law)
 
-    @compiled_by()
+    @njit_for_compiled_callers()
     def caller(x: float, a: object) -> float:
         return float(function(x, a))
 
@@ -57,9 +57,9 @@ def test_both_forms_of_a_function_give_the_same_numbers() -> None:
 
 
 def test_a_function_is_analysed_once_for_python_and_for_its_callers() -> None:
-    function = compiled_by()(twice)
+    function = njit_for_compiled_callers()(twice)
 
-    @compiled_by()
+    @njit_for_compiled_callers()
     def caller(x: float) -> float:
         return float(function(x))
 
@@ -76,7 +76,7 @@ def test_functions_change_arrays_in_place_in_both_forms() -> None:
         for i in range(len(a)):  # type: ignore[arg-type]
             a[i] += x  # type: ignore[index]
 
-    @compiled_by()
+    @njit_for_compiled_callers()
     def fill_twice(a: object) -> None:
         fill(a, 1.0)
         fill(a, 2.0)
@@ -88,7 +88,7 @@ def test_functions_change_arrays_in_place_in_both_forms() -> None:
 
 
 def test_an_error_of_typing_names_the_function_and_leaves_it_usable() -> None:
-    function = compiled_by()(twice)
+    function = njit_for_compiled_callers()(twice)
     with pytest.raises(Exception, match="twice"):
         function("text and number do not multiply")
     assert function(2.0) == 4.0
@@ -101,7 +101,7 @@ def test_an_error_of_typing_names_the_function_and_leaves_it_usable() -> None:
 def test_remembered_types_are_those_that_numba_infers(function: object, kinds: object) -> None:
     plain = cpu_target.typing_context
     for _ in range(2):  # looked up, then from memory
-        found = remembering(plain).resolve_function_type(function, kinds, {})
+        found = caching_typing_context(plain).resolve_function_type(function, kinds, {})
         assert found == Context.resolve_function_type(plain, function, kinds, {})
 
 
@@ -109,7 +109,7 @@ def test_remembered_types_of_items_are_those_that_numba_infers() -> None:
     plain = cpu_target.typing_context
     for container in (VECTOR, PAIR):
         kinds = (container, types.int64)
-        found = remembering(plain).resolve_function_type(operator.getitem, kinds, {})
+        found = caching_typing_context(plain).resolve_function_type(operator.getitem, kinds, {})
         assert found == Context.resolve_function_type(plain, operator.getitem, kinds, {})
 
 

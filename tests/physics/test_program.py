@@ -90,7 +90,7 @@ def moment(place: Path, more: Mapping[str, str] | None = None) -> float:
 def forces(program: Program, state: Sequence[float], on: Array | None = None) -> tuple[float, ...]:
     """Body force over the freedoms at a state in joint coordinates and their rates, actuators at
     rest."""
-    act, switches = np.zeros(program.held_size), program.switches() if on is None else on
+    act, switches = np.zeros(program.held_size), program.effect_switches() if on is None else on
     return tuple(
         program.module.total_body_force(
             0.0, np.array(state), act, np.int64(0), program.values(), switches
@@ -146,7 +146,7 @@ def test_a_suspect_acts_only_when_it_is_switched_on(tmp_path: Path) -> None:
     suspects = (Wind(force=0.3, toward=0.2), Current(north=0.1))
     bare = boats.planar(tmp_path)
     program = Program(bare, suspects)
-    off, windy = program.switches(), program.switches(["wind"])
+    off, windy = program.effect_switches(), program.effect_switches(["wind"])
     assert list(off[-2:]) == [0.0, 0.0] and list(windy[-2:]) == [1.0, 0.0]
     own = Program(bare)
     none = forces(own, STATE)
@@ -157,7 +157,7 @@ def test_a_suspect_acts_only_when_it_is_switched_on(tmp_path: Path) -> None:
         np.cos(0.4) * east - np.sin(0.4) * north,
     )
     assert np.subtract(forces(program, STATE, windy), none) == pytest.approx([along, across, 0.0])
-    assert forces(program, STATE, program.switches(["current"])) != none
+    assert forces(program, STATE, program.effect_switches(["current"])) != none
 
 
 def test_parameters_lie_where_the_index_says(tmp_path: Path) -> None:

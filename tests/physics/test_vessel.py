@@ -29,7 +29,7 @@ def of(text: str, tmp_path: Path, **more: Any) -> vessel.Vessel:
     return vessel.load_vessel(str(boats.written(tmp_path, "test_boat", text)), **more)
 
 
-@pytest.mark.parametrize("name", content.library_names("vessel"))
+@pytest.mark.parametrize("name", content.shipped_content_names("vessel"))
 def test_every_vessel_loads_in_every_load(name: str) -> None:
     boat = vessel.load_vessel(name)
     assert boat.about and boat.source and (boat.path / boat.hull).is_file()
@@ -39,7 +39,7 @@ def test_every_vessel_loads_in_every_load(name: str) -> None:
         assert command.low < command.high
 
 
-@pytest.mark.parametrize("name", content.library_names("vessel"))
+@pytest.mark.parametrize("name", content.shipped_content_names("vessel"))
 def test_every_entry_that_is_tried_can_be_put_on_the_vessel_and_fitted(name: str) -> None:
     boat = vessel.load_vessel(name)
     library = library_for(boat)
@@ -50,7 +50,7 @@ def test_every_entry_that_is_tried_can_be_put_on_the_vessel_and_fitted(name: str
     there = {base_name(e.name) for e in library.entries}
     of_shelf = {
         n
-        for n in content.library_names("effect")
+        for n in content.shipped_content_names("effect")
         if has_fittable_parameter(content.load_class("effect", n))
     }
     assert there | set(library.inapplicable) | set(
@@ -138,7 +138,7 @@ def test_rows_of_a_long_recording_are_thinned_by_its_length_but_never_to_less_th
     )
 
 
-@pytest.mark.parametrize("name", content.library_names("vessel"))
+@pytest.mark.parametrize("name", content.shipped_content_names("vessel"))
 def test_every_uncertainty_that_a_vessel_states_is_one_of_its_coefficients(name: str) -> None:
     boat = vessel.load_vessel(name)
     check_uncertainty(boat, priors.coefficient_uncertainty(boat), name)
@@ -415,6 +415,6 @@ def test_a_vessel_that_does_not_exist_is_named_with_the_nearest() -> None:
 
 
 def test_a_command_that_does_not_exist_is_named_with_the_nearest() -> None:
-    assert "did you mean 'pwm_port'" in vessel.load_vessel("joystick_boat").unknown_command(
+    assert "did you mean 'pwm_port'" in vessel.load_vessel("joystick_boat").unknown_command_message(
         "pmw_port"
     )

@@ -45,7 +45,7 @@ def test_thinned_rows_keep_every_command_at_its_own_time() -> None:
     laid.program.module.simulate_intervals(
         Inputs(laid.times, laid.command_times, laid.command_values),
         DEFAULT.filter.free_run_step,
-        VesselNumbers(rigid_body_values(laid.values), laid.values, laid.program.switches()),
+        VesselNumbers(rigid_body_values(laid.values), laid.values, laid.program.effect_switches()),
         np.array([0]),
         np.array([n - 1]),
         states[there[:1]],

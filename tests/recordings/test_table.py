@@ -114,11 +114,11 @@ def test_every_practice_trial_is_read_within_its_limits():
 def test_degrees_are_told_from_radians_on_every_real_recording_that_turns(wrapped):
     for run in map(read, RUNS):
         psi = np.remainder(run["psi_rad"], 2 * math.pi) if wrapped else run["psi_rad"]
-        assert units.heading_in_degrees(run.t, psi, run.signals) is None, run.path
+        assert units.find_heading_in_degrees(run.t, psi, run.signals) is None, run.path
         if (
             run.notes.vessel != "kvlcc2_roll"
         ):  # goes straight ahead: 0.05 deg and 0.05 rad look the same
-            assert units.heading_in_degrees(run.t, np.degrees(psi), run.signals) is not None, (
+            assert units.find_heading_in_degrees(run.t, np.degrees(psi), run.signals) is not None, (
                 run.path
             )
 
@@ -182,25 +182,25 @@ def test_headings_are_unwrapped_and_may_pass_17_rad(tmp_path):
 def test_a_heading_that_only_drifts_with_a_biased_gyro_is_not_called_degrees(ratio):
     t = 0.1 * np.arange(400)
     drift = {"r_radps": np.full(400, 0.01 * ratio)}
-    assert units.heading_in_degrees(t, 0.01 * t, drift) is None
-    assert units.rate_in_degrees(t, drift["r_radps"], 0.01 * t) is None
+    assert units.find_heading_in_degrees(t, 0.01 * t, drift) is None
+    assert units.find_rate_in_degrees(t, drift["r_radps"], 0.01 * t) is None
 
 
 def test_a_boat_that_moves_sideways_while_its_heading_swings_is_not_called_degrees():
     t = np.arange(0, 20, 1 / 6)
     swing = 0.2 * np.sin(0.5 * t)
     sideways = {"x_m": 0.01 * np.sin(0.5 * t), "y_m": 0.1 * t}
-    assert units.heading_in_degrees(t, swing, sideways) is None
+    assert units.find_heading_in_degrees(t, swing, sideways) is None
     spinning = {"x_m": 0.01 * t, "y_m": 0.02 * t}
-    assert units.heading_in_degrees(t, 0.9 * t, spinning) is None
+    assert units.find_heading_in_degrees(t, 0.9 * t, spinning) is None
 
 
 def test_a_wrapped_heading_of_a_spinning_boat_is_not_called_degrees():
     t = np.arange(0, 40, 1 / 6)
     psi = np.remainder(8.0 * np.maximum(t - 10.0, 0.0) + math.pi, 2.0 * math.pi)
-    assert units.heading_in_degrees(t, psi - math.pi, {}) is None
-    assert units.heading_in_degrees(t, psi, {}) is None
-    assert units.heading_in_degrees(t, np.degrees(psi), {}) is not None
+    assert units.find_heading_in_degrees(t, psi - math.pi, {}) is None
+    assert units.find_heading_in_degrees(t, psi, {}) is None
+    assert units.find_heading_in_degrees(t, np.degrees(psi), {}) is not None
 
 
 def test_a_part_keeps_its_times_and_an_empty_part_says_what_there_is():

@@ -15,7 +15,7 @@ from boatsim.physics import vessel
 from boatsim.recordings.table import Recording, write_csv
 from boatsim.simulate import world
 from boatsim.simulate.world import Tank
-from boatsim.view.scene import Scene, scene_from
+from boatsim.view.scene import Scene, scene_from_model
 
 HULLS = {  # geoms of the hull's body
     "box_of_the_default_group": '<geom type="box" size="0.5 0.2 0.1"/>',
@@ -39,7 +39,7 @@ def drawn(folder: Path, geoms: str) -> Path:
 
 def scene(place: Path) -> Scene:
     boat, tank = vessel.load_vessel(str(place)), Tank(10.0, 10.0, 1.0, walls=False)
-    return scene_from(world.build_model(boat, tank), boat, tank)
+    return scene_from_model(world.build_model(boat, tank), boat, tank)
 
 
 @pytest.mark.parametrize("geoms", HULLS.values(), ids=HULLS)

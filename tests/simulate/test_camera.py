@@ -11,7 +11,7 @@ import pytest
 
 from boatsim.errors import BadInput
 from boatsim.physics import vessel
-from boatsim.physics.content import library_names
+from boatsim.physics.content import shipped_content_names
 from boatsim.simulate import scenario
 from boatsim.simulate.camera import Camera
 from boatsim.simulate.run import run
@@ -57,7 +57,9 @@ def test_the_log_has_a_column_for_each_mark_of_vessel_and_scenario() -> None:
 
 def test_general_code_names_no_mark_and_no_work_that_has_them() -> None:
     """What belongs to one tank or one paper stands in its vessel and scenarios."""
-    marks = {mark for name in library_names("vessel") for mark in vessel.load_vessel(name).marks}
+    marks = {
+        mark for name in shipped_content_names("vessel") for mark in vessel.load_vessel(name).marks
+    }
     said = re.compile(rf"\b({'|'.join(marks)}|thesis)\b", re.IGNORECASE)
     files = sorted((Path(__file__).parents[2] / "boatsim").rglob("*.py"))
     assert marks and [(f.name, m.group()) for f in files if (m := said.search(f.read_text()))] == []

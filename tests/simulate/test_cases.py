@@ -7,7 +7,7 @@ import pytest
 
 from boatsim.cli.run_many import plan_runs
 from boatsim.errors import BadInput
-from boatsim.physics.content import find_content_file, library_names
+from boatsim.physics.content import find_content_file, shipped_content_names
 from boatsim.simulate import scenario
 from boatsim.simulate.cases import case_names, find_scenarios, merge_tables, read_scenario
 
@@ -94,7 +94,7 @@ def test_paths_start_at_the_file_they_stand_in(tmp_path: Path) -> None:
 
 
 def test_every_name_of_a_shipped_scenario_is_a_case_or_a_file_of_its_folder() -> None:
-    for name in library_names("scenario"):
+    for name in shipped_content_names("scenario"):
         folder, own = name.split("/")
         path = find_content_file("scenario", name)
         assert path.parent.name == folder and own in (case_names(path) or [path.stem])
@@ -102,7 +102,7 @@ def test_every_name_of_a_shipped_scenario_is_a_case_or_a_file_of_its_folder() ->
 
 
 def test_a_folder_a_pattern_and_a_file_stand_for_their_scenarios(tmp_path: Path) -> None:
-    everything = library_names("scenario")
+    everything = shipped_content_names("scenario")
     assert (
         find_scenarios("jet_ski")
         == find_scenarios("jet_ski/")

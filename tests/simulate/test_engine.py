@@ -18,7 +18,7 @@ from alike import few
 from boatsim.errors import BadInput, BadPhysics
 from boatsim.physics import content, vessel
 from boatsim.physics.base import Array
-from boatsim.physics.signals import signals_of
+from boatsim.physics.signals import motion_signals
 from boatsim.physics.vessel import Vessel
 from boatsim.simulate import scenario
 from boatsim.simulate.batch import Batch
@@ -38,7 +38,7 @@ VESSELS = [
         ("joystick_boat", loads)
         for loads in [("light",), ("heavy",), ("light", "wide"), ("heavy", "wide")]
     ),
-    *((name, ()) for name in content.library_names("vessel") if name != "joystick_boat"),
+    *((name, ()) for name in content.shipped_content_names("vessel") if name != "joystick_boat"),
 ]
 START = State(x=0.1, y=-0.2, psi=0.4, phi=0.1, u=0.2, v=-0.1, p=0.05, r=0.3)
 
@@ -66,7 +66,7 @@ def held_commands(boat: Vessel, rows: int, seed: int) -> Array:
 
 def pose_and_rates(boat: Vessel, s: State) -> list[float]:
     """A state as the twin has it."""
-    return [getattr(s, signal.symbol) for signal in signals_of(boat.dof)]
+    return [getattr(s, signal.symbol) for signal in motion_signals(boat.dof)]
 
 
 def sailed(engine: Engine, rows: Array, steps: int, start: State = START) -> Array:

@@ -279,23 +279,23 @@ def test_crash_stop_goes_astern_until_there_is_no_way_on() -> None:
 def test_limits_of_the_10_10_zigzag_meet_at_their_boundaries() -> None:
     for ratio, first, second in ((10.0, 10.0, 25.0), (30.0, 20.0, 40.0)):
         for beside in (ratio * (1 - 1e-9), ratio, ratio * (1 + 1e-9)):
-            assert imo.FIRST_OVERSHOOT_10.limit_angle(beside, 1.0) == pytest.approx(first)
-            assert imo.SECOND_OVERSHOOT_10.limit_angle(beside, 1.0) == pytest.approx(second)
+            assert imo.FIRST_OVERSHOOT_10.overshoot_limit(beside, 1.0) == pytest.approx(first)
+            assert imo.SECOND_OVERSHOOT_10.overshoot_limit(beside, 1.0) == pytest.approx(second)
     assert (
-        imo.FIRST_OVERSHOOT_10.limit_angle(1.2, 0.5),
-        imo.SECOND_OVERSHOOT_10.limit_angle(1.2, 0.5),
+        imo.FIRST_OVERSHOOT_10.overshoot_limit(1.2, 0.5),
+        imo.SECOND_OVERSHOOT_10.overshoot_limit(1.2, 0.5),
     ) == (
         10.0,
         25.0,
     )
     assert (
-        imo.FIRST_OVERSHOOT_10.limit_angle(400.0, 10.0),
-        imo.SECOND_OVERSHOOT_10.limit_angle(400.0, 10.0),
+        imo.FIRST_OVERSHOOT_10.overshoot_limit(400.0, 10.0),
+        imo.SECOND_OVERSHOOT_10.overshoot_limit(400.0, 10.0),
     ) == (
         20.0,
         40.0,
     )
-    assert imo.FIRST_OVERSHOOT_10.limit_angle(160.0, 8.0) == pytest.approx(15.0)
+    assert imo.FIRST_OVERSHOOT_10.overshoot_limit(160.0, 8.0) == pytest.approx(15.0)
 
 
 @pytest.mark.parametrize(
@@ -322,7 +322,9 @@ def test_limits_stand_beside_the_manoeuvres_they_are_for(
 # Vessels
 
 STEERED = [
-    name for name in content.library_names("vessel") if "yaw" in vessel.load_vessel(name).dof
+    name
+    for name in content.shipped_content_names("vessel")
+    if "yaw" in vessel.load_vessel(name).dof
 ]
 
 

@@ -48,8 +48,8 @@ def test_body_and_joint_velocities_are_each_others_inverse(
 
     @given(st.lists(st.floats(-1.5, 1.5), min_size=2 * n, max_size=2 * n))
     def inverse(state: list[float]) -> None:
-        joints = program.joint_rates(np.array(state))
-        assert program.body_rates(joints[None])[0] == pytest.approx(state, abs=1e-12)
+        joints = program.to_joint_rates(np.array(state))
+        assert program.to_body_velocities(joints[None])[0] == pytest.approx(state, abs=1e-12)
         assert np.linalg.norm(joints[n : n + moves]) == pytest.approx(
             np.linalg.norm(state[n : n + moves])
         )
@@ -58,7 +58,9 @@ def test_body_and_joint_velocities_are_each_others_inverse(
 
 
 def test_ahead_on_an_easterly_heading_is_motion_along_y(tmp_path: Path) -> None:
-    joints = freed(tmp_path, FREEDOMS[0]).joint_rates(np.array([0.0, 0.0, pi / 2, 1.0, 0.0, 0.3]))
+    joints = freed(tmp_path, FREEDOMS[0]).to_joint_rates(
+        np.array([0.0, 0.0, pi / 2, 1.0, 0.0, 0.3])
+    )
     assert joints == pytest.approx([0, 0, pi / 2, 0, 1, 0.3], abs=1e-15)
 
 

@@ -13,7 +13,7 @@ import boatsim
 from boatsim.cli.sweeping import diagnose_each
 from boatsim.errors import BadInput
 from boatsim.sweeps.diagnoses import DiagnosisOptions, diagnose_all, find_recordings, output_folders
-from boatsim.sweeps.workers.in_process import run_here
+from boatsim.sweeps.workers.in_process import run_in_this_process
 from boatsim.sweeps.workers.processes import Processes
 
 WRONG = "t_s,x_m\n0,0\n1,nonsense\n"
@@ -68,7 +68,7 @@ def test_recordings_that_can_not_be_read_are_told_and_end_nothing(
 def test_what_is_done_is_not_done_again(tmp_path: Path) -> None:
     log, out = tmp_path / "a.csv", tmp_path / "out"
     log.write_text(WRONG)
-    diagnose_all([log], DiagnosisOptions(vessel="joystick_boat"), out, run_here)
+    diagnose_all([log], DiagnosisOptions(vessel="joystick_boat"), out, run_in_this_process)
     before = (out / "diagnoses.parquet").read_bytes(), (out / "journal.jsonl").read_bytes()
 
     def nobody(*_: object) -> Any:
@@ -109,5 +109,5 @@ def test_each_is_diagnosed_as_it_would_be_alone_and_cut_off_ends_with_the_same_b
     lines = (out / "journal.jsonl").read_bytes().splitlines(keepends=True)
     (cut / "journal.jsonl").write_bytes(b"".join(lines[:2]))
     (cut / "diagnoses.parquet").unlink()
-    diagnose_all(paths, DiagnosisOptions(), cut, run_here)
+    diagnose_all(paths, DiagnosisOptions(), cut, run_in_this_process)
     assert (cut / "diagnoses.parquet").read_bytes() == (out / "diagnoses.parquet").read_bytes()

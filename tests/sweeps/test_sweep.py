@@ -25,11 +25,11 @@ from boatsim.simulate.cases import read_scenario
 from boatsim.simulate.run import run
 from boatsim.simulate.scenario import Scenario, from_table
 from boatsim.sweeps.axes import parse_axis
-from boatsim.sweeps.designs import design_matrix
+from boatsim.sweeps.designs import sampling_design
 from boatsim.sweeps.execute import run_plan
 from boatsim.sweeps.indices import bootstrap_intervals, sobol_indices
 from boatsim.sweeps.journal import Journal
-from boatsim.sweeps.keys import find_slots, parse_target, set_values
+from boatsim.sweeps.keys import find_target_values, parse_target, set_values
 from boatsim.sweeps.plan import make_plan
 from boatsim.sweeps.sampled_keys import parse_sampled_key
 from boatsim.sweeps.workers.processes import Processes
@@ -65,7 +65,7 @@ def short(tmp_path: Path) -> str:
 def changed(scenario: str, key: str, value: bool | int | float | str) -> Scenario:
     said, place = read_scenario(scenario)
     wanted = parse_target(key)
-    told, at = find_slots(said, place, wanted)
+    told, at = find_target_values(said, place, wanted)
     return from_table(set_values(told, place, at, wanted.operation, value), place)
 
 
@@ -215,7 +215,7 @@ def test_an_axis_that_can_not_be_is_refused(text: str) -> None:
     ],
 )
 def test_a_draw_has_the_distribution_that_it_states(law: str, same: Any) -> None:
-    u = design_matrix("latin", ["a.b"], 500, 1)[:, 0]
+    u = sampling_design("latin", ["a.b"], 500, 1)[:, 0]
     assert (
         stats.kstest(parse_sampled_key(f"a.b={law}").quantiles(u), same.cdf).statistic
         < 1 / 500 + 1e-9
@@ -224,7 +224,7 @@ def test_a_draw_has_the_distribution_that_it_states(law: str, same: Any) -> None
 
 def test_a_choice_is_made_as_often_of_each() -> None:
     found = parse_sampled_key("load=choice(light,heavy)").quantiles(
-        design_matrix("latin", ["load"], 100, 0)[:, 0]
+        sampling_design("latin", ["load"], 100, 0)[:, 0]
     )
     assert found.count("light") == found.count("heavy") == 50
 
@@ -252,7 +252,7 @@ def test_a_draw_that_can_not_be_is_refused(law: str) -> None:
 
 
 def test_a_latin_hypercube_has_one_value_in_each_stratum_of_each_quantity() -> None:
-    found = design_matrix("latin", ["a", "b", "c"], 64, 5)
+    found = sampling_design("latin", ["a", "b", "c"], 64, 5)
     assert (np.sort(np.floor(found * 64), axis=0) == np.arange(64)[:, None]).all()
     assert abs(stats.spearmanr(found[:, 0], found[:, 1]).statistic) < 0.4
 
@@ -260,7 +260,7 @@ def test_a_latin_hypercube_has_one_value_in_each_stratum_of_each_quantity() -> N
 @pytest.mark.parametrize("kind", ["random", "latin"])
 def test_a_further_quantity_leaves_the_others_as_they_were(kind: Any) -> None:
     assert (
-        design_matrix(kind, ["b"], 20, 3)[:, 0] == design_matrix(kind, ["a", "b"], 20, 3)[:, 1]
+        sampling_design(kind, ["b"], 20, 3)[:, 0] == sampling_design(kind, ["a", "b"], 20, 3)[:, 1]
     ).all()
 
 
@@ -611,7 +611,7 @@ def blocks(
     law: Callable[..., np.ndarray], ends: Sequence[tuple[float, float]], runs: int
 ) -> np.ndarray:
     """A function on Saltelli's design, in the order of its rows."""
-    u = design_matrix("sobol", [f"x{k}" for k in range(len(ends))], runs, 0)
+    u = sampling_design("sobol", [f"x{k}" for k in range(len(ends))], runs, 0)
     x = [low + (high - low) * u[:, k] for k, (low, high) in enumerate(ends)]
     return law(*x).reshape(len(ends) + 2, runs)
 

@@ -12,7 +12,7 @@ from boatsim.simulate.cases import read_scenario
 from boatsim.sweeps.axes import parse_axis
 from boatsim.sweeps.entries import DiagnosisEntry, RunEntry
 from boatsim.sweeps.journal import NAME, Journal
-from boatsim.sweeps.keys import find_slots, parse_target
+from boatsim.sweeps.keys import find_target_values, parse_target
 from boatsim.sweeps.sampled_keys import parse_sampled_key
 
 MANY = "9" * 400
@@ -40,7 +40,7 @@ def test_such_a_number_is_none_of_a_distribution(numbers: str) -> None:
 def test_a_number_of_a_goal_is_one_that_exists(number: str) -> None:
     table, place = read_scenario("joystick_boat/berth")
     with pytest.raises(BadInput, match="goal"):
-        find_slots(table, place, parse_target(f"goal.{number}.sway_mps"))
+        find_target_values(table, place, parse_target(f"goal.{number}.sway_mps"))
 
 
 ENTRY = {"run": 0, "failure": None, "met": None, "norms": {"a": [1.0, "m"]}}

@@ -102,7 +102,7 @@ def test_more_of_the_channel_called_left_turns_the_blueboat_to_port(tmp_path: Pa
     left, right = 30.0, 10.0
     thrusts = {"port": right, "starboard": left}
     wrenches = [
-        e.wrench(motion(), pushing(e, thrusts[e.name])) for e in boat.effects_of("thruster")
+        e.wrench(motion(), pushing(e, thrusts[e.name])) for e in boat.effects_of_type("thruster")
     ]
     X, Y, _, _, _, N = np.sum(wrenches, axis=0)
     assert N == pytest.approx(ARM * (right - left))

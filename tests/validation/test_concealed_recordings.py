@@ -77,10 +77,10 @@ def test_weak_reverse_and_dead_band_give_what_was_given_by_the_librarys_own_laws
     weak, dead = SimpleNamespace(astern_factor=0.7), SimpleNamespace(width=3.0)
     reverse = a.weaken_motors_astern((PORT,), 0.7)(run)[PORT]
     band = a.add_dead_band((PORT,), 3.0)(run)[PORT]
-    assert [weak_reverse.scaled_astern.py_func(x, weak) for x in reverse] == pytest.approx(
+    assert [weak_reverse.scale_astern_thrust.py_func(x, weak) for x in reverse] == pytest.approx(
         run[PORT].tolist()
     )
-    assert [thrust_deadband.outside_deadband.py_func(x, dead) for x in band] == pytest.approx(
+    assert [thrust_deadband.apply_deadband.py_func(x, dead) for x in band] == pytest.approx(
         run[PORT].tolist()
     )
 

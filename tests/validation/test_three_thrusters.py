@@ -16,7 +16,7 @@ from scipy.integrate import solve_ivp
 from boatsim.physics import vessel
 from boatsim.physics.base import Array
 from boatsim.physics.program import Program
-from boatsim.physics.signals import signals_of
+from boatsim.physics.signals import motion_signals
 from boatsim.physics.vessel import Vessel
 from boatsim.recordings.table import Recording
 from boatsim.simulate.batch import Batch
@@ -134,8 +134,8 @@ def test_each_channel_drives_what_it_is_bound_to(place: Path) -> None:
     boat = vessel.load_vessel(str(place))
     assert boat.actuators == COMMANDS and boat.angles == ("pod_rad", "fore_rad", "aft_rad")
     assert [boat.side(n) for n in COMMANDS] == [0, 1, -1, -1, 0, 0]
-    assert [e.name for e in boat.effects_of("thruster")] == list(THRUSTERS)
-    assert [e.name for e in boat.effects_of("rudder")] == list(RUDDERS)
+    assert [e.name for e in boat.effects_of_type("thruster")] == list(THRUSTERS)
+    assert [e.name for e in boat.effects_of_type("rudder")] == list(RUDDERS)
 
 
 @pytest.mark.parametrize("seed", range(3))
@@ -147,10 +147,10 @@ def test_forces_and_moments_are_those_of_statics(tmp_path: Path, seed: int) -> N
     boat = vessel.load_vessel(str(boats.written(tmp_path, "workboat", text)))
     program, (row,) = Program(boat), drawn(boat, 1, seed)
     act, memory = np.zeros(program.held_size), np.zeros(program.memory_size)
-    program.module.settle_actuators(row, memory, program.values(), program.switches(), act)
+    program.module.settle_actuators(row, memory, program.values(), program.effect_switches(), act)
     at_rest = np.zeros(12)
     force = program.module.total_body_force(
-        0.0, at_rest, act, np.int64(0), program.values(), program.switches()
+        0.0, at_rest, act, np.int64(0), program.values(), program.effect_switches()
     )
     assert force == pytest.approx(statics(dict(zip(COMMANDS, row, strict=True))), abs=1e-12)
 
@@ -168,7 +168,7 @@ def test_a_fixed_thruster_does_not_turn_with_the_only_rudder(tmp_path: Path) -> 
 def test_engine_and_twin_sail_alike(place: Path) -> None:
     boat = vessel.load_vessel(str(place))
     rows, start = drawn(boat, 30, 3), State(psi=0.4, u=0.5, v=-0.2, r=0.1)
-    pose_and_rates = [signal.symbol for signal in signals_of(boat.dof)]
+    pose_and_rates = [signal.symbol for signal in motion_signals(boat.dof)]
     wanted = Batch(boat).rollout([getattr(start, n) for n in pose_and_rates], rows, 1.0)
     engine = Engine(boat)
     engine.reset(start, dict(zip(COMMANDS, rows[0], strict=True)))

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from boatsim.physics.content import library_names
+from boatsim.physics.content import shipped_content_names
 from validation.calibration.unknown_causes import FURTHER, UNKNOWN, LaggedSignal
 from validation.calibration.vessels import BOATS, PLANS
 from validation.practice.cause import Maker
@@ -31,7 +31,7 @@ def test_a_cause_is_finite_acts_and_is_no_candidate(vessel: str, maker: Maker) -
     cause = maker(boat, np.random.default_rng(2), 0.5)
     prefix, _, name = cause.name.partition(":")
     assert prefix == "outside_library"
-    assert name not in library_names("effect")
+    assert name not in shipped_content_names("effect")
     assert bool(cause.force) + bool(cause.drive) + bool(cause.show) == 1
     motion = random_motion(boat, 3.0)
     if cause.force:

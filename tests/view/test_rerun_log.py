@@ -12,9 +12,9 @@ from boatsim.recordings.readers.rrd import last_time
 from boatsim.recordings.table import Recording, read, write_csv
 from boatsim.view import blueprint, rerun_log, rrd_index, water
 from boatsim.view.rerun_command import rerun_command
-from boatsim.view.rerun_log import RerunLog, log_overlay, metrics_table
+from boatsim.view.rerun_log import RerunLog, metrics_table, write_diagnosis_log
 from boatsim.view.rrd_index import add_index
-from boatsim.view.scene import Thruster, plain_scene, scene_from
+from boatsim.view.scene import Thruster, plain_scene, scene_from_model
 
 PORT = Thruster("port", -0.5, -0.19, "actual_thrust_port_N", "actual_steer_port_rad")
 SCENE = replace(plain_scene(1.2, 0.3, (1.5, 3.0, 0.0, 0.0)), thrusters=(PORT,))
@@ -158,7 +158,7 @@ def test_the_log_of_a_diagnosis_has_all_boats_the_missing_force_and_what_was_fla
     )
     boats = dict.fromkeys(("recording", "nominal", "recalibrated", "patched"), [pose])
     flagged = [{"run": "run", "from_s": 2.0, "to_s": 3.0, "axis": "surge"}]
-    log_overlay(tmp_path / "diagnosis.rrd", boats, missing, flagged, SCENE)
+    write_diagnosis_log(tmp_path / "diagnosis.rrd", boats, missing, flagged, SCENE)
     rows = entities(tmp_path / "diagnosis.rrd")
     assert {f"world/boats/{boat}" for boat in boats} | {
         f"world/paths/{boat}" for boat in boats
@@ -184,7 +184,7 @@ def test_between_two_free_runs_nothing_is_drawn(tmp_path):
         np.append(t, t[1:] + 3.0),
         {n: np.zeros(2 * len(t) - 1) for n in ("x_m", "y_m")},
     )
-    log_overlay(
+    write_diagnosis_log(
         tmp_path / "d.rrd", {"recording": [whole], "patched": [first, second]}, None, [], SCENE
     )
     lines, curve = [], {}
@@ -211,7 +211,7 @@ def test_a_boat_of_which_few_places_are_known_has_a_path_through_them(tmp_path):
         for n, k in (("x_m", 0.1), ("y_m", 1.0))
     }
     boats = {"recording": [Recording("recording", t, seen)], "patched": [track_of(1.0)]}
-    log_overlay(tmp_path / "d.rrd", boats, None, [], SCENE)
+    write_diagnosis_log(tmp_path / "d.rrd", boats, None, [], SCENE)
     rows = entities(tmp_path / "d.rrd")
     assert rows["world/paths/recording"] == 3 and rows["world/boats/recording"] == 4
 
@@ -237,7 +237,7 @@ def test_the_scene_of_a_vessel_has_its_hull_and_a_thruster_on_each_side():
     from boatsim.simulate import world
 
     boat, tank = vessel.load_vessel("trial_boat"), world.Tank(length=8.0, width=6.0)
-    scene = scene_from(world.build_model(boat, tank), boat, tank)
+    scene = scene_from_model(world.build_model(boat, tank), boat, tank)
     hull = np.concatenate([solid.vertices for solid in scene.solids if solid.part == "hull"])
     assert np.ptp(hull[:, 0]) == pytest.approx(boat.length, rel=0.1)
     assert {thruster.name: np.sign(thruster.y) for thruster in scene.thrusters} == {
@@ -284,7 +284,7 @@ def test_boats_are_as_large_as_the_track_asks_for_and_all_of_it_lies_in_view_on_
         "nominal": [track_of(1e4 * size)],
         "patched": [track_of(size, 0.2 * size)],
     }
-    scene = water.open_water_scene(boat, boats)
+    scene = water.comparison_scene(boat, boats)
     hull = np.concatenate([s.vertices for s in scene.solids if s.part == "hull"])
     sea = np.concatenate([s.vertices for s in scene.solids if s.part == "tank"])
     assert (
@@ -308,7 +308,7 @@ def test_a_boat_that_goes_nowhere_is_drawn_at_its_size():
     from boatsim.physics import vessel
 
     t = np.linspace(0.0, 5.0, 20)
-    scene = water.open_water_scene(
+    scene = water.comparison_scene(
         vessel.load_vessel("kvlcc2_roll"),
         {"recording": [Recording("a", t, {"phi_rad": 0.1 * np.sin(t)})]},
     )
@@ -381,7 +381,7 @@ def test_rerun_accepts_the_log_of_an_interrupted_run(tmp_path):
 
 def test_rerun_accepts_the_log_of_a_diagnosis(tmp_path):
     run = circle()
-    log_overlay(tmp_path / "d.rrd", {"recording": [run], "nominal": [run]}, None, [], SCENE)
+    write_diagnosis_log(tmp_path / "d.rrd", {"recording": [run], "nominal": [run]}, None, [], SCENE)
     assert verified(tmp_path / "d.rrd")
 
 

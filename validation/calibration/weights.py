@@ -11,7 +11,7 @@ from scipy.special import expit
 from boatsim.diagnosis.config import DEFAULT
 from boatsim.diagnosis.open_set.consistency import Consistency, Factor, Variation
 from boatsim.diagnosis.open_set.log_signs import LogSigns
-from boatsim.diagnosis.open_set.probability import features
+from boatsim.diagnosis.open_set.probability import logistic_features
 from boatsim.diagnosis.search.pruning import IdentifiedEffect
 from validation.calibration.table import right_names
 
@@ -42,7 +42,7 @@ def examples(records: Sequence[Record]) -> tuple[list[str], Array, Array, Array]
         signs = record["signs"]
         log_signs = LogSigns(**signs["log"])
         for effect in signs["effects"]:
-            found = features(
+            found = logistic_features(
                 identified(effect),
                 effect["stochastic"],
                 consistency(effect["signs"]),

@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 
 from boatsim.diagnosis import loading, pipeline, priors
-from boatsim.diagnosis.correlation_time import with_correlation_time
+from boatsim.diagnosis.correlation_time import select_correlation_time
 from boatsim.diagnosis.filter import MappedRecording, free_run_segments, map_recording, shared_noise
 from boatsim.diagnosis.fit import converge, fit
 from boatsim.diagnosis.free_runs import FreeRun, free_runs, rms_errors
@@ -123,7 +123,9 @@ def leave_one_out(diagnosis: Diagnosis, runs: dict[str, Path]) -> list[Fold]:
     mapped = [map_recording(run.thinned(rate), program, noise) for run in opened]
     whole = dict(zip(names_of(mapped), opened, strict=True))
     # the correlation time of this fit would use the held-out runs
-    ambient = replace(diagnosis.problem.ambient, time_constant=priors.time_constant(vessel))
+    ambient = replace(
+        diagnosis.problem.ambient, time_constant=priors.assumed_correlation_time(vessel)
+    )
     usual = Problem(mapped, ambient, diagnosis.problem.uncertainty)
     folds = []
     for i in range(GROUPS):
@@ -131,7 +133,7 @@ def leave_one_out(diagnosis: Diagnosis, runs: dict[str, Path]) -> list[Fold]:
         rest = hold_out(usual, mapped, group)
         names = rest.program.candidate_names
         selected = select_effects(rest, names)
-        again = with_correlation_time(rest, selected[1])
+        again = select_correlation_time(rest, selected[1])
         if again is not rest:
             rest, selected = again, select_effects(again, names)
         for run in group:

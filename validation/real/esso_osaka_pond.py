@@ -273,7 +273,7 @@ class Weather:
         for run in recordings:
             values = self.problem.values(run, part.free, part.theta)
             fixed_ship.append(replace(run, values=values))
-        on = self.problem.program.switches(self.ship.effects)
+        on = self.problem.program.effect_switches(self.ship.effects)
 
         def score(x: Array) -> float:
             wind = wind_of_force(x)

@@ -39,7 +39,7 @@ SHARE = 0.15  # of the linear model's error
 def turn_errors(diagnosis: Diagnosis, model: Fit, circle: MappedRecording) -> Array:
     """Return the rms errors of speed [m/s] and yaw rate [deg/s] over one free run of the circle."""
     problem = diagnosis.problem
-    on = problem.program.switches(model.effects)
+    on = problem.program.effect_switches(model.effects)
     values = problem.values(circle, model.free, model.theta)
     first, states = circle.free_runs(values, on, model.levels, DURATION)[0]
     columns = [circle.signals.index("u_mps"), circle.signals.index("r_radps")]

@@ -21,10 +21,10 @@ from boatsim.diagnosis.filter import MappedRecording
 from boatsim.diagnosis.fit import ParameterSpace, converge, gauss_newton
 from boatsim.diagnosis.free_runs import free_runs, rms_errors
 from boatsim.diagnosis.loading import Loaded
-from boatsim.diagnosis.noise_levels import fit_force, log_force_prior
+from boatsim.diagnosis.noise_levels import fit_latent_force_level, log_force_prior
 from boatsim.diagnosis.pipeline import Diagnosis
 from boatsim.diagnosis.problem import Fit, Problem
-from boatsim.errors import BadInput, unknown_name
+from boatsim.errors import BadInput, unknown_name_message
 from boatsim.physics.base import Array
 from boatsim.physics.vessel import Vessel
 from boatsim.recordings.table import Recording
@@ -105,7 +105,7 @@ def overshoots_by_model(diagnosis: Diagnosis, run: Recording) -> list[list[float
     duration = float(mapped.times[rows - 1] - mapped.times[0])
     for fit in compared_fits(diagnosis.ranking).values():
         values = problem.values(mapped, fit.free, fit.theta)
-        on = problem.program.switches(fit.effects)
+        on = problem.program.effect_switches(fit.effects)
         first, states = mapped.free_runs(values, on, fit.levels, duration)[0]
         found.append(overshoots(states[:, heading], delta[first:], (np.array(at) - first).tolist()))
     return found
@@ -191,8 +191,8 @@ def diagnose(
 
 def log_likelihood(problem: Problem, found: Fit) -> float:
     """Return the log likelihood [nats] of these coefficients with a refitted disturbance level."""
-    refitted = fit_force(problem, found)
-    on = problem.program.switches(refitted.effects)
+    refitted = fit_latent_force_level(problem, found)
+    on = problem.program.effect_switches(refitted.effects)
     likelihood = problem.log_likelihood(refitted.free, refitted.theta, on, refitted.levels)
     return likelihood + log_force_prior(problem, refitted.levels)
 
@@ -287,7 +287,7 @@ def main(tanks: Sequence[str] = ()) -> None:
     """
     for tank in tanks or TANKS:
         if tank not in TANKS:
-            raise BadInput(unknown_name("tank", tank, TANKS))
+            raise BadInput(unknown_name_message("tank", tank, TANKS))
         TANKS[tank]()
 
 

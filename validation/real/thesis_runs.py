@@ -144,7 +144,7 @@ class ThesisTest:
                 for change in self._released[knob.effect]:
                     if change.parameter == knob.name:
                         at = self.program.parameter_index(change.owner, change.key)
-                        p[at] = change.apply_to(p[at], x)
+                        p[at] = change.changed_value(p[at], x)
             else:
                 at = self.program.parameter_index(knob.effect, knob.name)
                 p[at] = knob.applied(p[at], x)
@@ -186,7 +186,7 @@ class ThesisTest:
     def _replay(self, p: Array, body: Array, commands: Array) -> tuple[Array, Array]:
         """Return times (N,) and states (N, 6) in earth axes of a run with given commands."""
         program, step = self.program, self.scenario.file.step
-        code, on = program.module, program.switches()
+        code, on = program.module, program.effect_switches()
         memory, out = np.zeros(program.memory_size), np.zeros((len(commands) + 1, 6))
         start = program.command_array(self.scenario.controller.initial_commands())
         code.settle_actuators(start, memory, p, on, np.zeros(program.held_size))
@@ -206,7 +206,7 @@ class ThesisTest:
         controller.reset()
         period = round(controller.period / file.step)
         memory, act = np.zeros(program.memory_size), np.zeros(program.held_size)
-        on = program.switches()
+        on = program.effect_switches()
         code.settle_actuators(
             program.command_array(controller.initial_commands()), memory, p, on, act
         )
@@ -214,7 +214,7 @@ class ThesisTest:
         parts, t = [np.zeros((1, 6))], 0.0
         while t < file.duration - 1e-9 and not _run_has_ended(file.until, y):
             x, east, psi, *_ = y.tolist()
-            u, v, r = program.body_rates(y[None])[0, 3:].tolist()
+            u, v, r = program.to_body_velocities(y[None])[0, 3:].tolist()
             sense: Sense = sensors.sample(t, (x, east, psi), (u, v, r), pull, rng)
             row = program.command_array(controller.step(sense, self.scenario.goal_at(t)))
             commands = np.tile(row, (period, 1))

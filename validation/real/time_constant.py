@@ -15,8 +15,11 @@ import numpy as np
 from boatsim.diagnosis import loading, priors
 from boatsim.diagnosis.candidates import library_for
 from boatsim.diagnosis.config import DEFAULT
-from boatsim.diagnosis.correlation_time import correlation_time, cross_validation_errors
-from boatsim.diagnosis.filter import map_recording, prior_levels, shared_noise
+from boatsim.diagnosis.correlation_time import (
+    cross_validated_correlation_time,
+    cross_validation_errors,
+)
+from boatsim.diagnosis.filter import map_recording, prior_noise_levels, shared_noise
 from boatsim.diagnosis.problem import Problem
 from boatsim.diagnosis.search.ranking import select_effects
 from boatsim.physics.program import Program
@@ -39,7 +42,7 @@ def problem_of(paths: list[Path], vessel_name: str | None) -> Problem:
     noise, rate = shared_noise(vessel, [first]), priors.used_sample_rate(vessel)
     recordings = [map_recording(run.thinned(rate), program, noise) for run, _ in opened]
     uncertainty = priors.coefficient_uncertainty(vessel) | first.notes.coefficient_uncertainty
-    return Problem(recordings, prior_levels(vessel, [first]), uncertainty)
+    return Problem(recordings, prior_noise_levels(vessel, [first]), uncertainty)
 
 
 def main() -> None:
@@ -49,7 +52,7 @@ def main() -> None:
         problem = problem_of(runs_except(runs_of(name), HELD_OUT[name]), VESSELS.get(name))
         _, best = select_effects(problem, problem.program.candidate_names)
         usual = problem.ambient.time_constant
-        selected = correlation_time(problem, best)
+        selected = cross_validated_correlation_time(problem, best)
         rows = []
         for step in range(-steps, steps + 1):
             seconds = usual * 2.0**step

@@ -155,7 +155,10 @@ class LeastSquares:
         self, effects: tuple[str, ...], theta: Array, begun: tuple[Array, ...], weights: Array
     ) -> State:
         """Simulate a hypothesis."""
-        free, on = free_parameters(self.question, effects), self.problem.program.switches(effects)
+        free, on = (
+            free_parameters(self.question, effects),
+            self.problem.program.effect_switches(effects),
+        )
         errors = tuple(
             e
             for run, s in zip(self.runs, begun, strict=True)
@@ -220,7 +223,7 @@ class LeastSquares:
     def linearise(self, state: State) -> LinearisedErrors:
         """Linearise a hypothesis in all its fitted values."""
         free = free_parameters(self.question, state.effects)
-        on = self.problem.program.switches(state.effects)
+        on = self.problem.program.effect_switches(state.effects)
         slopes = list[Array]()
         errors = iter(state.errors)
         for run, s in zip(self.runs, state.starts, strict=True):

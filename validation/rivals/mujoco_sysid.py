@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 
 from boatsim.diagnosis.candidates import base_name
-from boatsim.diagnosis.filter import axes_of
+from boatsim.diagnosis.filter import dof_in_state_order
 from boatsim.diagnosis.problem import Fit, FreeParameter
 from boatsim.physics.base import Array
 from validation.rivals.evidence import rms_by_channel
@@ -274,7 +274,7 @@ class MujocoSysid:
         free = free_parameters(self.question, effects)
         values = self.problem.values(run.track, free, theta)
         begun = np.asarray(starts).reshape(len(run.begins), -1)
-        return run.errors(values, self.problem.program.switches(effects), begun)
+        return run.errors(values, self.problem.program.effect_switches(effects), begun)
 
 
 class Rollout:
@@ -353,7 +353,7 @@ def carrier_model(vessel: Any, track: Any) -> Any:
     spec = mujoco.MjSpec()
     hull = spec.worldbody.add_body(name="hull")
     hull.add_geom(size=[1.0, 0.0, 0.0], mass=1.0)
-    axes = axes_of(vessel)
+    axes = dof_in_state_order(vessel)
     for axis in axes:
         hull.add_joint(name=axis, type=mujoco.mjtJoint.mjJNT_SLIDE, axis=[1.0, 0.0, 0.0])
     for i in range(track.commands.shape[1]):

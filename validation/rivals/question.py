@@ -15,7 +15,7 @@ from boatsim.diagnosis import priors
 from boatsim.diagnosis.candidates import base_name, library_for
 from boatsim.diagnosis.checks.position_outliers import drop_position_outliers
 from boatsim.diagnosis.checks.repeated_values import drop_repeated_values
-from boatsim.diagnosis.filter import map_recording, prior_levels, shared_noise
+from boatsim.diagnosis.filter import map_recording, prior_noise_levels, shared_noise
 from boatsim.diagnosis.loading import open_recording
 from boatsim.diagnosis.problem import Fit, FreeParameter, Problem
 from boatsim.diagnosis.report import patched_vessel
@@ -62,7 +62,7 @@ def read_question(trial: Path) -> Question:
     stated = shared_noise(vessel, runs)
     tracks = [map_recording(r, program, stated) for r in runs]
     uncertainty = priors.coefficient_uncertainty(vessel) | runs[0].notes.coefficient_uncertainty
-    problem = Problem(tracks, prior_levels(vessel, runs), uncertainty)
+    problem = Problem(tracks, prior_noise_levels(vessel, runs), uncertainty)
     entries = {}
     for e in library.entries:
         if e.name in library.tested and not type(e).random:

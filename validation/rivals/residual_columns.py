@@ -72,7 +72,7 @@ class ResidualColumns:
     def motions(self, effects: tuple[str, ...], theta: Array) -> list[Motion]:
         """Return the motion of each recording under a hypothesis."""
         free = free_parameters(self.question, effects)
-        on = self.problem.program.switches(effects)
+        on = self.problem.program.effect_switches(effects)
         found = []
         for smoother, recorded in zip(self.smoothers, self.recorded, strict=True):
             track = smoother.track

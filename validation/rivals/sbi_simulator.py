@@ -65,7 +65,7 @@ class Simulator:
     def _summary(self, hypothesis: Hypothesis, rng: np.random.Generator) -> Array:
         """Return the summary (S,) of one simulation."""
         free = free_parameters(self.question, hypothesis.effects)
-        on = self.problem.program.switches(hypothesis.effects)
+        on = self.problem.program.effect_switches(hypothesis.effects)
         found = []
         for one in self.recorded:
             track = one.run.track
@@ -117,14 +117,14 @@ class Simulator:
         nominal = simulate(run, run.begins, run.ends, starts)
         window = np.repeat(np.arange(len(run.begins)), run.ends - run.begins)
         states = nominal[window, begins]  # (R, 2 NQ) positions and body rates
-        base = simulate(run, begins, ends, track.program.joint_rates(states))
+        base = simulate(run, begins, ends, track.program.to_joint_rates(states))
         channels, parts, rows = averaging.shape
         first = np.concatenate([[0], np.cumsum(run.ends + 1 - run.begins)])  # row of each window
         out = np.zeros((parts * channels, len(track.times), nq))
         for axis in range(nq):
             kicked = states.copy()
             kicked[:, nq + axis] += kicks[axis]
-            moved = simulate(run, begins, ends, track.program.joint_rates(kicked)) - base
+            moved = simulate(run, begins, ends, track.program.to_joint_rates(kicked)) - base
             for r, row in enumerate(begins.tolist()):
                 w = int(window[r])
                 deviations = np.zeros((rows, channels))
@@ -142,7 +142,7 @@ def simulate(run: Windows, begins: Array, ends: Array, states: Array) -> Array:
     program.module.simulate_intervals(
         Inputs(track.times, track.command_times, track.command_values),
         track.step,
-        VesselNumbers(rigid_body_values(values), values, program.switches(())),
+        VesselNumbers(rigid_body_values(values), values, program.effect_switches(())),
         np.ascontiguousarray(begins),
         np.ascontiguousarray(ends),
         np.ascontiguousarray(states),

@@ -96,7 +96,7 @@ class SparseRegression:
     def evaluate(self, effects: tuple[str, ...], theta: Array) -> State:
         """Evaluate a hypothesis along the recordings."""
         free = free_parameters(self.question, effects)
-        on = self.problem.program.switches(effects)
+        on = self.problem.program.effect_switches(effects)
         errors = list[Array]()
         kinds = [self.entries[n] for n in effects]
         for smoother, recorded, held in zip(self.smoothers, self.recorded, self.held, strict=True):

@@ -31,7 +31,7 @@ def check_angle_unit(recording: Recording, _: Vessel, config: ChecksConfig) -> l
     """
     columns = {"t_s": recording.t, **recording.signals}
     found = []
-    for name, row in units.columns_in_degrees(columns).items():
+    for name, row in units.find_columns_in_degrees(columns).items():
         low = np.nanmin(recording[name])
         high = np.nanmax(recording[name])
         time = float(recording.t[row])

@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 
 from boatsim.diagnosis.checks.finding import MAX_LISTED, Finding, longest_part
 from boatsim.diagnosis.config import ChecksConfig
-from boatsim.diagnosis.priors import froude_time
+from boatsim.diagnosis.priors import froude_time_scale
 from boatsim.physics.base import Array
 from boatsim.physics.vessel import Vessel
 from boatsim.recordings.table import Recording
@@ -32,7 +32,7 @@ def check_clock(recording: Recording, vessel: Vessel, config: ChecksConfig) -> l
         found.append(_bad_rows(recording, "clock_goes_back", reversed_rows, "an earlier time than"))
     if found:
         return found
-    jumps = _time_jumps(recording, steps, froude_time(vessel), config)
+    jumps = _time_jumps(recording, steps, froude_time_scale(vessel), config)
     if len(jumps):
         found.append(_jump_finding(recording, steps, jumps, config))
     return found

@@ -8,8 +8,8 @@ from boatsim.recordings.importing.log import Log, Signal
 from boatsim.recordings.importing.signal_classification import (
     Classification,
     classify_signals,
-    side_of,
-    tokens_of,
+    side_from_tokens,
+    tokenize_name,
 )
 from boatsim.recordings.table import Recording
 
@@ -81,9 +81,9 @@ def _other_columns(recording: Recording, vessel: Vessel) -> list[Classification]
 
 def _command_guesses(name: str, other: list[Classification]) -> list[Classification]:
     """Command columns of the same side; those that share a word with the name come first."""
-    words = set(tokens_of(name))
-    side = side_of(frozenset(words))
-    same_side = [g for g in other if g.column == "command" and side_of(g.tokens) == side]
+    words = set(tokenize_name(name))
+    side = side_from_tokens(frozenset(words))
+    same_side = [g for g in other if g.column == "command" and side_from_tokens(g.tokens) == side]
     same_word = [g for g in same_side if words & g.tokens - SIDES]
     return same_word or same_side
 

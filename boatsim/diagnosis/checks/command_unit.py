@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from boatsim.diagnosis.checks.finding import Finding, scaled
+from boatsim.diagnosis.checks.finding import Finding, scaling_corrections
 from boatsim.diagnosis.config import ChecksConfig
 from boatsim.physics.base import Array
 from boatsim.physics.vessel import Vessel
@@ -83,7 +83,7 @@ def _finding(
         "command_unit",
         f"{'; '.join(evidence)}. The unit {verb} {conversion.unit}",
         probability=probability,
-        changes=scaled(channels, conversion.factor, conversion.offset),
+        changes=scaling_corrections(channels, conversion.factor, conversion.offset),
     )
 
 

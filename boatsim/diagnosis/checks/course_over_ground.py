@@ -11,7 +11,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from boatsim.diagnosis.config import DEFAULT, ChecksConfig
-from boatsim.diagnosis.priors import froude_time
+from boatsim.diagnosis.priors import froude_time_scale
 from boatsim.physics.base import Array
 from boatsim.physics.vessel import Vessel
 from boatsim.recordings.notes import unit_of
@@ -77,7 +77,7 @@ def _straight_stretches(
     z = recording["x_m"][fixed] + 1j * recording["y_m"][fixed]
     psi = np.interp(at, t[known], np.unwrap(recording["psi_rad"][known]))
     thrust = np.interp(at, t, _thrust_ahead(recording, vessel))
-    duration = config.course_window * froude_time(vessel)
+    duration = config.course_window * froude_time_scale(vessel)
     after = np.searchsorted(at, at + duration).clip(max=len(at) - 1)
     before = np.searchsorted(at, at - duration)
     way = z[after] - z

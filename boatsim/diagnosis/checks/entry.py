@@ -32,7 +32,7 @@ def column_sources(path: str, vessel: Vessel) -> Mapping[str, Expression]:
     return read_unchecked(Path(path), vessel.columns)[1]
 
 
-def log_entry(finding: Finding, sources: Mapping[str, Expression]) -> LogEntry:
+def finding_entry(finding: Finding, sources: Mapping[str, Expression]) -> LogEntry:
     """Return a finding about a recording in the form in which diagnosis.json contains it.
 
     Args:

@@ -4,7 +4,7 @@ import numpy as np
 
 from boatsim.diagnosis.checks.finding import Finding
 from boatsim.diagnosis.config import ChecksConfig
-from boatsim.diagnosis.priors import froude_time
+from boatsim.diagnosis.priors import froude_time_scale
 from boatsim.physics.vessel import Vessel
 from boatsim.recordings.table import Recording
 
@@ -123,7 +123,9 @@ def _speed_variation(recording: Recording, vessel: Vessel, config: ChecksConfig)
     t = recording.t[known]
     x = recording["x_m"][known]
     y = recording["y_m"][known]
-    after = np.searchsorted(t, t + config.speed_window * froude_time(vessel)).clip(max=len(t) - 1)
+    after = np.searchsorted(t, t + config.speed_window * froude_time_scale(vessel)).clip(
+        max=len(t) - 1
+    )
     later = after > np.arange(len(t))
     if int(later.sum()) < config.excitation_min_speed_rows:
         return None

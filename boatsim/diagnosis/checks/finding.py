@@ -83,7 +83,9 @@ class Finding:
         return self.kind == "fault" and bool(self.changes) and certain
 
 
-def scaled(names: Iterable[str], factor: float, offset: float = 0.0) -> tuple[Change, ...]:
+def scaling_corrections(
+    names: Iterable[str], factor: float, offset: float = 0.0
+) -> tuple[Change, ...]:
     """Return corrections that multiply each of some recorded columns by a factor and add an offset.
 
     For example, from degrees to radians.

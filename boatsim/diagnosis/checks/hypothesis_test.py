@@ -19,17 +19,17 @@ from boatsim.diagnosis.checks.finding import (
     apply_changes,
     apply_to_all,
     changed_columns,
-    scaled,
+    scaling_corrections,
 )
 from boatsim.diagnosis.checks.reinterpretations import (
     Reinterpretation,
     heading_disagrees_with_course,
+    heading_offset_hypothesis,
     reinterpretations,
-    rotated_heading,
 )
 from boatsim.diagnosis.checks.steering_sense import reversed_commands
 from boatsim.diagnosis.config import ChecksConfig, DiagnosisConfig
-from boatsim.diagnosis.filter import MappedRecording, axes_of
+from boatsim.diagnosis.filter import MappedRecording, dof_in_state_order
 from boatsim.diagnosis.locate import nominal_forces
 from boatsim.diagnosis.noise_levels import fit_noise
 from boatsim.diagnosis.priors import used_sample_rate
@@ -143,7 +143,7 @@ def unexplained_force_share(problem: Problem, fit: Fit) -> float:
         The ratio; 0 for a vessel without drives.
     """
     vessel = problem.program.vessel
-    axes = axes_of(vessel)
+    axes = dof_in_state_order(vessel)
     drives = np.zeros(len(axes))
     for recording in problem.recordings:
         drives = np.maximum(drives, _drive_force(recording))
@@ -192,7 +192,7 @@ def _shortened(
 
 def _with_recorded_rudder(recording: Recording) -> Recording:
     """The recording with the rudder signs of its file."""
-    return apply_changes(recording, scaled(reversed_commands(recording), -1.0))
+    return apply_changes(recording, scaling_corrections(reversed_commands(recording), -1.0))
 
 
 def _find_faults(recordings: list[Recording], comparison: Comparison) -> list[Finding]:
@@ -294,7 +294,7 @@ def _likeliest(recordings: list[Recording], comparison: Comparison) -> list[Rein
     problem = comparison.mapped(recordings)
     nominal = problem.nominal_hypothesis()
     levels = fit_noise(problem, problem.nominal_hypothesis()).levels
-    on = problem.program.switches()
+    on = problem.program.effect_switches()
 
     def log_likelihood(each: Reinterpretation) -> float:
         try:
@@ -309,7 +309,7 @@ def _likeliest(recordings: list[Recording], comparison: Comparison) -> list[Rein
         step = config.rotation_coarse_step
         angles = np.arange(-180.0 + step, 180.0 + 0.5 * step, step)
         rotations = np.radians(angles[angles % 90.0 != 0.0]).tolist()
-        candidates.append(max(map(rotated_heading, rotations), key=log_likelihood))
+        candidates.append(max(map(heading_offset_hypothesis, rotations), key=log_likelihood))
     scores = {each.words: log_likelihood(each) for each in candidates}
     recorded = log_likelihood(Reinterpretation("as recorded", "", ()))
     better = [each for each in candidates if scores[each.words] > recorded]
@@ -330,7 +330,7 @@ def _refined_rotation(
     angles = np.degrees(rotation.changes[0].offset) + steps
     scores = []
     for angle in angles:
-        changes = rotated_heading(float(np.radians(angle))).changes
+        changes = heading_offset_hypothesis(float(np.radians(angle))).changes
         scores.append(comparison.score(recordings, changes).evidence)
     top = int(np.clip(np.argmax(scores), 1, len(steps) - 2))
     near = slice(top - 1, top + 2)
@@ -341,4 +341,4 @@ def _refined_rotation(
     quarter = 90.0 * np.round(best / 90.0)
     if abs(best - quarter) < config.rotation_quarter_tolerance:
         best = quarter
-    return rotated_heading(float(np.radians(np.round(best))))
+    return heading_offset_hypothesis(float(np.radians(np.round(best))))

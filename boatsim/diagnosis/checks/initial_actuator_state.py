@@ -10,13 +10,13 @@ import numpy as np
 
 from boatsim.diagnosis.config import DEFAULT, ChecksConfig
 from boatsim.diagnosis.filter import MappedRecording, NoiseLevels
-from boatsim.physics.commands import clip_to_channel_ranges, command_row
+from boatsim.physics.commands import clip_to_channel_ranges, input_vector
 
 # [s] before the first row; the value has no effect, because actuators settle to earlier commands
 COMMAND_LEAD = 1.0
 
 
-def with_initial_actuators(
+def infer_initial_actuator_state(
     recording: MappedRecording, levels: NoiseLevels, config: ChecksConfig = DEFAULT.checks
 ) -> MappedRecording:
     """Return a mapped recording whose actuators start at rest, if the data show that.
@@ -35,7 +35,7 @@ def with_initial_actuators(
     vessel = recording.program.vessel
     neutral = recording.command_values[0].copy()
     commands = len(vessel.commands)
-    neutral[:commands] = clip_to_channel_ranges(vessel, command_row(vessel, {}))[:commands]
+    neutral[:commands] = clip_to_channel_ranges(vessel, input_vector(vessel, {}))[:commands]
     if not commands or np.array_equal(neutral, recording.command_values[0]):
         return recording
     resting = replace(
@@ -43,7 +43,7 @@ def with_initial_actuators(
         command_times=np.append(recording.times[0] - COMMAND_LEAD, recording.command_times),
         command_values=np.vstack([neutral, recording.command_values]),
     )
-    on = recording.program.switches()
+    on = recording.program.effect_switches()
     settled = recording.log_likelihood(recording.values, on, levels)
     from_rest = resting.log_likelihood(resting.values, on, levels)
     likelier = from_rest > settled + config.initial_rest_gain
@@ -58,7 +58,7 @@ def _lies_still(recording: MappedRecording, levels: NoiseLevels, config: ChecksC
     If it moves, a wrong model of it may make less thrust more likely.
     """
     nq = recording.program.module.NQ
-    on = recording.program.switches()
+    on = recording.program.effect_switches()
     means = recording.smooth(recording.values, on, levels).means
     energy = means[:, nq : 2 * nq] ** 2 @ recording.inertia
     return bool(energy[0] <= config.initial_rest_speed**2 * energy.max())

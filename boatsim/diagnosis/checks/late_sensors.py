@@ -19,7 +19,7 @@ from boatsim.diagnosis.checks.rivals import (
     with_effects_of,
 )
 from boatsim.diagnosis.noise_levels import fit_noise
-from boatsim.diagnosis.priors import froude_time
+from boatsim.diagnosis.priors import froude_time_scale
 from boatsim.diagnosis.problem import Problem
 from boatsim.errors import BadInput
 from boatsim.recordings.table import Recording
@@ -77,7 +77,7 @@ def check_late_sensors(recordings: Sequence[Recording], problem: Problem) -> lis
     for recording in recordings:
         if not {"x_m", "y_m", "psi_rad"} <= recording.signals.keys():
             return []
-    longest = config.late_max_delay * froude_time(vessel)
+    longest = config.late_max_delay * froude_time_scale(vessel)
     shortest = min(float(np.ptp(recording.t)) for recording in recordings)
     if shortest < config.late_min_durations * longest:
         return []
@@ -101,9 +101,9 @@ def _likeliest_delay(compared: FaultComparison, step: float) -> _Delay | None:
     recorded = compared.with_changes(())
     nominal = recorded.nominal_hypothesis()
     levels = fit_noise(recorded, nominal).levels
-    on = recorded.program.switches()
+    on = recorded.program.effect_switches()
     config = recorded.config.checks
-    stride = max(step, config.late_min_delay * froude_time(recorded.program.vessel))
+    stride = max(step, config.late_min_delay * froude_time_scale(recorded.program.vessel))
     base = recorded.log_likelihood(nominal.free, nominal.theta, on, levels)
     best = _Delay("", 0.0, base)
     for name in COLUMNS:

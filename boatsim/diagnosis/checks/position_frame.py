@@ -12,7 +12,7 @@ import numpy as np
 
 from boatsim.diagnosis.config import DEFAULT, ChecksConfig
 from boatsim.recordings.table import Recording
-from boatsim.recordings.units import integral
+from boatsim.recordings.units import cumulative_integral
 
 NEEDED = ("x_m", "y_m", "psi_rad", "u_mps", "v_mps")
 
@@ -33,7 +33,7 @@ def drop_rotated_positions(
     for name in NEEDED:
         if name not in recording.signals or np.isnan(recording[name]).any():
             return recording
-    share, sd = rotated_share(recording)
+    share, sd = position_rotation_fraction(recording)
     whole = abs(share - 1.0) < config.rotation_tolerance
     if not (whole and share > config.rotation_min_sds * sd):
         return recording
@@ -47,7 +47,7 @@ def drop_rotated_positions(
     return replace(recording, signals=signals, remarks=(*recording.remarks, remark))
 
 
-def rotated_share(recording: Recording) -> tuple[float, float]:
+def position_rotation_fraction(recording: Recording) -> tuple[float, float]:
     """Estimate by how much recorded positions were wrongly rotated with the heading.
 
     The positions are modelled as (1 - k) integral R s' + k R s, where R is the rotation by the
@@ -66,10 +66,10 @@ def rotated_share(recording: Recording) -> tuple[float, float]:
     s = np.sin(psi)
     one = np.ones_like(t)
     none = np.zeros_like(t)
-    north = integral(t, u * c - v * s)
-    east = integral(t, u * s + v * c)
-    ahead = integral(t, u)
-    abeam = integral(t, v)
+    north = cumulative_integral(t, u * c - v * s)
+    east = cumulative_integral(t, u * s + v * c)
+    ahead = cumulative_integral(t, u)
+    abeam = cumulative_integral(t, v)
     rotated = (c * ahead - s * abeam - north, s * ahead + c * abeam - east)
     regressors = [
         rotated,

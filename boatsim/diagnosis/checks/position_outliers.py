@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from boatsim.diagnosis.checks.position_jumps import excursions, jump_rows
 from boatsim.diagnosis.config import DEFAULT, ChecksConfig, DiagnosisConfig
-from boatsim.diagnosis.priors import estimate_sensor_noise, froude_time
+from boatsim.diagnosis.priors import estimate_sensor_noise, froude_time_scale
 from boatsim.physics.base import Array
 from boatsim.physics.vessel import Vessel
 from boatsim.recordings.table import Recording
@@ -48,7 +48,7 @@ def drop_position_outliers(
         recording = replace(kept, remarks=(*kept.remarks, remark))
     signals = dict(recording.signals)
     remarks = list(recording.remarks)
-    duration = config.checks.outlier_max_duration * froude_time(vessel)
+    duration = config.checks.outlier_max_duration * froude_time_scale(vessel)
     for names, scale in ((("x_m", "y_m"), vessel.length), (("psi_rad",), 1.0)):
         if not set(names) <= signals.keys():
             continue

@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from boatsim.diagnosis.checks.finding import Change, Finding, scaled
+from boatsim.diagnosis.checks.finding import Change, Finding, scaling_corrections
 from boatsim.diagnosis.config import ChecksConfig
-from boatsim.diagnosis.priors import froude_time
+from boatsim.diagnosis.priors import froude_time_scale
 from boatsim.physics.base import Array
 from boatsim.physics.particulars import GRAVITY
 from boatsim.physics.vessel import Vessel
@@ -111,14 +111,16 @@ def _check_scale(
                 f"x_m, y_m move at {speed:.3g} m/s, too fast for a hull of {vessel.length:g} m. "
                 f"In {unit} they move at {speed * UNITS[unit]:.3g} m/s"
             )
-            changes = scaled(("x_m", "y_m"), UNITS[unit])
+            changes = scaling_corrections(("x_m", "y_m"), UNITS[unit])
             return [Finding("position_unit", evidence, changes=changes)]
     return []
 
 
 def _froude_number(t: Array, x: Array, y: Array, vessel: Vessel, config: ChecksConfig) -> float:
     """Median Froude number of the speed over two Froude times, so that noise averages out."""
-    after = np.searchsorted(t, t + config.speed_window * froude_time(vessel)).clip(max=len(t) - 1)
+    after = np.searchsorted(t, t + config.speed_window * froude_time_scale(vessel)).clip(
+        max=len(t) - 1
+    )
     later = after > np.arange(len(t))
     if not later.any():
         return 0.0

@@ -7,7 +7,7 @@ import numpy as np
 
 from boatsim.diagnosis.checks.finding import PLANAR_POSE, Change, Finding, delay_changes
 from boatsim.diagnosis.config import ChecksConfig
-from boatsim.diagnosis.priors import froude_time
+from boatsim.diagnosis.priors import froude_time_scale
 from boatsim.physics.base import Array
 from boatsim.physics.vessel import Vessel
 from boatsim.recordings.expression import UNITS
@@ -53,7 +53,7 @@ def check_recorded_rates(
 def _half_window(recording: Recording, vessel: Vessel, config: ChecksConfig) -> int:
     """Rows on either side over which positions are differenced."""
     step = float(np.median(np.diff(recording.t)))
-    return max(1, round(0.5 * config.rates_window * froude_time(vessel) / step))
+    return max(1, round(0.5 * config.rates_window * froude_time_scale(vessel) / step))
 
 
 def _rates_of_poses(recording: Recording, k: int) -> dict[str, Array]:
@@ -130,8 +130,8 @@ def _check_unit(name: str, ratio: float, config: ChecksConfig) -> list[Finding]:
 def _check_delay(
     name: str, recorded: Array, rate: Array, step: float, vessel: Vessel, config: ChecksConfig
 ) -> list[Finding]:
-    most = round(config.rates_max_delay * froude_time(vessel) / step)
-    least = max(2, round(config.rates_min_delay * froude_time(vessel) / step))
+    most = round(config.rates_max_delay * froude_time_scale(vessel) / step)
+    least = max(2, round(config.rates_min_delay * froude_time_scale(vessel) / step))
     if most <= least or len(rate) < 10 * most:
         return []
     residuals = {}

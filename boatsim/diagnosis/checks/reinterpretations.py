@@ -16,10 +16,10 @@ from boatsim.diagnosis.checks.finding import (
     Change,
     apply_to_all,
     changed_columns,
-    scaled,
+    scaling_corrections,
 )
 from boatsim.diagnosis.config import ChecksConfig
-from boatsim.diagnosis.priors import froude_time
+from boatsim.diagnosis.priors import froude_time_scale
 from boatsim.physics.base import Array
 from boatsim.physics.vessel import Vessel
 from boatsim.recordings.notes import unit_of
@@ -84,7 +84,7 @@ def reinterpretations(
     return found
 
 
-def rotated_heading(angle: float) -> Reinterpretation:
+def heading_offset_hypothesis(angle: float) -> Reinterpretation:
     """Return the possible fault that the recorded heading is off by a constant angle [rad].
 
     Its correction adds the angle.
@@ -140,7 +140,7 @@ def _axes(
         "axes_exchanged", "x is east and y north, the heading clockwise from north", EXCHANGED
     )
     yield Reinterpretation("heading_from_east", "the heading is counted from y to x", FROM_EAST)
-    yield from map(rotated_heading, _heading_rotations(recordings, vessel, config))
+    yield from map(heading_offset_hypothesis, _heading_rotations(recordings, vessel, config))
 
 
 def _heading_rotations(
@@ -170,7 +170,7 @@ def _mean_drift_angle(recordings: Sequence[Recording], vessel: Vessel) -> tuple[
         known = np.isfinite(x) & np.isfinite(y) & np.isfinite(psi)
         t = recording.t[known]
         z = x[known] + 1j * y[known]
-        after = np.searchsorted(t, t + froude_time(vessel)).clip(max=len(t) - 1)
+        after = np.searchsorted(t, t + froude_time_scale(vessel)).clip(max=len(t) - 1)
         middle = (np.arange(len(t)) + after) // 2
         total += complex(np.sum((z[after] - z) * np.exp(-1j * psi[known][middle])))
         distance += float(np.sum(np.abs(z[after] - z)))
@@ -194,14 +194,14 @@ def _drives(
         yield Reinterpretation(
             "rudder_reversed" if unit == "rad" else "thrust_reversed",
             f"the sign of {names} is reversed",
-            scaled(same_unit, -1.0),
+            scaling_corrections(same_unit, -1.0),
         )
         verb = "are" if len(same_unit) > 1 else "is"
         for words, factor in _command_shares(recordings, vessel, same_unit, config):
             yield Reinterpretation(
                 "command_unit",
                 f"{names} {verb} in {words} of full command",
-                scaled(same_unit, factor),
+                scaling_corrections(same_unit, factor),
             )
 
 

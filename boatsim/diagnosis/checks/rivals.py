@@ -9,9 +9,9 @@ from dataclasses import dataclass
 
 from boatsim.diagnosis.candidates import program_with_candidates
 from boatsim.diagnosis.checks.finding import Change, apply_to_all
-from boatsim.diagnosis.checks.initial_actuator_state import with_initial_actuators
+from boatsim.diagnosis.checks.initial_actuator_state import infer_initial_actuator_state
 from boatsim.diagnosis.config import ChecksConfig
-from boatsim.diagnosis.filter import map_recording, prior_levels
+from boatsim.diagnosis.filter import map_recording, prior_noise_levels
 from boatsim.diagnosis.fit import converge, unfitted_hypothesis
 from boatsim.diagnosis.problem import Fit, Problem, free_parameter_values
 from boatsim.diagnosis.search.ranking import fit_baseline
@@ -45,13 +45,13 @@ class FaultComparison:
         """
         first = self.problem
         used = program or first.program
-        levels = prior_levels(used.vessel, self.recordings, first.config)
+        levels = prior_noise_levels(used.vessel, self.recordings, first.config)
         changed = apply_to_all(self.recordings, changes)
         mapped = []
         for before, after in zip(self.recordings, changed, strict=True):
             part = after.between(before.t[0] + 1e-6, before.t[-1] - self.lost)
             one = map_recording(part, used, config=first.config)
-            mapped.append(with_initial_actuators(one, levels, first.config.checks))
+            mapped.append(infer_initial_actuator_state(one, levels, first.config.checks))
         return Problem(mapped, levels, first.uncertainty, None, first.config)
 
     def with_rivals(self, names: Collection[str]) -> Program:

@@ -4,7 +4,7 @@ import numpy as np
 
 from boatsim.diagnosis.checks.finding import Change, Finding
 from boatsim.diagnosis.config import ChecksConfig
-from boatsim.diagnosis.priors import froude_time
+from boatsim.diagnosis.priors import froude_time_scale
 from boatsim.physics.vessel import Vessel
 from boatsim.recordings.expression import UNITS
 from boatsim.recordings.table import Recording
@@ -30,7 +30,7 @@ def check_time_unit(recording: Recording, vessel: Vessel, config: ChecksConfig) 
     if not len(forward):
         return []
     step = float(np.median(forward))
-    if step < config.time_max_step * froude_time(vessel):
+    if step < config.time_max_step * froude_time_scale(vessel):
         return []
     deviations = [abs(np.log(step * UNITS[u] / config.time_usual_step)) for u in TIME_UNITS]
     best = int(np.argmin(deviations))

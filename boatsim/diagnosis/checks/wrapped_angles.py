@@ -15,10 +15,10 @@ def unwrap_directions(recording: Recording, vessel: Vessel) -> Recording:
 
     Args:
         recording: The recording.
-        vessel: The vessel, which lists its measured directions (`reading_angles`).
+        vessel: The vessel, which lists its measured directions (`environment_angles`).
     """
     signals = dict(recording.signals)
-    for name in vessel.reading_angles:
+    for name in vessel.environment_angles:
         if name in signals:
             signals[name] = np.unwrap(recording[name])
     return replace(recording, signals=signals)

@@ -117,13 +117,13 @@ def available_manoeuvres(
     """
     if not vessel.commands:
         return _roll_releases(vessel, roll_angle, config)
-    for name in driven_commands(vessel):
+    for name in manoeuvre_commands(vessel):
         if not _is_angle(name) and vessel.commands[name].low < 0:
             return _boat_manoeuvres(vessel, walls, config)
     return _ship_manoeuvres(vessel, usual_commands, config)
 
 
-def driven_commands(vessel: Vessel) -> tuple[str, ...]:
+def manoeuvre_commands(vessel: Vessel) -> tuple[str, ...]:
     """Return the names of the commands that a manoeuvre sets on a vessel.
 
     A command that feeds an actuator, such as a PWM signal, replaces the actuator's own command.
@@ -204,7 +204,7 @@ def _zigzag(
     sides: list[dict[str, float]] = []
     for sign in (1, -1):
         level = {}
-        for name in driven_commands(vessel):
+        for name in manoeuvre_commands(vessel):
             command = vessel.commands[name]
             if _is_angle(name):
                 level[name] = float(np.clip(sign * angle, command.low, command.high))
@@ -235,7 +235,7 @@ def _from_script(
     for step in script:
         elapsed.append(elapsed[-1] + step[0])
         level = {}
-        for command in driven_commands(vessel):
+        for command in manoeuvre_commands(vessel):
             level[command] = _command(vessel, command, step, config, usual_commands)
         levels.append(level)
     ends = np.array(elapsed) * scale

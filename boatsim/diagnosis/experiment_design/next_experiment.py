@@ -31,7 +31,7 @@ from boatsim.diagnosis.search.pruning import IdentifiedEffect
 from boatsim.diagnosis.search.ranking import Ranking
 from boatsim.files import toml_value
 from boatsim.physics.base import Array
-from boatsim.physics.content import vessel_address
+from boatsim.physics.content import vessel_reference
 from boatsim.physics.vessel import Vessel
 
 POSTERIOR_STEP = 0.05  # [posterior sd] for numerical derivatives
@@ -143,7 +143,7 @@ def _plan(
     )
 
 
-def open_question(ranking: Ranking, config: DiagnosisConfig) -> tuple[Fit, dict[str, Fit]]:
+def undecided_hypotheses(ranking: Ranking, config: DiagnosisConfig) -> tuple[Fit, dict[str, Fit]]:
     """Return the hypotheses that a selection of effects leaves undecided, for the next experiment.
 
     The rivals are the look-alikes of the identified effects. If there are none, the most probable
@@ -167,7 +167,7 @@ def open_question(ranking: Ranking, config: DiagnosisConfig) -> tuple[Fit, dict[
     if undecided:
         rivals = {}
         for named in undecided:
-            for name in named.tied_with or other_effects(named)[:1]:
+            for name in named.tied_with or distinct_rivals(named)[:1]:
                 rivals[name] = named.rivals[name]
         return ranking.best, rivals
     least = ranking.best.evidence + config.plan.min_candidate_gain
@@ -186,7 +186,7 @@ def open_question(ranking: Ranking, config: DiagnosisConfig) -> tuple[Fit, dict[
 def _rivals_of_suspect(ranking: Ranking) -> dict[str, Fit]:
     """Fits of the rivals of the most probable effect that is only possible."""
     suspect = max(ranking.doubtful, key=attrgetter("probability"))
-    names = suspect.tied_with or other_effects(suspect)[:1]
+    names = suspect.tied_with or distinct_rivals(suspect)[:1]
     if not names:
         return {NOTHING: ranking.without[suspect.name]}
     return {name: suspect.rivals[name] for name in names}
@@ -227,10 +227,11 @@ def scenario_text(plan: Plan, vessel: Vessel) -> str:
     """Return the text of a scenario file that simulates a planned manoeuvre with the vessel."""
     step = min(float(f"{SCENARIO_STEP * froude_scale('s', vessel):.1g}"), 1.0)
     separates = ", ".join(plan.separates)
+    base = toml_value(vessel_reference(vessel.file))
     lines = [
         "#!/usr/bin/env -S boatsim run",
         f'about = "Next recording: {plan.manoeuvre}. It distinguishes: {separates}."',
-        f"vessel = {toml_value(vessel_address(vessel.file))}  # or patched.toml, with all effects",
+        f"vessel = {base}  # or patched.toml, with all effects",
         f"load = {toml_value(list(vessel.load))}",
         f"duration = {plan.duration:g}  # [s]",
         f"step = {step:g}  # [s]",
@@ -249,7 +250,7 @@ def scenario_text(plan: Plan, vessel: Vessel) -> str:
     return "\n".join(lines) + "\n"
 
 
-def other_effects(named: IdentifiedEffect) -> list[str]:
+def distinct_rivals(named: IdentifiedEffect) -> list[str]:
     """Return the rivals of an identified effect that are different effects.
 
     The same effect on another actuator does not count as a rival.
@@ -309,7 +310,7 @@ def _refit(
     Parameters are counted in posterior standard deviations from the fit, along the Cholesky factor.
     """
     config = problem.config.plan
-    on = problem.program.switches(model.effects)
+    on = problem.program.effect_switches(model.effects)
     root = np.linalg.cholesky(model.covariance)
     low = np.array(list(map(attrgetter("low"), model.free)))
     high = np.array(list(map(attrgetter("high"), model.free)))

@@ -9,8 +9,8 @@ from boatsim.diagnosis.experiment_design.manoeuvres import Manoeuvre
 from boatsim.diagnosis.filter import (
     InitialState,
     MappedRecording,
-    axes_of,
     command_changes,
+    dof_in_state_order,
     rigid_body_values,
 )
 from boatsim.diagnosis.problem import Fit, Problem
@@ -123,7 +123,9 @@ def _free_run(problem: Problem, fit: Fit, times: Array, commands: Array, start: 
     problem.program.module.simulate_intervals(
         Inputs(times, times, commands),
         problem.config.filter.filter_step,
-        VesselNumbers(rigid_body_values(values), values, problem.program.switches(fit.effects)),
+        VesselNumbers(
+            rigid_body_values(values), values, problem.program.effect_switches(fit.effects)
+        ),
         np.array([0]),
         np.array([len(times) - 1]),
         start[None],
@@ -150,7 +152,7 @@ def _with_switching_times(
     """A zig-zag with the times at which its heading is expected to be reached."""
     if not manoeuvre.switch_heading:
         return manoeuvre
-    yaw = axes_of(problem.program.vessel).index("yaw")
+    yaw = dof_in_state_order(problem.program.vessel).index("yaw")
     sides = manoeuvre.levels
     switches = [0.0]
     sign = 0.0
@@ -173,7 +175,7 @@ def _with_switching_times(
 def _start(problem: Problem, fit: Fit, manoeuvre: Manoeuvre) -> Array:
     """State (2 NQ,) at the begin: the mean position of the recordings, at rest or under way."""
     first = problem.recordings[0]
-    axes = axes_of(problem.program.vessel)
+    axes = dof_in_state_order(problem.program.vessel)
     nq = len(axes)
     state = np.zeros(2 * nq)
     if "surge" not in axes:
@@ -184,7 +186,7 @@ def _start(problem: Problem, fit: Fit, manoeuvre: Manoeuvre) -> Array:
             state[code] = round(float(np.nanmean(first.measured[:, channel])), 2)
     if manoeuvre.under_way:
         values = problem.values(first, fit.free, fit.theta)
-        on = problem.program.switches(fit.effects)
+        on = problem.program.effect_switches(fit.effects)
         states = first.smooth(values, on, fit.levels).means
         state[nq] = float(f"{np.median(np.hypot(states[:, nq], states[:, nq + 1])):.3g}")
     return state

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from boatsim.diagnosis.filter import MappedRecording, axes_of
+from boatsim.diagnosis.filter import MappedRecording, dof_in_state_order
 from boatsim.diagnosis.locate.missing_force import FORCE_UNITS
 from boatsim.diagnosis.locate.nominal_forces import full_thrust
 from boatsim.diagnosis.locate.smoothing import LatentForce, latent_force, variance_of_mean
@@ -42,7 +42,7 @@ def mean_residual_force(
     limit = np.maximum(problem.config.locate.mean_force_min_sds * sd, problem.ambient.force)
     thrust = full_thrust(recordings[0])
     entries: dict[str, MeanEntry] = {}
-    for i, axis in enumerate(axes_of(problem.program.vessel)):
+    for i, axis in enumerate(dof_in_state_order(problem.program.vessel)):
         if abs(mean[i]) > limit[i]:
             unit = FORCE_UNITS[axis]
             entries[axis] = {"mean": float(mean[i]), "sd": float(sd[i]), "unit": unit}

@@ -12,15 +12,15 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from boatsim.diagnosis.filter import MappedRecording, NoiseLevels, axes_of
+from boatsim.diagnosis.filter import MappedRecording, NoiseLevels, dof_in_state_order
 from boatsim.diagnosis.locate.nominal_forces import coefficient_forces
 from boatsim.diagnosis.locate.smoothing import (
-    averaged_rows,
+    averaging_window_length,
     latent_force,
     running_average,
     variance_of_average,
 )
-from boatsim.diagnosis.noise_levels import fit_time_constant
+from boatsim.diagnosis.noise_levels import fit_latent_force_spectrum
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.diagnosis.report.schema import StrengthEntry
 from boatsim.physics.signals import COMPONENTS, Array
@@ -68,7 +68,7 @@ def missing_force(
     Returns:
         One missing force per recording.
     """
-    levels = fit_time_constant(problem, fit)
+    levels = fit_latent_force_spectrum(problem, fit)
     return [_missing_in_nominal(problem, fit, mapped, levels) for mapped in recordings]
 
 
@@ -107,7 +107,7 @@ def _averages(
     problem: Problem, fit: Fit, mapped: MappedRecording, levels: NoiseLevels
 ) -> _Averages:
     force = latent_force(problem, fit, mapped, levels)
-    rows = averaged_rows(mapped.times, problem.ambient.time_constant)
+    rows = averaging_window_length(mapped.times, problem.ambient.time_constant)
     variance = variance_of_average(force.covariances, force.gains, force.part, rows)
     return _Averages(running_average(force.mean, rows), variance, force.states)
 
@@ -117,9 +117,9 @@ def _mean_average(
 ) -> Array:
     """Averages (N, axes) of the smoothed latent force without their variance, which costs more."""
     nq = problem.program.module.NQ
-    on = problem.program.switches(fit.effects)
+    on = problem.program.effect_switches(fit.effects)
     means = mapped.smooth(problem.values(mapped, fit.free, theta), on, levels).means
-    rows = averaged_rows(mapped.times, problem.ambient.time_constant)
+    rows = averaging_window_length(mapped.times, problem.ambient.time_constant)
     return running_average(means[:, 2 * nq : 3 * nq], rows)
 
 
@@ -128,7 +128,7 @@ def _missing_in_nominal(
 ) -> MissingForce:
     """Add the force that the recalibration changed to the force that it leaves unexplained."""
     residual = _averages(problem, fit, mapped, levels)
-    rows = averaged_rows(mapped.times, problem.ambient.time_constant)
+    rows = averaging_window_length(mapped.times, problem.ambient.time_constant)
     parts = coefficient_forces(problem, fit, mapped, residual.states)
     mean = residual.mean.copy()
     slopes = np.zeros((len(parts), *mean.shape))
@@ -152,7 +152,7 @@ def _with_disturbance(
     return MissingForce(mapped.name, mapped.times, mean, np.sqrt(variance + level**2))
 
 
-def intervals(problem: Problem, forces: Sequence[MissingForce]) -> list[Interval]:
+def significant_intervals(problem: Problem, forces: Sequence[MissingForce]) -> list[Interval]:
     """Return the time intervals in which a missing force is significant, by recording and axis.
 
     There zero lies outside the band of the estimated force.
@@ -165,7 +165,7 @@ def intervals(problem: Problem, forces: Sequence[MissingForce]) -> list[Interval
     span = problem.ambient.time_constant
     found = []
     for force in forces:
-        for i, axis in enumerate(axes_of(problem.program.vessel)):
+        for i, axis in enumerate(dof_in_state_order(problem.program.vessel)):
             outside = np.abs(force.mean[:, i]) > config.band_sds * force.sd[:, i]
             for begin, end in _merged_intervals(force.t, outside, config.interval_max_gap * span):
                 if end - begin >= config.interval_min_duration * span:
@@ -187,7 +187,7 @@ def _merged_intervals(
     return merged
 
 
-def strength(problem: Problem, forces: Sequence[MissingForce]) -> dict[str, StrengthEntry]:
+def missing_force_rms(problem: Problem, forces: Sequence[MissingForce]) -> dict[str, StrengthEntry]:
     """Return the rms over all recordings of the missing force of each axis, and of its deviation.
 
     Args:
@@ -197,7 +197,7 @@ def strength(problem: Problem, forces: Sequence[MissingForce]) -> dict[str, Stre
     mean = np.concatenate([f.mean for f in forces])
     sd = np.concatenate([f.sd for f in forces])
     entries: dict[str, StrengthEntry] = {}
-    for i, axis in enumerate(axes_of(problem.program.vessel)):
+    for i, axis in enumerate(dof_in_state_order(problem.program.vessel)):
         entries[axis] = {
             "rms": float(np.sqrt(np.mean(mean[:, i] ** 2))),
             "sd": float(np.sqrt(np.mean(sd[:, i] ** 2))),

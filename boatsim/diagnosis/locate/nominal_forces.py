@@ -4,7 +4,7 @@ from collections.abc import Iterable, Sequence
 
 import numpy as np
 
-from boatsim.diagnosis.experiment_design.manoeuvres import driven_commands
+from boatsim.diagnosis.experiment_design.manoeuvres import manoeuvre_commands
 from boatsim.diagnosis.filter import MappedRecording
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.physics.base import Array
@@ -28,7 +28,7 @@ def actuator_states(
     program = mapped.program
     if values is None:
         values = mapped.values
-    on = program.switches(effects)
+    on = program.effect_switches(effects)
     act = np.zeros(program.held_size)
     memory = np.zeros(program.memory_size)
     program.module.settle_actuators(mapped.command_values[0], memory, values, on, act)
@@ -61,7 +61,7 @@ def body_forces(
         Forces and moments (N, axes) [N, N m].
     """
     forces = mapped.program.module.total_body_force
-    on = mapped.program.switches(effects)
+    on = mapped.program.effect_switches(effects)
     first = np.int64(0)
     rows = []
     for y, act in zip(states, held, strict=True):
@@ -76,7 +76,7 @@ def full_thrust(mapped: MappedRecording) -> float:
     """
     program = mapped.program
     vessel = program.vessel
-    drives = [n for n in driven_commands(vessel) if n not in vessel.angles]
+    drives = [n for n in manoeuvre_commands(vessel) if n not in vessel.angles]
     if "surge" not in vessel.dof or not drives:
         return 0.0
     neutral = {n: c.neutral for n, c in vessel.commands.items()}
@@ -89,7 +89,7 @@ def _surge_force_at_rest(mapped: MappedRecording, commands: dict[str, float]) ->
     act = np.zeros(program.held_size)
     memory = np.zeros(program.memory_size)
     values = mapped.values
-    on = program.switches()
+    on = program.effect_switches()
     program.module.settle_actuators(program.command_array(commands), memory, values, on, act)
     rest = np.zeros((1, 2 * program.module.NQ))
     return float(body_forces(mapped, rest, [act], values)[0][0])
@@ -121,7 +121,9 @@ def coefficient_forces(problem: Problem, fit: Fit, mapped: MappedRecording, stat
     return parts
 
 
-def parameter_forces(problem: Problem, fit: Fit, mapped: MappedRecording, states: Array) -> Array:
+def force_sensitivities(
+    problem: Problem, fit: Fit, mapped: MappedRecording, states: Array
+) -> Array:
     """Return how the force of a fitted vessel model along a recording changes by each parameter.
 
     Stochastic forces and errors of instruments exert no force along a given motion, so that their

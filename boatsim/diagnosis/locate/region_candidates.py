@@ -10,7 +10,7 @@ from math import exp
 import numpy as np
 
 from boatsim.diagnosis.config import LocateConfig
-from boatsim.diagnosis.filter import MappedRecording, axes_of
+from boatsim.diagnosis.filter import MappedRecording, dof_in_state_order
 from boatsim.diagnosis.locate.nominal_forces import actuator_states, body_forces
 from boatsim.physics.base import Array
 from boatsim.physics.effects.wall_effect import REACH
@@ -47,7 +47,7 @@ def region_candidates(
         damping: Damping force (N, axes) of the vessel as specified.
         config: Settings for locating a missing force.
     """
-    axes = axes_of(mapped.program.vessel)
+    axes = dof_in_state_order(mapped.program.vessel)
     return [
         *_earth_directions(axes, states),
         *_squared_speeds(mapped, axes, states),
@@ -75,7 +75,7 @@ def _squared_speeds(
     mapped: MappedRecording, axes: tuple[str, ...], states: Array
 ) -> Iterator[RegionCandidate]:
     """The square of each speed."""
-    rates = mapped.program.body_rates(states)[:, len(axes) :]
+    rates = mapped.program.to_body_velocities(states)[:, len(axes) :]
     for i, name in enumerate(axes):
         noun = "rate" if name in ROTATIONS and len(axes) == 1 else "speed"
         variable = f"{name} {noun}"

@@ -106,7 +106,7 @@ class ScoreStatistics:
         return ScoreTest(factors, p_value, np.sqrt(np.array(squares) / self.rows))
 
 
-def combined(statistics: Sequence[ScoreStatistics], names: Sequence[str]) -> ScoreStatistics:
+def sum_statistics(statistics: Sequence[ScoreStatistics], names: Sequence[str]) -> ScoreStatistics:
     """Return the sum of the score statistics of several independent recordings.
 
     Args:

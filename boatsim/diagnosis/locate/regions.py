@@ -13,7 +13,7 @@ from boatsim.diagnosis.filter import MappedRecording
 from boatsim.diagnosis.locate.nominal_forces import coefficient_forces
 from boatsim.diagnosis.locate.periodicity import most_significant_peak
 from boatsim.diagnosis.locate.region_candidates import region_candidates
-from boatsim.diagnosis.locate.region_tests import ScoreStatistics, ScoreTest, combined
+from boatsim.diagnosis.locate.region_tests import ScoreStatistics, ScoreTest, sum_statistics
 from boatsim.diagnosis.locate.smoothing import latent_force
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.physics.base import Array
@@ -73,7 +73,7 @@ def _score_statistics(problem: Problem, fit: Fit) -> tuple[ScoreStatistics, Mapp
             sentences = {candidate.variable: candidate.sentence for candidate in candidates}
         else:
             sentences = {name: each for name, each in sentences.items() if name in shapes}
-    return combined(statistics, [COEFFICIENTS, *sentences]), sentences
+    return sum_statistics(statistics, [COEFFICIENTS, *sentences]), sentences
 
 
 def _damping_force(problem: Problem, fit: Fit, parts: Array) -> Array:
@@ -134,7 +134,7 @@ def _periodic_region(problem: Problem, fit: Fit, tests: int) -> list[Region]:
 def _whitened(problem: Problem, fit: Fit, mapped: MappedRecording) -> Array:
     """(N, C) whitened prediction errors."""
     values = problem.values(mapped, fit.free, fit.theta)
-    passed = mapped.filter(values, problem.program.switches(fit.effects), fit.levels)
+    passed = mapped.filter(values, problem.program.effect_switches(fit.effects), fit.levels)
     return passed.whitened.reshape(len(mapped.times), -1)
 
 

@@ -14,10 +14,10 @@ import numpy as np
 from scipy.special import chdtrc
 
 from boatsim.diagnosis.config import LocateConfig
-from boatsim.diagnosis.filter import MappedRecording, axes_of
-from boatsim.diagnosis.locate.nominal_forces import parameter_forces
-from boatsim.diagnosis.locate.smoothing import information_beside, latent_force
-from boatsim.diagnosis.problem import Fit, Problem, priors_of
+from boatsim.diagnosis.filter import MappedRecording, dof_in_state_order
+from boatsim.diagnosis.locate.nominal_forces import force_sensitivities
+from boatsim.diagnosis.locate.smoothing import information_with_cross_terms, latent_force
+from boatsim.diagnosis.problem import Fit, Problem, prior_arrays
 from boatsim.physics.base import Array
 
 # share of the largest information on an axis below which a feature is ignored as rounding
@@ -59,7 +59,7 @@ class Structure:
     significant: bool
 
     @property
-    def is_effect(self) -> bool:
+    def varies_with_motion(self) -> bool:
         """Whether the unexplained force varies with motion, commands or heading.
 
         False if it varies with place or time only.
@@ -97,7 +97,7 @@ def find_structure(problem: Problem, fit: Fit) -> Structure:
         problem: The estimation problem.
         fit: Fit of the vessel model to the recordings of the problem.
     """
-    prior = priors_of(fit.free)
+    prior = prior_arrays(fit.free)
     slope = (prior.mean - fit.theta) / prior.sd
     return _structure(problem, fit, np.eye(len(fit.free)), slope)
 
@@ -111,7 +111,7 @@ def find_structure_held_out(problem: Problem, fit: Fit) -> Structure:
         problem: The estimation problem on held-out recordings.
         fit: Fit of the vessel model to other recordings.
     """
-    sd = priors_of(fit.free).sd
+    sd = prior_arrays(fit.free).sd
     covariance = fit.covariance / np.outer(sd, sd) + LEAST_VARIANCE * np.eye(len(sd))
     precision = np.asarray(np.linalg.inv(covariance), dtype=float)
     return _structure(problem, fit, precision, np.zeros(len(sd)))
@@ -129,18 +129,20 @@ def _structure(problem: Problem, fit: Fit, precision: Array, slope: Array) -> St
     config = problem.config.locate
     limit = config.disturbance_factor * problem.ambient.force
     levels = replace(fit.levels, force=np.minimum(fit.levels.force, limit))
-    axes = axes_of(problem.program.vessel)
+    axes = dof_in_state_order(problem.program.vessel)
     none = np.zeros(len(precision))
     sums = defaultdict[tuple[str, str], _Information](lambda: _Information(0.0, 0.0, none))
     information, scores = precision, slope
     for mapped in problem.recordings:
         force = latent_force(problem, fit, mapped, levels)
         states = np.ascontiguousarray(force.states)
-        named = dict(features(mapped, states, levels.time_constant, config))
+        named = dict(candidate_regressors(mapped, states, levels.time_constant, config))
         values = np.column_stack(list(named.values()))
         shapes = np.einsum("na,kb->nkba", values, np.eye(len(axes)))
-        parameters = np.moveaxis(parameter_forces(problem, fit, mapped, states), 0, 2)
-        found = information_beside(shapes.reshape(*force.mean.shape, -1), parameters, force)
+        parameters = np.moveaxis(force_sensitivities(problem, fit, mapped, states), 0, 2)
+        found = information_with_cross_terms(
+            shapes.reshape(*force.mean.shape, -1), parameters, force
+        )
         information = information + found.others
         scores = scores + found.others_score
         keys = [(axis, name) for axis in axes for name in named]
@@ -165,7 +167,7 @@ def _structure(problem: Problem, fit: Fit, precision: Array, slope: Array) -> St
     return Structure(axis, name, gain, p_value, len(gains), p_value < config.structure_max_p)
 
 
-def features(
+def candidate_regressors(
     mapped: MappedRecording, states: Array, time_constant: float, config: LocateConfig
 ) -> Iterator[tuple[str, Array]]:
     """Yield the quantities with which an unexplained force may correlate in a recording.
@@ -198,8 +200,8 @@ def features(
 
 def _speeds(mapped: MappedRecording, states: Array) -> dict[str, Array]:
     """Body-axes rates (N,) by name."""
-    axes = axes_of(mapped.program.vessel)
-    rates = mapped.program.body_rates(states)[:, len(axes) :]
+    axes = dof_in_state_order(mapped.program.vessel)
+    rates = mapped.program.to_body_velocities(states)[:, len(axes) :]
     speeds = {}
     for i, axis in enumerate(axes):
         noun = "rate" if axis in ROTATIONS else "speed"
@@ -223,7 +225,7 @@ def _inclined_damping_features(
     mapped: MappedRecording, states: Array
 ) -> Iterator[tuple[str, Array]]:
     """Rates of roll and pitch times their angle, as of damping that depends on the inclination."""
-    axes = axes_of(mapped.program.vessel)
+    axes = dof_in_state_order(mapped.program.vessel)
     for name, rate in _speeds(mapped, states).items():
         axis = name.removesuffix(" rate")
         if axis not in PLACES or axis not in ROTATIONS:
@@ -238,7 +240,7 @@ def _memory_features(
     mapped: MappedRecording, states: Array, time_constant: float
 ) -> Iterator[tuple[str, Array]]:
     """Earlier speeds and inclinations, as in a force with memory: a wake, or water in a tank."""
-    axes = axes_of(mapped.program.vessel)
+    axes = dof_in_state_order(mapped.program.vessel)
     signals = _speeds(mapped, states)
     for axis, name in PLACES.items():
         if axis in axes and axis in ROTATIONS:
@@ -262,7 +264,7 @@ def _command_features(
 
 
 def _heading_features(mapped: MappedRecording, states: Array) -> Iterator[tuple[str, Array]]:
-    axes = axes_of(mapped.program.vessel)
+    axes = dof_in_state_order(mapped.program.vessel)
     if "yaw" in axes:
         psi = states[:, axes.index("yaw")]
         for name, angle in (("heading", psi), ("twice the heading", 2.0 * psi)):
@@ -271,7 +273,7 @@ def _heading_features(mapped: MappedRecording, states: Array) -> Iterator[tuple[
 
 
 def _place_features(mapped: MappedRecording, states: Array) -> Iterator[tuple[str, Array]]:
-    axes = axes_of(mapped.program.vessel)
+    axes = dof_in_state_order(mapped.program.vessel)
     for axis, name in PLACES.items():
         if axis not in axes:
             continue

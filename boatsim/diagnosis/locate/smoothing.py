@@ -55,7 +55,7 @@ def latent_force(
         levels: Levels of sensor noise and latent force that the filter uses.
     """
     nq = problem.program.module.NQ
-    on = problem.program.switches(fit.effects)
+    on = problem.program.effect_switches(fit.effects)
     values = problem.values(mapped, fit.free, fit.theta)
     means, covariances, gains = mapped.smooth(values, on, levels)
     rms, first_rms = mapped.latent_force_rms(values, on, levels)
@@ -65,7 +65,7 @@ def latent_force(
     )
 
 
-def averaged_rows(times: Array, span: float) -> int:
+def averaging_window_length(times: Array, span: float) -> int:
     """Return how many rows a running average over a given duration contains, at least 1.
 
     Args:
@@ -189,7 +189,9 @@ class SharedInformation(NamedTuple):
     others_score: Array  # (F,)
 
 
-def information_beside(shapes: Array, others: Array, force: LatentForce) -> SharedInformation:
+def information_with_cross_terms(
+    shapes: Array, others: Array, force: LatentForce
+) -> SharedInformation:
     """Return the information about shapes of a missing force, each alone, beside other shapes.
 
     Args:

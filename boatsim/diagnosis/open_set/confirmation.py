@@ -35,7 +35,7 @@ class Errors(NamedTuple):
     with_effect: float
 
 
-def errors_of_each(
+def held_out_effect_errors(
     problem: Problem,
     best: Fit,
     without_each: Mapping[str, Fit],
@@ -65,7 +65,7 @@ def errors_of_each(
     return found
 
 
-def outcome_of(
+def confirmation_outcome(
     effect: Effect, errors: Mapping[str, Errors], signs: Consistency, config: DecideConfig
 ) -> Outcome:
     """Return whether held-out recordings confirm an identified effect.

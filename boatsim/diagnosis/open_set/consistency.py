@@ -16,11 +16,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from boatsim.diagnosis.filter import MappedRecording, axes_of
+from boatsim.diagnosis.filter import MappedRecording, dof_in_state_order
 from boatsim.diagnosis.fit import jacobian
 from boatsim.diagnosis.locate.residual_structure import find_structure
 from boatsim.diagnosis.locate.smoothing import latent_force
-from boatsim.diagnosis.problem import FilterPasses, Fit, Problem, priors_of
+from boatsim.diagnosis.problem import FilterPasses, Fit, Problem, prior_arrays
 from boatsim.physics.base import Array, Effect
 
 # prior sd of a factor, so that a part without information does not make the equations singular
@@ -109,7 +109,7 @@ class _Linearised:
         return self.passes.whitened
 
 
-def consistency_of(
+def effect_consistency(
     problem: Problem,
     best: Fit,
     without_each: Mapping[str, Fit],
@@ -169,7 +169,7 @@ def consistency_of(
 
 def _linearised(problem: Problem, fit: Fit) -> _Linearised:
     """A fit linearised with the gains of the filter held."""
-    on = problem.program.switches(fit.effects)
+    on = problem.program.effect_switches(fit.effects)
     passes = problem.filter(fit.free, fit.theta, on, fit.levels)
     return _Linearised(passes, jacobian(problem, fit.free, fit.theta, on, fit.levels, passes))
 
@@ -182,7 +182,7 @@ def _own(fit: Fit, name: str) -> list[int]:
 def _size(fit: Fit, name: str) -> Array:
     """(P,) own parameters of an effect relative to zero effect, in prior sds."""
     own = _own(fit, name)
-    priors = priors_of(fit.free)
+    priors = prior_arrays(fit.free)
     return (fit.theta[own] - priors.mean[own]) / priors.sd[own]
 
 
@@ -287,7 +287,7 @@ def _gain(problem: Problem, best: Fit, without: Fit) -> float:
     """Return the log-likelihood that recordings gain by an effect [nats]."""
     found = []
     for fit in (best, without):
-        on = problem.program.switches(fit.effects)
+        on = problem.program.effect_switches(fit.effects)
         found.append(problem.log_likelihood(fit.free, fit.theta, on, fit.levels))
     return found[0] - found[1]
 
@@ -335,8 +335,8 @@ def _ranges(problem: Problem, fit: Fit) -> Iterator[tuple[str, NDArray[np.int_]]
 
 def _quantities(mapped: MappedRecording, states: Array) -> Mapping[str, Array]:
     """Speeds, commands and heading (N,) of a recording by name."""
-    axes = axes_of(mapped.program.vessel)
-    rates = mapped.program.body_rates(np.ascontiguousarray(states))[:, len(axes) :]
+    axes = dof_in_state_order(mapped.program.vessel)
+    rates = mapped.program.to_body_velocities(np.ascontiguousarray(states))[:, len(axes) :]
     found = {}
     for i, axis in enumerate(axes):
         found[f"{axis} rate"] = rates[:, i]
@@ -358,7 +358,7 @@ def _parts_that_gain(problem: Problem, best: Fit, without: Fit, parts: NDArray[n
 
 def _row_likelihood(problem: Problem, fit: Fit) -> Array:
     """(rows,) log-likelihood of each measurement, up to a constant."""
-    on = problem.program.switches(fit.effects)
+    on = problem.program.effect_switches(fit.effects)
     passes = problem.filter(fit.free, fit.theta, on, fit.levels)
     found = []
     for one in passes.passes:

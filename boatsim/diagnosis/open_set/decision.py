@@ -4,12 +4,17 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from boatsim.diagnosis.filter import MappedRecording
-from boatsim.diagnosis.open_set.confirmation import Errors, Outcome, errors_of_each, outcome_of
-from boatsim.diagnosis.open_set.consistency import Consistency, consistency_of
-from boatsim.diagnosis.open_set.log_signs import NO_SIGNS, LogSigns, log_signs
-from boatsim.diagnosis.open_set.probability import features, probability_of_true_cause
+from boatsim.diagnosis.open_set.confirmation import (
+    Errors,
+    Outcome,
+    confirmation_outcome,
+    held_out_effect_errors,
+)
+from boatsim.diagnosis.open_set.consistency import Consistency, effect_consistency
+from boatsim.diagnosis.open_set.log_signs import NO_SIGNS, LogSigns, unknown_cause_indicators
+from boatsim.diagnosis.open_set.probability import logistic_features, probability_of_true_cause
 from boatsim.diagnosis.problem import Problem
-from boatsim.diagnosis.search.evidence import required_gain, unknown_threshold
+from boatsim.diagnosis.search.evidence import required_gain, unknown_cause_threshold
 from boatsim.diagnosis.search.pruning import IdentifiedEffect
 from boatsim.diagnosis.search.ranking import Ranking
 from boatsim.physics.base import RandomForce
@@ -79,9 +84,9 @@ def decide(
         candidates: Number of candidates that were tested.
     """
     config = problem.config
-    of_log = log_signs(problem, ranking, held_out)
-    signs = consistency_of(problem, ranking.best, ranking.without, held_out)
-    alone = errors_of_each(problem, ranking.best, ranking.without, held_out)
+    of_log = unknown_cause_indicators(problem, ranking, held_out)
+    signs = effect_consistency(problem, ranking.best, ranking.without, held_out)
+    alone = held_out_effect_errors(problem, ranking.best, ranking.without, held_out)
     judgements = []
     for one in ranking.named:
         own, errors = signs[one.name], alone[one.name]
@@ -97,7 +102,9 @@ def decide(
             continue
         doubtful.append(stated)
         others = ranking.explained - stated.gain
-        least = required_gain(candidates, config.select) + unknown_threshold(config.select, others)
+        least = required_gain(candidates, config.select) + unknown_cause_threshold(
+            config.select, others
+        )
         stands_in = stands_in or bool(stated.shared > least)
     unseen = of_log.held_out_unexplained > config.decide.held_out_share
     decided = replace(
@@ -110,7 +117,7 @@ def decide(
     return Decision(problem, decided, tuple(judgements), of_log)
 
 
-def undecided(problem: Problem, ranking: Ranking) -> Decision:
+def decision_without_fit(problem: Problem, ranking: Ranking) -> Decision:
     """Return the decision for recordings that no model could be fitted to: no effect is identified.
 
     Args:
@@ -131,7 +138,7 @@ def _judge(
     config = problem.config.decide
     candidate = problem.candidates[effect.name]
     stochastic = isinstance(candidate, RandomForce)
-    found = features(effect, stochastic, signs, of_log, config)
+    found = logistic_features(effect, stochastic, signs, of_log, config)
     probability = probability_of_true_cause(found, config)
-    outcome = outcome_of(candidate, alone, signs, config)
+    outcome = confirmation_outcome(candidate, alone, signs, config)
     return Judgement(effect, stochastic, signs, probability, alone, outcome)

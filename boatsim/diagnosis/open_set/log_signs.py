@@ -9,7 +9,7 @@ from boatsim.diagnosis.filter import MappedRecording
 from boatsim.diagnosis.locate.residual_structure import Structure, find_structure_held_out
 from boatsim.diagnosis.noise_levels import fit_noise
 from boatsim.diagnosis.problem import Fit, Problem
-from boatsim.diagnosis.search.evidence import unexplained_evidence, unknown_threshold
+from boatsim.diagnosis.search.evidence import unexplained_evidence, unknown_cause_threshold
 from boatsim.diagnosis.search.ranking import Ranking
 
 
@@ -50,7 +50,9 @@ NO_STRUCTURE = Structure("", "", 0.0, 1.0, 0, False)
 NO_SIGNS = LogSigns(0.0, 1.0, 0.0, 0.0, 0.0, 0)
 
 
-def log_signs(problem: Problem, ranking: Ranking, held_out: Sequence[MappedRecording]) -> LogSigns:
+def unknown_cause_indicators(
+    problem: Problem, ranking: Ranking, held_out: Sequence[MappedRecording]
+) -> LogSigns:
     """Return statistics that indicate a cause which no candidate effect describes.
 
     They are computed from the recordings as a whole, after the selection of effects.
@@ -61,7 +63,7 @@ def log_signs(problem: Problem, ranking: Ranking, held_out: Sequence[MappedRecor
         held_out: Held-out recordings, which no fit has used.
     """
     best = ranking.best
-    threshold = unknown_threshold(problem.config.select, ranking.explained)
+    threshold = unknown_cause_threshold(problem.config.select, ranking.explained)
     remains, structure = _of_held_out(problem, best, held_out)
     return LogSigns(
         _coefficient_shift(best),

@@ -21,7 +21,7 @@ LEAST_GAIN = 0.1  # [nats] on held-out recordings; less is no evidence
 MOST_LOG_ODDS = 30.0  # beyond it the probability is 0 or 1 in every printed digit
 
 
-def features(
+def logistic_features(
     effect: IdentifiedEffect,
     stochastic: bool,
     consistency: Consistency,

@@ -6,7 +6,7 @@ import numpy as np
 
 from boatsim.control.base import wrap
 from boatsim.diagnosis.candidates import base_name
-from boatsim.diagnosis.checks.entry import column_sources, log_entry
+from boatsim.diagnosis.checks.entry import column_sources, finding_entry
 from boatsim.diagnosis.checks.finding import LOG_NOT_BOAT, Finding
 from boatsim.diagnosis.config import AnswerConfig, settings_by_name
 from boatsim.diagnosis.evaluation import Evaluation
@@ -19,11 +19,11 @@ from boatsim.diagnosis.open_set.decision import Decision
 from boatsim.diagnosis.problem import Fit, FreeParameter, Problem
 from boatsim.diagnosis.question import Question
 from boatsim.diagnosis.recalibration import Recalibration
-from boatsim.diagnosis.report.assumptions import excluded_candidates, rules_entry
-from boatsim.diagnosis.report.confirmation import alone_entry, reason_unconfirmed
+from boatsim.diagnosis.report.assumptions import assumptions_entry, excluded_candidates
+from boatsim.diagnosis.report.confirmation import effect_error_entry, reason_unconfirmed
 from boatsim.diagnosis.report.described_terms import described_entries
 from boatsim.diagnosis.report.families import FAMILIES
-from boatsim.diagnosis.report.layers import separate_layers
+from boatsim.diagnosis.report.layers import classify_effects
 from boatsim.diagnosis.report.parameters import parameter_key, reported_sd
 from boatsim.diagnosis.report.schema import (
     Acting,
@@ -41,7 +41,7 @@ from boatsim.diagnosis.report.schema import (
     WhereEntry,
 )
 from boatsim.diagnosis.report.sentences import verdict_sentences
-from boatsim.diagnosis.report.signs import reason_for_doubt, signs_entry
+from boatsim.diagnosis.report.signs import cause_statistics_entry, reason_for_doubt
 from boatsim.diagnosis.search.pruning import IdentifiedEffect
 from boatsim.diagnosis.search.ranking import Ranking
 from boatsim.physics.base import ChannelEffect, Effect
@@ -84,7 +84,7 @@ def compose_answer(
     entries = {}
     for identified in ranking.named:
         entries[identified.name] = _effect(problem, ranking.best, identified, decision)
-    layers = separate_layers(problem, ranking.best, entries)
+    layers = classify_effects(problem, ranking.best, entries)
     possible = layers.also_possible
     for identified in ranking.doubtful:
         possible.append(_possible(problem, ranking.best, identified, decision))
@@ -115,9 +115,9 @@ def compose_answer(
         "left_out": excluded_candidates(question),
         "skipped": list(ranking.skipped),
         "facts": dict(problem.recordings[0].facts),
-        "rules": rules_entry(problem, len(tested)),
+        "rules": assumptions_entry(problem, len(tested)),
         "log": _log(loaded, findings),
-        "signs": signs_entry(decision),
+        "signs": cause_statistics_entry(decision),
         "config": settings_by_name(problem.config),
     }
     if ranking.recalibration is not None:
@@ -148,10 +148,10 @@ def _unknown(problem: Problem, ranking: Ranking, evaluation: Evaluation) -> Unkn
         "told_from_nats": round(ranking.told_from, 3),
     }
     if ranking.unknown:
-        entry["rest"] = locate.strength(problem, evaluation.remaining)
-    if ranking.stands_in and not ranking.remains:
+        entry["rest"] = locate.missing_force_rms(problem, evaluation.remaining)
+    if ranking.stands_in and not ranking.exceeds_assumed_disturbance:
         entry["stand_ins"] = [base_name(one.name) for one in ranking.doubtful]
-    if ranking.held_out_remains and not (ranking.remains or ranking.stands_in):
+    if ranking.held_out_remains and not (ranking.exceeds_assumed_disturbance or ranking.stands_in):
         entry["held_out_only"] = True
     if ranking.structure.significant:
         entry["structure"] = _structure(ranking.structure)
@@ -183,11 +183,11 @@ def _structure(found: Structure) -> StructureEntry:
 def _where(problem: Problem, ranking: Ranking, evaluation: Evaluation) -> WhereEntry:
     """Return the axes, intervals and regions in which a force is missing."""
     entry: WhereEntry = {
-        "axes": locate.strength(problem, evaluation.missing),
+        "axes": locate.missing_force_rms(problem, evaluation.missing),
         "intervals": [],
         "region": [],
     }
-    for i in locate.intervals(problem, evaluation.missing):
+    for i in locate.significant_intervals(problem, evaluation.missing):
         entry["intervals"].append(
             {"run": i.run, "from_s": i.from_s, "to_s": i.to_s, "axis": i.axis}
         )
@@ -206,7 +206,7 @@ def _log(loaded: Loaded, findings: Sequence[Finding]) -> list[LogEntry]:
     entries = []
     for finding in findings:
         vessel = by_file.get(finding.run, loaded.vessel)
-        entries.append(log_entry(finding, column_sources(finding.run, vessel)))
+        entries.append(finding_entry(finding, column_sources(finding.run, vessel)))
     return entries
 
 
@@ -298,7 +298,7 @@ def _effect(
         "words": _words(best, effect),
         "tied_with": list(map(base_name, named.tied_with)),
         "parameters": _parameters(problem, best, effect) | _ratios(problem, best, effect),
-        "alone": alone_entry(judged.alone),
+        "alone": effect_error_entry(judged.alone),
         "confirmed": judged.outcome == "confirmed",
     }
 
@@ -320,7 +320,7 @@ def _possible(
         "why": why,
         "in_patch": True,
         "parameters": _parameters(problem, best, effect),
-        "alone": alone_entry(judged.alone),
+        "alone": effect_error_entry(judged.alone),
         "confirmed": judged.outcome == "confirmed",
     }
 

@@ -1,7 +1,7 @@
 """Entries of the answer on the candidates that were tested and on what was assumed."""
 
 from boatsim.diagnosis.candidates import base_name
-from boatsim.diagnosis.filter import axes_of
+from boatsim.diagnosis.filter import dof_in_state_order
 from boatsim.diagnosis.locate.missing_force import FORCE_UNITS
 from boatsim.diagnosis.locate.nominal_forces import full_thrust
 from boatsim.diagnosis.problem import Problem
@@ -28,7 +28,7 @@ def excluded_candidates(question: Question) -> list[LeftOutEntry]:
     return list(entries.values())
 
 
-def rules_entry(problem: Problem, tested: int) -> RulesEntry:
+def assumptions_entry(problem: Problem, tested: int) -> RulesEntry:
     """Return the assumptions made before any data were evaluated, for diagnosis.json.
 
     They are the disturbance level, its correlation time, the length of free runs, the required
@@ -41,7 +41,7 @@ def rules_entry(problem: Problem, tested: int) -> RulesEntry:
     vessel, levels = problem.program.vessel, problem.ambient
     thrust = full_thrust(problem.recordings[0])
     ambient: dict[str, AmbientEntry] = {}
-    for axis, rms in zip(axes_of(vessel), levels.force.tolist(), strict=True):
+    for axis, rms in zip(dof_in_state_order(vessel), levels.force.tolist(), strict=True):
         ambient[axis] = {"rms": float(f"{rms:.3g}"), "unit": FORCE_UNITS[axis]}
         if thrust > 0.0 and FORCE_UNITS[axis] == "N":
             ambient[axis]["share_of_full_thrust"] = float(f"{rms / thrust:.3g}")

@@ -27,7 +27,7 @@ OPEN = (
 )
 
 
-def alone_entry(errors: Mapping[str, Errors]) -> dict[Family, AloneEntry]:
+def effect_error_entry(errors: Mapping[str, Errors]) -> dict[Family, AloneEntry]:
     """Return errors on held-out recordings without and with an effect, as in diagnosis.json.
 
     The errors are those of simulations with the recorded commands alone.
@@ -101,7 +101,7 @@ def reason_unconfirmed(judged: Judgement) -> str:
         judged: Statistics and probability of the effect.
     """
     reason = "held-out recordings, which could show it, are explained as well without it"
-    changes = join_words(_changes(alone_entry(judged.alone)))
+    changes = join_words(_changes(effect_error_entry(judged.alone)))
     if changes:
         reason += f": there adding it {changes}"
     return reason

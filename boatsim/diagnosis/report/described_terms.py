@@ -86,7 +86,7 @@ def term_axis(term: SymbolicTerm) -> str:
     return "thrust"
 
 
-def effect_of_axis(axis: str) -> str:
+def axis_force_words(axis: str) -> str:
     """Return words for what a formula describes, by its axis, such as "a side force"."""
     return FORCES.get(axis, "a change of thrust")
 
@@ -141,7 +141,7 @@ def _entry(written: Sequence[FittedTerm], vessel: Vessel) -> DescribedEntry:
     """Return the entry of the terms of one formula."""
     axis, first = term_axis(written[0].term), written[0]
     sum_of_terms = join_words((_statement(w, vessel) for w in written), "plus")
-    statement = f"{effect_of_axis(axis)} that no candidate effect explains: {sum_of_terms}"
+    statement = f"{axis_force_words(axis)} that no candidate effect explains: {sum_of_terms}"
     if not first.carries:
         recording = first.term.run or "the fitted recordings"
         statement += f" (an event of {recording}, not confirmed by held-out recordings)"

@@ -10,7 +10,7 @@ from boatsim.diagnosis.evaluation import MODELS
 from boatsim.diagnosis.free_runs import FreeRun
 from boatsim.diagnosis.report.described_terms import (
     abscissa_label,
-    effect_of_axis,
+    axis_force_words,
     term_axis,
     term_unit,
 )
@@ -29,7 +29,7 @@ SIGNALS = {"psi_rad": "heading", "phi_rad": "roll", "theta_rad": "pitch", "z_m":
 Intervals = Sequence[IntervalEntry]
 
 
-def missing_figures(
+def missing_force_figures(
     runs: Sequence[MissingForceCurve], intervals: Intervals, shared: Sequence[MissingForceCurve]
 ) -> list[str]:
     """Draw the force that the vessel model does not explain over time, one figure per recording.
@@ -188,7 +188,7 @@ def term_figure(written: FittedTerm) -> str:
         about=f"The formula over {along}, from {format_number(first)} to {format_number(last)}, "
         "and the recorded means.",
     )
-    return figure([panel], f"{capitalize(effect_of_axis(axis))}, over {along}", wide=True)
+    return figure([panel], f"{capitalize(axis_force_words(axis))}, over {along}", wide=True)
 
 
 def group_by_recording(free_runs: Sequence[FreeRun]) -> list[list[FreeRun]]:

@@ -132,7 +132,9 @@ def _missing_figures(f: Findings) -> Iterator[Block]:
     }
     if not any(m.left for m in drawn):
         del looks["left"]
-    yield Figures(svg_plots.legend(looks), figures.missing_figures(drawn, intervals, f.missing))
+    yield Figures(
+        svg_plots.legend(looks), figures.missing_force_figures(drawn, intervals, f.missing)
+    )
     if len(drawn) < len(f.missing):
         yield Text(
             f"The figures show the {len(drawn)} of {len(f.missing)} recordings that are flagged "

@@ -11,7 +11,7 @@ from boatsim.diagnosis.report.parameters import parameter_key, reported_sd
 from boatsim.diagnosis.report.schema import EffectEntry, PossibleEntry, RefinedEntry
 from boatsim.diagnosis.significance import distance_from_zero, jointly_differ_from_zero
 from boatsim.physics.base import AXES, CoefficientChange, CoefficientRelease, Effect
-from boatsim.physics.vessel import number_sd, sd_of_refined_numbers
+from boatsim.physics.vessel import estimated_number_sd, sd_of_corrected_estimates
 from boatsim.view.formatting import format_parameter, join_words, words_of_name
 
 BODY_UNITS = {"mass": "kg"}  # all other numbers of the body are inertias
@@ -54,7 +54,7 @@ class _Number(NamedTuple):
         }
 
 
-def separate_layers(problem: Problem, best: Fit, entries: Mapping[str, EffectEntry]) -> Layers:
+def classify_effects(problem: Problem, best: Fit, entries: Mapping[str, EffectEntry]) -> Layers:
     """Separate identified effects into missing physics, refined numbers and uncertain effects.
 
     An effect refines a number if the vessel file calls that number an estimate. An effect is
@@ -72,7 +72,7 @@ def separate_layers(problem: Problem, best: Fit, entries: Mapping[str, EffectEnt
         effect = problem.candidates[name]
         if not _has_known_size(problem, best, effect):
             layers.also_possible.append(_possible(best, effect, entry))
-        elif sd_of_refined_numbers(effect, vessel, vessel.estimated) is None:
+        elif sd_of_corrected_estimates(effect, vessel, vessel.estimated) is None:
             layers.effects.append(entry)
         else:
             for number in _refined_numbers(problem, best, effect):
@@ -195,7 +195,10 @@ def _refined_coefficients(
     sds = np.sqrt(np.diag(best.covariance))
     for free, factor, sd in zip(best.free, best.theta, sds, strict=True):
         owners = vessel.names_of(free.effect)
-        if not free.relative or number_sd(free.effect, free.name, vessel, vessel.estimated) is None:
+        if (
+            not free.relative
+            or estimated_number_sd(free.effect, free.name, vessel, vessel.estimated) is None
+        ):
             continue
         if any((owner, free.name) in changed for owner in owners):
             continue

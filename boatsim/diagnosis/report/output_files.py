@@ -78,9 +78,9 @@ def write_overlay(found: Diagnosis, path: Path) -> None:
         if missing is not None:
             flagged = found.findings.answer["where"]["intervals"]
             intervals = [i for i in flagged if i["run"] == missing.name]
-    scene = water.open_water_scene(found.vessel, boats)
+    scene = water.comparison_scene(found.vessel, boats)
     with replace_file(path) as temporary:
-        rerun_log.log_overlay(temporary, boats, missing, intervals, scene)
+        rerun_log.write_diagnosis_log(temporary, boats, missing, intervals, scene)
 
 
 def _missing_force(findings: Findings, run: str) -> Recording | None:

@@ -4,10 +4,10 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from boatsim.diagnosis.checks.finding import LOG_NOT_BOAT
-from boatsim.diagnosis.report.described_terms import effect_of_axis
+from boatsim.diagnosis.report.described_terms import axis_force_words
 from boatsim.diagnosis.report.findings import Findings
 from boatsim.diagnosis.report.replay_section import animated_replay
-from boatsim.diagnosis.report.sections import sections_of
+from boatsim.diagnosis.report.sections import report_sections
 from boatsim.diagnosis.report.sentences import (
     any_tested,
     improvement_on_held_out,
@@ -45,7 +45,7 @@ def write_report(findings: Findings, folder: Path) -> None:
     Raises:
         OSError: The files cannot be written; existing reports remain unchanged.
     """
-    sections = [s for s in sections_of(findings) if s.blocks]
+    sections = [s for s in report_sections(findings) if s.blocks]
     texts = {
         "report.html": report_html(findings, sections),
         "report.md": report_markdown(findings, sections),
@@ -114,7 +114,7 @@ def _headline(f: Findings) -> str:
         return f"{capitalize(join_words(names))}{rest}."
     forces: list[str] = []
     for law in f.answer["described"]:
-        force = effect_of_axis(law["axis"])
+        force = axis_force_words(law["axis"])
         if force not in forces:
             forces.append(force)
     if not forces:

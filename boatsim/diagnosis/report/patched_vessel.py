@@ -12,7 +12,7 @@ from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.diagnosis.report import spread_table
 from boatsim.files import replace_file
 from boatsim.physics.base import ChannelEffect, CoefficientChange, CoefficientRelease, Effect
-from boatsim.physics.content import effect_address, find_content_file, vessel_address
+from boatsim.physics.content import effect_reference, find_content_file, vessel_reference
 from boatsim.physics.vessel import Body, Vessel, apply_load_values, effect_from_table
 
 DIGITS = 10  # significant, so that the file reproduces the fitted motion
@@ -116,7 +116,7 @@ def _document(vessel: Vessel, path: Path) -> tomlkit.TOMLDocument:
 def _based_on(vessel: Vessel, base: str | None, path: Path) -> str:
     """Return a shipped vessel by its name, another one by its path from the patched file."""
     file = find_content_file("vessel", base, vessel.file.parent) if base else vessel.file
-    name = vessel_address(file)
+    name = vessel_reference(file)
     if name.endswith(".toml"):
         return os.path.relpath(file.resolve(), path.resolve().parent)
     return name
@@ -124,7 +124,7 @@ def _based_on(vessel: Vessel, base: str | None, path: Path) -> str:
 
 def _effect_reference(kind: type[Effect], vessel: Vessel) -> str:
     """Return a shipped effect by its name, another one by its path from the vessel's folder."""
-    name = effect_address(kind)
+    name = effect_reference(kind)
     if name.endswith(".py"):
         return os.path.relpath(name, vessel.path)
     return name
@@ -159,10 +159,12 @@ def _change_number(
         table = tables.get(change.owner, {})
         if change.key in table:
             loads.add(name)
-            _set_number(table, change.key, change.apply_to(float(table[change.key]), x), reason)
+            _set_number(
+                table, change.key, change.changed_value(float(table[change.key]), x), reason
+            )
     if change.key in own or loads.isdisjoint(vessel.load):
         _set_number(
-            own, change.key, change.apply_to(float(own.get(change.key, nominal)), x), reason
+            own, change.key, change.changed_value(float(own.get(change.key, nominal)), x), reason
         )
 
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from boatsim.diagnosis.evaluation import Evaluation
 from boatsim.diagnosis.experiment_design import next_experiment
-from boatsim.diagnosis.filter import axes_of
+from boatsim.diagnosis.filter import dof_in_state_order
 from boatsim.diagnosis.loading import Loaded
 from boatsim.diagnosis.locate.missing_force import FORCE_UNITS
 from boatsim.diagnosis.problem import Fit, Problem
@@ -20,7 +20,7 @@ from boatsim.physics.base import Array
 from boatsim.physics.vessel import Vessel
 
 
-def findings_of(
+def collect_findings(
     answer: Answer,
     loaded: Loaded,
     question: Question,
@@ -74,7 +74,7 @@ def _names(loaded: Loaded) -> dict[str, str]:
 
 def _missing(vessel: Vessel, evaluation: Evaluation) -> tuple[MissingForceCurve, ...]:
     """Return the missing force of each recording, by axis."""
-    axes = axes_of(vessel)
+    axes = dof_in_state_order(vessel)
     units = {axis: FORCE_UNITS[axis] for axis in axes}
 
     def by_axis(values: Array) -> dict[str, Array]:

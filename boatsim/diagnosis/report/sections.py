@@ -47,7 +47,7 @@ from boatsim.view.page_blocks import (
 )
 
 
-def sections_of(f: Findings) -> list[Section]:
+def report_sections(f: Findings) -> list[Section]:
     """Return all sections of the report of a diagnosis, in their order.
 
     Args:

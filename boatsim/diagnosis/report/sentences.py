@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 
 from boatsim.diagnosis.evaluation import MODELS
 from boatsim.diagnosis.report.confirmation import effect_sentences, recalibration_sentences
-from boatsim.diagnosis.report.described_terms import effect_of_axis
+from boatsim.diagnosis.report.described_terms import axis_force_words
 from boatsim.diagnosis.report.families import FAMILIES
 from boatsim.diagnosis.report.findings import Findings, setting_of
 from boatsim.diagnosis.report.model_names import MODEL_WORDS
@@ -344,7 +344,7 @@ def _unexplained_rms(answer: Answer) -> str:
 
 
 def _clause(effect: EffectEntry, words: Mapping[str, str]) -> str:
-    numbers = fitted_values(effect, words)
+    numbers = format_fitted_values(effect, words)
     if not numbers:
         return effect_description(effect["words"])
     return f"{effect_description(effect['words'])} ({numbers})"
@@ -358,7 +358,7 @@ def _clauses(clauses: Sequence[str]) -> str:
     return f"{', '.join(head)}, and {tail}"
 
 
-def fitted_values(effect: EffectEntry, words: Mapping[str, str]) -> str:
+def format_fitted_values(effect: EffectEntry, words: Mapping[str, str]) -> str:
     """Return the main fitted parameter values of an effect as text, without those that may be zero.
 
     Ratios about which the effect has a sentence of its own are omitted.
@@ -512,7 +512,7 @@ def console_lines(f: Findings) -> list[str]:
     lines += _effect_lines("Missing physics", physics, with_nats=not measured)
     for law in answer["described"]:
         for term in law["terms"]:
-            varies = f"{effect_of_axis(law['axis'])} that varies with {term['of']}"
+            varies = f"{axis_force_words(law['axis'])} that varies with {term['of']}"
             lines.append(f"  formula: {varies}: {format_odds(term['gain_nats'])}")
             lines.append(f"    {term['value']:.4g} ± {term['sd']:.2g} {term['unit']}".rstrip())
     lines += [*_refined_lines(answer), *_possible_lines(answer)]

@@ -15,7 +15,7 @@ from boatsim.diagnosis.report.schema import (
 )
 
 
-def signs_entry(decision: Decision) -> SignsEntry:
+def cause_statistics_entry(decision: Decision) -> SignsEntry:
     """Return the statistics behind the probability of each identified effect, for diagnosis.json.
 
     They tell a true cause from a stand-in that only imitates an unmodelled cause.

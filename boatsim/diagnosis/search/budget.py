@@ -59,7 +59,7 @@ class SearchBudget:
             found.append(f"{candidates} not {how}")
         return (*found, *self._statements)
 
-    def omit(self, number: int, how: str) -> None:
+    def record_skipped_candidates(self, number: int, how: str) -> None:
         """Record that the search skipped some candidate effects because its budget is spent.
 
         A later record of the same kind of trial replaces an earlier one.
@@ -92,7 +92,7 @@ class SearchBudget:
             self._statements.append(what)
 
 
-def addition_to(effects: Iterable[str]) -> str:
+def addition_phrase(effects: Iterable[str]) -> str:
     """Return the words "in addition to wind, current" for a set of effects; "alone" for none.
 
     Args:

@@ -10,13 +10,13 @@ from boatsim.diagnosis.candidates import base_name
 from boatsim.diagnosis.filter import MappedRecording
 from boatsim.diagnosis.fit import converge, fit, gauss_newton, remove_effect
 from boatsim.diagnosis.problem import Fit, Problem
-from boatsim.diagnosis.search.budget import SearchBudget, addition_to
+from boatsim.diagnosis.search.budget import SearchBudget, addition_phrase
 from boatsim.diagnosis.search.evidence import (
     fits_with_evidence_above,
     leading_candidates,
     required_gain,
     unexplained_evidence,
-    unknown_threshold,
+    unknown_cause_threshold,
 )
 from boatsim.diagnosis.search.screening import (
     Linearisation,
@@ -74,7 +74,7 @@ class CandidateSets:
         self.rechecked: set[tuple[Set, str]] = set()
         self.fitted_in_full: set[tuple[Set, str]] = set()
         self.banned: set[str] = set()
-        # results of `further_effects` by the names of a set and of the candidates then banned
+        # results of `add_further_effects` by the names of a set and of the candidates then banned
         self.further: dict[tuple[Set, Set], Fit | None] = {}
         # effects without which held-out recordings are predicted worse, as free runs show
         self.supported: set[str] = set()
@@ -235,7 +235,9 @@ class CandidateSets:
         ideas = set(map(base_name, best.effects))
         rest = [n for n in among or self.candidates if base_name(n) not in ideas and n not in known]
         if key and self.budget.spent:
-            self.budget.omit(len(rest), f"tested {addition_to(best.effects)}")
+            self.budget.record_skipped_candidates(
+                len(rest), f"tested {addition_phrase(best.effects)}"
+            )
             return known
         if rest:
             report = self._report_screening if len(self.screenings) == 1 else None
@@ -254,7 +256,9 @@ class CandidateSets:
             if not ahead:
                 break
             if self.budget.spent:
-                self.budget.omit(len(ahead), f"fitted in full {addition_to(best.effects)}")
+                self.budget.record_skipped_candidates(
+                    len(ahead), f"fitted in full {addition_phrase(best.effects)}"
+                )
                 break
             name = ahead[0]
             found = known[name]
@@ -264,7 +268,7 @@ class CandidateSets:
             if found is known[name]:
                 self.fitted_in_full.add((key, name))
                 fits += 1
-                found = self.fit_in_full(best, name, found)
+                found = self.fit_with_added_effect(best, name, found)
             allowed[name] = known[name] = found
         return known
 
@@ -291,7 +295,9 @@ class CandidateSets:
             if found.evidence < worst and (key, name) not in self.rechecked:
                 failed.append(name)
         threshold = (
-            unknown_threshold(config.select, self.explained_evidence(best)) if failed else np.inf
+            unknown_cause_threshold(config.select, self.explained_evidence(best))
+            if failed
+            else np.inf
         )
         if not failed or unexplained_evidence(self.problem, best) < threshold:
             return {}
@@ -302,7 +308,7 @@ class CandidateSets:
             refitted[name] = gauss_newton(self.problem, allowed[name], steps, enough)
         return refitted
 
-    def fit_in_full(self, best: Fit, name: str, screening: Fit) -> Fit:
+    def fit_with_added_effect(self, best: Fit, name: str, screening: Fit) -> Fit:
         """Add a candidate effect to a fit and fit all parameters and noise levels.
 
         The fit starts from the rough fit of the screening. Where that leaves much unexplained, the

@@ -11,7 +11,7 @@ from boatsim.diagnosis.problem import Fit
 from boatsim.diagnosis.search.candidate_sets import CandidateSets
 
 
-def oscillating_force(sets: CandidateSets, best: Fit) -> str:
+def oscillating_force_name(sets: CandidateSets, best: Fit) -> str:
     """Return the name of the oscillating stochastic force of a fit, such as waves; "" without one.
 
     Args:
@@ -21,7 +21,7 @@ def oscillating_force(sets: CandidateSets, best: Fit) -> str:
     return next((name for name in best.effects if name in sets.unsteady), "")
 
 
-def braking_force(sets: CandidateSets, best: Fit) -> str:
+def dissipative_force_name(sets: CandidateSets, best: Fit) -> str:
     """Return the name of a fit's oscillating force if that force takes energy from the hull, or "".
 
     Waves give energy to a hull. A force that brakes it only imitates a missing damping law.
@@ -30,7 +30,7 @@ def braking_force(sets: CandidateSets, best: Fit) -> str:
         sets: Cache of the fits of candidate sets, with the estimation problem.
         best: Fit of the vessel model with some candidate effects.
     """
-    name = oscillating_force(sets, best)
+    name = oscillating_force_name(sets, best)
     if name and _share_of_power(sets, best) < sets.config.select.braking_share:
         return name
     return ""
@@ -38,14 +38,14 @@ def braking_force(sets: CandidateSets, best: Fit) -> str:
 
 def _share_of_power(sets: CandidateSets, best: Fit) -> float:
     """Mean power of the smoothed oscillating force, relative to one in phase with the rates."""
-    problem, on = sets.problem, sets.problem.program.switches(best.effects)
+    problem, on = sets.problem, sets.problem.program.effect_switches(best.effects)
     nq, swell = problem.program.module.NQ, problem.program.module.oscillating_force
     power, largest = 0.0, 0.0
     for mapped in problem.recordings:
         values = problem.values(mapped, best.free, best.theta)
         states = mapped.smooth(values, on, best.levels).means
         force = states[:, 3 * nq + 1 : 5 * nq : 2] / swell(values, on).frequency
-        rates = problem.program.body_rates(states[:, : 2 * nq])[:, nq:]
+        rates = problem.program.to_body_velocities(states[:, : 2 * nq])[:, nq:]
         force = force - force.mean(axis=0)
         rates = rates - rates.mean(axis=0)
         power += float(np.sum(force * rates))

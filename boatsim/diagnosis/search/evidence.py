@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from boatsim.diagnosis.config import DEFAULT, SelectConfig
-from boatsim.diagnosis.problem import Fit, Problem, priors_of
+from boatsim.diagnosis.problem import Fit, Problem, prior_arrays
 
 
 def required_gain(number: int, config: SelectConfig = DEFAULT.select) -> float:
@@ -22,7 +22,7 @@ def required_gain(number: int, config: SelectConfig = DEFAULT.select) -> float:
     return config.odds + float(np.log(max(number, 1)))
 
 
-def unknown_threshold(
+def unknown_cause_threshold(
     config: SelectConfig, explained: float, model_error: float | None = None
 ) -> float:
     """Return the evidence of unexplained force from which an unknown cause is reported [nats].
@@ -48,7 +48,7 @@ def combined_gain(gains: Sequence[float]) -> float:
     return float(np.logaddexp.reduce(np.array(gains, dtype=float)))
 
 
-def gain_by_curvature(best: Fit, name: str) -> float:
+def quadratic_evidence_gain(best: Fit, name: str) -> float:
     """Return a quadratic approximation of the evidence that an effect gains in a fit [nats].
 
     This is half the squared distance of its parameters from zero effect in standard deviations. It
@@ -62,11 +62,11 @@ def gain_by_curvature(best: Fit, name: str) -> float:
     own = [i for i, f in enumerate(best.free) if f.effect == name and not f.relative]
     if not own:
         return 0.0
-    off = best.theta[own] - priors_of(best.free).mean[own]
+    off = best.theta[own] - prior_arrays(best.free).mean[own]
     return 0.5 * float(off @ np.linalg.solve(best.covariance[np.ix_(own, own)], off))
 
 
-def gains_over(fits: Mapping[str, Fit], base: Fit) -> dict[str, float]:
+def log_evidence_gains(fits: Mapping[str, Fit], base: Fit) -> dict[str, float]:
     """Return the log evidence of each of several fits minus that of a reference fit [nats].
 
     Args:
@@ -99,7 +99,7 @@ def leading_candidates(
         base: Fit to which the candidates were added.
         config: Settings of the selection, with the allowed distances from the best candidate.
     """
-    gains = gains_over(fits, base)
+    gains = log_evidence_gains(fits, base)
     order = sorted(gains, key=lambda n: -gains[n])
     if not order:
         return []
@@ -118,7 +118,7 @@ def unexplained_evidence(problem: Problem, best: Fit) -> float:
         best: Fit of the vessel model with some candidate effects.
     """
     factor = problem.config.locate.disturbance_factor
-    on = problem.program.switches(best.effects)
+    on = problem.program.effect_switches(best.effects)
     force = np.minimum(best.levels.force, factor * problem.ambient.force)
     held = replace(best.levels, force=force)
     free = problem.log_likelihood(best.free, best.theta, on, best.levels)

@@ -7,10 +7,14 @@ import numpy as np
 
 from boatsim.diagnosis.candidates import base_name
 from boatsim.diagnosis.problem import Fit
-from boatsim.diagnosis.search.budget import addition_to
+from boatsim.diagnosis.search.budget import addition_phrase
 from boatsim.diagnosis.search.candidate_sets import CandidateSets
-from boatsim.diagnosis.search.evidence import combined_gain, gain_by_curvature, gains_over
-from boatsim.diagnosis.search.further_effects import further_effects
+from boatsim.diagnosis.search.evidence import (
+    combined_gain,
+    log_evidence_gains,
+    quadratic_evidence_gain,
+)
+from boatsim.diagnosis.search.further_effects import add_further_effects
 
 # shares of the work of a selection, by experience: at its begin and end, and what remains of it
 # after each further effect
@@ -44,7 +48,7 @@ def select_forward(sets: CandidateSets, best: Fit) -> Fit:
             tested = laws  # a stochastic force can replace a law, a law hardly replaces it
         slight = config.slight_share * sets.explained_evidence(best)
         if _combined_gain(tested, best) < max(sets.required_gain, slight):
-            further = further_effects(sets, best)
+            further = add_further_effects(sets, best)
             if further is None:
                 break
             best = further
@@ -64,7 +68,7 @@ def select_forward(sets: CandidateSets, best: Fit) -> Fit:
 
 def _not_added(name: str, best: Fit, gain: float) -> str:
     """The statement that a candidate was not added."""
-    where = f" {addition_to(best.effects)}" if best.effects else ""
+    where = f" {addition_phrase(best.effects)}" if best.effects else ""
     added = f"{base_name(name)} was not added{where}"
     return f"{added}, although a first estimate of its evidence is {gain:.0f} nats"
 
@@ -91,14 +95,14 @@ def _combined_gain(fits: Mapping[str, Fit], best: Fit) -> float:
     """Evidence that any of several candidates gains on top of a set."""
     if not fits:
         return -np.inf
-    return combined_gain(list(gains_over(fits, best).values()))
+    return combined_gain(list(log_evidence_gains(fits, best).values()))
 
 
 def _without_unnecessary(sets: CandidateSets, best: Fit) -> Fit:
     """The set without earlier effects that the newest one makes unnecessary."""
     keep = sets.config.select.keep_factor * sets.required_gain
     for name in best.effects[:-1]:
-        if gain_by_curvature(best, name) > keep:
+        if quadratic_evidence_gain(best, name) > keep:
             continue
         without = sets.fit_without(best, name)
         if without.evidence > best.evidence - sets.required_gain:

@@ -14,13 +14,13 @@ from boatsim.diagnosis.candidates import base_name
 from boatsim.diagnosis.fit import converge
 from boatsim.diagnosis.problem import Fit
 from boatsim.diagnosis.search.candidate_sets import CandidateSets
-from boatsim.diagnosis.search.evidence import unexplained_evidence, unknown_threshold
+from boatsim.diagnosis.search.evidence import unexplained_evidence, unknown_cause_threshold
 from boatsim.diagnosis.search.screening import screen
 
 NOT_SOUGHT = "effects that hide each other were not sought, although much remains unexplained"
 
 
-def further_effects(sets: CandidateSets, best: Fit) -> Fit | None:
+def add_further_effects(sets: CandidateSets, best: Fit) -> Fit | None:
     """Return a fit with one or two more candidate effects that explain an unexplained force.
 
     Candidates are screened with the latent force at its assumed level. The most promising ones are
@@ -41,7 +41,7 @@ def further_effects(sets: CandidateSets, best: Fit) -> Fit | None:
 
 
 def _find_further_effects(sets: CandidateSets, best: Fit) -> Fit | None:
-    threshold = unknown_threshold(sets.config.select, sets.explained_evidence(best))
+    threshold = unknown_cause_threshold(sets.config.select, sets.explained_evidence(best))
     room = sets.config.select.most_effects - len(best.effects)
     if room < 1 or unexplained_evidence(sets.problem, best) < threshold:
         return None

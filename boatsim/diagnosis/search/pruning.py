@@ -12,10 +12,10 @@ from boatsim.diagnosis.problem import Fit
 from boatsim.diagnosis.search.candidate_sets import CandidateSets
 from boatsim.diagnosis.search.evidence import (
     combined_gain,
-    gains_over,
     leading_candidates,
+    log_evidence_gains,
     unexplained_evidence,
-    unknown_threshold,
+    unknown_cause_threshold,
 )
 from boatsim.diagnosis.search.forward_selection import select_forward
 from boatsim.diagnosis.significance import distance_from_zero, jointly_differ_from_zero
@@ -140,14 +140,14 @@ def _corrects_shape(sets: CandidateSets, best: Fit, named: IdentifiedEffect) -> 
     seem to be required where nature's law is neither.
     """
     config = sets.config.select
-    if named.gain > unknown_threshold(config, sets.explained_evidence(best)):
+    if named.gain > unknown_cause_threshold(config, sets.explained_evidence(best)):
         return False
     alone = sets.fit_without(best, named.name)
     for other in alone.effects:
         neither, instead = sets.fit_without(alone, other), sets.fit_without(best, other)
         both = best.evidence - neither.evidence
         least = min(alone.evidence, instead.evidence) - neither.evidence
-        if least > config.alike_share * both and named.gain < unknown_threshold(config, both):
+        if least > config.alike_share * both and named.gain < unknown_cause_threshold(config, both):
             return True
     return False
 
@@ -168,7 +168,7 @@ def _improves_prediction(sets: CandidateSets, best: Fit, named: IdentifiedEffect
     ):
         return True
     for one in (best, sets.fit_without(best, named.name)):
-        on = problem.program.switches(one.effects)
+        on = problem.program.effect_switches(one.effects)
         passes = problem.filter(one.free, one.theta, on, best.levels)
         residual = passes.log_likelihood - passes.log_density
         found.append(residual + log_prior(one.free, one.theta))
@@ -224,7 +224,9 @@ def _compare_with_rivals(sets: CandidateSets, best: Fit, name: str) -> Identifie
     leading = leading_candidates(others, without, config)[: config.most_rivals]
     for i, rival in enumerate(leading):
         if sets.budget.spent:
-            sets.budget.omit(len(leading) - i, f"refitted in place of {base_name(name)}")
+            sets.budget.record_skipped_candidates(
+                len(leading) - i, f"refitted in place of {base_name(name)}"
+            )
             break
         found = others[rival]
         poor = found.evidence < without.evidence + config.front_share * gain
@@ -240,7 +242,7 @@ def _tested_instead(sets: CandidateSets, best: Fit, name: str, without: Fit) -> 
     if not sets.budget.spent:
         return sets.screen_unrefuted(without, promising)
     others = set(promising) - sets.banned - set(best.effects)
-    sets.budget.omit(len(others), f"refitted in place of {base_name(name)}")
+    sets.budget.record_skipped_candidates(len(others), f"refitted in place of {base_name(name)}")
     return {}
 
 
@@ -263,7 +265,7 @@ def compare_rivals(
         config: Distance within which rivals are look-alikes.
     """
     gain = best.evidence - without.evidence
-    gains = gains_over(rivals, without)
+    gains = log_evidence_gains(rivals, without)
     weights = np.exp(np.array([0.0, gain, *gains.values()]) - max(gain, 0.0, *gains.values()))
     # the same effect on the other side of an actuator's lag counts as this one
     same = np.array([False, True, *(base_name(n) == base_name(name) for n in gains)])

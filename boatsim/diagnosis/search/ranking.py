@@ -15,17 +15,21 @@ from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.diagnosis.recalibration import Recalibration
 from boatsim.diagnosis.search.budget import SearchBudget
 from boatsim.diagnosis.search.candidate_sets import CandidateSets
-from boatsim.diagnosis.search.energy_balance import braking_force, oscillating_force
-from boatsim.diagnosis.search.evidence import gains_over, unexplained_evidence, unknown_threshold
+from boatsim.diagnosis.search.energy_balance import dissipative_force_name, oscillating_force_name
+from boatsim.diagnosis.search.evidence import (
+    log_evidence_gains,
+    unexplained_evidence,
+    unknown_cause_threshold,
+)
 from boatsim.diagnosis.search.forward_selection import refit_from_base_levels, select_forward
 from boatsim.diagnosis.search.pruning import IdentifiedEffect, prune
 from boatsim.diagnosis.search.validation import (
-    deterministic_replacement,
     generalizes_worse,
     misleading_effect,
     refuted_effect,
     remove_dwarfed_effect,
     remove_refuted_rivals,
+    replace_stochastic_force,
 )
 from boatsim.physics.described_laws import SymbolicTerm
 from boatsim.progress import Report, ignore_progress
@@ -88,10 +92,12 @@ class Ranking:
     def unknown(self) -> bool:
         """Whether a force or a cause remains that no candidate effect explains."""
         described = self.description is not None or bool(self.divergences)
-        return described or self.remains or self.stands_in or self.held_out_remains
+        return (
+            described or self.exceeds_assumed_disturbance or self.stands_in or self.held_out_remains
+        )
 
     @property
-    def remains(self) -> bool:
+    def exceeds_assumed_disturbance(self) -> bool:
         """Whether the unexplained force is larger than, or unlike, the assumed random disturbance.
 
         Unlike means that it clearly correlates with motion, commands, place or time.
@@ -147,12 +153,14 @@ def rank(
         sets.base,
         inflated,
         named,
-        gains_over(sets.screen_candidates(sets.base), sets.base),
+        log_evidence_gains(sets.screen_candidates(sets.base), sets.base),
         _evidence_on_top(sets, best),
         unexplained_evidence(problem, best),
         correlated,
         explained,
-        told_from=unknown_threshold(problem.config.select, explained, decide.unexplained_share),
+        told_from=unknown_cause_threshold(
+            problem.config.select, explained, decide.unexplained_share
+        ),
         structured=_clearly_correlates(sets, correlated, gain, decide.structure_share),
         without=sets.fits_without_each(best),
         skipped=sets.budget.skipped,
@@ -183,7 +191,7 @@ def _search_law_behind_waves(
     """
     correlated = find_structure(sets.problem, best)
     while True:
-        waves = oscillating_force(sets, best)
+        waves = oscillating_force_name(sets, best)
         if not waves or not _replaces_law(sets, best, waves, correlated):
             return best, named, correlated
         sets.banned.add(waves)
@@ -211,7 +219,7 @@ def _remove_refuted_effects(
 ) -> tuple[Fit, tuple[IdentifiedEffect, ...]]:
     """The set without effects that physics or held-out recordings refute."""
     while named:
-        worse = braking_force(sets, best) or misleading_effect(sets, best, held_out)
+        worse = dissipative_force_name(sets, best) or misleading_effect(sets, best, held_out)
         if not worse:
             break
         sets.banned.add(worse)
@@ -227,7 +235,7 @@ def _remove_refuted_effects(
         sets.banned.remove(worse)  # what replaced it holds less well for held-out recordings
         sets.supported.add(worse)
     while True:
-        law = deterministic_replacement(sets, best, named, held_out)
+        law = replace_stochastic_force(sets, best, named, held_out)
         if law is None:
             return best, named
         best, named = prune(sets, select_forward(sets, law))
@@ -243,7 +251,7 @@ def _replaces_law(sets: CandidateSets, best: Fit, waves: str, correlated: Struct
         sets.config.select.structure_error,
     )
     enough = correlated.gain > sets.config.select.remaining_share * gain
-    return correlated.is_effect and clear and enough
+    return correlated.varies_with_motion and clear and enough
 
 
 def _waves_beside_law(
@@ -267,7 +275,7 @@ def _clearly_correlates(
     sets: CandidateSets, correlated: Structure, explained: float, model_error: float
 ) -> bool:
     """Whether the force that remains, however weak, clearly correlates with something."""
-    threshold = unknown_threshold(sets.config.select, explained, model_error)
+    threshold = unknown_cause_threshold(sets.config.select, explained, model_error)
     return bool(correlated.significant and correlated.gain > threshold)
 
 

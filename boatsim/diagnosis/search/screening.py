@@ -7,7 +7,7 @@ from functools import cached_property
 import numpy as np
 
 from boatsim.diagnosis.command_range import largest_command
-from boatsim.diagnosis.filter import axes_of
+from boatsim.diagnosis.filter import dof_in_state_order
 from boatsim.diagnosis.fit import (
     DAMPING_GROWTH,
     FIRST_DAMPING,
@@ -17,7 +17,7 @@ from boatsim.diagnosis.fit import (
     gauss_newton,
     jacobian,
     log_prior,
-    log_truncation,
+    log_truncation_probability,
     unfitted_hypothesis,
 )
 from boatsim.diagnosis.noise_levels import log_force_prior
@@ -79,7 +79,7 @@ def linearise(problem: Problem, base: Fit) -> Linearisation:
         problem: The estimation problem: recordings, vessel model, candidate effects and priors.
         base: Converged fit to which candidate effects are to be added.
     """
-    on = problem.program.switches(base.effects)
+    on = problem.program.effect_switches(base.effects)
     passes = problem.filter(base.free, base.theta, on, base.levels)
     white = passes.whitened
     known = jacobian(problem, base.free, base.theta, on, base.levels, passes)
@@ -139,8 +139,8 @@ def confirm_screening(problem: Problem, base: Fit, screened: Fit) -> Fit:
         screened: Rough fit with the candidate added.
     """
     config = problem.config.select
-    on = problem.program.switches(screened.effects)
-    on_base = problem.program.switches(base.effects)
+    on = problem.program.effect_switches(screened.effects)
+    on_base = problem.program.effect_switches(base.effects)
     at_base = problem.log_likelihood(base.free, base.theta, on_base, base.levels)
     at_base += log_prior(base.free, base.theta)
     predicted = screened.evidence - base.evidence
@@ -248,7 +248,7 @@ def _screen_deterministic(problem: Problem, base: Fit, effect: Effect, about: Li
     config = problem.config.select
     begun = starting_fits(problem, base, effect)
     if len(begun) > config.screening_starts:
-        on = problem.program.switches(begun[0].effects)
+        on = problem.program.effect_switches(begun[0].effects)
 
         def loss(start: Fit) -> float:
             theta = ParameterSpace(start.free).clip(start.theta)
@@ -264,8 +264,8 @@ def _screen_deterministic(problem: Problem, base: Fit, effect: Effect, about: Li
         best = max(first, key=lambda found: found[1])
         best = _gauss_newton_steps(problem, best[0], about, config.screening_steps - 1)
     found, score = best
-    truncation = log_truncation(found.free, found.theta, found.covariance)
-    truncation -= log_truncation(base.free, base.theta, base.covariance)
+    truncation = log_truncation_probability(found.free, found.theta, found.covariance)
+    truncation -= log_truncation_probability(base.free, base.theta, base.covariance)
     gain = score - about.score + about.half_log_determinant + truncation
     return replace(found, evidence=base.evidence + gain)
 
@@ -278,7 +278,7 @@ def _gauss_newton_steps(
     Returns the fit, and its score with the determinant.
     """
     config, free, levels = problem.config.select, start.free, start.levels
-    on = problem.program.switches(start.effects)
+    on = problem.program.effect_switches(start.effects)
     space = ParameterSpace(free)
     theta = middle = space.clip(start.theta)
     known = about.columns
@@ -345,7 +345,7 @@ def _screen_stochastic(problem: Problem, base: Fit, effect: Effect, about: Linea
     before += log_prior(base.free, base.theta) + log_force_prior(problem, base.levels)
 
     def with_likelihood(at: Fit) -> Fit:
-        on = problem.program.switches(at.effects)
+        on = problem.program.effect_switches(at.effects)
         score = problem.log_likelihood(at.free, at.theta, on, at.levels, about.passes)
         score += log_prior(at.free, at.theta)
         evidence = base.evidence + score + log_force_prior(problem, at.levels) - before
@@ -353,7 +353,7 @@ def _screen_stochastic(problem: Problem, base: Fit, effect: Effect, about: Linea
 
     best = _most_likely(list(map(with_likelihood, stochastic_starting_fits(problem, base, effect))))
     if isinstance(effect, RandomForce):
-        for i, axis in enumerate(axes_of(problem.program.vessel)):
+        for i, axis in enumerate(dof_in_state_order(problem.program.vessel)):
             best = _most_likely(
                 [best, with_likelihood(_without_axis(best, base, effect.name, i, axis))]
             )
@@ -397,7 +397,9 @@ def stochastic_starting_fits(problem: Problem, base: Fit, effect: Effect) -> lis
     """
     shared = problem.config.select.swell_share * base.levels.force
     if isinstance(effect, RandomForce):
-        of_axis = dict(zip(axes_of(problem.program.vessel), shared.tolist(), strict=True))
+        of_axis = dict(
+            zip(dof_in_state_order(problem.program.vessel), shared.tolist(), strict=True)
+        )
         levels = replace(base.levels, force=shared)
         rms = {name: of_axis.get(name, 0.0) for name in type(effect).strength}
     else:

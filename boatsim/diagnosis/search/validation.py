@@ -6,11 +6,11 @@ from dataclasses import replace
 import numpy as np
 
 from boatsim.diagnosis.free_runs import FreeRun, free_runs
-from boatsim.diagnosis.noise_levels import fit_force, log_force_prior
+from boatsim.diagnosis.noise_levels import fit_latent_force_level, log_force_prior
 from boatsim.diagnosis.problem import Fit
 from boatsim.diagnosis.search import generalization
 from boatsim.diagnosis.search.candidate_sets import CandidateSets, Recordings
-from boatsim.diagnosis.search.evidence import unexplained_evidence, unknown_threshold
+from boatsim.diagnosis.search.evidence import unexplained_evidence, unknown_cause_threshold
 from boatsim.diagnosis.search.generalization import Squares
 from boatsim.diagnosis.search.pruning import IdentifiedEffect, compare_rivals
 
@@ -71,7 +71,7 @@ def refuted_effect(
     gains = {
         name: whole - predictive_log_likelihood(sets, f, held_out) for name, f in without.items()
     }
-    threshold = unknown_threshold(sets.config.select, sets.explained_evidence(best))
+    threshold = unknown_cause_threshold(sets.config.select, sets.explained_evidence(best))
     doubtful = {name for name, gain in gains.items() if gain < -threshold}
     unlikely = doubtful - sets.supported
     little = set()
@@ -126,8 +126,8 @@ def predictive_log_likelihood(sets: CandidateSets, found: Fit, held_out: Recordi
     key = (id(found), id(held_out))
     if key not in sets.predictions:
         problem = sets.problem.on(held_out)
-        refitted = fit_force(problem, found)
-        on = problem.program.switches(refitted.effects)
+        refitted = fit_latent_force_level(problem, found)
+        on = problem.program.effect_switches(refitted.effects)
         likelihood = problem.log_likelihood(refitted.free, refitted.theta, on, refitted.levels)
         predicted = likelihood + log_force_prior(problem, refitted.levels)
         sets.predictions[key] = found, held_out, predicted  # both stay alive with their identities
@@ -157,7 +157,7 @@ def evaluate_rivals_on_all(
     return found
 
 
-def deterministic_replacement(
+def replace_stochastic_force(
     sets: CandidateSets, best: Fit, named: Sequence[IdentifiedEffect], held_out: Recordings
 ) -> Fit | None:
     """Replace a stochastic force by a deterministic effect if held-out recordings prefer it.
@@ -258,7 +258,7 @@ def remove_dwarfed_effect(sets: CandidateSets, best: Fit, held_out: Recordings) 
     """
     config = sets.config.validate
     remaining = unexplained_evidence(sets.problem, best)
-    if remaining < unknown_threshold(sets.config.select, sets.explained_evidence(best)):
+    if remaining < unknown_cause_threshold(sets.config.select, sets.explained_evidence(best)):
         return best
     without = sets.fits_without_each(best)
     little = {}

@@ -13,7 +13,7 @@ from itertools import combinations, product
 import numpy as np
 
 from boatsim.diagnosis.config import DescribeConfig
-from boatsim.diagnosis.filter import MappedRecording, axes_of
+from boatsim.diagnosis.filter import MappedRecording, dof_in_state_order
 from boatsim.physics.base import Array
 from boatsim.physics.described_laws import EVER, SymbolicTerm
 from boatsim.physics.effects.described_force import DescribedForce
@@ -69,7 +69,7 @@ def terms(
     lasting = list(_lasting(recordings, config))
     oscillating = list(_oscillating(recordings, config.most_oscillations, config))
     memories = _memories(recordings, config)
-    axes = axes_of(vessel)
+    axes = dof_in_state_order(vessel)
     earth = ("north", "east") if {"surge", "sway"} <= set(axes) else ()
     for axis in axes:
         for of in _products(vessel, list(speeds), commands):
@@ -87,7 +87,7 @@ def terms(
     for axis in (*axes, *earth):
         for c in (*lasting, *oscillating):
             yield DescribedForce(axis=axis, acts=c.acts, begin=c.begin, end=c.end, run=c.run)
-    if vessel.effects_of(DescribedThrust.per_instance_of):
+    if vessel.effects_of_type(DescribedThrust.per_instance_of):
         courses = [*lasting, *_oscillating(recordings, config.most_thrust_oscillations, config)]
         yield from _thrust_terms(vessel, list(speeds), commands, courses, memories)
 
@@ -128,7 +128,7 @@ def _drives(vessel: Vessel, signal: str, side: float) -> bool:
 
 def _has_side_drives(vessel: Vessel) -> bool:
     """Return whether a drive lies off the centre line."""
-    for drive in vessel.effects_of(DescribedThrust.per_instance_of):
+    for drive in vessel.effects_of_type(DescribedThrust.per_instance_of):
         if getattr(drive, "y", 0.0) != 0.0:
             return True
     return False

@@ -13,7 +13,7 @@ from boatsim.diagnosis.search.evidence import unexplained_evidence
 from boatsim.diagnosis.symbolic.curves import curve
 from boatsim.diagnosis.symbolic.grammar import longest_duration
 from boatsim.diagnosis.symbolic.term_forces import fitted_recordings
-from boatsim.diagnosis.symbolic.term_selection import Formula, select_terms, without_term
+from boatsim.diagnosis.symbolic.term_selection import Formula, refit_without_term, select_terms
 from boatsim.progress import Report, ignore_progress
 
 
@@ -41,7 +41,7 @@ def describe(
         return None
     gains = {}
     for slot in found.terms:
-        gains[slot] = found.fit.evidence - without_term(problem, found, slot).fit.evidence
+        gains[slot] = found.fit.evidence - refit_without_term(problem, found, slot).fit.evidence
     general = _general(problem, found, Formula(best, {}), gains, recalibrated, held_out)
     written, recordings = [], fitted_recordings(problem, found.fit)
     for slot, term in sorted(found.terms.items(), key=lambda pair: -gains[pair[0]]):
@@ -70,7 +70,7 @@ def _general(
     chain = [found]
     for slot in sorted(found.terms, key=lambda n: gains[n]):
         if not found.terms[slot].run:
-            chain.append(without_term(problem, chain[-1], slot))
+            chain.append(refit_without_term(problem, chain[-1], slot))
     events_only = chain[-1]
     if not set(start.fit.effects) <= set(events_only.fit.effects):
         chain.append(start)

@@ -12,7 +12,7 @@ from boatsim.physics.terms import COURSES
 NEVER = {"course": float(COURSES.index("within")), "begin": 0.0, "end": 0.0}
 
 
-def free_slot(problem: Problem, kind: type[SymbolicTerm], used: Sequence[str]) -> str:
+def unused_placeholder(problem: Problem, kind: type[SymbolicTerm], used: Sequence[str]) -> str:
     """Return the name of a placeholder effect that has not been set to a symbolic term yet.
 
     Placeholders are compiled into the vessel program, so that a term needs no further compilation.
@@ -31,7 +31,7 @@ def free_slot(problem: Problem, kind: type[SymbolicTerm], used: Sequence[str]) -
     return ""
 
 
-def write_term(
+def set_placeholder_term(
     problem: Problem, slot: str, term: SymbolicTerm, recordings: Sequence[MappedRecording]
 ) -> None:
     """Set a placeholder effect of the compiled vessel program to a term of the symbolic regression.

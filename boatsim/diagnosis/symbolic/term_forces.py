@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from boatsim.diagnosis.filter import MappedRecording, axes_of
+from boatsim.diagnosis.filter import MappedRecording, dof_in_state_order
 from boatsim.diagnosis.locate import nominal_forces
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.physics import terms
@@ -23,7 +23,7 @@ PLACES = dict(zip(AXES, ("x", "y", "z", "phi", "theta", "psi"), strict=True))
 RATES = dict(zip(AXES, "uvwpqr", strict=True))
 
 
-def lagged(signals: Array, times: Array, time_constant: float) -> Array:
+def low_pass_row_means(signals: Array, times: Array, time_constant: float) -> Array:
     """Filter signals by a first-order lag and return the mean over each row.
 
     Args:
@@ -71,10 +71,10 @@ class FittedRecording:
     def motion(self) -> Motion:
         """Smoothed motion of the hull at all rows; each field has the shape (N,)."""
         program, rows = self.problem.program, len(self.states)
-        axes, nq = axes_of(program.vessel), program.module.NQ
+        axes, nq = dof_in_state_order(program.vessel), program.module.NQ
         fields: dict[str, Any] = dict.fromkeys(Motion._fields, np.zeros(rows))
         fields["t"] = self.recording.times
-        rates = program.body_rates(self.states)[:, nq:]
+        rates = program.to_body_velocities(self.states)[:, nq:]
         for i, axis in enumerate(axes):
             fields[PLACES[axis]] = self.states[:, i]
             fields[RATES[axis]] = rates[:, i]
@@ -95,7 +95,7 @@ class FittedRecording:
     @cached_property
     def on(self) -> Array:
         """Array (effects,) with 1 for the effects that act in the fit, else 0."""
-        return self.problem.program.switches(self.fit.effects)
+        return self.problem.program.effect_switches(self.fit.effects)
 
     @cached_property
     def held(self) -> Array:
@@ -125,7 +125,7 @@ class FittedRecording:
         Returns:
             Force (N, axes) [N, N m]; zero for an event of another recording.
         """
-        axes = axes_of(self.problem.program.vessel)
+        axes = dof_in_state_order(self.problem.program.vessel)
         if term.run not in ("", self.recording.name):
             return np.zeros((len(self.states), len(axes)))
         size = self.size(term)
@@ -205,7 +205,9 @@ class FittedRecording:
         signals = np.repeat(self.held, 2, axis=0)
         signals[1::2] = np.abs(signals[1::2])
         if time_constant not in self._lagged:
-            self._lagged[time_constant] = lagged(signals, self.recording.times, time_constant)
+            self._lagged[time_constant] = low_pass_row_means(
+                signals, self.recording.times, time_constant
+            )
         k = int(looks_at) - terms.FIRST_HELD
         average = self._lagged[time_constant][k]
         if deviation:
@@ -246,7 +248,7 @@ def fitted_recordings(problem: Problem, fit: Fit) -> list[FittedRecording]:
         problem: The estimation problem.
         fit: A fit of it.
     """
-    on, nq = problem.program.switches(fit.effects), problem.program.module.NQ
+    on, nq = problem.program.effect_switches(fit.effects), problem.program.module.NQ
     fitted = []
     for recording in problem.recordings:
         values = problem.values(recording, fit.free, fit.theta)

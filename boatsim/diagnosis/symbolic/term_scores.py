@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from boatsim.diagnosis.filter import axes_of
+from boatsim.diagnosis.filter import dof_in_state_order
 from boatsim.diagnosis.locate.smoothing import LatentForce, separate_information
 from boatsim.diagnosis.problem import froude_scale
 from boatsim.diagnosis.symbolic.term_forces import FittedRecording
@@ -95,7 +95,9 @@ def _score_batch(
     for term, (i, s, square, n) in zip(terms, numbers, strict=True):
         if not (np.isfinite(i) and i > 0.0 and square > 0.0):
             continue
-        spread = strength(recordings[0].problem.program.vessel, term) / float(np.sqrt(square / n))
+        spread = prior_force_sd(recordings[0].problem.program.vessel, term) / float(
+            np.sqrt(square / n)
+        )
         whole = i + spread**-2
         gain = 0.5 * s**2 / whole - 0.5 * float(np.log(whole * spread**2))
         scored.append(ScoredTerm(term, gain, s / whole, spread))
@@ -109,7 +111,7 @@ def _size(fitted: FittedRecording, term: SymbolicTerm) -> Array:
     return 0.0 * fitted.recording.times
 
 
-def strength(vessel: Vessel, term: SymbolicTerm) -> float:
+def prior_force_sd(vessel: Vessel, term: SymbolicTerm) -> float:
     """Return the prior standard deviation of the force that a symbolic term exerts on a vessel.
 
     It is that of the force where the term acts, and scales with the vessel's size by Froude's law.
@@ -141,7 +143,7 @@ def varying_signals(
     """
     vessel = recordings[0].problem.program.vessel
     speeds = {}
-    for axis in axes_of(vessel):
+    for axis in dof_in_state_order(vessel):
         name, field = SPEEDS[AXES.index(axis)], SPEED_FIELDS[AXES.index(axis)]
         values = np.concatenate([getattr(fitted.motion, field) for fitted in recordings])
         if np.ptp(values) > 0.0:

@@ -14,7 +14,7 @@ from boatsim.diagnosis.fit import converge, fit, gauss_newton, remove_effect
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.diagnosis.search.evidence import required_gain
 from boatsim.diagnosis.symbolic.grammar import neighbours, terms
-from boatsim.diagnosis.symbolic.slots import free_slot, write_term
+from boatsim.diagnosis.symbolic.slots import set_placeholder_term, unused_placeholder
 from boatsim.diagnosis.symbolic.term_forces import FittedRecording, fitted_recordings
 from boatsim.diagnosis.symbolic.term_scores import ScoredTerm, score_terms, varying_signals
 from boatsim.physics.described_laws import SymbolicTerm
@@ -152,7 +152,7 @@ def best_of_each(ordered: Sequence[ScoredTerm]) -> list[ScoredTerm]:
 
 def _write_scored(problem: Problem, slot: str, scored: ScoredTerm, everywhere: Recordings) -> None:
     """Write a term into a slot, and the prior of its coefficient into the problem."""
-    write_term(problem, slot, scored.term, everywhere)
+    set_placeholder_term(problem, slot, scored.term, everywhere)
     problem.spreads[slot] = scored.spread
 
 
@@ -160,7 +160,7 @@ def _with_term(
     problem: Problem, formula: Formula, scored: ScoredTerm, everywhere: Recordings
 ) -> _Trial | None:
     """Fit the formula with one more term; None if no slot is free or the simulation diverges."""
-    slot = free_slot(problem, type(scored.term), list(formula.terms))
+    slot = unused_placeholder(problem, type(scored.term), list(formula.terms))
     if not slot:
         return None
     _write_scored(problem, slot, scored, everywhere)
@@ -224,7 +224,7 @@ def _refined_by_filter(
             break
         again = fit(problem, found)
         if not again.evidence > found.evidence:
-            write_term(problem, slot, term, everywhere)
+            set_placeholder_term(problem, slot, term, everywhere)
             break
         term, found = moved, again
     return term, found
@@ -244,10 +244,10 @@ def _moved(
     problem: Problem, slot: str, term: SymbolicTerm, found: Fit, everywhere: Recordings
 ) -> SymbolicTerm:
     """Move a term to the maximum of the likelihood with all fitted parameters held."""
-    config, on = problem.config.describe, problem.program.switches(found.effects)
+    config, on = problem.config.describe, problem.program.effect_switches(found.effects)
 
     def likelihood(candidate: SymbolicTerm) -> float:
-        write_term(problem, slot, candidate, everywhere)
+        set_placeholder_term(problem, slot, candidate, everywhere)
         return problem.log_likelihood(found.free, found.theta, on, found.levels)
 
     best = likelihood(term)
@@ -260,7 +260,7 @@ def _moved(
             if not scores[last] > best + config.least_move_gain:
                 break
             term, best = near[last], scores[last]
-    write_term(problem, slot, term, everywhere)
+    set_placeholder_term(problem, slot, term, everywhere)
     return term
 
 
@@ -274,9 +274,9 @@ def _replaces_effect(problem: Problem, before: Formula, extended: Formula) -> bo
     for name in before.fit.effects:
         if name in before.terms:
             continue
-        without = without_term(problem, extended, name).fit
+        without = refit_without_term(problem, extended, name).fit
         if without.evidence > extended.fit.evidence - config.least_gain:
-            neither = without_term(problem, before, name).fit.evidence
+            neither = refit_without_term(problem, before, name).fit.evidence
             share = config.alike_share * (without.evidence - neither)
             if before.fit.evidence - neither > share:
                 return True
@@ -286,13 +286,13 @@ def _replaces_effect(problem: Problem, before: Formula, extended: Formula) -> bo
 def _pruned(problem: Problem, formula: Formula) -> Formula:
     """Return the formula without earlier terms or effects that the newest term replaces."""
     for name in formula.fit.effects[:-1]:
-        without = without_term(problem, formula, name)
+        without = refit_without_term(problem, formula, name)
         if without.fit.evidence > formula.fit.evidence - problem.config.select.least_gain:
             formula = without
     return formula
 
 
-def without_term(problem: Problem, formula: Formula, name: str) -> Formula:
+def refit_without_term(problem: Problem, formula: Formula, name: str) -> Formula:
     """Refit a formula without one of its symbolic terms or effects.
 
     Args:

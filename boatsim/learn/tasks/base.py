@@ -55,7 +55,7 @@ class Task(CheckedParameters):
     memory: ClassVar[int] = 0  # numbers that are kept from one control step to the next
 
     @classmethod
-    def idea(cls) -> str:
+    def task_name(cls) -> str:
         """Return the name of the learning task, which is that of its file."""
         return snake_case(cls.__name__)
 

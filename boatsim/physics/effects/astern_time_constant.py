@@ -6,7 +6,7 @@ from typing import Any, ClassVar
 from numba import njit
 
 from boatsim.physics.base import UNSET, Force, Wrench, param, wrench
-from boatsim.physics.effects.reversing_jet import jet_share
+from boatsim.physics.effects.reversing_jet import ahead_thrust_fraction
 
 
 @njit(inline="always")
@@ -27,7 +27,9 @@ def law(m: Any, q: Any, s: Any, t: Any) -> Wrench:
     """
     if m.ur >= 0.0:
         return wrench()
-    return wrench(N=(1.0 / q.factor - 1.0) * (t.yaw * jet_share(s) * s.angle - q.yaw * m.r))
+    return wrench(
+        N=(1.0 / q.factor - 1.0) * (t.yaw * ahead_thrust_fraction(s) * s.angle - q.yaw * m.r)
+    )
 
 
 @dataclass(frozen=True)

@@ -25,7 +25,7 @@ ITTC = "ITTC Recommended Procedure 7.5-02-07-04.5, Estimation of Roll Damping"
 
 
 @njit(inline="always")
-def speed_power(speed: float, exponent: float, equal: float) -> float:
+def speed_power_law(speed: float, exponent: float, equal: float) -> float:
     """Return the power law speed (|speed| / equal)^(exponent - 1) of a damping force.
 
     The law replaces the speed in a linear damping. Exponents 1, 2 and 3 are evaluated by products.
@@ -58,14 +58,14 @@ def law(m: Any, q: Any) -> Wrench:
     Returns:
         Force [N] and moment [N m] in body axes.
     """
-    Y = -q.sway * speed_power(m.vr + q.sway_at * m.r, q.sway_exponent, q.sway_equal)
+    Y = -q.sway * speed_power_law(m.vr + q.sway_at * m.r, q.sway_exponent, q.sway_equal)
     return wrench(
-        X=-q.surge * speed_power(m.ur, q.surge_exponent, q.surge_equal),
+        X=-q.surge * speed_power_law(m.ur, q.surge_exponent, q.surge_equal),
         Y=Y - q.sway_by_yaw * m.r,
-        Z=-q.heave * speed_power(m.wr, q.heave_exponent, q.heave_equal),
-        K=-q.roll * speed_power(m.p, q.roll_exponent, q.roll_equal),
-        M=-q.pitch * speed_power(m.q, q.pitch_exponent, q.pitch_equal),
-        N=-q.yaw * speed_power(m.r, q.yaw_exponent, q.yaw_equal)
+        Z=-q.heave * speed_power_law(m.wr, q.heave_exponent, q.heave_equal),
+        K=-q.roll * speed_power_law(m.p, q.roll_exponent, q.roll_equal),
+        M=-q.pitch * speed_power_law(m.q, q.pitch_exponent, q.pitch_equal),
+        N=-q.yaw * speed_power_law(m.r, q.yaw_exponent, q.yaw_equal)
         - q.yaw_by_sway * m.vr
         + q.sway_at * Y,
     )
@@ -176,7 +176,9 @@ PLAIN = dict.fromkeys(("sway_by_yaw", "yaw_by_sway", "sway_at"), 0.0) | {
 }
 
 
-def growing_damping(word: str, power: int, **spreads: float) -> dict[str, ParameterChanges]:
+def power_law_damping_parameters(
+    word: str, power: int, **spreads: float
+) -> dict[str, ParameterChanges]:
     """Return the free parameters of damping that grows with a power of the speed, by axis.
 
     Args:
@@ -211,7 +213,7 @@ QuadraticDamping = preset_effect(
     words="damping grows with the square of the speed",
     shown_by="the same motion at a large and at a small amplitude",
     source=ITTC,
-    frees=growing_damping(
+    frees=power_law_damping_parameters(
         "quadratic", 2, surge=4.0, sway=40.0, yaw=1.5, roll=0.1, heave=40.0, pitch=1.5
     ),
     fixed=PLAIN | {f"{axis}_exponent": 2.0 for axis in AXES},
@@ -235,7 +237,7 @@ CubicDamping = preset_effect(
     words="damping grows with the cube of the speed",
     shown_by="the same motion at a large and at a small amplitude",
     source=ITTC,
-    frees=growing_damping(
+    frees=power_law_damping_parameters(
         "cubic", 3, surge=4.0, sway=40.0, yaw=1.5, roll=0.003, heave=40.0, pitch=1.5
     ),
     fixed=PLAIN | {f"{axis}_exponent": 3.0 for axis in AXES},

@@ -8,7 +8,7 @@ from numba import njit
 from boatsim.physics import terms
 from boatsim.physics.base import Boat, Wrench, param
 from boatsim.physics.described_laws import SymbolicTerm
-from boatsim.physics.param import code_parameter
+from boatsim.physics.param import name_code_parameter
 
 
 @njit(inline="always")
@@ -55,7 +55,7 @@ class DescribedForce(SymbolicTerm):
         fit=True,
         spread=1.0,
     )
-    direction: float = code_parameter("code of the axis")
+    direction: float = name_code_parameter("code of the axis")
 
     def __post_init__(self) -> None:
         super().__post_init__()

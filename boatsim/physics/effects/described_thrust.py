@@ -9,7 +9,7 @@ from boatsim.physics import terms
 from boatsim.physics.base import Boat, Wrench, param
 from boatsim.physics.described_laws import SymbolicTerm
 from boatsim.physics.effects.thruster import thrust_wrench_at_mount
-from boatsim.physics.param import code_parameter
+from boatsim.physics.param import name_code_parameter
 
 SIDES = {"all": 0.0, "port": -1.0, "starboard": 1.0}
 SENSES = {"both": 0.0, "ahead": 1.0, "astern": -1.0}
@@ -67,8 +67,8 @@ class DescribedThrust(SymbolicTerm):
         fit=True,
         spread=0.3,
     )
-    where: float = code_parameter("code of the side")
-    way: float = code_parameter("code of the sense")
+    where: float = name_code_parameter("code of the side")
+    way: float = name_code_parameter("code of the sense")
 
     def __post_init__(self) -> None:
         super().__post_init__()

@@ -128,7 +128,7 @@ class LinearHull(Force):
         """
         L, T = vessel.length, vessel.draught
         m_x, m_y, sway_below = (
-            self.followed_value(f"added_mass.{key}", vessel)
+            self.inherited_value(f"added_mass.{key}", vessel)
             for key in ("surge", "sway", "sway_below")
         )
         d = particulars.linear_derivatives(L, vessel.beam, T, self.trim, self.block)

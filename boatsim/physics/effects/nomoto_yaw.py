@@ -36,7 +36,7 @@ class NomotoYaw(Force):
 
     N = I_z (K delta - r) / T
 
-    K is `gain` [1/s], T the `time_constant` [s]. Both change linearly over `duration` to
+    K is `gain` [1/s], T the `assumed_correlation_time` [s]. Both change linearly over `duration` to
     `gain_later` and `time_constant_later`, for tests of adaptive control.
     """
 

@@ -17,7 +17,7 @@ from boatsim.physics.base import (
 
 
 @njit(inline="always")
-def jet_share(s: Any) -> float:
+def ahead_thrust_fraction(s: Any) -> float:
     """Return the share of a water jet's thrust that drives ahead, cos(2 beta) at bucket angle beta.
 
     Args:
@@ -40,7 +40,7 @@ def law(m: Any, q: Any, s: Any) -> Wrench:
     Returns:
         Force [N] and moment [N m] in body axes.
     """
-    share = jet_share(s) + q.leak
+    share = ahead_thrust_fraction(s) + q.leak
     return wrench(X=q.thrust * share, N=q.yaw * share * s.angle)
 
 

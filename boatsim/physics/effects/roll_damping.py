@@ -87,7 +87,7 @@ class RollDamping(Force):
     def _damping_ratio_from_speed(self, vessel: Boat, stiffness: float) -> float:
         """Return the damping ratio that forward speed adds."""
         block, speed = (
-            self.followed_value(f"linear_hull.{key}", vessel) for key in ("block", "speed")
+            self.inherited_value(f"linear_hull.{key}", vessel) for key in ("block", "speed")
         )
         height = stiffness / (vessel.body.mass * particulars.GRAVITY)
         return particulars.roll_damping_ratio_by_speed(
@@ -97,7 +97,7 @@ class RollDamping(Force):
     def _added_roll_inertia(self, vessel: Boat) -> float:
         """Return the roll added inertia about the origin [kg m^2]."""
         roll, sway, below = (
-            self.followed_value(f"added_mass.{key}?", vessel)
+            self.inherited_value(f"added_mass.{key}?", vessel)
             for key in ("roll", "sway", "sway_below")
         )
         return roll + sway * below**2

@@ -128,7 +128,8 @@ class Rudder(Force):
         if not self.area:
             return {}
         density, block, arm = (
-            self.followed_value(f"linear_hull.{key}", vessel) for key in ("density", "block", "arm")
+            self.inherited_value(f"linear_hull.{key}", vessel)
+            for key in ("density", "block", "arm")
         )
         slope = particulars.rudder_force_slope(self.area, self.aspect, self.inflow, density)
         sway = -(1.0 + particulars.hull_force_ratio(block)) * slope

@@ -94,5 +94,5 @@ class RudderRace(Force):
         Raises:
             BadInput: The vessel has no rudder.
         """
-        sway, yaw = (self.followed_value(f"rudder.{axis}", vessel) for axis in ("sway", "yaw"))
+        sway, yaw = (self.inherited_value(f"rudder.{axis}", vessel) for axis in ("sway", "yaw"))
         return {"at": yaw / sway if sway else -0.5 * vessel.length, "side": copysign(1.0, sway)}

@@ -6,9 +6,9 @@ from typing import Any, ClassVar
 import numpy as np
 from numba import njit
 
-from boatsim.errors import BadInput, unknown_name
+from boatsim.errors import BadInput, unknown_name_message
 from boatsim.physics.base import Boat, MeasuredMotion, Measurement, param, preset_effect
-from boatsim.physics.param import code_parameter
+from boatsim.physics.param import name_code_parameter
 from boatsim.physics.presets import ParameterChanges
 from boatsim.physics.recorded_channels import (
     CHANNELS,
@@ -94,7 +94,7 @@ class SensorError(Measurement):
     drift: float = param(
         0.0, low=-1e6, high=1e6, unit="", words="growth of the error [unit of the channel / s]"
     )
-    place: float = code_parameter("place of the channel among those of a motion")
+    place: float = name_code_parameter("place of the channel among those of a motion")
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -103,7 +103,7 @@ class SensorError(Measurement):
             allowed = (self.column,)
         channel = self.channel or self.column
         if channel not in allowed:
-            raise BadInput(unknown_name(f"{self.name}: channel", channel, allowed))
+            raise BadInput(unknown_name_message(f"{self.name}: channel", channel, allowed))
         if channel in RATES and self.delay != 0.0:
             raise BadInput(
                 f"{self.name}: delay = {self.delay:g} s of {channel}; allowed is 0, because the "
@@ -190,7 +190,7 @@ def special_case(
     }
 
 
-def gain_of(channel: InstrumentChannel, with_rate: bool = False) -> dict[str, Any]:
+def gain_error_preset(channel: InstrumentChannel, with_rate: bool = False) -> dict[str, Any]:
     """Return the arguments of `preset_effect` that define a gain error of a recorded channel."""
     about: ParameterChanges = {
         "words": f"relative error of the {channel.words}",
@@ -202,7 +202,7 @@ def gain_of(channel: InstrumentChannel, with_rate: bool = False) -> dict[str, An
     return settings | {"words_above": above}
 
 
-def offset_of(channel: InstrumentChannel) -> dict[str, Any]:
+def offset_error_preset(channel: InstrumentChannel) -> dict[str, Any]:
     """Return the arguments of `preset_effect` for a constant error of a recorded channel."""
     about: ParameterChanges = {
         "words": f"constant error of the {channel.words}",
@@ -214,7 +214,7 @@ def offset_of(channel: InstrumentChannel) -> dict[str, Any]:
     return special_case(channel, "offset", about, "has a constant error")
 
 
-def drift_of(channel: InstrumentChannel, with_rate: bool = False) -> dict[str, Any]:
+def drift_error_preset(channel: InstrumentChannel, with_rate: bool = False) -> dict[str, Any]:
     """Return the arguments of `preset_effect` for a channel's error that grows with time."""
     unit = f"{channel.unit}/s"
     if channel.unit.endswith("/s"):
@@ -229,7 +229,7 @@ def drift_of(channel: InstrumentChannel, with_rate: bool = False) -> dict[str, A
     return special_case(channel, "drift", about, "has an error that grows with time", with_rate)
 
 
-def delay_of(channel: InstrumentChannel) -> dict[str, Any]:
+def delay_error_preset(channel: InstrumentChannel) -> dict[str, Any]:
     """Return the arguments of `preset_effect` that define a delay of a recorded channel.
 
     Comparison with the recorded rate of the channel reveals the delay.
@@ -241,36 +241,54 @@ def delay_of(channel: InstrumentChannel) -> dict[str, Any]:
     return special_case(channel, "delay", about, "is older than its rate in the same row", True)
 
 
-SurgeVelocityGain = preset_effect(SensorError, "SurgeVelocityGain", **gain_of(SURGE_VELOCITY))
-SurgeVelocityOffset = preset_effect(SensorError, "SurgeVelocityOffset", **offset_of(SURGE_VELOCITY))
-SurgeVelocityDrift = preset_effect(SensorError, "SurgeVelocityDrift", **drift_of(SURGE_VELOCITY))
-SwayVelocityGain = preset_effect(SensorError, "SwayVelocityGain", **gain_of(SWAY_VELOCITY))
-SwayVelocityOffset = preset_effect(SensorError, "SwayVelocityOffset", **offset_of(SWAY_VELOCITY))
-SwayVelocityDrift = preset_effect(SensorError, "SwayVelocityDrift", **drift_of(SWAY_VELOCITY))
-HeaveVelocityGain = preset_effect(SensorError, "HeaveVelocityGain", **gain_of(HEAVE_VELOCITY))
-HeaveVelocityOffset = preset_effect(SensorError, "HeaveVelocityOffset", **offset_of(HEAVE_VELOCITY))
-HeaveVelocityDrift = preset_effect(SensorError, "HeaveVelocityDrift", **drift_of(HEAVE_VELOCITY))
-RollRateGain = preset_effect(SensorError, "RollRateGain", **gain_of(ROLL_RATE))
-RollRateOffset = preset_effect(SensorError, "RollRateOffset", **offset_of(ROLL_RATE))
-RollRateDrift = preset_effect(SensorError, "RollRateDrift", **drift_of(ROLL_RATE))
-PitchRateGain = preset_effect(SensorError, "PitchRateGain", **gain_of(PITCH_RATE))
-PitchRateOffset = preset_effect(SensorError, "PitchRateOffset", **offset_of(PITCH_RATE))
-PitchRateDrift = preset_effect(SensorError, "PitchRateDrift", **drift_of(PITCH_RATE))
-YawRateGain = preset_effect(SensorError, "YawRateGain", **gain_of(YAW_RATE))
-YawRateOffset = preset_effect(SensorError, "YawRateOffset", **offset_of(YAW_RATE))
-YawRateDrift = preset_effect(SensorError, "YawRateDrift", **drift_of(YAW_RATE))
-HeaveGain = preset_effect(SensorError, "HeaveGain", **gain_of(HEAVE))
-HeaveOffset = preset_effect(SensorError, "HeaveOffset", **offset_of(HEAVE))
-HeaveDrift = preset_effect(SensorError, "HeaveDrift", **drift_of(HEAVE))
-PitchGain = preset_effect(SensorError, "PitchGain", **gain_of(PITCH))
-PitchOffset = preset_effect(SensorError, "PitchOffset", **offset_of(PITCH))
-PitchDrift = preset_effect(SensorError, "PitchDrift", **drift_of(PITCH))
+SurgeVelocityGain = preset_effect(
+    SensorError, "SurgeVelocityGain", **gain_error_preset(SURGE_VELOCITY)
+)
+SurgeVelocityOffset = preset_effect(
+    SensorError, "SurgeVelocityOffset", **offset_error_preset(SURGE_VELOCITY)
+)
+SurgeVelocityDrift = preset_effect(
+    SensorError, "SurgeVelocityDrift", **drift_error_preset(SURGE_VELOCITY)
+)
+SwayVelocityGain = preset_effect(
+    SensorError, "SwayVelocityGain", **gain_error_preset(SWAY_VELOCITY)
+)
+SwayVelocityOffset = preset_effect(
+    SensorError, "SwayVelocityOffset", **offset_error_preset(SWAY_VELOCITY)
+)
+SwayVelocityDrift = preset_effect(
+    SensorError, "SwayVelocityDrift", **drift_error_preset(SWAY_VELOCITY)
+)
+HeaveVelocityGain = preset_effect(
+    SensorError, "HeaveVelocityGain", **gain_error_preset(HEAVE_VELOCITY)
+)
+HeaveVelocityOffset = preset_effect(
+    SensorError, "HeaveVelocityOffset", **offset_error_preset(HEAVE_VELOCITY)
+)
+HeaveVelocityDrift = preset_effect(
+    SensorError, "HeaveVelocityDrift", **drift_error_preset(HEAVE_VELOCITY)
+)
+RollRateGain = preset_effect(SensorError, "RollRateGain", **gain_error_preset(ROLL_RATE))
+RollRateOffset = preset_effect(SensorError, "RollRateOffset", **offset_error_preset(ROLL_RATE))
+RollRateDrift = preset_effect(SensorError, "RollRateDrift", **drift_error_preset(ROLL_RATE))
+PitchRateGain = preset_effect(SensorError, "PitchRateGain", **gain_error_preset(PITCH_RATE))
+PitchRateOffset = preset_effect(SensorError, "PitchRateOffset", **offset_error_preset(PITCH_RATE))
+PitchRateDrift = preset_effect(SensorError, "PitchRateDrift", **drift_error_preset(PITCH_RATE))
+YawRateGain = preset_effect(SensorError, "YawRateGain", **gain_error_preset(YAW_RATE))
+YawRateOffset = preset_effect(SensorError, "YawRateOffset", **offset_error_preset(YAW_RATE))
+YawRateDrift = preset_effect(SensorError, "YawRateDrift", **drift_error_preset(YAW_RATE))
+HeaveGain = preset_effect(SensorError, "HeaveGain", **gain_error_preset(HEAVE))
+HeaveOffset = preset_effect(SensorError, "HeaveOffset", **offset_error_preset(HEAVE))
+HeaveDrift = preset_effect(SensorError, "HeaveDrift", **drift_error_preset(HEAVE))
+PitchGain = preset_effect(SensorError, "PitchGain", **gain_error_preset(PITCH))
+PitchOffset = preset_effect(SensorError, "PitchOffset", **offset_error_preset(PITCH))
+PitchDrift = preset_effect(SensorError, "PitchDrift", **drift_error_preset(PITCH))
 
 # The recorded rate distinguishes these errors from motions.
-RollGain = preset_effect(SensorError, "RollGain", **gain_of(ROLL, True))
-RollDrift = preset_effect(SensorError, "RollDrift", **drift_of(ROLL, True))
-HeadingDrift = preset_effect(SensorError, "HeadingDrift", **drift_of(HEADING, True))
-HeaveDelay = preset_effect(SensorError, "HeaveDelay", **delay_of(HEAVE))
-RollDelay = preset_effect(SensorError, "RollDelay", **delay_of(ROLL))
-PitchDelay = preset_effect(SensorError, "PitchDelay", **delay_of(PITCH))
-HeadingDelay = preset_effect(SensorError, "HeadingDelay", **delay_of(HEADING))
+RollGain = preset_effect(SensorError, "RollGain", **gain_error_preset(ROLL, True))
+RollDrift = preset_effect(SensorError, "RollDrift", **drift_error_preset(ROLL, True))
+HeadingDrift = preset_effect(SensorError, "HeadingDrift", **drift_error_preset(HEADING, True))
+HeaveDelay = preset_effect(SensorError, "HeaveDelay", **delay_error_preset(HEAVE))
+RollDelay = preset_effect(SensorError, "RollDelay", **delay_error_preset(ROLL))
+PitchDelay = preset_effect(SensorError, "PitchDelay", **delay_error_preset(PITCH))
+HeadingDelay = preset_effect(SensorError, "HeadingDelay", **delay_error_preset(HEADING))

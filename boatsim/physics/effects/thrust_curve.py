@@ -11,7 +11,7 @@ from numba import njit
 from boatsim.errors import BadInput
 from boatsim.physics.base import Array, Boat, ChannelEffect, SignalSegment, param
 from boatsim.physics.kinds.channel import MAPS
-from boatsim.physics.param import code_parameter
+from boatsim.physics.param import name_code_parameter
 
 MAX_POINTS = 8
 
@@ -100,22 +100,22 @@ class ThrustCurve(ChannelEffect):
     factor: float = param(1.0, low=0.0, high=10.0, unit="", words="thrust over that of the table")
     # pairs of a raw command and its thrust [N]
     points: Sequence[Sequence[float]] = field(default=((-1.0, -1.0), (1.0, 1.0)), kw_only=True)
-    command_1: float = code_parameter("raw command of point 1")
-    command_2: float = code_parameter("raw command of point 2")
-    command_3: float = code_parameter("raw command of point 3")
-    command_4: float = code_parameter("raw command of point 4")
-    command_5: float = code_parameter("raw command of point 5")
-    command_6: float = code_parameter("raw command of point 6")
-    command_7: float = code_parameter("raw command of point 7")
-    command_8: float = code_parameter("raw command of point 8")
-    thrust_1: float = code_parameter("thrust of point 1")
-    thrust_2: float = code_parameter("thrust of point 2")
-    thrust_3: float = code_parameter("thrust of point 3")
-    thrust_4: float = code_parameter("thrust of point 4")
-    thrust_5: float = code_parameter("thrust of point 5")
-    thrust_6: float = code_parameter("thrust of point 6")
-    thrust_7: float = code_parameter("thrust of point 7")
-    thrust_8: float = code_parameter("thrust of point 8")
+    command_1: float = name_code_parameter("raw command of point 1")
+    command_2: float = name_code_parameter("raw command of point 2")
+    command_3: float = name_code_parameter("raw command of point 3")
+    command_4: float = name_code_parameter("raw command of point 4")
+    command_5: float = name_code_parameter("raw command of point 5")
+    command_6: float = name_code_parameter("raw command of point 6")
+    command_7: float = name_code_parameter("raw command of point 7")
+    command_8: float = name_code_parameter("raw command of point 8")
+    thrust_1: float = name_code_parameter("thrust of point 1")
+    thrust_2: float = name_code_parameter("thrust of point 2")
+    thrust_3: float = name_code_parameter("thrust of point 3")
+    thrust_4: float = name_code_parameter("thrust of point 4")
+    thrust_5: float = name_code_parameter("thrust of point 5")
+    thrust_6: float = name_code_parameter("thrust of point 6")
+    thrust_7: float = name_code_parameter("thrust of point 7")
+    thrust_8: float = name_code_parameter("thrust of point 8")
 
     def __post_init__(self) -> None:
         """Check the points.

@@ -10,7 +10,7 @@ from boatsim.physics.kinds.channel import COMMANDS
 
 
 @njit(inline="always")
-def outside_deadband(x: float, q: Any) -> float:
+def apply_deadband(x: float, q: Any) -> float:
     """Return the part of a command that exceeds a symmetric dead band; zero inside the band.
 
     Args:
@@ -41,7 +41,7 @@ def transform_signal(
         The signal of the actuator after the effect, over the same step.
     """
     return SignalSegment(
-        outside_deadband(x.begin, q), outside_deadband(x.middle, q), outside_deadband(x.end, q)
+        apply_deadband(x.begin, q), apply_deadband(x.middle, q), apply_deadband(x.end, q)
     )
 
 

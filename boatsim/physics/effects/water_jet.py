@@ -13,7 +13,7 @@ FLAT = 4.0  # throttle at which the second one ends
 
 
 @njit(inline="always")
-def shaft_power(throttle: float, q: Any) -> float:
+def specific_shaft_power(throttle: float, q: Any) -> float:
     """Return the shaft power of a jet drive per mass of the craft [m^2/s^3] at a throttle setting.
 
     Args:
@@ -39,7 +39,7 @@ def law(m: Any, q: Any, s: Any) -> Wrench:
     Returns:
         Force [N] and moment [N m] in body axes.
     """
-    return wrench(X=q.gain * q.mass * shaft_power(s.throttle, q) / max(m.ur, q.slowest))
+    return wrench(X=q.gain * q.mass * specific_shaft_power(s.throttle, q) / max(m.ur, q.slowest))
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ from boatsim.physics.kinds.channel import DEEDS
 
 
 @njit(inline="always")
-def scaled_astern(x: float, q: Any) -> float:
+def scale_astern_thrust(x: float, q: Any) -> float:
     """Return a thrust unchanged if it acts ahead, times a factor if it acts astern.
 
     Args:
@@ -41,7 +41,9 @@ def transform_signal(
         The signal of the actuator after the effect, over the same step.
     """
     return SignalSegment(
-        scaled_astern(x.begin, q), scaled_astern(x.middle, q), scaled_astern(x.end, q)
+        scale_astern_thrust(x.begin, q),
+        scale_astern_thrust(x.middle, q),
+        scale_astern_thrust(x.end, q),
     )
 
 

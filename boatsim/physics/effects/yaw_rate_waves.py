@@ -133,7 +133,7 @@ class YawRateWaves(RandomForce):
             vessel: Vessel with a body.
         """
         yaw, sway, at = (
-            self.followed_value(f"added_mass.{key}?", vessel) for key in ("yaw", "sway", "sway_at")
+            self.inherited_value(f"added_mass.{key}?", vessel) for key in ("yaw", "sway", "sway_at")
         )
         return {"inertia": vessel.body.yaw_inertia + (yaw + sway * at**2)}
 

@@ -67,7 +67,7 @@ def symbol(text: str) -> SymbolicSum:
     return SymbolicSum({(text,): 1})
 
 
-def add_sums(parts: Iterable[SymbolicSum]) -> SymbolicSum:
+def sum_expressions(parts: Iterable[SymbolicSum]) -> SymbolicSum:
     """Return the sum of symbolic expressions.
 
     Args:
@@ -81,7 +81,7 @@ def add_sums(parts: Iterable[SymbolicSum]) -> SymbolicSum:
 
 def dot_product(a: Iterable[SymbolicSum], b: Iterable[SymbolicSum]) -> SymbolicSum:
     """Return the scalar product of two vectors of symbolic expressions."""
-    return add_sums(map(mul, a, b))
+    return sum_expressions(map(mul, a, b))
 
 
 class CodeLines:
@@ -112,7 +112,7 @@ class CodeLines:
         self.append_line(f"{called} = {value}")
         return symbol(called)
 
-    def assign_all(self, prefix: str, values: Iterable[SymbolicSum]) -> list[SymbolicSum]:
+    def generate_assignments(self, prefix: str, values: Iterable[SymbolicSum]) -> list[SymbolicSum]:
         """Generate assignments of symbolic expressions to numbered variables; return the variables.
 
         Args:

@@ -15,7 +15,7 @@ from boatsim.physics.debugging import DEBUG, python_function
 from boatsim.physics.function_compiler import compile_both_forms
 
 
-def compiled_by(**options: Any) -> Callable[[Any], Any]:
+def njit_for_compiled_callers(**options: Any) -> Callable[[Any], Any]:
     """Return a decorator that compiles a function with numba, mainly for compiled callers.
 
     Args:
@@ -36,7 +36,7 @@ def cached_njit(**options: Any) -> Callable[[Any], Any]:
     """
 
     def decorate(function: Any) -> Any:
-        compiled = compiled_by(**options)(function)
+        compiled = njit_for_compiled_callers(**options)(function)
         return compiled if DEBUG else keep_on_disk(compiled, function)
 
     return decorate
@@ -49,12 +49,12 @@ lean = cached_njit(**WITHOUT_REFERENCE_COUNTS)
 # The same, for functions that other threads may run at the same time.
 unlocked = cached_njit(nogil=True, **WITHOUT_REFERENCE_COUNTS)
 # A part that few vessels call: never inlined, so that it does not lengthen the programs around it.
-apart: Any = compiled_by(**WITHOUT_REFERENCE_COUNTS)
+apart: Any = njit_for_compiled_callers(**WITHOUT_REFERENCE_COUNTS)
 # A small part of one or two other functions: numba analyses it again in each of them.
 inlined = njit(error_model="numpy", inline="always")
 # A large part of many functions: analysed once and inlined by LLVM, which moves what does not
 # change out of loops.
-merged = compiled_by(forceinline=True, **WITHOUT_REFERENCE_COUNTS)
+merged = njit_for_compiled_callers(forceinline=True, **WITHOUT_REFERENCE_COUNTS)
 
 
 @cache

@@ -22,8 +22,8 @@ from boatsim.physics.kernel.algebra import (
     ZERO,
     CodeLines,
     SymbolicSum,
-    add_sums,
     dot_product,
+    sum_expressions,
     symbol,
 )
 from boatsim.physics.signals import AXES, MASS_ENTRIES, Motion, Wrench
@@ -133,7 +133,7 @@ class EquationWriter:
         """Return the symbol of the time derivative of coordinate i; zero if it is not free."""
         return symbol(COORDINATES[i] + "d") if i in self.free else ZERO
 
-    def cosine_and_sine(self, lines: CodeLines, i: int) -> tuple[SymbolicSum, SymbolicSum]:
+    def generate_cosine_and_sine(self, lines: CodeLines, i: int) -> tuple[SymbolicSum, SymbolicSum]:
         """Return symbols of cosine and sine of an Euler angle, and generate their computation.
 
         They are 1 and 0 for an angle that is not free, and for roll and pitch of level axes.
@@ -144,7 +144,7 @@ class EquationWriter:
         lines.append_line(f"c_{angle}, s_{angle} = cos({angle}), sin({angle})")
         return symbol(f"c_{angle}"), symbol(f"s_{angle}")
 
-    def kinematics(self, lines: CodeLines, current: bool = True) -> Kinematics:
+    def generate_kinematics(self, lines: CodeLines, current: bool = True) -> Kinematics:
         """Generate the kinematics of a state: rotation, Jacobian and velocities as symbols.
 
         Coordinates and rates of the state are variables already.
@@ -153,7 +153,7 @@ class EquationWriter:
             lines: The function so far, to which variables are added.
             current: Whether the velocity of the water is needed.
         """
-        (cf, sf), (ct, st), (cp, sp) = (self.cosine_and_sine(lines, i) for i in ANGULAR)
+        (cf, sf), (ct, st), (cp, sp) = (self.generate_cosine_and_sine(lines, i) for i in ANGULAR)
         R = [
             [cp * ct, cp * st * sf - sp * cf, sp * sf + cp * st * cf],
             [sp * ct, cp * cf + sp * st * sf, sp * st * cf - cp * sf],
@@ -171,7 +171,7 @@ class EquationWriter:
                 J[i][j], J[3 + i][3 + j] = R[j][i], T[i][j]
         nu = [
             lines.assign(
-                "uvwpqr"[i] + "_", add_sums(J[i][j] * self.rate_symbol(j) for j in self.free)
+                "uvwpqr"[i] + "_", sum_expressions(J[i][j] * self.rate_symbol(j) for j in self.free)
             )
             for i in range(6)
         ]
@@ -184,7 +184,9 @@ class EquationWriter:
                 ct * cf * phid * psid - sf * phid * thetad - st * sf * thetad * psid,
                 -(cf * phid * thetad) - st * cf * thetad * psid - ct * sf * phid * psid,
             ]
-        drift = list(map(neg, cross_product(turning, nu[:3]))) + lines.assign_all("bend", bend)
+        drift = list(map(neg, cross_product(turning, nu[:3]))) + lines.generate_assignments(
+            "bend", bend
+        )
         water = [ZERO, ZERO, ZERO]
         if current and {0, 1} & set(self.free):
             lines.append_line("north, east = water_velocity(p, on)")
@@ -194,7 +196,7 @@ class EquationWriter:
             ]
         return Kinematics(R, J, nu, turning, drift, water)
 
-    def motion_text(self, frame: Kinematics) -> str:
+    def motion_constructor_text(self, frame: Kinematics) -> str:
         """Return the source text of the `Motion` object that is passed to the force laws."""
         through = map(sub, frame.nu[:3], frame.water)
         psi = ("c_psi", "s_psi") if 5 in self.free else ("1.0", "0.0")
@@ -218,7 +220,7 @@ class EquationWriter:
         away = map(neg, cross_product(frame.turning, frame.water))
         return dot_product((mass_matrix_entry(WATER, axis, j) for j in LINEAR), away)
 
-    def rigid_body_force(self, lines: CodeLines, frame: Kinematics) -> list[SymbolicSum]:
+    def generate_rigid_body_force(self, lines: CodeLines, frame: Kinematics) -> list[SymbolicSum]:
         """Return symbols of the rigid body's Coriolis and centripetal force (6,).
 
         The moments are about the origin of motion.
@@ -231,20 +233,22 @@ class EquationWriter:
         if not self.centred:
             lever = [symbol("k[1]"), ZERO, symbol("k[2]") if self.hull_fixed_axes else ZERO]
         at_centre = list(map(add, at_centre, cross_product(spin, cross_product(spin, lever))))
-        force = lines.assign_all("rigid", [-(m * a) for a in at_centre])
+        force = lines.generate_assignments("rigid", [-(m * a) for a in at_centre])
         moment = [ZERO, ZERO, ZERO]
         if self.hull_fixed_axes:
             gyroscopic = [(q * r, 1, 2), (r * p, 2, 0), (p * q, 0, 1)]
             moment = [a * (inertia[i] - inertia[j]) for a, i, j in gyroscopic]
         return force + list(map(add, cross_product(lever, force), moment))
 
-    def right_hand_side(self, lines: CodeLines, frame: Kinematics, extra: str) -> list[SymbolicSum]:
+    def generate_total_force(
+        self, lines: CodeLines, frame: Kinematics, extra: str
+    ) -> list[SymbolicSum]:
         """Return the total force (6,), the right-hand side of M nu' = ..., as symbolic sums.
 
         Source lines that evaluate the force laws are added.
         """
-        lines.append_line(f"f = wrench({self.motion_text(frame)}, p, on, act, at)")
-        rigid = self.rigid_body_force(lines, frame)
+        lines.append_line(f"f = wrench({self.motion_constructor_text(frame)}, p, on, act, at)")
+        rigid = self.generate_rigid_body_force(lines, frame)
         found = []
         for i, component in enumerate(Wrench._fields):
             more = symbol(f"{extra}[{self.free.index(i)}]") if i in self.free else ZERO
@@ -256,7 +260,7 @@ class EquationWriter:
             )
         return found
 
-    def unpack_state(self, lines: CodeLines) -> None:
+    def generate_state_unpacking(self, lines: CodeLines) -> None:
         """Generate the line that unpacks a state array into variables of coordinates and rates."""
         for more, first in (("", 0), ("d", self.n)):
             names = ", ".join(COORDINATES[i] + more for i in self.free)
@@ -268,32 +272,31 @@ class EquationWriter:
     def accelerations_code(self) -> list[str]:
         """Return the source lines of the generated function `accelerations`."""
         lines = CodeLines()
-        self.unpack_state(lines)
-        frame = self.kinematics(lines)
-        load = self.right_hand_side(lines, frame, "extra")
+        self.generate_state_unpacking(lines)
+        frame = self.generate_kinematics(lines)
+        load = self.generate_total_force(lines, frame, "extra")
         if not self.square_jacobian:
             load = list(map(sub, load, self.mass_matrix_product(WHOLE, frame.drift)))
-            named = lines.assign_all("load", load)
-            self.factor_mass_matrix(lines, frame)
+            named = lines.generate_assignments("load", load)
+            self.generate_mass_matrix_factors(lines, frame)
             right = [dot_product(frame.jacobian_column(i), named) for i in self.free]
-            found = self.solve_factored_system(lines, right, "")
+            found = self.generate_factored_solution(lines, right, "")
             lines.append_line(f"return {self.tuple_text(found)}")
             return lines.text
         pushed = {i: lines.assign(f"load{i}", load[i]) for i in self.free}
         nudot = {
-            i: add_sums(mass_matrix_entry(WHOLE, i, j) * pushed[j] for j in self.free)
+            i: sum_expressions(mass_matrix_entry(WHOLE, i, j) * pushed[j] for j in self.free)
             for i in self.free
         }
         for i in LINEAR:
             if i in nudot:  # acceleration over ground along the axes
                 nudot[i] = nudot[i] - frame.drift[i]
         moved = {i: lines.assign(f"a{i}", a) for i, a in nudot.items()}
-        lines.append_line(
-            f"return {self.tuple_text(self.joint_accelerations(lines, frame, moved, moving=True))}"
-        )
+        joints = self.generate_joint_accelerations(lines, frame, moved, moving=True)
+        lines.append_line(f"return {self.tuple_text(joints)}")
         return lines.text
 
-    def joint_accelerations(
+    def generate_joint_accelerations(
         self, lines: CodeLines, frame: Kinematics, body: dict[int, SymbolicSum], moving: bool
     ) -> list[str]:
         """Generate joint accelerations (of the coordinates) from body accelerations.
@@ -307,7 +310,9 @@ class EquationWriter:
         found = []
         for i in LINEAR:
             if i in self.free:
-                found.append(str(add_sums(frame.R[i][j] * body[j] for j in LINEAR if j in body)))
+                found.append(
+                    str(sum_expressions(frame.R[i][j] * body[j] for j in LINEAR if j in body))
+                )
         if not self.hull_fixed_axes:
             return found + [str(body[i]) for i in ANGULAR if i in body]
         cf, sf, ct, st = map(symbol, ("c_phi", "s_phi", "c_theta", "s_theta"))
@@ -333,7 +338,7 @@ class EquationWriter:
             found.append(dot_product((mass_matrix_entry(begin, i, j) for j in range(6)), motion))
         return found
 
-    def factor_mass_matrix(self, lines: CodeLines, frame: Kinematics) -> None:
+    def generate_mass_matrix_factors(self, lines: CodeLines, frame: Kinematics) -> None:
         """Generate the mass matrix J' M J of the free coordinates and its factors L D L'."""
         for b, j in enumerate(self.free):
             column = self.mass_matrix_product(WHOLE, frame.jacobian_column(j))
@@ -348,7 +353,7 @@ class EquationWriter:
                 taken = "".join(f" - L{i}{k} * L{j}{k} * D{k}" for k in range(j))
                 lines.append_line(f"L{i}{j} = (M{i}{j}{taken}) / D{j}")
 
-    def solve_factored_system(
+    def generate_factored_solution(
         self, lines: CodeLines, right: list[SymbolicSum], tag: str
     ) -> list[str]:
         """Generate the solution of a system with the factored mass matrix; return its symbols."""
@@ -369,18 +374,18 @@ class EquationWriter:
         It computes the derivatives of the accelerations by a body force.
         """
         lines = CodeLines()
-        self.unpack_state(lines)
-        frame = self.kinematics(lines, current=False)
+        self.generate_state_unpacking(lines)
+        frame = self.generate_kinematics(lines, current=False)
         if self.hull_fixed_axes and self.square_jacobian:
             lines.append_line("secant = 1.0 / c_theta")
         if not self.square_jacobian:
-            self.factor_mass_matrix(lines, frame)
+            self.generate_mass_matrix_factors(lines, frame)
         for b, j in enumerate(self.free):
             if self.square_jacobian:
                 body = {i: mass_matrix_entry(WHOLE, i, j) for i in self.free}
-                found = self.joint_accelerations(lines, frame, body, moving=False)
+                found = self.generate_joint_accelerations(lines, frame, body, moving=False)
             else:
-                found = self.solve_factored_system(
+                found = self.generate_factored_solution(
                     lines, [frame.J[j][i] for i in self.free], f"{b}_"
                 )
             for a, text in enumerate(found):
@@ -396,9 +401,9 @@ class EquationWriter:
         It computes the sum of the forces of all effects.
         """
         lines = CodeLines()
-        self.unpack_state(lines)
-        frame = self.kinematics(lines)
-        lines.append_line(f"f = wrench({self.motion_text(frame)}, p, on, act, at)")
+        self.generate_state_unpacking(lines)
+        frame = self.generate_kinematics(lines)
+        lines.append_line(f"f = wrench({self.motion_constructor_text(frame)}, p, on, act, at)")
         lines.append_line(
             f"return {self.tuple_text([f'f.{Wrench._fields[i]}' for i in self.free])}"
         )
@@ -410,8 +415,8 @@ class EquationWriter:
         It computes the true values of all recorded signals.
         """
         lines = CodeLines()
-        self.unpack_state(lines)
-        frame = self.kinematics(lines, current=False)
+        self.generate_state_unpacking(lines)
+        frame = self.generate_kinematics(lines, current=False)
         values = [*map(str, map(self.coordinate_symbol, range(6))), *map(str, frame.nu)]
         lines.append_line(f"return MeasuredMotion({', '.join(values)})")
         return lines.text
@@ -422,11 +427,11 @@ class EquationWriter:
         It computes noiseless readings of instruments on board.
         """
         lines = CodeLines()
-        self.unpack_state(lines)
-        frame = self.kinematics(lines, current=False)
+        self.generate_state_unpacking(lines)
+        frame = self.generate_kinematics(lines, current=False)
         lines.append_line("a = accelerations(t, s, act, at, p, on, k, extra)")
         ahead, aside = (
-            add_sums(
+            sum_expressions(
                 frame.J[row][i] * symbol(f"a[{b}]") for b, i in enumerate(self.free) if i in LINEAR
             )
             for row in (0, 1)
@@ -443,8 +448,8 @@ class EquationWriter:
         It computes the derivatives of body velocities by coordinate rates.
         """
         lines = CodeLines()
-        self.unpack_state(lines)
-        frame = self.kinematics(lines, current=False)
+        self.generate_state_unpacking(lines)
+        frame = self.generate_kinematics(lines, current=False)
         for i in range(6):
             for b, j in enumerate(self.free):
                 if frame.J[i][j]:
@@ -483,8 +488,8 @@ class EquationWriter:
             flip = "-" if SIGN[COORDINATES[i]] < 0 else ""
             lines.append_line(f"{COORDINATES[i]}, {COORDINATES[i]}d = {flip}q[{b}], {flip}qd[{b}]")
         lines.append_line("on = ()")
-        frame = self.kinematics(lines)
-        lines.append_line(f"f = wrench({self.motion_text(frame)}, p, on, act, at)")
+        frame = self.generate_kinematics(lines)
+        lines.append_line(f"f = wrench({self.motion_constructor_text(frame)}, p, on, act, at)")
         added = [
             [mass_matrix_entry(WATER, i, j) + mass_matrix_entry(HULL, i, j) for j in range(6)]
             for i in range(6)
@@ -498,7 +503,7 @@ class EquationWriter:
                 symbol(f"f.{Wrench._fields[a]}") + self.current_acceleration_force(frame, a) - bent,
             )
         for b, i in enumerate(order):
-            force = add_sums(frame.J[a][i] * load[a] for a in needed)
+            force = sum_expressions(frame.J[a][i] * load[a] for a in needed)
             lines.append_line(f"force[{b}] += {force if SIGN[COORDINATES[i]] > 0 else -force}")
         mass = [[ZERO] * 6 for _ in range(6)]
         for a in needed:
@@ -508,7 +513,7 @@ class EquationWriter:
             for d, j in enumerate(order[: b + 1]):
                 value = ZERO
                 for a in needed:
-                    value = value + add_sums(
+                    value = value + sum_expressions(
                         frame.J[a][i] * mass[a][c] * frame.J[c][j] for c in needed
                     )
                 if value:

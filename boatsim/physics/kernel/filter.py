@@ -282,7 +282,7 @@ def predict_mean(h: float, noise: ProcessNoise, y: Array, z: Array) -> None:
 
 
 @lean
-def add_deviation(F: Array, z: Array, about: Array, y: Array) -> None:
+def propagate_deviation(F: Array, z: Array, about: Array, y: Array) -> None:
     """Add to a predicted motion y the effect of a deviation of the initial state from `about`.
 
     F is the transition matrix and y the motion that follows from `about`.
@@ -334,7 +334,9 @@ def predicted_measurement(y: Array, t: float, code: int, p: Array, on: Any) -> f
 
 
 @lean
-def differentiate_channels(z: Array, t: float, codes: Any, H: Array, p: Array, on: Any) -> None:
+def compute_measurement_jacobian(
+    z: Array, t: float, codes: Any, H: Array, p: Array, on: Any
+) -> None:
     """Fill H (C, 2 NQ) with finite-difference derivatives of measured channels by the motion z.
 
     Nothing is done if the derivatives of all channels are known in closed form.
@@ -360,7 +362,8 @@ def expected_measurement(
 ) -> float:
     """Return the expected value of one measured channel and fill its row of the measurement matrix.
 
-    The row has n entries. `slope` is its row by `differentiate_channels`, where that filled it.
+    The row has n entries. `slope` is its row by `compute_measurement_jacobian`, where that filled
+    it.
     """
     if not HULL_FIXED_AXES and not has_measurement_errors(on):
         for j in range(NZ):
@@ -387,7 +390,7 @@ def remove_position_errors(z: Array, t: float, p: Array, on: Any) -> None:
 
 
 @lean
-def update_row(
+def update_by_row(
     f: FilterPass,
     estimate: StateEstimate,
     measured: Measurements,
@@ -404,7 +407,7 @@ def update_row(
     values, scale, white = measured.values[i], out.scale[i], out.whitened[i]
     t = f.inputs.times[i] - f.inputs.times[0]
     if gains:
-        differentiate_channels(z, t, codes, work.H, p, on)
+        compute_measurement_jacobian(z, t, codes, work.H, p, on)
     for c in range(len(values)):
         if np.isnan(values[c]):
             scale[c] = white[c] = 0.0
@@ -505,14 +508,14 @@ def kalman_filter(
             if options.gains or i == 1:
                 copy_square_matrix(out.transitions[i], F, LASTING)
         if i == 1:
-            add_deviation(F, z, about, y)
+            propagate_deviation(F, z, about, y)
         if options.gains:
             predict_covariance(h, noise, P, F, work.B)
         predict_mean(h, noise, y, z)
         if options.history:
             copy_vector(z, history.predicted[i])
             copy_square_matrix(F, history.transitions[i], NZ)
-        likelihood += update_row(f, estimate, measured, i, options.gains, out)
+        likelihood += update_by_row(f, estimate, measured, i, options.gains, out)
         if options.history:
             copy_vector(z, history.means[i])
             copy_square_matrix(P, history.covariances[i], NZ)

@@ -35,7 +35,7 @@ def function_text(head: str, about: str, body: list[str], compiled: str) -> str:
     )
 
 
-def array_entries(array: str, n: int) -> str:
+def array_entries_text(array: str, n: int) -> str:
     """Return source text that lists the first n entries of an array: "a[0], a[1], ..."."""
     return ", ".join(f"{array}[{i}]" for i in range(n))
 
@@ -49,7 +49,7 @@ def step_code(n: int) -> list[str]:
     return [
         "# numba takes plain integers for types",
         "begin, middle, end = np.int64(0), np.int64(HELD), np.int64(2 * HELD)",
-        f"z, h, at = ({array_entries('s', 2 * n)}), 0.0, begin",
+        f"z, h, at = ({array_entries_text('s', 2 * n)}), 0.0, begin",
         f"{' = '.join(sums)} = 0.0",
         "for stage in range(4):  # in a loop the laws are compiled once",
         "    a = accelerations(t + h, z, act, at, p, on, k, extra)",
@@ -65,7 +65,7 @@ def step_code(n: int) -> list[str]:
 
 def step_in_place_code(n: int) -> list[str]:
     """Return the source lines of one Runge-Kutta step that changes a state array in place."""
-    state, force = array_entries("y", 2 * n), array_entries("extra", n)
+    state, force = array_entries_text("y", 2 * n), array_entries_text("extra", n)
     return [
         f"z = step(t, ({state}), dt, act, p, on, k, ({force},))",
         *(f"y[{i}] = z[{i}]" for i in range(2 * n)),
@@ -75,7 +75,7 @@ def step_in_place_code(n: int) -> list[str]:
 def steps_code(n: int) -> list[str]:
     """Return the source lines of many Runge-Kutta steps with the actuators held."""
     return [
-        f"z = ({array_entries('y', 2 * n)})",
+        f"z = ({array_entries_text('y', 2 * n)})",
         "for i in range(n):",
         f"    z = step(t + i * dt, z, dt, act, p, on, k, ({', '.join(['0.0'] * n)},))",
         *(f"y[{i}] = z[{i}]" for i in range(2 * n)),
@@ -90,7 +90,7 @@ def acceleration_jacobian_code(n: int) -> list[str]:
     displaced = ", ".join(f"s[{i}] + DIFFERENCE * (j == {i})" for i in range(2 * n))
     values = list(map("b{}".format, range(n)))
     return [
-        f"force = ({array_entries('extra', n)},)",
+        f"force = ({array_entries_text('extra', n)},)",
         f"{' = '.join(values)} = 0.0",
         f"for j in range(-1, {2 * n}):  # in a loop the laws are compiled once",
         f"    a = accelerations(t, ({displaced}), act, np.int64(HELD), p, on, k, force)",

@@ -11,7 +11,7 @@ from boatsim.physics.signals import SignalSegment
 WHOLE = "*"  # channel of the insertion point after those of all actuators
 
 
-def actuator_stations(program: ProgramLayout) -> Sequence[InsertionPoint]:
+def actuator_insertion_points(program: ProgramLayout) -> Sequence[InsertionPoint]:
     """Return the places at which effects add code to the generated function `advance_channels`.
 
     There is one place for each actuator or sensor signal, then one after all of them. Each signal
@@ -33,10 +33,10 @@ def actuator_stations(program: ProgramLayout) -> Sequence[InsertionPoint]:
             end.insert(0, f"write_cosine_and_sine(x, act, held, {places})")
         begin = (f"c = commands[{program.commands.index(name)}]", "x = SignalSegment(c, c, c)")
         stations.append(InsertionPoint(begin, tuple(end), name))
-    return [*stations, InsertionPoint(tuple(sum_lines(program)), (), WHOLE)]
+    return [*stations, InsertionPoint(tuple(signal_sum_lines(program)), (), WHOLE)]
 
 
-def sum_lines(program: ProgramLayout) -> Iterator[str]:
+def signal_sum_lines(program: ProgramLayout) -> Iterator[str]:
     """Yield source lines that store sums of actuator signals (such as total thrust) in `act`.
 
     The generated function `advance_channels` of a vessel's compiled program contains them. The sums
@@ -51,7 +51,7 @@ def sum_lines(program: ProgramLayout) -> Iterator[str]:
             yield f"act[{row}{program.law_signals.index(name)}] = {total}"
 
 
-def discontinuity_stations(program: ProgramLayout) -> Sequence[InsertionPoint]:
+def discontinuity_insertion_points(program: ProgramLayout) -> Sequence[InsertionPoint]:
     """Return the places at which effects add code to the generated `time_to_discontinuity`.
 
     There is one place for each actuator or sensor signal, then one after all of them. Each signal
@@ -82,7 +82,7 @@ ADVANCE = ProgramFunction(
     ("pass",),
     "",
     compiled="merged",
-    stations=actuator_stations,
+    stations=actuator_insertion_points,
 )
 TIME_TO_DISCONTINUITY = ProgramFunction(
     "time_to_discontinuity",
@@ -90,7 +90,7 @@ TIME_TO_DISCONTINUITY = ProgramFunction(
     ("left = np.inf",),
     "left",
     compiled="merged",
-    stations=discontinuity_stations,
+    stations=discontinuity_insertion_points,
 )
 
 

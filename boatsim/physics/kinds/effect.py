@@ -208,7 +208,7 @@ class Effect(CheckedParameters):
         own = self
         for name, about in type(self).params().items():
             if about.follows and not self.has_value(name):
-                own = own.with_values({name: self.followed_value(about.follows, vessel)})
+                own = own.with_values({name: self.inherited_value(about.follows, vessel)})
         if own._parameters_without_value():
             rules = own.derived_parameters(vessel)
             own = own.with_values({n: x for n, x in rules.items() if not own.has_value(n)})
@@ -257,7 +257,7 @@ class Effect(CheckedParameters):
         """
         return {}
 
-    def keeps_derived_codes(self, vessel: "Boat") -> bool:
+    def has_current_derived_codes(self, vessel: "Boat") -> bool:
         """Return whether the numeric codes derived from a vessel equal those that the effect holds.
 
         Such codes stand for names, for example of a factor or a channel, in the compiled law; an
@@ -277,7 +277,7 @@ class Effect(CheckedParameters):
         """Return the parameters without a value."""
         return [n for n in type(self).params() if not self.has_value(n)]
 
-    def followed_value(self, source: str, vessel: "Boat") -> float:
+    def inherited_value(self, source: str, vessel: "Boat") -> float:
         """Return the vessel's number that serves as the default of one of the effect's parameters.
 
         A parameter may follow, for instance, "vessel.length" or "linear_damping.yaw".

@@ -18,7 +18,7 @@ class CoefficientChange(NamedTuple):
     how: str  # "sets", "scales" or "shifts"
     weight: float  # factor of a shift
 
-    def apply_to(self, stated: float, value: float) -> float:
+    def changed_value(self, stated: float, value: float) -> float:
         """Return the changed value of a vessel's number: replaced, scaled or shifted.
 
         Args:

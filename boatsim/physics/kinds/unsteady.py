@@ -22,7 +22,7 @@ class RandomForce(Force):
     realisation.
 
     The simulator uses the realisation of `law`. The diagnosis filter tracks the oscillators of
-    `oscillating_force` instead and disables the law by `realisation` = 0.
+    `oscillating_force_name` instead and disables the law by `realisation` = 0.
     """
 
     random: ClassVar[bool] = True

@@ -2,7 +2,7 @@
 
 from boatsim.physics.vessel.bindings import check_bindings
 from boatsim.physics.vessel.effect_tables import effect_from_table, effect_name
-from boatsim.physics.vessel.estimated import number_sd, sd_of_refined_numbers
+from boatsim.physics.vessel.estimated import estimated_number_sd, sd_of_corrected_estimates
 from boatsim.physics.vessel.loading import load_vessel, merge_load_conditions, with_effect_tables
 from boatsim.physics.vessel.loads import apply_load_values
 from boatsim.physics.vessel.model import Vessel
@@ -28,8 +28,8 @@ __all__ = [
     "effect_name",
     "load_vessel",
     "merge_load_conditions",
-    "number_sd",
+    "estimated_number_sd",
     "apply_load_values",
-    "sd_of_refined_numbers",
+    "sd_of_corrected_estimates",
     "with_effect_tables",
 ]

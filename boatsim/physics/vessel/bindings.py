@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
-from boatsim.errors import BadInput, unknown_name
+from boatsim.errors import BadInput, unknown_name_message
 from boatsim.physics.kinds.channel import ChannelEffect
 from boatsim.physics.kinds.effect import Effect
 from boatsim.physics.vessel.schema import Body, CommandChannel, MeasuredChannel
@@ -77,7 +77,7 @@ class ChannelBindings:
         return tuple(filter(self._is_angle, self.actuators))
 
     @cached_property
-    def reading_angles(self) -> tuple[str, ...]:
+    def environment_angles(self) -> tuple[str, ...]:
         """Names of the measured environment signals that are angles, such as a wind direction.
 
         The laws of effects receive their cosine and sine too.
@@ -95,7 +95,7 @@ class ChannelBindings:
             *self.actuators,
             *_with_cosine_and_sine(self.angles),
             *self.readings,
-            *_with_cosine_and_sine(self.reading_angles),
+            *_with_cosine_and_sine(self.environment_angles),
         )
 
     @cached_property
@@ -157,9 +157,9 @@ class ChannelBindings:
                     return self.side(actuator)
         return 0
 
-    def unknown_command(self, name: str) -> str:
+    def unknown_command_message(self, name: str) -> str:
         """Return the error message for a command that the vessel does not have."""
-        return unknown_name(f"{self.name}: command", name, self.commands)
+        return unknown_name_message(f"{self.name}: command", name, self.commands)
 
     # Effects
     # ----------------------------------------------------------------------------------------------
@@ -184,7 +184,7 @@ class ChannelBindings:
         """Return the names of all effects of the vessel that have a given name or type."""
         return [e.name for e in self.effects if name in (e.name, type(e).type_name())]
 
-    def effects_of(self, idea: str) -> list[Effect]:
+    def effects_of_type(self, idea: str) -> list[Effect]:
         """Return the vessel's effects of a type, and those that can stand for that type.
 
         An example is a propeller in place of a thruster. The order is that of the vessel.
@@ -218,9 +218,9 @@ class ChannelBindings:
                 bound[role] = candidates[0]
         return bound
 
-    def carrier_effects(self, effect: Effect) -> list[Effect]:
+    def host_effects(self, effect: Effect) -> list[Effect]:
         """Return the other effects at which an effect acts, such as the propellers of prop walk."""
-        carriers = self.effects_of(type(effect).per_instance_of)
+        carriers = self.effects_of_type(type(effect).per_instance_of)
         return [e for e in carriers if not effect.on or e.name in effect.on]
 
     def target_actuators(self, effect: Effect) -> tuple[str, ...]:
@@ -272,7 +272,7 @@ def check_bindings(vessel: ChannelBindings, label: str) -> None:
                 f"{what} occurs {names.count(effect.name)} times; each needs a unique name"
             )
         _check_roles(vessel, effect, what)
-        if type(effect).sees_held and not effect.keeps_derived_codes(vessel):
+        if type(effect).sees_held and not effect.has_current_derived_codes(vessel):
             raise BadInput(
                 f"{what} stands before an effect by which a channel acts; move it behind all of "
                 "these"
@@ -287,9 +287,11 @@ def _check_roles(vessel: ChannelBindings, effect: Effect, what: str) -> None:
     roles = type(effect).roles
     for role, channel in vessel.specified_bindings(effect).items():
         if role not in roles:
-            raise BadInput(unknown_name(f"{what}: on", role, roles))
+            raise BadInput(unknown_name_message(f"{what}: on", role, roles))
         if isinstance(channel, str) and channel not in vessel.inputs:
-            raise BadInput(unknown_name(f"{what}: on.{role} channel", channel, vessel.inputs))
+            raise BadInput(
+                unknown_name_message(f"{what}: on.{role} channel", channel, vessel.inputs)
+            )
     bound = vessel.bindings(effect)
     for role, about in roles.items():
         if role not in bound and about.fixed is None:
@@ -302,7 +304,7 @@ def _check_roles(vessel: ChannelBindings, effect: Effect, what: str) -> None:
 def _check_channel(vessel: ChannelBindings, effect: ChannelEffect, what: str) -> None:
     for name in (*effect.on, *effect.fed_by):
         if name not in vessel.commands:
-            raise BadInput(unknown_name(f"{what}: channel", name, vessel.commands))
+            raise BadInput(unknown_name_message(f"{what}: channel", name, vessel.commands))
     if effect.fed_by and len(effect.fed_by) != len(effect.on):
         raise BadInput(
             f"{what}: fed_by names {len(effect.fed_by)} channels, on {len(effect.on)}; each "
@@ -312,9 +314,9 @@ def _check_channel(vessel: ChannelBindings, effect: ChannelEffect, what: str) ->
 
 def _check_carriers(vessel: ChannelBindings, effect: Effect, what: str) -> None:
     idea = type(effect).per_instance_of
-    carriers = [carrier.name for carrier in vessel.effects_of(idea)]
+    carriers = [carrier.name for carrier in vessel.effects_of_type(idea)]
     for name in effect.on:
         if name not in carriers:
-            raise BadInput(unknown_name(f"{what}: {idea}", name, carriers))
+            raise BadInput(unknown_name_message(f"{what}: {idea}", name, carriers))
     if not carriers:
         raise BadInput(f"{what} needs a vessel with {idea}")

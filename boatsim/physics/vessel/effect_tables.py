@@ -5,7 +5,7 @@ from dataclasses import fields
 from pathlib import Path
 
 from boatsim.errors import BadInput
-from boatsim.physics.content import effect_address, load_class
+from boatsim.physics.content import effect_reference, load_class
 from boatsim.physics.kinds.effect import Effect
 
 
@@ -43,7 +43,7 @@ def effect_table(effect: Effect) -> dict[str, object]:
     It contains the effect's type and all values that are not defaults. Parameters in
     `effect.filled` are left out: a rule computes them when the vessel is loaded.
     """
-    table: dict[str, object] = {"use": effect_address(type(effect))}
+    table: dict[str, object] = {"use": effect_reference(type(effect))}
     if effect.name != type(effect).type_name():
         table["name"] = effect.name
     for field in fields(effect):

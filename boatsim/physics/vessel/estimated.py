@@ -6,8 +6,8 @@ number of an effect that the vessel does not have is an estimate, too: its absen
 
 from collections.abc import Iterable, Mapping
 
-from boatsim.errors import BadInput, unknown_name
-from boatsim.physics.content import library_names, load_class
+from boatsim.errors import BadInput, unknown_name_message
+from boatsim.physics.content import load_class, shipped_content_names
 from boatsim.physics.kinds.effect import REFINED_GROUPS, Effect
 from boatsim.physics.kinds.release import CoefficientRelease
 from boatsim.physics.vessel.bindings import ChannelBindings
@@ -33,13 +33,13 @@ def check_estimated(estimated: Iterable[str], vessel: ChannelBindings, label: st
             continue
         allowed = [*REFINED_GROUPS]
         owners = ["body", *(effect.name for effect in vessel.effects)]
-        if owner in library_names("effect"):
+        if owner in shipped_content_names("effect"):
             owners.append(owner)
         if not number:
             owners = []  # a group was meant
         for one in dict.fromkeys(owners):
             allowed += map(f"{one}.{{}}".format, _numbers_of(one, vessel))
-        raise BadInput(unknown_name(f"{label}: key in [estimated]", key, allowed))
+        raise BadInput(unknown_name_message(f"{label}: key in [estimated]", key, allowed))
 
 
 def _numbers_of(owner: str, vessel: ChannelBindings) -> list[str]:
@@ -50,14 +50,14 @@ def _numbers_of(owner: str, vessel: ChannelBindings) -> list[str]:
     kind: type[Effect] | None = None
     if effect is not None:
         kind = type(effect)
-    elif owner in library_names("effect"):
+    elif owner in shipped_content_names("effect"):
         kind = load_class("effect", owner)
     if kind is None:
         return []
     return list(kind.params())
 
 
-def sd_of_refined_numbers(
+def sd_of_corrected_estimates(
     effect: Effect, vessel: ChannelBindings, estimated: Mapping[str, float]
 ) -> float | None:
     """Return the relative standard deviation of the estimated numbers that an effect corrects.
@@ -72,7 +72,9 @@ def sd_of_refined_numbers(
         that the effect is missing physics.
     """
     if isinstance(effect, CoefficientRelease):
-        numbers = [number_sd(c.owner, c.key, vessel, estimated) for c in effect.changes(vessel)]
+        numbers = [
+            estimated_number_sd(c.owner, c.key, vessel, estimated) for c in effect.changes(vessel)
+        ]
         known = [sd for sd in numbers if sd is not None]
         if known and len(known) == len(numbers):
             return max(known)
@@ -84,7 +86,7 @@ def sd_of_refined_numbers(
     return estimated.get(type(effect).refines)
 
 
-def number_sd(
+def estimated_number_sd(
     owner: str, key: str, vessel: ChannelBindings, estimated: Mapping[str, float]
 ) -> float | None:
     """Return the relative standard deviation of one number of a vessel that is only an estimate.

@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from itertools import combinations
 
-from boatsim.errors import BadInput, unknown_name
+from boatsim.errors import BadInput, unknown_name_message
 from boatsim.files import array_of_tables
 from boatsim.physics.vessel.effect_tables import effect_name
 
@@ -21,7 +21,7 @@ def check_loads_exist(names: Sequence[str], loads: Loads, label: str) -> None:
     """
     for name in names:
         if name not in loads:
-            raise BadInput(unknown_name(f"{label}: load", name, loads))
+            raise BadInput(unknown_name_message(f"{label}: load", name, loads))
 
 
 def check_loads_compatible(names: Sequence[str], loads: Loads, label: str) -> None:
@@ -101,6 +101,6 @@ def apply_load_values(
             changed[key] = value
         else:
             names = [*by_name, *INNER_TABLES, *NUMBERS]
-            raise BadInput(unknown_name(f"{label}: table to change", key, names))
+            raise BadInput(unknown_name_message(f"{label}: table to change", key, names))
     changed["effect"] = effects
     return changed

@@ -17,9 +17,9 @@ from boatsim.arguments import (
     checked_number,
     type_error,
 )
-from boatsim.errors import BadInput, unknown_name
+from boatsim.errors import BadInput, unknown_name_message
 from boatsim.files import replace_file, validate_table
-from boatsim.physics.content import vessel_address
+from boatsim.physics.content import vessel_reference
 from boatsim.physics.estimate.base import HullParticulars
 from boatsim.physics.kernel.equations import has_hull_fixed_axes
 from boatsim.physics.kinds.effect import Effect
@@ -279,7 +279,7 @@ class Vessel(ChannelBindings):
         check_instance("name", name, str, "a text")
         names = self.names_of(name)
         if not names:
-            raise BadInput(unknown_name(f"{self.name}: effect", name, self._effect_names()))
+            raise BadInput(unknown_name_message(f"{self.name}: effect", name, self._effect_names()))
         return self._with_effects([e for e in self.effects if e.name not in names])
 
     def with_parameters(self, parameters: Mapping[str, Mapping[str, object]]) -> Self:
@@ -305,7 +305,7 @@ class Vessel(ChannelBindings):
         for name in values:
             if name not in self._effect_names():
                 names = ["body", *self._effect_names()]
-                raise BadInput(unknown_name(f"{self.name}: effect", name, names))
+                raise BadInput(unknown_name_message(f"{self.name}: effect", name, names))
         effects: list[Effect] = []
         for effect in self.effects:
             if effect.name in values:
@@ -322,7 +322,7 @@ class Vessel(ChannelBindings):
         measured = dict(self.measured)
         for name, value in checked_mapping("values", values).items():
             if name not in measured:
-                raise BadInput(unknown_name(f"{self.name}: measured", name, measured))
+                raise BadInput(unknown_name_message(f"{self.name}: measured", name, measured))
             neutral = checked_number(f"values[{name!r}]", value)
             measured[name] = measured[name].model_copy(update={"neutral": neutral})
         return dataclasses.replace(self, measured=measured)
@@ -355,14 +355,14 @@ class Vessel(ChannelBindings):
         """Return the vessel with one number changed, and all filled-in numbers that follow it."""
         changed = self
         if change.owner == "body":
-            new = change.apply_to(getattr(self.body, change.key), value)
+            new = change.changed_value(getattr(self.body, change.key), value)
             if new <= 0.0:
                 raise BadInput(f"{self.name}: body.{change.key} = {new:g}; allowed is more than 0")
             body = self.body.model_copy(update={change.key: new})
             changed = dataclasses.replace(self, body=body)
             source = f"vessel.body.{change.key}"
         else:
-            new = change.apply_to(getattr(self.effect(change.owner), change.key), value)
+            new = change.changed_value(getattr(self.effect(change.owner), change.key), value)
             source = f"{change.owner}.{change.key}"
         effects: list[Effect] = []
         for effect in self.effects:
@@ -377,7 +377,7 @@ class Vessel(ChannelBindings):
         params = type(effect).params()
         for key in values:
             if key not in params:
-                raise BadInput(unknown_name(f"{self.name}: {effect.name}", key, params))
+                raise BadInput(unknown_name_message(f"{self.name}: {effect.name}", key, params))
         return effect.with_values({**values, "filled": effect.filled - set(values)})
 
     def _with_effects(self, effects: Sequence[Effect | Mapping[str, object]]) -> Self:
@@ -481,7 +481,7 @@ class Vessel(ChannelBindings):
                 table[key] = value
         table |= {"freedoms": list(self.dof), "channels": _toml_value(self.commands)}
         if not self.hull_xml and self.path != folder:
-            table["based_on"] = vessel_address(self.path / FILE_NAME)
+            table["based_on"] = vessel_reference(self.path / FILE_NAME)
         if self.found:
             table["found"] = list(self.found)
         if self.spread is not None:

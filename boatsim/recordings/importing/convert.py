@@ -11,21 +11,21 @@ from pathlib import Path
 
 import numpy as np
 
-from boatsim.errors import BadInput, nearest_hint, unknown_name
+from boatsim.errors import BadInput, nearest_hint, unknown_name_message
 from boatsim.physics.base import Array
 from boatsim.physics.signals import POSE, RATES
 from boatsim.recordings.conversion import Curve, Range
 from boatsim.recordings.expression import Expression, parse
 from boatsim.recordings.importing.clocks import YEAR_2000, YEAR_2100
 from boatsim.recordings.importing.frames import local_position
-from boatsim.recordings.importing.log import HUGE, Log, Signal, rate_of
+from boatsim.recordings.importing.log import HUGE, Log, Signal, median_sampling_rate
 from boatsim.recordings.importing.mapping import Map, Position
 from boatsim.recordings.importing.resample import (
     MIN_LOST,
     Samples,
     clean_samples,
-    count_disorder,
-    longest_hold,
+    count_unordered_samples,
+    longest_command_gap,
     mean_held_values,
     nearest_samples,
     row_times,
@@ -34,7 +34,7 @@ from boatsim.recordings.importing.several_logs import Span, aligned, begin_line,
 from boatsim.recordings.notes import Notes
 from boatsim.recordings.raw_table import file_error, select_rows
 from boatsim.recordings.repeated_values import repeated_rows
-from boatsim.recordings.table import FEWEST_ROWS, MAX_GAP, Recording, allowed_gaps, is_command
+from boatsim.recordings.table import FEWEST_ROWS, MAX_GAP, Recording, allowed_empty_rows, is_command
 
 # Columns of one fix
 TOGETHER = (("x_m", "y_m"), ("psi_rad",))
@@ -76,7 +76,7 @@ class _Work:
         self.remarks.append(f"{self.log.path}: {text}")
 
 
-def convert(
+def convert_log(
     log: Log, map: Map, file: str, channels: Mapping[str, tuple[float, float]] | None = None
 ) -> Recording:
     """Return the recording of a log.
@@ -101,7 +101,7 @@ def convert(
     for name, what in map.columns.items():
         t, values = _column(work, name, what)
         t = t - map.latency.get(name, 0.0)
-        disorder.setdefault(count_disorder(t), []).append(name)
+        disorder.setdefault(count_unordered_samples(t), []).append(name)
         is_held = name in work.channels or is_command(name) or name.startswith(HELD)
         work.columns[name] = Column(_check_values(work, name, clean_samples(t, values)), is_held)
     _remark_disorder(work, disorder)
@@ -172,7 +172,7 @@ def _with_time_of_map(log: Log, map: Map, file: str) -> Log:
     signals = dict(log.signals)
     for source, text in given.items():
         if source not in names:
-            raise BadInput(f"{file}: {unknown_name('time: file', source, sorted(names))}")
+            raise BadInput(f"{file}: {unknown_name_message('time: file', source, sorted(names))}")
         clock, how = _signal(_Work(log, file, map, {}), "time", text)
         t = how.of(clock.values)
         for name, signal in signals.items():
@@ -375,7 +375,7 @@ def _remark_spans(work: _Work, rows: Array) -> None:
 
 def _remark_rates(work: _Work, rows: Array) -> None:
     """Remark signals that are measured less often or more often than rows are written."""
-    rate = rate_of(rows)
+    rate = median_sampling_rate(rows)
     slow: dict[str, list[str]] = {}
     quick: dict[str, list[str]] = {}
     for name, c in work.columns.items():
@@ -399,7 +399,7 @@ def _remark_rates(work: _Work, rows: Array) -> None:
 
 def _remark_held(work: _Work, rows: Array) -> None:
     for name, c in work.columns.items():
-        if c.held and (longest := longest_hold(rows, c.given)):
+        if c.held and (longest := longest_command_gap(rows, c.given)):
             work.remark(
                 f"{name} is held for up to {longest:.3g} s without a new value; was it still in "
                 "force?"
@@ -419,7 +419,7 @@ def _complete_rows(
         if work.columns[name].held and not name.startswith(HELD):
             kept &= np.isfinite(values)
     for _ in range(MAX_ROUNDS):  # the removal of rows may change which columns are slow
-        allowed = allowed_gaps(select_rows(signals, kept))
+        allowed = allowed_empty_rows(select_rows(signals, kept))
         missing = np.zeros(int(kept.sum()), dtype=np.bool_)
         for name, values in signals.items():
             if name in (*POSE, *RATES):
@@ -466,7 +466,7 @@ def _remark_times(work: _Work, rows: Array) -> None:
         work.remark(f"there is a gap of {longest:.3g} s at t = {where:.3f} s{more}")
 
 
-def position_fix(map: Map) -> str | None:
+def position_fix_type(map: Map) -> str | None:
     """Return how positions were measured: "gnss" if the columns are latitudes, else None."""
     if map.position:
         return "gnss"
@@ -481,7 +481,7 @@ def recording_notes_text(
     Args:
         path: File of the recording.
         vessel: Name or path of the vessel.
-        fix: The fact `position_fix`, None if unknown.
+        fix: The fact `position_fix_type`, None if unknown.
         use: Parts of the recording that are used [s]; () for all of it.
     """
     key = path.stem

@@ -43,7 +43,9 @@ def curvature_radii(latitude: float) -> tuple[float, float]:
     return float(across * (1.0 - squared) / w), float(across)
 
 
-def angles_of_quaternions(w: Array, x: Array, y: Array, z: Array) -> tuple[Array, Array, Array]:
+def quaternions_to_euler_angles(
+    w: Array, x: Array, y: Array, z: Array
+) -> tuple[Array, Array, Array]:
     """Return roll, pitch and yaw, each (N,) [rad], of quaternions.
 
     The rotations are in the order yaw, pitch, roll.
@@ -53,7 +55,7 @@ def angles_of_quaternions(w: Array, x: Array, y: Array, z: Array) -> tuple[Array
     return roll, pitch, np.arctan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))
 
 
-def with_angles(signals: Mapping[str, Signal]) -> dict[str, Signal]:
+def with_euler_angles(signals: Mapping[str, Signal]) -> dict[str, Signal]:
     """Return all signals, with roll, pitch and yaw of each quaternion added: `q.yaw`.
 
     The parts of a quaternion are named by letters, or numbered from the real part.
@@ -71,7 +73,7 @@ def with_angles(signals: Mapping[str, Signal]) -> dict[str, Signal]:
             valid = np.abs(np.sqrt(w * w + x * x + y * y + z * z) - 1.0) < UNIT_LENGTH
         w, x, y, z = (np.where(valid, part, np.nan) for part in (w, x, y, z))
         for name, angle in zip(
-            ("roll", "pitch", "yaw"), angles_of_quaternions(w, x, y, z), strict=True
+            ("roll", "pitch", "yaw"), quaternions_to_euler_angles(w, x, y, z), strict=True
         ):
             found[f"{base}.{name}"] = Signal(group["w"].t, angle, "rad")
     return found

@@ -11,7 +11,7 @@ import numpy as np
 
 from boatsim.errors import BadInput
 from boatsim.physics.base import Array
-from boatsim.physics.content import import_library_module, library_names
+from boatsim.physics.content import import_library_module, shipped_content_names
 from boatsim.recordings.raw_table import file_error
 
 MAX_BYTES = 2_000_000_000  # of a file
@@ -168,12 +168,12 @@ def reader_for(path: Path) -> Callable[[Path], Log]:
 def known_suffixes() -> dict[str, str]:
     """Return the suffix -> name of the module of each format; the suffix of a folder is "/"."""
     found: dict[str, str] = {}
-    for name in library_names("log"):
+    for name in shipped_content_names("log"):
         found |= dict.fromkeys(import_library_module("log", name).SUFFIXES, name)
     return found
 
 
-def signals_of(
+def stream_signals(
     stream: str, t: Array, fields: Mapping[str, Array], units: Mapping[str, str] | None = None
 ) -> dict[str, Signal]:
     """Return the signals of one stream by name.
@@ -194,7 +194,7 @@ def signals_of(
     return signals
 
 
-def rate_of(t: Array) -> float:
+def median_sampling_rate(t: Array) -> float:
     """Return the rate [Hz] by the median step of times (N,) [s]; 0 for fewer than two."""
     steps = np.diff(t)
     steps = steps[steps > 0.0]

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from pydantic import Field, field_validator, model_validator
 
-from boatsim.errors import BadInput, unknown_name
+from boatsim.errors import BadInput, unknown_name_message
 from boatsim.files import Table, read_toml, validate_table
 from boatsim.physics.signals import POSE, RATES
 from boatsim.recordings.conversion import Curve, Range, conversion_of
@@ -113,7 +113,7 @@ class Map(Table):
             known |= set(COMPUTED[1:])
         for name in self.latency:
             if name not in known:
-                raise ValueError(unknown_name("latency: column", name, sorted(known)))
+                raise ValueError(unknown_name_message("latency: column", name, sorted(known)))
         last = -math.inf
         for begin, end in self.use:
             if not last < begin < end:

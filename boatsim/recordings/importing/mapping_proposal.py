@@ -10,15 +10,15 @@ import numpy as np
 
 from boatsim.files import toml_key, toml_value
 from boatsim.recordings.expression import parse
-from boatsim.recordings.importing.log import Log, Signal, rate_of
+from boatsim.recordings.importing.log import Log, Signal, median_sampling_rate
 from boatsim.recordings.importing.several_logs import sources, unaligned
 from boatsim.recordings.importing.signal_classification import (
     HELM,
     PULSE,
     Classification,
     classify_signals,
-    side_of,
-    tokens_of,
+    side_from_tokens,
+    tokenize_name,
 )
 from boatsim.recordings.importing.turning import MIN_CORRELATION, Turning
 from boatsim.recordings.notes import unit_of
@@ -92,7 +92,7 @@ def _signal_figures(signal: Signal) -> tuple[str, str, str, str, str]:
         low, high = f"{values.min():.6g}", f"{values.max():.6g}"
     return (
         _without_control_characters(signal.unit)[:12],
-        f"{rate_of(signal.t[np.isfinite(signal.values)]):.3g}",
+        f"{median_sampling_rate(signal.t[np.isfinite(signal.values)]):.3g}",
         str(len(values)),
         low,
         high,
@@ -166,7 +166,7 @@ def propose_map(
         commands, driven = _command_lines(best, open_drives, turning)
     fastest = 0.0
     for g in (*used, *driven):
-        fastest = max(fastest, rate_of(g.signal.t))
+        fastest = max(fastest, median_sampling_rate(g.signal.t))
     if fastest > 1.01 * MAX_ROW_RATE:
         lines.append(
             f"rate = {MAX_ROW_RATE:g}  # [Hz] of rows; the fastest signal has {fastest:.3g}"
@@ -284,7 +284,7 @@ def _expression(g: Classification) -> str:
 
 def _comment(g: Classification, others: Sequence[Classification]) -> str:
     """A comment with the rate, the assumption and further possible signals."""
-    parts = [f"{rate_of(g.signal.t):.3g} Hz"]
+    parts = [f"{median_sampling_rate(g.signal.t):.3g} Hz"]
     if g.why:
         parts.append(g.why)
     if also := [_without_control_characters(o.name) for o in others if o is not g][:4]:
@@ -331,7 +331,9 @@ def _command_lines(
 def _unused_line(g: Classification, drives: Sequence[VesselChannel]) -> str:
     """A comment on a command that is not used, with the line of revolutions of a thruster."""
     for drive in drives:
-        same_side = side_of(frozenset(tokens_of(drive.name))) == side_of(g.tokens)
+        same_side = side_from_tokens(frozenset(tokenize_name(drive.name))) == side_from_tokens(
+            g.tokens
+        )
         if same_side and _is_thrust_by_revolutions(drive, g):
             return f"# or by revolutions: {_channel_line(drive.name, g, drive)}"
     return f"# not used: {_without_control_characters(g.name)}"
@@ -349,7 +351,7 @@ def _match_channels(
     if helms:
         named: list[Classification] = []
         for name, (g, _) in found.items():
-            if frozenset(tokens_of(name)) & HELM and not side_of(g.tokens):
+            if frozenset(tokenize_name(name)) & HELM and not side_from_tokens(g.tokens):
                 named.append(g)
         measured = list(filterfalse(_is_constant, best.get("actual", [])))
         found |= _match_steering_channels(
@@ -406,7 +408,7 @@ def _steers(drive: VesselChannel) -> bool:
     unit = unit_of(drive.name)
     if unit:
         return unit == "rad"
-    return not HELM.isdisjoint(tokens_of(drive.name))
+    return not HELM.isdisjoint(tokenize_name(drive.name))
 
 
 def _match_by_order(
@@ -416,7 +418,7 @@ def _match_by_order(
     why = "; CHECK: the only signal that is left"
     if len(left) > 1:
         why = "; CHECK: by order only"
-    sides = [side_of(frozenset(tokens_of(d.name))) for d in missing]
+    sides = [side_from_tokens(frozenset(tokenize_name(d.name))) for d in missing]
     if len(left) == 2 and sorted(sides) == list(SIDED):
         port = sides.index(SIDED[0])
         sense = turning.correlation((left[port], 1.0), (left[1 - port], -1.0))
@@ -480,9 +482,9 @@ def _match_by_name(
 def _name_similarity(drive: VesselChannel, g: Classification) -> float:
     if drive.name == g.name:
         return 10.0
-    theirs = g.tokens | frozenset(tokens_of(g.signal.about))
-    ours = frozenset(tokens_of(drive.name))
-    mine, other = side_of(ours), side_of(theirs)
+    theirs = g.tokens | frozenset(tokenize_name(g.signal.about))
+    ours = frozenset(tokenize_name(drive.name))
+    mine, other = side_from_tokens(ours), side_from_tokens(theirs)
     opposite = mine != other and "" not in (mine, other)
     if opposite or not _units_are_compatible(drive, g) or bool(ours & HELM) != bool(theirs & HELM):
         return 0.0
@@ -532,7 +534,7 @@ def _channel_line(
     low, high = -1.0, 1.0
     if drive:
         low, high = drive.low, drive.high
-    note = f"  # {rate_of(g.signal.t):.3g} Hz"
+    note = f"  # {median_sampling_rate(g.signal.t):.3g} Hz"
     if g.signal.about:
         note += f"; {_without_control_characters(g.signal.about)}"
     turned = sense < -MIN_CORRELATION
@@ -643,11 +645,11 @@ def _expression_with_unit(g: Classification, name: str) -> str:
 
 
 def _column_name(g: Classification) -> str:
-    words = g.tokens | frozenset(tokens_of(g.signal.about))
+    words = g.tokens | frozenset(tokenize_name(g.signal.about))
     name = "throttle"
     if words & HELM:
         name = "steer"
-    if side := side_of(words):
+    if side := side_from_tokens(words):
         name += f"_{side}"
     return name + {"deg": "_rad", "rpm": "_radps"}.get(g.word, "")
 

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from boatsim.physics.base import Array
-from boatsim.recordings.importing.log import rate_of
+from boatsim.recordings.importing.log import median_sampling_rate
 
 # A command without a new value for this many median steps and this long [s] may be lost
 LOST_STEPS = 5.0
@@ -33,7 +33,7 @@ class Samples:
     @property
     def rate(self) -> float:
         """Rate of the samples [Hz]."""
-        return rate_of(self.t)
+        return median_sampling_rate(self.t)
 
 
 def clean_samples(t: Array, values: Array) -> Samples:
@@ -49,7 +49,7 @@ def clean_samples(t: Array, values: Array) -> Samples:
     return Samples(t[last], values[last])
 
 
-def count_disorder(t: Array) -> tuple[int, int, float]:
+def count_unordered_samples(t: Array) -> tuple[int, int, float]:
     """Count the samples that `clean_samples` sorts, and those that it drops for another one.
 
     Args:
@@ -121,7 +121,7 @@ def mean_held_values(rows: Array, given: Samples) -> Array:
     return found
 
 
-def longest_hold(rows: Array, given: Samples) -> float:
+def longest_command_gap(rows: Array, given: Samples) -> float:
     """Return the longest time [s] without a new value of a command, 0 if its rate explains it."""
     if len(given.t) < 2:
         return 0.0

@@ -10,8 +10,8 @@ from pathlib import Path
 import numpy as np
 
 from boatsim.physics.base import Array
-from boatsim.recordings.importing.frames import with_angles
-from boatsim.recordings.importing.log import MAX_SIGNALS, Log, MemoryBudget, Signal, signals_of
+from boatsim.recordings.importing.frames import with_euler_angles
+from boatsim.recordings.importing.log import MAX_SIGNALS, Log, MemoryBudget, Signal, stream_signals
 
 # Type of number -> letter of `struct` and size; char is one byte, signed or not, time is two words
 NUMBERS = {
@@ -172,7 +172,7 @@ class Decoder:
                 order = ">"
         found: dict[str, float] = {}
         try:
-            _Cursor(content, order, self.cdr, self.parts).message(self.root, "", found)
+            _Cursor(content, order, self.cdr, self.parts).decode_message(self.root, "", found)
         except (struct.error, IndexError) as error:
             raise ValueError(str(error)) from error
         return found
@@ -188,7 +188,7 @@ class _Cursor:
         # Number of messages that are still decoded; messages without content have no other limit
         self.remaining = MAX_EMPTY + len(data)
 
-    def message(self, name: str, prefix: str, found: dict[str, float] | None) -> None:
+    def decode_message(self, name: str, prefix: str, found: dict[str, float] | None) -> None:
         self.remaining -= 1
         if self.remaining < 0:
             raise ValueError("more messages in the message than it has bytes")
@@ -197,9 +197,9 @@ class _Cursor:
             self.at += 1  # ROS 2 gives an empty message one byte
         for part in parts:
             if part.count is None:
-                self.one(part.kind, prefix + part.name, found)
+                self.decode_field(part.kind, prefix + part.name, found)
             else:
-                self.several(part, prefix + part.name, found)
+                self.decode_array(part, prefix + part.name, found)
 
     def number(self, kind: str) -> float:
         letter, size = NUMBERS[kind]
@@ -212,23 +212,23 @@ class _Cursor:
         if self.aligned:
             self.at += -self.at % size
 
-    def one(self, kind: str, name: str, found: dict[str, float] | None) -> None:
+    def decode_field(self, kind: str, name: str, found: dict[str, float] | None) -> None:
         if kind in NUMBERS:
             value = self.number(kind)
             if found is not None:
                 found[name] = value
         elif kind in STAMP:
             for part, word in zip(("sec", "nanosec"), STAMP[kind], strict=True):
-                self.one(word, f"{name}.{part}", found)
+                self.decode_field(word, f"{name}.{part}", found)
         elif kind in self.parts:
-            self.message(kind, f"{name}.", found)
+            self.decode_message(kind, f"{name}.", found)
         else:  # a text
             size = int(self.number("uint32"))
             if kind == "wstring":
                 size *= 4
             self.skip(size)
 
-    def several(self, part: MessageField, name: str, found: dict[str, float] | None) -> None:
+    def decode_array(self, part: MessageField, name: str, found: dict[str, float] | None) -> None:
         count = part.count or 0
         if count == -1:
             count = int(self.number("uint32"))
@@ -249,7 +249,7 @@ class _Cursor:
         for i in range(count):
             if i == MAX_PARTS:
                 found = None  # the others are skipped
-            self.one(part.kind, f"{name}[{i}]", found)
+            self.decode_field(part.kind, f"{name}[{i}]", found)
 
     def skip(self, size: int) -> None:
         self.at += size
@@ -287,10 +287,10 @@ def log_from_topics(path: Path, topics: Mapping[str, Topic], remarks: list[str])
                     "are used"
                 )
         units = dict(zip(columns, map(_unit_of, columns), strict=True))
-        signals |= signals_of(name, t, columns, units)
+        signals |= stream_signals(name, t, columns, units)
         if len(signals) > MAX_SIGNALS:
             MemoryBudget(path).take(0, len(signals))
-    return Log(path, with_angles(signals), "ENU", tuple(dict.fromkeys(remarks)))
+    return Log(path, with_euler_angles(signals), "ENU", tuple(dict.fromkeys(remarks)))
 
 
 def _unit_of(name: str) -> str:

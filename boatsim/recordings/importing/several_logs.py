@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from boatsim.errors import BadInput, unknown_name
+from boatsim.errors import BadInput, unknown_name_message
 from boatsim.physics.base import Array
 from boatsim.recordings.importing.clocks import YEAR_2000, YEAR_2100
 from boatsim.recordings.importing.log import Log, Signal, open_log
@@ -112,7 +112,7 @@ def aligned(log: Log, begins: Mapping[str, float], file: str) -> Log:
     for name in begins:
         if name not in spans or name == next(iter(spans)):
             others = list(spans)[1:]
-            raise BadInput(f"{file}: {unknown_name('begins: file', name, others)}")
+            raise BadInput(f"{file}: {unknown_name_message('begins: file', name, others)}")
     first = next(iter(spans), "")
     for name in unaligned(spans, begins) if spans else ():
         raise BadInput(

@@ -8,7 +8,7 @@ from math import pi
 import numpy as np
 
 from boatsim.physics.signals import POSE, RATES
-from boatsim.recordings.importing.log import Log, Signal, rate_of
+from boatsim.recordings.importing.log import Log, Signal, median_sampling_rate
 from boatsim.recordings.table import is_command
 
 MIN_SAMPLES = 20
@@ -112,7 +112,7 @@ class Classification:
     tokens: frozenset[str] = field(default_factory=frozenset)
 
 
-def tokens_of(name: str) -> list[str]:
+def tokenize_name(name: str) -> list[str]:
     """Return the words and numbers of a name in lower case: ATT.DesYaw1 -> att, des, yaw, 1."""
     parted = re.sub(
         r"(?<=[a-z])(?=[A-Z])|(?<=[A-Za-z])(?=\d)|(?<=\d)(?=[A-Za-z])", " ", name
@@ -157,11 +157,13 @@ def classify_signal(
     values = signal.values[np.isfinite(signal.values)]
     if len(values) < MIN_SAMPLES:
         return None
-    words = tokens_of(name) or [""]  # a name may have no word
+    words = tokenize_name(name) or [""]  # a name may have no word
     tokens = frozenset(words)
     last = [w for w in words if w not in (*WORDS, *SUPERFLUOUS) or w == "n"] or words
     moves = 10.0 * bool(np.ptp(values) > 0.0)
-    rate = min(rate_of(signal.t), 50.0) / 100.0  # the faster of two equal signals is preferred
+    rate = (
+        min(median_sampling_rate(signal.t), 50.0) / 100.0
+    )  # the faster of two equal signals is preferred
     for place, match in (
         ("latitude", ("lat", "latitude")),
         ("longitude", ("lon", "lng", "long", "longitude")),
@@ -224,7 +226,7 @@ def _unit_word(name: str, signal: Signal) -> str:
     """The unit as a word of expressions, by the format, else by the name."""
     if signal.unit:
         return WORDS.get(signal.unit.lower(), "")
-    words = tokens_of(name) or [""]
+    words = tokenize_name(name) or [""]
     if "rpm" in words:
         return "rpm"
     return WORDS.get(words[-1], "")
@@ -251,7 +253,7 @@ def _degrees(
 
 def _drive_kind(signal: Signal, tokens: frozenset[str]) -> str | None:
     """The kind of a signal of the drives: "stick", "command" or "actual"; None for another."""
-    about = frozenset(tokens_of(signal.about))
+    about = frozenset(tokenize_name(signal.about))
     if tokens & STICKS or {"rc", "in"} <= tokens or {"rc", "input"} <= tokens or "stick" in about:
         return "stick"
     driven = (
@@ -271,7 +273,7 @@ def _drive_kind(signal: Signal, tokens: frozenset[str]) -> str | None:
 
 def _is_share_of_a_side(signal: Signal, tokens: frozenset[str]) -> bool:
     """Whether a name has nothing but a side and per cent, as `left_pct`."""
-    if not side_of(tokens) or tokens - NUMBERED - set(LETTERS):
+    if not side_from_tokens(tokens) or tokens - NUMBERED - set(LETTERS):
         return False
     units = map(WORDS.get, (signal.unit.lower(), *tokens))
     return "percent" in units
@@ -329,7 +331,7 @@ def _angular_rate(end: str, tokens: frozenset[str]) -> str | None:
     return None
 
 
-def side_of(tokens: frozenset[str]) -> str:
+def side_from_tokens(tokens: frozenset[str]) -> str:
     """Return "port", "starboard" or "" by the words or single letters of a name."""
     for sides in (SIDES, LETTERS):
         for token in sorted(tokens):

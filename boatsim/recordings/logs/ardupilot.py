@@ -20,7 +20,7 @@ from boatsim.recordings.importing.log import (
     damaged_log_error,
     missing_library_error,
     names_of_streams,
-    signals_of,
+    stream_signals,
     suppress_output,
 )
 from boatsim.recordings.raw_table import file_error
@@ -176,7 +176,7 @@ def _signals(rows: "NDArray[Any]", format: Any) -> dict[str, Signal]:
         if factor is not None and name not in (clock, format.instance_field):
             fields[name] = rows[f"{i} {name}"] * factor
             known[name] = UNITS.get(units[i], units[i])
-    return signals_of("", t, fields, known)
+    return stream_signals("", t, fields, known)
 
 
 def _parameters(data: NDArray[np.uint8], index: Any) -> dict[str, float]:

@@ -7,7 +7,7 @@ from typing import IO, Any
 import numpy as np
 
 from boatsim.errors import BadInput
-from boatsim.recordings.importing.frames import with_angles
+from boatsim.recordings.importing.frames import with_euler_angles
 from boatsim.recordings.importing.log import (
     Log,
     MemoryBudget,
@@ -15,7 +15,7 @@ from boatsim.recordings.importing.log import (
     damaged_log_error,
     missing_library_error,
     names_of_streams,
-    signals_of,
+    stream_signals,
     suppress_output,
 )
 
@@ -109,8 +109,8 @@ def _log(path: Path, topics: list, corrupt: bool) -> Log:  # type: ignore[type-a
                 factor, units[name] = SCALED[topic.name, name]
                 fields[name] = fields[name] * factor
         stream = stream_names[topic.name, int(topic.multi_id)]
-        signals |= signals_of(stream, np.asarray(t, dtype=float) * 1e-6, fields, units)
+        signals |= stream_signals(stream, np.asarray(t, dtype=float) * 1e-6, fields, units)
     remarks = []
     if corrupt:
         remarks.append(f"{path}: is damaged in places; the readable part is used")
-    return Log(path, with_angles(signals), "NED", tuple(remarks))
+    return Log(path, with_euler_angles(signals), "NED", tuple(remarks))

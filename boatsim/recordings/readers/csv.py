@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from boatsim.physics.base import Array
-from boatsim.recordings.limits import MAX_CELLS, MAX_HEADER_BYTES, check_shape
+from boatsim.recordings.limits import MAX_CELLS, MAX_HEADER_BYTES, check_table_size
 from boatsim.recordings.raw_table import Raw, check_unique_names, file_error, parse_numbers
 
 if TYPE_CHECKING:
@@ -34,14 +34,14 @@ def _check_cells(path: Path, columns: int) -> None:
     """Count the cells before memory is allocated for any. Raises BadInput for too many."""
     cells = 0
     with path.open("rb") as file:
-        check_shape(path, columns)
+        check_table_size(path, columns)
         while block := file.read(BLOCK_BYTES):
             cells += block.count(b",") + block.count(b"\n")
             if cells > MAX_CELLS:
                 raise file_error(
                     path, f"has more than {MAX_CELLS:.3g} cells, the limit of a recording"
                 )
-        check_shape(path, columns, cells)
+        check_table_size(path, columns, cells)
 
 
 def _read_fast(path: Path, first: bytes, content: bytes) -> Raw | None:

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from boatsim.recordings.limits import check_memory, check_shape
+from boatsim.recordings.limits import check_free_memory, check_table_size
 from boatsim.recordings.raw_table import Raw, check_unique_names, file_error, parse_numbers
 
 if TYPE_CHECKING:
@@ -49,10 +49,10 @@ def _check(path: Path, about: "FileMetaData") -> None:
 
     Raises BadInput.
     """
-    check_shape(path, about.num_columns)
-    check_shape(path, about.num_columns, about.num_rows * about.num_columns)
+    check_table_size(path, about.num_columns)
+    check_table_size(path, about.num_columns, about.num_rows * about.num_columns)
     groups = map(about.row_group, range(about.num_row_groups))
-    check_memory(path, 2 * sum(group.total_byte_size for group in groups))
+    check_free_memory(path, 2 * sum(group.total_byte_size for group in groups))
 
 
 def _cells(column: "ChunkedArray") -> list[object]:

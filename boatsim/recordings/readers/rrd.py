@@ -19,7 +19,7 @@ from rerun.chunk import RrdReader
 
 from boatsim.errors import BadInput
 from boatsim.physics.base import Array
-from boatsim.recordings.limits import check_shape
+from boatsim.recordings.limits import check_table_size
 from boatsim.recordings.raw_table import Raw
 
 TIMELINE = "sim_time"
@@ -73,7 +73,7 @@ def main_of_child_process() -> None:
     """
     path, table = map(Path, sys.argv[2:])
     try:
-        columns = columns_of(path)
+        columns = read_columns(path)
     except BadInput as error:
         sys.stdout.buffer.write(str(error).encode("utf-8", "replace"))
         sys.exit(REFUSED)
@@ -83,7 +83,7 @@ def main_of_child_process() -> None:
     np.savez(table, names=np.array(list(columns)), **arrays)
 
 
-def columns_of(path: Path) -> dict[str, Array]:
+def read_columns(path: Path) -> dict[str, Array]:
     """Return the columns by name, each (N,).
 
     Raises:
@@ -97,7 +97,7 @@ def columns_of(path: Path) -> dict[str, Array]:
             times.append(nanoseconds)
             pieces.append(values)
             cells += len(values)
-            check_shape(path, len(series), cells)
+            check_table_size(path, len(series), cells)
     except (ValueError, OSError, RuntimeError) as error:
         raise BadInput(
             f"{path}: can not be read as .rrd ({' '.join(str(error).split())[:200]})"
@@ -106,7 +106,7 @@ def columns_of(path: Path) -> dict[str, Array]:
         raise BadInput(f"{path}: is not the log of a boatsim run; it has nothing under /{SIGNALS}")
     times_of_all = itertools.chain.from_iterable(times for times, _ in series.values())
     rows = np.unique(np.concatenate(list(times_of_all)))
-    check_shape(path, len(series), len(series) * len(rows))
+    check_table_size(path, len(series), len(series) * len(rows))
     columns = {"t_s": rows * 1e-9}
     for name, (times, pieces) in series.items():
         columns[name] = np.full(len(rows), math.nan)

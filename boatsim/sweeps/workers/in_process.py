@@ -6,7 +6,7 @@ from boatsim.sweeps.journal import Entry
 from boatsim.sweeps.workers.base import Task, Work
 
 
-def run_here(
+def run_in_this_process(
     work: Work, tasks: Iterable[Task], stop: Callable[[], bool]
 ) -> Iterator[tuple[int, Entry | None]]:
     """Perform tasks; see `Backend`.

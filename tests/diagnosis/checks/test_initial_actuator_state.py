@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from boatsim.diagnosis.candidates import program_to_replay
-from boatsim.diagnosis.checks.initial_actuator_state import with_initial_actuators
-from boatsim.diagnosis.filter import map_recording, prior_levels
+from boatsim.diagnosis.checks.initial_actuator_state import infer_initial_actuator_state
+from boatsim.diagnosis.filter import map_recording, prior_noise_levels
 from boatsim.diagnosis.free_runs import free_runs, rms_errors
 from boatsim.diagnosis.replay import fit_noise_only
 from boatsim.recordings.table import Recording
@@ -35,11 +35,15 @@ def test_a_log_from_rest_is_replayed_as_it_was(log: Recording) -> None:
 def test_a_log_from_under_way_begins_with_actuators_that_have_settled(log: Recording) -> None:
     boat = scenario.load("otter/turn").vessel
     program, _ = program_to_replay(boat)
-    levels = prior_levels(boat, [log])
+    levels = prior_noise_levels(boat, [log])
     late = log.between(3.0, 20.0)
     for recording, rows in ((log, 2), (late, 1)):  # of commands, which stay as they are
         assert (
-            len(with_initial_actuators(map_recording(recording, program), levels).command_values)
+            len(
+                infer_initial_actuator_state(
+                    map_recording(recording, program), levels
+                ).command_values
+            )
             == rows
         )
 
@@ -49,4 +53,4 @@ def test_where_nothing_tells_the_actuators_have_settled(log: Recording) -> None:
     program, _ = program_to_replay(boat)
     still = replace(log, signals=log.signals | {n: np.zeros(len(log)) for n in boat.commands})
     laid = map_recording(still, program)
-    assert with_initial_actuators(laid, prior_levels(boat, [still])) is laid
+    assert infer_initial_actuator_state(laid, prior_noise_levels(boat, [still])) is laid

@@ -14,12 +14,12 @@ from boats import PLANAR, ROLL, written
 from scipy.linalg import expm
 
 from boatsim.cli import diagnosis as commands
-from boatsim.diagnosis.candidates import effect_at_zero, library_for
+from boatsim.diagnosis.candidates import instantiate_neutral_effect, library_for
 from boatsim.diagnosis.config import DEFAULT
 from boatsim.diagnosis.experiment_design import manoeuvres, next_experiment
 from boatsim.diagnosis.experiment_design.manoeuvres import Manoeuvre, available_manoeuvres
 from boatsim.diagnosis.experiment_design.simulated_manoeuvre import simulate_manoeuvre
-from boatsim.diagnosis.filter import NoiseLevels, map_recording, prior_levels
+from boatsim.diagnosis.filter import NoiseLevels, map_recording, prior_noise_levels
 from boatsim.diagnosis.fit import converge, fit, gauss_newton
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.diagnosis.search.pruning import IdentifiedEffect
@@ -69,7 +69,7 @@ def recorded(
     """The boat with one entry acting, driven through a script of (seconds, commands), seen by a
     noisy camera."""
     rng = np.random.default_rng(4)
-    code, values, on = program().module, program().values(), program().switches([name])
+    code, values, on = program().module, program().values(), program().effect_switches([name])
     for key, value in settings.items():
         values[program().parameter_index(name, key)] = value
     rows = np.concatenate([np.tile(step[1:], (round(step[0] * RATE), 1)) for step in script])
@@ -99,7 +99,7 @@ def tie(case: str) -> tuple[Problem, Fit, Fit]:
     boat = program().vessel
     problem = Problem(
         [map_recording(first, program())],
-        prior_levels(boat, [first]),
+        prior_noise_levels(boat, [first]),
         {"damping": 0.05, "thrust": 0.05},
     )
     nominal = gauss_newton(problem, problem.nominal_hypothesis(), 4, 0.1)
@@ -259,7 +259,7 @@ def test_the_question_is_about_an_effect_that_is_only_possible() -> None:
 
 def question_of(ranking: SimpleNamespace) -> tuple[Fit, dict[str, Fit]]:
     """The question of a selection that has only the parts it needs."""
-    return next_experiment.open_question(cast(Ranking, ranking), DEFAULT)
+    return next_experiment.undecided_hypotheses(cast(Ranking, ranking), DEFAULT)
 
 
 def test_a_manoeuvre_in_which_a_rival_diverges_is_no_plan(monkeypatch):
@@ -361,7 +361,7 @@ def test_manoeuvres_keep_commands_inside_limits_and_times_to_froude_scale():
 
 def test_pwm_takes_the_place_of_the_thrust_it_feeds():
     boat = vessel.load_vessel("joystick_boat")
-    assert set(manoeuvres.driven_commands(boat)) == {
+    assert set(manoeuvres.manoeuvre_commands(boat)) == {
         "pwm_port",
         "pwm_starboard",
         "steer_port_rad",
@@ -373,7 +373,7 @@ def test_pwm_takes_the_place_of_the_thrust_it_feeds():
 def test_hull_without_commands_is_released_at_another_angle(tmp_path):
     boat = vessel.load_vessel(str(written(tmp_path, "test_roller", ROLL)))
     suspects = tuple(
-        effect_at_zero(k).with_all_parameters(boat)
+        instantiate_neutral_effect(k).with_all_parameters(boat)
         for k in kinds("righting_arm_stiffening", "cubic_damping")
     )
     t = 0.2 * np.arange(150)

@@ -14,14 +14,18 @@ from scipy.stats import kstest
 
 from boatsim.diagnosis.candidates import program_with_candidates
 from boatsim.diagnosis.config import DEFAULT
-from boatsim.diagnosis.filter import map_recording, prior_levels
-from boatsim.diagnosis.locate.missing_force import intervals, missing_force, residual_force
+from boatsim.diagnosis.filter import map_recording, prior_noise_levels
+from boatsim.diagnosis.locate.missing_force import (
+    missing_force,
+    residual_force,
+    significant_intervals,
+)
 from boatsim.diagnosis.locate.periodicity import most_significant_peak
 from boatsim.diagnosis.locate.region_candidates import tank_walls
-from boatsim.diagnosis.locate.region_tests import ScoreStatistics, combined
+from boatsim.diagnosis.locate.region_tests import ScoreStatistics, sum_statistics
 from boatsim.diagnosis.locate.regions import Region, regions
 from boatsim.diagnosis.locate.residual_structure import (
-    features,
+    candidate_regressors,
     find_structure,
     find_structure_held_out,
 )
@@ -31,7 +35,7 @@ from boatsim.diagnosis.locate.smoothing import (
     running_average,
     variance_of_average,
 )
-from boatsim.diagnosis.noise_levels import fit_time_constant
+from boatsim.diagnosis.noise_levels import fit_latent_force_spectrum
 from boatsim.diagnosis.problem import Problem
 from boatsim.diagnosis.search.evidence import unexplained_evidence
 from boatsim.diagnosis.search.ranking import fit_baseline
@@ -153,7 +157,7 @@ def test_p_values_are_uniform_where_nothing_acts_and_small_where_it_does() -> No
     y = rng.multivariate_normal(np.zeros(N), CHAIN.spread, size=400)
     p = [evidence(row).test("square", ["sine", "decay"]).p_value for row in y]
     assert kstest(p, "uniform").pvalue > 0.01
-    acts = combined(
+    acts = sum_statistics(
         [evidence(row + 3.0 * CHAIN.responds @ shapes()[:, 0, 1]) for row in y[:20]],
         ["square", "sine"],
     )
@@ -223,7 +227,7 @@ def test_the_band_holds_a_force_that_was_put_there_and_flags_it_where_it_is() ->
     assert np.mean(np.abs(true)[flagged] < np.broadcast_to(ambient, true.shape)[flagged]) < 0.05
     assert (sd >= ambient / DEFAULT.locate.band_sds).all()
     sway = [
-        i for i in intervals(problem, forces) if i.axis == "sway" and i.to_s > 22.0
+        i for i in significant_intervals(problem, forces) if i.axis == "sway" and i.to_s > 22.0
     ]  # the step is at 20 s
     assert sum(i.to_s - max(i.from_s, 22.0) for i in sway) > 0.8 * len(forces) * (
         ROWS / RATE - 22.0
@@ -258,7 +262,7 @@ def test_correlation_time_is_that_of_the_force_that_was_put_there() -> None:
     times = []
     for tau in (1.0, 5.0):
         problem, found = laid(sail(f"drawn_{tau:g}", 8, drawn(tau))[0])
-        times.append(fit_time_constant(problem, found).time_constant)
+        times.append(fit_latent_force_spectrum(problem, found).time_constant)
     assert 0.5 < times[0] < 2.0 and 2.5 < times[1] < 10.0
 
 
@@ -369,7 +373,7 @@ def test_roll_that_stiffens_or_drags_is_told_from_a_linear_one(name: str, more: 
     program = Program(ship)
     problem = Problem(
         [map_recording(rec, program)],
-        prior_levels(ship, [rec]),
+        prior_noise_levels(ship, [rec]),
         {"damping": 0.05, "restoring": 0.02},
     )
     found = fit_baseline(problem)[1]
@@ -432,7 +436,7 @@ def test_a_force_that_a_fitted_coefficient_explains_is_no_structure() -> None:
     recordings = [map_recording(run, program) for run in runs]
     gains = []
     for uncertainty in (0.3, 1e-6):
-        problem = Problem(recordings, prior_levels(BOAT, runs), {"damping": uncertainty})
+        problem = Problem(recordings, prior_noise_levels(BOAT, runs), {"damping": uncertainty})
         gains.append(find_structure(problem, fit_baseline(problem)[1]).gain)
     print(gains)
     assert gains[0] < 8.0 < gains[1]
@@ -460,7 +464,7 @@ def test_damping_on_one_side_is_told_from_a_righting_moment_on_one_side(
     recording = Recording("decay", t, {"phi_rad": course + 1e-3 * noise.standard_normal(len(t))})
     problem = Problem(
         [map_recording(recording, Program(ship))],
-        prior_levels(ship, [recording]),
+        prior_noise_levels(ship, [recording]),
         {"damping": 0.5, "restoring": 0.02},
     )
     seen = find_structure(problem, fit_baseline(problem)[1])
@@ -472,7 +476,7 @@ def test_stretches_are_told_by_the_clock_of_the_recording() -> None:
     recording, _ = sail("run_0", 80, nothing)
     problem, _ = laid(replace(recording, t=recording.t + 100.0))
     (followed,) = problem.recordings
-    told = dict(features(followed, np.ones((ROWS, 6)), 1.0, DEFAULT.locate))
+    told = dict(candidate_regressors(followed, np.ones((ROWS, 6)), 1.0, DEFAULT.locate))
     assert (
         "time: it acts in 100 to 105 s of run_0" in told
         and "time: it acts in 135 to 140 s of run_0" in told

@@ -6,14 +6,14 @@ import pytest
 
 from boatsim.diagnosis.open_set.confirmation import Errors
 from boatsim.diagnosis.report.confirmation import (
-    alone_entry,
+    effect_error_entry,
     effect_sentences,
     recalibration_sentences,
 )
 from boatsim.diagnosis.report.findings import Findings
 from boatsim.diagnosis.report.page import report_html, report_markdown
 from boatsim.diagnosis.report.schema import RecalibrationEntry
-from boatsim.diagnosis.report.sections import sections_of
+from boatsim.diagnosis.report.sections import report_sections
 from boatsim.diagnosis.report.sentences import console_lines
 from tests.diagnosis.report.test_page import planar
 
@@ -31,13 +31,17 @@ STATEMENT = (
 def confirmed(value: bool) -> Findings:
     """The findings of a made-up diagnosis, with the errors of its effect alone."""
     findings = planar()
-    effect = {**findings.answer["effects"][0], "alone": alone_entry(ERRORS), "confirmed": value}
+    effect = {
+        **findings.answer["effects"][0],
+        "alone": effect_error_entry(ERRORS),
+        "confirmed": value,
+    }
     return replace(findings, answer={**findings.answer, "effects": [effect]})  # type: ignore
 
 
 def everywhere(findings: Findings) -> list[str]:
     """What the terminal, the page and the Markdown file show."""
-    sections = sections_of(findings)
+    sections = report_sections(findings)
     pages = [report_html(findings, sections), report_markdown(findings, sections)]
     return ["\n".join(console_lines(findings)), *pages]
 

@@ -12,10 +12,10 @@ from unmeasured import unmeasured
 from boatsim.diagnosis.candidates import diagnosis_program
 from boatsim.diagnosis.filter import NoiseLevels
 from boatsim.diagnosis.problem import Fit, Problem
-from boatsim.diagnosis.report.layers import Layers, separate_layers
+from boatsim.diagnosis.report.layers import Layers, classify_effects
 from boatsim.diagnosis.report.parameters import parameter_key, reported_sd
 from boatsim.diagnosis.report.schema import EffectEntry
-from boatsim.diagnosis.report.sections import sections_of
+from boatsim.diagnosis.report.sections import report_sections
 from boatsim.diagnosis.report.sentences import console_lines, refined_rows, verdict_sentences
 from boatsim.physics import vessel
 from boatsim.view.page_blocks import Table
@@ -60,7 +60,7 @@ def layers_of(
     entries = {}
     for name in FITTED:
         entries[name] = entry_of(problem, best, name)
-    return separate_layers(problem, best, entries)
+    return classify_effects(problem, best, entries)
 
 
 def entry_of(problem: Problem, best: Fit, name: str) -> EffectEntry:
@@ -159,7 +159,7 @@ def test_log_and_missing_physics_stand_before_the_refined_numbers(tmp_path: Path
         "Numbers refined:",
         "Also possible:",
     ]
-    shown = [section.title for section in sections_of(findings) if section.blocks]
+    shown = [section.title for section in report_sections(findings) if section.blocks]
     assert shown[:4] == [
         "Problems of the recordings",
         "Missing physics",
@@ -180,7 +180,7 @@ def test_an_effect_that_is_only_possible_is_shown_with_its_values() -> None:
         "parameters": effect["parameters"],
     }
     answer = findings.answer | {"effects": [], "also_possible": [possible]}
-    sections = sections_of(replace(findings, answer=answer))
+    sections = report_sections(replace(findings, answer=answer))
     blocks = next(one.blocks for one in sections if one.title == "Also possible")
     (table,) = [block for block in blocks if isinstance(block, Table)]
     shown = [row[0].replace(" ", "_") for row in table.rows]

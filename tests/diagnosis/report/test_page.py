@@ -17,9 +17,9 @@ from boatsim.diagnosis.report.figures import part_with_largest_error
 from boatsim.diagnosis.report.findings import Findings, FreeRun, MissingForceCurve
 from boatsim.diagnosis.report.page import LONGEST_HEADLINE
 from boatsim.diagnosis.report.schema import Answer, IntervalEntry
-from boatsim.diagnosis.report.sections import sections_of
+from boatsim.diagnosis.report.sections import report_sections
 from boatsim.diagnosis.report.sentences import NONE_TESTED, verdict_sentences
-from boatsim.physics.content import library_names, load_class
+from boatsim.physics.content import load_class, shipped_content_names
 from boatsim.physics.effects.described_force import DescribedForce
 from boatsim.physics.effects.described_thrust import DescribedThrust
 from boatsim.view.formatting import (
@@ -809,7 +809,7 @@ def test_an_rms_by_run_is_that_of_the_coordinates_as_in_the_answer():
     two = (*f.free_runs, *(replace(r, run="run_4") for r in f.free_runs))
     tables = [
         b
-        for s in sections_of(replace(f, free_runs=two))
+        for s in report_sections(replace(f, free_runs=two))
         if s.key == "proof"
         for b in s.blocks
         if b.kind == "table"
@@ -1025,7 +1025,7 @@ def test_a_ratio_is_said_in_per_cent_with_its_deviation(template, value, sd, ina
 
 def test_every_sentence_in_per_cent_of_the_library_can_be_made():
     made = 0
-    for name in library_names("effect"):
+    for name in shipped_content_names("effect"):
         for param in load_class("effect", name).params().values():
             for value in (0.5, 1.5):
                 if param.in_per_cent:
@@ -1073,7 +1073,7 @@ def test_flags_lie_above_all_curves(tmp_path):
 def test_an_experiment_that_tests_none_of_the_effects_says_so():
     f = planar()
     other = f.answer["next_experiment"] | {"separates": ["wind", "current"]}
-    sections = sections_of(replace(f, answer=f.answer | {"next_experiment": other}))
+    sections = report_sections(replace(f, answer=f.answer | {"next_experiment": other}))
     text = report.report_markdown(f, sections)
     assert "It is no test of weak reverse" in text
-    assert "It is no test of" not in report.report_markdown(f, sections_of(f))
+    assert "It is no test of" not in report.report_markdown(f, report_sections(f))

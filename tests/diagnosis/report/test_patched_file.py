@@ -11,7 +11,12 @@ from alike import few
 
 from boatsim.diagnosis.candidates import diagnosis_program
 from boatsim.diagnosis.config import DEFAULT
-from boatsim.diagnosis.filter import MappedRecording, NoiseLevels, axes_of, rigid_body_values
+from boatsim.diagnosis.filter import (
+    MappedRecording,
+    NoiseLevels,
+    dof_in_state_order,
+    rigid_body_values,
+)
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.diagnosis.report import patched_vessel
 from boatsim.errors import BadInput
@@ -39,7 +44,7 @@ def problem_of(boat: Vessel) -> Problem:
     if boat.commands:
         steps = rng.uniform(0.25, 0.75, (ROWS // 10 + 1, len(low)))
         commands = np.repeat(low + steps * (high - low), 10, axis=0)[:ROWS]
-    nq = len(axes_of(boat))
+    nq = len(dof_in_state_order(boat))
     measured, scale = np.full((ROWS, 1), np.nan), {"heading_sd_rad": 1.0}
     track = MappedRecording(
         "made_up",
@@ -66,7 +71,7 @@ def free_run(problem: Problem, values: Array, acting: tuple[str, ...]) -> Array:
     problem.program.module.simulate_intervals(
         Inputs(track.times, track.command_times, track.command_values),
         DEFAULT.filter.free_run_step,
-        VesselNumbers(rigid_body_values(values), values, problem.program.switches(acting)),
+        VesselNumbers(rigid_body_values(values), values, problem.program.effect_switches(acting)),
         np.array([0]),
         np.array([ROWS - 1]),
         start,
@@ -85,7 +90,7 @@ def recalibrated(problem: Problem, by: float) -> Fit:
     )
 
 
-@pytest.mark.parametrize("name", few(content.library_names("vessel")))
+@pytest.mark.parametrize("name", few(content.shipped_content_names("vessel")))
 def test_replay_of_the_patched_file_is_the_free_run_in_memory(name: str, tmp_path: Path) -> None:
     boat = vessel.load_vessel(name)
     problem = problem_of(boat)

@@ -94,7 +94,7 @@ def test_engine_and_filter_agree_over_six_seconds(
     program.module.simulate_intervals(
         Inputs(times, times, commands),
         DEFAULT.filter.free_run_step,
-        VesselNumbers(program.body, program.values(), program.switches(acting)),
+        VesselNumbers(program.body, program.values(), program.effect_switches(acting)),
         np.array([0]),
         np.array([ROWS - 1]),
         np.zeros((1, 6)),

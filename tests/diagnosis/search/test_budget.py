@@ -10,10 +10,10 @@ from boatsim.diagnosis import loading, pipeline
 from boatsim.diagnosis.config import DEFAULT, DiagnosisConfig
 from boatsim.diagnosis.loading import Loaded, Request
 from boatsim.diagnosis.problem import WorkCount
-from boatsim.diagnosis.question import Question, pose_question
+from boatsim.diagnosis.question import Question, set_up_estimation_problem
 from boatsim.diagnosis.report.answer import INCOMPLETE
 from boatsim.diagnosis.report.sentences import console_lines
-from boatsim.diagnosis.search.budget import BudgetSpentError, SearchBudget, addition_to
+from boatsim.diagnosis.search.budget import BudgetSpentError, SearchBudget, addition_phrase
 from boatsim.physics.base import Array
 from boatsim.recordings.table import write_csv
 
@@ -38,7 +38,7 @@ def with_budget(work: int) -> DiagnosisConfig:
 
 
 def question_with(loaded: Loaded, config: DiagnosisConfig) -> Question:
-    question = pose_question(loaded, config)
+    question = set_up_estimation_problem(loaded, config)
     return replace(question, candidates=CANDIDATES)
 
 
@@ -52,7 +52,7 @@ def test_a_pass_counts_the_rows_of_all_recordings_times_the_degrees_of_freedom(
 ) -> None:
     problem = question_with(loaded, FAST).problem
     found = problem.nominal_hypothesis()
-    on = problem.program.switches()
+    on = problem.program.effect_switches()
     rows = sum(len(mapped.times) for mapped in problem.recordings)
     before = problem.filtered.work
     passes = problem.filter(found.free, found.theta, on, found.levels)
@@ -108,10 +108,10 @@ def test_the_answer_says_in_words_what_was_skipped(loaded: Loaded) -> None:
 
 def test_statements_count_the_candidates_once_for_each_trial() -> None:
     budget = SearchBudget(WorkCount(), 0)
-    budget.omit(3, f"tested {addition_to(['wind'])}")
-    budget.omit(2, f"tested {addition_to(['wind'])}")
-    budget.omit(0, "refitted in place of wind")
-    budget.omit(1, "refitted in place of current")
+    budget.record_skipped_candidates(3, f"tested {addition_phrase(['wind'])}")
+    budget.record_skipped_candidates(2, f"tested {addition_phrase(['wind'])}")
+    budget.record_skipped_candidates(0, "refitted in place of wind")
+    budget.record_skipped_candidates(1, "refitted in place of current")
     assert budget.skipped == (
         "2 candidates were not tested in addition to wind",
         "1 candidate was not refitted in place of current",
@@ -120,6 +120,6 @@ def test_statements_count_the_candidates_once_for_each_trial() -> None:
 
 def test_a_search_that_has_to_be_complete_ends_at_once() -> None:
     budget = SearchBudget(WorkCount(), 0, complete=True)
-    budget.omit(0, "tested alone")
+    budget.record_skipped_candidates(0, "tested alone")
     with pytest.raises(BudgetSpentError):
-        budget.omit(1, "tested alone")
+        budget.record_skipped_candidates(1, "tested alone")

@@ -9,7 +9,7 @@ from pushed_boat import BOAT, laid, sail
 from boatsim.diagnosis.candidates import library_for
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.diagnosis.search.candidate_sets import CandidateSets
-from boatsim.diagnosis.search.further_effects import further_effects
+from boatsim.diagnosis.search.further_effects import add_further_effects
 from boatsim.diagnosis.search.pruning import differs_from_zero
 from boatsim.physics.base import Array
 
@@ -40,7 +40,7 @@ def calm() -> Laid:
 def test_an_effect_is_found_at_the_assumed_level_of_the_latent_force(windy: Laid) -> None:
     problem, base = windy
     sets = CandidateSets(problem, ("wind", "thrust_lag", "extra_mass", "steering_offset"), base)
-    found = further_effects(sets, base)
+    found = add_further_effects(sets, base)
     assert found is not None and "wind" in found.effects
     assert found.evidence > base.evidence + sets.required_gain
     assert (found.levels.force[:2] < base.levels.force[:2]).any()
@@ -48,20 +48,20 @@ def test_an_effect_is_found_at_the_assumed_level_of_the_latent_force(windy: Laid
 
 def test_nothing_is_sought_where_nothing_is_unexplained(calm: Laid) -> None:
     problem, base = calm
-    assert further_effects(CandidateSets(problem, CANDIDATES, base), base) is None
+    assert add_further_effects(CandidateSets(problem, CANDIDATES, base), base) is None
 
 
 def test_nothing_is_added_that_does_not_explain_the_force(windy: Laid) -> None:
     problem, base = windy
     sets = CandidateSets(problem, ("thrust_deadband", "steering_backlash"), base)
-    assert further_effects(sets, base) is None
+    assert add_further_effects(sets, base) is None
 
 
 def test_refuted_candidates_are_not_added_again(windy: Laid) -> None:
     problem, base = windy
     sets = CandidateSets(problem, ("wind", "thrust_deadband"), base)
     sets.banned.add("wind")
-    found = further_effects(sets, base)
+    found = add_further_effects(sets, base)
     assert found is None or "wind" not in found.effects
 
 
@@ -69,8 +69,8 @@ def test_a_spent_budget_ends_the_search(windy: Laid) -> None:
     problem, base = windy
     config = replace(problem.config, select=replace(problem.config.select, budget=1))
     sets = CandidateSets(replace(problem, config=config), ("wind",), base)
-    sets.problem.filter(base.free, base.theta, problem.program.switches(), base.levels)
-    assert sets.budget.spent and further_effects(sets, base) is None
+    sets.problem.filter(base.free, base.theta, problem.program.effect_switches(), base.levels)
+    assert sets.budget.spent and add_further_effects(sets, base) is None
 
 
 @pytest.mark.parametrize(("correlation", "expected"), [(0.0, False), (0.999, True)])

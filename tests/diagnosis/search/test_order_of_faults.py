@@ -56,7 +56,7 @@ def sailed(boat: Vessel, fault: ThrustDeadband, seed: int) -> Recording:
     commands = np.column_stack([given[c] for c in boat.commands])
     values, on, memory = (
         program.values(),
-        program.switches([fault.name]),
+        program.effect_switches([fault.name]),
         np.zeros(program.memory_size),
     )
     path = np.zeros((rows + 1, 2 * code.NQ))
@@ -89,7 +89,7 @@ def test_each_order_is_the_composition_that_it_says(tmp_path: Path) -> None:
         memory, act, on = (
             np.zeros(program.memory_size),
             np.zeros(program.held_size),
-            program.switches([name]),
+            program.effect_switches([name]),
         )
         program.module.settle_actuators(
             np.zeros(len(boat.commands)), memory, program.values(), on, act

@@ -11,7 +11,7 @@ from boatsim.diagnosis.filter import FilterPass
 from boatsim.diagnosis.fit import fit
 from boatsim.diagnosis.problem import FilterPasses, Fit, Problem
 from boatsim.diagnosis.search.candidate_sets import CandidateSets
-from boatsim.diagnosis.search.evidence import gain_by_curvature
+from boatsim.diagnosis.search.evidence import quadratic_evidence_gain
 from boatsim.diagnosis.search.pruning import differs_from_zero
 from boatsim.diagnosis.search.screening import Linearisation, confirm_screening, screen
 from boatsim.physics.base import Array
@@ -81,12 +81,12 @@ def test_a_member_is_worth_less_than_its_curvature_says_and_what_does_nothing_li
     looks = screen(problem, base, ["weak_reverse", "steady_force"])
     found = fit(problem, looks["weak_reverse"])
     assert (
-        gain_by_curvature(found, "weak_reverse") > found.evidence - base.evidence > 100.0
+        quadratic_evidence_gain(found, "weak_reverse") > found.evidence - base.evidence > 100.0
     )  # the latent force takes its place
     both = fit(problem, screen(problem, found, ["steady_force"])["steady_force"])
     assert (
-        gain_by_curvature(both, "steady_force") < 10.0
-        and gain_by_curvature(both, "nothing of the kind") == 0.0
+        quadratic_evidence_gain(both, "steady_force") < 10.0
+        and quadratic_evidence_gain(both, "nothing of the kind") == 0.0
     )
 
 

@@ -16,11 +16,11 @@ from boatsim.diagnosis.search.candidate_sets import CandidateSets
 from boatsim.diagnosis.search.pruning import compare_rivals
 from boatsim.diagnosis.search.screening import screen
 from boatsim.diagnosis.search.validation import (
-    deterministic_replacement,
     predictive_log_likelihood,
     refuted_effect,
     remove_dwarfed_effect,
     remove_refuted_rivals,
+    replace_stochastic_force,
 )
 from boatsim.physics.base import Array
 
@@ -76,7 +76,7 @@ def test_a_law_by_which_unseen_runs_are_foreseen_better_takes_the_place_of_its_l
     wrong = as_likely(problem, base, found, "steady_force")
     sets = sets_of(problem, base, found, wrong)
     one = compare_rivals("steady_force", wrong, base, {"weak_reverse": found})
-    assert deterministic_replacement(sets, wrong, [one], held_out) is found and sets.banned == {
+    assert replace_stochastic_force(sets, wrong, [one], held_out) is found and sets.banned == {
         "steady_force"
     }
 
@@ -87,7 +87,7 @@ def test_a_look_alike_that_foresees_as_much_stays_one(weak: Laid) -> None:
     one = compare_rivals("weak_reverse", found, base, {"steady_force": twin})
     (kept,) = remove_refuted_rivals(sets, found, [one], held_out)
     assert kept.tied_with == ("steady_force",)
-    assert deterministic_replacement(sets, found, [one], held_out) is None and not sets.banned
+    assert replace_stochastic_force(sets, found, [one], held_out) is None and not sets.banned
 
 
 def test_beside_what_nothing_explains_only_what_unseen_runs_ask_for_is_stood_for(

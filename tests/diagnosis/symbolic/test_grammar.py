@@ -189,9 +189,12 @@ def replays(found: Diagnosis, held_out: Recording, folder: Path) -> None:
     here = found.problem.values(laid, fit.free, fit.theta)
     again = map_recording(held_out, program)
     ours = laid.free_runs(
-        here, found.problem.program.switches(tuple(found.ranking.described_terms)), levels, 6.0
+        here,
+        found.problem.program.effect_switches(tuple(found.ranking.described_terms)),
+        levels,
+        6.0,
     )
-    theirs = again.free_runs(again.values, program.switches(on), levels, 6.0)
+    theirs = again.free_runs(again.values, program.effect_switches(on), levels, 6.0)
     for (a, path), (b, other) in zip(ours, theirs, strict=True):
         assert a == b
         np.testing.assert_allclose(

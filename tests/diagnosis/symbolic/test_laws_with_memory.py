@@ -20,7 +20,7 @@ from boatsim.diagnosis.report.described_terms import (
     factors_in_words,
 )
 from boatsim.diagnosis.symbolic.grammar import neighbours
-from boatsim.diagnosis.symbolic.slots import write_term
+from boatsim.diagnosis.symbolic.slots import set_placeholder_term
 from boatsim.diagnosis.symbolic.term_forces import fitted_recordings
 from boatsim.errors import BadInput
 from boatsim.physics import vessel
@@ -81,7 +81,7 @@ def test_what_is_recalled_is_a_first_order_lag_to_the_last_digits(factor: str) -
     law = {"use": "described_force", "of": [factor], "memory": MEMORY, "coefficient": 1.0}
     program, (of, beyond) = Program(vessel.load_vessel("trial_boat", extra=[law])), SIGNALS[factor]
     on, p, own = (
-        program.switches(),
+        program.effect_switches(),
         program.values(),
         program.composition.history_place(len(BOAT.effects)),
     )
@@ -130,7 +130,7 @@ def test_engine_twin_and_filter_agree_on_laws_that_look_back() -> None:
     program.module.simulate_intervals(
         Inputs(times, times, commands),
         DEFAULT.filter.free_run_step,
-        VesselNumbers(program.body, program.values(), program.switches(on)),
+        VesselNumbers(program.body, program.values(), program.effect_switches(on)),
         np.array([0]),
         np.array([60]),
         np.zeros((1, 6)),
@@ -226,7 +226,7 @@ def test_the_quick_weighing_recalls_what_the_filter_does() -> None:
     problem, fit = laid(sail("run", 1, nothing)[0])
     (way,), program = fitted_recordings(problem, fit), problem.program
     term = DescribedForce(axis="sway", of=("recent_abs_thrust_port_N",), memory=1.7)
-    write_term(problem, "described_1", term, problem.recordings)
+    set_placeholder_term(problem, "described_1", term, problem.recordings)
     number = next(i for i, e in enumerate(program.effects) if e.name == "described_1")
     acting = actuator_states(problem.recordings[0], ("described_1",), problem.recordings[0].values)
     np.testing.assert_allclose(

@@ -12,7 +12,7 @@ import boats
 import numpy as np
 import pytest
 
-from boatsim.diagnosis.candidates import effect_at_zero
+from boatsim.diagnosis.candidates import instantiate_neutral_effect
 from boatsim.errors import BadInput
 from boatsim.physics import content, vessel
 from boatsim.physics.base import (
@@ -57,7 +57,7 @@ from boatsim.physics.effects.wind import Wind
 from boatsim.physics.program import Program
 
 SHELF: dict[str, type[Effect]] = {
-    name: content.load_class("effect", name) for name in content.library_names("effect")
+    name: content.load_class("effect", name) for name in content.shipped_content_names("effect")
 }
 DESCRIBED = {
     n for n, e in SHELF.items() if e.described
@@ -213,7 +213,7 @@ def mirrored(effect: Any) -> Any:
 
 def on_a_vessel(effect: Effect) -> Any:
     """The effect on the first vessel that can take it."""
-    for name in content.library_names("vessel"):
+    for name in content.shipped_content_names("vessel"):
         try:
             return effect.with_all_parameters(vessel.load_vessel(name))
         except BadInput:
@@ -373,10 +373,12 @@ def test_coriolis_force_of_an_inertia_does_no_work(name: str, seed: int) -> None
 @pytest.mark.parametrize("seed", range(3))
 def test_a_suspect_whose_fitted_parameters_are_absent_is_not_there(name: str, seed: int) -> None:
     kind = SHELF[name]
-    effect = on_a_vessel(effect_at_zero(kind, {"walls_m": [-4.0, 4.0, -3.0, 3.0]}))
+    effect = on_a_vessel(instantiate_neutral_effect(kind, {"walls_m": [-4.0, 4.0, -3.0, 3.0]}))
     if isinstance(effect, CoefficientRelease):
         boat = next(
-            b for b in map(vessel.load_vessel, content.library_names("vessel")) if effect.changes(b)
+            b
+            for b in map(vessel.load_vessel, content.shipped_content_names("vessel"))
+            if effect.changes(b)
         )
         assert boat.with_completed_effect(effect) == boat
     moving = motion(current=(0.0, 0.0), **drawn_motion(seed))
@@ -663,7 +665,7 @@ def test_imbalance_and_gain_error() -> None:
         [2.2, 1.8]
     )
     gained = vessel.load_vessel("trial_boat").with_completed_effect(ThrustGainError(factor=1.3))
-    assert [e.gain for e in gained.effects_of("thruster")] == [1.3, 1.3]  # type: ignore[attr-defined]
+    assert [e.gain for e in gained.effects_of_type("thruster")] == [1.3, 1.3]  # type: ignore[attr-defined]
 
 
 def test_steering_offset_of_each_side() -> None:
@@ -740,7 +742,7 @@ def actuated(boat: vessel.Vessel, commands: dict[str, float]) -> dict[str, float
     """What the boat's actuators settle at."""
     program = Program(boat)
     act, memory = np.zeros(program.held_size), np.zeros(program.memory_size)
-    values, on = program.values(), program.switches()
+    values, on = program.values(), program.effect_switches()
     for _ in range(3):
         program.module.advance_actuators(
             program.command_array(commands), memory, 1e4, values, on, act

@@ -13,7 +13,7 @@ from answers import diagnosed
 from scipy.integrate import solve_ivp
 
 from boatsim.diagnosis.candidates import library_for
-from boatsim.diagnosis.experiment_design.manoeuvres import available_manoeuvres, driven_commands
+from boatsim.diagnosis.experiment_design.manoeuvres import available_manoeuvres, manoeuvre_commands
 from boatsim.diagnosis.filter import map_recording
 from boatsim.diagnosis.loading import open_recording
 from boatsim.errors import BadInput
@@ -126,7 +126,7 @@ def test_nothing_that_acts_on_commands_acts_on_what_is_measured(boat: Vessel) ->
     everything = (*boat.effects, *library_for(boat).compiled)
     assert not measured & {n for e in everything for n in boat.target_actuators(e)}
     assert not measured & {
-        *driven_commands(boat),
+        *manoeuvre_commands(boat),
         *complete_manoeuvring_table(boat).steer,
         *complete_manoeuvring_table(boat).ahead,
     }
@@ -138,7 +138,7 @@ def test_nothing_that_acts_on_commands_acts_on_what_is_measured(boat: Vessel) ->
 def test_a_reading_is_in_force_at_once_where_commands_are_late(boat: Vessel) -> None:
     program = Program(boat)
     act, memory = np.zeros(program.held_size), np.zeros(program.memory_size)
-    values, on = program.values(), program.switches()
+    values, on = program.values(), program.effect_switches()
     program.module.settle_actuators(program.command_array({}), memory, values, on, act)
     sent = program.command_array({"thrust_port_N": 50.0})
     sent[-2:] = 7.0, 2.0

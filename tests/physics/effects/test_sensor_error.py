@@ -89,7 +89,7 @@ def test_a_channel_that_does_not_exist_and_a_delay_of_a_velocity_are_refused() -
 def test_a_special_case_has_one_free_parameter_in_the_unit_of_its_channel() -> None:
     units = {"mps": "m/s", "radps": "rad/s", "rad": "rad", "m": "m"}
     found = 0
-    for name in content.library_names("effect"):
+    for name in content.shipped_content_names("effect"):
         kind = content.load_class("effect", name)
         if not issubclass(kind, SensorError) or kind is SensorError:
             continue

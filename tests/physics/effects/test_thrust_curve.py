@@ -31,7 +31,7 @@ def with_curve(folder: Path, points: list[list[float]]) -> vessel.Vessel:
 @pytest.mark.parametrize("count", [2, 5])
 def test_the_thrust_is_that_of_the_table(tmp_path: Path, count: int) -> None:
     program = Program(with_curve(tmp_path, POINTS[-count:]))
-    values, on = program.values(), program.switches()
+    values, on = program.values(), program.effect_switches()
     for command in np.linspace(-120.0, 120.0, 25):
         act, memory = np.zeros(program.held_size), np.zeros(program.memory_size)
         program.module.advance_actuators(

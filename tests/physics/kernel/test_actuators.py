@@ -109,7 +109,7 @@ def test_a_delayed_command_acts_when_it_arrives_however_long_the_steps(delay: fl
     """A ramp and a delay in one channel, three channels that change at different times: no arrival
     is stepped over."""
     program = Program(vessel.load_vessel("jet_ski", ["low_speed"]), candidates=(CommandDelay(),))
-    values, on = program.values(), program.switches(["command_delay"])
+    values, on = program.values(), program.effect_switches(["command_delay"])
     values[program.parameter_index("command_delay", "delay")] = delay
     rng, rows = np.random.default_rng(5), 100
     held = {"throttle": np.ones(rows), "jet_rad": np.repeat(rng.uniform(-0.2, 0.2, rows // 5), 5)}

@@ -15,7 +15,7 @@ from boatsim.cli.exporting import export_recording
 from boatsim.errors import BadInput
 from boatsim.recordings.exporting.mcap import write_mcap
 from boatsim.recordings.exporting.ros_axes import ros_orientation, ros_position, ros_vector
-from boatsim.recordings.importing.convert import convert
+from boatsim.recordings.importing.convert import convert_log
 from boatsim.recordings.importing.log import open_log
 from boatsim.recordings.importing.mapping import parse_map
 from boatsim.recordings.table import Notes, Recording, read, write_csv
@@ -103,7 +103,7 @@ def test_our_importer_reads_the_same_numbers_back(tmp_path):
     run = weaving()
     write_mcap(run, tmp_path / "run.mcap")
     log = open_log(tmp_path / "run.mcap")
-    again = convert(log, parse_map({"columns": MAP}, "map.toml"), "map.toml")
+    again = convert_log(log, parse_map({"columns": MAP}, "map.toml"), "map.toml")
     np.testing.assert_allclose(again.t, run.t, atol=1e-6)
     assert again.signals.keys() == run.signals.keys()
     for name, values in run.signals.items():

@@ -9,10 +9,10 @@ from make_logs import geodetic, quaternion
 from scipy.spatial.transform import Rotation
 
 from boatsim.recordings.importing.frames import (
-    angles_of_quaternions,
     curvature_radii,
     local_position,
-    with_angles,
+    quaternions_to_euler_angles,
+    with_euler_angles,
 )
 from boatsim.recordings.importing.log import Signal
 
@@ -49,11 +49,13 @@ def test_a_boat_that_crosses_the_date_line_does_not_go_round_the_world():
 
 @pytest.mark.parametrize("roll, pitch, yaw", [(0.1, -0.2, 0.3), (-0.4, 0.5, 3.0), (0.0, 0.0, -2.5)])
 def test_angles_of_a_quaternion_are_those_it_was_made_of(roll, pitch, yaw):
-    found = angles_of_quaternions(*(np.array([part]) for part in quaternion(roll, pitch, yaw)))
+    found = quaternions_to_euler_angles(
+        *(np.array([part]) for part in quaternion(roll, pitch, yaw))
+    )
     np.testing.assert_allclose([a[0] for a in found], (roll, pitch, yaw), atol=1e-12)
     x, y, z, w = Rotation.from_euler("ZYX", [yaw, pitch, roll]).as_quat()
     np.testing.assert_allclose(
-        [a[0] for a in angles_of_quaternions(*(np.array([p]) for p in (w, x, y, z)))],
+        [a[0] for a in quaternions_to_euler_angles(*(np.array([p]) for p in (w, x, y, z)))],
         (roll, pitch, yaw),
         atol=1e-12,
     )
@@ -62,10 +64,10 @@ def test_angles_of_a_quaternion_are_those_it_was_made_of(roll, pitch, yaw):
 def test_what_is_no_rotation_gets_no_angle():
     t = np.arange(3.0)
     good = np.array([[1.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, 0.0], [1.0, 0.0, 0.0, 0.0]])
-    found = with_angles(
+    found = with_euler_angles(
         {f"/imu.orientation.{k}": Signal(t, good[:, i]) for i, k in enumerate("wxyz")}
     )
     np.testing.assert_array_equal(found["/imu.orientation.yaw"].values, [0.0, np.nan, 0.0])
-    assert "/imu.velocity.yaw" not in with_angles(
+    assert "/imu.velocity.yaw" not in with_euler_angles(
         {f"/imu.velocity.{k}": Signal(t, t) for k in "wxyz"}
     )

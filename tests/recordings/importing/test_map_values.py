@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from boatsim.errors import BadInput
-from boatsim.recordings.importing.convert import convert
+from boatsim.recordings.importing.convert import convert_log
 from boatsim.recordings.importing.log import open_log
 from boatsim.recordings.importing.mapping import read_map
 
@@ -23,7 +23,7 @@ def converted(folder: Path, least: float, most: float) -> object:
     rows = "".join(f"{0.1 * i},{0.01 * i},{i % 3 - 1}\n" for i in range(60))
     (folder / "log.csv").write_text(f"t,psi,n\n{rows}")
     (folder / "map.toml").write_text(MAP.format(least, most))
-    return convert(open_log(folder / "log.csv"), read_map(folder / "map.toml"), "map.toml")
+    return convert_log(open_log(folder / "log.csv"), read_map(folder / "map.toml"), "map.toml")
 
 
 def test_a_scale_of_a_command_is_not_larger_than_any_measurement(tmp_path: Path) -> None:

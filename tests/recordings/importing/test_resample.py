@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 from boatsim.recordings.importing.resample import (
     Samples,
     clean_samples,
-    count_disorder,
-    longest_hold,
+    count_unordered_samples,
+    longest_command_gap,
     mean_held_values,
     nearest_samples,
     row_times,
@@ -75,8 +75,10 @@ def test_a_command_between_whose_rows_none_comes_is_the_command_itself():
 
 
 def test_a_command_that_stops_coming_is_said():
-    assert longest_hold(ROWS, Samples(0.1 * np.arange(10), np.zeros(10))) == pytest.approx(4.0)
-    assert longest_hold(ROWS, Samples(ROWS, np.zeros(50))) == 0.0
+    assert longest_command_gap(ROWS, Samples(0.1 * np.arange(10), np.zeros(10))) == pytest.approx(
+        4.0
+    )
+    assert longest_command_gap(ROWS, Samples(ROWS, np.zeros(50))) == 0.0
 
 
 def test_a_recording_of_mixed_rates_is_thinned_signal_by_signal():
@@ -110,4 +112,4 @@ def test_a_recording_of_mixed_rates_is_thinned_signal_by_signal():
 def test_samples_out_of_order_and_at_one_time_are_counted(
     times: list[float], wanted: tuple[int, int, float]
 ) -> None:
-    assert count_disorder(np.array(times)) == wanted
+    assert count_unordered_samples(np.array(times)) == wanted

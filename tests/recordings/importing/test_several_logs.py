@@ -10,7 +10,7 @@ from typer.testing import CliRunner
 
 from boatsim.cli.commands import app
 from boatsim.errors import BadInput
-from boatsim.recordings.importing.convert import convert, recording_notes_text
+from boatsim.recordings.importing.convert import convert_log, recording_notes_text
 from boatsim.recordings.importing.mapping import parse_map
 from boatsim.recordings.importing.mapping_proposal import propose_map
 from boatsim.recordings.importing.several_logs import open_logs
@@ -56,7 +56,7 @@ def check_columns(run, begin: float) -> None:
 
 def test_two_files_in_utc_are_joined_by_their_times(tmp_path):
     log = open_logs(two_files(tmp_path, (EPOCH, EPOCH + 12.33)))
-    run = convert(log, parse_map({"columns": COLUMNS}, "map.toml"), "map.toml", CHANNELS)
+    run = convert_log(log, parse_map({"columns": COLUMNS}, "map.toml"), "map.toml", CHANNELS)
     check_columns(run, 12.4)
     assert run.t[-1] == pytest.approx(
         50.0 - 12.4, abs=0.11
@@ -69,11 +69,11 @@ def test_two_files_in_utc_are_joined_by_their_times(tmp_path):
 def test_two_clocks_need_a_begin_and_the_line_is_said(tmp_path):
     log = open_logs(two_files(tmp_path, (EPOCH, 0.0)))
     with pytest.raises(BadInput, match=r'\[begins\] / "engine.csv" = SECONDS'):
-        convert(log, parse_map({"columns": COLUMNS}, "map.toml"), "map.toml", CHANNELS)
+        convert_log(log, parse_map({"columns": COLUMNS}, "map.toml"), "map.toml", CHANNELS)
     table = {"begins": {"engine.csv": 12.33}, "columns": COLUMNS}
-    check_columns(convert(log, parse_map(table, "map.toml"), "map.toml", CHANNELS), 12.4)
+    check_columns(convert_log(log, parse_map(table, "map.toml"), "map.toml", CHANNELS), 12.4)
     with pytest.raises(BadInput, match="engine.csv"):
-        convert(
+        convert_log(
             log, parse_map(table | {"begins": {"motor.csv": 1.0}}, "map.toml"), "map.toml", CHANNELS
         )
 
@@ -81,7 +81,7 @@ def test_two_clocks_need_a_begin_and_the_line_is_said(tmp_path):
 def test_files_of_different_hours_name_their_spans_and_the_line(tmp_path):
     log = open_logs(two_files(tmp_path, (EPOCH, EPOCH + 3612.33)))
     with pytest.raises(BadInput) as caught:
-        convert(log, parse_map({"columns": COLUMNS}, "map.toml"), "map.toml", CHANNELS)
+        convert_log(log, parse_map({"columns": COLUMNS}, "map.toml"), "map.toml", CHANNELS)
     assert "16:06:52" in str(caught.value) and '[begins] / "engine.csv"' in str(caught.value)
 
 
@@ -112,7 +112,7 @@ def test_the_time_of_each_file_may_be_an_expression(tmp_path):
         "begins": {"b.csv": 0.0},
         "columns": COLUMNS,
     }
-    run = convert(open_logs(files), parse_map(table, "map.toml"), "map.toml", CHANNELS)
+    run = convert_log(open_logs(files), parse_map(table, "map.toml"), "map.toml", CHANNELS)
     assert run["psi_rad"] == pytest.approx(np.radians(heading(run.t)), abs=1e-5)
     assert run["thrust_motor_N"] == pytest.approx(thrust(run.t), abs=1e-4)
 
@@ -129,7 +129,7 @@ def test_a_late_column_of_a_map_gets_the_time_at_which_it_was_true(tmp_path):
         psi_true=heading(t),
     )
     table = {"latency": {"psi_rad": 0.4}, "columns": COLUMNS}
-    run = convert(open_logs([file]), parse_map(table, "map.toml"), "map.toml", CHANNELS)
+    run = convert_log(open_logs([file]), parse_map(table, "map.toml"), "map.toml", CHANNELS)
     known = np.isfinite(run["psi_rad"])
     assert known.sum() > 280
     # the first row is that of the first command, 0.4 s after the first heading is true
@@ -145,7 +145,7 @@ def test_the_thrust_of_a_range_grows_with_the_power_that_the_map_states(tmp_path
     ends = {"low": -2000, "neutral": 0, "high": 2000, "least": -50, "most": 100}
     what = {"signal": "rpm", "exponent": 2.0, **ends}
     table = {"columns": {"psi_rad": "heading * deg", "thrust_motor_N": what}}
-    run = convert(open_logs([file]), parse_map(table, "map.toml"), "map.toml", CHANNELS)
+    run = convert_log(open_logs([file]), parse_map(table, "map.toml"), "map.toml", CHANNELS)
     full = np.where(rpm > 0.0, 100.0, 50.0)
     assert run["thrust_motor_N"] == pytest.approx(full * rpm * np.abs(rpm) / 2000.0**2, abs=1e-3)
 
@@ -158,7 +158,7 @@ def test_a_curve_gives_the_thrust_of_a_measured_table(tmp_path):
     table = {
         "columns": {"psi_rad": "heading", "thrust_motor_N": {"signal": "stick", "points": points}}
     }
-    run = convert(open_logs([file]), parse_map(table, "map.toml"), "map.toml", CHANNELS)
+    run = convert_log(open_logs([file]), parse_map(table, "map.toml"), "map.toml", CHANNELS)
     assert run["thrust_motor_N"] == pytest.approx(np.interp(stick, *np.transpose(points)), abs=1e-3)
     table["columns"]["thrust_motor_N"]["points"] = points[::-1]
     with pytest.raises(BadInput, match="by increasing signal"):
@@ -169,7 +169,7 @@ def test_several_parts_of_a_log_to_use_become_those_of_the_recording(tmp_path):
     t = np.arange(0.0, 30.0, 0.1)
     file = write(tmp_path / "a.csv", "time", t, 0.0, heading=heading(t), thrust=thrust(t))
     table = {"use": [[5.0, 10.0], [15.0, 20.0]], "columns": COLUMNS}
-    run = convert(open_logs([file]), parse_map(table, "map.toml"), "map.toml", CHANNELS)
+    run = convert_log(open_logs([file]), parse_map(table, "map.toml"), "map.toml", CHANNELS)
     assert run.t[-1] == pytest.approx(15.0, abs=0.11)
     assert np.allclose(run.notes.use, [[0.0, 5.0], [10.0, 15.0]], atol=0.11)
     text = recording_notes_text(tmp_path / "run.csv", "v", None, run.notes.use)

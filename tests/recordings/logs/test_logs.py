@@ -23,7 +23,7 @@ from pyarrow import parquet
 from boatsim.cli.importing import import_log
 from boatsim.errors import BadInput
 from boatsim.physics.vessel import load_vessel
-from boatsim.recordings.importing.convert import convert
+from boatsim.recordings.importing.convert import convert_log
 from boatsim.recordings.importing.log import known_suffixes, open_log
 from boatsim.recordings.importing.mapping import parse_map, read_map
 from boatsim.recordings.importing.mapping_proposal import VesselChannel, propose_map, signal_table
@@ -60,7 +60,7 @@ def proposed(name: str) -> str:
 
 
 def converted(name: str, **changes: object):
-    return convert(
+    return convert_log(
         open_log(LOGS / name),
         parse_map(tomllib.loads(proposed(name)) | changes, "map.toml"),
         "map.toml",
@@ -143,7 +143,7 @@ def test_the_origin_of_the_map_is_where_positions_are_counted_from():
     table["position"]["origin"] = list(
         geodetic(-111.0, -50.0)
     )  # of a place so far south and west of the start
-    run = convert(
+    run = convert_log(
         open_log(LOGS / "instruments.nmea"), parse_map(table, "map.toml"), "map.toml", CHANNELS
     )
     assert run["x_m"][0] == pytest.approx(111.0, abs=2e-3) and run["y_m"][0] == pytest.approx(

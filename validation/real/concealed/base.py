@@ -128,7 +128,7 @@ class PatchedVesselStudy:
             else:
                 place = names.index(change.owner)
                 table, owner = document["effect"][place], self.vessel.effects[place]
-            table[change.key] = change.apply_to(float(getattr(owner, change.key)), undone)
+            table[change.key] = change.changed_value(float(getattr(owner, change.key)), undone)
 
     def _write(self, diagnosis: Diagnosis, name: str) -> Path:
         """Write the patched vessel of a diagnosis; return the file."""
