@@ -94,8 +94,8 @@ def main() -> None:
     )
     parser.add_argument("--one", nargs=2, metavar=("RUN", "OUT"), help=argparse.SUPPRESS)
     given = parser.parse_args()
-    if given.decode_field:
-        return diagnose_and_print_cost(*given.decode_field)
+    if given.one:
+        return diagnose_and_print_cost(*given.one)
     print(" " * 28 + "".join(f"{heading:>14s}" for heading in COLUMNS.values()))
     with TemporaryDirectory() as base:
         folder = Path(base)

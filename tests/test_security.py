@@ -383,7 +383,7 @@ def test_13_a_damaged_cache_is_built_again(
         "import sys, numpy as np; from boatsim.physics import vessel; from boatsim.physics.program import Program\n"
         "p = Program(vessel.load_vessel(sys.argv[1]))\n"
         "state, act = np.array([0.1, 0.0]), np.zeros(p.held_size)\n"
-        "print(p.module.total_body_force(0.0, state, act, np.int64(0), p.values(), p.switches())[0])"
+        "print(p.module.total_body_force(0.0, state, act, np.int64(0), p.values(), p.effect_switches())[0])"
     )
 
     def moment() -> str:

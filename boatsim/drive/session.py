@@ -97,7 +97,7 @@ class Session:
             raise KeyboardInterrupt
 
     def is_finished(self) -> bool:
-        """Return whether the driver has ended the run, by the page's button or by closing it.
+        """Return whether the driver has ended the run, on the page or by closing it.
 
         Raises:
             NothingDriven: The page was closed before the sticks were moved.

@@ -7,7 +7,7 @@ actuators at one time.
 Arguments of many functions:
 
 - p: (P,) parameters, `Program.values()`.
-- on: (E,) 1 for each effect that acts, `Program.switches()`.
+- on: (E,) 1 for each effect that acts, `Program.effect_switches()`.
 - k: (K,) masses, filled by `compute_mass_constants`.
 - act: (3 HELD,) actuators at the begin, in the middle and at the end of a step; `at` is the first
   of those to use.

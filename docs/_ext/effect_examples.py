@@ -15,7 +15,8 @@ import tomllib
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-os.environ.setdefault("BOATSIM_DEBUG", "1")
+if __name__ == "__main__":  # an import must not change how the program that imports this one runs
+    os.environ.setdefault("BOATSIM_DEBUG", "1")
 
 from effect_cases import (  # noqa: E402
     DURATION,

@@ -203,7 +203,7 @@ def run_tutorials(names: Sequence[str]) -> int:
                 different += 1
                 print(f"{file.name}:{line}: {message}", flush=True)
         for warning in slow:
-            print(f"{file.name}: warning: {warning.decode_message}", flush=True)
+            print(f"{file.name}: warning: {warning.message}", flush=True)
         print(f"{file.name}: {time.monotonic() - begin:.0f} s", flush=True)
     return different
 

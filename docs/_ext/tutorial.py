@@ -32,7 +32,7 @@ def run(app: Sphinx, name: str, source: list[str]) -> None:
         for line, message in page_commands.failures(source[0], Path(home)):
             log.warning(message, location=(name, line))
     for warning in slow:
-        print(f"{name}: {warning.decode_message}", file=sys.stderr)
+        print(f"{name}: {warning.message}", file=sys.stderr)
 
 
 def setup(app: Sphinx) -> dict[str, Any]:

@@ -31,9 +31,9 @@ def test_the_plain_values_restore_a_configuration():
     [
         ({"select.ods": 3}, "did you mean 'select.odds'"),
         ({"odds": 3}, "does not exist"),
-        ({"select.odds": "much"}, r"select.odds = much: allowed is a number from 0"),
+        ({"select.odds": "much"}, r"select.odds = 'much': allowed is a number from 0"),
         ({"select.odds": True}, "select.odds = True"),
-        ({"select.odds": "nan"}, "select.odds = nan"),
+        ({"select.odds": "nan"}, "select.odds = 'nan'"),
         ({"select.odds": -1.0}, "select.odds = -1.0"),
         ({"select.most_effects": 2.5}, "most_effects = 2.5: allowed is an integer from 1"),
         ({"fit.coefficient_range": [1.0]}, "2 numbers are needed"),

@@ -47,9 +47,9 @@ def test_gymnasium_finds_nothing_to_complain_of(
 ) -> None:
     check_env(single(name), skip_render_check=True)
     assert not [
-        str(w.decode_message)
+        str(w.message)
         for w in recwarn
-        if "gymnasium" in str(w.category).lower() or "Box" in str(w.decode_message)
+        if "gymnasium" in str(w.category).lower() or "Box" in str(w.message)
     ]
 
 

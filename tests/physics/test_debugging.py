@@ -80,7 +80,7 @@ def test_a_callback_in_python_is_reported_once_with_the_reason(
     with pytest.warns(native_callback.SlowCallbackWarning, match="mjData.qpos not found") as seen:
         Engine(boat)
         Engine(boat)
-    assert len(seen) == 1 and "\n" not in str(seen[0].decode_message)
+    assert len(seen) == 1 and "\n" not in str(seen[0].message)
 
 
 def test_a_native_callback_with_other_numbers_is_reported(

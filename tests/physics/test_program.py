@@ -62,7 +62,7 @@ from boatsim.physics.trust import trust_folders
 with trust_folders(sys.argv[1]):
     program = Program(vessel.load_vessel(sys.argv[1]))
 act = np.zeros(program.held_size)
-print(program.module.total_body_force(0.0, np.array([0.1, 0.0]), act, np.int64(0), program.values(), program.switches())[0])
+print(program.module.total_body_force(0.0, np.array([0.1, 0.0]), act, np.int64(0), program.values(), program.effect_switches())[0])
 """
 
 
