@@ -91,7 +91,7 @@ def _simulate(scenario: Scenario, out: Path, seed: int) -> Path:
     """Run a scenario and return the recording that an owner's camera would make."""
     folder = out / RECORDINGS / scenario.name.rpartition("/")[2]
     done = run_into_folder(folder, scenario, RunOptions(seed=seed))
-    _print_now([f"   {scenario.name}: {done.run.recording.t[-1]:.1f} s"])
+    _print_now([f"   {scenario.name}: {done.run.recording.t[-1]:.1f} s long"])
     return folder / f"{CAMERA}.csv"
 
 
@@ -127,6 +127,7 @@ def _in_words(effect: Effect) -> str:
 def _next_lines(out: Path) -> list[str]:
     return [
         f"Report: {out / 'report.html'}",
+        f"Corrected model: {out / 'patched.toml'}",
         f"In 3D:  rerun {out / 'diagnosis.rrd'}",
         "Your own log: boatsim import LOG",
     ]

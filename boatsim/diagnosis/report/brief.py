@@ -25,10 +25,13 @@ def brief_lines(f: Findings) -> list[str]:
         f: Findings of a diagnosis.
     """
     lines = [f.answer["sentence"]]
-    for effect in f.answer["effects"]:
-        probability = format_probability(effect["probability"])
+    effects = f.answer["effects"]
+    for effect in effects:
+        probability, cause = format_probability(effect["probability"]), "this"
+        if len(effects) > 1:
+            cause = words_of_name(effect["name"])
         lines.append(
-            f"How sure: {probability} that {words_of_name(effect['name'])} is the true cause; "
+            f"How sure: {probability} that {cause} is a true cause; "
             f"{format_odds(effect['gain_nats'])}."
         )
     if errors := _error_lines(f):
