@@ -346,8 +346,10 @@ def tomls(draw: Any, right: str, end: str = "\0", kept: tuple[str, ...] = ()) ->
 # -------------------------------------------------------------------------------------------------------------
 
 
-def obeys(out: Path, files: tuple[str, ...], command: str, *arguments: object) -> Any:
-    """Run a command and hold it to the law; its mistake may lie in any of `files`."""
+def assert_used_or_refused(
+    out: Path, files: tuple[str, ...], command: str, *arguments: object
+) -> Any:
+    """Run a command; check that it succeeds or refuses with one line that names one of `files`."""
     given = [command, *(str(a) for a in arguments), "--out", str(out)]
     result = CliRunner().invoke(app, given, catch_exceptions=False)
     left = {f.name for f in out.rglob("*")} if out.exists() else set()
@@ -403,7 +405,10 @@ def place() -> Iterator[Callable[..., Path]]:
 def test_a_recording_that_is_right_is_used(command: str, place: Callable[..., Path]) -> None:
     folder = place(run__csv=csv_text(decay()), recording__toml=NOTES)
     short = ["--horizon", "3"] if command == "replay" else []
-    assert obeys(folder / "out", ("run.csv",), command, folder / "run.csv", *short) is None
+    assert (
+        assert_used_or_refused(folder / "out", ("run.csv",), command, folder / "run.csv", *short)
+        is None
+    )
 
 
 @few
@@ -412,7 +417,9 @@ def test_a_diagnosis_uses_a_recording_or_says_why_not(
     content: bytes, place: Callable[..., Path]
 ) -> None:
     folder = place(run__csv=content)
-    obeys(folder / "out", ("run.csv",), "diagnose", folder / "run.csv", "--vessel", "kvlcc2_roll")
+    assert_used_or_refused(
+        folder / "out", ("run.csv",), "diagnose", folder / "run.csv", "--vessel", "kvlcc2_roll"
+    )
 
 
 @quick
@@ -422,7 +429,7 @@ def test_a_replay_uses_a_recording_or_says_why_not(
 ) -> None:
     folder = place(run__csv=content)
     short = ["--horizon", "3"] if command == "replay" else []
-    obeys(
+    assert_used_or_refused(
         folder / "out", ("run.csv",), command, folder / "run.csv", "--vessel", "kvlcc2_roll", *short
     )
 
@@ -434,7 +441,7 @@ def test_a_recording_with_commands_is_used_or_the_line_says_why_not(
     content: bytes, place: Callable[..., Path]
 ) -> None:
     folder = place(run__csv=content)
-    obeys(
+    assert_used_or_refused(
         folder / "out",
         ("run.csv",),
         "replay",
@@ -454,7 +461,9 @@ def test_what_is_no_recording_is_refused(
     folder = place(bad__parquet=b"PAR1 no", bad__rrd=b"RRF2 no")
     (folder / "run.csv").mkdir()
     name = {"folder": "run.csv", "nothing": "other.csv"}.get(what, f"bad.{what}")
-    assert obeys(folder / "out", (name,), command, folder / name, "--vessel", "kvlcc2_roll")
+    assert assert_used_or_refused(
+        folder / "out", (name,), command, folder / name, "--vessel", "kvlcc2_roll"
+    )
 
 
 def test_a_command_beyond_its_limits_is_refused_with_row_and_column(
@@ -463,7 +472,7 @@ def test_a_command_beyond_its_limits_is_refused_with_row_and_column(
     header, rows = cruise()
     rows[30][header.index("steer_port_rad")] = "9.9"
     folder = place(run__csv=csv_text((header, rows)))
-    line = obeys(
+    line = assert_used_or_refused(
         folder / "out", ("run.csv",), "diagnose", folder / "run.csv", "--vessel", "trial_boat"
     )
     assert "row 32" in line and "steer_port_rad" in line and "9.9 rad" in line
@@ -480,7 +489,7 @@ def test_notes_beside_a_recording_are_used_or_the_line_says_why_not(
     content: bytes, place: Callable[..., Path]
 ) -> None:
     folder = place(run__csv=csv_text(decay()), recording__toml=content)
-    obeys(
+    assert_used_or_refused(
         folder / "out",
         ("recording.toml", "run.csv"),
         "replay",
@@ -494,7 +503,9 @@ def test_notes_beside_a_recording_are_used_or_the_line_says_why_not(
 @given(content=tomls(NOTES))
 def test_a_diagnosis_uses_notes_or_says_why_not(content: bytes, place: Callable[..., Path]) -> None:
     folder = place(run__csv=csv_text(decay()), recording__toml=content)
-    obeys(folder / "out", ("recording.toml", "run.csv"), "diagnose", folder / "run.csv")
+    assert_used_or_refused(
+        folder / "out", ("recording.toml", "run.csv"), "diagnose", folder / "run.csv"
+    )
 
 
 ROLLER = (content_root() / "models" / "kvlcc2_roll" / "vessel.toml").read_text(encoding="utf-8")
@@ -509,7 +520,9 @@ def test_a_vessel_file_is_used_or_the_line_says_why_not(
 ) -> None:
     folder = place(run__csv=csv_text(decay()), vessel__toml=content, hull__xml=HULL)
     found = "vessel.toml", "run.csv", "hull.xml"
-    obeys(folder / "out", found, "compare", folder / "run.csv", "--vessel", folder / "vessel.toml")
+    assert_used_or_refused(
+        folder / "out", found, "compare", folder / "run.csv", "--vessel", folder / "vessel.toml"
+    )
 
 
 PATCHED = 'based_on = "kvlcc2_roll"\n' + ROLLER.replace(
@@ -525,7 +538,7 @@ def test_a_patched_file_is_used_or_the_line_says_why_not(
 ) -> None:
     folder = place(run__csv=csv_text(decay()), patched__toml=content)
     given = folder / "run.csv", "--vessel", folder / "patched.toml", "--horizon", "3"
-    obeys(folder / "out", ("patched.toml", "run.csv"), "replay", *given)
+    assert_used_or_refused(folder / "out", ("patched.toml", "run.csv"), "replay", *given)
 
 
 @few
@@ -534,7 +547,7 @@ def test_a_scenario_is_run_or_the_line_says_why_not(
     content: bytes, place: Callable[..., Path]
 ) -> None:
     folder = place(next__toml=content)
-    obeys(folder / "out", ("next",), "run", folder / "next.toml")
+    assert_used_or_refused(folder / "out", ("next",), "run", folder / "next.toml")
 
 
 # ---- the command line
@@ -604,7 +617,7 @@ def test_loads_that_contradict_each_other_are_refused(
 ) -> None:
     folder = place(run__csv=csv_text(cruise()))
     given = folder / "run.csv", "--vessel", "joystick_boat", *load
-    line = obeys(folder / "out", ("vessel.toml",), "replay", *given)
+    line = assert_used_or_refused(folder / "out", ("vessel.toml",), "replay", *given)
     assert all(name in line for name in ",".join(load[1::2]).split(","))
 
 
@@ -613,7 +626,7 @@ def test_any_horizon_is_used_or_refused(horizon: str, place: Callable[..., Path]
     folder = place(run__csv=csv_text(decay()))
     given = folder / "run.csv", "--vessel", "kvlcc2_roll", "--horizon", horizon
     assert (
-        obeys(folder / "out", ("run.csv", "--horizon"), "replay", *given) is None
+        assert_used_or_refused(folder / "out", ("run.csv", "--horizon"), "replay", *given) is None
     ) == math.isclose(float(horizon), 0.1)
 
 
