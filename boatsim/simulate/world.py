@@ -1,6 +1,7 @@
 """Builds the MuJoCo model of a vessel in a tank. Axes are MuJoCo's: z up, y to port."""
 
 import math
+import os
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -242,11 +243,16 @@ def read_drawing(path: Path, vessel: Vessel) -> tuple[mujoco.MjSpec, tuple[float
         default the vessel's.
 
     Raises:
-        BadInput: If MuJoCo can not read it or it has no hull.
+        BadInput: If it does not exist, MuJoCo cannot read it or it has no hull.
     """
     if vessel.hull_xml:
         check_hull_text(vessel.hull_xml, path)
     else:
+        if not os.path.isfile(path):  # False for a name that no file can have, too
+            raise BadInput(
+                f"{vessel.file}: hull = {vessel.hull!r}: there is no file {path}; allowed is the "
+                "name of a MuJoCo XML file in that folder, such as 'hull.xml'"
+            )
         check_hull_file(path)
     try:
         if vessel.hull_xml:

@@ -515,6 +515,7 @@ HULL = (content_root() / "models" / "kvlcc2_roll" / "hull.xml").read_bytes()
 @pytest.mark.slow
 @quick
 @given(content=tomls(ROLLER, "[body]", ("suspects", "use")))
+@example(content=ROLLER.replace("draught", 'hull = "x"\ndraught', 1).encode())
 def test_a_vessel_file_is_used_or_the_line_says_why_not(
     content: bytes, place: Callable[..., Path]
 ) -> None:

@@ -290,6 +290,15 @@ def test_tank_without_size_and_hull_without_body_are_refused(
         world.build_model(replace(boat, path=tmp_path))
 
 
+@pytest.mark.parametrize("name", ["x", ".", "hull\0.xml", "h" * 300, "nowhere/hull.xml"])
+def test_hull_that_is_no_file_is_refused_with_the_vessel_file_and_the_key(
+    name: str, boat: vessel.Vessel
+) -> None:
+    with pytest.raises(BadInput) as refused:
+        world.build_model(replace(boat, hull=name))
+    assert str(refused.value).startswith(f"{boat.file}: hull = {name!r}: there is no file")
+
+
 # --- loads
 # ---------------------------------------------------------------------------------------------------------
 
