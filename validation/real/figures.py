@@ -1,0 +1,125 @@
+"""Figures of a set of recordings: errors of free runs on held-out runs, findings, CPU time.
+
+Each set of the protocol (docs/protocol.md) prints one `Figures` for each form of its files, in the
+same table.
+"""
+
+import time
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from boatsim.diagnosis import loading, pipeline, priors
+from boatsim.diagnosis.evaluation import MODELS, compared_fits
+from boatsim.diagnosis.filter import MappedRecording
+from boatsim.diagnosis.free_runs import free_runs, rms_errors
+from boatsim.diagnosis.pipeline import Diagnosis
+from validation.real.common import effects_of, format_fixed, parameter_text, print_table
+
+HEADER = ("figure", "before", "retuned", "corrected", "corrected / retuned")
+
+
+@dataclass(frozen=True)
+class Figures:
+    """What one diagnosis of a set says, and how well its models predict the held-out runs."""
+
+    title: str
+    diagnosis: Diagnosis
+    errors: Mapping[float, Mapping[str, Mapping[str, float]]]  # window, family, model -> rms
+    cpu_s: float  # of the diagnosis
+
+
+def split_groups(groups: Mapping[str, Sequence[str]]) -> tuple[list[str], list[str]]:
+    """Split runs into fitted and held-out ones by the rule of the protocol.
+
+    In each group every third run, in order of names, is held out; groups of one or two runs are
+    fitted as a whole.
+
+    Args:
+        groups: Names of the runs of each group.
+
+    Returns:
+        Names of the fitted and of the held-out runs.
+    """
+    fitted, held_out = list[str](), list[str]()
+    for names in groups.values():
+        for i, name in enumerate(sorted(names)):
+            part = held_out if i % 3 == 2 else fitted
+            part.append(name)
+    return fitted, held_out
+
+
+def held_out_errors(
+    diagnosis: Diagnosis, held_out: Sequence[MappedRecording], window: float
+) -> dict[str, dict[str, float]]:
+    """Return the rms errors of free runs over the held-out runs: family -> model -> rms.
+
+    Args:
+        diagnosis: The diagnosis whose three models are compared.
+        held_out: Held-out runs, mapped to its program.
+        window: Length of each free run [s].
+    """
+    fits = compared_fits(diagnosis.ranking)
+    return rms_errors(free_runs(diagnosis.problem, fits, held_out, window))
+
+
+def map_runs(diagnosis: Diagnosis, files: Sequence[Path], vessel: str) -> list[MappedRecording]:
+    """Return recordings as the diagnosis sees them: thinned, and mapped to its program.
+
+    Args:
+        diagnosis: The diagnosis.
+        files: The recordings.
+        vessel: Name or path of the vessel.
+    """
+    mapped = []
+    for file in files:
+        recording, boat = loading.open_recording(file, vessel, ())
+        mapped.append(diagnosis.map_recording(recording.thinned(priors.used_sample_rate(boat))))
+    return mapped
+
+
+def diagnose_set(
+    title: str,
+    fitted: Sequence[Path],
+    held_out: Sequence[Path],
+    vessel: str,
+    windows: Sequence[float],
+) -> Figures:
+    """Diagnose the fitted runs of a set and judge its models on the held-out runs.
+
+    Args:
+        title: Name of the set and form of its files.
+        fitted: Recordings that are fitted.
+        held_out: Recordings that are held out.
+        vessel: Name or path of the nominal vessel.
+        windows: Lengths of the free runs [s]; the first one is that of the diagnosis.
+    """
+    start = time.process_time()
+    diagnosis = pipeline.diagnose(fitted, held_out, vessel=vessel, horizon=windows[0])
+    cpu_s = time.process_time() - start
+    mapped = map_runs(diagnosis, held_out, vessel)
+    errors = {window: held_out_errors(diagnosis, mapped, window) for window in windows}
+    return Figures(title, diagnosis, errors, cpu_s)
+
+
+def print_figures(figures: Figures, units: Mapping[str, tuple[str, float]]) -> None:
+    """Print errors, log findings, named effects and CPU time of a diagnosis.
+
+    Args:
+        figures: The figures.
+        units: Family of signals -> text of the figure with its unit, and factor from SI.
+    """
+    rows = []
+    for window, families in figures.errors.items():
+        for family, (text, factor) in units.items():
+            rms = [families[family][model] * factor for model in MODELS]
+            name = f"{text}, {window:g} s"
+            rows.append([name, *format_fixed(2, *rms), f"{rms[2] / rms[1]:.2f}"])
+    print_table(figures.title, HEADER, rows)
+    answer = figures.diagnosis.findings.answer
+    print(f"  {answer['sentence']}")
+    for entry in answer.get("log", []):
+        print(f"  log, {entry['run']}: {entry['name']} ({entry['kind']}): {entry['evidence']}")
+    for effect in effects_of(figures.diagnosis):
+        print(f"  {effect['kind']}: {effect['name']}: {parameter_text(effect)}")
+    print(f"  CPU: {figures.cpu_s:.0f} s")
