@@ -48,9 +48,9 @@ COLOURS = {
 # as in the report; distinguishable for colour-blind readers on dark plots and in the light scene
 BOATS = {
     "recording": (165, 173, 180),
-    "nominal": (230, 105, 25),
-    "recalibrated": (45, 140, 225),
-    "patched": (0, 165, 120),
+    "before": (230, 105, 25),
+    "retuned": (45, 140, 225),
+    "corrected": (0, 165, 120),
 }
 MET = {None: "", True: "yes", False: "**no**"}
 VERDICTS = {REPRODUCED: "(the same)", MISSED: "(differs)", NO_TOLERANCE: ""}
@@ -177,7 +177,7 @@ def write_diagnosis_log(
 
     Args:
         path: The file.
-        boats: Segments of the motion by name: "recording", "nominal", "recalibrated", "patched".
+        boats: Segments of the motion by name: "recording", "before", "retuned", "corrected".
             The first is drawn as a hull, the others as outlines, so that small distances are
             visible. Segments are not connected.
         missing: The missing force with its band: `force_X_N` (and `_Y_N`, `_K_Nm`, `_N_Nm`) with

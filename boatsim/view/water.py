@@ -23,12 +23,12 @@ def comparison_scene(vessel: Vessel, runs: Mapping[str, Sequence[Recording]]) ->
 
     Args:
         vessel: The vessel that is drawn.
-        runs: Recordings by name. One named "nominal" does not count for the size of the water
-            unless it is the only one, because the nominal model may run away.
+        runs: Recordings by name. One named "before" does not count for the size of the water
+            unless it is the only one, because the model before a fit may run away.
     """
     paths: list[Recording] = []
     for name, recordings in runs.items():
-        if name != "nominal" or len(runs) == 1:
+        if name != "before" or len(runs) == 1:
             paths += recordings
     x_low, x_high = _range_of("x_m", paths)
     y_low, y_high = _range_of("y_m", paths)

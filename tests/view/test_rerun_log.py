@@ -156,7 +156,7 @@ def test_the_log_of_a_diagnosis_has_all_boats_the_missing_force_and_what_was_fla
     missing = Recording(
         "m", run.t, {"force_X_N": force, "force_X_N_low": force - 1, "force_X_N_high": force + 1}
     )
-    boats = dict.fromkeys(("recording", "nominal", "recalibrated", "patched"), [pose])
+    boats = dict.fromkeys(("recording", "before", "retuned", "corrected"), [pose])
     flagged = [{"run": "run", "from_s": 2.0, "to_s": 3.0, "axis": "surge"}]
     write_diagnosis_log(tmp_path / "diagnosis.rrd", boats, missing, flagged, SCENE)
     rows = entities(tmp_path / "diagnosis.rrd")
@@ -185,16 +185,16 @@ def test_between_two_free_runs_nothing_is_drawn(tmp_path):
         {n: np.zeros(2 * len(t) - 1) for n in ("x_m", "y_m")},
     )
     write_diagnosis_log(
-        tmp_path / "d.rrd", {"recording": [whole], "patched": [first, second]}, None, [], SCENE
+        tmp_path / "d.rrd", {"recording": [whole], "corrected": [first, second]}, None, [], SCENE
     )
     lines, curve = [], {}
     for chunk in RrdReader(tmp_path / "d.rrd").stream():
         batch, name = chunk.to_record_batch(), chunk.entity_path.strip("/")
-        if name == "world/paths/patched" and not chunk.is_static:
+        if name == "world/paths/corrected" and not chunk.is_static:
             lines += [
                 strip for row in batch.column("LineStrips3D:strips").to_pylist() for strip in row
             ]
-        if name == "signals/patched/y_m" and not chunk.is_static:
+        if name == "signals/corrected/y_m" and not chunk.is_static:
             times = batch.column("sim_time").cast("int64").to_pylist()
             curve |= dict(zip(times, batch.column("Scalars:scalars").to_pylist(), strict=True))
     assert len(lines) == 2 * (len(t) - 1)
@@ -210,7 +210,7 @@ def test_a_boat_of_which_few_places_are_known_has_a_path_through_them(tmp_path):
         n: np.where(np.arange(len(t)) % 10 == 0, t * k, np.nan)
         for n, k in (("x_m", 0.1), ("y_m", 1.0))
     }
-    boats = {"recording": [Recording("recording", t, seen)], "patched": [track_of(1.0)]}
+    boats = {"recording": [Recording("recording", t, seen)], "corrected": [track_of(1.0)]}
     write_diagnosis_log(tmp_path / "d.rrd", boats, None, [], SCENE)
     rows = entities(tmp_path / "d.rrd")
     assert rows["world/paths/recording"] == 3 and rows["world/boats/recording"] == 4
@@ -281,8 +281,8 @@ def test_boats_are_as_large_as_the_track_asks_for_and_all_of_it_lies_in_view_on_
     boat = vessel.load_vessel("trial_boat")
     boats = {
         "recording": [track_of(size)],
-        "nominal": [track_of(1e4 * size)],
-        "patched": [track_of(size, 0.2 * size)],
+        "before": [track_of(1e4 * size)],
+        "corrected": [track_of(size, 0.2 * size)],
     }
     scene = water.comparison_scene(boat, boats)
     hull = np.concatenate([s.vertices for s in scene.solids if s.part == "hull"])
@@ -295,7 +295,7 @@ def test_boats_are_as_large_as_the_track_asks_for_and_all_of_it_lies_in_view_on_
         max(1.0, 0.08 * size / boat.length)
     )
     length, width, x, y = scene.tank
-    for run in (*boats["recording"], *boats["patched"]):
+    for run in (*boats["recording"], *boats["corrected"]):
         assert np.abs(run["x_m"] - x).max() + scene.length <= 0.501 * length + 0.5 * scene.length
         assert np.abs(run["y_m"] - y).max() + scene.length <= 0.501 * width + 0.5 * scene.length
     assert length < 3 * size + 5 * scene.length, "the nominal boat that runs away is not followed"
@@ -381,7 +381,7 @@ def test_rerun_accepts_the_log_of_an_interrupted_run(tmp_path):
 
 def test_rerun_accepts_the_log_of_a_diagnosis(tmp_path):
     run = circle()
-    write_diagnosis_log(tmp_path / "d.rrd", {"recording": [run], "nominal": [run]}, None, [], SCENE)
+    write_diagnosis_log(tmp_path / "d.rrd", {"recording": [run], "before": [run]}, None, [], SCENE)
     assert verified(tmp_path / "d.rrd")
 
 

@@ -15,6 +15,7 @@ from boatsim.diagnosis.report import page, patched_vessel
 from boatsim.diagnosis.report.answer import NEXT_SCENARIO
 from boatsim.diagnosis.report.figures import group_by_recording
 from boatsim.diagnosis.report.findings import Findings, MissingForceCurve
+from boatsim.diagnosis.report.model_names import MODEL_WORDS
 from boatsim.errors import BadPhysics
 from boatsim.files import replace_file
 from boatsim.physics.signals import COMPONENTS, Array
@@ -73,7 +74,7 @@ def write_overlay(found: Diagnosis, path: Path) -> None:
         runs = group_by_recording(found.findings.free_runs)[0]
         boats["recording"] = [_joined(runs)]
         for model in MODELS:
-            boats[model] = [_simulated(r, model) for r in runs]
+            boats[MODEL_WORDS[model]] = [_simulated(r, model) for r in runs]
         missing = _missing_force(found.findings, runs[0].run)
         if missing is not None:
             flagged = found.findings.answer["where"]["intervals"]

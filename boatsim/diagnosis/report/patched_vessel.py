@@ -62,7 +62,7 @@ def patched_vessel_text(
             continue
         for name in vessel.names_of(free.effect):
             change = CoefficientChange(free.name, name, free.name, "scales", 1.0)
-            _change_number(document, vessel, change, float(x), f"recalibrated x {x:.4f}")
+            _change_number(document, vessel, change, float(x), f"retuned: x {x:.4f}")
     for effect in candidates:  # channels act in the order of the diagnosis
         if effect.name not in settings:
             continue

@@ -193,7 +193,7 @@ def _files(f: Findings) -> Iterator[Block]:
     if wanted := f.answer["next_experiment"]:
         lines[wanted["scenario"]] = "The manoeuvre to record next, as a scenario for boatsim run."
     lines["diagnosis.rrd"] = (
-        "The recording and the vessel before (nominal), retuned (recalibrated) and corrected "
-        "(patched), in one scene of the rerun viewer."
+        "The recording and the vessel before, retuned and corrected, in one scene of the rerun "
+        "viewer."
     )
     yield Items(tuple(lines.items()))
