@@ -401,7 +401,10 @@ def improvement_on_held_out(f: Findings) -> str:
         return "The result could not be validated: free runs of the vessel diverge."
     if not errors:
         return "The result could not be validated: no recording was held out."
-    runs = f"In free runs of {fit['horizon_s']:g} s over the held-out recordings"
+    runs = (
+        f"In free runs (simulations of {fit['horizon_s']:g} s with the recorded commands alone) "
+        "over the held-out recordings"
+    )
     if not f.has_added_effects:
         return f"{runs}, the retuned vessel has an rms error of {join_words(errors)}."
     caution = ""
