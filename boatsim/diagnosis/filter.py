@@ -324,7 +324,7 @@ class MappedRecording:
         for _ in range(self.config.smoother_passes):
             keep = FilterHistory(means, covariances, transitions, predicted)
             self._run(values, on, levels, arrays, rates=rates, keep=keep)
-            self.program.module.smooth_states(
+            self.program.functions.smooth_states(
                 keep, gains, self.times, LatentForce(force**2, levels.time_constant), values, on
             )
             before, rates = rates, means[0, nq : 2 * nq].copy()
@@ -365,7 +365,7 @@ class MappedRecording:
         nq = self.program.module.NQ
         out = np.full((len(starts), len(self.times), 2 * nq), np.nan)
         states = np.ascontiguousarray(means[starts, : 2 * nq])
-        self.program.module.simulate_intervals(
+        self.program.functions.simulate_intervals(
             self.inputs,
             self.config.free_run_step,
             VesselNumbers(rigid_body_values(values), values, on),
@@ -454,7 +454,7 @@ class MappedRecording:
                 covariance[nq + i, nq + i] = 1.0
         if rates is None:
             rates = self.initial.rates
-        found = self.program.module.kalman_filter(
+        found = self.program.functions.kalman_filter(
             self.inputs,
             Measurements(self.measured, self.codes, noise),
             VesselNumbers(rigid_body_values(values), values, on),
@@ -705,7 +705,7 @@ def hull_time_scales(
         command: (K,) commands in force.
         config: Settings of the filter.
     """
-    code, on = program.module, program.effect_switches()
+    code, on = program.functions, program.effect_switches()
     nq = code.NQ
     constants, memory = np.zeros(code.K), np.zeros(program.memory_size)
     actuators = np.zeros(program.held_size)
@@ -737,7 +737,7 @@ def inertia_with_added_mass(program: Program, values: Array, on: Array) -> Array
         values: Parameter values of the vessel model.
         on: (effects,) 1 for the effects that act, else 0.
     """
-    code = program.module
+    code = program.functions
     constants = np.zeros(code.K)
     code.compute_mass_constants(rigid_body_values(values), values, on, constants)
     diagonal = constants[-MASS_ENTRIES:][_places(tuple(program.vessel.dof))]

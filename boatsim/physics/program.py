@@ -17,11 +17,13 @@ from boatsim.physics import vessel as vessels
 from boatsim.physics.commands import clipped_commands
 from boatsim.physics.compiled_program import CompiledProgram
 from boatsim.physics.compose import Composition
-from boatsim.physics.debugging import python_function
+from boatsim.physics.debugging import DEBUG, python_function
 from boatsim.physics.kernel.records import VesselNumbers, VesselState
 from boatsim.physics.kernel.source import motion_module_text
 from boatsim.physics.kinds.effect import Effect
 from boatsim.physics.kinds.release import CoefficientRelease
+from boatsim.physics.native.declarations import NotTranslatable
+from boatsim.physics.native.library import NativeProgram, NoCompiler
 from boatsim.physics.signals import AXES, Array, MeasuredMotion
 from boatsim.physics.vessel import Vessel
 
@@ -218,6 +220,20 @@ class Program:
         }
         package: ModuleType = cache.import_program(text, {type(e) for e in self.effects})
         return cast(CompiledProgram, package)
+
+    @cached_property
+    def functions(self) -> CompiledProgram:
+        """The functions of the program, from its C library where that is possible.
+
+        Their numbers are the same as those of `module`, which takes longer to compile and less to
+        call.
+        """
+        if DEBUG:
+            return self.module
+        try:
+            return cast(CompiledProgram, NativeProgram(self.module))
+        except (NoCompiler, NotTranslatable):
+            return self.module
 
 
 def main(arguments: Sequence[str]) -> None:

@@ -120,7 +120,7 @@ def _free_run(problem: Problem, fit: Fit, times: Array, commands: Array, start: 
     """Channels (N, 2 NQ) of a free run as a recording has them, without the latent force."""
     values = problem.values(problem.recordings[0], fit.free, fit.theta)
     out = np.full((1, len(times), len(start)), np.nan)
-    problem.program.module.simulate_intervals(
+    problem.program.functions.simulate_intervals(
         Inputs(times, times, commands),
         problem.config.filter.filter_step,
         VesselNumbers(

@@ -31,11 +31,11 @@ def actuator_states(
     on = program.effect_switches(effects)
     act = np.zeros(program.held_size)
     memory = np.zeros(program.memory_size)
-    program.module.settle_actuators(mapped.command_values[0], memory, values, on, act)
+    program.functions.settle_actuators(mapped.command_values[0], memory, values, on, act)
     states = np.empty((len(mapped.times), len(act) // 3))
     steps = np.append(np.diff(mapped.times), mapped.times[-1] - mapped.times[-2])
     for row, step in enumerate(steps.tolist()):
-        program.module.advance_actuators(mapped.commands[row], memory, step, values, on, act)
+        program.functions.advance_actuators(mapped.commands[row], memory, step, values, on, act)
         begin, middle, end = act.reshape(3, -1)
         states[row] = (begin + 4.0 * middle + end) / 6.0
     return states
@@ -60,7 +60,7 @@ def body_forces(
     Returns:
         Forces and moments (N, axes) [N, N m].
     """
-    forces = mapped.program.module.total_body_force
+    forces = mapped.program.functions.total_body_force
     on = mapped.program.effect_switches(effects)
     first = np.int64(0)
     rows = []
@@ -90,7 +90,7 @@ def _surge_force_at_rest(mapped: MappedRecording, commands: dict[str, float]) ->
     memory = np.zeros(program.memory_size)
     values = mapped.values
     on = program.effect_switches()
-    program.module.settle_actuators(program.command_array(commands), memory, values, on, act)
+    program.functions.settle_actuators(program.command_array(commands), memory, values, on, act)
     rest = np.zeros((1, 2 * program.module.NQ))
     return float(body_forces(mapped, rest, [act], values)[0][0])
 

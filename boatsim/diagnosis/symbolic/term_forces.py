@@ -81,7 +81,7 @@ class FittedRecording:
         c, s = np.cos(fields["psi"]), np.sin(fields["psi"])
         north, east = (0.0, 0.0)
         if "surge" in axes:
-            north, east = program.module.water_velocity(self.values, self.on)
+            north, east = program.functions.water_velocity(self.values, self.on)
         fields |= {"cos_psi": c, "sin_psi": s, "wr": fields["w"]}
         fields["ur"] = fields["u"] - c * north - s * east
         fields["vr"] = fields["v"] - c * east + s * north

@@ -1,0 +1,66 @@
+/* Arrays and small functions for the C source of a vessel's program. */
+#include <math.h>
+#include <stdbool.h>
+#include <stdint.h>
+#include <stdlib.h>
+
+#define INLINE static inline __attribute__((always_inline))
+
+/* Contiguous arrays, row by row */
+typedef struct { double *d; int64_t n0; } array1_t;
+typedef struct { double *d; int64_t n0, n1; } array2_t;
+typedef struct { double *d; int64_t n0, n1, n2; } array3_t;
+typedef struct { int64_t *d; int64_t n0; } rows1_t;
+
+/* Entries */
+INLINE int64_t *at1_rows(rows1_t a, int64_t i) { return a.d + i; }
+INLINE double *at1(array1_t a, int64_t i) { return a.d + i; }
+INLINE double *at2(array2_t a, int64_t i, int64_t j) { return a.d + i * a.n1 + j; }
+INLINE double *at3(array3_t a, int64_t i, int64_t j, int64_t k) {
+    return a.d + (i * a.n1 + j) * a.n2 + k;
+}
+
+/* Rows, and consecutive entries or rows from i to before j */
+INLINE array1_t row_of2(array2_t a, int64_t i) { return (array1_t){a.d + i * a.n1, a.n1}; }
+INLINE array2_t row_of3(array3_t a, int64_t i) {
+    return (array2_t){a.d + i * a.n1 * a.n2, a.n1, a.n2};
+}
+INLINE array1_t line_of3(array3_t a, int64_t i, int64_t j) {
+    return (array1_t){a.d + (i * a.n1 + j) * a.n2, a.n2};
+}
+INLINE array1_t part_of1(array1_t a, int64_t i, int64_t j) { return (array1_t){a.d + i, j - i}; }
+INLINE array2_t part_of2(array2_t a, int64_t i, int64_t j) {
+    return (array2_t){a.d + i * a.n1, j - i, a.n1};
+}
+INLINE void fill1(array1_t a, double x) {
+    for (int64_t i = 0; i < a.n0; i++) a.d[i] = x;
+}
+INLINE void copy1(array1_t a, array1_t b) {
+    for (int64_t i = 0; i < a.n0; i++) a.d[i] = b.d[i];
+}
+
+/* Memory that is freed when its function returns */
+static inline void release_real(double **p) { free(*p); }
+static inline void release_whole(int64_t **p) { free(*p); }
+#define RELEASED(kind) __attribute__((cleanup(release_##kind)))
+
+/* Python's functions, with nan and ties as in numba */
+INLINE double least_real(double a, double b) { return b < a ? b : a; }
+INLINE double most_real(double a, double b) { return b > a ? b : a; }
+INLINE int64_t least_whole(int64_t a, int64_t b) { return b < a ? b : a; }
+INLINE int64_t most_whole(int64_t a, int64_t b) { return b > a ? b : a; }
+INLINE double lesser(double a, double b) { return isnan(a) || a < b ? a : b; }
+INLINE double greater(double a, double b) { return isnan(a) || a > b ? a : b; }
+INLINE double sign_of(double x) { return x > 0.0 ? 1.0 : x < 0.0 ? -1.0 : x; }
+INLINE int64_t magnitude(int64_t x) { return x < 0 ? -x : x; }
+INLINE int64_t quotient(int64_t a, int64_t b) {
+    return a / b - (a % b != 0 && (a < 0) != (b < 0));
+}
+INLINE int64_t remainder_whole(int64_t a, int64_t b) { return a - quotient(a, b) * b; }
+INLINE double remainder_real(double a, double b) {
+    double m = fmod(a, b);
+    return m != 0.0 && (m < 0.0) != (b < 0.0) ? m + b : m;
+}
+INLINE double power2(double x) { return x * x; }
+INLINE double power3(double x) { return x * (x * x); }
+INLINE double power4(double x) { return (x * x) * (x * x); }

@@ -1,0 +1,122 @@
+"""Types of values in translated C source: numbers, arrays, and structs for tuples."""
+
+from dataclasses import dataclass
+from itertools import chain
+
+
+@dataclass(frozen=True)
+class Scalar:
+    """A number."""
+
+    c: str  # name of the C type
+
+
+@dataclass(frozen=True)
+class ArrayKind:
+    """A contiguous array of numbers with row-major order."""
+
+    item: Scalar
+    dimensions: int
+
+    @property
+    def c(self) -> str:
+        """Name of the C struct: a pointer and the sizes."""
+        return f"{'array' if self.item == REAL else 'rows'}{self.dimensions}_t"
+
+
+@dataclass(frozen=True)
+class Struct:
+    """A tuple or named tuple."""
+
+    c: str  # name of the C struct
+    fields: tuple[str, ...]
+    kinds: tuple["Kind", ...]
+
+    def field_kind(self, name: str) -> "Kind":
+        """Return the kind of a field."""
+        return self.kinds[self.fields.index(name)]
+
+    @property
+    def common(self) -> "Kind | None":
+        """The kind of all fields, or None if they differ."""
+        if len(set(self.kinds)) == 1:
+            return self.kinds[0]
+        return None
+
+
+Kind = Scalar | ArrayKind | Struct
+
+REAL = Scalar("double")
+WHOLE = Scalar("int64_t")
+BITS = Scalar("uint64_t")
+TRUTH = Scalar("bool")
+NOTHING = Scalar("void")
+VECTOR, MATRIX, CUBE = ArrayKind(REAL, 1), ArrayKind(REAL, 2), ArrayKind(REAL, 3)
+ROWS = ArrayKind(WHOLE, 1)
+
+
+@dataclass(frozen=True)
+class Value:
+    """A translated expression: its kind and C source, and its number if it is a constant."""
+
+    kind: Kind
+    text: str
+    fixed: object = None  # bool, int, float or a tuple of these
+
+
+def leaves(kind: Kind) -> list[Scalar | ArrayKind]:
+    """Return the kinds of the numbers and arrays in a possibly nested struct, in order.
+
+    Args:
+        kind: Any kind.
+    """
+    if isinstance(kind, Struct):
+        return list(chain.from_iterable(map(leaves, kind.kinds)))
+    return [kind]
+
+
+def constant(number: object) -> Value:
+    """Return the C source of a Python number.
+
+    Args:
+        number: A bool, int or float.
+    """
+    if isinstance(number, bool):
+        return Value(TRUTH, "true" if number else "false", number)
+    if isinstance(number, int):
+        return Value(
+            WHOLE, f"INT64_C({number})" if number >= 0 else f"(-INT64_C({-number}))", number
+        )
+    assert isinstance(number, float)
+    if number != number:
+        return Value(REAL, "((double)NAN)", number)
+    if number in (float("inf"), float("-inf")):
+        return Value(REAL, "((double)INFINITY)" if number > 0 else "(-(double)INFINITY)", number)
+    text = number.hex()  # without loss of digits
+    return Value(REAL, text if number >= 0.0 and not text.startswith("-") else f"({text})", number)
+
+
+def as_real(value: Value) -> Value:
+    """Convert a translated number to a double.
+
+    Args:
+        value: A number.
+    """
+    if value.kind == REAL:
+        return value
+    if isinstance(value.fixed, bool | int):
+        return constant(float(value.fixed))
+    return Value(REAL, f"((double){value.text})")
+
+
+def as_truth(value: Value) -> Value:
+    """Convert a translated number to a bool: whether it is not zero.
+
+    Args:
+        value: A number.
+    """
+    if value.kind == TRUTH:
+        return value
+    if isinstance(value.fixed, int | float):
+        return constant(bool(value.fixed))
+    return Value(TRUTH, f"({value.text} != 0)")
