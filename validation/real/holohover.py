@@ -6,13 +6,13 @@ makers' numbers; mass and moment of inertia of each craft are set by run. A craf
 recordings. The protocol (docs/protocol.md) says which runs are fitted.
 """
 
+import csv
 import json
 from collections.abc import Mapping, Sequence
 from math import atan2
 from pathlib import Path
 
 import numpy as np
-import pandas as pd
 import tomlkit
 
 from boatsim.physics.vessel import Vessel
@@ -127,6 +127,20 @@ def write_notes(folder: Path, columns: Mapping[str, str]) -> None:
     (folder / "recording.toml").write_text(tomlkit.dumps(table), encoding="utf-8")
 
 
+def copy_columns(source: Path, target: Path) -> None:
+    """Copy a table without the columns that follow from the commands.
+
+    Args:
+        source: File of the set.
+        target: File to write.
+    """
+    with source.open(newline="", encoding="utf-8") as table:
+        rows = list(csv.reader(table))
+    kept = [i for i, name in enumerate(rows[0]) if not name.startswith(DERIVED)]
+    with target.open("w", newline="", encoding="utf-8") as copy:
+        csv.writer(copy).writerows([row[i] for i in kept] for row in rows)
+
+
 def write_runs(kind: str) -> dict[str, Path]:
     """Copy the runs of one form into out/real/holohover and write their notes.
 
@@ -143,8 +157,7 @@ def write_runs(kind: str) -> dict[str, Path]:
         source = SOURCE / kind / f"{run}.csv"
         if source.is_file():
             files[run] = folder / source.name
-            table = pd.read_csv(source)
-            table[[c for c in table if not c.startswith(DERIVED)]].to_csv(files[run], index=False)
+            copy_columns(source, files[run])
     columns = {}
     if kind == "runs":
         columns = {"y_m": "-y_left_m", "psi_rad": "-yaw_ccw_rad"}
@@ -156,10 +169,10 @@ def write_runs(kind: str) -> dict[str, Path]:
 def figures_of(kind: str) -> list[Figures]:
     """Diagnose the fitted runs of one form of the files, and judge the held-out runs by build."""
     files = write_runs(kind)
-    nominal_vessel().save(OUT / NAME / "vessel" / NAME)
+    vessel = nominal_vessel().save(OUT / NAME / "vessel" / NAME)
     fitted = [files[run] for run in FITTED if run in files]
     held_out = [files[run] for runs in BUILDS.values() for run in runs if run in files]
-    return [diagnose_set(f"{NAME}, {kind}", fitted, held_out, "", WINDOWS)]
+    return [diagnose_set(f"{NAME}, {kind}", fitted, held_out, str(vessel.file), WINDOWS)]
 
 
 def main() -> None:
