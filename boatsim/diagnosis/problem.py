@@ -464,9 +464,7 @@ class Problem:
             found += mapped.log_likelihood(values, acting, levels, one)
         return found
 
-    def _switches(
-        self, mapped: MappedRecording, free: Sequence[FreeParameter], on: Array
-    ) -> Array:
+    def _switches(self, mapped: MappedRecording, free: Sequence[FreeParameter], on: Array) -> Array:
         """(effects,) 1 for the effects that act on a recording, 0 for those of other groups.
 
         Effects of other groups have zero size; without them the filter repeats no work.

@@ -243,7 +243,11 @@ def _heading_noise(psi: Array) -> float:
     for order in NOISE_ORDERS:
         differences = np.diff(differences)
         if len(differences):
-            sd = 1.48 * float(np.median(np.abs(differences))) / math.sqrt(math.comb(2 * order, order))
+            sd = (
+                1.48
+                * float(np.median(np.abs(differences)))
+                / math.sqrt(math.comb(2 * order, order))
+            )
             found = min(found, sd)
     return found
 

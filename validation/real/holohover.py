@@ -8,16 +8,36 @@ recordings. The protocol (docs/protocol.md) says which runs are fitted.
 
 import csv
 import json
+import sys
 from collections.abc import Mapping, Sequence
+from contextlib import redirect_stderr, redirect_stdout
+from io import StringIO
 from math import atan2
 from pathlib import Path
 
 import numpy as np
 import tomlkit
 
+from boatsim.cli.importing import import_log
+from boatsim.diagnosis.evaluation import MODELS
 from boatsim.physics.vessel import Vessel
-from validation.real.common import DEG, OUT, RECORDINGS, runs_of, write_report
-from validation.real.figures import Figures, diagnose_set, print_figures
+from validation.real.common import (
+    DEG,
+    OUT,
+    RECORDINGS,
+    format_fixed,
+    print_table,
+    runs_of,
+    write_report,
+)
+from validation.real.figures import (
+    HEADER,
+    Figures,
+    diagnose_set,
+    held_out_errors,
+    map_runs,
+    print_figures,
+)
 
 NAME = "holohover"
 SOURCE = RECORDINGS / NAME
@@ -37,6 +57,28 @@ WINDOWS = (1.0, 0.2)  # [s]
 UNITS = {"position": ("position, mm", 1000.0), "heading": ("heading, deg", DEG)}
 # columns of the clean files that follow from the commands by the curve and the places of the fans
 DERIVED = ("thrust_", "steer_")
+# raw logs of a run, commands and poses, each with stamps of one clock
+RAW_LOGS = {
+    "blue_unshifted": ("blue.commands.csv", "blue.pose.csv"),
+    "control_M0": ("control_M0.drone_control.csv", "control_M0.optitrack_drone_pose.csv"),
+}
+# lines of the proposed maps that the owner has to complete: table -> key -> value
+AXES = {"x_m": "pose.position.x", "y_m": "-pose.position.y", "psi_rad": "-pose.orientation.yaw"}
+COMMANDS = {f"fan_{fan}_share": f"motor_{fan[0]}_{fan[1]}" for fan in FANS}
+COMPLETED: dict[str, dict[str, dict[str, object]]] = {
+    "blue_unshifted": {
+        "begins": {"blue.pose.csv": -0.441603},  # [s] by the first stamps
+        "columns": AXES | COMMANDS,
+    },
+    "control_M0": {
+        "time": {
+            "control_M0.drone_control.csv": "control_M0.drone_control.log_time_ns * ns",
+            "control_M0.optitrack_drone_pose.csv": "control_M0.optitrack_drone_pose.log_time_ns * ns",
+        },
+        "begins": {"control_M0.optitrack_drone_pose.csv": 0.003386},  # [s] by the logger's times
+        "columns": AXES | COMMANDS,
+    },
+}
 POINTS = 8  # of the thrust curve, which is a cubic polynomial
 DIAMETER = 0.12  # [m] of the craft
 ROLL_INERTIA = 0.0003  # [kg m^2] not used by a craft that does not roll
@@ -107,12 +149,11 @@ def body_of(given: Mapping[str, object], craft: str) -> dict[str, float]:
     return {"mass": mass, "roll_inertia": ROLL_INERTIA, "yaw_inertia": inertia}
 
 
-def write_notes(folder: Path, columns: Mapping[str, str]) -> None:
+def write_notes(folder: Path) -> None:
     """Write the recording.toml of a folder of runs: vessel, noise, craft of each run.
 
     Args:
         folder: Folder of the recordings.
-        columns: Column of boatsim -> expression of the columns of the files.
     """
     given = json.loads((SOURCE / "vessel.json").read_text(encoding="utf-8"))
     runs: dict[str, object] = {}
@@ -120,8 +161,6 @@ def write_notes(folder: Path, columns: Mapping[str, str]) -> None:
         body = body_of(given, craft)
         runs[run] = {"group": craft, "set": {"body": body}}
     table: dict[str, object] = {"vessel": "../vessel/holohover"}
-    if columns:
-        table["columns"] = dict(columns)
     table["noise"] = {"position_sd_m": 0.0003, "heading_sd_rad": 0.002}
     table["runs"] = runs
     (folder / "recording.toml").write_text(tomlkit.dumps(table), encoding="utf-8")
@@ -141,48 +180,98 @@ def copy_columns(source: Path, target: Path) -> None:
         csv.writer(copy).writerows([row[i] for i in kept] for row in rows)
 
 
-def write_runs(kind: str) -> dict[str, Path]:
-    """Copy the runs of one form into out/real/holohover and write their notes.
+def import_published(run: str, folder: Path, vessel: Path) -> Path:
+    """Import a run as published by the map that `boatsim import --propose` writes.
+
+    For the raw logs the lines of `COMPLETED` take the place of the proposed ones.
+
+    Args:
+        run: Name of the run.
+        folder: Folder of the recording.
+        vessel: File of the vessel.
+
+    Returns:
+        The recording.
+    """
+    names = RAW_LOGS.get(run, (f"{run}.csv",))
+    logs = [SOURCE / "runs" / name for name in names]
+    map_file, out = folder / f"{run}.map.toml", folder / f"{run}.csv"
+    with redirect_stdout(StringIO()), redirect_stderr(StringIO()):
+        import_log(logs, None, None, map_file, str(vessel), ())
+        text = tomlkit.parse(map_file.read_text(encoding="utf-8"))
+        for table, lines in COMPLETED.get(run, {}).items():
+            place = text
+            if table:
+                text.pop(table, None)
+                place = text.setdefault(table, tomlkit.table())
+            for key, value in lines.items():
+                place[key] = value
+        map_file.write_text(tomlkit.dumps(text), encoding="utf-8")
+        import_log(logs, out, map_file, None, str(vessel), ())
+    return out
+
+
+def write_runs(kind: str, vessel: Path) -> dict[str, Path]:
+    """Write the runs of one form into out/real/holohover, with their notes.
 
     Args:
         kind: "runs", as published in the axes of the camera, or "runs_clean".
+        vessel: File of the vessel.
 
     Returns:
         Files by name of the run.
     """
     folder = OUT / NAME / kind
     folder.mkdir(parents=True, exist_ok=True)
+    write_notes(folder)
     files = {}
     for run in CRAFT:
-        source = SOURCE / kind / f"{run}.csv"
-        if source.is_file():
-            files[run] = folder / source.name
-            copy_columns(source, files[run])
-    columns = {}
-    if kind == "runs":
-        columns = {"y_m": "-y_left_m", "psi_rad": "-yaw_ccw_rad"}
-        columns |= {f"fan_{fan}_share": f"fan_{fan}" for fan in FANS}
-    write_notes(folder, columns)
+        if kind == "runs":
+            files[run] = import_published(run, folder, vessel)
+        else:
+            files[run] = folder / f"{run}.csv"
+            copy_columns(SOURCE / kind / f"{run}.csv", files[run])
     return files
 
 
-def figures_of(kind: str) -> list[Figures]:
-    """Diagnose the fitted runs of one form of the files, and judge the held-out runs by build."""
-    files = write_runs(kind)
-    vessel = nominal_vessel().save(OUT / NAME / "vessel" / NAME)
-    fitted = [files[run] for run in FITTED if run in files]
-    held_out = [files[run] for runs in BUILDS.values() for run in runs if run in files]
-    return [diagnose_set(f"{NAME}, {kind}", fitted, held_out, str(vessel.file), WINDOWS)]
+def print_build(figures: Figures, build: str, files: Sequence[Path], vessel: str) -> None:
+    """Print the errors of free runs on the held-out runs of one build.
+
+    Args:
+        figures: Figures of the set, with its diagnosis.
+        build: Name of the build.
+        files: Held-out runs of the build.
+        vessel: File of the vessel.
+    """
+    mapped = map_runs(figures.diagnosis, files, vessel)
+    rows = []
+    for window in WINDOWS:
+        families = held_out_errors(figures.diagnosis, mapped, window)
+        for family, (text, factor) in UNITS.items():
+            rms = [families[family][model] * factor for model in MODELS]
+            cells = format_fixed(2, *rms)
+            rows.append([f"{text}, {window:g} s", *cells, f"{rms[2] / rms[1]:.2f}"])
+    print_table(f"{figures.title}, build {build}", HEADER, rows)
 
 
-def main() -> None:
-    """Print the figures of the set for both forms of its files."""
+def main(kinds: Sequence[str]) -> None:
+    """Print the figures of the set, by form of its files and by build.
+
+    Args:
+        kinds: Forms of the files, of "runs_clean" and "runs"; none: both.
+    """
     runs_of(NAME)
-    for kind in ("runs_clean",):
-        for figures in figures_of(kind):
-            print_figures(figures, UNITS)
-            write_report(figures.diagnosis, f"{NAME}_{kind}")
+    vessel = nominal_vessel().save(OUT / NAME / "vessel" / NAME).file
+    for kind in kinds or ("runs_clean", "runs"):
+        files = write_runs(kind, vessel)
+        held_out = [files[run] for runs in BUILDS.values() for run in runs]
+        fitted = [files[run] for run in FITTED]
+        figures = diagnose_set(f"{NAME}, {kind}", fitted, held_out, str(vessel), WINDOWS)
+        print_figures(figures, UNITS)
+        for build, runs in BUILDS.items():
+            print_build(figures, build, [files[run] for run in runs], str(vessel))
+        write_report(figures.diagnosis, f"{NAME}_{kind}")
 
 
 if __name__ == "__main__":
-    main()
+    main(sys.argv[1:])

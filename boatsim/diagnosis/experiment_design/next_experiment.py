@@ -256,7 +256,11 @@ def distinct_rivals(named: IdentifiedEffect) -> list[str]:
 
     The same effect on another actuator does not count as a rival.
     """
-    return [rival for rival in named.rivals if base_name(without_group(rival)) != base_name(without_group(named.name))]
+    return [
+        rival
+        for rival in named.rivals
+        if base_name(without_group(rival)) != base_name(without_group(named.name))
+    ]
 
 
 def expected_log_bayes_factors(
