@@ -166,7 +166,7 @@ class MappedRecording:
     specified_initial: InitialState | None = None
     # [s] integration step, where it does not follow from the hull's motion
     specified_step: float | None = None
-    group: str = ""  # of recordings, to which it belongs
+    groups: tuple[str, ...] = ()  # of recordings, to which it belongs
     config: FilterConfig = DEFAULT.filter
 
     def __post_init__(self) -> None:
@@ -645,7 +645,7 @@ def map_recording(
         scale | dict(noise_ratio or {}),
         facts,
         *_commands_at_own_times(recording, vessel),
-        group=recording.notes.group,
+        groups=recording.notes.groups,
         config=config.filter,
     )
     if "surge" in axes:

@@ -139,7 +139,7 @@ def vessel_for(
 ) -> Vessel:
     """Return the vessel model that belongs to the file of a recording.
 
-    A load condition of the vessel with the name of the recording's group applies to it.
+    A load condition of the vessel with the name of one of the recording's groups applies to it.
 
     Args:
         path: File of the recording.
@@ -166,8 +166,9 @@ def vessel_for(
             notes = replace(notes, load=(), settings={})
             conditions = load_conditions
         found = vessels.load_vessel(name, conditions, notes.settings, base_folder=base_folder)
-        if notes.group in found.loads and notes.group not in conditions:
-            conditions = (*conditions, notes.group)
+        own = [g for g in notes.groups if g in found.loads and g not in conditions]
+        if own:
+            conditions = (*conditions, *own)
             found = vessels.load_vessel(name, conditions, notes.settings, base_folder=base_folder)
     except BadInput as error:
         by_notes = not vessel or notes.settings or (notes.load and not load_conditions)

@@ -273,7 +273,7 @@ class Problem:
     nominal_coefficients: tuple[FreeParameter, ...] = field(init=False)
     # (to, from) places in the values of a run: unset parameters inherit the vessel's value
     links: tuple[tuple[int, int], ...] = field(init=False)
-    # groups of the recordings, if there are several
+    # groups to which some of the recordings belong, but not all
     groups: tuple[str, ...] = field(init=False)
 
     def __post_init__(self) -> None:
@@ -283,10 +283,7 @@ class Problem:
         object.__setattr__(self, "horizon", self.specified_horizon or usual)
         object.__setattr__(self, "nominal_coefficients", self._nominal_coefficients())
         object.__setattr__(self, "links", self._inherited_places())
-        groups = sorted({mapped.group for mapped in self.recordings})
-        if len(groups) < 2:
-            groups = []
-        object.__setattr__(self, "groups", tuple(filter(None, groups)))
+        object.__setattr__(self, "groups", self._groups())
 
     def on(self, recordings: Sequence[MappedRecording]) -> "Problem":
         """Return the same estimation problem for other recordings.
@@ -297,6 +294,18 @@ class Problem:
         other = copy(self)
         object.__setattr__(other, "recordings", recordings)
         return other
+
+    def _groups(self) -> tuple[str, ...]:
+        """Groups to which some of the recordings belong, but not all; each set of runs once."""
+        members = defaultdict[str, list[int]](list)
+        for i, mapped in enumerate(self.recordings):
+            for group in mapped.groups:
+                members[group].append(i)
+        found = dict[tuple[int, ...], str]()
+        for group, runs in sorted(members.items()):
+            if len(runs) < len(self.recordings):
+                found.setdefault(tuple(runs), group)
+        return tuple(sorted(found.values()))
 
     @cached_property
     def candidates(self) -> Mapping[str, Effect]:
@@ -383,7 +392,7 @@ class Problem:
         for parameter, x in zip(free, theta, strict=True):
             if not parameter.group:
                 parameter.apply(values, float(x))
-            elif parameter.group == mapped.group:
+            elif parameter.group in mapped.groups:
                 own.append((parameter, float(x)))
         for parameter, x in own:
             parameter.apply(values, x)
@@ -473,7 +482,7 @@ class Problem:
         for parameter in free:
             if parameter.group:
                 elsewhere.add(without_group(parameter.effect))
-            if parameter.group in ("", mapped.group):
+            if parameter.group in ("", *mapped.groups):
                 here.add(without_group(parameter.effect))
         acting = on
         for i, effect in enumerate(self.program.effects):

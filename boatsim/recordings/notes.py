@@ -93,7 +93,7 @@ class Notes:
     Attributes:
         vessel: Name or path of the vessel.
         load: Load conditions.
-        group: Group of recordings, such as a day or a build, to which it belongs; "" without.
+        groups: Groups of recordings, such as a day or a build, to which it belongs.
         settings: Values of the vessel's effects in this run: effect -> parameter -> value.
         use: Parts of the recording that are used, each from and to [s]; () for all of it.
         latency: Column -> delay by which its values are older than their times [s].
@@ -106,7 +106,7 @@ class Notes:
 
     vessel: str | None = None
     load: tuple[str, ...] = ()
-    group: str = ""
+    groups: tuple[str, ...] = ()
     settings: Mapping[str, Mapping[str, object]] = field(default_factory=dict)
     use: tuple[tuple[float, float], ...] = ()
     latency: dict[str, float] = field(default_factory=dict)
@@ -350,7 +350,7 @@ class _Reader:
         notes = Notes(
             vessel=_read_or_collect_mistake(mistakes, lambda: self.read_text("vessel"), None),
             load=_read_or_collect_mistake(mistakes, lambda: self.read_texts("load"), ()),
-            group=_read_or_collect_mistake(mistakes, self.read_group, ""),
+            groups=_read_or_collect_mistake(mistakes, self.read_groups, ()),
             settings=_read_or_collect_mistake(mistakes, self.read_settings, {}),
             use=_read_or_collect_mistake(mistakes, self.read_used_interval, ()),
             latency=_read_or_collect_mistake(mistakes, self.read_latency, {}),
@@ -382,12 +382,12 @@ class _Reader:
         notes = replace(notes, noise=noise)
         return NotesFile(notes, columns, tuple(remarks), self.file.parent)
 
-    def read_group(self) -> str:
-        """The group of the recording, a name without the signs that names of effects use."""
-        group = self.read_text("group") or ""
-        if set(group) & set(FORBIDDEN_IN_GROUP):
+    def read_groups(self) -> tuple[str, ...]:
+        """The groups of the recording, names without the signs that names of effects use."""
+        groups = self.read_texts("group")
+        if set("".join(groups)) & set(FORBIDDEN_IN_GROUP):
             raise self.bad_value("group", f"a name without {' '.join(FORBIDDEN_IN_GROUP)}")
-        return group
+        return groups
 
     def read_settings(self) -> dict[str, dict[str, float]]:
         settings = self.subtable_reader("set")

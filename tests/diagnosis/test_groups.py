@@ -47,7 +47,7 @@ def sailed(odd) -> list[Recording]:
     for seed, group in enumerate(("blue", "blue", "red", "red", "yellow", "yellow")):
         missing = odd if group == "yellow" else undisturbed
         run, _ = sail(f"{group}_{seed}", seed, missing)
-        runs.append(replace(run, notes=replace(run.notes, group=group)))
+        runs.append(replace(run, notes=replace(run.notes, groups=(group,))))
     return runs
 
 
@@ -74,7 +74,7 @@ def test_a_weaker_thrust_is_found_in_the_group_that_has_it_with_its_size():
     gain = problem.program.parameter_index("port", "gain")
     for mapped in problem.recordings:
         values = problem.values(mapped, ranking.best.free, ranking.best.theta)
-        assert values[gain] == pytest.approx(WEAK if mapped.group == "yellow" else 1.0, abs=0.05)
+        assert values[gain] == pytest.approx(WEAK if "yellow" in mapped.groups else 1.0, abs=0.05)
 
 
 def test_a_force_that_acts_on_one_day_is_found_on_that_day():
@@ -94,14 +94,14 @@ def test_what_acts_in_all_groups_is_not_called_a_difference():
     runs = []
     for seed, group in enumerate(("blue", "red", "yellow")):
         run, _ = sail(f"{group}_{seed}", seed, pushed_aside)
-        runs.append(replace(run, notes=replace(run.notes, group=group)))
+        runs.append(replace(run, notes=replace(run.notes, groups=(group,))))
     _, ranking = ranked(runs)
     assert [one.name for one in ranking.named] == ["steady_force"]
 
 
 def test_one_group_alone_gives_no_further_candidates():
     run, _ = sail("only", 1, undisturbed)
-    problem, _ = ranked([replace(run, notes=replace(run.notes, group="blue"))])
+    problem, _ = ranked([replace(run, notes=replace(run.notes, groups=("blue",)))])
     assert problem.groups == ()
     assert problem.names_in_groups(TESTED) == ()
 
@@ -113,7 +113,7 @@ def test_the_answer_states_the_group_and_the_patched_file_has_it_as_a_load(tmp_p
     for run in sailed(weaker):
         files.append(tmp_path / f"{run.name}.csv")
         write_csv(run, files[-1])
-        lines.append(f'[runs.{run.name}]\ngroup = "{run.notes.group}"')
+        lines.append(f'[runs.{run.name}]\ngroup = "{run.notes.groups[0]}"')
     (tmp_path / "recording.toml").write_text("\n".join(lines))
     found = diagnose(files[:-1], files[-1:])
     [effect] = found.findings.answer["effects"]
@@ -128,6 +128,20 @@ def test_the_answer_states_the_group_and_the_patched_file_has_it_as_a_load(tmp_p
     assert loaded.effect("port").gain == pytest.approx(WEAK, abs=0.05)
     assert vessel_for(files[-1], patched, ()).load == ("yellow",)
     assert vessel_for(files[0], patched, ()).load == ()
+
+
+def test_a_run_may_belong_to_a_build_and_to_a_day():
+    runs = []
+    for seed, groups in enumerate((("blue", "may"), ("blue", "june"), ("red", "may"), ("red",))):
+        run, _ = sail(f"run_{seed}", seed, undisturbed)
+        runs.append(replace(run, notes=replace(run.notes, groups=groups)))
+    program = Program(BOAT, library_for(BOAT).compiled)
+    mapped = [map_recording(run, program) for run in runs]
+    problem = Problem(mapped, prior_noise_levels(BOAT, runs), {"thrust": 0.05})
+    assert problem.groups == ("blue", "june", "may", "red")
+    assert problem.on(mapped[:1]).groups == problem.groups
+    alike = Problem(mapped[:2], prior_noise_levels(BOAT, runs), {"thrust": 0.05})
+    assert alike.groups == ("june", "may")  # both are of one build
 
 
 def test_a_group_with_a_sign_of_names_is_refused(tmp_path: Path):

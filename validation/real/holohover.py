@@ -159,7 +159,10 @@ def write_notes(folder: Path) -> None:
     runs: dict[str, object] = {}
     for run, craft in CRAFT.items():
         body = body_of(given, craft)
-        runs[run] = {"group": craft, "set": {"body": body}}
+        groups = [craft]
+        if run in RAW_LOGS:
+            groups.append("raw clock")  # the poses of the others were moved against the commands
+        runs[run] = {"group": groups, "set": {"body": body}}
     table: dict[str, object] = {"vessel": "../vessel/holohover"}
     table["noise"] = {"position_sd_m": 0.0003, "heading_sd_rad": 0.002}
     table["runs"] = runs
