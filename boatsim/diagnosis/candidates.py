@@ -203,7 +203,7 @@ def _sources(vessel: Vessel, own: Sequence[str]) -> Iterator[_Source]:
             yield _Source({"use": name}, kind, False)
             continue
         for instance in instances:
-            table = {"use": name, "name": f"{name}_{instance}", "on": [instance]}
+            table: dict[str, object] = {"use": name, "name": f"{name}_{instance}", "on": [instance]}
             yield _Source(table, kind, False)
     for table in vessel.diagnosis.also:
         yield _Source(table, load_class("effect", str(table.get("use")), vessel.path), True)
@@ -277,6 +277,8 @@ def missing_requirements(
         found = instantiate_candidate(kind, vessel, facts, table)
     except BadInput as error:
         return str(error).removeprefix(f"{vessel.name}: ")
+    if isinstance(found, ChannelEffect) and found.acts_astern and _is_one_way(vessel, found):
+        return "no command is negative"
     if isinstance(found, ChannelEffect) and not vessel.target_actuators(found):
         return f"no command of {type(found).acts_on.replace('|', ' or ') or 'any kind'}"
     if isinstance(found, CoefficientRelease) and all(
@@ -284,6 +286,12 @@ def missing_requirements(
     ):
         return "none of the parameters that it would adjust"
     return ""
+
+
+def _is_one_way(vessel: Vessel, effect: ChannelEffect) -> bool:
+    """Whether all drives on which an effect acts push in one direction only."""
+    targets = [vessel.commands.get(name) for name in vessel.target_actuators(effect)]
+    return bool(targets) and all(c is not None and c.low >= 0.0 for c in targets)
 
 
 def instantiate_candidate(

@@ -54,7 +54,7 @@ CRAFT = {
 FITTED = ("old_oct", "blue", "blue_unshifted", "yellow_5")
 BUILDS = {"old": ("control_M0",), "5 March": ("pink",)}  # build -> held-out runs
 WINDOWS = (1.0, 0.2)  # [s]
-UNITS = {"position": ("position, mm", 1000.0), "heading": ("heading, deg", DEG)}
+UNITS = {"position_rms_m": ("position, mm", 1000.0), "heading_rms_rad": ("heading, deg", DEG)}
 # columns of the clean files that follow from the commands by the curve and the places of the fans
 DERIVED = ("thrust_", "steer_")
 # raw logs of a run, commands and poses, each with stamps of one clock
@@ -72,13 +72,15 @@ COMPLETED: dict[str, dict[str, dict[str, object]]] = {
     },
     "control_M0": {
         "time": {
-            "control_M0.drone_control.csv": "control_M0.drone_control.log_time_ns * ns",
-            "control_M0.optitrack_drone_pose.csv": "control_M0.optitrack_drone_pose.log_time_ns * ns",
+            f"{name}.csv": f"{name}.log_time_ns * ns"
+            for name in ("control_M0.drone_control", "control_M0.optitrack_drone_pose")
         },
         "begins": {"control_M0.optitrack_drone_pose.csv": 0.003386},  # [s] by the logger's times
         "columns": AXES | COMMANDS,
     },
 }
+# floats on an air table, recorded by motion capture
+FACTS = {"no_water": True, "indoors": True, "moored": False, "position_fix": "tracking"}
 POINTS = 8  # of the thrust curve, which is a cubic polynomial
 DIAMETER = 0.12  # [m] of the craft
 ROLL_INERTIA = 0.0003  # [kg m^2] not used by a craft that does not roll
@@ -131,7 +133,7 @@ def nominal_vessel() -> Vessel:
         effects=effects,
         channels=channels,
         source=given["source"],
-        diagnosis={"facts": {"no_water": True, "indoors": True, "moored": False}},
+        diagnosis={"facts": FACTS},
     )
 
 
