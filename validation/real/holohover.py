@@ -162,6 +162,8 @@ def write_notes(folder: Path) -> None:
     for run, craft in CRAFT.items():
         body = body_of(given, craft)
         groups = [craft]
+        if craft != "old":
+            groups.append("5 March")
         if run in RAW_LOGS:
             groups.append("raw clock")  # the poses of the others were moved against the commands
         runs[run] = {"group": groups, "set": {"body": body}}
