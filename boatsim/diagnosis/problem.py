@@ -252,6 +252,15 @@ class _Target(NamedTuple):
     weights: tuple[float, ...]
 
 
+class _Candidates(dict[str, Effect]):
+    """Candidates by name, with those of groups that only other recordings of a vessel have."""
+
+    def __missing__(self, name: str) -> Effect:
+        if not group_of(name):
+            raise KeyError(name)
+        return replace(self[without_group(name)], name=name)
+
+
 @dataclass(frozen=True, eq=False)
 class Problem:
     """The estimation problem of a diagnosis: recordings, compiled vessel program and priors.
@@ -314,7 +323,7 @@ class Problem:
         Where recordings form groups, each deterministic effect may also act in one group alone, as
         a further candidate. It is compiled once.
         """
-        found = {effect.name: effect for effect in self.program.candidates}
+        found = _Candidates((effect.name, effect) for effect in self.program.candidates)
         for effect in self.program.candidates:
             if type(effect).random or type(effect).described:
                 continue
