@@ -22,6 +22,7 @@ from boatsim.physics.vessel import Vessel, check_bindings
 FURTHER = "further_"  # prefix of a candidate of which the vessel has one already
 # prefix of a candidate that acts on the other side of an actuator's lag than usual
 REORDERED = "reordered_"
+FEWEST_INSTANCES = 3  # of drives each of which is a candidate of its own
 
 
 class Placeholders(NamedTuple):
@@ -196,7 +197,14 @@ def _both_sides_of_lag(effect: Effect, vessel: Vessel) -> tuple[Effect, ...]:
 def _sources(vessel: Vessel, own: Sequence[str]) -> Iterator[_Source]:
     """Every effect of the library, those that the vessel requests, and those of the user."""
     for name in shipped_content_names("effect"):
-        yield _Source({"use": name}, load_class("effect", name), False)
+        kind: type[Effect] = load_class("effect", name)
+        instances = vessel.names_of(kind.once_per) if kind.once_per else []
+        if len(instances) < FEWEST_INSTANCES:
+            yield _Source({"use": name}, kind, False)
+            continue
+        for instance in instances:
+            table: dict[str, object] = {"use": name, "name": f"{name}_{instance}", "on": [instance]}
+            yield _Source(table, kind, False)
     for table in vessel.diagnosis.also:
         yield _Source(table, load_class("effect", str(table.get("use")), vessel.path), True)
     for name in own:
@@ -255,6 +263,11 @@ def missing_requirements(
     for fact in kind.facts:
         if fact not in facts:
             return f"not specified: {describe_fact(fact)}"
+    for fact, value in kind.required_facts.items():
+        if facts.get(fact) != value:
+            return f"only where {fact} = {str(value).lower()}"
+    if kind.once_per and len(vessel.names_of(kind.once_per)) < FEWEST_INSTANCES:
+        return f"fewer than {FEWEST_INSTANCES} of {kind.once_per}"
     if issubclass(kind, Measurement) and kind.motion_latency is not None and not vessel.actuators:
         return "no commands relative to which a latency could be estimated"
     if kind.alone and vessel.names_of(kind.type_name()):
@@ -264,6 +277,8 @@ def missing_requirements(
         found = instantiate_candidate(kind, vessel, facts, table)
     except BadInput as error:
         return str(error).removeprefix(f"{vessel.name}: ")
+    if isinstance(found, ChannelEffect) and found.acts_astern and _is_one_way(vessel, found):
+        return "no command is negative"
     if isinstance(found, ChannelEffect) and not vessel.target_actuators(found):
         return f"no command of {type(found).acts_on.replace('|', ' or ') or 'any kind'}"
     if isinstance(found, CoefficientRelease) and all(
@@ -271,6 +286,12 @@ def missing_requirements(
     ):
         return "none of the parameters that it would adjust"
     return ""
+
+
+def _is_one_way(vessel: Vessel, effect: ChannelEffect) -> bool:
+    """Whether all drives on which an effect acts push in one direction only."""
+    targets = [vessel.commands.get(name) for name in vessel.target_actuators(effect)]
+    return bool(targets) and all(c is not None and c.low >= 0.0 for c in targets)
 
 
 def instantiate_candidate(

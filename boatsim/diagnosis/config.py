@@ -370,7 +370,10 @@ class ChecksConfig:
         1e-3, "1", "Largest probability of a run, given the equal steps around it.", high=1.0
     )
     interpolation_min_run: int = setting(
-        2, "count", "Rows in a run of equal steps, at least.", low=1
+        3,
+        "count",
+        "Rows in a run of equal steps, at least; two occur by chance where the noise varies.",
+        low=1,
     )
     rotation_min_sds: float = setting(
         10.0,

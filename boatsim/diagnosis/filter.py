@@ -46,6 +46,8 @@ MASS_ENTRIES = 12
 KEPT_PASSES = 2
 KEPT_FREE_RUNS = 8
 KEPT_LIKELIHOODS = 512
+# errors with the gains of a pass: those of a recording whose group an effect does not concern
+KEPT_ERRORS = 2
 # variance added to the mean square of recorded speeds, so that it is positive [m^2/s^2, rad^2/s^2]
 LEAST_RATE_VARIANCE = 1e-8
 
@@ -105,6 +107,11 @@ class FilterPass:
     transitions: Array  # (N, 3 NQ, 3 NQ) linearised transitions of motion and latent force
     steps: Array  # (N,) integration steps [s]
 
+    @cached_property
+    def errors(self) -> RecentResults[Array]:
+        """Latest whitened prediction errors that were computed with the gains of this pass."""
+        return RecentResults(KEPT_ERRORS)
+
     @property
     def log_density(self) -> float:
         """Log density of measurements that would be equal to the filter's predictions.
@@ -159,6 +166,7 @@ class MappedRecording:
     specified_initial: InitialState | None = None
     # [s] integration step, where it does not follow from the hull's motion
     specified_step: float | None = None
+    groups: tuple[str, ...] = ()  # of recordings, to which it belongs
     config: FilterConfig = DEFAULT.filter
 
     def __post_init__(self) -> None:
@@ -287,6 +295,12 @@ class MappedRecording:
             levels: Levels of sensor noise and of the latent (unmodelled) force.
             about: Pass whose gains, scale and integration steps are used.
         """
+        key = _key_of(values, on, levels)
+        return about.errors.result(key, lambda: self._whitened_errors(values, on, levels, about))
+
+    def _whitened_errors(
+        self, values: Array, on: Array, levels: NoiseLevels, about: FilterPass
+    ) -> Array:
         whitened = np.zeros(self.measured.shape)
         arrays = PassArrays(
             _writable(about.transitions),
@@ -631,6 +645,7 @@ def map_recording(
         scale | dict(noise_ratio or {}),
         facts,
         *_commands_at_own_times(recording, vessel),
+        groups=recording.notes.groups,
         config=config.filter,
     )
     if "surge" in axes:

@@ -139,6 +139,8 @@ def vessel_for(
 ) -> Vessel:
     """Return the vessel model that belongs to the file of a recording.
 
+    A load condition of the vessel with the name of one of the recording's groups applies to it.
+
     Args:
         path: File of the recording.
         vessel: Name on the command line; None: that of the recording's notes.
@@ -164,6 +166,10 @@ def vessel_for(
             notes = replace(notes, load=(), settings={})
             conditions = load_conditions
         found = vessels.load_vessel(name, conditions, notes.settings, base_folder=base_folder)
+        own = [g for g in notes.groups if g in found.loads and g not in conditions]
+        if own:
+            conditions = (*conditions, *own)
+            found = vessels.load_vessel(name, conditions, notes.settings, base_folder=base_folder)
     except BadInput as error:
         by_notes = not vessel or notes.settings or (notes.load and not load_conditions)
         where = f"{path} by its recording.toml: " if by_notes else ""

@@ -3,7 +3,7 @@
 from collections import defaultdict
 from collections.abc import Mapping, Sequence
 from copy import copy
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from difflib import get_close_matches
 from functools import cached_property
 from typing import NamedTuple
@@ -23,6 +23,7 @@ from boatsim.physics.base import (
     Effect,
     Param,
 )
+from boatsim.physics.groups import group_of, name_in_group, without_group
 from boatsim.physics.program import Program
 from boatsim.physics.vessel import Vessel
 
@@ -62,6 +63,7 @@ class FreeParameter:
     searched: bool = False
     how: str = "sets"  # or "scales" or "shifts"
     weights: tuple[float, ...] = (1.0,)  # of a shift, one for each place
+    group: str = ""  # of recordings, in which alone it acts; "": in all
 
     def apply(self, values: Array, x: float) -> None:
         """Write a value of the free parameter into the array of a vessel model's parameter values.
@@ -250,6 +252,15 @@ class _Target(NamedTuple):
     weights: tuple[float, ...]
 
 
+class _Candidates(dict[str, Effect]):
+    """Candidates by name, with those of groups that only other recordings of a vessel have."""
+
+    def __missing__(self, name: str) -> Effect:
+        if not group_of(name):
+            raise KeyError(name)
+        return replace(self[without_group(name)], name=name)
+
+
 @dataclass(frozen=True, eq=False)
 class Problem:
     """The estimation problem of a diagnosis: recordings, compiled vessel program and priors.
@@ -271,6 +282,8 @@ class Problem:
     nominal_coefficients: tuple[FreeParameter, ...] = field(init=False)
     # (to, from) places in the values of a run: unset parameters inherit the vessel's value
     links: tuple[tuple[int, int], ...] = field(init=False)
+    # groups to which some of the recordings belong, but not all
+    groups: tuple[str, ...] = field(init=False)
 
     def __post_init__(self) -> None:
         program = self.recordings[0].program
@@ -279,6 +292,7 @@ class Problem:
         object.__setattr__(self, "horizon", self.specified_horizon or usual)
         object.__setattr__(self, "nominal_coefficients", self._nominal_coefficients())
         object.__setattr__(self, "links", self._inherited_places())
+        object.__setattr__(self, "groups", self._groups())
 
     def on(self, recordings: Sequence[MappedRecording]) -> "Problem":
         """Return the same estimation problem for other recordings.
@@ -290,10 +304,46 @@ class Problem:
         object.__setattr__(other, "recordings", recordings)
         return other
 
+    def _groups(self) -> tuple[str, ...]:
+        """Groups to which some of the recordings belong, but not all; each set of runs once."""
+        members = defaultdict[str, list[int]](list)
+        for i, mapped in enumerate(self.recordings):
+            for group in mapped.groups:
+                members[group].append(i)
+        found = dict[tuple[int, ...], str]()
+        for group, runs in sorted(members.items()):
+            if len(runs) < len(self.recordings):
+                found.setdefault(tuple(runs), group)
+        return tuple(sorted(found.values()))
+
     @cached_property
     def candidates(self) -> Mapping[str, Effect]:
-        """All candidate effects compiled into the vessel program, by name."""
-        return {effect.name: effect for effect in self.program.candidates}
+        """All candidate effects compiled into the vessel program, by name.
+
+        Where recordings form groups, each deterministic effect may also act in one group alone, as
+        a further candidate. It is compiled once.
+        """
+        found = _Candidates((effect.name, effect) for effect in self.program.candidates)
+        for effect in self.program.candidates:
+            if type(effect).random or type(effect).described:
+                continue
+            for group in self.groups:
+                name = name_in_group(effect.name, group)
+                found[name] = replace(effect, name=name)
+        return found
+
+    def names_in_groups(self, names: Sequence[str]) -> tuple[str, ...]:
+        """Return the candidates that act in one group of recordings alone.
+
+        Args:
+            names: Names of the candidates that may act in one group; without groups there are none.
+        """
+        found = []
+        for name in names:
+            for group in self.groups:
+                if name_in_group(name, group) in self.candidates:
+                    found.append(name_in_group(name, group))
+        return tuple(found)
 
     def parameters(self, effects: Sequence[str]) -> tuple[FreeParameter, ...]:
         """Return the free parameters of the vessel model with some candidate effects.
@@ -333,6 +383,7 @@ class Problem:
                     searched=type(effect).random,
                     how=param.how,
                     weights=target.weights,
+                    group=group_of(effect.name),
                 )
             )
         return free
@@ -346,8 +397,14 @@ class Problem:
             theta: (F,) their values.
         """
         values = mapped.values.copy()
+        own = []  # they act on what is common to all groups
         for parameter, x in zip(free, theta, strict=True):
-            parameter.apply(values, float(x))
+            if not parameter.group:
+                parameter.apply(values, float(x))
+            elif parameter.group in mapped.groups:
+                own.append((parameter, float(x)))
+        for parameter, x in own:
+            parameter.apply(values, x)
         for to, source in self.links:
             values[to] = values[source]
         return values
@@ -355,7 +412,8 @@ class Problem:
     def _target(self, effect: Effect, name: str) -> _Target | None:
         """Places that a parameter of a candidate changes: its own, or those that it releases."""
         if not isinstance(effect, CoefficientRelease):
-            return _Target((self.program.parameter_index(effect.name, name),), (1.0,))
+            owner = without_group(effect.name)
+            return _Target((self.program.parameter_index(owner, name),), (1.0,))
         at, weights = list[int](), list[float]()
         for change in effect.changes(self.program.vessel):
             if change.parameter == name:
@@ -399,7 +457,8 @@ class Problem:
         before = about.passes if about else [None] * len(self.recordings)
         found = []
         for mapped, one in zip(self.recordings, before, strict=True):
-            found.append(mapped.filter(self.values(mapped, free, theta), on, levels, one))
+            acting = self._switches(mapped, free, on)
+            found.append(mapped.filter(self.values(mapped, free, theta), acting, levels, one))
         return FilterPasses(tuple(found))
 
     def log_likelihood(
@@ -419,8 +478,27 @@ class Problem:
         found = 0.0
         for mapped, one in zip(self.recordings, before, strict=True):
             values = self.values(mapped, free, theta)
-            found += mapped.log_likelihood(values, on, levels, one)
+            acting = self._switches(mapped, free, on)
+            found += mapped.log_likelihood(values, acting, levels, one)
         return found
+
+    def _switches(self, mapped: MappedRecording, free: Sequence[FreeParameter], on: Array) -> Array:
+        """(effects,) 1 for the effects that act on a recording, 0 for those of other groups.
+
+        Effects of other groups have zero size; without them the filter repeats no work.
+        """
+        elsewhere, here = set[str](), set[str]()
+        for parameter in free:
+            if parameter.group:
+                elsewhere.add(without_group(parameter.effect))
+            if parameter.group in ("", *mapped.groups):
+                here.add(without_group(parameter.effect))
+        acting = on
+        for i, effect in enumerate(self.program.effects):
+            if effect.name in elsewhere - here:
+                acting = acting.copy()
+                acting[i] = 0.0
+        return acting
 
     def _count_work(self) -> None:
         """Count one pass over all recordings."""
@@ -449,7 +527,8 @@ class Problem:
         self._count_work()
         found = []
         for mapped, one in zip(self.recordings, about.passes, strict=True):
-            found.append(mapped.whitened_errors(self.values(mapped, free, theta), on, levels, one))
+            values, acting = self.values(mapped, free, theta), self._switches(mapped, free, on)
+            found.append(mapped.whitened_errors(values, acting, levels, one))
         return np.concatenate(found)
 
     def scale(self, effect: Effect, name: str) -> float:

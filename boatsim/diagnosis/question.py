@@ -103,6 +103,7 @@ def set_up_estimation_problem(
     problem = Problem(fitted, levels, uncertainty, loaded.horizon, config)
     library = libraries[first.path]
     names = candidate_names_except(library, loaded.without)
+    names = (*names, *problem.names_in_groups(names))
     return Question(problem, tuple(held_out), mapper, library, names)
 
 

@@ -15,13 +15,21 @@ WORDS = {
     "indoors": "whether it was recorded indoors",
     "still_water": "whether the water is still",
     "no_waves": "whether there are no waves",
+    "no_water": "whether the craft moves without water",
     "moored": "whether a line holds the boat",
     "steering_measured": "whether the steering angle is measured or the command",
     "position_fix": "the kind of position measurement",
     "position_wander_sd_m": "the rms of the slowly varying position error",
     "position_wander_time_s": "the correlation time of the slowly varying position error",
 }
-FLAGS = ("indoors", "still_water", "no_waves", "moored", "steering_measured")  # true or false
+FLAGS = (  # true or false
+    "indoors",
+    "still_water",
+    "no_waves",
+    "no_water",
+    "moored",
+    "steering_measured",
+)
 # rms [m] and correlation time [s] of the slowly varying error of positions
 WANDER = ("position_wander_sd_m", "position_wander_time_s")
 # kinds of position measurement: marks in a picture, satellites, motion capture, inertial

@@ -18,6 +18,7 @@ from boatsim.physics.commands import clipped_commands
 from boatsim.physics.compiled_program import CompiledProgram
 from boatsim.physics.compose import Composition
 from boatsim.physics.debugging import DEBUG, python_function
+from boatsim.physics.groups import without_group
 from boatsim.physics.kernel.records import VesselNumbers, VesselState
 from boatsim.physics.kernel.source import motion_module_text
 from boatsim.physics.kinds.effect import Effect
@@ -73,11 +74,11 @@ class Program:
         The vessel's own effects are always active.
 
         Args:
-            active: Names of the candidate effects that act.
+            active: Names of the candidate effects that act, in all recordings or in one group.
         """
-        on = np.ones(len(self.effects))
+        on, acting = np.ones(len(self.effects)), set(map(without_group, active))
         for i in range(len(self.vessel.effects), len(self.effects)):
-            on[i] = float(self.effects[i].name in active)
+            on[i] = float(self.effects[i].name in acting)
         return on
 
     def parameter_index(self, effect: str, parameter: str) -> int:

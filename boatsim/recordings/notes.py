@@ -13,6 +13,7 @@ from typing import TypedDict, TypeVar
 from boatsim.errors import BadInput, unknown_name_message
 from boatsim.files import Value, home_folder, read_toml
 from boatsim.physics.facts import first_invalid
+from boatsim.physics.groups import IN_GROUP
 from boatsim.physics.signals import AXES
 from boatsim.recordings.conversion import Curve, Range, conversion_of
 
@@ -26,7 +27,8 @@ NOISE = (
 )
 AMBIENT = ("axes", "force_rms", "time_constant_s")
 TABLES = ("columns", "latency", "noise", "ambient", "coefficient_uncertainty", "facts", "set")
-KEYS = ("vessel", "load", "scale", "use", *TABLES, "runs")
+KEYS = ("vessel", "load", "group", "scale", "use", *TABLES, "runs")
+FORBIDDEN_IN_GROUP = (IN_GROUP, ".", "'", '"')  # in the name of a group
 MAX_LATENCY = 60.0  # [s] a longer one is a wrong clock
 MAX_NUMBER = 1e300  # larger integers do not fit a float
 # Suffix of a column or key -> unit
@@ -91,6 +93,7 @@ class Notes:
     Attributes:
         vessel: Name or path of the vessel.
         load: Load conditions.
+        groups: Groups of recordings, such as a day or a build, to which it belongs.
         settings: Values of the vessel's effects in this run: effect -> parameter -> value.
         use: Parts of the recording that are used, each from and to [s]; () for all of it.
         latency: Column -> delay by which its values are older than their times [s].
@@ -103,6 +106,7 @@ class Notes:
 
     vessel: str | None = None
     load: tuple[str, ...] = ()
+    groups: tuple[str, ...] = ()
     settings: Mapping[str, Mapping[str, object]] = field(default_factory=dict)
     use: tuple[tuple[float, float], ...] = ()
     latency: dict[str, float] = field(default_factory=dict)
@@ -346,6 +350,7 @@ class _Reader:
         notes = Notes(
             vessel=_read_or_collect_mistake(mistakes, lambda: self.read_text("vessel"), None),
             load=_read_or_collect_mistake(mistakes, lambda: self.read_texts("load"), ()),
+            groups=_read_or_collect_mistake(mistakes, self.read_groups, ()),
             settings=_read_or_collect_mistake(mistakes, self.read_settings, {}),
             use=_read_or_collect_mistake(mistakes, self.read_used_interval, ()),
             latency=_read_or_collect_mistake(mistakes, self.read_latency, {}),
@@ -376,6 +381,13 @@ class _Reader:
             remarks.append(f"{self.file}: not used: {', '.join(unknown)}")
         notes = replace(notes, noise=noise)
         return NotesFile(notes, columns, tuple(remarks), self.file.parent)
+
+    def read_groups(self) -> tuple[str, ...]:
+        """The groups of the recording, names without the signs that names of effects use."""
+        groups = self.read_texts("group")
+        if set("".join(groups)) & set(FORBIDDEN_IN_GROUP):
+            raise self.bad_value("group", f"a name without {' '.join(FORBIDDEN_IN_GROUP)}")
+        return groups
 
     def read_settings(self) -> dict[str, dict[str, float]]:
         settings = self.subtable_reader("set")

@@ -16,12 +16,19 @@ DEGREES = 180.0 / math.pi
 # Factor by which a ratio may differ from its expected value, for sensors have delay, drift and
 # scale errors
 RATIO_TOLERANCE = 1.5
-# [rad/s] sustained turning that no vessel reaches; 4 deg/s is a gentle turn of a small boat
+# [rad/s] sustained turning that no boat reaches; 4 deg/s is a gentle turn of a small boat. Small
+# hovercraft and models turn faster, so that a second sign must confirm the unit
 MAX_TURNING = 4.0
+# [rad/s] sustained turning that nothing reaches, 6 turns a second; 40 deg/s is a fast small boat
+IMPOSSIBLE_TURNING = 40.0
 # [rad] 8.6 degrees: compasses and cameras are ten times better; 0.15 degrees is a good one
 MAX_NOISE = 0.15
 # [rad] hulls stay below 57 degrees of roll; any roll worth recording exceeds 1 degree
 MAX_ROLL = 1.0
+# by which the course agrees better with the heading in one unit than in the other (mean resultant
+# length); it is 0.4 or more on nearly all recordings of boats that turn, at most 0.35 on others
+MIN_COURSE_AGREEMENT = 0.4
+NOISE_ORDERS = (2, 3, 4, 5)  # of the differences in which the noise of a heading is estimated
 MIN_ROWS = 4  # with increasing time
 MIN_CORRELATION = 0.8  # between two series of the same motion
 # [rad] excess over a full circle of a wrapped heading, for numbers are rounded
@@ -85,7 +92,9 @@ def find_heading_in_degrees(t: Array, psi: Array, signals: Mapping[str, Array]) 
     """Return a row that shows that a recorded heading is in degrees, None if it is in radians.
 
     Recorded rates and the course made good decide by their ratio to the changes of the heading.
-    Without them, steps, scatter and turning that no vessel and no compass has in radians decide.
+    Without them two independent signs are required: scatter that no compass has in radians,
+    together with values beyond one turn; turning that no boat has; and a course that agrees better
+    with the heading if that is in degrees.
 
     Args:
         t: Times (N,) [s].
@@ -105,13 +114,16 @@ def find_heading_in_degrees(t: Array, psi: Array, signals: Mapping[str, Array]) 
             return largest
         if _is_near(_ratio(turned, np.unwrap(psi)), 1.0):
             return None
-    if (
-        "x_m" in signals
-        and "y_m" in signals
-        and _follows_course(t, psi, signals["x_m"], signals["y_m"])
-    ):
-        return largest
-    if _heading_noise(steps) > MAX_NOISE or _sustained_turning(t, psi) > MAX_TURNING:
+    turning = _sustained_turning(t, psi)
+    scatters = _heading_noise(psi) > MAX_NOISE
+    signs = [scatters, turning > MAX_TURNING]
+    if "x_m" in signals and "y_m" in signals:
+        x, y = signals["x_m"], signals["y_m"]
+        if _follows_course(t, psi, x, y):
+            return largest
+        signs.append(_course_agreement(t, psi, x, y) > MIN_COURSE_AGREEMENT)
+    beyond_turn = float(np.max(np.abs(psi))) > 2.0 * math.pi + WRAP_TOLERANCE
+    if sum(signs) > 1 or (scatters and beyond_turn) or turning > IMPOSSIBLE_TURNING:
         return largest
     return None
 
@@ -201,14 +213,43 @@ def _follows_course(t: Array, psi: Array, x: Array, y: Array) -> bool:
     return degrees < 0.3 and radians > 0.6 and float(np.ptp(bow)) > 0.5 * DEGREES
 
 
+def _course_agreement(t: Array, psi: Array, x: Array, y: Array) -> float:
+    """How much better the course agrees with a heading if that is in degrees, -1 to 1.
+
+    The agreement is the mean resultant length of the angle between them, weighted by the distance.
+    """
+    rows = _rows_in(t, 1.0)
+    dx, dy = x[rows:] - x[:-rows], y[rows:] - y[:-rows]
+    course, bow = np.arctan2(dy, dx), psi[rows // 2 : rows // 2 + len(dx)]
+    distance = np.hypot(dx, dy)
+    total = float(np.sum(distance))
+    if total == 0.0:
+        return 0.0
+    degrees = np.sum(distance * np.exp(1j * (course - bow / DEGREES)))
+    radians = np.sum(distance * np.exp(1j * (course - bow)))
+    return float(abs(degrees) - abs(radians)) / total
+
+
 def _wrap(angle: Array) -> Array:
     return np.remainder(angle + math.pi, 2.0 * math.pi) - math.pi
 
 
-def _heading_noise(steps: Array) -> float:
-    """Standard deviation of a heading [rad] from second differences, robust to outliers."""
-    second = np.abs(np.diff(_wrap(steps)))
-    return 1.48 * float(np.median(second)) / math.sqrt(6.0)
+def _heading_noise(psi: Array) -> float:
+    """Standard deviation of a heading [rad] from its differences, robust to outliers.
+
+    Differences of higher order contain less of the motion; the smallest estimate counts.
+    """
+    found, differences = math.inf, _wrap(np.diff(psi))
+    for order in NOISE_ORDERS:
+        differences = np.diff(differences)
+        if len(differences):
+            sd = (
+                1.48
+                * float(np.median(np.abs(differences)))
+                / math.sqrt(math.comb(2 * order, order))
+            )
+            found = min(found, sd)
+    return found
 
 
 def _sustained_turning(t: Array, psi: Array) -> float:

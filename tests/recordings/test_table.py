@@ -203,6 +203,29 @@ def test_a_wrapped_heading_of_a_spinning_boat_is_not_called_degrees():
     assert units.find_heading_in_degrees(t, np.degrees(psi), {}) is not None
 
 
+def spinning_hovercraft():
+    """A craft that spins to and fro at up to 25 rad/s and drifts, whatever way it points."""
+    t = np.arange(0, 30, 1 / 120)
+    psi = 20.0 * np.sin(1.2 * t)
+    return t, psi, {"x_m": 0.2 * np.sin(0.5 * t), "y_m": 0.2 * np.cos(0.4 * t)}
+
+
+def test_fast_turning_alone_is_not_called_degrees():
+    t, psi, track = spinning_hovercraft()
+    assert units.find_heading_in_degrees(t, psi, track) is None
+    assert units.find_heading_in_degrees(t, psi, {}) is None
+    assert units.find_heading_in_degrees(t, np.degrees(psi), track) is not None
+
+
+def test_turning_and_course_together_show_degrees():
+    t = np.arange(0, 60, 0.1)
+    psi = 0.8 * np.sin(0.3 * t)
+    track = {"x_m": np.cumsum(0.1 * np.cos(psi)), "y_m": np.cumsum(0.1 * np.sin(psi))}
+    drift = {"x_m": track["x_m"], "y_m": track["y_m"] + 0.3 * t}  # course and bow differ by 20 deg
+    assert units.find_heading_in_degrees(t, psi, drift) is None
+    assert units.find_heading_in_degrees(t, np.degrees(psi), drift) is not None
+
+
 def test_a_part_keeps_its_times_and_an_empty_part_says_what_there_is():
     run = circle().between(2.0, 4.0)
     assert (run.t[0], run.t[-1], len(run)) == (pytest.approx(2.0), pytest.approx(4.0), 41)

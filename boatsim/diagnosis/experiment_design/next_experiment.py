@@ -32,6 +32,7 @@ from boatsim.diagnosis.search.ranking import Ranking
 from boatsim.files import toml_value
 from boatsim.physics.base import Array
 from boatsim.physics.content import vessel_reference
+from boatsim.physics.groups import without_group
 from boatsim.physics.vessel import Vessel
 
 POSTERIOR_STEP = 0.05  # [posterior sd] for numerical derivatives
@@ -255,7 +256,11 @@ def distinct_rivals(named: IdentifiedEffect) -> list[str]:
 
     The same effect on another actuator does not count as a rival.
     """
-    return [rival for rival in named.rivals if base_name(rival) != base_name(named.name)]
+    return [
+        rival
+        for rival in named.rivals
+        if base_name(without_group(rival)) != base_name(without_group(named.name))
+    ]
 
 
 def expected_log_bayes_factors(

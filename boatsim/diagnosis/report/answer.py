@@ -45,6 +45,7 @@ from boatsim.diagnosis.report.signs import cause_statistics_entry, reason_for_do
 from boatsim.diagnosis.search.pruning import IdentifiedEffect
 from boatsim.diagnosis.search.ranking import Ranking
 from boatsim.physics.base import ChannelEffect, Effect
+from boatsim.physics.groups import group_of, without_group
 from boatsim.physics.vessel import Vessel
 from boatsim.version import version
 from boatsim.view.formatting import capitalize, join_words, sentence_in_per_cent
@@ -111,7 +112,7 @@ def compose_answer(
         "next_experiment": next_experiment.plan_entry(plan, NEXT_SCENARIO),
         "patch": "patched.toml",
         "mean_left": dict(evaluation.mean_force),
-        "tried": sorted(set(map(base_name, tested))),
+        "tried": sorted({base_name(without_group(name)) for name in tested}),
         "left_out": excluded_candidates(question),
         "skipped": list(ranking.skipped),
         "facts": dict(problem.recordings[0].facts),
@@ -122,7 +123,7 @@ def compose_answer(
     }
     if ranking.recalibration is not None:
         answer["recalibration"] = _recalibration(ranking.recalibration)
-    verdict = verdict_sentences(answer, effect_meanings(problem.program.candidates, vessel))
+    verdict = verdict_sentences(answer, effect_meanings(problem.candidates.values(), vessel))
     if ranking.skipped:
         verdict = f"{verdict} {INCOMPLETE}"
     answer["sentence"] = _with_log_first(verdict, findings, problem, ranking)
@@ -284,11 +285,13 @@ def _effect(
 ) -> EffectEntry:
     """Return the entry of an identified effect."""
     judged = decision.judgement_of_effect(named.name)
-    effect = next(e for e in problem.program.candidates if e.name == named.name)
+    effect = problem.candidates[named.name]
     kind = type(effect)
     acting: Acting = {}
     if effect.on:
         acting["on"] = list(effect.on)
+    if group := group_of(named.name):
+        acting["group"] = group
     return {
         "name": base_name(named.name),
         **acting,
@@ -307,7 +310,7 @@ def _possible(
     problem: Problem, best: Fit, doubtful: IdentifiedEffect, decision: Decision
 ) -> PossibleEntry:
     """Return the entry of an effect that is probably a stand-in for another cause."""
-    effect = next(e for e in problem.program.candidates if e.name == doubtful.name)
+    effect = problem.candidates[doubtful.name]
     judged = decision.judgement_of_effect(doubtful.name)
     why = reason_for_doubt(judged.signs, decision.log, problem.config.decide)
     if judged.outcome == "unconfirmed":
@@ -372,9 +375,14 @@ def _words(best: Fit, effect: Effect) -> str:
         if best.value(effect.name, own[0])[0] > inactive:
             words = kind.words_above
     if isinstance(effect, ChannelEffect) and effect.other_side:
+        where = "already in the command"
         if kind.stage < 0:
-            return f"{words}, in the actuator and not in its command"
-        return f"{words}, already in the command"
+            where = "in the actuator and not in its command"
+        words = f"{words}, {where}"
+    if kind.once_per and effect.on:
+        words = f"{words}: {', '.join(effect.on)}"
+    if group := group_of(effect.name):
+        words = f"in group {group}, {words}"
     return words
 
 
@@ -394,9 +402,27 @@ def _parameter(best: Fit, effect: Effect, name: str, config: AnswerConfig) -> Pa
         if end != free.mean and abs(value - end) <= config.at_bound * abs(end):
             entry["at_bound"] = True
     sentence = sentence_in_per_cent(param.in_per_cent, value, entry["sd"], param.inactive_value)
+    if sentence and type(effect).once_per and effect.on:
+        sentence = f"{', '.join(effect.on)}: {sentence}"
+    if sentence and group_of(effect.name):
+        sentence = f"in group {group_of(effect.name)}, {sentence}; {_others(best, effect, name)}"
     if sentence:
         entry["statement"] = sentence
     return entry
+
+
+def _others(best: Fit, effect: Effect, name: str) -> str:
+    """The value of a ratio in the groups that an effect does not concern, in words."""
+    param = type(effect).params()[name]
+    common = without_group(effect.name)
+    value = param.inactive_value
+    if common in best.effects:
+        value = best.value(common, name)[0]
+    if param.how == "scales":
+        return "this is relative to the others"
+    if value == 0.0:
+        return "the others show none of it"
+    return f"in the others it is {100.0 * value:.3g} %"
 
 
 def candidate_entries(ranking: Ranking) -> list[CandidateEntry]:
@@ -434,7 +460,7 @@ def _limits(problem: Problem, fitted: Fit, name: str) -> tuple[dict[str, float],
     limits themselves, such as that of a rate.
     """
     config = problem.config.answer
-    kind = next(type(e) for e in problem.program.candidates if e.name == name)
+    kind = type(problem.candidates[name])
     params = kind.params()
     upper, lower = dict[str, float](), dict[str, float]()
     for f in fitted.free:

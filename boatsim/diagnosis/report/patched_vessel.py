@@ -13,6 +13,7 @@ from boatsim.diagnosis.report import spread_table
 from boatsim.files import replace_file
 from boatsim.physics.base import ChannelEffect, CoefficientChange, CoefficientRelease, Effect
 from boatsim.physics.content import effect_reference, find_content_file, vessel_reference
+from boatsim.physics.groups import name_in_group, without_group
 from boatsim.physics.vessel import Body, Vessel, apply_load_values, effect_from_table
 
 DIGITS = 10  # significant, so that the file reproduces the fitted motion
@@ -49,7 +50,8 @@ def patched_vessel_text(
     document = _document(vessel, path)
     added = []
     for effect in candidates:
-        if effect.name in found.effects and not isinstance(effect, CoefficientRelease):
+        acting = effect.name in map(without_group, found.effects)
+        if acting and not isinstance(effect, CoefficientRelease):
             added.append(effect.name)
     document["found"] = tomlkit.item(added)
     document["found"].comment("effects that the diagnosis added")
@@ -64,12 +66,17 @@ def patched_vessel_text(
             change = CoefficientChange(free.name, name, free.name, "scales", 1.0)
             _change_number(document, vessel, change, float(x), f"retuned: x {x:.4f}")
     for effect in candidates:  # channels act in the order of the diagnosis
-        if effect.name not in settings:
+        if effect.name not in set(map(without_group, settings)):
             continue
-        if isinstance(effect, CoefficientRelease):
+        if not isinstance(effect, CoefficientRelease):
+            own = settings.get(effect.name, _neutral_settings(effect))
+            document["effect"].append(_effect_table(effect, vessel, own))
+        elif effect.name in settings:
             _apply_release(document, vessel, effect, settings[effect.name])
-        else:
-            document["effect"].append(_effect_table(effect, vessel, settings[effect.name]))
+    for effect in candidates:
+        for group in problem.groups:
+            if (name := name_in_group(effect.name, group)) in settings:
+                _set_in_load(document, vessel, effect, group, settings[name])
     _keep_fitted_defaults(document, problem, vessel, found)
     document.pop("spread", None)  # of an earlier diagnosis
     if (spread := spread_table.uncertainty_table(problem, found, events)) is not None:
@@ -143,6 +150,47 @@ def _apply_release(
             _change_number(
                 document, vessel, change, x, f"{release.name}, {change.parameter} = {x:.4g}"
             )
+
+
+def _neutral_settings(effect: Effect) -> dict[str, float]:
+    """Values of the fitted parameters of an effect that acts in no group but one."""
+    return {name: getattr(effect, name) for name, p in type(effect).params().items() if p.fit}
+
+
+def _set_in_load(
+    document: tomlkit.TOMLDocument,
+    vessel: Vessel,
+    effect: Effect,
+    group: str,
+    values: Mapping[str, float],
+) -> None:
+    """Write the numbers of one group of recordings into the load condition of its name."""
+    loads = document.setdefault("loads", tomlkit.table(is_super_table=True))
+    load = loads.setdefault(group, tomlkit.table())
+    if not isinstance(effect, CoefficientRelease):
+        own = load.setdefault(effect.name, tomlkit.table())
+        for name, x in values.items():
+            own[name] = _rounded(x)
+        return
+    for change in effect.changes(vessel):
+        if change.parameter not in values:
+            continue
+        own = load.setdefault(change.owner, tomlkit.table())
+        nominal = own.get(change.key, _number_in_file(document, vessel, change))
+        new = change.changed_value(float(nominal), values[change.parameter])
+        _set_number(own, change.key, new, f"{effect.name} in group {group}")
+
+
+def _number_in_file(
+    document: tomlkit.TOMLDocument, vessel: Vessel, change: CoefficientChange
+) -> float:
+    """Return a number of the vessel as the document specifies it, or else by its default rule."""
+    if change.owner == "body":
+        own, nominal = document["body"], getattr(vessel.body, change.key)
+    else:
+        place = [e.name for e in vessel.effects].index(change.owner)
+        own, nominal = document["effect"][place], getattr(vessel.effect(change.owner), change.key)
+    return float(own.get(change.key, nominal))
 
 
 def _change_number(

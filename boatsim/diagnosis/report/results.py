@@ -53,7 +53,7 @@ def collect_findings(
         before_after.limitation_sentences(problem, ranking, evaluation),
         _coefficients(ranking.recalibrated),
         (table,) if table else (),
-        effect_meanings(problem.program.candidates, problem.program.vessel),
+        effect_meanings(problem.candidates.values(), problem.program.vessel),
         ranking.description.terms if ranking.description else (),
         next_experiment.command_steps(plan),
         (vessel.length, vessel.beam),

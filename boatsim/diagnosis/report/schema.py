@@ -23,9 +23,10 @@ AloneEntry = TypedDict("AloneEntry", {"without": float, "with": float})
 
 
 class Acting(TypedDict, total=False):
-    """Names of the signals on which an effect acts, in diagnosis.json, if it specifies any."""
+    """Signals on which an effect acts, and the group of recordings, in diagnosis.json, if any."""
 
     on: list[str]
+    group: str  # in which alone it acts, or differs from the others
 
 
 class EffectEntry(Acting):

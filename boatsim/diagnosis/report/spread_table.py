@@ -30,6 +30,8 @@ def uncertainty_table(problem: Problem, found: Fit, removed: Collection[str] = (
     owners = owners - set(removed) | {"body"}
     kept, rows = [], []
     for j, free in enumerate(found.free):
+        if free.group:  # it changes a load condition and not the vessel
+            continue
         numbers = {}
         for name, weight in _numbers(problem, free).items():
             if name.partition(".")[0] in owners:

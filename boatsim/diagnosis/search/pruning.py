@@ -19,6 +19,7 @@ from boatsim.diagnosis.search.evidence import (
 )
 from boatsim.diagnosis.search.forward_selection import select_forward
 from boatsim.diagnosis.significance import distance_from_zero, jointly_differ_from_zero
+from boatsim.physics.groups import without_group
 
 MOST_TIED = 3  # look-alikes that are reported of an effect
 
@@ -246,6 +247,11 @@ def _tested_instead(sets: CandidateSets, best: Fit, name: str, without: Fit) -> 
     return {}
 
 
+def _idea(name: str) -> str:
+    """The effect of the library that a candidate stands for, whatever its place or group."""
+    return base_name(without_group(name))
+
+
 def compare_rivals(
     name: str,
     best: Fit,
@@ -267,11 +273,11 @@ def compare_rivals(
     gain = best.evidence - without.evidence
     gains = log_evidence_gains(rivals, without)
     weights = np.exp(np.array([0.0, gain, *gains.values()]) - max(gain, 0.0, *gains.values()))
-    # the same effect on the other side of an actuator's lag counts as this one
-    same = np.array([False, True, *(base_name(n) == base_name(name) for n in gains)])
+    # the same effect on the other side of an actuator's lag, or of the other group, counts as this
+    same = np.array([False, True, *(_idea(n) == _idea(name) for n in gains)])
     order = sorted(gains, key=lambda n: -gains[n])
     close = gain - config.alike
-    tied = [n for n in order if gains[n] > close and base_name(n) != base_name(name)]
+    tied = [n for n in order if gains[n] > close and _idea(n) != _idea(name)]
     probability = float(weights[same].sum() / weights.sum())
     return IdentifiedEffect(
         name,

@@ -221,7 +221,7 @@ def hand_over_coefficient(start: Fit, effect: Effect) -> Fit:
     theta = start.theta.copy()
     coefficients = {f.at: i for i, f in enumerate(start.free) if f.relative}
     for own, f in enumerate(start.free):
-        scales = f.effect == effect.name and f.how == "scales" and not f.relative
+        scales = f.effect == effect.name and f.how == "scales" and not (f.relative or f.group)
         if scales and f.at in coefficients:
             coefficient = coefficients[f.at]
             theta[own] = np.clip(theta[coefficient], f.low, f.high)

@@ -105,6 +105,7 @@ class AddedMass(Inertia, Force):
         "coriolis": "c",
     }
     alone: ClassVar = True
+    ruled_out_by: ClassVar = {"no_water": (True,)}
     words: ClassVar[str] = "the water that moves with the hull adds inertia"
     refines: ClassVar[str] = "added_mass"
     shown_by: ClassVar[str] = "sharp starts and stops in sway and yaw"
@@ -247,6 +248,7 @@ class AddedMassError(CoefficientRelease):
         r"N_{\dot r} = k_r N_{\dot r}^0"
     )
     symbols: ClassVar = {"surge_factor": "k_u", "sway_factor": "k_v", "yaw_factor": "k_r"}
+    ruled_out_by: ClassVar = {"no_water": (True,)}
     words: ClassVar[str] = (
         "the added mass differs from its specified value: the hull floats deeper or shallower"
     )
@@ -285,6 +287,7 @@ class AddedMassCoriolis(CoefficientRelease):
         r"c = c^0 + \mathrm{fraction}, \quad N_C = c \, (Y_{\dot v} - X_{\dot u}) \, u_r "
         r"v_r"
     )
+    ruled_out_by: ClassVar = {"no_water": (True,)}
     words: ClassVar[str] = (
         "the water that moves with the hull turns it broadside to its course (Munk moment)"
     )
@@ -314,6 +317,7 @@ class ShallowWater(CoefficientRelease):
     symbols: ClassVar = {"factor": "k"}
     needs: ClassVar = ("sway", "yaw")
     confounded_with: ClassVar = ("added_mass_error",)
+    ruled_out_by: ClassVar = {"no_water": (True,)}
     words: ClassVar[str] = "shallow water increases the added mass and the drag in sway and yaw"
     shown_by: ClassVar[str] = "the same sway in deep and in shallow water"
     source: ClassVar[str] = (

@@ -61,6 +61,7 @@ class BilgeKeels(Force):
         "density": r"\rho",
     }
     confounded_with: ClassVar = ("quadratic_damping",)
+    ruled_out_by: ClassVar = {"no_water": (True,)}
     words: ClassVar[str] = "bilge keels damp the roll, the more the larger its amplitude"
     shown_by: ClassVar[str] = "a roll decay from a large heel"
     source: ClassVar[str] = (

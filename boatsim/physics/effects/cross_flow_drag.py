@@ -118,6 +118,7 @@ class CrossFlowDrag(Force):
         "linear": "d",
     }
     needs: ClassVar = ("sway", "yaw")
+    ruled_out_by: ClassVar = {"no_water": (True,)}
     words: ClassVar[str] = "the drag of the hull sections grows with the square of the cross flow"
     refines: ClassVar[str] = "damping"
     shown_by: ClassVar[str] = "sway and yaw at two speeds"

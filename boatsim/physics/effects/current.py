@@ -30,7 +30,7 @@ class Current(WaterFlow):
         r"- \left(V_E \cos\psi - V_N \sin\psi\right) \end{aligned}"
     )
     symbols: ClassVar = {"north": "V_N", "east": "V_E"}
-    ruled_out_by: ClassVar = {"still_water": (True,)}
+    ruled_out_by: ClassVar = {"still_water": (True,), "no_water": (True,)}
     needs: ClassVar = ("surge", "sway")
     words: ClassVar[str] = "the water moves over the ground and carries the boat along"
     shown_by: ClassVar[str] = "drifting, and runs on opposite headings"

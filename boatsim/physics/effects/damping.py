@@ -306,6 +306,7 @@ class LateralCentreShift(CoefficientRelease):
         r"a = a^0 + \mathrm{shift}, \quad Y = -d_v (v_r + a r), \quad N = a \, Y"
     )
     needs: ClassVar = ("sway", "yaw")
+    ruled_out_by: ClassVar = {"no_water": (True,)}
     words: ClassVar[str] = "the lateral resistance acts ahead of or behind the mass centre"
     refines: ClassVar[str] = "mass_centre"
     shown_by: ClassVar[str] = "pushing sideways, and coasting after a turn"

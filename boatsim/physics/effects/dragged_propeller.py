@@ -63,6 +63,7 @@ class DraggedPropeller(Force):
         r"\end{aligned}"
     )
     symbols: ClassVar = {"drag": "D"}
+    ruled_out_by: ClassVar = {"no_water": (True,)}
     words: ClassVar[str] = (
         "a propeller that works against the motion adds only the thrust beyond the drag it has "
         "when idle"

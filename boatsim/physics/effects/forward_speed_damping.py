@@ -48,6 +48,7 @@ class ForwardSpeedDamping(Force):
     )
     symbols: ClassVar = {"sway": "d_v", "roll": "d_p", "yaw": "d_r", "at": "a"}
     needs: ClassVar = ("surge",)
+    ruled_out_by: ClassVar = {"no_water": (True,)}
     words: ClassVar[str] = "damping of sway, roll and yaw grows with the forward speed"
     refines: ClassVar[str] = "damping"
     shown_by: ClassVar[str] = "the same turns at two forward speeds"

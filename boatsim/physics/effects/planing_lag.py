@@ -43,6 +43,7 @@ class PlaningLag(Reaction):
     )
     symbols: ClassVar = {"full_speed": "u_1", "least": r"\kappa_0", "hull_mass": "m"}
     needs: ClassVar = ("surge",)
+    ruled_out_by: ClassVar = {"no_water": (True,)}
     words: ClassVar[str] = (
         "the craft changes its speed more slowly below planing speed; steady speeds do not change"
     )

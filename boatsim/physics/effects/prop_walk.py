@@ -43,6 +43,7 @@ class PropWalk(Force):
     )
     symbols: ClassVar = {"side_force_per_thrust": "c", "ahead_share": "s"}
     needs: ClassVar = ("sway",)
+    ruled_out_by: ClassVar = {"no_water": (True,)}
     words: ClassVar[str] = "the propellers push the stern sideways, most of all astern"
     shown_by: ClassVar[str] = "straight astern, then straight ahead"
     source: ClassVar[str] = (

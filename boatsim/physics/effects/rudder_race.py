@@ -44,6 +44,7 @@ class RudderRace(Force):
     )
     symbols: ClassVar = {"normal_force_per_thrust": "c", "at": "x_R", "side": "s"}
     needs: ClassVar = ("surge", "sway", "yaw")
+    ruled_out_by: ClassVar = {"no_water": (True,)}
     words: ClassVar[str] = (
         "the rudder is in the propeller slipstream: its force grows with the thrust, also at rest"
     )

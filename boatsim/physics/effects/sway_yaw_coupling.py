@@ -39,6 +39,7 @@ class SwayYawCoupling(Force):
     formula: ClassVar[str] = r"X = X_{vr} v_r r, \quad Y = Y_{ur} u_r r, \quad N = N_{uv} u_r v_r"
     symbols: ClassVar = {"mass": "X_{vr}", "sway": "-Y_{ur}", "yaw": "-N_{uv}"}
     needs: ClassVar = ("surge", "sway", "yaw")
+    ruled_out_by: ClassVar = {"no_water": (True,)}
     words: ClassVar[str] = (
         "a moving hull has a side force when it turns and a yaw moment when it drifts"
     )

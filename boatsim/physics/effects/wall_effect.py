@@ -76,6 +76,7 @@ class WallEffect(Force):
         "yaw": "d_r",
     }
     needs: ClassVar = ("surge", "sway")
+    ruled_out_by: ClassVar = {"no_water": (True,)}
     words: ClassVar[str] = (
         "near the walls of the tank the damping increases and the boat is drawn towards them"
     )

@@ -85,7 +85,7 @@ class WaveForcing(RandomForce):
         "frequency": r"\omega_0",
         "damping": r"\zeta",
     }
-    ruled_out_by: ClassVar = {"no_waves": (True,)}
+    ruled_out_by: ClassVar = {"no_waves": (True,), "no_water": (True,)}
     words: ClassVar[str] = "waves exert narrow-band forces on the hull about one frequency"
     shown_by: ClassVar[str] = "at rest without thrust"
     source: ClassVar[str] = (

@@ -63,6 +63,7 @@ class WeakReverse(ChannelEffect):
     acts_on: ClassVar[str] = "thrust|shaft"
     stage: ClassVar[int] = DEEDS
     either_side: ClassVar[bool] = True
+    acts_astern: ClassVar[bool] = True
     transform_signal: ClassVar = transform_signal
 
     astern_factor: float = param(

@@ -124,6 +124,8 @@ class ChannelEffect(EffectKind):
     slots: ClassVar[int] = 0
     # whether the effect may act on the command or on the output of the actuator
     either_side: ClassVar[bool] = False
+    # whether it changes nothing of a drive that pushes in one direction only
+    acts_astern: ClassVar[bool] = False
     time_to_discontinuity: ClassVar[Callable[..., float] | None] = None
     present_output: ClassVar[Callable[..., float] | None] = None
     channel: ClassVar[Callable[..., SignalSegment]]

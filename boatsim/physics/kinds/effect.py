@@ -75,6 +75,10 @@ class Effect(CheckedParameters):
     needs: ClassVar[tuple[str, ...]] = ()
     # fact -> values that exclude the effect
     ruled_out_by: ClassVar[Mapping[str, tuple[object, ...]]] = {}
+    # fact -> value that must be specified, or the effect is no candidate
+    required_facts: ClassVar[Mapping[str, object]] = {}
+    # effect for each of whose instances it is a candidate of its own, where there are more than two
+    once_per: ClassVar[str] = ""
     # effects with the same signature: this one is a candidate on request only
     confounded_with: ClassVar[tuple[str, ...]] = ()
     # a random process: the filter tracks it, a simulation without data cannot

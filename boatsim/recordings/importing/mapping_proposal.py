@@ -17,6 +17,7 @@ from boatsim.recordings.importing.signal_classification import (
     PULSE,
     Classification,
     classify_signals,
+    has_opposite_sense,
     side_from_tokens,
     tokenize_name,
 )
@@ -245,6 +246,8 @@ def _motion_lines(
             sign = ""  # a compass heading is clockwise from north
         elif column == "psi_rad" and enu:
             quarter = QUARTER_TURN
+        elif not enu and has_opposite_sense(column, g.tokens):
+            sign = "-"
         expression = toml_value(sign + _expression(g) + quarter)
         line = f"{column} = {expression}{_comment(g, best[source])}"
         if column in INCLINATIONS and (INCLINATIONS[column] not in dof or _is_constant(g)):

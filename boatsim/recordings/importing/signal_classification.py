@@ -67,6 +67,9 @@ POSE_WORDS = {
     **dict.fromkeys(("north", "northing", "pn"), "x_m"),
     **dict.fromkeys(("east", "easting", "pe"), "y_m"),
 }  # last word of a name -> column
+# words in the name of a signal whose positive sense is the opposite of that of recordings
+TO_PORT = {"left", "port"}
+COUNTERCLOCKWISE = {"ccw", "counterclockwise", "anticlockwise"}
 SPEEDS = {"rate", "speed", "velocity", "vel"}
 BODY = {"odom", "odometry", "body", "base"}  # frames with x forward
 SUPERFLUOUS = set(
@@ -173,7 +176,7 @@ def classify_signal(
                 name, signal, place, tokens, moves + rate + 10.0 * bool(tokens & SATELLITES)
             )
     kind = _drive_kind(signal, tokens)
-    if name in channels or is_command(name):
+    if name in channels or is_command(name) or names_channel(name, channels):
         kind = "command"
     if kind:
         word, why = _unit_word(name, signal), ""
@@ -279,8 +282,31 @@ def _is_share_of_a_side(signal: Signal, tokens: frozenset[str]) -> bool:
     return "percent" in units
 
 
+def names_channel(name: str, channels: Sequence[str]) -> bool:
+    """Whether a name is that of a command of the vessel without its unit, such as `fan_a1`.
+
+    Args:
+        name: Name of a signal.
+        channels: Names of the vessel's commands, which end in a unit.
+    """
+    return any(channel.rpartition("_")[0] == name for channel in channels)
+
+
+def has_opposite_sense(column: str, tokens: frozenset[str]) -> bool:
+    """Whether a name states that the positive sense is to port or counterclockwise.
+
+    Args:
+        column: Column of the signal, whose positive sense is to starboard and clockwise.
+        tokens: Words of its name.
+    """
+    if column in ("y_m", "v_mps"):
+        return bool(tokens & TO_PORT)
+    return column in ("psi_rad", "r_radps") and bool(tokens & COUNTERCLOCKWISE)
+
+
 def _motion(last: list[str], tokens: frozenset[str], log: Log) -> str | None:
     """The pose or velocity of a name; None for another."""
+    last = [word for word in last if word not in TO_PORT | COUNTERCLOCKWISE] or last
     end = last[-1]
     if found := _angular_rate(end, tokens):
         return found

@@ -188,3 +188,19 @@ def test_channels_that_no_name_fits_get_the_outputs_in_order_and_it_is_said():
     assert 'rudder_rad = "rudder"' in text and "CHECK: the only signal that is left" in text
     text = propose_map(log_of(psi=(0.0, 3.0)), "v", drives)
     assert '# rudder_rad = "..."' in text
+
+
+def test_names_of_channels_without_a_unit_and_words_of_sense_are_understood():
+    rng = np.random.default_rng(1)
+    names = ("x_m", "y_left_m", "yaw_ccw_rad", "fan_a1", "fan_b2")
+    values = rng.uniform(0.03, 1.0, (len(T), len(names)))
+    signals = {name: Signal(T, values[:, i]) for i, name in enumerate(names)}
+    drives = [VesselChannel(f"fan_{fan}_share", 0.0, 1.0) for fan in ("a1", "b2")]
+    text = propose_map(Log(Path("run.csv"), signals), "boat", drives, ("surge", "sway", "yaw"))
+    for line in (
+        'y_m = "-y_left_m"',
+        'psi_rad = "-yaw_ccw_rad"',
+        'fan_a1_share = "fan_a1"',
+        'fan_b2_share = "fan_b2"',
+    ):
+        assert f"\n{line}" in text

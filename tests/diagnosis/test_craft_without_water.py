@@ -1,0 +1,142 @@
+"""A craft that floats on air: no candidate needs water, and what differs from its data sheet is
+found. The recordings come from an integrator that shares no code with the tool."""
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from scipy.integrate import odeint
+
+from boatsim.diagnosis.candidates import library_for
+from boatsim.diagnosis.filter import map_recording, prior_noise_levels
+from boatsim.diagnosis.problem import Problem
+from boatsim.diagnosis.search.ranking import Ranking, rank
+from boatsim.physics import vessel
+from boatsim.physics.base import Array
+from boatsim.physics.program import Program
+from boatsim.physics.vessel import Vessel
+from boatsim.recordings.table import Notes, Recording
+
+MASS, INERTIA, GRAVITY = 0.14, 5e-4, 9.81  # kg, kg m^2, m/s^2
+# places ahead and to starboard [m] and directions [rad] of three pairs of fans, push one way only
+FANS = {
+    "a1": (0.044, 0.015, 0.5 * np.pi),
+    "a2": (0.044, -0.015, -0.5 * np.pi),
+    "b1": (-0.009, -0.045, -np.pi / 6),
+    "b2": (-0.035, -0.03, 5 * np.pi / 6),
+    "c1": (-0.035, 0.03, -5 * np.pi / 6),
+    "c2": (-0.009, 0.045, np.pi / 6),
+}
+RATE, ROWS = 40.0, 900
+WATER = {"current", "wave_forcing", "added_mass", "prop_walk", "cross_flow_drag", "planing_lag"}
+TESTED = (
+    "yaw_inertia_error",
+    "slope",
+    "payload",
+    "quadratic_damping",
+    *(f"drive_gain_error_{fan}" for fan in FANS),
+)
+
+
+def craft(facts: dict[str, object]) -> Vessel:
+    effects = []
+    for fan, (x, y, angle) in FANS.items():
+        on = {"thrust": f"{fan}_N", "angle": float(angle)}
+        effects.append({"use": "thruster", "name": fan, "on": on, "x": x, "y": y})
+    return Vessel.from_effects(
+        name="hovercraft",
+        dof=("surge", "sway", "yaw"),
+        length=0.12,
+        beam=0.12,
+        draught=0.01,
+        body={"mass": MASS, "roll_inertia": 3e-4, "yaw_inertia": INERTIA},
+        effects=effects,
+        channels={f"{fan}_N": {"low": 0.0, "high": 0.7} for fan in FANS},
+        diagnosis={"facts": facts},
+    )
+
+
+CRAFT = craft({"no_water": True, "indoors": True, "moored": False})
+
+
+def floated(
+    seed: int,
+    inertia: float = 1.0,
+    gains: Array | None = None,
+    slope: tuple[float, float] = (0.0, 0.0),
+) -> Recording:
+    """A recording of the craft with other numbers than those of its data sheet."""
+    rng = np.random.default_rng(seed)
+    commands = np.repeat(rng.uniform(0.0, 0.25, (ROWS // 10, len(FANS))), 10, axis=0)
+    x, y, angle = np.array(list(FANS.values())).T
+    strengths = np.ones(len(FANS)) if gains is None else gains
+
+    def rates(s: Array, _: float, thrust: Array) -> list[float]:
+        X, Y = thrust @ np.cos(angle), thrust @ np.sin(angle)
+        N = thrust @ (x * np.sin(angle) - y * np.cos(angle))
+        c, k = np.cos(s[2]), np.sin(s[2])
+        north = (X * c - Y * k) / MASS + GRAVITY * slope[0]
+        east = (X * k + Y * c) / MASS + GRAVITY * slope[1]
+        return [s[3], s[4], s[5], north, east, N / (inertia * INERTIA)]
+
+    s, poses = np.zeros(6), []
+    for command in commands:
+        poses.append(s[:3])
+        s = odeint(rates, s, [0.0, 1.0 / RATE], args=(strengths * command,), rtol=1e-8)[-1]
+    seen = np.array(poses) + rng.standard_normal((ROWS, 3)) * [3e-4, 3e-4, 2e-3]
+    signals = dict(zip(("x_m", "y_m", "psi_rad"), seen.T, strict=True))
+    signals |= {f"{fan}_N": commands[:, i] for i, fan in enumerate(FANS)}
+    return Recording(f"flight_{seed}", np.arange(ROWS) / RATE, signals, Notes())
+
+
+def ranked(*recordings: Recording) -> Ranking:
+    program = Program(CRAFT, library_for(CRAFT).compiled)
+    mapped = [map_recording(recording, program) for recording in recordings]
+    problem = Problem(mapped, prior_noise_levels(CRAFT, recordings), {"thrust": 0.05})
+    return rank(problem, TESTED)
+
+
+def test_no_candidate_of_a_craft_without_water_needs_water():
+    floating = library_for(craft({"indoors": True}))
+    assert set(floating.tested) >= WATER
+    assert not set(library_for(CRAFT).tested) & WATER
+
+
+def test_slope_and_yaw_inertia_are_candidates_only_without_water():
+    for name in ("slope", "yaw_inertia_error"):
+        assert name in library_for(CRAFT).tested
+        assert "no_water" in library_for(craft({})).inapplicable[name]
+
+
+def test_each_drive_is_a_candidate_only_where_there_are_more_than_two():
+    names = {f"drive_gain_error_{fan}" for fan in FANS}
+    assert names <= set(library_for(CRAFT).tested)
+    two = library_for(vessel.load_vessel("trial_boat"))
+    assert "fewer than 3" in two.inapplicable["drive_gain_error"]
+
+
+CASES: dict[str, tuple[dict[str, object], str, dict[str, float]]] = {
+    "inertia": ({"inertia": 0.7}, "yaw_inertia_error", {"factor": 0.7}),
+    "one fan": (
+        {"gains": np.array([1.0, 1.0, 0.5, 1.0, 1.0, 1.0])},
+        "drive_gain_error_b1",
+        {"factor": 0.5},
+    ),
+    "slope": ({"slope": (0.01, -0.005)}, "slope", {"north": 0.01, "east": -0.005}),
+}
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_what_differs_from_the_data_sheet_is_found_with_its_size(case: str):
+    changed, name, truth = CASES[case]
+    sail: Callable[..., Recording] = floated
+    ranking = ranked(sail(1, **changed), sail(2, **changed))
+    assert [one.name for one in ranking.named] == [name]
+    for parameter, true in truth.items():
+        value, sd = ranking.best.value(name, parameter)
+        assert abs(value - true) < 4.0 * sd
+        assert sd < 0.2 * abs(true)
+
+
+def test_nothing_is_found_where_the_data_sheet_is_right():
+    assert ranked(floated(3), floated(4)).named == ()
