@@ -11,7 +11,7 @@ from boatsim.recordings.expression import UNITS
 
 # Names of columns that are times; a unit may follow
 CLOCK = re.compile(
-    r"^(t|time|timestamp|stamp|date_?time|utc|gps_?time|epoch|elapsed|seconds?"
+    r"^(t|t_?(?:vec|vector|out|axis|log)|time|timestamp|stamp|date_?time|utc|gps_?time|epoch|elapsed|seconds?"
     r"|time_?(s|ms|us|ns)?)$"
 )
 ENDING = re.compile(
