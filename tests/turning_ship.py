@@ -14,7 +14,9 @@ def integral(t: Array, rate: Array) -> Array:
     return np.concatenate(([0.0], np.cumsum(0.5 * (rate[1:] + rate[:-1]) * np.diff(t))))
 
 
-def winding_ship(seed: int = 0, count: int = 1200, noise: float = 1.0, step: float = STEP) -> Recording:
+def winding_ship(
+    seed: int = 0, count: int = 1200, noise: float = 1.0, step: float = STEP
+) -> Recording:
     """A recording of a ship that swings to both sides.
 
     Args:

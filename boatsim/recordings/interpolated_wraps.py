@@ -10,7 +10,9 @@ from numpy.typing import NDArray
 from boatsim.physics.base import Array
 
 # phrase in a remark, by which the finding recognizes it
-ACROSS_WRAP = "lie between both ends of the circle, interpolated across a full turn, and are not used"
+ACROSS_WRAP = (
+    "lie between both ends of the circle, interpolated across a full turn, and are not used"
+)
 TURN = 2.0 * np.pi
 USUAL_QUANTILE = 0.9  # of the steps between rows; a vessel may turn in few rows only
 LARGE = 6.0  # times the usual step: a step that is no motion

@@ -18,6 +18,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from boatsim.errors import BadInput
 from boatsim.physics.base import Array
@@ -45,7 +46,7 @@ class Stretches:
         turned: The same by the yaw rate; 0 where it is not known or not credible.
     """
 
-    edges: Array
+    edges: NDArray[np.int64]
     middle: Array
     moved: Array
     travelled: Array
@@ -113,7 +114,7 @@ def motion_stretches(
     )
 
 
-def _edges(fixed: Array, apart: int) -> Array:
+def _edges(fixed: NDArray[np.bool_], apart: int) -> NDArray[np.int64]:
     """Rows with a fix, at least some rows apart."""
     edges = list[int]()
     for row in np.flatnonzero(fixed).tolist():
@@ -134,10 +135,10 @@ def _integral(t: Array, rate: Array) -> Array:
     return np.concatenate(([0.0], np.cumsum(steps)))
 
 
-def _is_plausible(moved: Array, travelled: Array) -> Array:
+def _is_plausible(moved: Array, travelled: Array) -> NDArray[np.bool_]:
     """Whether both distances (M,) differ by no more than a clock may explain."""
     far, by_speed = np.hypot(*moved), np.hypot(*travelled)
-    return (far < MAX_RATE * by_speed) & (by_speed < MAX_RATE * far)
+    return np.asarray((far < MAX_RATE * by_speed) & (by_speed < MAX_RATE * far))
 
 
 def estimate_clock_rates(runs: Sequence[Stretches], speed_gain: float | None = None) -> ClockRates:
@@ -240,7 +241,8 @@ def corrected_times(t: Array, run: Stretches, rates: Array) -> Array:
         rates: Clock rates (M,) over the stretches.
     """
     between = np.interp(0.5 * (t[1:] + t[:-1]), run.middle, rates)
-    return t[0] + np.concatenate(([0.0], np.cumsum(between * np.diff(t))))
+    steps = between * np.diff(t)
+    return np.asarray(t[0] + np.concatenate(([0.0], np.cumsum(steps))))
 
 
 def times_by_motion(t: Array, signals: Mapping[str, Array], place: str) -> Array:

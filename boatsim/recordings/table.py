@@ -725,9 +725,7 @@ def _with_clock_of_motion(recording: Recording, path: Path) -> Recording:
     return replace(recording, t=t, notes=notes, remarks=(*recording.remarks, remark))
 
 
-def _signals(
-    raw: Raw, needed: list[str]
-) -> tuple[dict[str, Array], list[str], list[str]]:
+def _signals(raw: Raw, needed: list[str]) -> tuple[dict[str, Array], list[str], list[str]]:
     """The signals with unwrapped headings, the names of columns that are not used, and remarks."""
     ignored = [n for n in raw.columns if n not in needed and not RUN_COLUMN.match(n)]
     signals: dict[str, Array] = {}

@@ -1,4 +1,4 @@
-"""Corrections that the checks of a log offer, accepted as an owner would who has no other knowledge.
+"""Corrections that the checks of a log offer, accepted without other knowledge of the log.
 
 `accept_corrections` writes the offered lines into the recording.toml next to the recordings.
 """
@@ -6,7 +6,9 @@
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from boatsim.diagnosis.log_check import check_files
+from boatsim.diagnosis import loading
+from boatsim.diagnosis.checks.entry import column_sources
+from boatsim.diagnosis.checks.finding import recording_toml_lines
 from boatsim.files import toml_key
 
 COLUMNS, LATENCY = "[columns]", "[latency]"
@@ -15,23 +17,27 @@ COLUMNS, LATENCY = "[columns]", "[latency]"
 def accept_corrections(files: Sequence[Path], vessel: str) -> list[str]:
     """Check recordings of one folder and write all corrections that the checks offer.
 
+    These are the checks with which a diagnosis begins, without the comparison with the vessel.
+
     Args:
         files: Recordings in one folder, which has no recording.toml yet.
         vessel: Name or path of the vessel.
 
     Returns:
-        One line for each kind of finding with a correction: its name, runs and lines.
+        One line for each kind of finding with a correction: its name and runs.
     """
-    entries, _ = check_files(files, vessel)
-    tables = list[str]()
+    loaded = loading.load(loading.Request(files, vessel=vessel))
+    by_run: dict[str, list[str]] = {}
     offered: dict[str, list[str]] = {}
-    for file, found in entries.items():
-        lines = list[str]()
-        for entry in found:
-            if entry["lines"]:
-                lines += entry["lines"]
-                offered.setdefault(entry["name"], []).append(file.stem)
-        tables += _run_tables(file.stem, lines)
+    for finding in loaded.findings:
+        lines = recording_toml_lines(finding, column_sources(finding.run, loaded.vessel))
+        run = Path(finding.run).stem
+        if lines:
+            by_run.setdefault(run, []).extend(lines)
+            offered.setdefault(finding.name, []).append(run)
+    tables = list[str]()
+    for run, lines in by_run.items():
+        tables += _run_tables(run, lines)
     folder = files[0].parent
     (folder / "recording.toml").write_text("\n".join(tables) + "\n", encoding="utf-8")
     return _summaries(offered)

@@ -214,9 +214,7 @@ def _constant_rate(
     return found
 
 
-def _velocity_gain(
-    recording: Recording, gain: float, sd: float, config: ChecksConfig
-) -> Finding:
+def _velocity_gain(recording: Recording, gain: float, sd: float, config: ChecksConfig) -> Finding:
     """The finding of velocities that are too small or too large, by the corrected clock."""
     evidence = (
         f"the positions move {gain:.3f} +- {sd:.3f} times as fast as u_mps and v_mps, after the "

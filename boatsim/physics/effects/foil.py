@@ -41,7 +41,7 @@ class Foil(Force):
     D = 0.5 rho A V^2 (c_0 + c_1 |alpha|),  L = 0.5 rho A V^2 c_L sin(2 alpha)
 
     alpha = a - atan2(v_f, u_f) is the angle of its chord to the flow (u_f, v_f) at its place
-    (x, y, z), |alpha| the angle to the nearer end of the chord, V the speed of that flow. The drag D
+    (x, y, z), |alpha| the angle to the nearer end of the chord, V the speed of that flow. The drag
     acts along the flow, the lift L across it; a foil turned to starboard pushes to starboard. At
     small angles the lift coefficient is 2 c_L alpha.
     """
@@ -66,8 +66,7 @@ class Foil(Force):
     words: ClassVar[str] = "a foil, such as the housing of an azimuth thruster, has lift and drag"
     shown_by: ClassVar[str] = "turns with the propeller stopped"
     source: ClassVar[str] = (
-        "S. F. Hoerner, Fluid-Dynamic Lift, 1985, chapter 17 (small aspect ratio); form of the law: "
-        "thruster housings of R/V Gunnerus, github.com/NTNU-MCS/MCSim_python, lib/thrusters.py"
+        "S. F. Hoerner, H. V. Borst, Fluid-Dynamic Lift, 1985, chapter 17: small aspect ratios"
     )
     roles: ClassVar = {
         "angle": Role("rad", "direction of the chord, 0 ahead, positive to starboard", fixed=0.0)
@@ -98,5 +97,7 @@ class Foil(Force):
         particulars.SEA_WATER, low=0.0, high=1500.0, unit="kg/m^3", words="density of the water"
     )
     x: float = param(0.0, low=-500.0, high=500.0, unit="m", words="place ahead of the origin")
-    y: float = param(0.0, low=-100.0, high=100.0, unit="m", words="place to starboard of the origin")
+    y: float = param(
+        0.0, low=-100.0, high=100.0, unit="m", words="place to starboard of the origin"
+    )
     z: float = param(0.0, low=-100.0, high=100.0, unit="m", words="place below the origin")

@@ -11,7 +11,8 @@ from boatsim.recordings.expression import UNITS
 
 # Names of columns that are times; a unit may follow
 CLOCK = re.compile(
-    r"^(t|t_?(?:vec|vector|out|axis|log)|time|timestamp|stamp|date_?time|utc|gps_?time|epoch|elapsed|seconds?"
+    r"^(t|time|timestamp|stamp|date_?time|utc|gps_?time|epoch|elapsed|seconds?"
+    r"|t_?(vec|vector|out|axis|log)"
     r"|time_?(s|ms|us|ns)?)$"
 )
 ENDING = re.compile(

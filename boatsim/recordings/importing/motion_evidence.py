@@ -94,7 +94,9 @@ def _motion_of_pair(north: Signal, east: Signal, best: Mapping[str, Classificati
     if heading is not None:
         course = np.arctan2(y[rows:] - y[:-rows], x[rows:] - x[:-rows])
         known = np.isfinite(heading.signal.values)
-        bow = np.interp(t[: len(course)], heading.signal.t[known], np.unwrap(_in_si(heading)[known]))
+        bow = np.interp(
+            t[: len(course)], heading.signal.t[known], np.unwrap(_in_si(heading)[known])
+        )
         agree = float(np.abs(np.mean(np.exp(1j * (course - bow)))))
         spread = float(np.abs(np.mean(np.exp(1j * bow))))
         if agree > 0.9 and spread < 0.9:
