@@ -22,7 +22,7 @@ HEADER = ("figure", "before", "retuned", "corrected", "corrected / retuned")
 
 @dataclass(frozen=True)
 class Figures:
-    """What one diagnosis of a set says, and how well its models predict the held-out runs."""
+    """Answer of one diagnosis of a set, and how well its models predict the held-out runs."""
 
     title: str
     diagnosis: Diagnosis

@@ -146,7 +146,7 @@ def _run_lengths(rows: NDArray[np.bool_]) -> NDArray[np.int64]:
 
 
 def _second_of_two(straight: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Of neighbouring rows at which lines break, every second one: both are of one sample."""
+    """Return every second one of neighbouring rows at which lines break; both are of one sample."""
     second = np.zeros(len(straight), dtype=np.bool_)
     for k in np.flatnonzero(~straight).tolist():
         second[k] = k > 0 and not straight[k - 1] and not second[k - 1]
