@@ -283,9 +283,11 @@ def recorded(
     hold: int = 5,
     start: tuple[float, float, float] = (0.0, 0.0, 0.0),
     gyro: float = 0.0,
+    log: float = 0.0,
 ) -> Recording:
     """40 s at 6 Hz from a pose at rest, of random steps held for some rows, seen by a camera with
-    noise; with a gyro of this noise [rad/s] the yaw rate too."""
+    noise; with a gyro of this noise [rad/s] the yaw rate too, with a speed log of this noise [m/s]
+    the velocities."""
     rng = np.random.default_rng(seed)
     dt, n = 1 / 6, 240
     steps = n // hold
@@ -300,10 +302,11 @@ def recorded(
     ends = np.concatenate([[first], dt * np.arange(n + 1), moments, arrivals])
     ends = np.unique(np.round(np.append(ends[ends >= first], dt * n + 1), 9))
     y, poses = np.array([*start, 0.0, 0.0, 0.0, 0.0, 0.0]), {}
-    turning = {}
+    turning, moving = {}, {}
     for a, b in zip(ends[:-1], ends[1:], strict=True):
         poses[round(a, 6)] = seen(a, y, real)
         turning[round(a, 6)] = y[5]
+        moving[round(a, 6)] = y[3:5]
         step = max(int(np.searchsorted(arrivals, 0.5 * (a + b))) - 1, 0)
         y = solve_ivp(slopes, (a, b), y, args=(acts[hold * step], real), rtol=1e-6, atol=1e-8).y[
             :, -1
@@ -320,4 +323,8 @@ def recorded(
     if gyro:
         rates = np.array([turning[round(a, 6)] for a in moments])
         signals["r_radps"] = rates + gyro * rng.standard_normal(n)
+    if log:
+        velocities = np.array([moving[round(a, 6)] for a in moments])
+        velocities += log * rng.standard_normal((n, 2))
+        signals |= dict(zip(("u_mps", "v_mps"), velocities.T, strict=True))
     return Recording(f"{seed}", t, signals, Notes(vessel="trial_boat"))

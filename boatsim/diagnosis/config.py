@@ -375,6 +375,33 @@ class ChecksConfig:
         "Rows in a run of equal steps, at least; two occur by chance where the noise varies.",
         low=1,
     )
+    interpolation_min_share: float = setting(
+        0.3,
+        "1",
+        "Share of rows on straight lines from which a sensor's values were interpolated; noise "
+        "of eight digits yields 0.14.",
+        high=1.0,
+    )
+    interpolation_min_runs: int = setting(
+        20,
+        "count",
+        "Stretches of interpolated rows, at least; a steady turn in a log without noise is one.",
+        low=1,
+    )
+    interpolation_max_run_ratio: float = setting(
+        40.0,
+        "1",
+        "Longest stretch of interpolated rows relative to the median one; a vessel at rest is "
+        "longer.",
+        low=1.0,
+    )
+    interpolation_min_bend: float = setting(
+        8.0,
+        "digits",
+        "Median deviation from straight lines at the other rows, in units of the last digit; "
+        "rounding alone yields 1 to 2.",
+        low=2.0,
+    )
     rotation_min_sds: float = setting(
         10.0,
         "1",
@@ -509,6 +536,52 @@ class ChecksConfig:
     )
     rates_min_difference: float = setting(
         0.02, "1", "Mean square difference, relative to the rate, that needs an explanation."
+    )
+    clock_stretch_rows: int = setting(
+        20,
+        "count",
+        "Rows over which the clock rate by the track is compared with that by the heading.",
+        low=2,
+    )
+    clock_min_turn: float = setting(
+        0.05,
+        "rad",
+        "Change of heading over such rows from which it tells a clock rate: 3 degrees, ten times "
+        "the resolution of most compasses.",
+    )
+    clock_min_stretches: int = setting(
+        12, "count", "Stretches with such a change that are needed for a statement.", low=4
+    )
+    clock_min_correlation: float = setting(
+        0.5,
+        "1",
+        "Correlation between both clock rates from which a wander of the clock is reported; a "
+        "sensor that is wrong alone yields none.",
+        high=1.0,
+    )
+    clock_min_sds: float = setting(
+        5.0, "1", "Standard deviations by which a correlation or a rate must be certain."
+    )
+    clock_min_wander: float = setting(
+        0.02,
+        "1",
+        "Standard deviation of the clock rate from which a wander is reported: over a free run "
+        "it is as large as other errors of a good model.",
+    )
+    clock_min_rate: float = setting(
+        0.03,
+        "1",
+        "Constant error of the clock rate that is reported; delays and interpolation of sensors "
+        "cause up to 0.025 in turns.",
+    )
+    clock_gain_sds: float = setting(
+        3.0,
+        "1",
+        "Standard deviations by which a gain of velocities must be certain that is reported with "
+        "an error of the clock.",
+    )
+    clock_min_gain: float = setting(
+        0.01, "1", "Relative error of recorded velocities that is reported with that of the clock."
     )
     rudder_response_time: float = setting(
         3.5,

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from boatsim.diagnosis.checks import data_cleaning, run_checks
+from boatsim.diagnosis.checks.clock_rate import check_clock_rate
 from boatsim.diagnosis.checks.finding import Finding
 from boatsim.diagnosis.config import DEFAULT, DiagnosisConfig
 from boatsim.errors import BadInput
@@ -105,6 +106,7 @@ def load(
         findings += run_checks.check_recording(recording, clean, vessel, config.checks)
         cleaned.append(replace(clean, name=name))
         remarks += clean.remarks
+    findings += check_clock_rate(opened, config.checks)
     fitted, held_out, note = split_recordings(cleaned[:first], cleaned[first:])
     return Loaded(
         fitted,

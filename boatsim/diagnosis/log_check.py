@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from boatsim.diagnosis.checks import data_cleaning, run_checks
+from boatsim.diagnosis.checks.clock_rate import check_clock_rate
 from boatsim.diagnosis.checks.entry import column_sources, finding_entry, on_one_line
 from boatsim.diagnosis.checks.finding import LOG_NOT_BOAT, Finding
 from boatsim.diagnosis.checks.hypothesis_test import compare_reinterpretations
@@ -25,6 +26,7 @@ class _Checked:
 
     findings: tuple[Finding, ...] = ()
     parts: tuple[Recording, ...] = ()
+    prepared: tuple[Recording, ...] = ()  # the same parts before cleaning
     refused: BadInput | None = None
 
 
@@ -53,12 +55,15 @@ def check_files(
         vessels[path] = vessel_for(path, vessel, load_conditions)
     check_same_vessel(list(vessels.values()))
     findings, refused, usable = list[Finding](), list[BadInput](), list[Recording]()
+    prepared = list[Recording]()
     for path in runs:
         checked = _check_file(path, vessels[path])
         findings += checked.findings
         if checked.refused:
             refused.append(checked.refused)
         usable += checked.parts
+        prepared += checked.prepared
+    findings += check_clock_rate(prepared, DEFAULT.checks)
     if usable:
         try:
             loaded = Loaded(usable, (), vessels, "")
@@ -101,8 +106,8 @@ def _check_file(path: Path, vessel: Vessel) -> _Checked:
             name = f"{path} (part {number})"
         parts.append(replace(cleaned, name=name))
     if table:
-        parts = []
-    return _Checked(tuple(findings), tuple(parts))
+        return _Checked(tuple(findings))
+    return _Checked(tuple(findings), tuple(parts), tuple(opened))
 
 
 def correction_hint(

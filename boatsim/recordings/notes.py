@@ -27,8 +27,9 @@ NOISE = (
 )
 AMBIENT = ("axes", "force_rms", "time_constant_s")
 TABLES = ("columns", "latency", "noise", "ambient", "coefficient_uncertainty", "facts", "set")
-KEYS = ("vessel", "load", "group", "scale", "use", *TABLES, "runs")
+KEYS = ("vessel", "load", "group", "scale", "use", "clock", *TABLES, "runs")
 FORBIDDEN_IN_GROUP = (IN_GROUP, ".", "'", '"')  # in the name of a group
+CLOCK_BY_MOTION = "motion"  # the value of `clock` with which the motion sets the times of the rows
 MAX_LATENCY = 60.0  # [s] a longer one is a wrong clock
 MAX_NUMBER = 1e300  # larger integers do not fit a float
 # Suffix of a column or key -> unit
@@ -97,6 +98,7 @@ class Notes:
         settings: Values of the vessel's effects in this run: effect -> parameter -> value.
         use: Parts of the recording that are used, each from and to [s]; () for all of it.
         latency: Column -> delay by which its values are older than their times [s].
+        clock: "motion" if the times of the rows follow from the recorded motion, else "".
         scale: Full-scale length / model length.
         noise: Standard deviation of the sensors, by the names in NOISE.
         ambient: The unmodelled disturbance.
@@ -110,6 +112,7 @@ class Notes:
     settings: Mapping[str, Mapping[str, object]] = field(default_factory=dict)
     use: tuple[tuple[float, float], ...] = ()
     latency: dict[str, float] = field(default_factory=dict)
+    clock: str = ""
     scale: float | None = None
     noise: dict[str, float] = field(default_factory=dict)
     ambient: Ambient = field(default_factory=Ambient)
@@ -288,6 +291,13 @@ class _Reader:
                 raise inner.bad_value(name, f"-{MAX_LATENCY:g} to {MAX_LATENCY:g} s")
         return found
 
+    def read_clock(self) -> str:
+        if "clock" not in self.content:
+            return ""
+        if self.content["clock"] != CLOCK_BY_MOTION:
+            raise self.bad_value("clock", f'"{CLOCK_BY_MOTION}", or no line')
+        return CLOCK_BY_MOTION
+
     def read_columns(self) -> dict[str, str | Range | Curve]:
         inner = self.subtable_reader("columns")
         columns: dict[str, str | Range | Curve] = {}
@@ -354,6 +364,7 @@ class _Reader:
             settings=_read_or_collect_mistake(mistakes, self.read_settings, {}),
             use=_read_or_collect_mistake(mistakes, self.read_used_interval, ()),
             latency=_read_or_collect_mistake(mistakes, self.read_latency, {}),
+            clock=_read_or_collect_mistake(mistakes, self.read_clock, ""),
             scale=_read_or_collect_mistake(mistakes, self.read_scale, None),
             noise=_read_or_collect_mistake(
                 mistakes, lambda: self.subtable_reader("noise").read_numbers(low=0.0), {}

@@ -23,7 +23,9 @@ from boatsim.physics.signals import POSE, RATES, Array
 from boatsim.recordings import limits, units
 from boatsim.recordings.conversion import Curve, Range
 from boatsim.recordings.expression import Expression, parse
+from boatsim.recordings.interpolated_wraps import ACROSS_WRAP, without_interpolated_wraps
 from boatsim.recordings.latency import shifted_columns
+from boatsim.recordings.motion_clock import times_by_motion
 from boatsim.recordings.notebook.arrow import signal_table
 from boatsim.recordings.notebook.data_frame import data_frame
 from boatsim.recordings.notebook.views import recording_figure, recording_html, table_metadata
@@ -387,12 +389,14 @@ def read(
             mistakes.append(str(error))
     if mistakes:
         raise BadInput(join_mistakes(mistakes, path))
-    signals, ignored = _signals(raw, needed)
-    remarks = [*found.remarks, *absent]
+    signals, ignored, across = _signals(raw, needed)
+    remarks = [*found.remarks, *absent, *across]
     if ignored:
         remarks.append(f"{path}: columns not used: {', '.join(ignored)}")
     recording = Recording(path.stem, raw.columns["t_s"], signals, found.notes, path, tuple(remarks))
     recording = recording.without_latency(found.notes.latency)
+    if found.notes.clock:
+        recording = _with_clock_of_motion(recording, path)
     for part in recording.parts():
         if len(part) < FEWEST_ROWS:
             [interval] = part.notes.use or [(part.t[0], part.t[-1])]
@@ -704,18 +708,39 @@ def _check_limits(raw: Raw, channels: Mapping[str, tuple[float, float]]) -> None
                 raise file_error(raw.path, message, raw.rows[index], name)
 
 
-def _signals(raw: Raw, needed: list[str]) -> tuple[dict[str, Array], list[str]]:
-    """The signals with unwrapped headings, and the names of columns that are not used."""
+def _with_clock_of_motion(recording: Recording, path: Path) -> Recording:
+    """The recording with the times that its motion implies; parts to use keep their rows."""
+    t = times_by_motion(recording.t, recording.signals, str(path))
+    rates = np.diff(t) / np.diff(recording.t)
+    lowest, highest = np.quantile(rates, [0.05, 0.95])
+    remark = (
+        f'{path}: clock = "motion": the times follow from the motion; a second of the log lasted '
+        f"{lowest:.2f} to {highest:.2f} s, {np.mean(rates):.3f} s on average"
+    )
+    use = []
+    for begin, end in recording.notes.use:
+        moved = np.interp([begin, end], recording.t, t)
+        use.append((float(moved[0]), float(moved[1])))
+    notes = replace(recording.notes, use=tuple(use))
+    return replace(recording, t=t, notes=notes, remarks=(*recording.remarks, remark))
+
+
+def _signals(raw: Raw, needed: list[str]) -> tuple[dict[str, Array], list[str], list[str]]:
+    """The signals with unwrapped headings, the names of columns that are not used, and remarks."""
     ignored = [n for n in raw.columns if n not in needed and not RUN_COLUMN.match(n)]
     signals: dict[str, Array] = {}
+    remarks = list[str]()
     for name, values in raw.columns.items():
         if name == "t_s" or name in raw.text or (name in ignored and not unit_of(name)):
             continue
         is_heading = name == "psi_rad" or name.endswith("_psi_rad")
         if is_heading:
+            values, lost = without_interpolated_wraps(values)
             values = _unwrap(values)
+            if lost:
+                remarks.append(f"{raw.path}: {name}: {lost} rows {ACROSS_WRAP}")
         signals[name] = values
-    return signals, ignored
+    return signals, ignored, remarks
 
 
 def _unwrap(angle: Array) -> Array:

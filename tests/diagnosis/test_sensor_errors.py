@@ -13,7 +13,8 @@ from scipy.interpolate import CubicSpline
 
 from boatsim.diagnosis.candidates import library_for
 from boatsim.physics import content, vessel
-from boatsim.physics.base import Array
+from boatsim.physics.base import Array, MeasuredMotion
+from boatsim.physics.effects.clock_rate import ClockRate
 from boatsim.physics.effects.sensor_error import SensorError
 from boatsim.physics.recorded_channels import CHANNELS
 from boatsim.recordings.table import Recording
@@ -94,3 +95,37 @@ def test_an_error_of_one_channel_is_named_with_its_value(
     named(answer, name, true)
     assert answer["effects"][0]["kind"] == "measurement"
     assert "not physics" in answer["effects"][0]["words"]
+
+
+def with_all_velocities(rate: float) -> list[Recording]:
+    """Three recordings of poses and velocities on a clock whose second lasts `rate` seconds."""
+    runs = [recorded(Real(), seed, gyro=GYRO, log=0.005) for seed in (1, 2, 3)]
+    return [replace(run, t=run.t / rate) for run in runs]
+
+
+def test_a_clock_rate_is_a_candidate_where_speed_and_yaw_rate_were_recorded() -> None:
+    for columns in (POSES, (*POSES, "u_mps"), (*POSES, "r_radps")):
+        assert "clock_rate" not in {e.name for e in library_for(BOAT, (), None, columns).entries}
+    both = library_for(BOAT, (), None, (*POSES, "u_mps", "r_radps"))
+    assert "clock_rate" in {e.name for e in both.entries}
+
+
+def test_a_wrong_clock_makes_all_velocities_differ_by_one_factor() -> None:
+    effect = ClockRate(fraction=0.25).with_all_parameters(BOAT)
+    true = MeasuredMotion(*np.arange(1.0, 13.0))
+    found = MeasuredMotion(*ClockRate.apply_measurement_error(true, effect.values()))
+    assert found[:6] == pytest.approx(true[:6])
+    assert found[6:] == pytest.approx(0.8 * np.array(true[6:]))
+
+
+@pytest.mark.slow
+def test_a_clock_that_runs_slowly_is_named(tmp_path: Path) -> None:
+    answer = diagnosed(with_all_velocities(1.08), tmp_path, "trial_boat", library=FURTHER)
+    assert "clock_rate" in {effect["name"] for effect in answer["effects"]}
+    [found] = [effect for effect in answer["effects"] if effect["name"] == "clock_rate"]
+    assert found["parameters"]["fraction"]["value"] == pytest.approx(0.08, abs=0.02)
+
+
+@pytest.mark.slow
+def test_a_right_clock_beside_velocities_names_nothing(tmp_path: Path) -> None:
+    nothing_missing(diagnosed(with_all_velocities(1.0), tmp_path, "trial_boat", library=FURTHER))

@@ -9,7 +9,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from boatsim.diagnosis import loading, pipeline, priors
+from boatsim.diagnosis import loading, pipeline
+from boatsim.diagnosis.checks import data_cleaning
 from boatsim.diagnosis.evaluation import MODELS, compared_fits
 from boatsim.diagnosis.filter import MappedRecording
 from boatsim.diagnosis.free_runs import free_runs, rms_errors
@@ -21,7 +22,7 @@ HEADER = ("figure", "before", "retuned", "corrected", "corrected / retuned")
 
 @dataclass(frozen=True)
 class Figures:
-    """What one diagnosis of a set says, and how well its models predict the held-out runs."""
+    """Answer of one diagnosis of a set, and how well its models predict the held-out runs."""
 
     title: str
     diagnosis: Diagnosis
@@ -74,7 +75,8 @@ def map_runs(diagnosis: Diagnosis, files: Sequence[Path], vessel: str) -> list[M
     mapped = []
     for file in files:
         recording, boat = loading.open_recording(file, vessel, ())
-        mapped.append(diagnosis.map_recording(recording.thinned(priors.used_sample_rate(boat))))
+        cleaned = data_cleaning.clean_recording(recording, boat)
+        mapped.append(diagnosis.map_recording(cleaned))
     return mapped
 
 

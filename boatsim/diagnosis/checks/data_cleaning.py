@@ -11,6 +11,10 @@ import numpy as np
 
 from boatsim.diagnosis import priors
 from boatsim.diagnosis.checks.finding import Finding
+from boatsim.diagnosis.checks.interpolated_samples import (
+    INTERPOLATED,
+    drop_interpolated_samples,
+)
 from boatsim.diagnosis.checks.position_frame import drop_rotated_positions
 from boatsim.diagnosis.checks.position_outliers import drop_position_outliers
 from boatsim.diagnosis.checks.reinterpretations import MIRRORED, MIRRORED_WORDS
@@ -23,12 +27,15 @@ from boatsim.diagnosis.checks.steering_sense import correct_rudder_sense
 from boatsim.diagnosis.checks.wrapped_angles import unwrap_directions
 from boatsim.diagnosis.config import DEFAULT, ChecksConfig, DiagnosisConfig
 from boatsim.physics.vessel import Vessel
+from boatsim.recordings.interpolated_wraps import ACROSS_WRAP
 from boatsim.recordings.table import Recording
 
 # phrase in a remark of a recording -> name of the finding
 FINDING_OF_REMARK = {
     FIX_REPEATED: "position_held",
     VALUE_REPEATED: "channel_held",
+    ACROSS_WRAP: "heading_across_wrap",
+    INTERPOLATED: "interpolated",
     "jump away and return": "outliers",
     "off the course of the following fixes": "begins_astray",
     "were rotated with the heading": "positions_turned",
@@ -62,7 +69,9 @@ def clean_recording(
     duration: float = 0.0,
     config: DiagnosisConfig = DEFAULT,
 ) -> Recording:
-    """Downsample a prepared recording to the useful rate, without repeated values and outliers.
+    """Downsample a prepared recording to the useful rate, and drop values that are no measurements.
+
+    These are values that a logger interpolated or repeated, and outliers.
 
     Args:
         recording: A prepared recording.
@@ -73,7 +82,8 @@ def clean_recording(
     Returns:
         The cleaned recording; ignored values are nan, and its remarks list each correction.
     """
-    reduced = recording.thinned(priors.used_sample_rate(vessel, duration, config.load))
+    measured = drop_interpolated_samples(recording, config.checks)
+    reduced = measured.thinned(priors.used_sample_rate(vessel, duration, config.load))
     return drop_faulty_values(reduced, vessel, config)
 
 

@@ -51,6 +51,7 @@ class Finding:
         changes: Changes of columns that correct it.
         alternatives: Other changes that explain the log equally well, each with its words.
         use: Interval [s] of the log that can be used.
+        clock: Value of `clock` in recording.toml that corrects the times; "" if they are right.
         remedy: Advice in words, if no line of recording.toml corrects it.
         words: Description in a clause, if the name does not describe it.
         run: File of the recording; for several recordings that of the first.
@@ -64,6 +65,7 @@ class Finding:
     changes: tuple[Change, ...] = ()
     alternatives: tuple[tuple[str, tuple[Change, ...]], ...] = ()
     use: tuple[float, float] | None = None
+    clock: str = ""
     remedy: str = ""
     words: str = ""
     run: str = ""
@@ -80,7 +82,7 @@ class Finding:
         enough.
         """
         certain = self.probability >= config.min_verdict_probability
-        return self.kind == "fault" and bool(self.changes) and certain
+        return self.kind == "fault" and bool(self.changes or self.clock) and certain
 
 
 def scaling_corrections(
@@ -223,6 +225,8 @@ def recording_toml_lines(finding: Finding, sources: Mapping[str, Expression]) ->
     if finding.use:
         begin, end = finding.use
         lines.append(f"use = [{begin:.9g}, {end:.9g}]")
+    if finding.clock:
+        lines.append(f'clock = "{finding.clock}"')
     return lines + change_lines(finding.changes, sources)
 
 

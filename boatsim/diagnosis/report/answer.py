@@ -219,7 +219,8 @@ def _with_log_first(
     If no fit follows the recordings, it is preceded by all faults of the log.
     """
     config = problem.config.checks
-    certain = [finding.description for finding in findings if finding.invalidates_log(config)]
+    affecting = [finding for finding in findings if finding.invalidates_log(config)]
+    certain = list(dict.fromkeys(finding.description for finding in affecting))
     if ranking.divergences:
         faults = [finding.description for finding in findings if finding.kind == "fault"]
         certain = list(dict.fromkeys(faults))

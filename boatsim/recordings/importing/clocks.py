@@ -12,6 +12,7 @@ from boatsim.recordings.expression import UNITS
 # Names of columns that are times; a unit may follow
 CLOCK = re.compile(
     r"^(t|time|timestamp|stamp|date_?time|utc|gps_?time|epoch|elapsed|seconds?"
+    r"|t_?(vec|vector|out|axis|log)"
     r"|time_?(s|ms|us|ns)?)$"
 )
 ENDING = re.compile(

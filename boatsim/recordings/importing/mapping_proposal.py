@@ -11,6 +11,7 @@ import numpy as np
 from boatsim.files import toml_key, toml_value
 from boatsim.recordings.expression import parse
 from boatsim.recordings.importing.log import Log, Signal, median_sampling_rate
+from boatsim.recordings.importing.motion_evidence import with_evidence_of_motion
 from boatsim.recordings.importing.several_logs import sources, unaligned
 from boatsim.recordings.importing.signal_classification import (
     HELM,
@@ -70,7 +71,7 @@ class VesselChannel:
 def signal_table(log: Log) -> list[str]:
     """Return a table of the signals of a log: name, unit, rate, samples, range, classification."""
     columns: dict[str, str] = {}
-    for g in classify_signals(log):
+    for g in with_evidence_of_motion(classify_signals(log), log):
         columns[g.name] = g.column
     rows = [("signal", "unit", "Hz", "samples", "lowest", "highest", "probably")]
     listed = list(log.signals)
@@ -145,7 +146,8 @@ def propose_map(
             known[column] = expression
             used_signals.add(signal)
     best: dict[str, list[Classification]] = {}
-    for g in classify_signals(log, [d.name for d in drives]):
+    classified = classify_signals(log, [d.name for d in drives])
+    for g in with_evidence_of_motion(classified, log):
         if g.column not in known and g.name not in used_signals:
             best.setdefault(g.column, []).append(g)
     lines = [

@@ -43,12 +43,12 @@ SATELLITES = set("gps gnss fix navsat rmc gga gll".split())
 OUTPUTS = set(
     "rcou output outputs actuator actuators servo cmd command commanded thrust thruster "
     "thrusters throttle rudder "
-    "steer steering motor motors pwm nozzle azimuth prop "
+    "steer steering motor motors pwm nozzle azimuth azi prop "
     "propeller rpm rps shaft esc helm delta jet wheel tiller".split()
 )
 SENSED = set("actual measured feedback fb telemetry esc state rsa sensed".split())
 STICKS = set("rcin joy stick joystick manual pilot".split())
-HELM = set("rudder steer steering nozzle azimuth helm delta jet angle pos wheel tiller".split())
+HELM = set("rudder steer steering nozzle azimuth azi helm delta jet angle pos wheel tiller".split())
 SIDES = {
     **dict.fromkeys(("port", "left", "ps", "portside"), "port"),
     **dict.fromkeys(("starboard", "stbd", "right", "sb"), "starboard"),
@@ -86,7 +86,7 @@ NUMBERED = {
     *map(str, range(10)),
     *WORDS,
 }  # other words in the name of a shaft speed
-ANGLES = set("rudder steer steering nozzle azimuth helm delta wheel tiller".split())
+ANGLES = set("rudder steer steering nozzle azimuth azi helm delta wheel tiller".split())
 MAX_RUDDER = 1.6  # [rad] a larger rudder angle is in degrees
 MAX_WHEEL = 1080.0  # [deg] three turns from the middle; a larger number is no angle of a wheel
 COLUMNS = (*POSE, *RATES)
@@ -223,6 +223,12 @@ def _angle(column: str, signal: Signal, tokens: frozenset[str], word: str) -> tu
     if float(np.nanmax(np.abs(signal.values))) > largest:
         return unit, "degrees by its range"
     return word, "radians by its range"
+
+
+def has_stated_unit(name: str, signal: Signal) -> bool:
+    """Return whether the format or the name of a signal states its unit."""
+    words = set(tokenize_name(name))
+    return bool(signal.unit or _unit_word(name, signal) or words & {"rad", "radps", "rad/s"})
 
 
 def _unit_word(name: str, signal: Signal) -> str:

@@ -86,6 +86,7 @@ SUSPECTS = [
 TO_STARBOARD = {
     "thruster.y",
     "propeller.y",
+    "foil.y",
     "toward",
     "east",
     "list",

@@ -1,0 +1,234 @@
+"""Check of the clock of a log: do the track and the heading ask for another time than the rows?
+
+Positions and velocities tell how long a stretch of the track took, heading and yaw rate how long a
+turn took. These are two independent clocks. One sensor with a wrong gain, a current, or a velocity
+through the water changes one of them. If both deviate from the times of the rows in the same way,
+the times of the rows are wrong: rows that were resampled by time stamps that came late or early, or
+a logger whose clock runs fast or slow.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from boatsim.diagnosis.checks.finding import Change, Finding
+from boatsim.diagnosis.config import ChecksConfig
+from boatsim.physics.base import Array
+from boatsim.recordings.motion_clock import (
+    Stretches,
+    estimate_clock_rates,
+    motion_stretches,
+)
+from boatsim.recordings.notes import CLOCK_BY_MOTION
+from boatsim.recordings.table import Recording
+
+SPEEDS = ("u_mps", "v_mps")
+
+
+@dataclass(frozen=True)
+class _Compared:
+    """Clock rates by the track and by the heading over turning stretches of all recordings.
+
+    Attributes:
+        track: Clock rates (K,) by positions and velocities.
+        turning: Clock rates (K,) by heading and yaw rate.
+        weight: Square of the change of heading (K,), the precision of `turning`.
+    """
+
+    track: Array
+    turning: Array
+    weight: Array
+
+    @property
+    def correlation(self) -> float:
+        """Weighted correlation of both rates."""
+        a = self.track - _mean(self.track, self.weight)
+        b = self.turning - _mean(self.turning, self.weight)
+        size = float(np.sqrt(_mean(a * a, self.weight) * _mean(b * b, self.weight)))
+        if size > 0.0:
+            return float(_mean(a * b, self.weight)) / size
+        return 0.0
+
+    @property
+    def sds(self) -> float:
+        """Number of standard deviations by which the correlation differs from none."""
+        c = self.correlation
+        return c * float(np.sqrt((self.count - 2.0) / max(1.0 - c * c, 1e-9)))
+
+    @property
+    def count(self) -> float:
+        """Number of stretches of equal weight that would be as informative."""
+        return float(self.weight.sum() ** 2 / (self.weight**2).sum())
+
+    def ratio(self) -> tuple[float, float]:
+        """Gain of the velocities for which both rates agree on average, and its sd."""
+        ratio = self.track / self.turning
+        middle = _mean(ratio, self.weight)
+        sd = float(np.sqrt(_mean((ratio - middle) ** 2, self.weight) / self.count))
+        return middle, sd
+
+    def level(self) -> tuple[float, float]:
+        """Mean clock rate by the heading, and its sd."""
+        middle = _mean(self.turning, self.weight)
+        sd = float(np.sqrt(_mean((self.turning - middle) ** 2, self.weight) / self.count))
+        return middle, sd
+
+
+def _mean(values: Array, weight: Array) -> float:
+    return float((values * weight).sum() / weight.sum())
+
+
+def check_clock_rate(recordings: Sequence[Recording], config: ChecksConfig) -> list[Finding]:
+    """Find a clock that runs fast, slowly or unevenly, from what all sensors see of the motion.
+
+    All recordings are examined together, because one instrument and one logger made them.
+
+    Args:
+        recordings: Prepared recordings of one vessel, or parts of them.
+        config: Thresholds of the quality checks.
+
+    Returns:
+        Findings "clock_wanders" or "clock_rate", and "velocity_gain", for each recording that has
+        the columns of positions, heading, velocities and yaw rate.
+    """
+    examined = [r for r in recordings if not r.notes.clock]
+    long = []
+    for recording in examined:
+        run = motion_stretches(recording.t, recording.signals, config.clock_stretch_rows)
+        if run:
+            long.append(run)
+    compared = _compare(long, config)
+    if compared is None:
+        return []
+    gain, gain_sd = compared.ratio()
+    wrong_gain = abs(gain - 1.0) > max(config.clock_min_gain, config.clock_gain_sds * gain_sd)
+    agree = compared.correlation > config.clock_min_correlation
+    found = list[Finding]()
+    if agree and compared.sds > config.clock_min_sds:
+        found = _wander(examined, gain if wrong_gain else 1.0, compared, config)
+    elif not wrong_gain:
+        found = _constant_rate(examined, compared, _track_rate(long), config)
+    if found and wrong_gain:
+        found += [_velocity_gain(recording, gain, gain_sd, config) for recording in examined]
+    return found
+
+
+def _compare(runs: Sequence[Stretches], config: ChecksConfig) -> _Compared | None:
+    """Both clock rates over turning stretches; None if these are too few."""
+    track, turning, weight = list[Array](), list[Array](), list[Array]()
+    for run in runs:
+        travelled = (run.travelled**2).sum(axis=0)
+        used = (np.abs(run.turned) > config.clock_min_turn) & (travelled > 0.0)
+        along = (run.travelled * run.moved).sum(axis=0)
+        track.append(along[used] / travelled[used])
+        turning.append(run.swung[used] / run.turned[used])
+        weight.append(run.turned[used] ** 2)
+    if sum(map(len, track)) < config.clock_min_stretches:
+        return None
+    found = _Compared(*map(np.concatenate, (track, turning, weight)))
+    usual = np.median(found.weight)
+    found = _Compared(found.track, found.turning, np.minimum(found.weight, usual))
+    if not float(np.median(found.turning)) > 0.0 or not float(found.turning.min()) > 0.0:
+        return _without_contradictions(found, config)
+    return found
+
+
+def _without_contradictions(found: _Compared, config: ChecksConfig) -> _Compared | None:
+    """The stretches in which heading and yaw rate agree in their sense."""
+    same = found.turning > 0.0
+    if same.sum() < max(config.clock_min_stretches, 0.9 * len(same)):
+        return None
+    return _Compared(found.track[same], found.turning[same], found.weight[same])
+
+
+def _track_rate(runs: Sequence[Stretches]) -> float:
+    """Mean clock rate by positions and velocities over all stretches."""
+    along = sum(float((run.travelled * run.moved).sum()) for run in runs)
+    return along / sum(float((run.travelled**2).sum()) for run in runs)
+
+
+def _wander(
+    recordings: Sequence[Recording], gain: float, compared: _Compared, config: ChecksConfig
+) -> list[Finding]:
+    """The finding of an uneven clock in each recording."""
+    runs = [motion_stretches(recording.t, recording.signals) for recording in recordings]
+    known = [run for run in runs if run]
+    estimate = estimate_clock_rates(known, gain)
+    if estimate.sd < config.clock_min_wander:
+        return []
+    rates = iter(estimate.rates)
+    found = []
+    for recording, run in zip(recordings, runs, strict=True):
+        if run is None:
+            continue
+        own = next(rates)
+        lowest, highest = np.quantile(own, [0.05, 0.95])
+        evidence = (
+            f"a second of the log lasted {lowest:.2f} to {highest:.2f} s, {own.mean():.2f} s on "
+            "average, by the distances and the turns of the vessel. Track and heading agree in "
+            f"this (correlation {compared.correlation:.2f} over {len(compared.track)} stretches "
+            "of turning in all recordings), so that neither speed sensor nor yaw rate is the cause"
+        )
+        found.append(
+            Finding(
+                "clock_wanders",
+                evidence,
+                probability=config.probability_evident,
+                clock=CLOCK_BY_MOTION,
+                words="the times of the rows run unevenly",
+                run=_run_of(recording),
+            )
+        )
+    return found
+
+
+def _constant_rate(
+    recordings: Sequence[Recording],
+    compared: _Compared,
+    everywhere: float,
+    config: ChecksConfig,
+) -> list[Finding]:
+    """The finding of a clock that runs too fast or too slowly, on straight courses and in turns."""
+    rate, sd = compared.level()
+    if abs(rate - 1.0) < max(config.clock_min_rate, config.clock_min_sds * sd):
+        return []
+    if (everywhere - 1.0) / (rate - 1.0) < 0.5:
+        return []
+    found = []
+    for recording in recordings:
+        evidence = (
+            f"a second of the log lasted {rate:.3f} +- {sd:.3f} s, by the distances and by the "
+            f"turns of the vessel ({len(compared.track)} stretches of turning)"
+        )
+        found.append(
+            Finding(
+                "clock_rate",
+                evidence,
+                probability=config.probability_strong,
+                changes=(Change("t_s", "t_s", rate),),
+                words="the clock of the log runs too fast or too slowly",
+                run=_run_of(recording),
+            )
+        )
+    return found
+
+
+def _velocity_gain(recording: Recording, gain: float, sd: float, config: ChecksConfig) -> Finding:
+    """The finding of velocities that are too small or too large, by the corrected clock."""
+    evidence = (
+        f"the positions move {gain:.3f} +- {sd:.3f} times as fast as u_mps and v_mps, after the "
+        "error of the clock, which the headings show too"
+    )
+    return Finding(
+        "velocity_gain",
+        evidence,
+        probability=config.probability_strong,
+        changes=tuple(Change(name, name, gain) for name in SPEEDS),
+        words="the recorded velocities have a wrong gain",
+        run=_run_of(recording),
+    )
+
+
+def _run_of(recording: Recording) -> str:
+    return str(recording.path or recording.name)

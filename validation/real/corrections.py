@@ -1,0 +1,69 @@
+"""Corrections that the checks of a log offer, accepted without other knowledge of the log.
+
+`accept_corrections` writes the offered lines into the recording.toml next to the recordings.
+"""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+from boatsim.diagnosis import loading
+from boatsim.diagnosis.checks.entry import column_sources
+from boatsim.diagnosis.checks.finding import recording_toml_lines
+from boatsim.files import toml_key
+
+COLUMNS, LATENCY = "[columns]", "[latency]"
+
+
+def accept_corrections(files: Sequence[Path], vessel: str) -> list[str]:
+    """Check recordings of one folder and write all corrections that the checks offer.
+
+    These are the checks with which a diagnosis begins, without the comparison with the vessel.
+
+    Args:
+        files: Recordings in one folder, which has no recording.toml yet.
+        vessel: Name or path of the vessel.
+
+    Returns:
+        One line for each kind of finding with a correction: its name and runs.
+    """
+    loaded = loading.load(loading.Request(files, vessel=vessel))
+    by_run: dict[str, list[str]] = {}
+    offered: dict[str, list[str]] = {}
+    for finding in loaded.findings:
+        lines = recording_toml_lines(finding, column_sources(finding.run, loaded.vessel))
+        run = Path(finding.run).stem
+        if lines:
+            by_run.setdefault(run, []).extend(lines)
+            offered.setdefault(finding.name, []).append(run)
+    tables = list[str]()
+    for run, lines in by_run.items():
+        tables += _run_tables(run, lines)
+    folder = files[0].parent
+    (folder / "recording.toml").write_text("\n".join(tables) + "\n", encoding="utf-8")
+    return _summaries(offered)
+
+
+def _run_tables(run: str, lines: Sequence[str]) -> list[str]:
+    """Tables of one run: its own keys first, then columns and latency, each key once."""
+    tables: dict[str, dict[str, str]] = {"": {}, COLUMNS: {}, LATENCY: {}}
+    table = ""
+    for line in lines:
+        if line.startswith("["):
+            table = line
+        else:
+            key, _, value = line.partition(" = ")
+            tables[table].setdefault(key, value)
+        if line.startswith(("use", "clock")):
+            table = ""
+    written = list[str]()
+    for name, keys in tables.items():
+        if keys:
+            inner = f".{name[1:-1]}" if name else ""
+            written.append(f"[runs.{toml_key(run)}{inner}]")
+            written += [f"{key} = {value}" for key, value in keys.items()]
+    return written
+
+
+def _summaries(offered: Mapping[str, Sequence[str]]) -> list[str]:
+    """The offered corrections by finding."""
+    return [f"{name}: {len(runs)} runs ({', '.join(runs)})" for name, runs in offered.items()]
