@@ -70,6 +70,8 @@ def _log(
             if name == clock:
                 unit = "s"
             signals[name] = Signal(t, values, unit)
+    if clock in dates or (clock and clock.startswith("column_")):
+        remarks = (*remarks, f"{path}: the times are those of column {clock}")
     if not clock:
         no_time = (
             f"{path}: no column holds times: rows are counted; the map can name it with `time`"
