@@ -134,8 +134,8 @@ def _restored(cells: Sequence[str], found: Array, words: Sequence[int]) -> Cells
         first = restored[0]
         remarks.append(
             (
-                f"{len(restored)} cells were changed into dates by a spreadsheet and are numbers "
-                f"again, first {cells[first].strip()!r} = {values[first]:g}",
+                f"{_cells_were(restored)} changed into dates by a spreadsheet and read as "
+                f"numbers again, first {cells[first].strip()!r} = {values[first]:g}",
                 first,
             )
         )
@@ -146,7 +146,7 @@ def _restored(cells: Sequence[str], found: Array, words: Sequence[int]) -> Cells
         )
         remarks.append(
             (
-                f"{len(unclear)} cells were changed into dates by a spreadsheet and are left "
+                f"{_cells_were(unclear)} changed into dates by a spreadsheet and left "
                 f"empty, first {cells[first].strip()!r}, which was {both}",
                 first,
             )
@@ -154,10 +154,18 @@ def _restored(cells: Sequence[str], found: Array, words: Sequence[int]) -> Cells
     if others:
         first = others[0]
         shown = cells[first].strip()[:MAX_SHOWN]
-        remarks.append(
-            (f"{len(others)} cells are no numbers and are left empty, first {shown!r}", first)
-        )
+        what = f"{len(others)} cells are no numbers and are left empty"
+        if len(others) == 1:
+            what = "1 cell is no number and is left empty"
+        remarks.append((f"{what}, first {shown!r}", first))
     return Cells(values, remarks=tuple(remarks))
+
+
+def _cells_were(rows: Sequence[int]) -> str:
+    """Number of cells and the verb of the sentence."""
+    if len(rows) == 1:
+        return "1 cell was"
+    return f"{len(rows)} cells were"
 
 
 def _numbers_before_spreadsheet(text: str, decimals: set[int]) -> list[float]:
