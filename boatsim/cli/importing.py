@@ -1,6 +1,6 @@
 """Implementation of `boatsim import`: propose a map for a log, or convert a log with a map."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from functools import partial
 from pathlib import Path
 
@@ -86,9 +86,7 @@ def _propose_map(
             if channel in fed:
                 continue
             drives.append(_vessel_channel(boat, channel, low, high))
-        text = propose_map(
-            log, vessel, drives, boat.dof, boat.columns, partial(_speed_ahead, boat)
-        )
+        text = propose_map(log, vessel, drives, boat.dof, boat.columns, partial(_speed_ahead, boat))
     else:
         text = propose_map(log, vessel, [], (), None)
     print_notes(log.remarks)
@@ -120,7 +118,9 @@ def _vessel_channel(boat: Vessel, name: str, low: float, high: float) -> VesselC
     """A channel with what the vessel's effects state about its drive."""
     lever, coefficients = None, None
     for effect in boat.effects:
-        on = effect.on if isinstance(effect, Thruster | Propeller) else {}
+        if not isinstance(effect, Thruster | Propeller) or not isinstance(effect.on, Mapping):
+            continue
+        on = effect.on
         if name not in on.values() or isinstance(on.get("angle"), str):
             continue
         if float(on.get("angle", 0.0)) == 0.0:

@@ -92,7 +92,9 @@ def files_of_form(form: str, names: Sequence[str], day: str) -> dict[str, Path]:
         log = RECORDINGS / NAME / "runs" / f"{name}.csv"
         found[name], remarks = imported(log, OWNERS_LINES.get(day, ()))
         rows.append([name, f"{remarks}"])
-    print_table(f"{day}: files as published, imported by the proposed map", ("run", "remarks"), rows)
+    print_table(
+        f"{day}: files as published, imported by the proposed map", ("run", "remarks"), rows
+    )
     for line in OWNERS_LINES.get(day, ()):
         print(f"  line completed by the owner: {line}")
     return found

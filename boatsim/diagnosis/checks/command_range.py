@@ -1,4 +1,4 @@
-"""Commands beyond the range that a vessel file states: the range of the recordings holds instead."""
+"""Range of the channels of a vessel, widened to that of the commands in recordings."""
 
 from collections.abc import Iterable
 from dataclasses import replace

@@ -114,7 +114,6 @@ def _has_second_sign(
     return is_rounded or largest >= config.command_full_per_cent
 
 
-
 def _conversion(values: Array, name: str, limit: float, config: ChecksConfig) -> Conversion | None:
     """Conversion by which values (N,) come within a limit and use a fair part of it."""
     low = float(values.min())

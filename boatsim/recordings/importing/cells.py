@@ -115,8 +115,8 @@ def _with_decimal_points(cells: Sequence[str]) -> Sequence[str]:
 def _restored(cells: Sequence[str], found: Array, words: Sequence[int]) -> Cells:
     """A column of numbers, in which cells that a spreadsheet made dates of are numbers again."""
     decimals = set()
-    for i in np.flatnonzero(np.isfinite(found)):
-        if digits := DECIMALS.fullmatch(cells[i].strip()):
+    for row in np.flatnonzero(np.isfinite(found)).tolist():
+        if digits := DECIMALS.fullmatch(cells[row].strip()):
             decimals.add(len(digits[1]))
     values = found.copy()
     restored, unclear, others = list[int](), list[int](), list[int]()

@@ -24,7 +24,9 @@ UNIT_WORDS = {
 }
 YEAR_2000, YEAR_2100 = 946684800.0, 4102444800.0  # [s] since 1970
 EPOCH_UNITS = (1.0, 1e-3, 1e-6, 1e-9)  # [s] units in which times since 1970 are counted
-TIME_WORDS = set("time times timestamp stamp clock date datetime utc epoch gpstime zeit tid".split())
+TIME_WORDS = set(
+    "time times timestamp stamp clock date datetime utc epoch gpstime zeit tid".split()
+)
 # Words of a time that is not that of the row: a duration, or the time of another row
 NOT_NOW = set("previous prev last next cycle delta diff step dt start begin end period up".split())
 MIN_TIMES = 20  # fewer values do not show that a column increases as times do

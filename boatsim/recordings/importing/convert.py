@@ -182,9 +182,7 @@ def _with_time_of_map(log: Log, map: Map, file: str) -> Log:
     return replace(log, signals=signals)
 
 
-def _column(
-    work: _Work, name: str, what: str | Range | Curve | Allocation
-) -> tuple[Array, Array]:
+def _column(work: _Work, name: str, what: str | Range | Curve | Allocation) -> tuple[Array, Array]:
     """Times (N,) [s] and values (N,) of a column."""
     if isinstance(what, Allocation):
         t, values = _sum_of_terms(work, name, what)
@@ -207,9 +205,7 @@ def _term(work: _Work, name: str, key: str, what: str | Range | Curve) -> tuple[
     return signal.t, what.of(values)
 
 
-def _remark_limits(
-    work: _Work, name: str, values: Array, what: Range | Curve | Allocation
-) -> None:
+def _remark_limits(work: _Work, name: str, values: Array, what: Range | Curve | Allocation) -> None:
     lowest, highest = what.ends
     if beyond := int(np.sum((values < lowest) | (values > highest))):
         work.remark(

@@ -81,8 +81,12 @@ def _readers(texts: Sequence[str]) -> list[Callable[[str], float]]:
 
 def _continued(t: Array, read: Callable[[str], float]) -> Array:
     """Times (N,) that go on where a time of day begins again at midnight, or minutes at an hour."""
-    turn = {_time_of_day: DAY, _minutes: HOUR}.get(read)
-    if turn is None:
+    turn = float("inf")
+    if read is _time_of_day:
+        turn = DAY
+    elif read is _minutes:
+        turn = HOUR
+    else:
         return t
     known = np.isfinite(t)
     back = np.append(0.0, np.diff(t[known])) < -0.5 * turn

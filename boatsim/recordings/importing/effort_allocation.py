@@ -56,9 +56,10 @@ def _line(drive: VesselChannel, found: Sequence[Classification], row: Sequence[f
         ahead, astern = drive.coefficients
         law = f", coefficient = {ahead:g}, exponent = 2, inverse = true"
         if astern != ahead:
-            law = f", coefficient = {ahead:g}, coefficient_below = {astern:g}" + law.split(
-                f"{ahead:g}", 1
-            )[1]
+            law = (
+                f", coefficient = {ahead:g}, coefficient_below = {astern:g}"
+                + law.split(f"{ahead:g}", 1)[1]
+            )
     names = " and ".join(g.name for g in found)
     return (
         f"{toml_key(drive.name)} = {{ {content}{law} }}  # "
