@@ -31,6 +31,7 @@ from boatsim.recordings.importing.resample import (
     row_times,
 )
 from boatsim.recordings.importing.several_logs import Span, aligned, begin_line, sources
+from boatsim.recordings.importing.track import constant_heading_fault
 from boatsim.recordings.notes import Notes
 from boatsim.recordings.raw_table import file_error, select_rows
 from boatsim.recordings.repeated_values import repeated_rows, stale_rows
@@ -105,6 +106,7 @@ def convert_log(
         is_held = name in work.channels or is_command(name) or name.startswith(HELD)
         work.columns[name] = Column(_check_values(work, name, clean_samples(t, values)), is_held)
     _remark_disorder(work, disorder)
+    _check_heading(work)
     _drop_repeats(work)
     rows, near = _row_times(work)
     _drop_stale(work)  # after the times of the rows, in which commands go on
@@ -142,6 +144,17 @@ def _remark_disorder(work: _Work, disorder: Mapping[tuple[int, int, float], list
                 f"{', '.join(names)}: {doubled} samples have the time of another one, {where}; "
                 "of these the one logged last is used"
             )
+
+
+def _check_heading(work: _Work) -> None:
+    """Refuse a heading that the program wrote although no sensor sent one. Raises BadInput."""
+    there = [work.columns.get(name) for name in ("x_m", "y_m", "psi_rad")]
+    x, y, psi = there
+    if x is None or y is None or psi is None or len(x.given.t) != len(y.given.t):
+        return
+    fault = constant_heading_fault(x.given.t, x.given.values, y.given.values, psi.given.values)
+    if fault:
+        raise BadInput(f"{work.file}: columns.psi_rad {fault}")
 
 
 def _signal(work: _Work, key: str, text: str) -> tuple[Signal, Expression]:

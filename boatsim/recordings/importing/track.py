@@ -92,6 +92,26 @@ def track_of(best: Mapping[str, Sequence[Classification]]) -> Track | None:
     return None
 
 
+def constant_heading_fault(t: Array, x: Array, y: Array, psi: Array) -> str:
+    """Return why a heading (K,) [rad] was not measured, "" if it may have been.
+
+    Args:
+        t: Times (N,) of the positions [s].
+        x: Positions (N,) to the north [m].
+        y: Positions (N,) to the east [m].
+        psi: Headings (K,) [rad], not all of them at times of positions.
+    """
+    if len(t) < 2 or not len(psi) or float(np.ptp(psi)) > 0.0:
+        return ""
+    track = _track(t, x, y)
+    if not track.moves or _is_course(float(psi[0]), track):
+        return ""
+    return (
+        f"is {np.degrees(psi[0]):g} deg in all {len(psi)} samples, but the track extends over "
+        f"{_m(track)}: no heading was measured"
+    )
+
+
 def _track(t: Array, north: Array, east: Array) -> Track:
     new = np.append(True, (np.diff(north) != 0.0) | (np.diff(east) != 0.0))
     extent = float(max(np.ptp(north), np.ptp(east)))
