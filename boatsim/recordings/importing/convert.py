@@ -20,6 +20,7 @@ from boatsim.recordings.importing.clocks import YEAR_2000, YEAR_2100
 from boatsim.recordings.importing.frames import local_position
 from boatsim.recordings.importing.log import HUGE, Log, Signal, median_sampling_rate
 from boatsim.recordings.importing.mapping import Map, Position
+from boatsim.recordings.importing.regular_times import regular_times
 from boatsim.recordings.importing.resample import (
     MIN_LOST,
     Samples,
@@ -108,6 +109,7 @@ def convert_log(
     _remark_disorder(work, disorder)
     _check_heading(work)
     _drop_repeats(work)
+    _regularize_positions(work)
     rows, near = _row_times(work)
     _drop_stale(work)  # after the times of the rows, in which commands go on
     signals: dict[str, Array] = {}
@@ -332,6 +334,24 @@ def _drop_repeats(work: _Work) -> None:
                 work.columns[name] = replace(
                     c, given=Samples(c.given.t[~repeated], c.given.values[~repeated])
                 )
+
+
+def _regularize_positions(work: _Work) -> None:
+    """Move positions to the times at which their sensor measured, if the program read them late."""
+    x, y = work.columns.get("x_m"), work.columns.get("y_m")
+    if x is None or y is None or not np.array_equal(x.given.t, y.given.t):
+        return
+    found = regular_times(x.given.t, x.given.values + 1j * y.given.values)
+    if found is None:
+        return
+    t, period = found
+    shift = float(np.sqrt(np.mean((t - x.given.t) ** 2)))
+    work.remark(
+        f"x_m, y_m: the sensor measured every {period:.4g} s, but the program read it up to one turn "
+        f"of its loop later; the samples are moved to the times of that rhythm, by {shift:.2g} s rms"
+    )
+    for name, column in (("x_m", x), ("y_m", y)):
+        work.columns[name] = replace(column, given=Samples(t, column.given.values))
 
 
 def _drop_stale(work: _Work) -> None:
