@@ -12,8 +12,9 @@ PHASE_WINDOW = 40.0  # [s] within which the clocks of sensor and program do not 
 # the track is the second sign
 MIN_CONCENTRATION = 0.15
 MIN_JITTER = 0.05  # rms of the shifts, relative to the period, that is worth removing
-# The velocities by the positions must become smoother by this factor, the second sign of a rhythm
-MAX_ROUGHNESS = 0.8
+# The velocities by the positions must become smoother by this factor, the second sign of a rhythm.
+# Where some samples move to a wrong turn of the sensor, the largest changes do not shrink by half
+MAX_ROUGHNESS = 0.5
 
 
 def regular_times(t: Array, track: Array) -> tuple[Array, float] | None:
@@ -47,7 +48,7 @@ def regular_times(t: Array, track: Array) -> tuple[Array, float] | None:
     if not np.all(np.diff(regular) > 0.0):
         return None
     shift = float(np.sqrt(np.mean((regular - t) ** 2)))
-    smoother = _roughness(regular, track) < MAX_ROUGHNESS * _roughness(t, track)
+    smoother = np.all(_roughness(regular, track) < MAX_ROUGHNESS * _roughness(t, track))
     if shift < MIN_JITTER * period or not smoother:
         return None
     return regular, period
@@ -75,7 +76,10 @@ def _local_phase(t: Array, turns: Array) -> Array | None:
     return np.asarray(np.unwrap(np.angle(mean)) / (2.0 * np.pi))
 
 
-def _roughness(t: Array, track: Array) -> float:
-    """Median change of the velocity from one step to the next [m/s]."""
+def _roughness(t: Array, track: Array) -> Array:
+    """Changes of the velocity from one step to the next [m/s]: median, and percentile 95.
+
+    The latter shows samples that are moved to a wrong turn of the sensor.
+    """
     velocity = np.diff(track) / np.diff(t)
-    return float(np.median(np.abs(np.diff(velocity))))
+    return np.asarray(np.percentile(np.abs(np.diff(velocity)), [50.0, 95.0]))
