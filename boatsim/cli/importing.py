@@ -1,6 +1,7 @@
 """Implementation of `boatsim import`: propose a map for a log, or convert a log with a map."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from functools import partial
 from pathlib import Path
 
 from boatsim.cli.exits import print_lines, print_note, print_notes
@@ -10,6 +11,8 @@ from boatsim.files import read_toml, replace_file
 from boatsim.physics import vessel as vessels
 from boatsim.physics.base import ChannelEffect
 from boatsim.physics.content import vessel_reference
+from boatsim.physics.effects.propeller import Propeller
+from boatsim.physics.effects.thruster import Thruster
 from boatsim.physics.vessel import Vessel
 from boatsim.recordings.importing.convert import (
     convert_log,
@@ -22,6 +25,7 @@ from boatsim.recordings.importing.mapping import read_map
 from boatsim.recordings.importing.mapping_proposal import VesselChannel, propose_map, signal_table
 from boatsim.recordings.importing.several_logs import open_logs
 from boatsim.recordings.table import read, write_csv
+from boatsim.simulate.manoeuvre import approach_speed
 
 CONVERTING, WRITING = 0.6, 0.8  # shares of the work done when these stages start, by experience
 
@@ -81,8 +85,8 @@ def _propose_map(
         for channel, (low, high) in boat.limits().items():
             if channel in fed:
                 continue
-            drives.append(VesselChannel(channel, low, high, _turn_direction(boat, channel)))
-        text = propose_map(log, vessel, drives, boat.dof, boat.columns)
+            drives.append(_vessel_channel(boat, channel, low, high))
+        text = propose_map(log, vessel, drives, boat.dof, boat.columns, partial(_speed_ahead, boat))
     else:
         text = propose_map(log, vessel, [], (), None)
     print_notes(log.remarks)
@@ -108,6 +112,32 @@ def _fed_channels(boat: Vessel) -> set[str]:
         if isinstance(effect, ChannelEffect) and effect.fed_by:
             fed.update(effect.on)
     return fed
+
+
+def _vessel_channel(boat: Vessel, name: str, low: float, high: float) -> VesselChannel:
+    """A channel with what the vessel's effects state about its drive."""
+    lever, coefficients = None, None
+    for effect in boat.effects:
+        if not isinstance(effect, Thruster | Propeller) or not isinstance(effect.on, Mapping):
+            continue
+        on = effect.on
+        if name not in on.values() or isinstance(on.get("angle"), str):
+            continue
+        if float(on.get("angle", 0.0)) == 0.0:
+            lever = -effect.y
+            if isinstance(effect, Propeller):
+                coefficients = (effect.gain * effect.ahead, effect.gain * effect.astern)
+    ahead = boat.manoeuvring.ahead.get(name, 0.0)
+    direction = _turn_direction(boat, name)
+    return VesselChannel(name, low, high, direction, lever, coefficients, ahead)
+
+
+def _speed_ahead(boat: Vessel) -> float:
+    """Speed of the vessel under its commands straight ahead [m/s]; 0 if it does not move."""
+    try:
+        return approach_speed(boat)
+    except BadInput:
+        return 0.0
 
 
 def _turn_direction(boat: Vessel, channel: str) -> int:

@@ -273,7 +273,15 @@ class ChecksConfig:
         1.05, "1", "Share of a command limit above which another unit is considered.", low=1.0
     )
     command_certain_excess: float = setting(
-        1.5, "1", "Share of a command limit above which another unit is certain.", low=1.0
+        3.0,
+        "1",
+        "Share of a command limit that no drive exceeds, so that the unit must be another one. "
+        "Drives exceed the limit of a vessel file by a third, as files are written for another "
+        "load or voltage; units that are confused differ by more.",
+        low=1.0,
+    )
+    command_full_per_cent: float = setting(
+        99.5, "%", "Commands in per cent reach this, if full command was given and rounded."
     )
     command_min_range: float = setting(
         0.1,

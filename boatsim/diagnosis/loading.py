@@ -9,6 +9,7 @@ import numpy as np
 
 from boatsim.diagnosis.checks import data_cleaning, run_checks
 from boatsim.diagnosis.checks.clock_rate import check_clock_rate
+from boatsim.diagnosis.checks.command_range import with_range_of
 from boatsim.diagnosis.checks.finding import Finding
 from boatsim.diagnosis.config import DEFAULT, DiagnosisConfig
 from boatsim.errors import BadInput
@@ -100,7 +101,8 @@ def load(
     duration = data_cleaning.total_duration(opened)
     findings, cleaned, remarks = list[Finding](), list[Recording](), list[str]()
     by_path: dict[Path | None, Vessel] = {}
-    for recording, vessel, name in zip(opened, own_vessels, names, strict=True):
+    for recording, own, name in zip(opened, own_vessels, names, strict=True):
+        vessel = with_range_of(own, opened)
         by_path[recording.path] = vessel
         clean = data_cleaning.clean_recording(recording, vessel, duration, config)
         findings += run_checks.check_recording(recording, clean, vessel, config.checks)
@@ -240,6 +242,7 @@ def open_recording(
     """
     found = vessel_for(path, vessel, load_conditions, config)
     recording = read(path, found.limits(), found.columns)
+    found = with_range_of(found, [recording])
     return data_cleaning.prepare_recording(recording, found, config.checks), found
 
 

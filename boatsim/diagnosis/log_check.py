@@ -6,6 +6,7 @@ from pathlib import Path
 
 from boatsim.diagnosis.checks import data_cleaning, run_checks
 from boatsim.diagnosis.checks.clock_rate import check_clock_rate
+from boatsim.diagnosis.checks.command_range import with_range_of
 from boatsim.diagnosis.checks.entry import column_sources, finding_entry, on_one_line
 from boatsim.diagnosis.checks.finding import LOG_NOT_BOAT, Finding
 from boatsim.diagnosis.checks.hypothesis_test import compare_reinterpretations
@@ -66,7 +67,8 @@ def check_files(
     findings += check_clock_rate(prepared, DEFAULT.checks)
     if usable:
         try:
-            loaded = Loaded(usable, (), vessels, "")
+            widened = {path: with_range_of(own, usable) for path, own in vessels.items()}
+            loaded = Loaded(usable, (), widened, "")
             question = set_up_estimation_problem(loaded, with_candidates=False)
             compared = compare_reinterpretations(usable, question.map_recording, question.problem)
             if not compared:

@@ -1,5 +1,6 @@
-"""Conversions of a signal to a column that are not linear: ranges and measured curves."""
+"""Conversions of signals to a column that are not linear: ranges, measured curves, allocations."""
 
+import math
 from collections.abc import Mapping
 from itertools import pairwise
 
@@ -85,8 +86,57 @@ class Curve(Table):
         return self.points[0][0], self.points[-1][0]
 
 
+class Allocation(Table):
+    """Conversion of orders in another form, such as a force and a moment, to that of one drive.
+
+    The terms are added, their sum is limited, and a power law converts it: with `coefficient` k and
+    `exponent` p the column is k |s|^p with the sign of the sum s, or with `inverse = true` the
+    number x of which s is k |x|^p: the shaft rate that gives a thrust. One row of an allocation
+    matrix (Fossen 2021, section 9.5) is a sum, and each drive has its own.
+
+    Attributes:
+        sum: Terms: expressions of signals, ranges or curves. A curve of two points is a factor with
+            saturation.
+        low: Smallest value of the sum.
+        high: Largest value of the sum.
+        coefficient: k of the power law of a positive sum.
+        coefficient_below: k of a negative sum; the same by default.
+        exponent: p of the power law; 2 of a propeller.
+        inverse: Whether the column is the number of which the sum is the power law.
+    """
+
+    sum: list[str | Range | Curve] = Field(min_length=1, max_length=20)
+    low: float = -math.inf
+    high: float = math.inf
+    coefficient: float = Field(1.0, gt=0.0)
+    coefficient_below: float | None = Field(None, gt=0.0)
+    exponent: float = Field(1.0, ge=0.25, le=4.0)
+    inverse: bool = False
+
+    @model_validator(mode="after")
+    def _in_order(self) -> "Allocation":
+        if not self.low < self.high:
+            raise ValueError("low must be less than high")
+        return self
+
+    def of(self, values: Array) -> Array:
+        """Return the values (N,) of the column of the sum (N,) of the terms."""
+        total = np.clip(values, self.low, self.high)
+        below = self.coefficient_below or self.coefficient
+        k = np.where(total < 0.0, below, self.coefficient)
+        size = k * np.abs(total) ** self.exponent
+        if self.inverse:
+            size = (np.abs(total) / k) ** (1.0 / self.exponent)
+        return np.asarray(np.sign(total) * size)
+
+    @property
+    def ends(self) -> tuple[float, float]:
+        """Smallest and largest value of the sum that is not set to a limit."""
+        return self.low, self.high
+
+
 def conversion_of(table: Mapping[str, object], label: str) -> Range | Curve:
-    """Return the conversion of a table, a `Curve` if it has points, else a `Range`.
+    """Return the conversion of one signal, a `Curve` if the table has points, else a `Range`.
 
     Args:
         table: The table.
@@ -98,3 +148,24 @@ def conversion_of(table: Mapping[str, object], label: str) -> Range | Curve:
     if "points" in table:
         return validate_table(Curve, table, label)
     return validate_table(Range, table, label)
+
+
+def map_conversion_of(table: Mapping[str, object], label: str) -> Range | Curve | Allocation:
+    """Return the conversion of one signal, or the `Allocation` of several if there is a sum.
+
+    Args:
+        table: The table.
+        label: File and key in messages.
+
+    Raises:
+        BadInput: The table is none of them.
+    """
+    if "sum" not in table:
+        return conversion_of(table, label)
+    terms = table["sum"]
+    made = []
+    for i, term in enumerate(terms if isinstance(terms, list) else []):
+        if isinstance(term, dict):
+            term = conversion_of(term, f"{label}.sum[{i}]")
+        made.append(term)
+    return validate_table(Allocation, {**table, "sum": made or terms}, label)

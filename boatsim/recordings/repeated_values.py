@@ -6,6 +6,12 @@ from numpy.typing import NDArray
 MIN_GAPS = 10  # fewer gaps between new values do not show a regular period
 # Share of the gaps that must be as long as the median one, to a row or a tenth
 MIN_REGULAR_SHARE = 0.8
+# A column that repeats in more rows than this holds its values, or hardly changes
+MAX_STALE_SHARE = 0.5
+STALE_FACTOR = 5.0  # as many repeats as this times those expected by chance do not arise by chance
+# Share of the usual step of a value that it makes next to stale samples; next to steady ones the
+# steps are near the resolution
+MIN_STEP_AROUND = 0.5
 
 
 def repeated_rows(fixes: NDArray[np.float64]) -> NDArray[np.bool_]:
@@ -22,3 +28,28 @@ def repeated_rows(fixes: NDArray[np.float64]) -> NDArray[np.bool_]:
     if regular.mean() < MIN_REGULAR_SHARE:
         return none
     return ~new
+
+
+def stale_rows(values: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Return a mask (N,) of the rows in which a value (N,) was not measured again.
+
+    A sensor with noise seldom gives the same number twice in a row: about half as often as two
+    numbers that differ by its smallest step, the resolution. More repeats than that come from a
+    program that writes rows when no new message has arrived, unless the value hardly changes
+    before and after them: a vessel at rest or on a steady course.
+    """
+    steps = np.abs(np.diff(values))
+    none = np.zeros(len(values), dtype=np.bool_)
+    repeats = steps == 0.0
+    if not repeats.any() or repeats.mean() > MAX_STALE_SHARE:
+        return none
+    resolution = float(steps[~repeats].min())
+    by_chance = 0.5 * float(np.sum(steps[~repeats] < 1.5 * resolution))
+    if repeats.sum() < STALE_FACTOR * (by_chance + 1.0):
+        return none
+    begin = np.flatnonzero(repeats[1:] & ~repeats[:-1])  # steps before and after each stale part
+    end = np.flatnonzero(repeats[:-1] & ~repeats[1:]) + 1
+    around = float(np.median(steps[np.concatenate([begin, end])])) if len(begin) + len(end) else 0.0
+    if around < MIN_STEP_AROUND * float(np.median(steps[~repeats])):
+        return none
+    return np.append(False, repeats)

@@ -51,6 +51,11 @@ COMMAND = re.compile(
     r"(thrust|steer|pwm|delta|rudder|throttle|nozzle|jet|elevator|azimuth|n)(_|$)(?!.*(sd|rate))"
 )
 HUGE = 1e12  # larger times, positions, speeds and commands are mistakes
+# A command is refused if it exceeds its limit by this factor. Units that are mistaken for another
+# differ by more: degrees by 57, revolutions a minute by 9.5, thousandths by 1,000. A real drive may
+# exceed the limit of a vessel file by 30 %, as files are written for another load or voltage
+MAX_EXCESS = 3.0
+BEYOND_RANGE = "beyond the range of the vessel file,"
 MAX_GAP = 60.0  # [s] between rows; no filter follows a vessel over a longer gap
 MISSPELT = 0.8  # similarity from which an unknown column is a misspelt name
 MAX_PARTS = 5  # of a recording with gaps that a message proposes to use
@@ -393,6 +398,7 @@ def read(
     remarks = [*found.remarks, *absent, *across]
     if ignored:
         remarks.append(f"{path}: columns not used: {', '.join(ignored)}")
+    remarks += _range_remarks(used, channels)
     recording = Recording(path.stem, raw.columns["t_s"], signals, found.notes, path, tuple(remarks))
     recording = recording.without_latency(found.notes.latency)
     if found.notes.clock:
@@ -613,8 +619,8 @@ def allowed_empty_rows(
     """Return the rows (N,) in which each pose and rate of a table may be empty.
 
     A signal that is empty in many rows is measured less often than rows are written. Other signals
-    may be empty in the rows that exist for such a signal. Any other empty cell is a mistake in the
-    file.
+    may be empty in the rows that exist for such a signal. In a row with nothing but commands all of
+    them may be empty. Any other empty cell is a mistake in the file.
     """
     slow, others = {}, {}
     for name, values in columns.items():
@@ -625,11 +631,13 @@ def allowed_empty_rows(
             slow[name] = empty
         else:
             others[name] = empty
-    if not slow:
+    if not slow and not others:
         return {}
-    has_slow_sample = ~np.all(list(slow.values()), axis=0)
+    allowed = np.all([*slow.values(), *others.values()], axis=0)
+    if slow:
+        allowed |= ~np.all(list(slow.values()), axis=0)
     for name, empty in others.items():
-        others[name] = empty & has_slow_sample
+        others[name] = empty & allowed
     return slow | others
 
 
@@ -695,17 +703,44 @@ def _check_units(raw: Raw) -> None:
 
 
 def _check_limits(raw: Raw, channels: Mapping[str, tuple[float, float]]) -> None:
+    """Refuse commands that are too large to be commands of their channel."""
     for name, (low, high) in channels.items():
-        if name in raw.columns:
-            margin = 0.0
-            if math.isfinite(high - low):
-                margin = ROUNDING * (high - low)
-            beyond = (raw.columns[name] < low - margin) | (raw.columns[name] > high + margin)
-            if beyond.any():
-                index = int(np.argmax(beyond))
-                found = f"{raw.columns[name][index]:g} {unit_of(name)}".strip()
-                message = f"command {found} is outside the vessel's limits {low:g} to {high:g}"
-                raise file_error(raw.path, message, raw.rows[index], name)
+        excess = (MAX_EXCESS - 1.0) * max(abs(low), abs(high))
+        beyond = _beyond(raw, name, low - excess, high + excess)
+        if beyond.any():
+            index = int(np.argmax(beyond))
+            found = f"{raw.columns[name][index]:g} {unit_of(name)}".strip()
+            message = (
+                f"command {found} is far outside the vessel's limits {low:g} to {high:g}; in "
+                "what unit is it?"
+            )
+            raise file_error(raw.path, message, raw.rows[index], name)
+
+
+def _range_remarks(raw: Raw, channels: Mapping[str, tuple[float, float]]) -> list[str]:
+    """Remarks on commands beyond the limits of the vessel file that may be true."""
+    remarks = []
+    for name, (low, high) in channels.items():
+        margin = 0.0
+        if math.isfinite(high - low):
+            margin = ROUNDING * (high - low)
+        beyond = _beyond(raw, name, low - margin, high + margin)
+        if beyond.any():
+            row = raw.rows[int(np.argmax(beyond))]
+            ends = f"{np.nanmin(raw.columns[name]):.4g} to {np.nanmax(raw.columns[name]):.4g}"
+            remarks.append(
+                f"{raw.path}: {name} ranges from {ends} {unit_of(name)}".rstrip()
+                + f", {BEYOND_RANGE} {low:g} to {high:g}, in {int(beyond.sum())} rows, first in "
+                f"row {row}"
+            )
+    return remarks
+
+
+def _beyond(raw: Raw, name: str, low: float, high: float) -> "NDArray[np.bool_]":
+    """Rows (N,) in which a column is outside a range; none if there is no such column."""
+    if name not in raw.columns:
+        return np.zeros(len(raw.rows), dtype=np.bool_)
+    return np.asarray((raw.columns[name] < low) | (raw.columns[name] > high))
 
 
 def _with_clock_of_motion(recording: Recording, path: Path) -> Recording:

@@ -272,8 +272,8 @@ def test_the_unit_is_the_end_of_the_name(name, unit):
         (changed(7, "0.5,1_0,0,0,0"), "row 7, column x_m: '1_0' is not a number"),
         (changed(7, "0.4,0,0,0,0"), "row 7, column t_s: time 0.4 s after 0.4 s; it must increase"),
         (
-            changed(7, "0.5,0,0,0,1.3"),
-            "row 7, column thrust_port_N: command 1.3 N is outside the vessel's limits -1 to",
+            changed(7, "0.5,0,0,0,3.3"),
+            "row 7, column thrust_port_N: command 3.3 N is far outside the vessel's limits -1 to",
         ),
     ],
 )

@@ -17,6 +17,7 @@ from boatsim.recordings.table import ROUNDING, Recording
 PULSE_HALF_RANGE = 500.0  # [us] from the neutral pulse to a full command
 PULSE_NEUTRAL = 1500.0  # [us]
 PER_CENT = "per cent of full"
+PULSES = "pulses in us"
 FULL_RANGE = 1.0 + 5.0 * ROUNDING  # largest share of the limit, rounding in the file included
 
 
@@ -34,8 +35,10 @@ class Conversion(NamedTuple):
 def check_command_unit(recording: Recording, vessel: Vessel, config: ChecksConfig) -> list[Finding]:
     """Find recorded commands in a wrong unit, such as per cent, degrees or servo pulses.
 
-    A command is in a wrong unit if it exceeds the vessel's limits, and would not do so in the other
-    unit.
+    Two independent signs are needed: a command exceeds the vessel's limits and would not do so in
+    the other unit, and either it exceeds them by more than any drive can, or its numbers are those
+    of the other unit (per cent of full command with one decimal, servo pulses). A command that
+    exceeds its limits without the second sign is a finding "command_range".
 
     Args:
         recording: The recording as written in the file.
@@ -62,7 +65,6 @@ def _finding(
     config: ChecksConfig,
 ) -> Finding:
     evidence = []
-    certain = False
     for name in names:
         low = np.nanmin(recording[name])
         high = np.nanmax(recording[name])
@@ -71,18 +73,11 @@ def _finding(
         evidence.append(
             f"{name} ranges from {low:.4g} to {high:.4g}, but {vessel.name} accepts {allowed}"
         )
-        limit = max(abs(command.low), abs(command.high))
-        certain |= bool(np.nanmax(np.abs(recording[name])) > config.command_certain_excess * limit)
-    verb = "may be"
-    probability = config.probability_possible
-    if certain:
-        verb = "is"
-        probability = config.probability_strong
     channels = [*names, *_same_range(recording, vessel, names)]
     return Finding(
         "command_unit",
-        f"{'; '.join(evidence)}. The unit {verb} {conversion.unit}",
-        probability=probability,
+        f"{'; '.join(evidence)}. The unit is {conversion.unit}",
+        probability=config.probability_strong,
         changes=scaling_corrections(channels, conversion.factor, conversion.offset),
     )
 
@@ -100,9 +95,23 @@ def _conversions(
         if not len(values) or float(np.abs(values).max()) <= config.command_excess * limit:
             continue
         conversion = _conversion(values, name, limit, config)
-        if conversion is not None:
+        if conversion is not None and _has_second_sign(conversion, values, limit, config):
             found[name] = conversion
     return found
+
+
+def _has_second_sign(
+    conversion: Conversion, values: Array, limit: float, config: ChecksConfig
+) -> bool:
+    """Whether commands (N,) that exceed their limit show another unit by a second sign."""
+    largest = float(np.abs(values).max())
+    if conversion.unit == PULSES or largest > config.command_certain_excess * limit:
+        return True
+    if conversion.unit != PER_CENT or largest > 100.0 * FULL_RANGE:
+        return False
+    tenths = 10.0 * values
+    is_rounded = bool(np.all(np.abs(tenths - np.round(tenths)) < 1e-6))
+    return is_rounded or largest >= config.command_full_per_cent
 
 
 def _conversion(values: Array, name: str, limit: float, config: ChecksConfig) -> Conversion | None:
@@ -112,7 +121,7 @@ def _conversion(values: Array, name: str, limit: float, config: ChecksConfig) ->
     shortest, longest = config.servo_pulse_range
     if shortest <= low and high <= longest:
         return Conversion(
-            "pulses in us", limit / PULSE_HALF_RANGE, -PULSE_NEUTRAL / PULSE_HALF_RANGE * limit
+            PULSES, limit / PULSE_HALF_RANGE, -PULSE_NEUTRAL / PULSE_HALF_RANGE * limit
         )
     percent = Conversion(PER_CENT, limit / 100.0)
     units = {

@@ -28,7 +28,7 @@ from boatsim.diagnosis.checks.wrapped_angles import unwrap_directions
 from boatsim.diagnosis.config import DEFAULT, ChecksConfig, DiagnosisConfig
 from boatsim.physics.vessel import Vessel
 from boatsim.recordings.interpolated_wraps import ACROSS_WRAP
-from boatsim.recordings.table import Recording
+from boatsim.recordings.table import BEYOND_RANGE, Recording
 
 # phrase in a remark of a recording -> name of the finding
 FINDING_OF_REMARK = {
@@ -40,7 +40,13 @@ FINDING_OF_REMARK = {
     "off the course of the following fixes": "begins_astray",
     "were rotated with the heading": "positions_turned",
     "turns the hull to the other side": "rudder_sense",
+    BEYOND_RANGE: "command_range",
 }
+
+RANGE_REMEDY = (
+    "a diagnosis continues with the range of the log; if the commands are right, write that range "
+    "into the vessel file"
+)
 
 
 def prepare_recording(
@@ -121,6 +127,8 @@ def cleaning_findings(recording: Recording) -> list[Finding]:
                     "mended",
                     remedy="a diagnosis corrects this automatically",
                 )
+                if name == "command_range":
+                    finding = replace(finding, remedy=RANGE_REMEDY)
                 if name == "rudder_sense":
                     finding = replace(finding, alternatives=((MIRRORED_WORDS, MIRRORED),))
                 found.append(finding)

@@ -1,8 +1,7 @@
-"""Conversion of times in logs to seconds, from numbers or dates."""
+"""The column of a table that holds the times of its rows, and its conversion to seconds."""
 
 import re
-from collections.abc import Mapping, Sequence
-from datetime import UTC, datetime
+from collections.abc import Collection, Mapping
 
 import numpy as np
 
@@ -26,19 +25,71 @@ UNIT_WORDS = {
 }
 YEAR_2000, YEAR_2100 = 946684800.0, 4102444800.0  # [s] since 1970
 EPOCH_UNITS = (1.0, 1e-3, 1e-6, 1e-9)  # [s] units in which times since 1970 are counted
+TIME_WORDS = set(
+    "time times timestamp stamp clock date datetime utc epoch gpstime zeit tid".split()
+)
+# Words of a time that is not that of the row: a duration, or the time of another row
+NOT_NOW = set("previous prev last next cycle delta diff step dt start begin end period up".split())
+MIN_TIMES = 20  # fewer values do not show that a column increases as times do
+MIN_FORWARD = 0.5  # share of steps forward in a column of times; messages may share a time
+MAX_BACKWARD = 0.05  # share of steps back, where rows are out of order
+# Spreadsheets count days since 1899-12-30; these are the years 2000 to 2100
+SHEET_DAYS = (36526.0, 73051.0)
+SHEET_EPOCH = 25569.0  # [days] 1970-01-01
+# [days] A larger median step between rows, 43 s, is of no log; seconds have larger steps than this
+MAX_SHEET_STEP = 5e-4
+DAY = 86400.0  # [s]
 
 
-def time_column(columns: Mapping[str, Array]) -> str | None:
-    """Return the name of the time column by the names.
+def time_column(columns: Mapping[str, Array], dates: Collection[str] = ()) -> str | None:
+    """Return the name of the column with the times of the rows.
 
-    None if there is none whose values increase.
+    It is the first column of a usual name whose values increase. Without one it is a column of
+    dates, then one whose name contains a word for time, then one that counts since 1970. Values of
+    these may repeat but hardly ever decrease; the one with the most different values is chosen.
+
+    Args:
+        columns: Name -> values (N,).
+        dates: Names of the columns that were dates or times of day.
+
+    Returns:
+        The name; None if there is no such column.
     """
     for name, values in columns.items():
         plain = re.sub(r"[\s.]+", "_", ENDING.sub("", name.lower())) or "t"
         finite = values[np.isfinite(values)]
         if CLOCK.match(plain) and len(finite) > 1 and finite[-1] > finite[0]:
             return name
+    increasing = {}
+    for name, values in columns.items():
+        if _hardly_decreases(values):
+            increasing[name] = values
+    for is_likely in (dates.__contains__, _is_called_a_time, lambda n: _is_epoch(increasing[n])):
+        names = list(filter(is_likely, increasing))
+        if names:
+            return max(names, key=lambda n: len(np.unique(increasing[n])))
     return None
+
+
+def _hardly_decreases(values: Array) -> bool:
+    """Whether values (N,) increase as times do, except for a few rows out of order."""
+    finite = values[np.isfinite(values)]
+    if len(finite) < MIN_TIMES or not finite[-1] > finite[0]:
+        return False
+    steps = np.diff(finite)
+    forward = float(np.mean(steps > 0.0))
+    return forward >= MIN_FORWARD and float(np.mean(steps < 0.0)) <= MAX_BACKWARD
+
+
+def _is_called_a_time(name: str) -> bool:
+    words = set(re.split(r"[^a-z]+", re.sub(r"(?<=[a-z])(?=[A-Z])", "_", name).lower()))
+    return bool(words & TIME_WORDS) and not words & NOT_NOW
+
+
+def _is_epoch(values: Array) -> bool:
+    """Whether values (N,) are times since 1970, in any unit."""
+    middle = float(np.nanmedian(values))
+    return any(YEAR_2000 < middle * unit < YEAR_2100 for unit in EPOCH_UNITS)
 
 
 def times_in_seconds(name: str, values: Array) -> Array:
@@ -47,7 +98,8 @@ def times_in_seconds(name: str, values: Array) -> Array:
     Args:
         name: Name of the column, which gives the unit of times that are not since 1970; s by
             default.
-        values: Times (N,); the size of times since 1970 shows their unit.
+        values: Times (N,); the size of times since 1970 shows their unit, and the size and steps
+            of a spreadsheet's days show these.
     """
     finite = values[np.isfinite(values)]
     middle = 0.0
@@ -56,27 +108,17 @@ def times_in_seconds(name: str, values: Array) -> Array:
     for unit in EPOCH_UNITS:
         if YEAR_2000 < middle * unit < YEAR_2100:
             return values * unit
+    if _are_sheet_days(finite):
+        return (values - SHEET_EPOCH) * DAY
     word = "s"
     if found := ENDING.search(name.lower()):
         word = UNIT_WORDS.get(found[1], found[1])
     return values * UNITS[word]
 
 
-def seconds_from_dates(cells: Sequence[str]) -> Array | None:
-    """Return the times (N,) [s] since 1970 of ISO 8601 dates, UTC without a zone.
-
-    None if some cells are not dates.
-    """
-    found = np.full(len(cells), np.nan)
-    for i, cell in enumerate(cells):
-        if text := cell.strip():
-            try:
-                when = datetime.fromisoformat(text)
-            except ValueError:
-                return None
-            if not when.tzinfo:
-                when = when.replace(tzinfo=UTC)
-            found[i] = when.timestamp()
-    if np.isfinite(found).any():
-        return found
-    return None
+def _are_sheet_days(t: Array) -> bool:
+    """Whether finite times (N,) are days as spreadsheets count them."""
+    if len(t) < 2 or not (SHEET_DAYS[0] < t.min() and t.max() < SHEET_DAYS[1]):
+        return False
+    step = float(np.median(np.abs(np.diff(t))))
+    return 0.0 < step < MAX_SHEET_STEP

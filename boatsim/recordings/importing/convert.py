@@ -14,12 +14,13 @@ import numpy as np
 from boatsim.errors import BadInput, nearest_hint, unknown_name_message
 from boatsim.physics.base import Array
 from boatsim.physics.signals import POSE, RATES
-from boatsim.recordings.conversion import Curve, Range
+from boatsim.recordings.conversion import Allocation, Curve, Range
 from boatsim.recordings.expression import Expression, parse
 from boatsim.recordings.importing.clocks import YEAR_2000, YEAR_2100
 from boatsim.recordings.importing.frames import local_position
 from boatsim.recordings.importing.log import HUGE, Log, Signal, median_sampling_rate
 from boatsim.recordings.importing.mapping import Map, Position
+from boatsim.recordings.importing.regular_times import regular_times
 from boatsim.recordings.importing.resample import (
     MIN_LOST,
     Samples,
@@ -31,9 +32,10 @@ from boatsim.recordings.importing.resample import (
     row_times,
 )
 from boatsim.recordings.importing.several_logs import Span, aligned, begin_line, sources
+from boatsim.recordings.importing.track import constant_heading_fault
 from boatsim.recordings.notes import Notes
 from boatsim.recordings.raw_table import file_error, select_rows
-from boatsim.recordings.repeated_values import repeated_rows
+from boatsim.recordings.repeated_values import repeated_rows, stale_rows
 from boatsim.recordings.table import FEWEST_ROWS, MAX_GAP, Recording, allowed_empty_rows, is_command
 
 # Columns of one fix
@@ -105,8 +107,11 @@ def convert_log(
         is_held = name in work.channels or is_command(name) or name.startswith(HELD)
         work.columns[name] = Column(_check_values(work, name, clean_samples(t, values)), is_held)
     _remark_disorder(work, disorder)
+    _check_heading(work)
     _drop_repeats(work)
+    _regularize_positions(work)
     rows, near = _row_times(work)
+    _drop_stale(work)  # after the times of the rows, in which commands go on
     signals: dict[str, Array] = {}
     for name, column in work.columns.items():
         if column.held:
@@ -141,6 +146,17 @@ def _remark_disorder(work: _Work, disorder: Mapping[tuple[int, int, float], list
                 f"{', '.join(names)}: {doubled} samples have the time of another one, {where}; "
                 "of these the one logged last is used"
             )
+
+
+def _check_heading(work: _Work) -> None:
+    """Refuse a heading that the program wrote although no sensor sent one. Raises BadInput."""
+    there = [work.columns.get(name) for name in ("x_m", "y_m", "psi_rad")]
+    x, y, psi = there
+    if x is None or y is None or psi is None or len(x.given.t) != len(y.given.t):
+        return
+    fault = constant_heading_fault(x.given.t, x.given.values, y.given.values, psi.given.values)
+    if fault:
+        raise BadInput(f"{work.file}: columns.psi_rad {fault}")
 
 
 def _signal(work: _Work, key: str, text: str) -> tuple[Signal, Expression]:
@@ -181,12 +197,30 @@ def _with_time_of_map(log: Log, map: Map, file: str) -> Log:
     return replace(log, signals=signals)
 
 
-def _column(work: _Work, name: str, what: str | Range | Curve) -> tuple[Array, Array]:
+def _column(work: _Work, name: str, what: str | Range | Curve | Allocation) -> tuple[Array, Array]:
+    """Times (N,) [s] and values (N,) of a column."""
+    if isinstance(what, Allocation):
+        t, values = _sum_of_terms(work, name, what)
+    else:
+        t, values = _term(work, name, f"columns.{name}", what)
+    if isinstance(what, Allocation):
+        _remark_limits(work, f"{name}: the sum of its terms", values, what)
+        return t, what.of(values)
+    return t, values
+
+
+def _term(work: _Work, name: str, key: str, what: str | Range | Curve) -> tuple[Array, Array]:
+    """Times (N,) [s] and values (N,) of one signal and its conversion."""
     if isinstance(what, str):
-        signal, how = _signal(work, f"columns.{name}", what)
+        signal, how = _signal(work, key, what)
         return signal.t, how.of(signal.values)
-    signal, how = _signal(work, f"columns.{name}.signal", what.signal)
+    signal, how = _signal(work, f"{key}.signal", what.signal)
     values = how.of(signal.values)
+    _remark_limits(work, name, values, what)
+    return signal.t, what.of(values)
+
+
+def _remark_limits(work: _Work, name: str, values: Array, what: Range | Curve | Allocation) -> None:
     lowest, highest = what.ends
     if beyond := int(np.sum((values < lowest) | (values > highest))):
         work.remark(
@@ -194,7 +228,23 @@ def _column(work: _Work, name: str, what: str | Range | Curve) -> tuple[Array, A
             f"{highest:g} and are set to "
             "the limit"
         )
-    return signal.t, what.of(values)
+
+
+def _sum_of_terms(work: _Work, name: str, what: Allocation) -> tuple[Array, Array]:
+    """Times (N,) [s] and the sum (N,) of terms; each holds its value until its next sample."""
+    terms = []
+    for i, term in enumerate(what.sum):
+        terms.append(_term(work, name, f"columns.{name}.sum[{i}]", term))
+    t = terms[0][0]
+    if all(len(other) == len(t) and np.array_equal(other, t, equal_nan=True) for other, _ in terms):
+        return t, np.asarray(np.sum([values for _, values in terms], axis=0))
+    samples = [clean_samples(*term) for term in terms]
+    rows = np.unique(np.concatenate([one.t for one in samples]))
+    total = np.zeros(len(rows))
+    for one in samples:
+        last = np.searchsorted(one.t, rows, side="right") - 1
+        total += np.where(last >= 0, one.values[last], np.nan)
+    return rows, total
 
 
 def _add_position(work: _Work, position: Position) -> None:
@@ -286,6 +336,49 @@ def _drop_repeats(work: _Work) -> None:
                 )
 
 
+def _regularize_positions(work: _Work) -> None:
+    """Move positions to the times at which their sensor measured, if the program read them late."""
+    x, y = work.columns.get("x_m"), work.columns.get("y_m")
+    if x is None or y is None or not np.array_equal(x.given.t, y.given.t):
+        return
+    found = regular_times(x.given.t, x.given.values + 1j * y.given.values)
+    if found is None:
+        return
+    t, period = found
+    shift = float(np.sqrt(np.mean((t - x.given.t) ** 2)))
+    work.remark(
+        f"x_m, y_m: the sensor measured every {period:.4g} s, but the program read it up to one "
+        "turn of its loop later; the samples are moved to the times of that rhythm, by "
+        f"{shift:.2g} s rms"
+    )
+    for name, column in (("x_m", x), ("y_m", y)):
+        work.columns[name] = replace(column, given=Samples(t, column.given.values))
+
+
+def _drop_stale(work: _Work) -> None:
+    """Remove angles and rates that a logger wrote again because no new message had arrived."""
+    for name in (*POSE, *RATES):
+        column = work.columns.get(name)
+        if column is None or column.held:
+            continue
+        given = column.given
+        stale = stale_rows(given.values)
+        if not stale.any():
+            continue
+        longest = _longest_stale(given.t, stale)
+        work.remark(
+            f"{name}: {int(stale.sum())} of {len(stale)} samples repeat the one before exactly, "
+            f"for up to {longest:.3g} s, because no new message had arrived; they are left empty"
+        )
+        fresh = Samples(given.t[~stale], given.values[~stale])
+        work.columns[name] = replace(column, given=fresh)
+
+
+def _longest_stale(t: Array, stale: "np.ndarray[tuple[int, ...], np.dtype[np.bool_]]") -> float:
+    """Longest time [s] from a new sample to the next one."""
+    return float(np.diff(t[~stale]).max(initial=0.0))
+
+
 def _row_times(work: _Work) -> tuple[Array, float]:
     """Times (N,) of the rows [s], and the largest distance of a sample from its row [s].
 
@@ -346,10 +439,22 @@ def _last_time(work: _Work, end: float) -> float:
         return end
     for name, what in work.map.columns.items():
         if work.columns[name].held and not name.startswith(HELD):
-            text = what if isinstance(what, str) else what.signal
-            signal, _ = _signal(work, f"columns.{name}", text)
-            end = min(end, work.spans[signal.source].end)
+            for text in _signal_texts(what):
+                signal, _ = _signal(work, f"columns.{name}", text)
+                end = min(end, work.spans[signal.source].end)
     return end
+
+
+def _signal_texts(what: str | Range | Curve | Allocation) -> list[str]:
+    """The expressions of the signals of a column."""
+    if isinstance(what, str):
+        return [what]
+    if isinstance(what, Allocation):
+        texts = []
+        for term in what.sum:
+            texts += _signal_texts(term)
+        return texts
+    return [what.signal]
 
 
 def _spans_hint(work: _Work) -> str:
@@ -418,6 +523,7 @@ def _complete_rows(
     for name, values in signals.items():
         if work.columns[name].held and not name.startswith(HELD):
             kept &= np.isfinite(values)
+    kept &= _rows_of_measurements(signals)
     for _ in range(MAX_ROUNDS):  # the removal of rows may change which columns are slow
         allowed = allowed_empty_rows(select_rows(signals, kept))
         missing = np.zeros(int(kept.sum()), dtype=np.bool_)
@@ -443,7 +549,27 @@ def _complete_rows(
                 f"{name} has fewer than {FEWEST_ROWS} samples in the rows",
                 column=name,
             )
-    return rows[kept], select_rows(signals, kept)
+    found = select_rows(signals, kept)
+    if not kept.all():
+        for name, column in work.columns.items():
+            if column.held:  # the means until the next row that is left
+                found[name] = mean_held_values(rows[kept], column.given)
+    return rows[kept], found
+
+
+def _rows_of_measurements(
+    signals: Mapping[str, Array],
+) -> "np.ndarray[tuple[int, ...], np.dtype[np.bool_]]":
+    """The rows (N,) from the first to the last one with a pose or rate."""
+    measured = np.zeros(len(next(iter(signals.values()))), dtype=np.bool_)
+    for name, values in signals.items():
+        if name in (*POSE, *RATES):
+            measured |= np.isfinite(values)
+    inside = np.zeros(len(measured), dtype=np.bool_)
+    rows = np.flatnonzero(measured)
+    if len(rows):
+        inside[rows[0] : rows[-1] + 1] = True
+    return inside
 
 
 def _remark_times(work: _Work, rows: Array) -> None:

@@ -9,7 +9,7 @@ from pydantic import Field, field_validator, model_validator
 from boatsim.errors import BadInput, unknown_name_message
 from boatsim.files import Table, read_toml, validate_table
 from boatsim.physics.signals import POSE, RATES
-from boatsim.recordings.conversion import Curve, Range, conversion_of
+from boatsim.recordings.conversion import Allocation, Curve, Range, map_conversion_of
 from boatsim.recordings.notes import MAX_LATENCY
 
 COMPUTED = ("t_s", "x_m", "y_m")  # columns that follow from the clock and from `position`
@@ -51,7 +51,8 @@ class Map(Table):
         begins: File of a run in several files -> begin after that of the first file [s].
         latency: Column -> delay by which its values are older than their times [s].
         position: Latitude and longitude.
-        columns: Column -> expression of a signal, its `Range`, or its `Curve`.
+        columns: Column -> expression of a signal, its `Range` or `Curve`, or the `Allocation` of
+            several signals.
     """
 
     about: str = ""
@@ -62,7 +63,7 @@ class Map(Table):
     begins: dict[str, float] = {}
     latency: dict[str, float] = {}
     position: Position | None = None
-    columns: dict[str, str | Range | Curve] = {}
+    columns: dict[str, str | Range | Curve | Allocation] = {}
 
     @field_validator("columns", mode="before")
     @classmethod
@@ -72,11 +73,12 @@ class Map(Table):
         columns = dict(found)
         for name, value in found.items():
             if isinstance(value, dict):
-                columns[name] = conversion_of(value, f"columns.{name}")
-            elif not isinstance(value, str | Range | Curve):
+                columns[name] = map_conversion_of(value, f"columns.{name}")
+            elif not isinstance(value, str | Range | Curve | Allocation):
                 allowed = (
                     '"[-] signal [* unit or number] [+ number]", { signal, low, neutral, '
-                    "high, least, most, exponent } or { signal, points }"
+                    "high, least, most, exponent }, { signal, points } or { sum, low, high, "
+                    "coefficient, exponent, inverse }"
                 )
                 raise ValueError(f"{name} is {value!r}; allowed is {allowed}")
         return columns

@@ -1,15 +1,18 @@
 """Proposal of a map for a log, and the list of its signals."""
 
 import re
-from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import replace
 from itertools import filterfalse, repeat
 from typing import NamedTuple
 
 import numpy as np
 
 from boatsim.files import toml_key, toml_value
-from boatsim.recordings.expression import parse
+from boatsim.physics.signals import RATES
+from boatsim.recordings.expression import UNITS, parse
+from boatsim.recordings.importing.channels import VesselChannel as VesselChannel
+from boatsim.recordings.importing.effort_allocation import EFFORTS, allocation_lines
 from boatsim.recordings.importing.log import Log, Signal, median_sampling_rate
 from boatsim.recordings.importing.motion_evidence import with_evidence_of_motion
 from boatsim.recordings.importing.several_logs import sources, unaligned
@@ -22,12 +25,25 @@ from boatsim.recordings.importing.signal_classification import (
     side_from_tokens,
     tokenize_name,
 )
+from boatsim.recordings.importing.track import (
+    Track,
+    contradiction,
+    rate_in_degrees,
+    track_of,
+    unusable_poses,
+)
 from boatsim.recordings.importing.turning import MIN_CORRELATION, Turning
 from boatsim.recordings.notes import unit_of
+from boatsim.recordings.raw_table import file_error
 
 USUAL_PULSE = (1100.0, 1500.0, 1900.0)  # [us] low, neutral, high of most motor controllers
 MAX_ROW_RATE = 50.0  # [Hz] a higher rate of rows is not needed for the motion of boats
 MAX_LISTED = 400
+# Revolutions without a unit: the sizes relative to the range of the channel that a unit must have,
+# and the largest ratio of speeds that a vessel file, a current and acceleration may cause
+MIN_UNIT_EXCESS, MIN_UNIT_SHARE, MAX_UNIT_EXCESS = 3.0, 0.1, 1.5
+MAX_SPEED_RATIO = 3.0
+SPEED_PERCENTILE = 75.0  # [%] of revolutions and speeds that are compared
 HELM_EXCESS = 1.05  # a wheel that turns farther than the rudder by more than this is geared to it
 # Column -> column of the signal and sign, for logs with z up (ROS, REP 103: x east, y north; x
 # forward, y port)
@@ -41,6 +57,8 @@ FROM_ENU = {
     "psi_rad": ("psi_rad", "-"),
 }
 QUARTER_TURN = " + 90 * deg"  # heading from north = 90 degrees - yaw from east
+BY_ITS_RANGE = "by its range"  # end of the note on a unit that the range only suggests
+MOTION_COLUMNS = ("phi_rad", "theta_rad", *RATES)  # that a track may contradict
 POSE_COLUMNS = ("x_m", "y_m", "psi_rad", "r_radps", "u_mps", "v_mps")
 KINDS = {
     "angle": ("rad", "deg"),
@@ -49,23 +67,6 @@ KINDS = {
 }
 SIDED = ("port", "starboard")
 INCLINATIONS = {"phi_rad": "roll", "p_radps": "roll", "theta_rad": "pitch", "q_radps": "pitch"}
-
-
-@dataclass(frozen=True)
-class VesselChannel:
-    """A command channel of a vessel.
-
-    Attributes:
-        name: Name of the channel.
-        low: Smallest value.
-        high: Largest value.
-        turns: Side to which a positive value turns the vessel: 1 starboard, -1 port, 0 unknown.
-    """
-
-    name: str
-    low: float
-    high: float
-    turns: int = 0
 
 
 def signal_table(log: Log) -> list[str]:
@@ -128,6 +129,7 @@ def propose_map(
     drives: Sequence[VesselChannel] = (),
     dof: Sequence[str] = (),
     stated: Mapping[str, str] | None = None,
+    approach_speed: Callable[[], float] = lambda: 0.0,
 ) -> str:
     """Return the text of a map: the most probable signals, with others in comments.
 
@@ -137,6 +139,11 @@ def propose_map(
         drives: Command channels of the vessel.
         dof: Degrees of freedom of the vessel.
         stated: Column -> expression of a signal, by the vessel's file.
+        approach_speed: Speed of the vessel at the commands `ahead` of its channels [m/s], which is
+            computed only where the unit of revolutions is not known; 0 if unknown.
+
+    Raises:
+        BadInput: The log has no poses.
     """
     known: dict[str, str] = {}
     used_signals: set[str] = set()
@@ -150,6 +157,11 @@ def propose_map(
     for g in with_evidence_of_motion(classified, log):
         if g.column not in known and g.name not in used_signals:
             best.setdefault(g.column, []).append(g)
+    if reason := unusable_poses(log, best, "yaw" in dof):
+        raise file_error(log.path, reason)
+    track = track_of(best)
+    best = _with_rate_unit(best)
+    best, doubtful = _without_contradictions(best, track)
     lines = [
         "# Proposed from the names, units and ranges of the signals in the log: check every line."
     ]
@@ -158,6 +170,7 @@ def propose_map(
     else:
         lines.append('# vessel = "NAME"')
     body, used = _motion_lines(log, best, dof, known)
+    body += doubtful
     for column, expression in known.items():
         body.append(f"{toml_key(column)} = {toml_value(expression)}  # by the vessel's file")
     open_drives = [d for d in drives if d.name not in known]
@@ -166,7 +179,8 @@ def propose_map(
     if drives and not open_drives:
         commands = ["# all are above"]
     else:
-        commands, driven = _command_lines(best, open_drives, turning)
+        unit = _RevolutionUnit(track, approach_speed)
+        commands, driven = _command_lines(best, open_drives, turning, unit)
     fastest = 0.0
     for g in (*used, *driven):
         fastest = max(fastest, median_sampling_rate(g.signal.t))
@@ -193,6 +207,43 @@ def propose_map(
                 *_further_columns(kind, sorted(moving, key=lambda g: g.name)),
             ]
     return "\n".join(lines) + "\n"
+
+
+def _with_rate_unit(
+    best: Mapping[str, list[Classification]],
+) -> dict[str, list[Classification]]:
+    """Classified signals, in which the heading shows the unit of a rate of turn without one."""
+    if not best.get("psi_rad"):
+        return dict(best)
+    heading, rates = best["psi_rad"][0], []
+    for g in best.get("r_radps", []):
+        in_degrees = rate_in_degrees(g, heading) if g.why.endswith(BY_ITS_RANGE) else None
+        if in_degrees is True:
+            g = replace(g, word="degps", why="degrees by the changes of the heading")
+        elif in_degrees is False:
+            g = replace(g, word="", why="radians by the changes of the heading")
+        rates.append(g)
+    kept = dict(best)
+    if rates:
+        kept["r_radps"] = rates
+    return kept
+
+
+def _without_contradictions(
+    best: Mapping[str, list[Classification]], track: Track | None
+) -> tuple[dict[str, list[Classification]], list[str]]:
+    """Classified signals without those that the track contradicts, and comments on these."""
+    kept = dict(best)
+    lines = []
+    for column in ("psi_rad", *MOTION_COLUMNS):
+        for g in best.get(column, []):
+            heading = next(iter(kept.get("psi_rad", [])), None)
+            if reason := contradiction(column, g, track, heading):
+                kept[column] = [other for other in kept[column] if other is not g]
+                lines.append(f"# {column} is not {_without_control_characters(g.name)}: {reason}")
+        if column in kept and not kept[column]:
+            del kept[column]
+    return kept, lines
 
 
 def _begin_lines(log: Log) -> list[str]:
@@ -298,7 +349,10 @@ def _comment(g: Classification, others: Sequence[Classification]) -> str:
 
 
 def _command_lines(
-    best: Mapping[str, Sequence[Classification]], drives: Sequence[VesselChannel], turning: Turning
+    best: Mapping[str, Sequence[Classification]],
+    drives: Sequence[VesselChannel],
+    turning: Turning,
+    unit: "_RevolutionUnit",
 ) -> tuple[list[str], list[Classification]]:
     """Lines of the vessel's channels, or without a vessel of all outputs that are not constant."""
     channels = [drive.name for drive in drives]
@@ -314,7 +368,14 @@ def _command_lines(
         return lines, moving
     taken: list[Classification] = []
     chosen = _match_channels(best, drives, moving, turning)
+    allocated = {}
+    if not chosen:
+        allocated = allocation_lines(drives, best)
+        taken += [best[kind][0] for kind in EFFORTS if allocated and kind in best]
     for drive in drives:
+        if drive.name in allocated:
+            lines.append(allocated[drive.name])
+            continue
         if drive.name not in chosen:
             lines.append(
                 f'# {drive.name} = "..."  # {drive.low:g} to {drive.high:g}; no signal has a '
@@ -326,11 +387,57 @@ def _command_lines(
         if _steers(drive) and g.name != drive.name:
             sense = drive.turns * turning.correlation((g, 1.0))
         taken.append(g)
-        lines.append(_channel_line(drive.name, g, drive, sense) + why)
+        g, unit_note = unit.with_unit(g, drive)
+        lines.append(_channel_line(drive.name, g, drive, sense) + unit_note + why)
     for g in moving:
         if g not in taken:
             lines.append(_unused_line(g, drives))
     return lines, taken
+
+
+class _RevolutionUnit:
+    """Unit of revolutions that a log does not state, by their size and by the speed of the vessel.
+
+    Two independent signs are needed: revolutions in rad/s would be far beyond the range of the
+    channel and those in rpm are not, and the speed over ground is that of the vessel with
+    revolutions in rpm and not in rad/s. With one sign the unit is left to the owner.
+    """
+
+    def __init__(self, track: Track | None, approach_speed: Callable[[], float]) -> None:
+        self.track, self.approach_speed = track, approach_speed
+
+    def with_unit(self, g: Classification, drive: VesselChannel) -> tuple[Classification, str]:
+        """Return a signal with the unit that it shows, and what the owner must check."""
+        stated = g.signal.unit or g.word or _unit(g)
+        if stated or unit_of(drive.name) != "rad/s" or g.name == drive.name:
+            return g, ""
+        size = float(np.nanmax(np.abs(g.signal.values)))
+        limit = max(abs(drive.low), abs(drive.high))
+        if size < MIN_UNIT_EXCESS * limit:
+            return g, ""
+        rpm = UNITS["rpm"]
+        by_size = MIN_UNIT_SHARE * limit < size * rpm < MAX_UNIT_EXCESS * limit
+        ratio = self._speed_ratio(g, drive)
+        by_speed = ratio > MAX_SPEED_RATIO and 1.0 / MAX_SPEED_RATIO < ratio * rpm < MAX_SPEED_RATIO
+        as_it_is = f"as rad/s up to {size / limit:.2g} times the vessel's range"
+        if by_size and by_speed:
+            note = f"; in rpm: {as_it_is}, and for {ratio:.2g} times the speed of the track"
+            return replace(g, word="rpm"), note
+        signs = []
+        if by_size:
+            signs.append(f'; CHECK: {as_it_is}; in rpm it would be "{g.name} * rpm"')
+        return g, "".join(signs) or f"; CHECK: {as_it_is}"
+
+    def _speed_ratio(self, g: Classification, drive: VesselChannel) -> float:
+        """Speed by the signal in rad/s, relative to that of the track; 0 if unknown.
+
+        The speed of a vessel is about proportional to her revolutions.
+        """
+        if self.track is None or not self.track.moves or not drive.ahead:
+            return 0.0
+        usual = float(np.nanpercentile(np.abs(g.signal.values), SPEED_PERCENTILE))
+        over_ground = float(np.percentile(self.track.speed, SPEED_PERCENTILE))
+        return usual / abs(drive.ahead) * self.approach_speed() / max(over_ground, 1e-9)
 
 
 def _unused_line(g: Classification, drives: Sequence[VesselChannel]) -> str:

@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from math import pi
 
 import numpy as np
@@ -32,7 +32,8 @@ NOT_MEASURED = set(  # words of set points, errors and properties of signals
     "des desired target setpoint sp ref reference cmd command commanded error err innov "
     "innovation bias cov covariance "
     "var variance std sd accuracy reset resets delta test ratio "
-    "valid status flags timeout home origin".split()
+    "valid status flags timeout home origin datum previous prev old next goal waypoint observer "
+    "predicted simulated model".split()
 )
 PLACES = set("pos position local pose odom odometry location".split())
 MOTIONS = set(
@@ -90,6 +91,23 @@ ANGLES = set("rudder steer steering nozzle azimuth azi helm delta wheel tiller".
 MAX_RUDDER = 1.6  # [rad] a larger rudder angle is in degrees
 MAX_WHEEL = 1080.0  # [deg] three turns from the middle; a larger number is no angle of a wheel
 COLUMNS = (*POSE, *RATES)
+# Words of three numbered signals, such as orientation_1 to _3: about x, y and z
+ROTATIONS = set("orientation attitude euler rpy angles".split())
+TURNING = set("rotational rotation angular gyro gyr omega rates".split())
+BY_NUMBER = {
+    "angles": ("phi_rad", "theta_rad", "psi_rad"),
+    "rates": ("p_radps", "q_radps", "r_radps"),
+}
+# Words of the forces and moments that a controller asks for
+EFFORTS = set("tau force forces moment torque wrench effort".split())
+# Last word of such a name -> kind of the signal
+EFFORT_AXES = {
+    **dict.fromkeys(("x", "u", "surge"), "effort_x"),
+    **dict.fromkeys(("y", "v", "sway"), "effort_y"),
+    **dict.fromkeys(("n", "r", "yaw", "psi"), "effort_n"),
+}
+BY_RANGE = "radians by its range"
+MOMENT_WORDS = {"moment", "torque"}
 
 
 @dataclass(frozen=True)
@@ -143,7 +161,32 @@ def classify_signals(log: Log, channels: Sequence[str] = ()) -> list[Classificat
     for name, signal in log.signals.items():
         if (classified := classify_signal(name, signal, log, channels)) is not None:
             found.append(classified)
+    found = _with_unit_of_sensor(found)
     return sorted(found, key=lambda g: -g.score)
+
+
+def _with_unit_of_sensor(found: Sequence[Classification]) -> list[Classification]:
+    """Classified signals, in which angles of one sensor have one unit.
+
+    The range of a heading in degrees shows its unit, the range of roll and pitch seldom does.
+    """
+    in_degrees = set()
+    for g in found:
+        if g.column.endswith("_rad") and g.column in COLUMNS and g.word == "deg":
+            in_degrees.add((_sensor(g.name), g.column[-4:]))
+    result = []
+    for g in found:
+        if g.why == BY_RANGE and (_sensor(g.name), g.column[-4:]) in in_degrees:
+            g = replace(g, word="deg", why="degrees as the heading of this sensor")
+        result.append(g)
+    return result
+
+
+def _sensor(name: str) -> str:
+    """Name of a signal without the word or number that names its axis."""
+    words = re.split(r"(?<=[a-z])(?=[A-Z])|[_.\[\] ]+", name)
+    kept = [w for w in words if w and not w.isdigit() and w.lower() not in POSE_WORDS]
+    return "_".join(kept).lower()
 
 
 def classify_signal(
@@ -175,6 +218,8 @@ def classify_signal(
             return _degrees(
                 name, signal, place, tokens, moves + rate + 10.0 * bool(tokens & SATELLITES)
             )
+    if effort := _effort(words, tokens):
+        return Classification(name, signal, effort, "", moves + rate, "", tokens)
     kind = _drive_kind(signal, tokens)
     if name in channels or is_command(name) or names_channel(name, channels):
         kind = "command"
@@ -189,7 +234,7 @@ def classify_signal(
         return Classification(name, signal, kind, word, moves + rate, why, tokens)
     column: str | None = name
     if name not in COLUMNS:
-        column = _motion(last, tokens, log)
+        column = _of_numbered(name, tokens, log) or _motion(last, tokens, log)
     if column is None or tokens & NOT_MEASURED:
         return None
     word, why = _angle(column, signal, tokens, _unit_word(name, signal))
@@ -222,7 +267,7 @@ def _angle(column: str, signal: Signal, tokens: frozenset[str], word: str) -> tu
         unit, largest = "deg", 2.0 * pi + 0.3
     if float(np.nanmax(np.abs(signal.values))) > largest:
         return unit, "degrees by its range"
-    return word, "radians by its range"
+    return word, BY_RANGE
 
 
 def has_stated_unit(name: str, signal: Signal) -> bool:
@@ -308,6 +353,37 @@ def has_opposite_sense(column: str, tokens: frozenset[str]) -> bool:
     if column in ("y_m", "v_mps"):
         return bool(tokens & TO_PORT)
     return column in ("psi_rad", "r_radps") and bool(tokens & COUNTERCLOCKWISE)
+
+
+def _of_numbered(name: str, tokens: frozenset[str], log: Log) -> str | None:
+    """The angle or rate of one of three signals that differ by a number only; None for another."""
+    found = re.fullmatch(r"(.*\D)(\d)([\])]?)", name)
+    if not found:
+        return None
+    there = [n for n in range(4) if f"{found[1]}{n}{found[3]}" in log.signals]
+    if there not in ([0, 1, 2], [1, 2, 3]):
+        return None
+    axis = int(found[2]) - there[0]
+    if tokens & TURNING and tokens & (SPEEDS | {"velocities", "rates", "gyro", "gyr", "omega"}):
+        return BY_NUMBER["rates"][axis]
+    if tokens & ROTATIONS and not tokens & (SPEEDS | {"quaternion", "quat"}):
+        return BY_NUMBER["angles"][axis]
+    return None
+
+
+def _effort(words: Sequence[str], tokens: frozenset[str]) -> str | None:
+    """The kind of a force or moment that was asked for; None for another signal."""
+    if not tokens & EFFORTS or tokens & SENSED:
+        return None
+    axes = [w for w in words if w in EFFORT_AXES]
+    if len(axes) == 0 and tokens & MOMENT_WORDS and words[-1] == "z":
+        return "effort_n"
+    if not axes:
+        return None
+    kind = EFFORT_AXES[axes[0]]
+    if kind == "effort_x" and tokens & MOMENT_WORDS:
+        return None
+    return kind
 
 
 def _motion(last: list[str], tokens: frozenset[str], log: Log) -> str | None:

@@ -2,7 +2,7 @@
 
 import csv
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import repeat
 from pathlib import Path
@@ -11,7 +11,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from boatsim.physics.base import Array
-from boatsim.recordings.importing.clocks import seconds_from_dates, time_column, times_in_seconds
+from boatsim.recordings.importing.cells import (
+    EMPTY_WORDS,
+    Cells,
+    column_of_cells,
+    number_of_cell,
+)
+from boatsim.recordings.importing.clocks import time_column, times_in_seconds
+from boatsim.recordings.importing.dates import seconds_from_dates
 from boatsim.recordings.importing.log import (
     MAX_SIGNALS,
     MAX_TEXT_BYTES,
@@ -28,10 +35,10 @@ if TYPE_CHECKING:
 
 SUFFIXES = (".csv", ".tsv", ".parquet", ".pq")
 SEPARATORS = ",;\t|"
+BLANK = " "  # any number of blanks between the cells
 COMMENT = ("#", "%", "//")
 BRACKETS = re.compile(r"[\[(]([^\])]*)[\])]\s*$")  # Heading [deg]
 PER_SECOND = re.compile(r"(?:^|[_ ])(rad|deg|m)[_ ](?:per[_ ])?s(?:ec)?$")
-EMPTY_WORDS = ("", "nan", "null", "none", "na", "n/a", "-")
 MAX_HEAD = 1_000_000  # [bytes] that are read to find names and units
 csv.field_size_limit(1_000_000)
 
@@ -48,8 +55,9 @@ def _log(
     columns: Mapping[str, Array],
     units: Mapping[str, str],
     remarks: tuple[str, ...] = (),
+    dates: Collection[str] = (),
 ) -> Log:
-    clock = time_column(columns)
+    clock = time_column(columns, dates)
     count = len(next(iter(columns.values()), ()))
     if clock is None:
         t = np.arange(count, dtype=float)
@@ -62,9 +70,11 @@ def _log(
             if name == clock:
                 unit = "s"
             signals[name] = Signal(t, values, unit)
+    if clock in dates or (clock and clock.startswith("column_")):
+        remarks = (*remarks, f"{path}: the times are those of column {clock}")
     if not clock:
         no_time = (
-            f"{path}: no column is called a time: rows are counted; the map can name it with `time`"
+            f"{path}: no column holds times: rows are counted; the map can name it with `time`"
         )
         remarks = (*remarks, no_time)
     return Log(path, signals, remarks=remarks)
@@ -126,8 +136,34 @@ def _csv(path: Path) -> Log:
     columns = _read_fast(path, head)
     if columns is None:
         columns, remarks = _read_line_by_line(path, head)
-    columns.pop("", None)
-    return _log(path, columns, head.units, remarks)
+    values, dates = dict[str, Array](), list[str]()
+    for name, cells in columns.items():
+        values[name] = cells.values
+        if cells.are_dates:
+            dates.append(name)
+    remarks = (*remarks, *_cell_remarks(path, head, columns))
+    return _log(path, values, head.units, remarks, dates)
+
+
+def _cell_remarks(path: Path, head: "_Header", columns: Mapping[str, Cells]) -> list[str]:
+    """Remarks on cells that were changed or left empty, with column and line of the file."""
+    found = []
+    lines: list[int] = []
+    for name, cells in columns.items():
+        for message, row in cells.remarks:
+            lines = lines or _lines_of_rows(path, head)
+            found.append(f"{path}: row {lines[row]}, column {name}: {message}")
+    return found
+
+
+def _lines_of_rows(path: Path, head: "_Header") -> list[int]:
+    """Line of the file of each row of numbers, counted from 1."""
+    lines = enumerate(_text(path, path.read_bytes()).splitlines(), 1)
+    rows = []
+    for i, line in lines:
+        if i > head.row and line.strip() and not line.lstrip().startswith(COMMENT):
+            rows.append(i)
+    return rows
 
 
 def _read_header(path: Path) -> _Header:
@@ -142,12 +178,12 @@ def _read_header(path: Path) -> _Header:
     if len(lines) < 2:
         raise file_error(path, "has a header and no rows")
     first = lines[0][1].lstrip("#%/ ")
-    separator = max(SEPARATORS, key=first.count)
-    header = list(map(str.strip, next(csv.reader([first], delimiter=separator))))
+    separator = _separator(first, lines[1][1])
+    header = _names(_cells(first, separator))
     if len(header) > MAX_SIGNALS:
         raise file_error(path, f"has {len(header)} columns; no log of a boat has as many")
     check_unique_names(path, header)
-    if None not in map(_number, header, repeat(separator)):
+    if None not in map(number_of_cell, header, repeat(separator)):
         raise file_error(
             path,
             "has no header: its first row is numbers; names of columns are needed",
@@ -157,7 +193,7 @@ def _read_header(path: Path) -> _Header:
     for name in header:
         if found := BRACKETS.search(name):
             units[name] = found[1].strip()
-    below = next(csv.reader([lines[1][1]], delimiter=separator), [])
+    below = _cells(lines[1][1], separator)
     if len(below) == len(header) and _is_units(below, header, separator):
         if len(lines) < 3:
             raise file_error(path, "has a header and no rows")
@@ -166,7 +202,31 @@ def _read_header(path: Path) -> _Header:
     return _Header(header, separator, units, lines[1][0])
 
 
-def _read_fast(path: Path, head: _Header) -> dict[str, Array] | None:
+def _separator(header: str, row: str) -> str:
+    """Separator of the cells of a table; blanks if header and row have equally many words."""
+    best = max(SEPARATORS, key=header.count)
+    if best not in header and len(header.split()) == len(row.split()) > 1:
+        return BLANK
+    return best
+
+
+def _cells(line: str, separator: str) -> list[str]:
+    """Cells of a line. Raises csv.Error."""
+    if separator == BLANK:
+        return line.split()
+    return next(csv.reader([line], delimiter=separator), [])
+
+
+def _names(header: Sequence[str]) -> list[str]:
+    """Names of the columns; one without a name is called by its number."""
+    names = list(map(str.strip, header))
+    for i, name in enumerate(names, 1):
+        if not name and f"column_{i}" not in names:
+            names[i - 1] = f"column_{i}"
+    return names
+
+
+def _read_fast(path: Path, head: _Header) -> dict[str, Cells] | None:
     """The columns of a table, read by native code.
 
     None if some rows differ from the header in length.
@@ -174,7 +234,7 @@ def _read_fast(path: Path, head: _Header) -> dict[str, Array] | None:
     import pyarrow as pa
     from pyarrow import csv as arrow
 
-    if len(set(head.columns)) < len(head.columns) or "" in head.columns:
+    if len(set(head.columns)) < len(head.columns) or head.separator == BLANK:
         return None
     room, batches = MemoryBudget(path), []
     try:
@@ -195,8 +255,8 @@ def _read_fast(path: Path, head: _Header) -> dict[str, Array] | None:
     return {name: _numbers_of_texts(found[name], head.separator) for name in head.columns}
 
 
-def _numbers_of_texts(column: "ChunkedArray", separator: str) -> Array:
-    """Numbers (N,) of a column of texts, by native code if all cells are numbers or empty."""
+def _numbers_of_texts(column: "ChunkedArray", separator: str) -> Cells:
+    """Numbers of a column of texts, by native code if all cells are numbers or empty."""
     import pyarrow as pa
     from pyarrow import compute
 
@@ -206,12 +266,12 @@ def _numbers_of_texts(column: "ChunkedArray", separator: str) -> Array:
     empty = compute.is_in(compute.utf8_lower(texts), pa.array(EMPTY_WORDS))
     try:
         filled = compute.if_else(empty, pa.scalar(None, pa.string()), texts)
-        return np.array(filled.cast(pa.float64()).to_numpy(), dtype=float)
+        return Cells(np.array(filled.cast(pa.float64()).to_numpy(), dtype=float))
     except pa.ArrowException:
-        return _column(column.to_pylist(), separator)
+        return column_of_cells(column.to_pylist(), separator)
 
 
-def _read_line_by_line(path: Path, head: _Header) -> tuple[dict[str, Array], tuple[str, ...]]:
+def _read_line_by_line(path: Path, head: _Header) -> tuple[dict[str, Cells], tuple[str, ...]]:
     """The columns of any other table, and remarks. Raises BadInput with the line of a mistake."""
     if path.stat().st_size > MAX_TEXT_BYTES:
         raise file_error(
@@ -227,9 +287,9 @@ def _read_line_by_line(path: Path, head: _Header) -> tuple[dict[str, Array], tup
     if not rows:
         raise file_error(path, "has a header and no rows")
     cells_of = zip(*rows, strict=True)
-    columns: dict[str, Array] = {}
+    columns: dict[str, Cells] = {}
     for name, cells in zip(head.columns, cells_of, strict=True):
-        columns[name] = _column(cells, head.separator)
+        columns[name] = column_of_cells(cells, head.separator)
     return columns, remarks
 
 
@@ -259,7 +319,7 @@ def _rows(
         if line.lstrip().startswith(COMMENT):
             continue
         try:
-            cells = next(csv.reader([line], delimiter=separator), [])
+            cells = _cells(line, separator)
         except csv.Error as error:
             raise file_error(path, f"is not CSV ({error})", number) from error
         if len(cells) == width + 1 and not cells[-1].strip():
@@ -280,42 +340,8 @@ def _is_units(row: Sequence[str], header: Sequence[str], separator: str) -> bool
     if not filled or 2 * len(filled) < len(header):
         return False
     for cell in filled:
-        if _number(cell, separator) is not None or len(cell.strip()) > 10:
+        if number_of_cell(cell, separator) is not None or len(cell.strip()) > 10:
             return False
         if seconds_from_dates([cell]) is not None:
             return False
     return True
-
-
-def _column(cells: Sequence[str], separator: str) -> Array:
-    """Numbers (N,); nan where a cell is empty or a word. Dates become s since 1970."""
-    try:
-        return np.array(list(map(_plain_number, cells)))
-    except ValueError:
-        pass
-    found = np.array(list(map(_number, cells, repeat(separator))), dtype=float)  # None becomes nan
-    if np.isnan(found).all() and (when := seconds_from_dates(cells)) is not None:
-        return when
-    return found
-
-
-def _plain_number(cell: str) -> float:
-    """The number of a cell without words. Python accepts 1_000, which is no number here."""
-    if "_" in cell:
-        return float("nan")
-    return float(cell)
-
-
-def _number(cell: str, separator: str) -> float | None:
-    """The number of a cell, nan if it is empty, None if it is a word."""
-    text = cell.strip()
-    if text.lower() in EMPTY_WORDS:
-        return float("nan")
-    if separator != ",":
-        text = text.replace(",", ".")
-    try:
-        if "_" in text:
-            return None
-        return float(text)
-    except ValueError:
-        return {"true": 1.0, "false": 0.0}.get(text.lower())

@@ -1,0 +1,193 @@
+"""Numbers of the text cells of a column, with those that a spreadsheet has changed into dates."""
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from boatsim.physics.base import Array
+from boatsim.recordings.importing.dates import month_number, seconds_from_dates
+
+EMPTY_WORDS = ("", "nan", "null", "none", "na", "n/a", "-")
+# 1.2 or 1.02 became "1 February", shown as 01.feb, 1-Feb or 01/02; 1.68 became "January 1968"
+DAY_AND_MONTH = re.compile(r"(\d{1,2})[.\-/ ]+([^\W\d_]{3,9})\.?")
+MONTH_AND_YEAR = re.compile(r"([^\W\d_]{3,9})\.?[.\-/ ]+(\d{2})")
+DECIMALS = re.compile(r"[+-]?\d+[.,](\d+)")
+TRUTH = {"true": 1.0, "false": 0.0}
+MIN_NUMBERS = 0.5  # share of the filled cells that are numbers, in a column of numbers
+MAX_SHOWN = 20  # characters of a cell in a remark
+
+
+@dataclass(frozen=True)
+class Cells:
+    """Numbers of a column.
+
+    Attributes:
+        values: Values (N,); nan where a cell is empty or a word.
+        are_dates: Whether the cells are dates; the values are then s since 1970 or midnight.
+        remarks: Pairs of a message and the index of the first row that it concerns.
+    """
+
+    values: Array
+    are_dates: bool = False
+    remarks: tuple[tuple[str, int], ...] = ()
+
+
+def column_of_cells(cells: Sequence[str], separator: str) -> Cells:
+    """Return the numbers of a column of texts.
+
+    Args:
+        cells: Texts of the column (N,).
+        separator: Separator of the table, with which a decimal comma can be told from a separator.
+    """
+    try:
+        return Cells(np.array(list(map(_plain_number, cells))))
+    except ValueError:
+        pass
+    texts = cells
+    if separator == ",":
+        texts = _with_decimal_points(cells)
+    found = np.full(len(cells), np.nan)
+    words = []  # rows whose cell is neither a number nor empty
+    for i, cell in enumerate(texts):
+        value = number_of_cell(cell, separator)
+        if value is None:
+            words.append(i)
+        else:
+            found[i] = value
+    if not words:
+        return Cells(found)
+    numbers = int(np.isfinite(found).sum())
+    if numbers < MIN_NUMBERS * (numbers + len(words)):
+        times = seconds_from_dates(cells)
+        if times is not None:
+            return Cells(times, are_dates=True)
+    if not numbers:
+        return Cells(found)
+    return _restored(cells, found, words)
+
+
+def number_of_cell(cell: str, separator: str) -> float | None:
+    """Return the number of a cell, nan if it is empty, None if it is a word.
+
+    Args:
+        cell: The text.
+        separator: Separator of the table; if it is no comma, commas are decimal.
+    """
+    text = cell.strip()
+    if text.lower() in EMPTY_WORDS:
+        return float("nan")
+    if separator != "," and "," in text:
+        if text.rfind(",") > text.rfind("."):
+            text = text.replace(".", "")  # of thousands
+        text = text.replace(",", ".")
+    try:
+        if "_" in text:
+            return None
+        return float(text)
+    except ValueError:
+        return TRUTH.get(text.lower())
+
+
+def _plain_number(cell: str) -> float:
+    """The number of a cell. Python accepts 1_000, which is no number here. Raises ValueError."""
+    if "_" in cell:
+        raise ValueError(cell)
+    return float(cell)
+
+
+def _with_decimal_points(cells: Sequence[str]) -> Sequence[str]:
+    """Cells of a table with commas between its cells: a comma in a quoted number is decimal.
+
+    If other cells of the column have points, the commas separate thousands.
+    """
+    has_points = any("." in cell for cell in cells)
+    point = "." if not has_points else ""
+    changed = []
+    for cell in cells:
+        if re.fullmatch(r"\s*[+-]?\d[\d,]*,\d+(\.\d*)?\s*", cell):
+            cell = cell.replace(",", point)
+        changed.append(cell)
+    return changed
+
+
+def _restored(cells: Sequence[str], found: Array, words: Sequence[int]) -> Cells:
+    """A column of numbers, in which cells that a spreadsheet made dates of are numbers again."""
+    decimals = set()
+    for row in np.flatnonzero(np.isfinite(found)).tolist():
+        if digits := DECIMALS.fullmatch(cells[row].strip()):
+            decimals.add(len(digits[1]))
+    values = found.copy()
+    restored, unclear, others = list[int](), list[int](), list[int]()
+    for i in words:
+        numbers = _numbers_before_spreadsheet(cells[i].strip(), decimals)
+        if len(numbers) == 1:
+            values[i] = numbers[0]
+            restored.append(i)
+        elif numbers:
+            unclear.append(i)
+        else:
+            others.append(i)
+    remarks = []
+    if restored:
+        first = restored[0]
+        remarks.append(
+            (
+                f"{_cells_were(restored)} changed into dates by a spreadsheet and read as "
+                f"numbers again, first {cells[first].strip()!r} = {values[first]:g}",
+                first,
+            )
+        )
+    if unclear:
+        first = unclear[0]
+        both = " or ".join(
+            f"{x:g}" for x in _numbers_before_spreadsheet(cells[first].strip(), decimals)
+        )
+        remarks.append(
+            (
+                f"{_cells_were(unclear)} changed into dates by a spreadsheet and left "
+                f"empty, first {cells[first].strip()!r}, which was {both}",
+                first,
+            )
+        )
+    if others:
+        first = others[0]
+        shown = cells[first].strip()[:MAX_SHOWN]
+        what = f"{len(others)} cells are no numbers and are left empty"
+        if len(others) == 1:
+            what = "1 cell is no number and is left empty"
+        remarks.append((f"{what}, first {shown!r}", first))
+    return Cells(values, remarks=tuple(remarks))
+
+
+def _cells_were(rows: Sequence[int]) -> str:
+    """Number of cells and the verb of the sentence."""
+    if len(rows) == 1:
+        return "1 cell was"
+    return f"{len(rows)} cells were"
+
+
+def _numbers_before_spreadsheet(text: str, decimals: set[int]) -> list[float]:
+    """The numbers that a spreadsheet with decimal commas may have changed into this date.
+
+    Args:
+        text: The cell, such as `01.feb` or `jan.68`.
+        decimals: Numbers of decimals of the other cells of the column.
+    """
+    if (found := DAY_AND_MONTH.fullmatch(text)) and (month := month_number(found[2])):
+        whole = float(found[1])
+        is_unknown = not decimals & {1, 2}
+        numbers = []
+        if month < 10 and (is_unknown or 1 in decimals):
+            numbers.append(round(whole + month / 10.0, 1))  # 1.2
+        if month >= 10 or is_unknown or 2 in decimals:
+            numbers.append(round(whole + month / 100.0, 2))  # 1.02, 1.11
+        return numbers
+    if (found := MONTH_AND_YEAR.fullmatch(text)) and (month := month_number(found[1])):
+        numbers = [round(month + int(found[2]) / 100.0, 2)]
+        if max(decimals, default=0) >= 4:
+            for century in (19, 20):  # 1.1968
+                numbers.append(month + (100 * century + int(found[2])) / 10000.0)
+        return numbers
+    return []

@@ -1,0 +1,179 @@
+"""Dates and times of day as programs write them, converted to seconds."""
+
+import re
+from collections.abc import Callable, Sequence
+from datetime import UTC, datetime, timedelta, timezone
+
+import numpy as np
+
+from boatsim.physics.base import Array
+
+MONTHS = {  # first letters of months in English, German, Nordic, French, Spanish, Italian, Dutch
+    **dict.fromkeys(("jan", "ene", "gen", "janv", "januari"), 1),
+    **dict.fromkeys(("feb", "fév", "fev", "févr", "febr"), 2),
+    **dict.fromkeys(("mar", "mär", "mrz", "mrt", "mars", "märz", "maart"), 3),
+    **dict.fromkeys(("apr", "avr", "abr", "avril", "april"), 4),
+    **dict.fromkeys(("may", "mai", "maj", "mei", "mag"), 5),
+    **dict.fromkeys(("jun", "juin", "giu", "june", "juni"), 6),
+    **dict.fromkeys(("jul", "juil", "lug", "july", "juli"), 7),
+    **dict.fromkeys(("aug", "août", "aou", "ago", "aoû"), 8),
+    **dict.fromkeys(("sep", "sept", "set"), 9),
+    **dict.fromkeys(("oct", "okt", "ott"), 10),
+    **dict.fromkeys(("nov",), 11),
+    **dict.fromkeys(("dec", "des", "dez", "déc", "dic"), 12),
+}
+CLOCK_OF_DAY = r"(?:(?P<hour>\d{1,2})[:.h](?P<minute>\d{2})(?:[:.m](?P<second>\d{2}))?"
+FRACTION = r"(?:[.,:](?P<fraction>\d{1,9}))?)"
+ZONE = r"\s*(?P<half>[ap]m)?\s*(?P<zone>z|utc|gmt|[+-]\d{2}:?\d{2})?"
+TIME = f"{CLOCK_OF_DAY}{FRACTION}{ZONE}"
+YEAR_FIRST = re.compile(
+    rf"(?P<year>\d{{4}})[-/._](?P<month>\d{{1,2}})[-/._](?P<day>\d{{1,2}})(?:[t_\s;,-]+{TIME})?",
+    re.IGNORECASE,
+)
+YEAR_LAST = re.compile(
+    rf"(?P<first>\d{{1,2}})(?P<mark>[-/.])(?P<other>\d{{1,2}})[-/.](?P<year>\d{{4}})"
+    rf"(?:[t_\s;,-]+{TIME})?",
+    re.IGNORECASE,
+)
+NAMED_MONTH = re.compile(
+    rf"(?P<day>\d{{1,2}})[.\s-]+(?P<name>[^\W\d_]{{3,9}})\.?[\s-]+(?P<year>\d{{4}})"
+    rf"(?:[t_\s;,-]+{TIME})?",
+    re.IGNORECASE,
+)
+TIME_OF_DAY = re.compile(TIME, re.IGNORECASE)
+MINUTES = re.compile(r"(?P<minute>\d{1,3}):(?P<second>\d{2})[.,](?P<fraction>\d{1,9})")
+DAY, HOUR = 86400.0, 3600.0  # [s]
+MIN_DATES = 0.9  # share of the cells with text that are dates, in a column of dates
+
+
+def seconds_from_dates(cells: Sequence[str]) -> Array | None:
+    """Return the times (N,) in s of a column of dates or times of day.
+
+    Dates are in any usual order, with any usual separators and fractions of a second, and count
+    from 1970, UTC without a zone. Times of day count from midnight, go on after the next midnight,
+    and need seconds.
+
+    Args:
+        cells: Cells of the column; an empty one becomes nan.
+
+    Returns:
+        The times; nan for the few cells that are not dates, None if more than a tenth are not.
+    """
+    texts = [cell.strip() for cell in cells]
+    filled = sum(map(bool, texts))
+    for read in _readers(texts):
+        found = np.full(len(texts), np.nan)
+        for i, text in enumerate(texts):
+            if text:
+                found[i] = read(text)
+                if i >= 20 and not np.isfinite(found[: i + 1]).any():
+                    break
+        known = int(np.isfinite(found).sum())
+        if known and known >= MIN_DATES * filled:
+            return _continued(found, read)
+    return None
+
+
+def _readers(texts: Sequence[str]) -> list[Callable[[str], float]]:
+    """Functions that read a date of each form; nan for any other text."""
+    return [_iso, _year_first, _year_last(texts), _named_month, _time_of_day, _minutes]
+
+
+def _continued(t: Array, read: Callable[[str], float]) -> Array:
+    """Times (N,) that go on where a time of day begins again at midnight, or minutes at an hour."""
+    turn = float("inf")
+    if read is _time_of_day:
+        turn = DAY
+    elif read is _minutes:
+        turn = HOUR
+    else:
+        return t
+    known = np.isfinite(t)
+    back = np.append(0.0, np.diff(t[known])) < -0.5 * turn
+    t = t.copy()
+    t[known] += turn * np.cumsum(back)
+    return t
+
+
+def _iso(text: str) -> float:
+    try:
+        when = datetime.fromisoformat(text)
+    except ValueError:
+        return float("nan")
+    if text.isdigit():
+        return float("nan")  # a number such as 20240423 may be anything
+    if not when.tzinfo:
+        when = when.replace(tzinfo=UTC)
+    return when.timestamp()
+
+
+def _year_first(text: str) -> float:
+    found = YEAR_FIRST.fullmatch(text)
+    if not found:
+        return float("nan")
+    return _seconds(found, int(found["year"]), int(found["month"]), int(found["day"]))
+
+
+def _year_last(texts: Sequence[str]) -> Callable[[str], float]:
+    """Reader of dates that end in the year; the day is first unless the numbers contradict it."""
+    pairs = [m for m in map(YEAR_LAST.fullmatch, texts) if m]
+    month_first = any(int(m["other"]) > 12 for m in pairs)
+    if pairs and pairs[0]["mark"] == "/" and not any(int(m["first"]) > 12 for m in pairs):
+        month_first = True  # the form of the United States
+
+    def read(text: str) -> float:
+        found = YEAR_LAST.fullmatch(text)
+        if not found:
+            return float("nan")
+        day, month = int(found["first"]), int(found["other"])
+        if month_first:
+            day, month = month, day
+        return _seconds(found, int(found["year"]), month, day)
+
+    return read
+
+
+def _named_month(text: str) -> float:
+    found = NAMED_MONTH.fullmatch(text)
+    if not found or not (month := month_number(found["name"])):
+        return float("nan")
+    return _seconds(found, int(found["year"]), month, int(found["day"]))
+
+
+def _time_of_day(text: str) -> float:
+    found = TIME_OF_DAY.fullmatch(text)
+    if not found or not found["second"] or ":" not in text:
+        return float("nan")
+    return _seconds(found, 1970, 1, 1)
+
+
+def _minutes(text: str) -> float:
+    found = MINUTES.fullmatch(text)
+    if not found:
+        return float("nan")
+    return 60.0 * int(found["minute"]) + float(f"{found['second']}.{found['fraction']}")
+
+
+def _seconds(found: "re.Match[str]", year: int, month: int, day: int) -> float:
+    """Seconds since 1970 of a date with the time of day that its text has."""
+    part = found.groupdict()
+    hour = int(part["hour"] or 0)
+    if part["half"]:
+        hour = hour % 12 + 12 * (part["half"].lower() == "pm")
+    zone = UTC
+    if part["zone"] and part["zone"][0] in "+-":
+        digits = part["zone"][1:].replace(":", "")
+        ahead = timedelta(hours=int(digits[:2]), minutes=int(digits[2:]))
+        zone = timezone(ahead if part["zone"][0] == "+" else -ahead)
+    minute, second = int(part["minute"] or 0), int(part["second"] or 0)
+    try:
+        when = datetime(year, month, day, hour, minute, second, tzinfo=zone)
+    except ValueError:
+        return float("nan")
+    return when.timestamp() + float(f"0.{part['fraction'] or 0}")
+
+
+def month_number(name: str) -> int:
+    """Return the number of a month by its name or abbreviation in several languages; 0 for none."""
+    word = name.lower().rstrip(".")
+    return MONTHS.get(word, MONTHS.get(word[:3], 0))

@@ -1,0 +1,71 @@
+"""Samples of a regular sensor that a program polls at another rate get the sensor's times."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from boatsim.recordings.importing.convert import convert_log
+from boatsim.recordings.importing.log import Log, Signal
+from boatsim.recordings.importing.mapping import Map
+from boatsim.recordings.importing.regular_times import regular_times
+
+PERIOD = 0.2  # [s] of the sensor
+
+
+def track_at(t: np.ndarray) -> np.ndarray:
+    """Positions [m] of a boat of 1.5 m/s on a circle."""
+    return 20.0 * np.exp(1.5j * t / 20.0)
+
+
+def polled(loop: float, seed: int = 0, lost: float = 0.0) -> tuple[np.ndarray, np.ndarray]:
+    """Times of measurement, and times at which a program with a loop of this length read them."""
+    rng = np.random.default_rng(seed)
+    true = 1.7e9 + PERIOD * np.arange(600)
+    true = true[rng.random(600) >= lost]
+    reads = 1.7e9 + 0.013 + np.cumsum(loop + 0.004 * rng.normal(size=round(130.0 / loop)))
+    return true, reads[np.searchsorted(reads, true)]
+
+
+@pytest.mark.parametrize("loop", [0.05, 0.109])
+@pytest.mark.parametrize("lost", [0.0, 0.1])
+def test_the_times_of_the_sensor_come_back_up_to_the_mean_delay(loop, lost):
+    true, read = polled(loop, lost=lost)
+    track = track_at(true - true[0])
+    found, period = regular_times(read, track)
+    assert period == pytest.approx(PERIOD, rel=1e-3)
+    off = found - true
+    assert np.std(off - np.mean(off)) < 0.35 * np.std(read - true)
+    assert 0.0 < np.mean(off) < loop
+
+
+def test_random_and_regular_times_are_left_as_they_are():
+    rng = np.random.default_rng(4)
+    t = 1.7e9 + np.cumsum(0.05 + 0.3 * rng.random(600))
+    assert regular_times(t, track_at(t - t[0])) is None
+    t = 1.7e9 + PERIOD * np.arange(600)
+    assert regular_times(t, track_at(t - t[0])) is None
+
+
+def test_a_track_that_is_smooth_by_its_stamps_keeps_them():
+    _, read = polled(0.109)
+    assert regular_times(read, track_at(read - read[0])) is None
+
+
+def test_an_import_moves_the_positions_and_reports_it():
+    true, read = polled(0.109)
+    rows = np.unique(np.concatenate([read, read + 0.05]))
+    last = np.searchsorted(read, rows, side="right") - 1
+    track = track_at(true - true[0])[last]
+    heading = 10.0 * np.sin(0.3 * rows) + 0.01 * np.random.default_rng(5).normal(size=len(rows))
+    signals = {
+        "north": Signal(rows, track.real),
+        "east": Signal(rows, track.imag),
+        "yaw": Signal(rows, heading),
+    }
+    map = Map(columns={"x_m": "north", "y_m": "east", "psi_rad": "yaw * deg"})
+    run = convert_log(Log(Path("log.csv"), signals), map, "map.toml")
+    assert any("the sensor measured every 0.2 s" in remark for remark in run.remarks)
+    seen = np.isfinite(run["x_m"])
+    speed = np.abs(np.diff(run["x_m"][seen] + 1j * run["y_m"][seen]) / np.diff(run.t[seen]))
+    assert np.percentile(np.abs(speed - 1.5), 90) < 0.3
