@@ -24,6 +24,7 @@ from boatsim.recordings.importing.log import Log
 from boatsim.recordings.importing.mapping import read_map
 from boatsim.recordings.importing.mapping_proposal import VesselChannel, propose_map, signal_table
 from boatsim.recordings.importing.several_logs import open_logs
+from boatsim.recordings.importing.signal_classification import UNKNOWN_BODY, Body
 from boatsim.recordings.table import read, write_csv
 from boatsim.simulate.manoeuvre import approach_speed
 
@@ -78,19 +79,22 @@ def _propose_map(
     vessel: str | None,
     load: Sequence[str],
 ) -> int:
+    body = UNKNOWN_BODY
     if vessel:
         boat = vessels.load_vessel(vessel, load)
+        body = Body(tuple(boat.limits()), boat.dof, boat.turns_over)
         drives = []
         fed = _fed_channels(boat) - log.signals.keys()
         for channel, (low, high) in boat.limits().items():
             if channel in fed:
                 continue
             drives.append(_vessel_channel(boat, channel, low, high))
-        text = propose_map(log, vessel, drives, boat.dof, boat.columns, partial(_speed_ahead, boat))
+        speed = partial(_speed_ahead, boat)
+        text = propose_map(log, vessel, drives, boat.dof, boat.columns, speed, boat.turns_over)
     else:
         text = propose_map(log, vessel, [], (), None)
     print_notes(log.remarks)
-    print_lines(signal_table(log))
+    print_lines(signal_table(log, body))
     if propose is None:
         introduction = "Proposed map (--propose map.toml writes it; --map map.toml converts):"
         print_lines(["", introduction, "", text.rstrip()])
@@ -170,7 +174,10 @@ def _convert_logs(
     elif recording.notes.use:
         print_note(f"write into {out.parent / 'recording.toml'}: {use_line(recording.notes.use)}")
     try:
-        read(out, limits, boat.columns if boat else None)
+        if boat is None:
+            read(out, limits)
+        else:
+            read(out, limits, boat.columns, boat.turns_over)
     except BadInput as error:
         print_note(f"a diagnosis would refuse this recording: {error}")
     return 0

@@ -102,6 +102,21 @@ class LoadConfig:
         "Length of a free run on a hull of 1.2 m: five lengths of travel at Froude number 0.3.",
         low=0.1,
     )
+    input_noise_percentile: float = setting(
+        98.0,
+        "%",
+        "Third differences of a measured force above this percentile are steps of the force and "
+        "no noise: a force that is switched twice a second at 100 Hz has 6 % of them.",
+        50.0,
+        100.0,
+    )
+    input_noise_time: float = setting(
+        0.05,
+        "correlation time",
+        "Start of the fitted noise of a measured force: that of a force with the assumed level of "
+        "the disturbance and this correlation time, in those of the disturbance.",
+        low=1e-6,
+    )
     finest_noise: float = setting(
         1e-4,
         "1",
@@ -226,6 +241,32 @@ class ChecksConfig:
     Durations for a hull of 1.2 m are scaled by Froude's law.
     """
 
+    rest_speed: float = setting(
+        0.02,
+        "Froude speed",
+        "A guided body whose coordinates move less than this speed, over a correlation time of the "
+        "disturbance, is at rest; the share of sqrt(g L), and of sqrt(g / L) for angles.",
+    )
+    push_threshold: float = setting(
+        6.0,
+        "sd",
+        "An unexplained force beyond this many robust standard deviations is a push that was not "
+        "recorded; friction and errors of a few per cent of the load stay below 4.",
+        low=1.0,
+    )
+    push_edge: float = setting(
+        3.0, "sd", "A push lasts as long as the unexplained force exceeds this.", low=0.5
+    )
+    push_margin_rows: int = setting(
+        2, "count", "Rows before and after a push that are left out, too."
+    )
+    push_longest_share: float = setting(
+        0.25,
+        "1",
+        "Pushes that take more of a recording than this are no exception: the model lacks a force.",
+        0.0,
+        1.0,
+    )
     probability_evident: float = setting(
         0.99, "1", "Probability of a finding whose evidence has no other explanation.", high=1.0
     )
@@ -822,6 +863,12 @@ class FitConfig:
     They concern its parameters, noise levels, correlation time and posterior widths.
     """
 
+    input_noise_sd: float = setting(
+        2.0,
+        "1",
+        "Prior sd of the logarithm of the noise of a measured force, which no rule predicts.",
+        low=1e-3,
+    )
     refit_gain: float = setting(
         0.3, "nats", "A refit that gains less evidence than this changes nothing.", low=1e-6
     )

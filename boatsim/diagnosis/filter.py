@@ -14,6 +14,12 @@ import numpy as np
 
 from boatsim.diagnosis import priors
 from boatsim.diagnosis.config import DEFAULT, DiagnosisConfig, FilterConfig
+from boatsim.diagnosis.input_noise import (
+    input_noise_density,
+    interpolate_measured,
+    measured_axes,
+    measured_inputs,
+)
 from boatsim.diagnosis.recent_results import RecentResults
 from boatsim.errors import BadInput
 from boatsim.physics.base import DriftingMeasurement, RandomForce
@@ -65,6 +71,9 @@ class NoiseLevels:
     sensors: Mapping[str, float]  # standard deviation by noise family
     # (NQ,) lower bound of the rms of the latent force when a recording begins
     initial_force: Array = field(default_factory=lambda: np.zeros(1))
+    # (NQ,) spectral density of the part of a measured force that does not move the hull, in
+    # addition to the noise that its samples show [N^2 s, N^2 m^2 s]; empty: no force is measured
+    white: Array = field(default_factory=lambda: np.zeros(0))
 
     def with_other_correlation_time(self, seconds: float) -> "NoiseLevels":
         """Return noise levels with another correlation time of the latent (unmodelled) force.
@@ -166,6 +175,8 @@ class MappedRecording:
     specified_initial: InitialState | None = None
     # [s] integration step, where it does not follow from the hull's motion
     specified_step: float | None = None
+    # (NQ,) spectral density of the noise of measured forces and moments [N^2 s, N^2 m^2 s]
+    input_noise: Array = field(default_factory=lambda: np.zeros(0))
     groups: tuple[str, ...] = ()  # of recordings, to which it belongs
     config: FilterConfig = DEFAULT.filter
 
@@ -339,7 +350,7 @@ class MappedRecording:
             keep = FilterHistory(means, covariances, transitions, predicted)
             self._run(values, on, levels, arrays, rates=rates, keep=keep)
             self.program.functions.smooth_states(
-                keep, gains, self.times, LatentForce(force**2, levels.time_constant), values, on
+                keep, gains, self.times, self._latent_force(force, levels), values, on
             )
             before, rates = rates, means[0, nq : 2 * nq].copy()
             sd = np.sqrt(np.maximum(np.diag(covariances[0])[nq : 2 * nq], 0.0))
@@ -472,7 +483,7 @@ class MappedRecording:
             self.inputs,
             Measurements(self.measured, self.codes, noise),
             VesselNumbers(rigid_body_values(values), values, on),
-            LatentForce(force**2, levels.time_constant),
+            self._latent_force(force, levels),
             FilterStart(self.initial.mean, covariance, rates),
             PassOptions(self.step, full, fresh, keep is not None),
             arrays,
@@ -480,11 +491,19 @@ class MappedRecording:
         )
         return float(found)
 
+    def _latent_force(self, rms: Array, levels: NoiseLevels) -> LatentForce:
+        white = np.zeros(self.program.module.NQ)
+        if len(self.input_noise):
+            white = white + self.input_noise
+        if len(levels.white):
+            white = white + levels.white
+        return LatentForce(rms**2, levels.time_constant, white)
+
 
 def _key_of(values: Array, on: Array, levels: NoiseLevels, horizon: float = 0.0) -> bytes:
     """All that a result for a recording depends on, as one key."""
     numbers = (horizon, levels.time_constant, sorted(levels.sensors.items()))
-    arrays = (values, np.asarray(on), levels.force, levels.initial_force)
+    arrays = (values, np.asarray(on), levels.force, levels.initial_force, levels.white)
     return b"".join([repr(numbers).encode(), *(array.tobytes() for array in arrays)])
 
 
@@ -631,6 +650,8 @@ def map_recording(
     commands = np.zeros((len(recording), 1))
     if vessel.inputs:
         commands = clipped_recorded_commands(vessel, recording.signals, len(recording))
+        if recording.orders is None:
+            commands = interpolate_measured(commands, measured_inputs(vessel))
     facts = merged_facts(vessel, recording)
     mapped = MappedRecording(
         recording.name,
@@ -645,6 +666,7 @@ def map_recording(
         scale | dict(noise_ratio or {}),
         facts,
         *_commands_at_own_times(recording, vessel),
+        input_noise=input_noise_density(vessel, recording, axes, config.load),
         groups=recording.notes.groups,
         config=config.filter,
     )
@@ -703,7 +725,8 @@ def _commands_at_own_times(recording: Recording, vessel: Vessel) -> tuple[Array,
     if recording.orders is None or not vessel.inputs:
         return np.zeros(0), np.zeros((0, 0))
     t, signals = recording.orders.t, recording.orders.signals
-    return command_changes(t, clipped_recorded_commands(vessel, signals, len(t)))
+    commands = clipped_recorded_commands(vessel, signals, len(t))
+    return command_changes(t, interpolate_measured(commands, measured_inputs(vessel)))
 
 
 def hull_time_scales(
@@ -933,4 +956,8 @@ def prior_noise_levels(
             f"at most {HUGE:g}"
         )
     noise = shared_noise(vessel, recordings, config)
-    return NoiseLevels(force, time_constant, noise, config.filter.initial_force * force)
+    white = np.zeros(0)
+    if measured_axes(vessel, axes).any():
+        share = config.load.input_noise_time * time_constant
+        white = np.where(measured_axes(vessel, axes), share * force**2, 0.0)
+    return NoiseLevels(force, time_constant, noise, config.filter.initial_force * force, white)

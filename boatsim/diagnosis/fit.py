@@ -7,7 +7,7 @@ from math import erf, log, sqrt
 import numpy as np
 
 from boatsim.diagnosis.filter import NoiseLevels
-from boatsim.diagnosis.noise_levels import fit_latent_force_level, log_force_prior
+from boatsim.diagnosis.noise_levels import fit_latent_force_level, log_level_prior
 from boatsim.diagnosis.problem import (
     FilterPasses,
     Fit,
@@ -304,7 +304,7 @@ def gauss_newton(problem: Problem, start: Fit, iterations: int, enough: float) -
     information[np.diag_indices(len(start.free))] += _curvature(hypothesis, here)
     covariance = space.covariance(information)
     evidence = here.score - 0.5 * float(np.linalg.slogdet(information)[1])
-    evidence += log_force_prior(problem, start.levels)
+    evidence += log_level_prior(problem, start.levels)
     evidence += log_truncation_probability(start.free, here.theta, covariance)
     return replace(start, theta=here.theta, covariance=covariance, evidence=evidence)
 

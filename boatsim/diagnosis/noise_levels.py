@@ -39,6 +39,32 @@ def log_force_prior(problem: Problem, levels: NoiseLevels) -> float:
     return float(np.sum(-0.5 * deviation**2))
 
 
+def log_level_prior(problem: Problem, levels: NoiseLevels) -> float:
+    """Return the log prior density of the latent force and of the noise of measured forces.
+
+    Args:
+        problem: Problem with the assumed levels.
+        levels: Noise levels of a hypothesis.
+    """
+    over = _log_input_noise(levels) - _log_input_noise(problem.ambient)
+    noise = -0.5 * float(np.sum((over / problem.config.fit.input_noise_sd) ** 2))
+    return log_force_prior(problem, levels) + noise
+
+
+def _log_input_noise(levels: NoiseLevels) -> Array:
+    """Logarithms of the noise of measured forces, along the axes on which they act."""
+    return np.asarray(np.log(levels.white[levels.white > 0.0]), dtype=float)
+
+
+def _with_input_noise(levels: NoiseLevels, logs: Array) -> NoiseLevels:
+    """Return levels with another noise of measured forces, given by its logarithms."""
+    if not len(logs):
+        return levels
+    white = levels.white.copy()
+    white[white > 0.0] = np.exp(logs)
+    return replace(levels, white=white)
+
+
 def _force_levels(problem: Problem, logs: Array) -> Array:
     """Levels of the latent force from their logarithms, with the lower bound."""
     return np.maximum(np.exp(logs), problem.config.fit.least_force * problem.ambient.force)
@@ -91,13 +117,15 @@ def fit_latent_force_level(problem: Problem, found: Fit, enough: float | None = 
         families = _families(problem)
     specified = _log_noise(problem.ambient, families)
     k, n = len(searched), len(searched) + len(families)
+    last = n + len(found.levels.force)
 
     def fit_at_levels(x: Array) -> tuple[NoiseLevels, Array]:
         theta = found.theta.copy()
         theta[searched] = np.clip(x[:k] * sd, low, high)
         sensors = dict(found.levels.sensors) | _sensor_noise(problem, families, x[k:n], specified)
-        force = _force_levels(problem, x[n:])
-        return replace(found.levels, force=force, sensors=sensors), theta
+        force = _force_levels(problem, x[n:last])
+        levels = replace(found.levels, force=force, sensors=sensors)
+        return _with_input_noise(levels, x[last:]), theta
 
     about = problem.filter(found.free, found.theta, on, found.levels)
 
@@ -106,10 +134,11 @@ def fit_latent_force_level(problem: Problem, found: Fit, enough: float | None = 
         deviation = float(np.sum(((theta[searched] - mean) / sd) ** 2))
         prior = -0.5 * (deviation + _noise_prior(problem, x[k:n], specified))
         likelihood = problem.log_likelihood(found.free, theta, on, levels, about)
-        return likelihood + log_force_prior(problem, levels) + prior
+        return likelihood + log_level_prior(problem, levels) + prior
 
     noise = _log_noise(found.levels, families)
-    begin = np.concatenate([found.theta[searched] / sd, noise, np.log(found.levels.force)])
+    logs = [np.log(found.levels.force), _log_input_noise(found.levels)]
+    begin = np.concatenate([found.theta[searched] / sd, noise, *logs])
     _, x = maximize(score, begin, FORCE_STEP, enough, problem.config.fit)
     levels, theta = fit_at_levels(x)
     return replace(found, levels=levels, theta=theta)
@@ -125,6 +154,7 @@ def fit_noise(problem: Problem, found: Fit) -> Fit:
     config, prior_levels = problem.config.fit, problem.ambient
     families = _families(problem)
     n = len(prior_levels.force)
+    last = n + len(families)
     on = problem.program.effect_switches(found.effects)
     specified = _log_noise(prior_levels, families)
     sensed = []
@@ -133,24 +163,27 @@ def fit_noise(problem: Problem, found: Fit) -> Fit:
     rough = np.log(np.array(sensed))
 
     def levels(x: Array) -> NoiseLevels:
-        sensors = dict(prior_levels.sensors) | _sensor_noise(problem, families, x[n:], specified)
-        return replace(prior_levels, force=_force_levels(problem, x[:n]), sensors=sensors)
+        logs = x[n:last]
+        sensors = dict(prior_levels.sensors) | _sensor_noise(problem, families, logs, specified)
+        found = replace(prior_levels, force=_force_levels(problem, x[:n]), sensors=sensors)
+        return _with_input_noise(found, x[last:])
 
     def prior(x: Array) -> float:
-        return -0.5 * _noise_prior(problem, x[n:], specified)
+        return -0.5 * _noise_prior(problem, x[n:last], specified)
 
     def maximize_noise(x: Array, about: FilterPasses, step: float, enough: float) -> Array:
         def score(x: Array) -> float:
             likelihood = problem.log_likelihood(found.free, found.theta, on, levels(x), about)
-            return likelihood + log_force_prior(problem, levels(x)) + prior(x)
+            return likelihood + log_level_prior(problem, levels(x)) + prior(x)
 
         return maximize(score, x, step, enough, config)[1]
 
     low, high = specified - NOISE_START_RANGE, specified + NOISE_START_RANGE
-    x = np.concatenate([np.log(prior_levels.force) + FORCE_START, np.clip(rough, low, high)])
+    start = np.log(prior_levels.force) + FORCE_START
+    x = np.concatenate([start, np.clip(rough, low, high), _log_input_noise(prior_levels)])
     about = problem.filter(found.free, found.theta, on, levels(x))
     for _ in range(config.force_raises):  # where the simulated boat diverges from the recording
-        begin = about.log_likelihood + log_force_prior(problem, levels(x)) + prior(x)
+        begin = about.log_likelihood + log_level_prior(problem, levels(x)) + prior(x)
         if np.isfinite(begin):
             break
         x[:n] += 1.0

@@ -19,6 +19,8 @@ from boatsim.diagnosis import loading
 from boatsim.diagnosis.checks.finding import Finding
 from boatsim.diagnosis.checks.hypothesis_test import compare_reinterpretations
 from boatsim.diagnosis.checks.initial_actuator_state import infer_initial_actuator_state
+from boatsim.diagnosis.checks.rest import without_rest
+from boatsim.diagnosis.checks.unrecorded_push import has_measured_input, without_pushes
 from boatsim.diagnosis.config import DEFAULT, DiagnosisConfig
 from boatsim.diagnosis.correlation_time import select_correlation_time
 from boatsim.diagnosis.covariance_inflation import inflate_covariance
@@ -29,7 +31,7 @@ from boatsim.diagnosis.filter import MappedRecording, map_recording
 from boatsim.diagnosis.loading import Loaded, Request
 from boatsim.diagnosis.open_set.decision import Decision, decision_without_fit
 from boatsim.diagnosis.open_set.decision import decide as judge_names
-from boatsim.diagnosis.problem import Problem
+from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.diagnosis.question import Question, compile_program, set_up_estimation_problem
 from boatsim.diagnosis.recalibration import decide_recalibration
 from boatsim.diagnosis.report.answer import compose_answer
@@ -155,7 +157,9 @@ def diagnose_loaded(
     Raises:
         BadInput: The recordings cannot be used.
     """
+    loaded = without_rest(loaded, config)
     question = set_up_estimation_problem(loaded, config)
+    given = loaded.findings
     report("compiling, or loading what was compiled before")
     compile_program(question.problem)
     begin = time.perf_counter()
@@ -164,6 +168,10 @@ def diagnose_loaded(
         findings = check(loaded, question)
         found = None
         with suppress(np.linalg.LinAlgError, FloatingPointError):
+            if has_measured_input(loaded.vessel):
+                base = fit(question).recalibrated
+                loaded, question = leave_out_pushes(loaded, question, base)
+                findings = (*findings, *loaded.findings[len(given) :])
             found = _fit_and_select(loaded, question, findings, begin, report)
         if found is None or not _is_finite(found.findings.answer):
             report("locating where the model cannot follow", EVALUATING)
@@ -179,6 +187,12 @@ def _fit_and_select(
     if has_diverged(question.problem, base.recalibrated):
         return None
     selection = select(question, base, loaded, report_part_of(report, *SELECTING))
+    given = loaded.findings
+    loaded, kept = leave_out_pushes(loaded, question, selection.ranking.best)
+    if kept is not question:  # smaller pushes stand out beside a better model
+        question, findings = kept, (*findings, *loaded.findings[len(given) :])
+        report("selecting again without the pushes", SELECTING[1])
+        selection = select(question, fit(question), loaded)
     decision = decide(question, selection)
     ranking = describe(question, decision, report_part_of(report, *DESCRIBING))
     report("planning what to record next", DESCRIBING[1])
@@ -264,6 +278,24 @@ def check(loaded: Loaded, question: Question) -> tuple[Finding, ...]:
     for finding in (*loaded.findings, *compared):
         findings.append(finding if finding.run else replace(finding, run=whole))
     return tuple(findings)
+
+
+def leave_out_pushes(loaded: Loaded, question: Question, found: Fit) -> tuple[Loaded, Question]:
+    """Cut short forces that no channel records out of recordings in which forces were measured.
+
+    Args:
+        loaded: Recordings.
+        question: The same recordings, mapped.
+        found: Fit of the vessel, whose unexplained force shows the pushes.
+
+    Returns:
+        The recordings without the rows of the pushes, and the same mapped; the arguments if there
+        are none.
+    """
+    kept = without_pushes(loaded, question.problem, question.held_out, found)
+    if kept is None:
+        return loaded, question
+    return kept, set_up_estimation_problem(kept, question.problem.config)
 
 
 def fit(question: Question) -> Baseline:

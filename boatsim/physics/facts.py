@@ -17,6 +17,7 @@ WORDS = {
     "no_waves": "whether there are no waves",
     "no_water": "whether the craft moves without water",
     "moored": "whether a line holds the boat",
+    "guided": "whether bearings or rails guide the boat",
     "steering_measured": "whether the steering angle is measured or the command",
     "position_fix": "the kind of position measurement",
     "position_wander_sd_m": "the rms of the slowly varying position error",
@@ -28,6 +29,7 @@ FLAGS = (  # true or false
     "no_waves",
     "no_water",
     "moored",
+    "guided",
     "steering_measured",
 )
 # rms [m] and correlation time [s] of the slowly varying error of positions

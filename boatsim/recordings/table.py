@@ -363,6 +363,7 @@ def read(
     path: Path | str,
     channels: Mapping[str, tuple[float, float]] | None = None,
     columns: Mapping[str, str] | None = None,
+    turns_over: bool = False,
 ) -> Recording:
     """Read a recording from a file, with checks and the notes of the nearest `recording.toml`.
 
@@ -371,6 +372,7 @@ def read(
         channels: Allowed range (low, high) of the vessel's inputs; inputs without a column are
             absent.
         columns: Signal -> column of the vessel's recordings; those of the notes replace them.
+        turns_over: Whether the vessel may roll to any angle, so that its roll runs on.
 
     Raises:
         BadInput: One line with file, row and column of what can not be used.
@@ -387,14 +389,15 @@ def read(
     _check_cells(used, needed)
     mistakes: list[str] = []
     check_time = partial(_check_time, use=found.notes.use)
-    for check in (check_time, _check_units, partial(_check_limits, channels=channels)):
+    check_units = partial(_check_units, turns_over=turns_over)
+    for check in (check_time, check_units, partial(_check_limits, channels=channels)):
         try:
             check(used)
         except BadInput as error:
             mistakes.append(str(error))
     if mistakes:
         raise BadInput(join_mistakes(mistakes, path))
-    signals, ignored, across = _signals(raw, needed)
+    signals, ignored, across = _signals(raw, needed, turns_over)
     remarks = [*found.remarks, *absent, *across]
     if ignored:
         remarks.append(f"{path}: columns not used: {', '.join(ignored)}")
@@ -693,8 +696,8 @@ def _parts_between(t: Array, apart: NDArray[np.bool_]) -> list[list[float]]:
     return sorted([float(part[0]), float(part[-1])] for part in kept)
 
 
-def _check_units(raw: Raw) -> None:
-    for name, index in units.find_columns_in_degrees(raw.columns).items():
+def _check_units(raw: Raw, turns_over: bool = False) -> None:
+    for name, index in units.find_columns_in_degrees(raw.columns, turns_over).items():
         message = (
             f"{raw.columns[name][index]:g} looks like degrees; allowed are radians "
             f"({unit_of(name)})"
@@ -760,8 +763,10 @@ def _with_clock_of_motion(recording: Recording, path: Path) -> Recording:
     return replace(recording, t=t, notes=notes, remarks=(*recording.remarks, remark))
 
 
-def _signals(raw: Raw, needed: list[str]) -> tuple[dict[str, Array], list[str], list[str]]:
-    """The signals with unwrapped headings, the names of columns that are not used, and remarks."""
+def _signals(
+    raw: Raw, needed: list[str], turns_over: bool
+) -> tuple[dict[str, Array], list[str], list[str]]:
+    """The signals with unwrapped angles, the names of columns that are not used, and remarks."""
     ignored = [n for n in raw.columns if n not in needed and not RUN_COLUMN.match(n)]
     signals: dict[str, Array] = {}
     remarks = list[str]()
@@ -769,7 +774,7 @@ def _signals(raw: Raw, needed: list[str]) -> tuple[dict[str, Array], list[str], 
         if name == "t_s" or name in raw.text or (name in ignored and not unit_of(name)):
             continue
         is_heading = name == "psi_rad" or name.endswith("_psi_rad")
-        if is_heading:
+        if is_heading or (turns_over and name == "phi_rad"):
             values, lost = without_interpolated_wraps(values)
             values = _unwrap(values)
             if lost:

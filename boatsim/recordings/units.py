@@ -19,6 +19,9 @@ RATIO_TOLERANCE = 1.5
 # [rad/s] sustained turning that no boat reaches; 4 deg/s is a gentle turn of a small boat. Small
 # hovercraft and models turn faster, so that a second sign must confirm the unit
 MAX_TURNING = 4.0
+# [rad/s] sustained rolling that no body in bearings reaches: three turns a second. In degrees it
+# would be a third of a degree in a second
+MAX_TUMBLING = 20.0
 # [rad/s] sustained turning that nothing reaches, 6 turns a second; 40 deg/s is a fast small boat
 IMPOSSIBLE_TURNING = 40.0
 # [rad] 8.6 degrees: compasses and cameras are ten times better; 0.15 degrees is a good one
@@ -39,13 +42,16 @@ MIN_WRAPS = 2  # one large step may be an outlier
 ANGLES = {"r_radps": "psi_rad", "p_radps": "phi_rad"}  # rate -> its integral
 
 
-def find_columns_in_degrees(columns: Mapping[str, Array]) -> dict[str, int]:
+def find_columns_in_degrees(
+    columns: Mapping[str, Array], turns_over: bool = False
+) -> dict[str, int]:
     """Return the columns of a table that hold degrees although their names promise radians.
 
     The motion decides. Rows at which time does not increase are ignored.
 
     Args:
         columns: Columns (N,) of a table with `t_s`.
+        turns_over: Whether the vessel may roll to any angle.
 
     Returns:
         Column -> number of a row that shows that it is in degrees.
@@ -55,13 +61,13 @@ def find_columns_in_degrees(columns: Mapping[str, Array]) -> dict[str, int]:
     )
     if len(forward) < MIN_ROWS:
         return {}
-    found = _in_degrees(select_rows(columns, forward))
+    found = _in_degrees(select_rows(columns, forward), turns_over)
     for name, index in found.items():
         found[name] = int(forward[index])
     return found
 
 
-def _in_degrees(columns: Mapping[str, Array]) -> dict[str, int]:
+def _in_degrees(columns: Mapping[str, Array], turns_over: bool) -> dict[str, int]:
     found: dict[str, int] = {}
     for name in ("psi_rad", "phi_rad", "r_radps", "p_radps"):
         if name not in columns:
@@ -70,9 +76,12 @@ def _in_degrees(columns: Mapping[str, Array]) -> dict[str, int]:
         if name == "psi_rad":
             index = find_heading_in_degrees(t, values, others)
         elif name == "phi_rad":
-            index = find_roll_in_degrees(t, values, others.get("p_radps"))
+            index = find_roll_in_degrees(t, values, others.get("p_radps"), turns_over)
         else:
-            index = find_rate_in_degrees(t, values, others.get(ANGLES[name]))
+            fastest = MAX_TURNING
+            if name == "p_radps" and turns_over:
+                fastest = MAX_TUMBLING
+            index = find_rate_in_degrees(t, values, others.get(ANGLES[name]), fastest)
         if index is not None:
             found[name] = int(rows[index])
     return found
@@ -141,10 +150,13 @@ def _is_wrapped_in_radians(psi: Array, steps: Array) -> bool:
     return one_turn and inside and int(np.sum(np.abs(steps) > math.pi)) >= MIN_WRAPS
 
 
-def find_rate_in_degrees(t: Array, rate: Array, angle: Array | None) -> int | None:
+def find_rate_in_degrees(
+    t: Array, rate: Array, angle: Array | None, fastest: float = MAX_TURNING
+) -> int | None:
     """Decide whether a recorded angular rate (N,) is in degrees per second.
 
-    Returns a row that shows it, None for radians per second.
+    Returns a row that shows it, None for radians per second. `fastest` is the largest rate [rad/s]
+    that the vessel sustains.
     """
     largest = int(np.argmax(np.abs(rate)))
     if angle is not None:
@@ -153,18 +165,34 @@ def find_rate_in_degrees(t: Array, rate: Array, angle: Array | None) -> int | No
             return largest
         if _is_near(ratio, 1.0):
             return None
-    if np.percentile(np.abs(rate), 75) > MAX_TURNING:
+    if np.percentile(np.abs(rate), 75) > fastest:
         return largest
     return None
 
 
-def find_roll_in_degrees(t: Array, phi: Array, rate: Array | None) -> int | None:
+def find_roll_in_degrees(
+    t: Array, phi: Array, rate: Array | None, turns_over: bool = False
+) -> int | None:
     """Decide whether a recorded roll angle (N,) is in degrees.
 
-    Returns a row that shows it, None for radians.
+    The size of the roll shows it for a hull, and the speed of the roll for a body that turns over.
+
+    Args:
+        t: Times (N,) [s].
+        phi: Roll (N,) as written.
+        rate: Recorded roll rate (N,), None without one.
+        turns_over: Whether the vessel may roll to any angle.
+
+    Returns:
+        A row that shows it, None for radians.
     """
     largest = int(np.argmax(np.abs(phi)))
-    if abs(phi[largest]) > MAX_ROLL:
+    limit = MAX_ROLL
+    if turns_over:
+        limit = math.inf
+        if _fastest_rolling(t, phi) > MAX_TUMBLING:
+            return largest
+    if abs(phi[largest]) > limit:
         return largest
     if rate is not None and _is_near(_ratio(cumulative_integral(t, rate), phi), DEGREES):
         return largest
@@ -257,3 +285,11 @@ def _sustained_turning(t: Array, psi: Array) -> float:
     rows = _rows_in(t, 0.5)
     smooth = np.unwrap(psi)
     return float(np.percentile(np.abs(smooth[rows:] - smooth[:-rows]) / (t[rows:] - t[:-rows]), 75))
+
+
+def _fastest_rolling(t: Array, phi: Array) -> float:
+    """Rate of roll over a tenth of a second [rad/s] that one in a hundred rows exceeds."""
+    rows = _rows_in(t, 0.1)
+    if float(np.ptp(phi)) < 2.0 * math.pi + WRAP_TOLERANCE:
+        phi = np.unwrap(phi)
+    return float(np.percentile(np.abs(phi[rows:] - phi[:-rows]) / (t[rows:] - t[:-rows]), 99))

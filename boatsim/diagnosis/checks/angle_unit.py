@@ -17,13 +17,14 @@ QUANTITIES = {
 }
 
 
-def check_angle_unit(recording: Recording, _: Vessel, config: ChecksConfig) -> list[Finding]:
+def check_angle_unit(recording: Recording, vessel: Vessel, config: ChecksConfig) -> list[Finding]:
     """Find angles and angular rates of a recording that are in degrees instead of radians.
 
     A column is in degrees if its size or its steps are impossible in radians.
 
     Args:
         recording: The recording as written in the file.
+        vessel: The vessel, which may turn over.
         config: Thresholds of the quality checks.
 
     Returns:
@@ -31,7 +32,8 @@ def check_angle_unit(recording: Recording, _: Vessel, config: ChecksConfig) -> l
     """
     columns = {"t_s": recording.t, **recording.signals}
     found = []
-    for name, row in units.find_columns_in_degrees(columns).items():
+    degrees = units.find_columns_in_degrees(columns, vessel.turns_over)
+    for name, row in degrees.items():
         low = np.nanmin(recording[name])
         high = np.nanmax(recording[name])
         time = float(recording.t[row])

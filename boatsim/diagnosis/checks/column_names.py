@@ -6,6 +6,7 @@ from boatsim.physics.vessel import Vessel
 from boatsim.recordings.expression import UNITS
 from boatsim.recordings.importing.log import Log, Signal
 from boatsim.recordings.importing.signal_classification import (
+    Body,
     Classification,
     classify_signals,
     side_from_tokens,
@@ -76,7 +77,8 @@ def _other_columns(recording: Recording, vessel: Vessel) -> list[Classification]
         for name, values in recording.signals.items()
         if name not in known
     }
-    return classify_signals(Log(recording.path or vessel.file, signals), vessel.actuators)
+    body = Body(vessel.actuators, vessel.dof, vessel.turns_over)
+    return classify_signals(Log(recording.path or vessel.file, signals), body)
 
 
 def _command_guesses(name: str, other: list[Classification]) -> list[Classification]:

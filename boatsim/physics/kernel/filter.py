@@ -206,15 +206,22 @@ def instrument_drift_rms(w: InstrumentDrift, j: int) -> float:
 
 
 @lean
-def add_process_noise(h: float, noise: ProcessNoise, P: Array) -> None:
+def add_process_noise(h: float, noise: ProcessNoise, P: Array, F: Array) -> None:
     """Add the process noise of a time h to the filter's covariance P.
 
-    It is that of latent forces, oscillators and instrument errors.
+    It is that of latent forces, oscillators, instrument errors and the noise of measured forces.
+    The mean of the latter over h acts like a constant force, as in the transition matrix F.
     """
     s, w, m = noise.oscillating_force, noise.instrument_drift, noise.m
     decay = exp(-h / noise.force.time_constant)
     for j in range(NQ):
         P[NY + j, NY + j] += noise.force.variances[j] * (1.0 - decay * decay)
+    for j in range(NQ):
+        if noise.force.white[j] > 0.0:
+            variance = noise.force.white[j] / h
+            for i in range(NY):
+                for k in range(NY):
+                    P[i, k] += F[i, NY + j] * F[k, NY + j] * variance
     for j in range(noise.n - m):
         kept = exp(-h / w.time)
         P[m + j, m + j] += instrument_drift_rms(w, j) ** 2 * (1.0 - kept * kept)
@@ -262,7 +269,7 @@ def predict_covariance(h: float, noise: ProcessNoise, P: Array, F: Array, work: 
             F[i, j] = F[j, i] = 0.0
         F[j, j] = exp(-h / noise.instrument_drift.time)
     propagate_covariance(F, P, work, n)
-    add_process_noise(h, noise, P)
+    add_process_noise(h, noise, P, F)
 
 
 @lean
@@ -540,7 +547,7 @@ def smooth_states(
         multiply_matrices(transitions[i + 1], covariances[i], cross, n)  # F P
         copy_square_matrix(covariances[i], ahead, n)
         propagate_covariance(transitions[i + 1], ahead, work, n)
-        add_process_noise(times[i + 1] - times[i], noise, ahead)
+        add_process_noise(times[i + 1] - times[i], noise, ahead, transitions[i + 1])
         # Positions and rates are driven by the force alone: this keeps the matrix invertible.
         for j in range(n):
             ahead[j, j] *= 1.0 + 1e-9

@@ -74,11 +74,12 @@ class Measurements(NamedTuple):
 class LatentForce(NamedTuple):
     """Model of the force of unmodelled effects in the Kalman filter.
 
-    It is an Ornstein-Uhlenbeck process per axis.
+    It is an Ornstein-Uhlenbeck process per axis, and white noise where a force was measured.
     """
 
     variances: Array  # (NQ,) [N^2, N^2 m^2]
     time_constant: float  # [s]
+    white: Array  # (NQ,) two-sided spectral density of the white noise [N^2 s, N^2 m^2 s]
 
 
 class FilterStart(NamedTuple):

@@ -86,6 +86,10 @@ class Effect(CheckedParameters):
     alone: ClassVar[bool] = False  # no candidate for a vessel that has one already
     # a term written by symbolic regression, not an effect of the library
     described: ClassVar[bool] = False
+    # the channels bound to its roles are measured forces, which contain noise, and no commands
+    measures_input: ClassVar[bool] = False
+    # its law holds at any roll angle, also after several turns: the vessel may go over the top
+    turns_over: ClassVar[bool] = False
     # its law also takes all actuators: `act`, `at` and the index of the recalled value
     sees_held: ClassVar[bool] = False
     # effect on each of whose instances it acts: its law takes their signals and parameters

@@ -30,7 +30,7 @@ RECORDS: Mapping[Any, Sequence[Kind]] = {
     records.VesselNumbers: (VECTOR, VECTOR, VECTOR),
     records.Inputs: (VECTOR, VECTOR, MATRIX),
     records.Measurements: (MATRIX, ROWS, VECTOR),
-    records.LatentForce: (VECTOR, REAL),
+    records.LatentForce: (VECTOR, REAL, VECTOR),
     records.FilterStart: (VECTOR, MATRIX, VECTOR),
     records.PassOptions: (REAL, TRUTH, TRUTH, TRUTH),
     records.PassArrays: (CUBE, VECTOR, CUBE, MATRIX, MATRIX),

@@ -431,6 +431,11 @@ class Vessel(ChannelBindings):
     # Use
     # ----------------------------------------------------------------------------------------------
 
+    @property
+    def turns_over(self) -> bool:
+        """Whether the vessel may roll to any angle, because an effect of it holds there."""
+        return any(type(effect).turns_over for effect in self.effects)
+
     def limits(self) -> dict[str, tuple[float, float]]:
         """Return the allowed range (low, high) of each input of the vessel, by name.
 

@@ -19,12 +19,15 @@ from boatsim.recordings.importing.several_logs import sources, unaligned
 from boatsim.recordings.importing.signal_classification import (
     HELM,
     PULSE,
+    UNKNOWN_BODY,
+    Body,
     Classification,
     classify_signals,
     has_opposite_sense,
     side_from_tokens,
     tokenize_name,
 )
+from boatsim.recordings.importing.single_axis import has_load, is_load_of_channel
 from boatsim.recordings.importing.track import (
     Track,
     contradiction,
@@ -69,10 +72,15 @@ SIDED = ("port", "starboard")
 INCLINATIONS = {"phi_rad": "roll", "p_radps": "roll", "theta_rad": "pitch", "q_radps": "pitch"}
 
 
-def signal_table(log: Log) -> list[str]:
-    """Return a table of the signals of a log: name, unit, rate, samples, range, classification."""
+def signal_table(log: Log, body: Body = UNKNOWN_BODY) -> list[str]:
+    """Return a table of the signals of a log: name, unit, rate, samples, range, classification.
+
+    Args:
+        log: The log.
+        body: The vessel.
+    """
     columns: dict[str, str] = {}
-    for g in with_evidence_of_motion(classify_signals(log), log):
+    for g in with_evidence_of_motion(classify_signals(log, body), log):
         columns[g.name] = g.column
     rows = [("signal", "unit", "Hz", "samples", "lowest", "highest", "probably")]
     listed = list(log.signals)
@@ -130,6 +138,7 @@ def propose_map(
     dof: Sequence[str] = (),
     stated: Mapping[str, str] | None = None,
     approach_speed: Callable[[], float] = lambda: 0.0,
+    turns_over: bool = False,
 ) -> str:
     """Return the text of a map: the most probable signals, with others in comments.
 
@@ -141,6 +150,7 @@ def propose_map(
         stated: Column -> expression of a signal, by the vessel's file.
         approach_speed: Speed of the vessel at the commands `ahead` of its channels [m/s], which is
             computed only where the unit of revolutions is not known; 0 if unknown.
+        turns_over: Whether the vessel may roll to any angle.
 
     Raises:
         BadInput: The log has no poses.
@@ -153,7 +163,7 @@ def propose_map(
             known[column] = expression
             used_signals.add(signal)
     best: dict[str, list[Classification]] = {}
-    classified = classify_signals(log, [d.name for d in drives])
+    classified = classify_signals(log, Body([d.name for d in drives], dof, turns_over))
     for g in with_evidence_of_motion(classified, log):
         if g.column not in known and g.name not in used_signals:
             best.setdefault(g.column, []).append(g)
@@ -184,7 +194,9 @@ def propose_map(
     fastest = 0.0
     for g in (*used, *driven):
         fastest = max(fastest, median_sampling_rate(g.signal.t))
-    if fastest > 1.01 * MAX_ROW_RATE:
+    # a measured force acts between the rows, too: its samples are all kept
+    measured = any(has_load(tokenize_name(drive.name)) for drive in drives)
+    if fastest > 1.01 * MAX_ROW_RATE and not measured:
         lines.append(
             f"rate = {MAX_ROW_RATE:g}  # [Hz] of rows; the fastest signal has {fastest:.3g}"
         )
@@ -308,7 +320,7 @@ def _motion_lines(
         else:
             lines.append(line)
             used.append(g)
-    if "psi_rad" not in {*best, *known}:
+    if "psi_rad" not in {*best, *known} and (not dof or "yaw" in dof):
         lines.append(
             '# psi_rad = "..."  # no heading was found; it is needed for a vessel that turns'
         )
@@ -600,7 +612,8 @@ def _name_similarity(drive: VesselChannel, g: Classification) -> float:
     opposite = mine != other and "" not in (mine, other)
     if opposite or not _units_are_compatible(drive, g) or bool(ours & HELM) != bool(theirs & HELM):
         return 0.0
-    return 1.0 * (mine == other and mine != "") + 1.0 * bool(ours & HELM) + 0.5 * len(ours & theirs)
+    special = (mine == other and mine != "") + bool(ours & HELM) + is_load_of_channel(theirs, ours)
+    return 1.0 * special + 0.5 * len(ours & theirs)
 
 
 def _units_are_compatible(drive: VesselChannel, g: Classification) -> bool:
@@ -649,6 +662,8 @@ def _channel_line(
     note = f"  # {median_sampling_rate(g.signal.t):.3g} Hz"
     if g.signal.about:
         note += f"; {_without_control_characters(g.signal.about)}"
+    if drive and is_load_of_channel(g.tokens, tokenize_name(name)) and not _unit(g):
+        note += f"; CHECK: assumed to be in {unit_of(name) or 'the unit of the channel'}"
     turned = sense < -MIN_CORRELATION
     if turned:
         note += (
@@ -709,7 +724,7 @@ def _scale(
     if PULSE[0] <= values.min() and values.max() <= PULSE[1]:
         return _Scale(USUAL_PULSE, f"usual pulses of 1100 to 1900 us are assumed, {share}")
     largest = float(np.max(np.abs(values)))
-    if drive is None:
+    if drive is None or is_load_of_channel(g.tokens, tokenize_name(drive.name)):
         return None
     if _is_thrust_by_revolutions(drive, g):
         why = "thrust by the square of the revolutions; CHECK: those of full thrust, here the most"

@@ -9,6 +9,12 @@ import numpy as np
 
 from boatsim.physics.signals import POSE, RATES
 from boatsim.recordings.importing.log import Log, Signal, median_sampling_rate
+from boatsim.recordings.importing.single_axis import (
+    WHY,
+    column_of_single_axis,
+    is_load_of_channel,
+    unit_of_tumbling,
+)
 from boatsim.recordings.table import is_command
 
 MIN_SAMPLES = 20
@@ -150,16 +156,34 @@ def tokenize_name(name: str) -> list[str]:
     return list(filter(None, words))
 
 
-def classify_signals(log: Log, channels: Sequence[str] = ()) -> list[Classification]:
+@dataclass(frozen=True)
+class Body:
+    """Facts about the vessel of a log that help to classify its signals.
+
+    Attributes:
+        channels: Names of its commands.
+        dof: Its degrees of freedom; empty: unknown.
+        turns_over: Whether it may roll to any angle.
+    """
+
+    channels: Sequence[str] = ()
+    dof: Sequence[str] = ()
+    turns_over: bool = False
+
+
+UNKNOWN_BODY = Body()
+
+
+def classify_signals(log: Log, body: Body = UNKNOWN_BODY) -> list[Classification]:
     """Return the classified signals of a log, the highest score first.
 
     Args:
         log: The log.
-        channels: Names of the vessel's commands.
+        body: The vessel.
     """
     found: list[Classification] = []
     for name, signal in log.signals.items():
-        if (classified := classify_signal(name, signal, log, channels)) is not None:
+        if (classified := classify_signal(name, signal, log, body)) is not None:
             found.append(classified)
     found = _with_unit_of_sensor(found)
     return sorted(found, key=lambda g: -g.score)
@@ -190,7 +214,7 @@ def _sensor(name: str) -> str:
 
 
 def classify_signal(
-    name: str, signal: Signal, log: Log, channels: Sequence[str] = ()
+    name: str, signal: Signal, log: Log, body: Body = UNKNOWN_BODY
 ) -> Classification | None:
     """Return the classification of a signal by name, unit and range, None if it is unknown.
 
@@ -198,7 +222,7 @@ def classify_signal(
         name: Name of the signal.
         signal: The signal.
         log: The log.
-        channels: Names of the vessel's commands.
+        body: The vessel.
     """
     values = signal.values[np.isfinite(signal.values)]
     if len(values) < MIN_SAMPLES:
@@ -218,10 +242,12 @@ def classify_signal(
             return _degrees(
                 name, signal, place, tokens, moves + rate + 10.0 * bool(tokens & SATELLITES)
             )
-    if effort := _effort(words, tokens):
+    effort = _effort(words, tokens)
+    if effort and not _is_load(tokens, body):
         return Classification(name, signal, effort, "", moves + rate, "", tokens)
     kind = _drive_kind(signal, tokens)
-    if name in channels or is_command(name) or names_channel(name, channels):
+    called = names_channel(name, body.channels)
+    if name in body.channels or is_command(name) or called or _is_load(tokens, body):
         kind = "command"
     if kind:
         word, why = _unit_word(name, signal), ""
@@ -234,16 +260,27 @@ def classify_signal(
         return Classification(name, signal, kind, word, moves + rate, why, tokens)
     column: str | None = name
     if name not in COLUMNS:
-        column = _of_numbered(name, tokens, log) or _motion(last, tokens, log)
+        column = column_of_single_axis(last, body.dof)
+        column = column or _of_numbered(name, tokens, log) or _motion(last, tokens, log)
     if column is None or tokens & NOT_MEASURED:
         return None
     word, why = _angle(column, signal, tokens, _unit_word(name, signal))
+    if body.turns_over and column in ("phi_rad", "p_radps") and why:
+        word = unit_of_tumbling(column, signal.t, signal.values)
+        why = "degrees by its motion" if word else "radians by its motion"
+    if column != name and column == column_of_single_axis(last, body.dof):
+        why = "; ".join(filter(None, (WHY, why)))
     own = (
         100.0 * (column == name)
         + 3.0 * (words[0] == "att")
         + 2.0 * bool(tokens & {"attitude", "imu", "odom"})
     )
     return Classification(name, signal, column, word, moves + rate + own, why, tokens)
+
+
+def _is_load(tokens: frozenset[str], body: Body) -> bool:
+    """Whether a signal has the same word for a load as a channel of the vessel, such as torque."""
+    return any(is_load_of_channel(tokens, tokenize_name(channel)) for channel in body.channels)
 
 
 def _most_degrees(tokens: frozenset[str]) -> float:

@@ -85,6 +85,10 @@ SUSPECTS = [
 # named port and starboard change places.
 TO_STARBOARD = {
     "thruster.y",
+    "applied_load.y",
+    "applied_load.sway",
+    "applied_load.roll",
+    "applied_load.yaw",
     "propeller.y",
     "foil.y",
     "toward",
@@ -155,6 +159,8 @@ RANGES = {
     "bucket": (-0.8, 0.8),
     "speed": (0.5, 3.0),
     "comes_from": (-3.0, 3.0),
+    "force": (-1.0, 1.0),
+    "moment": (-1.0, 1.0),
 }
 
 

@@ -1,0 +1,160 @@
+"""A weight on a motor that turns over the top: `python -m validation.real.torque_pendulum`.
+
+The vessel is `models/pendulum`: one degree of freedom, roll, driven by the torque that the drive
+reports. It contains the published weights and lengths and no friction. What the vessel cannot
+express beforehand: how large the friction is and of which law, whether the reported torque is that
+at the axis, and the heavier weight of `energy_1kg`, which has a diagnosis of its own.
+
+The figure is the median over windows, one after another, of the rms error of roll. Windows in which
+the pendulum does not move are left out. Some end in a balance on top, which no free run follows, so
+the rms over all windows would show those alone.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from boatsim.diagnosis import pipeline
+from boatsim.diagnosis.evaluation import MODELS, compared_fits
+from boatsim.diagnosis.filter import MappedRecording
+from boatsim.diagnosis.free_runs import FreeRun, free_runs
+from boatsim.diagnosis.pipeline import Diagnosis
+from boatsim.diagnosis.report.output_files import write_diagnosis
+from boatsim.recordings.importing.convert import convert_log
+from boatsim.recordings.importing.mapping import read_map
+from boatsim.recordings.importing.several_logs import open_logs
+from boatsim.recordings.table import write_csv
+from validation.real.common import DEG, OUT, RECORDINGS, effects_of, parameter_text, runs_of
+from validation.real.figures import (
+    Figures,
+    diagnose_set,
+    map_runs,
+    print_figures,
+    split_groups,
+)
+
+NAME = "torque_pendulum"
+VESSEL = "pendulum"
+GROUPS = {"0.546 kg": ("ddp", "ilqr", "pd_fail", "pd_sysid")}
+HEAVY = "energy_1kg"  # the only run of its group, fitted as a whole
+WINDOWS = (0.5, 1.0)  # [s]
+MOVES = 0.2  # [rad] smallest range of the recorded roll in a window that counts
+# The map that `boatsim import --propose` writes for these logs and the vessel, unchanged
+MAP = """\
+vessel = "pendulum"
+
+[columns]
+phi_rad = "position"
+p_radps = "velocity"
+torque_Nm = "torque"
+"""
+
+
+def converted(runs: Sequence[Path], folder: Path = OUT / NAME / "raw") -> dict[str, Path]:
+    """Convert the files as published to recordings, by the proposed map.
+
+    Args:
+        runs: Files as published.
+        folder: Folder of the recordings.
+
+    Returns:
+        Recordings by the name of the run.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    map_file = folder / "map.toml"
+    map_file.write_text(MAP, encoding="utf-8")
+    found = {}
+    for run in runs:
+        found[run.stem] = folder / run.name
+        recording = convert_log(open_logs([run]), read_map(map_file), str(map_file), {})
+        write_csv(recording, found[run.stem])
+    return found
+
+
+def window_errors(run: FreeRun) -> dict[str, float]:
+    """Return the rms error of roll [rad] of each model in one window; empty if it does not move."""
+    phi = run.channels["recorded"]["phi_rad"]
+    if not float(np.nanmax(phi) - np.nanmin(phi)) >= MOVES:
+        return {}
+    errors = {}
+    for model in MODELS:
+        (off,) = run.deviations(model, ("phi_rad",))
+        errors[model] = float(np.sqrt(np.nanmean(off**2)))
+    return errors
+
+
+def median_errors(
+    diagnosis: Diagnosis, runs: Sequence[MappedRecording], window: float
+) -> dict[str, float]:
+    """Return the median over windows of the rms error of roll [rad] by model.
+
+    Args:
+        diagnosis: The diagnosis whose three models are compared.
+        runs: Held-out runs, mapped to its program.
+        window: Length of each free run [s].
+    """
+    fits = compared_fits(diagnosis.ranking)
+    windows = filter(None, map(window_errors, free_runs(diagnosis.problem, fits, runs, window)))
+    rows = [[errors[model] for model in MODELS] for errors in windows]
+    return dict(zip(MODELS, np.median(rows, axis=0).tolist(), strict=True))
+
+
+def with_medians(figures: Figures, held_out: Sequence[Path]) -> Figures:
+    """Return figures whose errors are medians over windows, in addition to the rms over all."""
+    mapped = map_runs(figures.diagnosis, held_out, VESSEL)
+    errors = {}
+    for window, families in figures.errors.items():
+        median = median_errors(figures.diagnosis, mapped, window)
+        errors[window] = {**families, "roll_median_rad": median}
+    return replace(figures, errors=errors)
+
+
+def print_set(title: str, runs: dict[str, Path]) -> Diagnosis:
+    """Diagnose the runs with the lighter weight, and print errors and findings.
+
+    Args:
+        title: Form of the files.
+        runs: Recordings by the name of the run.
+    """
+    fitted, held_out = split_groups(GROUPS)
+    tested = [runs[name] for name in held_out]
+    found = diagnose_set(title, [runs[name] for name in fitted], tested, VESSEL, WINDOWS)
+    units = {
+        "roll_median_rad": ("roll, median over windows [deg]", DEG),
+        "roll_rms_rad": ("roll, rms over windows [deg]", DEG),
+    }
+    print_figures(with_medians(found, tested), units)
+    return found.diagnosis
+
+
+def print_heavy(run: Path, corrected: Path) -> None:
+    """Diagnose the run with the heavier weight, on the vessel corrected by the lighter one.
+
+    The sensor of the torque is the same, so a torque that does not fit the masses here shows that
+    the masses are others.
+
+    Args:
+        run: The recording.
+        corrected: File of the vessel as the other runs corrected it.
+    """
+    diagnosis = pipeline.diagnose([run], vessel=str(corrected), horizon=WINDOWS[0])
+    print(f"\n{HEAVY}, on the vessel corrected by the runs with 0.546 kg")
+    print(f"  {diagnosis.findings.answer['sentence']}")
+    for effect in effects_of(diagnosis):
+        print(f"  {effect['kind']}: {effect['name']}: {parameter_text(effect)}")
+
+
+def main() -> None:
+    """Print the figures from the files as published and from the clean ones."""
+    published = runs_of(NAME)
+    clean = {file.stem: file for file in (RECORDINGS / NAME / "runs_clean").glob("*.csv")}
+    print_set(f"{NAME}, as published", converted(list(published.values())))
+    diagnosis = print_set(f"{NAME}, clean", clean)
+    write_diagnosis(diagnosis, OUT / NAME)
+    print_heavy(clean[HEAVY], OUT / NAME / "patched.toml")
+
+
+if __name__ == "__main__":
+    main()
