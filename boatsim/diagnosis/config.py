@@ -54,6 +54,13 @@ class LoadConfig:
     scale_tolerance: float = setting(
         0.01, "1", "Two model scales within this relative difference are the same scale."
     )
+    near_track_lengths: float = setting(
+        4.0,
+        "boat lengths",
+        "Largest extent of the tracks, north or east, of a boat that may touch a quay: a boat in a "
+        "basin. A boat that goes farther is not beside a wall for most of the recording.",
+        low=0.0,
+    )
     row_rate: float = setting(
         20.0,
         "Hz",
@@ -288,6 +295,30 @@ class ChecksConfig:
         "1",
         "Share of the limit that a command in its correct unit reaches at least.",
         high=1.0,
+    )
+    direction_turns: float = setting(
+        4.0,
+        "1",
+        "Range in turns above which the direction of a drive may be in degrees: 180 degrees read "
+        "as radians are 29 turns, and few logs count the turns of a drive as far as four.",
+        low=1.0,
+    )
+    direction_leap: float = setting(
+        1.02,
+        "1",
+        "Step in turns, between rows, that only a direction in degrees has; one in radians that "
+        "wraps moves by a full turn at most, apart from rounding.",
+        low=1.0,
+    )
+    direction_rate: float = setting(
+        6.28,
+        "rad/s",
+        "Rate of turn of a drive that only a direction in degrees has: a turn per second, five "
+        "times as fast as the azimuth drives of small boats.",
+        low=0.1,
+    )
+    direction_rate_quantile: float = setting(
+        0.5, "1", "Quantile of the rates of turn that is compared with it.", high=1.0
     )
     servo_pulse_range: tuple[float, ...] = setting(
         (900.0, 2100.0),

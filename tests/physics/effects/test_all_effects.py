@@ -374,7 +374,8 @@ def test_coriolis_force_of_an_inertia_does_no_work(name: str, seed: int) -> None
 @pytest.mark.parametrize("seed", range(3))
 def test_a_suspect_whose_fitted_parameters_are_absent_is_not_there(name: str, seed: int) -> None:
     kind = SHELF[name]
-    effect = on_a_vessel(instantiate_neutral_effect(kind, {"walls_m": [-4.0, 4.0, -3.0, 3.0]}))
+    facts: dict[str, object] = {"walls_m": [-4.0, 4.0, -3.0, 3.0], "track_m": [0.0, 0.0, 1.0, 1.0]}
+    effect = on_a_vessel(instantiate_neutral_effect(kind, facts))
     if isinstance(effect, CoefficientRelease):
         boat = next(
             b
