@@ -1,4 +1,4 @@
-"""Unwrapping of directions of wind and drives, so that rows on both sides of a full turn can be averaged."""
+"""Unwrapping of directions of wind and drives, so that rows across a full turn can be averaged."""
 
 from dataclasses import replace
 
