@@ -117,6 +117,7 @@ RESTS = {  # effects that are not always there
     "astern_time_constant",  # going ahead
     "dragged_propeller",  # with the way
     "push",  # before its time and after
+    "quay",  # away from the wall
     "rudder_race",  # of a propeller that backs
 }
 SI = {"rad", "m", "kg", "s", "N"}
