@@ -91,6 +91,7 @@ class Quay(Force):
         "K. H. Hunt, F. R. E. Crossley, J. Applied Mechanics 42, 1975: contact force with damping "
         "in proportion to the indentation"
     )
+    tied_to: ClassVar[str] = "the quay"
     law: ClassVar = law
     strength: ClassVar = ("stiffness",)
     facts: ClassVar = {"track_m": ("north", "east", "north_reach", "east_reach")}

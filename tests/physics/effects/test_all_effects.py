@@ -323,6 +323,8 @@ def test_a_uniform_current_changes_no_force_but_of_what_holds_on_to_the_world(
         )
     same = after - before == pytest.approx(wanted, abs=1e-12 * max(1.0, np.abs(before).max()))
     anchor = getattr(kind, "tied_to", "")
+    if name in RESTS and not before.any() and not after.any():
+        return
     assert same != bool(anchor), anchor or after - before
 
 
