@@ -9,6 +9,8 @@ from boatsim.diagnosis.checks.finding import LOG_NOT_BOAT
 from boatsim.diagnosis.log_check import check_files
 from boatsim.errors import escape_for_terminal
 
+# kinds of findings that are no fault of the log, with their titles
+INFORMATION = {"limit": "cannot be identified", "drive": "drive"}
 NO_FINDINGS = "the checks found nothing wrong with this recording"
 
 
@@ -29,7 +31,7 @@ def print_checks(runs: list[Path], vessel: str | None, load: list[str]) -> int:
     findings, refused = check_files(runs, vessel, load)
     any_finding = False
     for path, entries in findings.items():
-        wrong = [entry for entry in entries if entry["kind"] != "limit"]
+        wrong = [entry for entry in entries if entry["kind"] not in INFORMATION]
         any_finding |= bool(wrong)
         summary = NO_FINDINGS
         if wrong:
@@ -41,9 +43,10 @@ def print_checks(runs: list[Path], vessel: str | None, load: list[str]) -> int:
         for entry in wrong:
             print_lines(map("  {}".format, entry_text(entry)))
         for entry in entries:
-            if entry["kind"] == "limit":
+            if entry["kind"] in INFORMATION:
                 remedy = entry.get("remedy", "")
-                print_lines([f"  cannot be identified: {entry['evidence']}: {remedy}"])
+                title = INFORMATION[entry["kind"]]
+                print_lines([f"  {title}: {entry['evidence']}: {remedy}"])
     for error in refused:
         print_error(one_line(error))
     sys.stdout.flush()

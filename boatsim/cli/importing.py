@@ -158,7 +158,7 @@ def _convert_logs(
 ) -> int:
     mapping = read_map(map)
     boat = _vessel_of_log(vessel, mapping.vessel, map, load)
-    limits = boat.limits() if boat else {}
+    limits = boat.recorded_limits() if boat else {}
     with report_stages() as report:
         report("reading the log")
         log = open_logs(paths)

@@ -54,6 +54,13 @@ class LoadConfig:
     scale_tolerance: float = setting(
         0.01, "1", "Two model scales within this relative difference are the same scale."
     )
+    near_track_lengths: float = setting(
+        4.0,
+        "boat lengths",
+        "Largest extent of the tracks, north or east, of a boat that may touch a quay: a boat in a "
+        "basin. A boat that goes farther is not beside a wall for most of the recording.",
+        low=0.0,
+    )
     row_rate: float = setting(
         20.0,
         "Hz",
@@ -329,6 +336,103 @@ class ChecksConfig:
         "1",
         "Share of the limit that a command in its correct unit reaches at least.",
         high=1.0,
+    )
+    report_outlier_ratio: float = setting(
+        8.0,
+        "1",
+        "Distance from the middle half of the reports of a sensor above which one is impossible, "
+        "in widths of this half; a current that follows a throttle stays within four.",
+        low=1.0,
+    )
+    report_beyond_orders: float = setting(
+        0.25, "1", "Share of the range of the orders by which a report may exceed them.", low=0.0
+    )
+    report_change: float = setting(
+        0.1, "1", "Share of the range of the orders that counts as a change or a jump.", high=1.0
+    )
+    report_stale_time: float = setting(
+        1.0,
+        "s",
+        "Shortest time from a change of the order to that of the report that is stale; a drive "
+        "answers within a second, and turns gradually.",
+        low=0.0,
+    )
+    report_stale_count: int = setting(
+        5, "count", "Stale reports of a recording from which they are stated.", low=1
+    )
+    stop_margin: float = setting(
+        0.05,
+        "1",
+        "Share of the range of the reports by which an order lies beyond a stop.",
+        low=0.0,
+    )
+    stop_tolerance: float = setting(
+        0.01, "1", "Share of this range within which a drive is at its stop.", low=0.0
+    )
+    stop_quantile: float = setting(
+        0.01, "1", "Quantile of the reports that is taken as their end.", high=0.5
+    )
+    stop_order_share: float = setting(
+        0.01, "1", "Share of the rows with an order beyond a stop that shows it.", high=1.0
+    )
+    stop_share: float = setting(
+        0.02, "1", "Share of the rows at a stop that shows it; fewer lie beyond it.", high=1.0
+    )
+    stop_held_share: float = setting(
+        0.5,
+        "1",
+        "Least share of the orders beyond a stop during which the drive is there; a slow drive "
+        "comes near its largest order only now and then.",
+        high=1.0,
+    )
+    response_longest: float = setting(3.0, "s", "Longest dead time of a drive.", low=0.0)
+    response_dead_times: int = setting(30, "count", "Dead times that are compared.", low=1)
+    response_rate_quantile: float = setting(
+        0.9, "1", "Quantile of the rates of the reports that is taken as the usual one.", high=1.0
+    )
+    response_rates: tuple[float, ...] = setting(
+        (0.35, 0.5, 0.7, 0.85, 1.0, 1.2, 1.5),
+        "1",
+        "Largest rates that are compared, in usual ones.",
+    )
+    response_lags: tuple[float, ...] = setting(
+        (0.0, 0.15, 0.3, 0.6, 1.2), "s", "Lags that are compared."
+    )
+    response_dead_rows: float = setting(
+        2.5, "rows", "Shortest dead time that is stated alone; a logger may take two rows.", low=0.0
+    )
+    response_error: float = setting(
+        0.6,
+        "1",
+        "Largest error of a response, as a share of the difference between order and report.",
+        high=1.0,
+    )
+    response_gap: float = setting(
+        0.01, "1", "Least difference, as a share of the range of the orders.", high=1.0
+    )
+    direction_turns: float = setting(
+        4.0,
+        "1",
+        "Range in turns above which the direction of a drive may be in degrees: 180 degrees read "
+        "as radians are 29 turns, and few logs count the turns of a drive as far as four.",
+        low=1.0,
+    )
+    direction_leap: float = setting(
+        1.02,
+        "1",
+        "Step in turns, between rows, that only a direction in degrees has; one in radians that "
+        "wraps moves by a full turn at most, apart from rounding.",
+        low=1.0,
+    )
+    direction_rate: float = setting(
+        6.28,
+        "rad/s",
+        "Rate of turn of a drive that only a direction in degrees has: a turn per second, five "
+        "times as fast as the azimuth drives of small boats.",
+        low=0.1,
+    )
+    direction_rate_quantile: float = setting(
+        0.5, "1", "Quantile of the rates of turn that is compared with it.", high=1.0
     )
     servo_pulse_range: tuple[float, ...] = setting(
         (900.0, 2100.0),

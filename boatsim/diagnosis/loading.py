@@ -211,7 +211,7 @@ def open_parts(
         BadInput: The file or its vessel cannot be used.
     """
     found = vessel_for(path, vessel, load_conditions, config)
-    recording = read(path, found.limits(), found.columns, found.turns_over)
+    recording = read(path, found.recorded_limits(), found.columns, found.turns_over)
     parts = []
     for part in recording.parts():
         parts.append(data_cleaning.prepare_recording(part, found, config.checks))
@@ -241,7 +241,7 @@ def open_recording(
         BadInput: The file or its vessel cannot be used.
     """
     found = vessel_for(path, vessel, load_conditions, config)
-    recording = read(path, found.limits(), found.columns, found.turns_over)
+    recording = read(path, found.recorded_limits(), found.columns, found.turns_over)
     found = with_range_of(found, [recording])
     return data_cleaning.prepare_recording(recording, found, config.checks), found
 

@@ -93,7 +93,7 @@ def _check_file(path: Path, vessel: Vessel) -> _Checked:
     try:
         table = list(run_checks.check_table(path, vessel, DEFAULT.checks))
         opened = []
-        for part in read(path, vessel.limits(), vessel.columns, vessel.turns_over).parts():
+        for part in read(path, vessel.recorded_limits(), vessel.columns, vessel.turns_over).parts():
             opened.append(data_cleaning.prepare_recording(part, vessel, DEFAULT.checks))
     except BadInput as error:
         return _Checked(tuple(table), refused=None if table else error)

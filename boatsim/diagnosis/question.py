@@ -26,6 +26,7 @@ from boatsim.diagnosis.filter import (
 )
 from boatsim.diagnosis.loading import Loaded
 from boatsim.diagnosis.locate import nominal_forces
+from boatsim.diagnosis.near_track import track_facts
 from boatsim.diagnosis.problem import Problem, check_uncertainty
 from boatsim.physics.program import Program
 from boatsim.physics.vessel import Vessel
@@ -86,10 +87,11 @@ def set_up_estimation_problem(
     uncertainty = _uncertainty(loaded, vessel, config)
     facts = first.notes.facts
     columns = sorted({column for recording in loaded.fitted for column in recording.signals})
+    track = track_facts([*loaded.fitted, *loaded.held_out], vessel, config.load)
     libraries, programs = dict[Path | None, Library](), dict[Path | None, Program]()
     for path, own in loaded.vessels.items():
         known = with_specified_position_drift(without_excluded_effects(own, facts), facts)
-        libraries[path] = library_for(known, loaded.library, facts, columns)
+        libraries[path] = library_for(known, loaded.library, {**facts, **track}, columns)
         candidates = libraries[path].compiled if with_candidates else ()
         programs[path] = Program(known, candidates)
     levels = prior_noise_levels(vessel, loaded.fitted, config)

@@ -51,7 +51,8 @@ def clipped_commands(vessel: Vessel, given: Mapping[str, float]) -> Array:
 def clipped_recorded_commands(vessel: Vessel, signals: Mapping[str, Array], count: int) -> Array:
     """Return the inputs (N, inputs) of a vessel in each row of a recording.
 
-    They are limited to the allowed ranges of their channels.
+    They are limited to the allowed ranges of their channels. Directions of drives that can turn
+    all round keep their whole turns.
 
     Args:
         vessel: The vessel.
@@ -65,7 +66,7 @@ def clipped_recorded_commands(vessel: Vessel, signals: Mapping[str, Array], coun
     columns = []
     for name, neutral in zip(vessel.inputs, input_vector(vessel, {}).tolist(), strict=True):
         columns.append(signals.get(name, np.full(count, neutral)))
-    return clip_to_channel_ranges(vessel, np.column_stack(columns))
+    return _clip_to_limits(vessel, np.column_stack(columns), vessel.recorded_limits())
 
 
 def clip_to_channel_ranges(vessel: Vessel, sent: Array) -> Array:
@@ -78,7 +79,12 @@ def clip_to_channel_ranges(vessel: Vessel, sent: Array) -> Array:
     Raises:
         BadInput: A value is not finite.
     """
-    limits = vessel.limits()
+    return _clip_to_limits(vessel, sent, vessel.limits())
+
+
+def _clip_to_limits(
+    vessel: Vessel, sent: Array, limits: Mapping[str, tuple[float, float]]
+) -> Array:
     if not limits:
         return sent
     low, high = np.array(list(limits.values())).T

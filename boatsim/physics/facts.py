@@ -8,9 +8,12 @@ from collections.abc import Mapping
 from math import isfinite
 
 WALLS = "walls_m"  # x_low, x_high, y_low, y_high [m]
+# middle of all tracks, north and east, and half of their extent [m]; from the recordings
+TRACK = "track_m"
 FORWARD = "forward_speed_mps"  # mean speed ahead [m/s]
 WORDS = {
     WALLS: "the position of the walls",
+    TRACK: "a track that stays within a few lengths of the boat",
     FORWARD: "the mean forward speed",
     "indoors": "whether it was recorded indoors",
     "still_water": "whether the water is still",

@@ -18,6 +18,7 @@ PULSE_HALF_RANGE = 500.0  # [us] from the neutral pulse to a full command
 PULSE_NEUTRAL = 1500.0  # [us]
 PER_CENT = "per cent of full"
 PULSES = "pulses in us"
+FULL_TURN = 2.0 * math.pi  # [rad]
 FULL_RANGE = 1.0 + 5.0 * ROUNDING  # largest share of the limit, rounding in the file included
 
 
@@ -92,6 +93,10 @@ def _conversions(
         if name not in recording.signals or not math.isfinite(limit):
             continue
         values = recording[name][np.isfinite(recording[name])]
+        if name in vessel.full_turns:
+            if direction_in_degrees(recording.t, recording[name], config):
+                found[name] = Conversion("degrees", UNITS["deg"])
+            continue
         if not len(values) or float(np.abs(values).max()) <= config.command_excess * limit:
             continue
         conversion = _conversion(values, name, limit, config)
@@ -112,6 +117,28 @@ def _has_second_sign(
     tenths = 10.0 * values
     is_rounded = bool(np.all(np.abs(tenths - np.round(tenths)) < 1e-6))
     return is_rounded or largest >= config.command_full_per_cent
+
+
+def direction_in_degrees(t: Array, values: Array, config: ChecksConfig) -> bool:
+    """Return whether the direction of a drive is in degrees: it spans many turns, at high rates.
+
+    The range alone shows nothing, because the turns of a drive may be counted on.
+
+    Args:
+        t: Times (N,) [s].
+        values: Directions (N,) [rad] as the name of the column states.
+        config: Thresholds of the quality checks.
+    """
+    known = np.isfinite(values)
+    steps = np.abs(np.diff(values[known]))
+    times = np.diff(t[known])
+    turning = (times > 0.0) & (steps > 0.0)
+    if not turning.any() or float(np.ptp(values[known])) <= config.direction_turns * FULL_TURN:
+        return False
+    # neither a wrapped angle in radians nor one that is counted on moves by a turn in a row
+    leaps = bool((steps > config.direction_leap * FULL_TURN).any())
+    rate = float(np.quantile(steps[turning] / times[turning], config.direction_rate_quantile))
+    return leaps or rate > config.direction_rate
 
 
 def _conversion(values: Array, name: str, limit: float, config: ChecksConfig) -> Conversion | None:

@@ -12,7 +12,7 @@ from boatsim.physics.base import Array
 from boatsim.recordings.expression import UNITS, Expression
 from boatsim.recordings.table import Recording
 
-Kind = Literal["fault", "mended", "limit"]
+Kind = Literal["fault", "mended", "limit", "drive"]
 LOG_NOT_BOAT = "probably your log, not your boat"
 PLANAR_POSE = ("x_m", "y_m", "psi_rad")
 MAX_LISTED = 5  # places that the text of a finding lists
@@ -45,7 +45,8 @@ class Finding:
         name: Name of the finding in diagnosis.json.
         evidence: The facts with numbers, for the user.
         kind: "fault" if the file must be corrected, "mended" if a diagnosis corrects it
-            automatically, "limit" if the log is correct but does not identify some coefficients.
+            automatically, "limit" if the log is correct but does not identify some coefficients,
+            "drive" if it states how a drive answers its orders or how it reports.
         probability: Probability that the finding is true.
         spans: Intervals [s] in which it appears; empty if it concerns the whole log.
         changes: Changes of columns that correct it.

@@ -8,6 +8,7 @@ from boatsim.diagnosis.checks.clock import check_clock
 from boatsim.diagnosis.checks.column_names import check_column_names
 from boatsim.diagnosis.checks.command_unit import check_command_unit
 from boatsim.diagnosis.checks.data_cleaning import cleaning_findings
+from boatsim.diagnosis.checks.drive_response import check_drive_response
 from boatsim.diagnosis.checks.excitation import check_excitation
 from boatsim.diagnosis.checks.finding import Finding, apply_changes
 from boatsim.diagnosis.checks.interpolated_positions import check_interpolated_positions
@@ -30,7 +31,7 @@ TABLE_CHECKS = (
     check_command_unit,
 )
 RECORDING_CHECKS = (check_interpolated_positions, check_position_jumps, check_recorded_rates)
-IDENTIFIABILITY_CHECKS = (check_saturation, check_excitation)
+IDENTIFIABILITY_CHECKS = (check_saturation, check_excitation, check_drive_response)
 
 
 def check_table(path: Path, vessel: Vessel, config: ChecksConfig) -> list[Finding]:
@@ -105,7 +106,7 @@ def check_identifiability(
         config: Thresholds of the quality checks.
 
     Returns:
-        Findings on saturated commands and on missing excitation.
+        Findings on saturated commands, on missing excitation and on the response of the drives.
     """
     found: list[Finding] = []
     for check in IDENTIFIABILITY_CHECKS:

@@ -1,4 +1,4 @@
-"""Unwrapping of measured directions, so that rows on both sides of a full turn can be averaged."""
+"""Unwrapping of directions of wind and drives, so that rows across a full turn can be averaged."""
 
 from dataclasses import replace
 
@@ -9,16 +9,18 @@ from boatsim.recordings.table import Recording
 
 
 def unwrap_directions(recording: Recording, vessel: Vessel) -> Recording:
-    """Return a recording whose measured directions, such as that of the wind, are unwrapped.
+    """Return a recording whose directions, such as that of the wind or a drive, are unwrapped.
 
-    They no longer jump by a full turn.
+    They no longer jump by a full turn. A jump by more than half a turn becomes the shorter way
+    round, which is the way that a drive takes if it can turn all round.
 
     Args:
         recording: The recording.
-        vessel: The vessel, which lists its measured directions (`environment_angles`).
+        vessel: The vessel, which lists its measured directions (`environment_angles`) and the
+            directions of its drives (`full_turns`).
     """
     signals = dict(recording.signals)
-    for name in vessel.environment_angles:
+    for name in (*vessel.environment_angles, *vessel.full_turns):
         if name in signals:
             signals[name] = np.unwrap(recording[name])
     return replace(recording, signals=signals)

@@ -348,7 +348,8 @@ class LogEntry(TypedDict):
 
     run: str  # file
     name: str
-    # "fault": correct the file; "mended": corrected by the diagnosis; "limit": nothing is wrong
+    # "fault": correct the file; "mended": corrected by the diagnosis; "limit": nothing is wrong;
+    # "drive": how a drive answers its orders or how it reports
     kind: str
     evidence: str
     sure: float  # probability

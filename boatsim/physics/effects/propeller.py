@@ -75,7 +75,9 @@ class Propeller(Force):
     )
     roles: ClassVar = {
         "shaft": Role("rad/s", "shaft rate, positive ahead"),
-        "angle": Role("rad", "direction of the thrust, 0 ahead, positive to starboard", fixed=0.0),
+        "angle": Role(
+            "rad", "direction of the thrust, 0 ahead, positive to starboard", 0.0, direction=True
+        ),
     }
     law: ClassVar = law
     as_thruster: ClassVar = as_thruster

@@ -65,7 +65,9 @@ class Thruster(Force):
     )
     roles: ClassVar = {
         "thrust": Role("N", "its thrust, ahead positive"),
-        "angle": Role("rad", "direction of the thrust, 0 ahead, positive to starboard", fixed=0.0),
+        "angle": Role(
+            "rad", "direction of the thrust, 0 ahead, positive to starboard", 0.0, direction=True
+        ),
     }
     law: ClassVar = law
 

@@ -33,6 +33,8 @@ class Role:
     words: str
     # value if no channel is bound; None: a channel is required
     fixed: float | None = None
+    # an angle of which the law uses only sine and cosine, so that whole turns change nothing
+    direction: bool = False
 
 
 @dataclass(frozen=True)

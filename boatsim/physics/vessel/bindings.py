@@ -9,6 +9,8 @@ from boatsim.physics.kinds.channel import ChannelEffect
 from boatsim.physics.kinds.effect import Effect
 from boatsim.physics.vessel.schema import Body, CommandChannel, MeasuredChannel
 
+FULL_TURN = 6.28  # [rad] range of an angle that spans a full turn, rounded down
+
 
 @dataclass(frozen=True, kw_only=True)
 class ChannelBindings:
@@ -83,6 +85,27 @@ class ChannelBindings:
         The laws of effects receive their cosine and sine too.
         """
         return tuple(filter(self._is_angle, self.readings))
+
+    @cached_property
+    def full_turns(self) -> tuple[str, ...]:
+        """Names of the commands that are directions of drives which can turn all round.
+
+        Every law that uses such a command uses only its sine and cosine, and its range spans a
+        full turn. Whole turns of the command change nothing.
+        """
+        found = dict.fromkeys(self.commands, True)
+        used = set[str]()
+        for effect in self.effects:
+            for role, channel in self.specified_bindings(effect).items():
+                if channel in found and isinstance(channel, str):
+                    used.add(channel)
+                    found[channel] &= type(effect).roles[role].direction
+        names = []
+        for name, command in self.commands.items():
+            spans_turn = command.high - command.low >= FULL_TURN
+            if name in used and found[name] and spans_turn:
+                names.append(name)
+        return tuple(names)
 
     @cached_property
     def law_signals(self) -> tuple[str, ...]:

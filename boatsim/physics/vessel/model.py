@@ -444,6 +444,14 @@ class Vessel(ChannelBindings):
         limits = {name: (channel.low, channel.high) for name, channel in self.commands.items()}
         return limits | dict.fromkeys(self.measured, (-inf, inf))
 
+    def recorded_limits(self) -> dict[str, tuple[float, float]]:
+        """Return the range (low, high) within which a recording may have each input, by name.
+
+        The direction of a drive that can turn all round (`full_turns`) is unbounded, because a log
+        may count its turns on.
+        """
+        return self.limits() | dict.fromkeys(self.full_turns, (-inf, inf))
+
     def save(self, folder: Path | str) -> Self:
         """Write the vessel in its present load condition to a vessel.toml file.
 

@@ -121,6 +121,7 @@ RESTS = {  # effects that are not always there
     "astern_time_constant",  # going ahead
     "dragged_propeller",  # with the way
     "push",  # before its time and after
+    "quay",  # away from the wall
     "rudder_race",  # of a propeller that backs
 }
 SI = {"rad", "m", "kg", "s", "N"}
@@ -328,6 +329,8 @@ def test_a_uniform_current_changes_no_force_but_of_what_holds_on_to_the_world(
         )
     same = after - before == pytest.approx(wanted, abs=1e-12 * max(1.0, np.abs(before).max()))
     anchor = getattr(kind, "tied_to", "")
+    if name in RESTS and not before.any() and not after.any():
+        return
     assert same != bool(anchor), anchor or after - before
 
 
@@ -380,7 +383,8 @@ def test_coriolis_force_of_an_inertia_does_no_work(name: str, seed: int) -> None
 @pytest.mark.parametrize("seed", range(3))
 def test_a_suspect_whose_fitted_parameters_are_absent_is_not_there(name: str, seed: int) -> None:
     kind = SHELF[name]
-    effect = on_a_vessel(instantiate_neutral_effect(kind, {"walls_m": [-4.0, 4.0, -3.0, 3.0]}))
+    facts: dict[str, object] = {"walls_m": [-4.0, 4.0, -3.0, 3.0], "track_m": [0.0, 0.0, 1.0, 1.0]}
+    effect = on_a_vessel(instantiate_neutral_effect(kind, facts))
     if isinstance(effect, CoefficientRelease):
         boat = next(
             b
