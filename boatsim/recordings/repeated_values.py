@@ -9,6 +9,9 @@ MIN_REGULAR_SHARE = 0.8
 # A column that repeats in more rows than this holds its values, or hardly changes
 MAX_STALE_SHARE = 0.5
 STALE_FACTOR = 5.0  # as many repeats as this times those expected by chance do not arise by chance
+# With fewer separate parts of repeated samples the value must change at both ends of each: a vessel
+# that begins on a steady course ends it by a command
+MIN_PARTS = 5
 # Share of the usual step of a value that it makes next to stale samples; next to steady ones the
 # steps are near the resolution
 MIN_STEP_AROUND = 0.5
@@ -49,7 +52,10 @@ def stale_rows(values: NDArray[np.float64]) -> NDArray[np.bool_]:
         return none
     begin = np.flatnonzero(repeats[1:] & ~repeats[:-1])  # steps before and after each stale part
     end = np.flatnonzero(repeats[:-1] & ~repeats[1:]) + 1
-    around = float(np.median(steps[np.concatenate([begin, end])])) if len(begin) + len(end) else 0.0
+    if len(begin) == 0 or len(end) == 0:
+        return none
+    summary = np.median if min(len(begin), len(end)) >= MIN_PARTS else np.min
+    around = float(summary(steps[np.concatenate([begin, end])]))
     if around < MIN_STEP_AROUND * float(np.median(steps[~repeats])):
         return none
     return np.append(False, repeats)

@@ -67,7 +67,7 @@ class Quay(Force):
     at that end of the track which is farthest against this direction, `overlap` deep. The track is
     an ellipse about (`north`, `east`) with the half axes `north_reach` and `east_reach`; with both
     0 the wall stands half a beam from (`north`, `east`). A diagnosis takes the track from the
-    recordings, and tests this effect only where the boat stays within a few lengths.
+    recordings, on request, where the boat stays within a few lengths.
     """
 
     formula: ClassVar[str] = (
@@ -92,6 +92,7 @@ class Quay(Force):
         "in proportion to the indentation"
     )
     tied_to: ClassVar[str] = "the quay"
+    confounded_with: ClassVar = ("tether",)  # a taut line to the other side pulls alike
     law: ClassVar = law
     strength: ClassVar = ("stiffness",)
     facts: ClassVar = {"track_m": ("north", "east", "north_reach", "east_reach")}

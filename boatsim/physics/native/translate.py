@@ -53,7 +53,7 @@ class Translation(Declarations):
         python = python_function(function)
         key = (python, tuple(kinds))
         if key not in self._functions:
-            name = self.unused_name(python.__name__)
+            name = self.unused_name(f"fn_{python.__name__}")  # none of the C library's
             floats: set[str] = set()
             while True:
                 body = FunctionTranslator(self, python, kinds, floats)

@@ -6,6 +6,7 @@ from boatsim.physics.base import Array
 
 MIN_SAMPLES = 50  # fewer do not determine the period
 SEARCH = (0.9, 1.1)  # periods that are tried, relative to the mean step without gaps
+MAX_SAMPLES = 2000  # from which the period is found; the cost grows with their square
 PHASE_WINDOW = 40.0  # [s] within which the clocks of sensor and program do not drift apart
 # Mean resultant length of the phases. Delays that are evenly spread over a whole period have 0,
 # over half of it 0.64. 200 samples without any rhythm exceed 0.15 in 1 % of logs; the roughness of
@@ -56,8 +57,9 @@ def regular_times(t: Array, track: Array) -> tuple[Array, float] | None:
 
 def _period(t: Array, usual: float) -> float:
     """The period [s] near the usual step at which the phases are most concentrated."""
-    duration = min(float(t[-1] - t[0]), 4.0 * PHASE_WINDOW)
-    rows = t - t[0] < duration
+    last = t[min(len(t), MAX_SAMPLES) - 1]
+    duration = min(float(last - t[0]), 4.0 * PHASE_WINDOW)
+    rows = t - t[0] <= duration
     step = 0.25 / duration
     frequencies = np.arange(1.0 / (SEARCH[1] * usual), 1.0 / (SEARCH[0] * usual), step)
     waves = np.exp(-2j * np.pi * np.outer(frequencies, t[rows] - t[0]))
