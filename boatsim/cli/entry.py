@@ -1,6 +1,6 @@
 """Description of an effect, controller, measure or sensor, for `boatsim show` and for the site."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, fields
 from inspect import getdoc
 from math import isnan
@@ -110,6 +110,8 @@ def _effect_facts(cls: type[Effect]) -> Iterator[tuple[str, str]]:
         for fact, values in cls.ruled_out_by.items():
             excluding += map(f"{fact} = {{}}".format, map(_format_toml_value, values))
         yield "ruled out by", " or ".join(excluding)
+    if cls.requires:
+        yield "tested where", " and ".join(_requirements(cls.requires))
     if cls.facts:
         yield "needs the facts", ", ".join(cls.facts)
     if cls.confounded_with:
@@ -117,6 +119,12 @@ def _effect_facts(cls: type[Effect]) -> Iterator[tuple[str, str]]:
             "only on request",
             f"recordings cannot distinguish it from {' or '.join(cls.confounded_with)}",
         )
+
+
+def _requirements(by_fact: Mapping[str, tuple[object, ...]]) -> Iterator[str]:
+    """Yield each fact with its values: "guided = true"."""
+    for fact, values in by_fact.items():
+        yield f"{fact} = {' or '.join(map(_format_toml_value, values))}"
 
 
 def _format_toml_value(value: object) -> str:

@@ -255,6 +255,11 @@ def missing_requirements(
     for fact in kind.facts:
         if fact not in facts:
             return f"not specified: {describe_fact(fact)}"
+    for fact, values in kind.requires.items():
+        if fact not in facts:
+            return f"not specified: {describe_fact(fact)}"
+        if facts[fact] not in values:
+            return f"{fact} = {str(facts[fact]).lower()}"
     if issubclass(kind, Measurement) and kind.motion_latency is not None and not vessel.actuators:
         return "no commands relative to which a latency could be estimated"
     if kind.alone and vessel.names_of(kind.type_name()):

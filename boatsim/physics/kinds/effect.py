@@ -75,6 +75,8 @@ class Effect(CheckedParameters):
     needs: ClassVar[tuple[str, ...]] = ()
     # fact -> values that exclude the effect
     ruled_out_by: ClassVar[Mapping[str, tuple[object, ...]]] = {}
+    # fact -> values of which one must be specified: otherwise the effect is no candidate
+    requires: ClassVar[Mapping[str, tuple[object, ...]]] = {}
     # effects with the same signature: this one is a candidate on request only
     confounded_with: ClassVar[tuple[str, ...]] = ()
     # a random process: the filter tracks it, a simulation without data cannot
