@@ -616,7 +616,8 @@ def map_recording(
     scale = {family: own.get(family, sd) / sd for family, sd in shared.items()}
     commands = np.zeros((len(recording), 1))
     if vessel.inputs:
-        commands = clipped_recorded_commands(vessel, recording.signals, len(recording))
+        signals = _with_next_samples(recording.signals, vessel)
+        commands = clipped_recorded_commands(vessel, signals, len(recording))
     facts = merged_facts(vessel, recording)
     mapped = MappedRecording(
         recording.name,
@@ -687,8 +688,20 @@ def _commands_at_own_times(recording: Recording, vessel: Vessel) -> tuple[Array,
     """Commands at their own times where a recording has them more often than rows, else empty."""
     if recording.orders is None or not vessel.inputs:
         return np.zeros(0), np.zeros((0, 0))
-    t, signals = recording.orders.t, recording.orders.signals
+    t, signals = recording.orders.t, _with_next_samples(recording.orders.signals, vessel)
     return command_changes(t, clipped_recorded_commands(vessel, signals, len(t)))
+
+
+def _with_next_samples(signals: Mapping[str, Array], vessel: Vessel) -> dict[str, Array]:
+    """Signals in which each sample that a law interpolates stands one row earlier.
+
+    The law moves to a new sample within the time of one row, so that it reaches it at its own time.
+    """
+    moved = dict(signals)
+    for name in vessel.sampled_readings:
+        if name in signals and len(signals[name]):
+            moved[name] = np.append(signals[name][1:], signals[name][-1])
+    return moved
 
 
 def hull_time_scales(
