@@ -220,8 +220,8 @@ class Diagnosis:
     def skill(self) -> dict[str, float]:
         """Reduction of the simulation error on held-out data by the diagnosis.
 
-        The keys are "position", "heading", "roll" and "heave". It is 1 - rms of the corrected vessel / rms
-        of the retuned one: 0 is no improvement, 1 a perfect model.
+        The keys are "position", "heading", "roll" and "heave". It is 1 - rms of the corrected
+        vessel / rms of the retuned one: 0 is no improvement, 1 a perfect model.
         """
         fit = self.answer["fit"]
         errors = {

@@ -10,6 +10,7 @@ from dataclasses import replace
 import numpy as np
 
 from boatsim.diagnosis import priors
+from boatsim.diagnosis.checks.accelerometer_clock import POSE_CLOCK, correct_pose_clock
 from boatsim.diagnosis.checks.finding import Finding
 from boatsim.diagnosis.checks.position_frame import drop_rotated_positions
 from boatsim.diagnosis.checks.position_outliers import drop_position_outliers
@@ -27,6 +28,7 @@ from boatsim.recordings.table import Recording
 
 # phrase in a remark of a recording -> name of the finding
 FINDING_OF_REMARK = {
+    POSE_CLOCK: "pose_clock",
     FIX_REPEATED: "position_held",
     VALUE_REPEATED: "channel_held",
     "jump away and return": "outliers",
@@ -41,8 +43,9 @@ def prepare_recording(
 ) -> Recording:
     """Return the usable part of a raw recording with consistent angles, rudder signs and positions.
 
-    Wrapped angles are unwrapped, rudder angles get the sign convention of the vessel, and positions
-    that were rotated with the boat are dropped.
+    Wrapped angles are unwrapped, poses stand at the times that accelerometers show, rudder angles
+    get the sign convention of the vessel, and positions that were rotated with the boat are
+    dropped.
 
     Args:
         recording: The recording as read.
@@ -53,6 +56,7 @@ def prepare_recording(
         The prepared recording; its remarks list each correction.
     """
     unwrapped = unwrap_directions(recording.used(), vessel)
+    unwrapped = correct_pose_clock(unwrapped, vessel, config)
     return drop_rotated_positions(correct_rudder_sense(unwrapped, vessel, config), config)
 
 

@@ -133,7 +133,6 @@ class WaveDrift(FilteredSignal, Force):
     )
     shown_by: ClassVar[str] = "waves of two heights"
     source: ClassVar[str] = "H. Maruo, The drift of a body floating on waves, J. Ship Research 1960"
-    tied_to: ClassVar[str] = "the wave"
     roles: ClassVar = {"elevation": Role("m", "elevation of the wave at the hull, up")}
     filtered: ClassVar = ("lagged_square", "mean_square")
     filter_states: ClassVar = 2

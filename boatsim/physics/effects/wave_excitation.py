@@ -255,12 +255,10 @@ class WaveExcitation(FilteredSignal, Force):
     }
     ruled_out_by: ClassVar = {"no_waves": (True,)}
     words: ClassVar[str] = "the measured wave exerts other forces on the hull than in the model"
-    refines: ClassVar[str] = ""
     shown_by: ClassVar[str] = "waves of several periods"
     source: ClassVar[str] = (
         "O. M. Faltinsen, Sea Loads on Ships and Offshore Structures, 1990, chapter 3"
     )
-    tied_to: ClassVar[str] = "the wave"
     roles: ClassVar = {"elevation": Role("m", "elevation of the wave at the hull, up")}
     filtered: ClassVar = ("filtered_elevation", "elevation_rate", "elevation_acceleration")
     filter_states: ClassVar = 7

@@ -31,6 +31,7 @@ from boatsim.recordings.importing.resample import (
     row_times,
 )
 from boatsim.recordings.importing.several_logs import Span, aligned, begin_line, sources
+from boatsim.recordings.importing.waves import WaveProbes, wave_at
 from boatsim.recordings.notes import Notes
 from boatsim.recordings.raw_table import file_error, select_rows
 from boatsim.recordings.repeated_values import repeated_rows
@@ -47,6 +48,7 @@ HELD = (
 FASTER = 1.5  # commands set the clock if their rate is this many times that of the poses
 ROW_TOLERANCE = 0.05  # a sample is in a row if it is nearer than this share of the step of the rows
 MAX_ROUNDS = 4
+UNEQUAL = 0.1  # share of a step by which the steps of wave probes may differ
 MAX_ROWS = 5_000_000
 MAX_FILES = 20  # of which the remarks list the spans
 
@@ -97,6 +99,9 @@ def convert_log(
     work.begin = min((span.begin for span in work.spans.values()), default=0.0)
     if map.position:
         _add_position(work, map.position)
+    for name, probes in map.waves.items():
+        t, values = _wave(work, name, probes)
+        work.columns[name] = Column(_check_values(work, name, clean_samples(t, values)), True)
     disorder: dict[tuple[int, int, float], list[str]] = {}
     for name, what in map.columns.items():
         t, values = _column(work, name, what)
@@ -195,6 +200,29 @@ def _column(work: _Work, name: str, what: str | Range | Curve) -> tuple[Array, A
             "the limit"
         )
     return signal.t, what.of(values)
+
+
+def _wave(work: _Work, name: str, given: WaveProbes) -> tuple[Array, Array]:
+    """Times (N,) [s] and elevation (N,) [m] of the wave at the hull. Raises BadInput."""
+    where = f"waves.{name}.probes"
+    signals = [_signal(work, where, text) for text in given.probes]
+    t = signals[0][0].t
+    measured = np.isfinite(t)
+    elevations = []
+    for signal, how in signals:
+        if not np.array_equal(signal.t, t, equal_nan=True):
+            raise BadInput(f"{work.file}: {where}: allowed are probes with the same times")
+        elevations.append(how.of(signal.values))
+        measured &= np.isfinite(elevations[-1])
+    t = t[measured]
+    steps = np.diff(t)
+    if len(t) < FEWEST_ROWS or not np.ptp(steps) < UNEQUAL * float(np.median(steps)):
+        raise BadInput(
+            f"{work.file}: {where}: allowed are at least {FEWEST_ROWS} samples at equal steps of "
+            "time"
+        )
+    step = float(np.median(steps))
+    return t, wave_at(step, [values[measured] for values in elevations], given)
 
 
 def _add_position(work: _Work, position: Position) -> None:
