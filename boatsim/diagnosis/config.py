@@ -266,7 +266,7 @@ class ChecksConfig:
     pose_clock_step: float = setting(
         0.05,
         "s",
-        "Step of the delays that are tried, a small part of a period of a hull.",
+        "Step of the delays that are tried, a small part of a period.",
         low=1e-3,
     )
     pose_clock_tie: float = setting(

@@ -338,7 +338,7 @@ def box_pressure(
     """
     weight = density * GRAVITY * vessel.length  # [N/m^2] per area of the section
     squared = frequency * frequency
-    # the attenuation is alpha - beta w^2 about the reference, hence an elevation and an acceleration
+    # attenuation alpha - beta w^2 about the reference, hence an elevation and an acceleration
     beyond = squared * (1.0 + SLOPE)
     at, after = attenuation(squared, vessel), attenuation(beyond, vessel)
     beta = (at - after) / (beyond - squared)

@@ -17,8 +17,9 @@ class FilteredSignal(EffectKind):
     `filter_signal(x, act, held, own, memory, at, dt, values)`, compiled, is called after the step
     of the actuators. x is the `SignalSegment` of the first role over the step dt [s]. It advances
     the `filter_states` states memory[at] and following, and sets act[own + i], act[held + own + i]
-    and act[2 held + own + i] to the results at begin, middle and end of the step. A very long step leads to the steady state. `longest_filter_step(values)` is the time [s]
-    for which three points describe the results.
+    and act[2 held + own + i] to the results at begin, middle and end of the step. A very long step
+    leads to the steady state. `longest_filter_step(values)` is the time [s] for which three points
+    describe the results.
     """
 
     laws: ClassVar[tuple[str, ...]] = ("filter_signal", "longest_filter_step")
