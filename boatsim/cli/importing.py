@@ -112,6 +112,8 @@ def _fed_channels(boat: Vessel) -> set[str]:
 
 def _turn_direction(boat: Vessel, channel: str) -> int:
     """Turn that a positive command causes: 1 starboard, -1 port, 0 unknown."""
+    if channel not in boat.commands:  # a measured input
+        return 0
     turns = boat.commands[channel].turns
     if turns:
         return {"starboard": 1, "port": -1}[turns]

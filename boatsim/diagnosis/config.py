@@ -269,6 +269,11 @@ class ChecksConfig:
         "Step of the delays that are tried, a small part of a period.",
         low=1e-3,
     )
+    pose_clock_near: float = setting(
+        0.03,
+        "1",
+        "Delays whose correlation before the refinement is this close to the best one are refined.",
+    )
     pose_clock_tie: float = setting(
         0.002,
         "1",

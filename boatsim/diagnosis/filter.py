@@ -616,7 +616,7 @@ def map_recording(
     scale = {family: own.get(family, sd) / sd for family, sd in shared.items()}
     commands = np.zeros((len(recording), 1))
     if vessel.inputs:
-        signals = _with_next_samples(recording.signals, vessel)
+        signals = _with_leading_samples(recording.t, recording.signals, vessel)
         commands = clipped_recorded_commands(vessel, signals, len(recording))
     facts = merged_facts(vessel, recording)
     mapped = MappedRecording(
@@ -688,19 +688,24 @@ def _commands_at_own_times(recording: Recording, vessel: Vessel) -> tuple[Array,
     """Commands at their own times where a recording has them more often than rows, else empty."""
     if recording.orders is None or not vessel.inputs:
         return np.zeros(0), np.zeros((0, 0))
-    t, signals = recording.orders.t, _with_next_samples(recording.orders.signals, vessel)
+    t = recording.orders.t
+    signals = _with_leading_samples(t, recording.orders.signals, vessel)
     return command_changes(t, clipped_recorded_commands(vessel, signals, len(t)))
 
 
-def _with_next_samples(signals: Mapping[str, Array], vessel: Vessel) -> dict[str, Array]:
-    """Signals in which each sample that a law interpolates stands one row earlier.
+def _with_leading_samples(
+    t: Array, signals: Mapping[str, Array], vessel: Vessel
+) -> dict[str, Array]:
+    """Signals in which those that a law filters lead by the filter's delay and by one row.
 
     The law moves to a new sample within the time of one row, so that it reaches it at its own time.
     """
     moved = dict(signals)
-    for name in vessel.sampled_readings:
-        if name in signals and len(signals[name]):
-            moved[name] = np.append(signals[name][1:], signals[name][-1])
+    if len(t) > 1:
+        following = np.append(t[1:], 2.0 * t[-1] - t[-2])
+        for name, lead in vessel.filtered_readings.items():
+            if name in signals:
+                moved[name] = np.interp(following + lead, t, signals[name])
     return moved
 
 

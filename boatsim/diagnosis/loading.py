@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from boatsim.diagnosis.checks import data_cleaning, run_checks
+from boatsim.diagnosis.checks.accelerometer_clock import correct_pose_clock
 from boatsim.diagnosis.checks.finding import Finding
 from boatsim.diagnosis.config import DEFAULT, DiagnosisConfig
 from boatsim.errors import BadInput
@@ -202,6 +203,7 @@ def open_parts(
     """
     found = vessel_for(path, vessel, load_conditions, config)
     recording = read(path, found.limits(), found.columns)
+    recording = correct_pose_clock(recording, found, config.checks)
     parts = []
     for part in recording.parts():
         parts.append(data_cleaning.prepare_recording(part, found, config.checks))
@@ -232,6 +234,7 @@ def open_recording(
     """
     found = vessel_for(path, vessel, load_conditions, config)
     recording = read(path, found.limits(), found.columns)
+    recording = correct_pose_clock(recording, found, config.checks)
     return data_cleaning.prepare_recording(recording, found, config.checks), found
 
 

@@ -142,13 +142,23 @@ def _best_clock(
     delays = np.arange(-longest, longest + 1e-9, config.pose_clock_step)
     values = np.array([[correlation(d, r) for r in rates] for d in delays])
     by_delay = values.max(axis=1)
-    candidates = []
-    for i in range(len(delays)):
-        near = by_delay[max(0, i - 2) : i + 3]
-        if by_delay[i] == near.max() and by_delay[i] > by_delay.max() - config.pose_clock_tie:
-            candidates.append(i)
-    i = min(candidates, key=lambda k: abs(delays[k]))
-    start = np.array([delays[i], rates[int(np.argmax(values[i]))]])
+    refined = []
+    for i, value in enumerate(by_delay.tolist()):
+        highest = value == by_delay[max(0, i - 2) : i + 3].max()
+        if highest and value > by_delay.max() - config.pose_clock_near:
+            start = (float(delays[i]), float(rates[int(np.argmax(values[i]))]))
+            refined.append(_refined_clock(correlation, start, config))
+    best = max(value for value, _ in refined)
+    equal = [clock for value, clock in refined if value > best - config.pose_clock_tie]
+    return min(equal, key=lambda clock: abs(clock[0]))
+
+
+def _refined_clock(
+    correlation: Callable[[float, float], float],
+    start: tuple[float, float],
+    config: ChecksConfig,
+) -> tuple[float, tuple[float, float]]:
+    """Largest correlation near a delay [s] and a rate, and where it is."""
     scale = np.array([config.pose_clock_step, config.pose_clock_max_rate])
     found = minimize(
         lambda x: -correlation(*(start + scale * x)),
@@ -157,7 +167,7 @@ def _best_clock(
         options={"xatol": 1e-3, "fatol": 1e-6},
     )
     delay, rate = start + scale * found.x
-    return float(delay), float(rate)
+    return -float(found.fun), (float(delay), float(rate))
 
 
 def _witnesses(recording: Recording) -> dict[str, str]:

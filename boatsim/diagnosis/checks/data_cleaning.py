@@ -10,7 +10,7 @@ from dataclasses import replace
 import numpy as np
 
 from boatsim.diagnosis import priors
-from boatsim.diagnosis.checks.accelerometer_clock import POSE_CLOCK, correct_pose_clock
+from boatsim.diagnosis.checks.accelerometer_clock import POSE_CLOCK
 from boatsim.diagnosis.checks.finding import Finding
 from boatsim.diagnosis.checks.position_frame import drop_rotated_positions
 from boatsim.diagnosis.checks.position_outliers import drop_position_outliers
@@ -43,9 +43,8 @@ def prepare_recording(
 ) -> Recording:
     """Return the usable part of a raw recording with consistent angles, rudder signs and positions.
 
-    Wrapped angles are unwrapped, poses stand at the times that accelerometers show, rudder angles
-    get the sign convention of the vessel, and positions that were rotated with the boat are
-    dropped.
+    Wrapped angles are unwrapped, rudder angles get the sign convention of the vessel, and positions
+    that were rotated with the boat are dropped.
 
     Args:
         recording: The recording as read.
@@ -56,7 +55,6 @@ def prepare_recording(
         The prepared recording; its remarks list each correction.
     """
     unwrapped = unwrap_directions(recording.used(), vessel)
-    unwrapped = correct_pose_clock(unwrapped, vessel, config)
     return drop_rotated_positions(correct_rudder_sense(unwrapped, vessel, config), config)
 
 

@@ -1,6 +1,7 @@
 """Ground spring: springs or lines that hold the hull near a place, in single axes of the earth."""
 
 from dataclasses import dataclass
+from math import cos, sin
 from typing import Any, ClassVar
 
 from numba import njit
@@ -20,16 +21,18 @@ def law(m: Any, q: Any) -> Wrench:
         Force [N] and moment [N m] in body axes.
     """
     # the point of attachment lies below the origin and swings with the roll angle
-    east = m.y - q.below * m.phi * m.cos_psi
-    north = m.x + q.below * m.phi * m.sin_psi
+    s, c = sin(m.phi), cos(m.phi)
+    east = m.y - q.below * s * m.cos_psi
+    north = m.x + q.below * s * m.sin_psi
     toward_north = -q.north * (north - q.place_north)
     toward_east = -q.east * (east - q.place_east)
-    Y = m.cos_psi * toward_east - m.sin_psi * toward_north
+    level = m.cos_psi * toward_east - m.sin_psi * toward_north
+    down = -q.down * m.z
     return wrench(
         X=m.cos_psi * toward_north + m.sin_psi * toward_east,
-        Y=Y,
-        Z=-q.down * m.z,
-        K=-q.below * Y - q.roll * m.phi,
+        Y=c * level + s * down,
+        Z=c * down - s * level,
+        K=-q.below * c * level - q.roll * m.phi,
         N=-q.turn * m.psi,
     )
 

@@ -1,7 +1,7 @@
 """Wave drift: mean and slowly varying force of a measured wave."""
 
 from dataclasses import dataclass
-from math import exp, inf, sqrt
+from math import cos, exp, inf, sin, sqrt
 from typing import Any, ClassVar
 
 from numba import njit
@@ -107,7 +107,10 @@ def law(m: Any, q: Any, s: Any) -> Wrench:
         Force [N] and moment [N m] in body axes.
     """
     square = s.mean_square
-    return wrench(X=q.surge * square, Y=q.sway * square, K=q.roll * square)
+    sway = q.sway * square
+    return wrench(
+        X=q.surge * square, Y=cos(m.phi) * sway, Z=-sin(m.phi) * sway, K=q.roll * square
+    )
 
 
 @dataclass(frozen=True)

@@ -25,8 +25,7 @@ SUBSTEP = 0.5  # of Runge-Kutta in 1 / bandwidth, which keeps its error below 1e
 SETTLED = 100.0  # steps longer than this [1 / bandwidth] lead to the steady state
 # Share of the reference frequency squared over which the slope of the attenuation is taken
 SLOPE = 0.1
-# Bandwidth over the natural frequency of heave: the filter's phase error stays below 15 degrees
-# in the range in which a hull answers to waves
+# Bandwidth over the natural frequency of heave: a hull answers to waves of up to twice that
 WIDE = 8.0
 
 
@@ -107,9 +106,6 @@ def filter_signal(
 ) -> None:
     """Filter the measured elevation over one step, and store elevation, rate and acceleration.
 
-    The results of the low-pass filter are corrected for its delay to first order: the denominator
-    is 1 + 2 s / w + 2 s^2 / w^2 + s^3 / w^3.
-
     Args:
         x: Measured elevation [m] over the step.
         act: Values of the signals; results are stored at `own` in each row.
@@ -126,13 +122,13 @@ def filter_signal(
         a, b, c = x.end, 0.0, 0.0
         memory[ramp], memory[ramp + 1], memory[ramp + 2], memory[ramp + 3] = x.end, x.end, 0.0, 0.0
         for row in range(3):
-            store(act, row * held + own, a, b, c, w)
+            store(act, row * held + own, a, b, c)
     else:
         follow_sample(x.begin, memory, ramp, dt)
         level, target, slope = memory[ramp], memory[ramp + 1], memory[ramp + 2]
         count = 2 * max(1, ceil(0.5 * w * dt / SUBSTEP))
         part = dt / count
-        store(act, own, a, b, c, w)
+        store(act, own, a, b, c)
         for i in range(count):
             u = SignalSegment(
                 ramp_value(level, target, slope, i * part),
@@ -141,15 +137,15 @@ def filter_signal(
             )
             a, b, c = filter_step(u, a, b, c, w, part)
             if 2 * (i + 1) == count:
-                store(act, held + own, a, b, c, w)
-        store(act, 2 * held + own, a, b, c, w)
+                store(act, held + own, a, b, c)
+        store(act, 2 * held + own, a, b, c)
         memory[ramp] = ramp_value(level, target, slope, dt)
     memory[at], memory[at + 1], memory[at + 2] = a, b, c
 
 
 @njit(inline="always")
-def store(act: Array, own: Any, a: float, b: float, c: float, w: float) -> None:
-    """Store elevation, rate and acceleration, corrected for the delay of the filter.
+def store(act: Array, own: Any, a: float, b: float, c: float) -> None:
+    """Store elevation, rate and acceleration.
 
     Args:
         act: Values of the signals.
@@ -157,10 +153,9 @@ def store(act: Array, own: Any, a: float, b: float, c: float, w: float) -> None:
         a: Output of the filter [m].
         b: Its rate [m/s].
         c: Its second derivative [m/s^2].
-        w: Bandwidth of the filter [rad/s].
     """
-    act[own] = a + 2.0 * b / w + 2.0 * c / (w * w)
-    act[own + 1] = b + 2.0 * c / w
+    act[own] = a
+    act[own + 1] = b
     act[own + 2] = c
 
 
@@ -178,6 +173,8 @@ def longest_filter_step(q: Any) -> float:
 def law(m: Any, q: Any, s: Any) -> Wrench:
     """Return the force of a measured wave, linear in elevation, rate and acceleration.
 
+    Sway and heave are level and vertical, whatever the heel.
+
     Args:
         m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].
         q: Parameters of the effect, with the names and units of its class.
@@ -187,9 +184,12 @@ def law(m: Any, q: Any, s: Any) -> Wrench:
         Force [N] and moment [N m] in body axes.
     """
     e, v, a = s.filtered_elevation, s.elevation_rate, s.elevation_acceleration
+    level = q.sway_elevation * e + q.sway_rate * v + q.sway_acceleration * a
+    down = q.heave_elevation * e + q.heave_rate * v + q.heave_acceleration * a
+    c, n = cos(m.phi), sin(m.phi)
     return wrench(
-        Y=q.sway_elevation * e + q.sway_rate * v + q.sway_acceleration * a,
-        Z=q.heave_elevation * e + q.heave_rate * v + q.heave_acceleration * a,
+        Y=c * level + n * down,
+        Z=c * down - n * level,
         K=q.roll_elevation * e + q.roll_rate * v + q.roll_acceleration * a,
     )
 
@@ -223,10 +223,13 @@ class WaveExcitation(FilteredSignal, Force):
 
     X_i = c_i eta + b_i eta' + a_i eta'',  i = sway, heave, roll
 
+    The forces in sway and heave are level and vertical, as the pressure of the wave.
+
     eta is the elevation of the incident wave at the hull [m, up], a recorded channel. Elevation,
-    rate and acceleration come from a low-pass filter of third order with `bandwidth` w, so that the
-    response is a rational function of the frequency with two zeros and three poles. It has
-    another size and phase at each frequency, as diffraction theory requires.
+    rate and acceleration come from a low-pass filter of third order with `bandwidth` w. The
+    response has another size and phase at each frequency, as diffraction theory requires. The
+    filter is late by 2 / w; a replay and a diagnosis know the recorded wave and lead it by that
+    time.
 
     With `undisturbed` = 1 coefficients that are not given follow from the pressure of the
     undisturbed wave on a box of the vessel's length, beam and draught in beam waves, about the
@@ -302,6 +305,13 @@ class WaveExcitation(FilteredSignal, Force):
         unit="rad/s",
         words="bandwidth of the filter of the wave; default: 8 sqrt(g / 2 T)",
     )
+
+    @property
+    def lookahead(self) -> float:
+        """Delay of the filter at low frequencies [s], by which a recorded wave is led."""
+        if not self.has_value("bandwidth"):
+            return 0.0
+        return 2.0 / self.bandwidth
 
     def derived_parameters(self, vessel: Boat) -> dict[str, float]:
         """Return the coefficients of the undisturbed wave's pressure, and the bandwidth.

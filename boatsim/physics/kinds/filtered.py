@@ -26,6 +26,11 @@ class FilteredSignal(EffectKind):
     filter_signal: ClassVar[Callable[..., None]]
     longest_filter_step: ClassVar[Callable[..., float]]
 
+    @property
+    def lookahead(self) -> float:
+        """Time [s] by which a recorded signal leads, so that the filter's delay does not matter."""
+        return 0.0
+
     @classmethod
     def program_lines(
         cls, part: ProgramFunction, station: InsertionPoint, number: int, program: ProgramLayout

@@ -57,15 +57,15 @@ class ChannelBindings:
         return tuple(filter(self.roles.__contains__, self.measured))
 
     @property
-    def sampled_readings(self) -> tuple[str, ...]:
-        """Names of the measured signals whose samples an effect's law interpolates."""
-        found: dict[str, None] = {}
+    def filtered_readings(self) -> Mapping[str, float]:
+        """Measured signals that effects filter -> time [s] by which a recorded one has to lead."""
+        found: dict[str, float] = {}
         for effect in self.effects:
             if isinstance(effect, FilteredSignal):
                 channel = self.bindings(effect).get(next(iter(type(effect).roles)))
-                if channel in self.readings:
-                    found[str(channel)] = None
-        return tuple(found)
+                if isinstance(channel, str) and channel in self.readings:
+                    found[channel] = max(found.get(channel, 0.0), effect.lookahead)
+        return found
 
     @cached_property
     def roles(self) -> Mapping[str, str]:

@@ -38,12 +38,12 @@ sway = 40.0
 heave = 32.0
 roll = 0.2
 yaw = 0.0
-coriolis = 0.0
 
 [[effect]]
 use = "hydrostatics"
 heave = 2300.0
 roll = 29.0
+vertical = 1.0
 
 [[effect]]
 use = "linear_damping"
@@ -76,7 +76,7 @@ roll_acceleration = -0.5
 
 [[effect]]
 use = "wave_drift"
-sway = -1400.0
+sway = -140000.0
 """
 HULL = """<mujoco model="section"><worldbody><body name="hull">
 <geom type="box" size="0.3 0.2 0.13"/></body></worldbody></mujoco>"""
@@ -92,8 +92,11 @@ def section(folder: Path, text: str = SECTION) -> Vessel:
     return vessel.load_vessel(str(folder / "section"))
 
 
-def filtered(boat: Vessel, frequency: float, substeps: int = 3) -> tuple[Array, Array]:
-    """Times (N,) and filtered elevation, rate, acceleration (N, 3) of a sampled sine, settled."""
+def filtered(boat: Vessel, frequency: float) -> tuple[Array, Array]:
+    """Times (N,) and filtered elevation, rate, acceleration (N, 3) of a sampled sine, settled.
+
+    They are the means over each step that Runge and Kutta use, at its middle.
+    """
     program = Program(boat)
     code, values, on = program.module, program.values(), program.effect_switches()
     memory, act = np.zeros(program.memory_size), np.zeros(program.held_size)
@@ -102,11 +105,12 @@ def filtered(boat: Vessel, frequency: float, substeps: int = 3) -> tuple[Array, 
     times, found = [], []
     for i in range(int(30 * RATE)):
         t = (i + 1) / RATE
-        for _ in range(substeps):
-            sample = np.array([np.sin(frequency * t)])
-            code.advance_actuators(sample, memory, 1.0 / RATE / substeps, values, on, act)
-        times.append(t)
-        found.append(act[2 * code.HELD + first : 2 * code.HELD + first + 3].copy())
+        code.advance_actuators(
+            np.array([np.sin(frequency * t)]), memory, 1.0 / RATE, values, on, act
+        )
+        rows = act.reshape(3, code.HELD)[:, first : first + 3]
+        times.append(t - 0.5 / RATE)
+        found.append((rows[0] + 4.0 * rows[1] + rows[2]) / 6.0)
     last = int(10 * RATE)
     return np.array(times)[-last:], np.array(found)[-last:]
 
@@ -128,19 +132,21 @@ def test_the_filter_of_a_sampled_wave_has_its_transfer_function(
     assert isinstance(effect, WaveExcitation)
     w, s = effect.bandwidth, 1j * frequency
     low_pass = w**3 / ((s + w) * (s**2 + w * s + w**2))
-    correction = (1.0 + 2.0 * s / w + 2.0 * s**2 / w**2, s + 2.0 * s**2 / w, s**2)
-    for i, expected in enumerate(correction):
+    for i in range(3):
+        expected = low_pass * s**i
         found = phasor(t, values[:, i], frequency)
-        # linear interpolation reduces the amplitude by (w dt)^2 / 12
-        assert found == pytest.approx(low_pass * expected, rel=0.02)
+        # linear interpolation and the mean each reduce the amplitude by up to (w dt)^2 / 12
+        assert abs(found / expected - 1.0) < 0.01 + (frequency / RATE) ** 2 / 6.0
 
 
-def test_the_correction_of_the_filter_leaves_a_phase_error_below_two_degrees(
+def test_a_wave_that_leads_by_the_delay_of_the_filter_has_a_phase_error_below_two_degrees(
     tmp_path: Path,
 ) -> None:
-    t, values = filtered(section(tmp_path), 5.0)
-    for i in range(2):
-        assert abs(np.angle(phasor(t, values[:, i], 5.0) / (5.0j) ** i)) < np.radians(2.0)
+    boat = section(tmp_path)
+    t, values = filtered(boat, 5.0)
+    lead = np.exp(5.0j * boat.filtered_readings["wave_m"])
+    for i in range(3):
+        assert abs(np.angle(lead * phasor(t, values[:, i], 5.0) / 5.0j**i)) < np.radians(2.0)
 
 
 def test_undisturbed_pressure_on_a_box_equals_its_integral(tmp_path: Path) -> None:
@@ -175,18 +181,21 @@ def test_undisturbed_pressure_on_a_box_equals_its_integral(tmp_path: Path) -> No
 def test_a_spring_below_the_origin_heels_the_hull_and_is_strained_by_heel() -> None:
     spring = GroundSpring(east=100.0, below=0.1)
     aside = spring.wrench(motion(y=0.2))
-    heeled = spring.wrench(motion(phi=0.3))
+    heeled = spring.wrench(motion(phi=0.003))
     assert aside.Y == pytest.approx(-20.0)
     assert aside.K == pytest.approx(2.0)
-    assert heeled.Y == pytest.approx(100.0 * 0.1 * 0.3)
+    assert heeled.Y == pytest.approx(100.0 * 0.1 * 0.003, rel=1e-4)
     # the stiffness matrix of a conservative spring is symmetric
-    assert heeled.Y / 0.3 == pytest.approx(aside.K / 0.2)
+    assert heeled.Y / 0.003 == pytest.approx(aside.K / 0.2, rel=1e-4)
 
 
 def wave(t: float) -> tuple[float, float, float]:
-    """Elevation, rate and acceleration of a group of two waves [m], with a soft begin."""
+    """Elevation, rate and acceleration of a group of two waves [m], with a soft begin.
+
+    They are so low that body axes and axes of the water surface coincide.
+    """
     found = np.zeros(3)
-    for amplitude, w in ((0.012, 5.0), (0.008, 5.6)):
+    for amplitude, w in ((0.0012, 5.0), (0.0008, 5.6)):
         s, c = np.sin(w * t), np.cos(w * t)
         found += amplitude * np.array([s, w * c, -w * w * s])
     return tuple(min(1.0, t / 4.0) ** 2 * found)
@@ -210,7 +219,7 @@ def by_hand(t: Array, held: tuple[str, ...] = ()) -> Array:
 
     def slope(time: float, x: Array) -> Array:
         eta = np.array(wave(time))
-        force = F @ eta + np.array([-1400.0 * x[7], 0.0, 0.0]) - D @ x[3:6] - K @ x[:3]
+        force = F @ eta + np.array([-140000.0 * x[7], 0.0, 0.0]) - D @ x[3:6] - K @ x[:3]
         acceleration = np.zeros(3)
         acceleration[free] = np.linalg.solve(M[np.ix_(free, free)], force[free])
         mean = [(eta[0] ** 2 - x[6]) / smoothing, (x[6] - x[7]) / smoothing]
@@ -245,12 +254,15 @@ def test_a_box_on_a_rig_follows_a_measured_wave_as_another_integrator_computes(
         mapped.inputs, 0.02, program.vessel_numbers(), np.array([0]), np.array([len(t) - 1]),
         states, out,
     )  # fmt: skip
+    free = np.abs(by_hand(t)).max(axis=0)
+    # sway has the forces of second order too, of which the linear integrator knows the drift alone
+    allowed = {"sway": 0.1, "heave": 0.04, "roll": 0.04}
     for i, axis in enumerate(("sway", "heave", "roll")):
         off = out[0, :, i] - poses[:, i]
         if axis in held:
-            assert np.abs(out[0, :, i]).max() < 1e-6
+            assert np.abs(out[0, :, i]).max() < 0.05 * free[i]
         else:
-            assert np.sqrt(np.mean(off**2)) < 0.04 * np.sqrt(np.mean(poses[:, i] ** 2))
+            assert np.sqrt(np.mean(off**2)) < allowed[axis] * np.sqrt(np.mean(poses[:, i] ** 2))
 
 
 def test_the_drift_force_grows_with_the_square_of_the_wave(tmp_path: Path) -> None:
