@@ -74,7 +74,8 @@ def map_runs(diagnosis: Diagnosis, files: Sequence[Path], vessel: str) -> list[M
     mapped = []
     for file in files:
         recording, boat = loading.open_recording(file, vessel, ())
-        mapped.append(diagnosis.map_recording(recording.thinned(priors.used_sample_rate(boat))))
+        thinned = recording.thinned(priors.used_sample_rate(boat))
+        mapped.append(diagnosis.map_recording(thinned, vessel=boat))
     return mapped
 
 

@@ -93,8 +93,8 @@ def free_runs_of(diagnosis: Diagnosis, files: Sequence[Path]) -> list[FreeRun]:
     fits = compared_fits(diagnosis.ranking)
     found = []
     for file in files:
-        recording, _ = loading.open_recording(file, None, ())
-        mapped: MappedRecording = diagnosis.map_recording(recording)
+        recording, boat = loading.open_recording(file, None, ())
+        mapped: MappedRecording = diagnosis.map_recording(recording, vessel=boat)
         whole = float(np.ptp(mapped.times)) - 1e-6
         found += free_runs(diagnosis.problem, fits, [mapped], whole)
     return found

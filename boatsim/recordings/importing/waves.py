@@ -83,7 +83,7 @@ def wave_at(step: float, elevations: Sequence[Array], given: WaveProbes) -> Arra
     count = len(elevations[0])
     length = count + int(PAD * count)
     offsets = given.travels * (np.array(list(given.probes.values())) - given.place)
-    frequencies = np.fft.rfftfreq(length, step)
+    frequencies: Array = np.asarray(np.fft.rfftfreq(length, step), dtype=np.float64)
     measured = np.array([np.fft.rfft(_padded(x, length)) for x in elevations])
     k = wave_number(2.0 * np.pi * frequencies, given.depth)
     incident = np.exp(-1j * np.outer(offsets, k))
