@@ -79,10 +79,11 @@ def _propose_map(
         drives = []
         fed = _fed_channels(boat) - log.signals.keys()
         for channel, (low, high) in boat.limits().items():
-            if channel in fed:
+            if channel in fed or channel in boat.measured:
                 continue
             drives.append(VesselChannel(channel, low, high, _turn_direction(boat, channel)))
         text = propose_map(log, vessel, drives, boat.dof, boat.columns)
+        text += _measured_lines(boat, log)
     else:
         text = propose_map(log, vessel, [], (), None)
     print_notes(log.remarks)
@@ -110,10 +111,24 @@ def _fed_channels(boat: Vessel) -> set[str]:
     return fed
 
 
+def _measured_lines(boat: Vessel, log: Log) -> str:
+    """Lines of a proposed map for the measured inputs of a vessel, at the end of its columns."""
+    lines = ""
+    for name, about in boat.measured.items():
+        if name in log.signals:
+            lines += f'{name} = "{name}"\n'
+            continue
+        words = about.about or "measured, not commanded"
+        lines += f'# {name} = "..."  # CHECK: {words}\n'
+        if name.endswith("_m"):
+            lines += (
+                f"# or [waves.{name}] with probes that stand elsewhere, at the end of the file\n"
+            )
+    return lines
+
+
 def _turn_direction(boat: Vessel, channel: str) -> int:
     """Turn that a positive command causes: 1 starboard, -1 port, 0 unknown."""
-    if channel not in boat.commands:  # a measured input
-        return 0
     turns = boat.commands[channel].turns
     if turns:
         return {"starboard": 1, "port": -1}[turns]

@@ -99,9 +99,6 @@ def convert_log(
     work.begin = min((span.begin for span in work.spans.values()), default=0.0)
     if map.position:
         _add_position(work, map.position)
-    for name, probes in map.waves.items():
-        t, values = _wave(work, name, probes)
-        work.columns[name] = Column(_check_values(work, name, clean_samples(t, values)), True)
     disorder: dict[tuple[int, int, float], list[str]] = {}
     for name, what in map.columns.items():
         t, values = _column(work, name, what)
@@ -120,6 +117,8 @@ def convert_log(
             signals[name] = nearest_samples(rows, column.given, near)
     _remark_held(work, rows)
     rows, signals = _complete_rows(work, rows, signals)
+    for name, probes in map.waves.items():
+        signals[name] = np.interp(rows, *_wave(work, name, probes))
     _remark_spans(work, rows)
     _remark_times(work, rows)
     return Recording(

@@ -67,6 +67,8 @@ POSE_WORDS = {
     **dict.fromkeys(("north", "northing", "pn"), "x_m"),
     **dict.fromkeys(("east", "easting", "pe"), "y_m"),
 }  # last word of a name -> column
+DISPLACEMENTS = {"surge": "x_m", "sway": "y_m", "heave": "z_m"}  # of a body on a rig
+LENGTHS = {"m", "mm", "cm"}
 SPEEDS = {"rate", "speed", "velocity", "vel"}
 BODY = {"odom", "odometry", "body", "base"}  # frames with x forward
 SUPERFLUOUS = set(
@@ -294,6 +296,8 @@ def _motion(last: list[str], tokens: frozenset[str], log: Log) -> str | None:
         return {"x": "x_m", "y": "y_m"}[end]
     if end in ("x", "y") and {"twist", "linear"} <= tokens and tokens & BODY and log.frame == "ENU":
         return {"x": "u_mps", "y": "v_mps"}[end]
+    if end in DISPLACEMENTS and tokens & LENGTHS and not tokens & SPEEDS:
+        return DISPLACEMENTS[end]
     if end in ("surge", "sway") or tokens & {"surge", "sway"} and tokens & SPEEDS:
         if "surge" in tokens:
             return "u_mps"
