@@ -24,8 +24,8 @@ def law(m: Any, q: Any) -> Wrench:
     s, c = sin(m.phi), cos(m.phi)
     east = m.y - q.below * s * m.cos_psi
     north = m.x + q.below * s * m.sin_psi
-    toward_north = -q.north * (north - q.place_north)
-    toward_east = -q.east * (east - q.place_east)
+    toward_north = -q.stiffness_north * (north - q.place_north)
+    toward_east = -q.stiffness_east * (east - q.place_east)
     level = m.cos_psi * toward_east - m.sin_psi * toward_north
     down = -q.down * m.z
     return wrench(
@@ -54,8 +54,8 @@ class GroundSpring(Force):
         r"\end{aligned}"
     )
     symbols: ClassVar = {
-        "north": "k_N",
-        "east": "k_E",
+        "stiffness_north": "k_N",
+        "stiffness_east": "k_E",
         "down": "k_D",
         "roll": r"k_\phi",
         "turn": r"k_\psi",
@@ -73,9 +73,9 @@ class GroundSpring(Force):
     )
     tied_to: ClassVar[str] = "a fixed point"
     law: ClassVar = law
-    strength: ClassVar = ("north", "east", "turn")
+    strength: ClassVar = ("stiffness_north", "stiffness_east", "turn")
 
-    east: float = param(
+    stiffness_east: float = param(
         0.0,
         low=0.0,
         high=1e12,
@@ -86,7 +86,7 @@ class GroundSpring(Force):
         axis="sway",
         calibrates="restoring",
     )
-    north: float = param(
+    stiffness_north: float = param(
         0.0,
         low=0.0,
         high=1e12,

@@ -104,7 +104,7 @@ class Hydrostatics(Force):
         low=0.0,
         high=1.0,
         unit="",
-        words="1: the force in heave stays vertical while the hull rolls; 0: it rolls with the hull",
+        words="1: the force in heave stays vertical while the hull rolls; 0: it rolls too",
     )
 
     def derived_parameters(self, vessel: Boat) -> dict[str, float]:

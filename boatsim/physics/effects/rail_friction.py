@@ -14,10 +14,10 @@ RailFriction = preset_effect(
     words="level rails oppose the motion along them with dry friction",
     shown_by="small forces that do not move the hull along the rails",
     source=DryFriction.source,
+    tied_to="rails fixed to the ground",
     frees={
         "surge": {"spread": 2.0, "words": "sliding friction along surge"},
         "sway": {"spread": 2.0, "words": "sliding friction along sway"},
         "yaw": {"spread": 2.0, "words": "sliding friction of a turntable"},
     },
-    fixed={"heave": 0.0, "roll": 0.0, "pitch": 0.0, "static_ratio": 1.0},
 )
