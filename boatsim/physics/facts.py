@@ -22,7 +22,14 @@ WORDS = {
     "position_wander_sd_m": "the rms of the slowly varying position error",
     "position_wander_time_s": "the correlation time of the slowly varying position error",
 }
-FLAGS = ("indoors", "still_water", "no_waves", "moored", "guided", "steering_measured")  # true or false
+FLAGS = (
+    "indoors",
+    "still_water",
+    "no_waves",
+    "moored",
+    "guided",
+    "steering_measured",
+)  # true or false
 # rms [m] and correlation time [s] of the slowly varying error of positions
 WANDER = ("position_wander_sd_m", "position_wander_time_s")
 # kinds of position measurement: marks in a picture, satellites, motion capture, inertial

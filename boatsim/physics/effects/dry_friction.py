@@ -10,10 +10,11 @@ from boatsim.physics.base import UNSET, Boat, Force, Wrench, param, wrench
 from boatsim.physics.particulars import GRAVITY
 
 FAR = 60.0  # regularisation speeds beyond which the friction is that of sliding
-# Regularisation speeds over sqrt(g L) and sqrt(g / L): a hundredth of what a free oscillation of
-# half a metre or half a radian reaches, and slow enough that a hull that should stick hardly moves
+# Regularisation speeds over sqrt(g L) and sqrt(g / L): slow enough that a body that should stick
+# moves by less than a degree in a second, and fast enough that steps of 0.02 s stay stable for a
+# friction of up to a tenth of the weight
 CREEP = 0.003
-CREEP_RATE = 0.01
+CREEP_RATE = 0.003
 
 
 @njit(inline="always")
@@ -100,7 +101,8 @@ class DryFriction(Force):
     """
 
     formula: ClassVar[str] = (
-        r"X_i = -F_i \left(1 + (s - 1) \, \exp\left(-(\nu_i / 10 e)^2\right)\right) \tanh\frac{\nu_i}{e}"
+        r"X_i = -F_i \left(1 + (s - 1) \, \exp\left(-(\nu_i / 10 e)^2\right)\right) "
+        r"\tanh\frac{\nu_i}{e}"
     )
     symbols: ClassVar = {
         "surge": "F_u",
@@ -115,6 +117,7 @@ class DryFriction(Force):
     }
     requires: ClassVar = {"guided": (True,)}
     words: ClassVar[str] = "dry friction of bearings or rails opposes the motion at any speed alike"
+    tied_to: ClassVar[str] = "bearings or rails fixed to the ground"
     shown_by: ClassVar[str] = "a decay to rest, and small forces that do not move the hull"
     source: ClassVar[str] = (
         "B. Armstrong-Helouvry, P. Dupont, C. Canudas de Wit, A survey of models, analysis tools "
@@ -145,7 +148,7 @@ class DryFriction(Force):
         low=1e-6,
         high=100.0,
         unit="rad/s",
-        words="regularisation rate, below which the friction falls to zero; default: 0.01 "
+        words="regularisation rate, below which the friction falls to zero; default: 0.003 "
         "sqrt(g / L)",
     )
 
