@@ -108,9 +108,7 @@ def law(m: Any, q: Any, s: Any) -> Wrench:
     """
     square = s.mean_square
     sway = q.sway * square
-    return wrench(
-        X=q.surge * square, Y=cos(m.phi) * sway, Z=-sin(m.phi) * sway, K=q.roll * square
-    )
+    return wrench(X=q.surge * square, Y=cos(m.phi) * sway, Z=-sin(m.phi) * sway, K=q.roll * square)
 
 
 @dataclass(frozen=True)
