@@ -1,10 +1,13 @@
 """The wave at the hull from probes elsewhere: dispersion and separation of known waves."""
 
+import tomllib
 from pathlib import Path
 
 import numpy as np
 import pytest
+from typer.testing import CliRunner
 
+from boatsim.cli.commands import app
 from boatsim.errors import BadInput
 from boatsim.physics.base import Array
 from boatsim.recordings.importing.convert import convert_log
@@ -16,6 +19,22 @@ from boatsim.recordings.importing.waves import WaveProbes, wave_at, wave_number
 T = np.arange(0.0, 80.0, 0.02)
 PLACES = {"a": 4.95, "b": 5.2, "c": 5.5}
 GRAVITY = 9.81  # [m/s^2]
+
+
+VESSEL = """
+about = "a box in a measured wave"
+source = "none"
+freedoms = ["sway", "roll"]
+length = 0.6
+beam = 0.4
+draught = 0.2
+body = { mass = 48.0, roll_inertia = 1.0, yaw_inertia = 1.4 }
+
+[measured]
+wave_in_m = { about = "wave at the hull" }
+"""
+HULL = """<mujoco model="box"><worldbody><body name="hull">
+<geom type="box" size="0.3 0.2 0.13"/></body></worldbody></mujoco>"""
 
 
 def group(x: float, travels: int, depth: float = 1.0, begin: float = 20.0) -> Array:
@@ -89,3 +108,25 @@ def test_a_column_can_not_be_made_twice() -> None:
     table = {**MAP, "columns": {"phi_rad": "roll", "wave_m": "a"}}
     with pytest.raises(BadInput, match="wave_m is what waves makes"):
         parse_map(table, "map.toml")
+
+
+def test_a_proposed_map_asks_for_the_measured_wave(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    lines = ["time [s],sway [m],roll [rad]"]
+    for t in np.arange(0.0, 20.0, 0.1).tolist():
+        lines.append(f"{t:.1f},{0.02 * np.sin(t)},{0.1 * np.sin(2.0 * t)}")
+    Path("log.csv").write_text("\n".join(lines))
+    Path("hull.xml").write_text(HULL)
+    Path("vessel.toml").write_text(VESSEL)
+    given = ["import", "log.csv", "--vessel", str(tmp_path), "--propose", "map.toml"]
+    done = CliRunner().invoke(app, given)
+    assert done.exit_code == 0, done.output
+    text = Path("map.toml").read_text()
+    assert '# wave_in_m = "..."  # CHECK: wave at the hull' in text
+    assert {"y_m", "phi_rad"} <= parse_map(tomllib.loads(text), "map.toml").columns.keys()
+    Path("log.csv").write_text("\n".join(lines).replace("roll [rad]", "wave_in_m"))
+    assert CliRunner().invoke(app, given).exit_code == 0
+    known = parse_map(tomllib.loads(Path("map.toml").read_text()), "map.toml")
+    assert known.columns["wave_in_m"] == "wave_in_m"
