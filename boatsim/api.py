@@ -220,14 +220,15 @@ class Diagnosis:
     def skill(self) -> dict[str, float]:
         """Reduction of the simulation error on held-out data by the diagnosis.
 
-        The keys are "position", "heading" and "roll". It is 1 - rms of the corrected vessel / rms
-        of the retuned one: 0 is no improvement, 1 a perfect model.
+        The keys are "position", "heading", "roll" and "heave". It is 1 - rms of the corrected
+        vessel / rms of the retuned one: 0 is no improvement, 1 a perfect model.
         """
         fit = self.answer["fit"]
         errors = {
             "position": fit.get("position_rms_m"),
             "heading": fit.get("heading_rms_rad"),
             "roll": fit.get("roll_rms_rad"),
+            "heave": fit.get("heave_rms_m"),
         }
         skill: dict[str, float] = {}
         for name, rms in errors.items():

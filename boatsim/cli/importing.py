@@ -86,11 +86,12 @@ def _propose_map(
         drives = []
         fed = _fed_channels(boat) - log.signals.keys()
         for channel, (low, high) in boat.limits().items():
-            if channel in fed:
+            if channel in fed or channel in boat.measured:
                 continue
             drives.append(_vessel_channel(boat, channel, low, high))
         speed = partial(_speed_ahead, boat)
         text = propose_map(log, vessel, drives, boat.dof, boat.columns, speed, boat.turns_over)
+        text += _measured_lines(boat, log)
     else:
         text = propose_map(log, vessel, [], (), None)
     print_notes(log.remarks)
@@ -142,6 +143,22 @@ def _speed_ahead(boat: Vessel) -> float:
         return approach_speed(boat)
     except BadInput:
         return 0.0
+
+
+def _measured_lines(boat: Vessel, log: Log) -> str:
+    """Lines of a proposed map for the measured inputs of a vessel, at the end of its columns."""
+    lines = ""
+    for name, about in boat.measured.items():
+        if name in log.signals:
+            lines += f'{name} = "{name}"\n'
+            continue
+        words = about.about or "measured, not commanded"
+        lines += f'# {name} = "..."  # CHECK: {words}\n'
+        if name.endswith("_m"):
+            lines += (
+                f"# or [waves.{name}] with probes that stand elsewhere, at the end of the file\n"
+            )
+    return lines
 
 
 def _turn_direction(boat: Vessel, channel: str) -> int:

@@ -299,6 +299,63 @@ class ChecksConfig:
         "out.",
         low=0.01,
     )
+    pose_clock_max_delay: float = setting(
+        4.0,
+        "s",
+        "Largest delay of the clock of the poses against accelerometers that is looked for, for a "
+        "hull of 1.2 m: several periods of its natural motions.",
+    )
+    pose_clock_max_rate: float = setting(
+        0.02, "1", "Largest rate error of that clock; cheap clocks and skipped pictures reach 1 %."
+    )
+    pose_clock_rates: int = setting(
+        6, "count", "Rates on either side of zero that are tried before the refinement.", low=1
+    )
+    pose_clock_step: float = setting(
+        0.05,
+        "s",
+        "Step of the delays that are tried, a small part of a period.",
+        low=1e-3,
+    )
+    pose_clock_near: float = setting(
+        0.03,
+        "1",
+        "Delays whose correlation before the refinement is this close to the best one are refined.",
+    )
+    pose_clock_tie: float = setting(
+        0.002,
+        "1",
+        "Delays whose correlation is this close to the best one count as equal, and the smallest "
+        "is taken, because a steady oscillation is the same after a period.",
+    )
+    pose_clock_min_correlation: float = setting(
+        0.9,
+        "1",
+        "Correlation of both accelerations that a corrected clock reaches at least, so that noise "
+        "moves no pose.",
+        high=1.0,
+    )
+    pose_clock_max_unexplained: float = setting(
+        0.75,
+        "1",
+        "Share of the disagreement (1 - correlation) that a corrected clock leaves at most.",
+        high=1.0,
+    )
+    pose_clock_max_ratio: float = setting(
+        1.5,
+        "1",
+        "Ratio of the sizes of both accelerations beyond which they are not the same motion.",
+        low=1.0,
+    )
+    pose_clock_margin: float = setting(
+        1.5, "1", "Cutoff frequency over that below which 95 % of the energy lies.", low=1.0
+    )
+    pose_clock_min_rows: int = setting(
+        200, "count", "Rows that a comparison of clocks needs.", low=20
+    )
+    pose_clock_min_share: float = setting(
+        0.5, "1", "Share of the rows with a measured pose that the comparison needs.", high=1.0
+    )
     clock_jump_steps: float = setting(
         20.0,
         "1",

@@ -649,7 +649,8 @@ def map_recording(
     scale = {family: own.get(family, sd) / sd for family, sd in shared.items()}
     commands = np.zeros((len(recording), 1))
     if vessel.inputs:
-        commands = clipped_recorded_commands(vessel, recording.signals, len(recording))
+        signals = _with_leading_samples(recording.t, recording.signals, vessel)
+        commands = clipped_recorded_commands(vessel, signals, len(recording))
         if recording.orders is None:
             commands = interpolate_measured(commands, measured_inputs(vessel))
     facts = merged_facts(vessel, recording)
@@ -724,9 +725,26 @@ def _commands_at_own_times(recording: Recording, vessel: Vessel) -> tuple[Array,
     """Commands at their own times where a recording has them more often than rows, else empty."""
     if recording.orders is None or not vessel.inputs:
         return np.zeros(0), np.zeros((0, 0))
-    t, signals = recording.orders.t, recording.orders.signals
+    t = recording.orders.t
+    signals = _with_leading_samples(t, recording.orders.signals, vessel)
     commands = clipped_recorded_commands(vessel, signals, len(t))
     return command_changes(t, interpolate_measured(commands, measured_inputs(vessel)))
+
+
+def _with_leading_samples(
+    t: Array, signals: Mapping[str, Array], vessel: Vessel
+) -> dict[str, Array]:
+    """Signals in which those that a law filters lead by the filter's delay and by one row.
+
+    The law moves to a new sample within the time of one row, so that it reaches it at its own time.
+    """
+    moved = dict(signals)
+    if len(t) > 1:
+        following = np.append(t[1:], 2.0 * t[-1] - t[-2])
+        for name, lead in vessel.filtered_readings.items():
+            if name in signals:
+                moved[name] = np.interp(following + lead, t, signals[name])
+    return moved
 
 
 def hull_time_scales(

@@ -13,6 +13,7 @@ FAMILIES = {
     "position_rms_m": ("x_m", "y_m"),
     "heading_rms_rad": ("psi_rad",),
     "roll_rms_rad": ("phi_rad",),
+    "heave_rms_m": ("z_m",),
 }
 
 
@@ -26,8 +27,8 @@ class FreeRun:
     run: str  # name of the recording
     start_s: float
     t: Array  # (M,) s
-    # "recorded" or the name of a model -> those of x_m, y_m, psi_rad, phi_rad that were recorded,
-    # each (M,)
+    # "recorded" or the name of a model -> those of x_m, y_m, z_m, phi_rad, psi_rad that were
+    # recorded, each (M,)
     channels: dict[str, dict[str, Array]]
 
     def deviations(self, model: str, signals: Sequence[str]) -> list[Array]:
@@ -109,7 +110,8 @@ def _free_run(
 def rms_errors(runs: Sequence[FreeRun]) -> dict[str, dict[str, float]]:
     """Return the rms errors of free runs (simulations with the recorded commands alone).
 
-    The first key is the family of signals (position, heading or roll), the second one the model.
+    The first key is the family of signals (position, heading, roll or heave), the second one the
+    model.
 
     Args:
         runs: Free runs with the same models.

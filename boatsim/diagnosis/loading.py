@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from boatsim.diagnosis.checks import data_cleaning, run_checks
+from boatsim.diagnosis.checks.accelerometer_clock import correct_pose_clock
 from boatsim.diagnosis.checks.clock_rate import check_clock_rate
 from boatsim.diagnosis.checks.command_range import with_range_of
 from boatsim.diagnosis.checks.finding import Finding
@@ -212,6 +213,7 @@ def open_parts(
     """
     found = vessel_for(path, vessel, load_conditions, config)
     recording = read(path, found.recorded_limits(), found.columns, found.turns_over)
+    recording = correct_pose_clock(recording, found, config.checks)
     parts = []
     for part in recording.parts():
         parts.append(data_cleaning.prepare_recording(part, found, config.checks))
@@ -242,6 +244,7 @@ def open_recording(
     """
     found = vessel_for(path, vessel, load_conditions, config)
     recording = read(path, found.recorded_limits(), found.columns, found.turns_over)
+    recording = correct_pose_clock(recording, found, config.checks)
     found = with_range_of(found, [recording])
     return data_cleaning.prepare_recording(recording, found, config.checks), found
 

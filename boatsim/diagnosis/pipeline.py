@@ -44,6 +44,7 @@ from boatsim.diagnosis.symbolic.residual_description import describe as describe
 from boatsim.diagnosis.symbolic.slots import set_placeholder_term
 from boatsim.diagnosis.without_fit import results_without_fit
 from boatsim.files import Value
+from boatsim.physics.program import Program
 from boatsim.physics.vessel import Vessel
 from boatsim.progress import Report, ignore_progress, report_part_of
 from boatsim.recordings.table import Recording
@@ -83,7 +84,10 @@ class Diagnosis:
     plan: next_experiment.Plan | None = None  # what to record next
 
     def map_recording(
-        self, recording: Recording, noise: Mapping[str, float] | None = None
+        self,
+        recording: Recording,
+        noise: Mapping[str, float] | None = None,
+        vessel: Vessel | None = None,
     ) -> MappedRecording:
         """Map a further recording to the compiled vessel program of this diagnosis.
 
@@ -92,8 +96,12 @@ class Diagnosis:
         Args:
             recording: A recording of the same vessel.
             noise: Sensor noise, as standard deviations by family; None: that of its notes.
+            vessel: The vessel with the settings of this recording; None: that of the first one.
         """
-        mapped = map_recording(recording, self.problem.program, noise, config=self.problem.config)
+        program = self.problem.program
+        if vessel is not None:
+            program = Program(vessel, program.candidates)
+        mapped = map_recording(recording, program, noise, config=self.problem.config)
         mapped = infer_initial_actuator_state(
             mapped, self.problem.ambient, self.problem.config.checks
         )

@@ -19,7 +19,7 @@ from boatsim.recordings.table import Recording
 REFERENCE_LENGTH = 1.2  # [m] of the hull for which times of the configuration are given
 CHI_SQUARE_MEDIAN = 0.455  # of the square of a standard normal variable
 # kinds of coefficients that are uncertain where no uncertainty is specified
-UNCERTAIN = ("damping", "thrust", "restoring", "wind")
+UNCERTAIN = ("damping", "thrust", "restoring", "wind", "wave")
 
 
 def froude_time_scale(vessel: Vessel) -> float:

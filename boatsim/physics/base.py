@@ -11,6 +11,7 @@ from math import cos, sin
 from boatsim.physics.content import snake_case
 from boatsim.physics.kinds.channel import ChannelEffect
 from boatsim.physics.kinds.effect import Boat, Effect, Role
+from boatsim.physics.kinds.filtered import FilteredSignal
 from boatsim.physics.kinds.flow import WaterFlow
 from boatsim.physics.kinds.force import Force
 from boatsim.physics.kinds.inertia import Inertia
@@ -58,6 +59,7 @@ __all__ = [
     "CheckedParameters",
     "SignalSegment",
     "Effect",
+    "FilteredSignal",
     "WaterFlow",
     "Force",
     "Inertia",

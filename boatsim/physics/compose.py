@@ -22,6 +22,7 @@ from boatsim.physics.content import (
 from boatsim.physics.debugging import is_compiled
 from boatsim.physics.kinds.channel import WHOLE, ChannelEffect
 from boatsim.physics.kinds.effect import Effect, EffectKind, LawCall, ProgramFunction
+from boatsim.physics.kinds.filtered import FilteredSignal
 from boatsim.physics.kinds.recall import SignalHistory
 from boatsim.physics.vessel import Vessel
 
@@ -72,6 +73,9 @@ class Composition:
             if isinstance(effect, SignalHistory) and self._may_use_history(i, effect):
                 self._own[i] = len(held)
                 held.append(f"recalled by {effect.name}")
+            elif isinstance(effect, FilteredSignal):
+                self._own[i] = len(held)
+                held += [f"{value} by {effect.name}" for value in type(effect).filtered]
         self.law_signals: Sequence[str] = tuple(held)
 
     # Used by the kinds of effects
@@ -146,6 +150,22 @@ class Composition:
         """
         return self._own.get(number, 0)
 
+    def filtered_source(self, number: int) -> int:
+        """Return the index in `law_signals` of the signal that an effect passes through a filter.
+
+        Args:
+            number: Index of the effect in the program.
+
+        Raises:
+            BadInput: The first role of the effect is bound to no channel.
+        """
+        effect = self.effects[number]
+        role = next(iter(type(effect).roles))
+        channel = self.vessel.bindings(effect).get(role)
+        if not isinstance(channel, str):
+            raise BadInput(f"{self.vessel.name}: {effect.name}: {role} is bound to no channel")
+        return self.law_signals.index(channel)
+
     def _may_use_history(self, number: int, effect: SignalHistory) -> bool:
         """Whether an effect may use the history of a signal.
 
@@ -169,7 +189,7 @@ class Composition:
     @cached_property
     def memory_size(self) -> int:
         """Number of floats that hold the state of all actuators and signal lags of the program."""
-        size = len(self._own)
+        size = sum(map(self._history_size, self._own))
         for i, effect in enumerate(self.effects):
             if isinstance(effect, ChannelEffect):
                 size += type(effect).slots * len(self.target_actuators(i))
@@ -184,9 +204,14 @@ class Composition:
                 if isinstance(effect, ChannelEffect) and actuator in self.target_actuators(i):
                     found[i, actuator] = at
                     at += type(effect).slots
-        for k, i in enumerate(self._own):
-            found[i, WHOLE] = at + k
+        for i in self._own:
+            found[i, WHOLE] = at
+            at += self._history_size(i)
         return found
+
+    def _history_size(self, i: int) -> int:
+        """Number of states that an effect stores of the past of a signal."""
+        return type(self.effects[i]).filter_states or 1
 
     def _parameters_text(self, i: int) -> str:
         """`V3(p[7], p[8])`: an effect's parameters as its law receives them."""
@@ -209,7 +234,9 @@ class Composition:
             else:
                 angle = float(channel or 0.0)
                 angles += [self._signal_text(cos(angle)), self._signal_text(sin(angle))]
-        return f"S{i}({', '.join([*texts, *angles])})"
+        first = self.history_place(i)
+        results = [f"act[at + {first + k}]" for k in range(len(type(effect).filtered))]
+        return f"S{i}({', '.join([*texts, *angles, *results])})"
 
     def _carrier_signals(self, i: int, idea: str) -> str:
         """Signals of an effect that another one acts on, as the other's law takes them."""

@@ -4,6 +4,7 @@ import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from difflib import get_close_matches
+from fnmatch import fnmatchcase
 from functools import partial
 from itertools import pairwise
 from pathlib import Path
@@ -174,8 +175,16 @@ def _parse(file: Path, stem: str) -> NotesFile:
     table = read_toml(file)
     runs = _Reader(file, table).read_table("runs")
     table.pop("runs", None)
-    merged = _merge(table, _Reader(file, runs, "runs.").read_table(stem))
+    merged = table
+    for name in _matching_runs(runs, stem):
+        merged = _merge(merged, _Reader(file, runs, "runs.").read_table(name))
     return _Reader(file, merged).read_notes()
+
+
+def _matching_runs(runs: Mapping[str, Value], stem: str) -> list[str]:
+    """Tables of [runs] for one recording: patterns such as "4*" in order, then its own name."""
+    patterns = [name for name in runs if name != stem and fnmatchcase(stem, name)]
+    return [*patterns, stem]
 
 
 def _merge(base: Mapping[str, Value], over: Mapping[str, Value]) -> dict[str, Value]:

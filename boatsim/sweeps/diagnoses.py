@@ -27,7 +27,7 @@ NAME = "diagnoses.parquet"
 PATTERNS = ("*.csv", "*.parquet", "*.rrd")  # files that may be recordings
 OF_A_RUN = "camera.csv"  # the file of a boatsim run that holds only what a sensor can see
 LABEL = "diagnoses"
-FAMILIES = ("position_rms_m", "heading_rms_rad", "roll_rms_rad")
+FAMILIES = ("position_rms_m", "heading_rms_rad", "roll_rms_rad", "heave_rms_m")
 
 
 @dataclass(frozen=True)

@@ -76,7 +76,7 @@ def map_runs(diagnosis: Diagnosis, files: Sequence[Path], vessel: str) -> list[M
     for file in files:
         recording, boat = loading.open_recording(file, vessel, ())
         cleaned = data_cleaning.clean_recording(recording, boat)
-        mapped.append(diagnosis.map_recording(cleaned))
+        mapped.append(diagnosis.map_recording(cleaned, vessel=boat))
     return mapped
 
 

@@ -10,6 +10,7 @@ from dataclasses import replace
 import numpy as np
 
 from boatsim.diagnosis import priors
+from boatsim.diagnosis.checks.accelerometer_clock import POSE_CLOCK
 from boatsim.diagnosis.checks.finding import Finding
 from boatsim.diagnosis.checks.interpolated_samples import (
     INTERPOLATED,
@@ -32,6 +33,7 @@ from boatsim.recordings.table import BEYOND_RANGE, Recording
 
 # phrase in a remark of a recording -> name of the finding
 FINDING_OF_REMARK = {
+    POSE_CLOCK: "pose_clock",
     FIX_REPEATED: "position_held",
     VALUE_REPEATED: "channel_held",
     ACROSS_WRAP: "heading_across_wrap",

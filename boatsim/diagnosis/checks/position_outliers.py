@@ -87,7 +87,9 @@ def outlier_rows_at_start(
         known = np.flatnonzero(np.isfinite(column))[: config.checks.start_max_outliers + fitted]
         if len(known) <= fitted:
             continue
-        noise = estimate_sensor_noise(vessel, [recording], family, config.load)
+        # values that an instrument holds while nothing moves hide its noise
+        specified = recording.notes.noise.get(family, 0.0)
+        noise = max(specified, estimate_sensor_noise(vessel, [recording], family, config.load))
         for first in range(len(known) - fitted):
             rows = known[first : first + fitted + 1]
             t = recording.t[rows] - recording.t[rows[0]]

@@ -44,7 +44,8 @@ def held_out_effect_errors(
     """Return how far each identified effect changes the simulation errors on held-out recordings.
 
     The errors are rms errors of free runs (simulations with the recorded commands alone) without
-    and with the effect, by name of the effect and by family of signals (position, heading, roll).
+    and with the effect, by name of the effect and by family of signals (position,
+    heading, roll, heave).
 
     Args:
         problem: The estimation problem: recordings, vessel model, candidate effects and priors.
@@ -94,7 +95,8 @@ def confirmation_outcome(
 def mean_ratio(errors: Mapping[str, Errors]) -> float:
     """Return the ratio of simulation errors with an effect to those without it.
 
-    It is the geometric mean over position, heading and roll, and 1 where nothing was recorded.
+    It is the geometric mean over position, heading, roll and heave, and 1 where nothing was
+    recorded.
 
     Args:
         errors: Errors of free runs without and with an effect, by family.

@@ -255,7 +255,7 @@ def effect_meanings(candidates: Iterable[Effect], vessel: Vessel) -> dict[str, s
 
 
 def _fit(evaluation: Evaluation, held_out: Sequence[str]) -> FitEntry:
-    """Return the errors of the free runs; that of roll only where it was recorded."""
+    """Return the errors of the free runs; those of roll and heave only where they were recorded."""
     errors = evaluation.errors
     fit: FitEntry = {
         "horizon_s": evaluation.horizon,
@@ -265,6 +265,8 @@ def _fit(evaluation: Evaluation, held_out: Sequence[str]) -> FitEntry:
     }
     if "roll_rms_rad" in errors:
         fit["roll_rms_rad"] = dict(errors["roll_rms_rad"])
+    if "heave_rms_m" in errors:
+        fit["heave_rms_m"] = dict(errors["heave_rms_m"])
     return fit
 
 

@@ -43,7 +43,7 @@ def brief_lines(f: Findings) -> list[str]:
 
 
 def _error_lines(f: Findings) -> list[str]:
-    """Return the errors of position, heading and roll, as far as they were recorded."""
+    """Return the errors of position, heading, roll and heave, as far as they were recorded."""
     lines = []
     for family, (words, unit) in FAMILIES.items():
         rms = f.answer["fit"].get(family)

@@ -33,7 +33,7 @@ def effect_error_entry(errors: Mapping[str, Errors]) -> dict[Family, AloneEntry]
     The errors are those of simulations with the recorded commands alone.
 
     Args:
-        errors: Rms errors by family of signals (position, heading or roll).
+        errors: Rms errors by family of signals (position, heading, roll or heave).
     """
     found: dict[Family, AloneEntry] = {}
     for family in FAMILIES:

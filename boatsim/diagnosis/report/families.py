@@ -6,4 +6,5 @@ FAMILIES: dict[Family, tuple[str, str]] = {  # key of `fit` -> its signal in wor
     "position_rms_m": ("position", "m"),
     "heading_rms_rad": ("heading", "rad"),
     "roll_rms_rad": ("roll", "rad"),
+    "heave_rms_m": ("heave", "m"),
 }

@@ -38,6 +38,7 @@ FAMILIES = {
     "position_rms_m": ("position", "m"),
     "heading_rms_rad": ("heading", "rad"),
     "roll_rms_rad": ("roll", "rad"),
+    "heave_rms_m": ("heave", "m"),
 }
 
 

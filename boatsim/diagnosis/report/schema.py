@@ -5,7 +5,7 @@ from typing import Literal, NotRequired, TypedDict
 from boatsim.diagnosis.config import Plain
 
 # signals whose rms error on held-out recordings is reported
-Family = Literal["position_rms_m", "heading_rms_rad", "roll_rms_rad"]
+Family = Literal["position_rms_m", "heading_rms_rad", "roll_rms_rad", "heave_rms_m"]
 
 
 class ParameterEntry(TypedDict):
@@ -289,6 +289,7 @@ class FitEntry(TypedDict):
     position_rms_m: dict[str, float]
     heading_rms_rad: dict[str, float]
     roll_rms_rad: NotRequired[dict[str, float]]
+    heave_rms_m: NotRequired[dict[str, float]]
 
 
 class RecalibrationEntry(TypedDict):

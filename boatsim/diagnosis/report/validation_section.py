@@ -27,7 +27,12 @@ from boatsim.view.page_blocks import (
 )
 
 MOST_HELD_OUT_FIGURES = 3  # held-out recordings that are drawn
-FREE_RUN_SIGNALS = {"position": "position", "heading": "psi_rad", "roll": "phi_rad"}
+FREE_RUN_SIGNALS = {
+    "position": "position",
+    "heading": "psi_rad",
+    "roll": "phi_rad",
+    "heave": "z_m",
+}
 
 
 def validation(f: Findings) -> Iterator[Block]:

@@ -13,7 +13,7 @@ Squares = Mapping[str, Sequence[float]]  # mean square error of each free run by
 def mean_square_errors(runs: Sequence[FreeRun], model: str) -> dict[str, list[float]]:
     """Return the mean square error of each simulation (free run) over held-out recordings.
 
-    The key is the family of signals: position, heading or roll.
+    The key is the family of signals: position, heading, roll or heave.
 
     Args:
         runs: Free runs; those over which nothing was recorded are omitted.
@@ -35,7 +35,7 @@ def errors_grew(
 ) -> bool:
     """Whether simulations of held-out recordings by one model are clearly worse than by another.
 
-    The errors of position, heading and roll are compared; one that has grown suffices.
+    The errors of position, heading, roll and heave are compared; one that has grown suffices.
 
     Args:
         before: Mean square errors of a model.
@@ -58,7 +58,7 @@ def errors_grew(
 def error_ratio(found: Squares, reference: Squares) -> float:
     """Return the ratio of the mean square simulation errors of two models.
 
-    It is the geometric mean over position, heading and roll.
+    It is the geometric mean over position, heading, roll and heave.
 
     Args:
         found: Mean square errors of a model.

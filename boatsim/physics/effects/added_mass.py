@@ -307,6 +307,30 @@ class AddedMassCoriolis(CoefficientRelease):
 
 
 @dataclass(frozen=True)
+class AddedMassDepth(CoefficientRelease):
+    """Depth of the centre of the sway added mass, by which sway and roll accelerate each other."""
+
+    formula: ClassVar[str] = (
+        r"z_A = z_A^0 + \mathrm{shift}, \quad K_{\dot v} = Y_{\dot p} = -z_A Y_{\dot v}"
+    )
+    needs: ClassVar = ("sway", "roll")
+    required_facts: ClassVar = {"guided": True}
+    words: ClassVar[str] = "the water that moves with the hull in sway acts at another depth"
+    refines: ClassVar[str] = "added_mass"
+    shown_by: ClassVar[str] = "a roll decay of a hull that is free to sway"
+    source: ClassVar[str] = AddedMass.source
+
+    shift: float = shift_parameter(
+        "added_mass.sway_below",
+        words="shift of the centre, positive downward",
+        unit="m",
+        spread=0.1,
+        low=-100.0,
+        high=100.0,
+    )
+
+
+@dataclass(frozen=True)
 class ShallowWater(CoefficientRelease):
     """Larger sway and yaw added mass and cross-flow drag in shallow water, by one factor k."""
 

@@ -1,6 +1,7 @@
 """Hydrostatics: linear restoring forces of buoyancy in heave, roll and pitch."""
 
 from dataclasses import dataclass
+from math import cos, sin
 from typing import Any, ClassVar
 
 from numba import njit
@@ -25,6 +26,13 @@ def law(m: Any, q: Any) -> Wrench:
     """
     sunk = m.z - q.flotation * m.theta  # [m] sinkage of the centre of flotation
     Z = -q.heave * sunk + (q.mass - q.displacement) * GRAVITY
+    if q.vertical != 0.0:
+        return wrench(
+            Y=Z * sin(m.phi),
+            Z=Z * cos(m.phi),
+            K=-q.roll * m.phi,
+            M=q.flotation * q.heave * sunk - q.pitch * m.theta,
+        )
     return wrench(Z=Z, K=-q.roll * m.phi, M=q.flotation * q.heave * sunk - q.pitch * m.theta)
 
 
@@ -90,6 +98,13 @@ class Hydrostatics(Force):
     )
     displacement: float = param(
         UNSET, low=0.0, high=1e12, unit="kg", words="mass with which the hull floats at z = 0"
+    )
+    vertical: float = param(
+        0.0,
+        low=0.0,
+        high=1.0,
+        unit="",
+        words="1: the force in heave stays vertical while the hull rolls; 0: it rolls too",
     )
 
     def derived_parameters(self, vessel: Boat) -> dict[str, float]:

@@ -71,6 +71,9 @@ class Effect(CheckedParameters):
     thresholds: ClassVar[Mapping[str, tuple[float, ...]]] = {}
     # signals that the law takes as its third argument, each bound to a channel
     roles: ClassVar[Mapping[str, Role]] = {}
+    # results of the filter of its first role, which its law receives as further signals
+    filtered: ClassVar[tuple[str, ...]] = ()
+    filter_states: ClassVar[int] = 0  # of that filter
     # effects of a lower stage come first in the program; otherwise the order of the file counts
     stage: ClassVar[int] = 0
     # dof without which it has no effect, in addition to those of its parameters
@@ -150,14 +153,14 @@ class Effect(CheckedParameters):
     def signals_type(cls) -> Callable[..., tuple[float, ...]]:
         """Return the named tuple type in which the law of this effect receives its input signals.
 
-        It has one field for each role of the effect, and also the cosine and sine of a role in
-        radians.
+        It has one field for each role of the effect, also the cosine and sine of a role in
+        radians, and one for each filtered value.
         """
         angles: list[str] = []
         for name, role in cls.roles.items():
             if role.unit == "rad":
                 angles += (f"cos_{name}", f"sin_{name}")
-        return _named_tuple_type((*cls.roles, *angles))
+        return _named_tuple_type((*cls.roles, *angles, *cls.filtered))
 
     @classmethod
     def signals(cls, **given: float) -> tuple[float, ...]:
@@ -167,7 +170,8 @@ class Effect(CheckedParameters):
             given: Value of the signal of each role; a missing one has the fixed value of its role,
                 or 0.
         """
-        held = {name: role.fixed or 0.0 for name, role in cls.roles.items()} | given
+        held = {name: role.fixed or 0.0 for name, role in cls.roles.items()}
+        held |= dict.fromkeys(cls.filtered, 0.0) | given
         parts: dict[str, float] = {}
         for name, role in cls.roles.items():
             if role.unit == "rad":
@@ -454,7 +458,13 @@ class ProgramLayout(Protocol):
     def history_place(self, number: int) -> int:
         """Return the index in `law_signals` of the past signal value that an effect uses.
 
-        It is 0 for an effect that uses none.
+        It is 0 for an effect that uses none. An effect with several values has consecutive ones.
+        """
+
+    def filtered_source(self, number: int) -> int:
+        """Return the index in `law_signals` of the signal that an effect passes through a filter.
+
+        It is that of the effect's first role.
         """
 
     def later_effects(self, number: int) -> Sequence[int]:

@@ -7,6 +7,7 @@ from functools import cached_property
 from boatsim.errors import BadInput, unknown_name_message
 from boatsim.physics.kinds.channel import ChannelEffect
 from boatsim.physics.kinds.effect import Effect
+from boatsim.physics.kinds.filtered import FilteredSignal
 from boatsim.physics.vessel.schema import Body, CommandChannel, MeasuredChannel
 
 FULL_TURN = 6.28  # [rad] range of an angle that spans a full turn, rounded down
@@ -56,6 +57,17 @@ class ChannelBindings:
     def readings(self) -> tuple[str, ...]:
         """Names of measured environment signals, such as wind, that an effect's law uses."""
         return tuple(filter(self.roles.__contains__, self.measured))
+
+    @property
+    def filtered_readings(self) -> Mapping[str, float]:
+        """Measured signals that effects filter -> time [s] by which a recorded one has to lead."""
+        found: dict[str, float] = {}
+        for effect in self.effects:
+            if isinstance(effect, FilteredSignal):
+                channel = self.bindings(effect).get(next(iter(type(effect).roles)))
+                if isinstance(channel, str) and channel in self.readings:
+                    found[channel] = max(found.get(channel, 0.0), effect.lookahead)
+        return found
 
     @cached_property
     def roles(self) -> Mapping[str, str]:
@@ -161,6 +173,10 @@ class ChannelBindings:
         """The actuators that are bound to one of some roles."""
         return tuple(name for name in self.actuators if self.roles[name] in roles)
 
+    def _readings_of_role(self, role: str) -> tuple[str, ...]:
+        """The measured channels that are bound to a role."""
+        return tuple(name for name in self.readings if self.roles[name] == role)
+
     def side(self, channel: str) -> int:
         """Return the side of the hull on which the thruster or rudder of a command is mounted.
 
@@ -229,14 +245,15 @@ class ChannelBindings:
     def bindings(self, effect: Effect) -> dict[str, str | float]:
         """Return the channel or constant that each input signal of an effect's law is bound to.
 
-        An effect whose table has no bindings is bound to the vessel's only channel in each role. An
-        optional role stays unbound then: a fixed thruster does not turn with the only rudder.
+        An effect whose table has no bindings is bound to the vessel's only channel in each role,
+        a command or a measured channel that a law uses. An optional role stays unbound then: a
+        fixed thruster does not turn with the only rudder.
         """
         bound = dict(self.specified_bindings(effect))
         if bound:
             return bound
         for role, about in type(effect).roles.items():
-            candidates = self._actuators_of_roles((role,))
+            candidates = self._actuators_of_roles((role,)) or self._readings_of_role(role)
             if about.fixed is None and len(candidates) == 1:
                 bound[role] = candidates[0]
         return bound

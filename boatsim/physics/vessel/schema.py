@@ -121,7 +121,7 @@ class DiagnosisTable(Table):
     leave_out: dict[str, str] = {}
     also: list[dict[str, object]] = []
     coefficient_uncertainty: dict[
-        Literal["damping", "thrust", "added_mass", "restoring", "wind"], PositiveFloat
+        Literal["damping", "thrust", "added_mass", "restoring", "wind", "wave"], PositiveFloat
     ] = {}
     ambient: dict[Dof, PositiveFloat] = {}
     horizon: float | None = Field(default=None, gt=0)

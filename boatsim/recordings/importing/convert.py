@@ -33,6 +33,7 @@ from boatsim.recordings.importing.resample import (
 )
 from boatsim.recordings.importing.several_logs import Span, aligned, begin_line, sources
 from boatsim.recordings.importing.track import constant_heading_fault
+from boatsim.recordings.importing.waves import WaveProbes, wave_at
 from boatsim.recordings.notes import Notes
 from boatsim.recordings.raw_table import file_error, select_rows
 from boatsim.recordings.repeated_values import repeated_rows, stale_rows
@@ -49,6 +50,7 @@ HELD = (
 FASTER = 1.5  # commands set the clock if their rate is this many times that of the poses
 ROW_TOLERANCE = 0.05  # a sample is in a row if it is nearer than this share of the step of the rows
 MAX_ROUNDS = 4
+UNEQUAL = 0.1  # share of a step by which the steps of wave probes may differ
 MAX_ROWS = 5_000_000
 MAX_FILES = 20  # of which the remarks list the spans
 
@@ -120,6 +122,8 @@ def convert_log(
             signals[name] = nearest_samples(rows, column.given, near)
     _remark_held(work, rows)
     rows, signals = _complete_rows(work, rows, signals)
+    for name, probes in map.waves.items():
+        signals[name] = np.interp(rows, *_wave(work, name, probes))
     _remark_spans(work, rows)
     _remark_times(work, rows)
     return Recording(
@@ -245,6 +249,29 @@ def _sum_of_terms(work: _Work, name: str, what: Allocation) -> tuple[Array, Arra
         last = np.searchsorted(one.t, rows, side="right") - 1
         total += np.where(last >= 0, one.values[last], np.nan)
     return rows, total
+
+
+def _wave(work: _Work, name: str, given: WaveProbes) -> tuple[Array, Array]:
+    """Times (N,) [s] and elevation (N,) [m] of the wave at the hull. Raises BadInput."""
+    where = f"waves.{name}.probes"
+    signals = [_signal(work, where, text) for text in given.probes]
+    t = signals[0][0].t
+    measured = np.isfinite(t)
+    elevations = []
+    for signal, how in signals:
+        if not np.array_equal(signal.t, t, equal_nan=True):
+            raise BadInput(f"{work.file}: {where}: allowed are probes with the same times")
+        elevations.append(how.of(signal.values))
+        measured &= np.isfinite(elevations[-1])
+    t = t[measured]
+    steps = np.diff(t)
+    if len(t) < FEWEST_ROWS or not np.ptp(steps) < UNEQUAL * float(np.median(steps)):
+        raise BadInput(
+            f"{work.file}: {where}: allowed are at least {FEWEST_ROWS} samples at equal steps of "
+            "time"
+        )
+    step = float(np.median(steps))
+    return t, wave_at(step, [values[measured] for values in elevations], given)
 
 
 def _add_position(work: _Work, position: Position) -> None:

@@ -10,6 +10,7 @@ from boatsim.errors import BadInput, unknown_name_message
 from boatsim.files import Table, read_toml, validate_table
 from boatsim.physics.signals import POSE, RATES
 from boatsim.recordings.conversion import Allocation, Curve, Range, map_conversion_of
+from boatsim.recordings.importing.waves import WaveProbes
 from boatsim.recordings.notes import MAX_LATENCY
 
 COMPUTED = ("t_s", "x_m", "y_m")  # columns that follow from the clock and from `position`
@@ -53,6 +54,7 @@ class Map(Table):
         position: Latitude and longitude.
         columns: Column -> expression of a signal, its `Range` or `Curve`, or the `Allocation` of
             several signals.
+        waves: Column -> probes from which the wave at the hull follows.
     """
 
     about: str = ""
@@ -64,6 +66,7 @@ class Map(Table):
     latency: dict[str, float] = {}
     position: Position | None = None
     columns: dict[str, str | Range | Curve | Allocation] = {}
+    waves: dict[str, WaveProbes] = {}
 
     @field_validator("columns", mode="before")
     @classmethod
@@ -110,6 +113,9 @@ class Map(Table):
                 raise ValueError("columns.t_s is what time makes; leave it out")
             if self.position and name in COMPUTED:
                 raise ValueError(f"columns.{name} is what position makes; leave it out")
+        for name in self.waves:
+            if name in self.columns:
+                raise ValueError(f"columns.{name} is what waves makes; leave it out")
         known = set(self.columns)
         if self.position:
             known |= set(COMPUTED[1:])

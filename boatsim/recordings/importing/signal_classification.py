@@ -77,6 +77,8 @@ POSE_WORDS = {
 # words in the name of a signal whose positive sense is the opposite of that of recordings
 TO_PORT = {"left", "port"}
 COUNTERCLOCKWISE = {"ccw", "counterclockwise", "anticlockwise"}
+DISPLACEMENTS = {"surge": "x_m", "sway": "y_m", "heave": "z_m"}  # of a body on a rig
+LENGTHS = {"m", "mm", "cm"}
 SPEEDS = {"rate", "speed", "velocity", "vel"}
 BODY = {"odom", "odometry", "body", "base"}  # frames with x forward
 SUPERFLUOUS = set(
@@ -439,6 +441,8 @@ def _motion(last: list[str], tokens: frozenset[str], log: Log) -> str | None:
         return {"x": "x_m", "y": "y_m"}[end]
     if end in ("x", "y") and {"twist", "linear"} <= tokens and tokens & BODY and log.frame == "ENU":
         return {"x": "u_mps", "y": "v_mps"}[end]
+    if end in DISPLACEMENTS and tokens & LENGTHS and not tokens & SPEEDS:
+        return DISPLACEMENTS[end]
     if end in ("surge", "sway") or tokens & {"surge", "sway"} and tokens & SPEEDS:
         if "surge" in tokens:
             return "u_mps"

@@ -114,6 +114,12 @@ TO_STARBOARD |= {
 TO_STARBOARD |= {
     f"{name}.{axis}" for name in ("push", "steady_force") for axis in ("sway", "yaw", "roll")
 }
+TO_STARBOARD |= {
+    f"wave_excitation.{axis}_{part}"
+    for axis in ("sway", "roll")
+    for part in ("elevation", "rate", "acceleration")
+}
+TO_STARBOARD |= {"wave_drift.sway", "wave_drift.roll", "place_east"}
 TURNS_SIGN = {"y", "phi", "psi", "v", "p", "r", "vr", "sin_psi"}  # of motions and signals
 TURNS_SIGN |= {"angle", "sin_angle", "comes_from", "sin_comes_from"}
 MIRROR = np.array([1.0, -1.0, 1.0, -1.0, 1.0, -1.0])  # of a wrench
@@ -162,6 +168,7 @@ RANGES = {
     "comes_from": (-3.0, 3.0),
     "force": (-1.0, 1.0),
     "moment": (-1.0, 1.0),
+    "elevation": (-1.0, 1.0),
 }
 
 
@@ -172,6 +179,7 @@ def drawn_signals(kind: type[Effect], seed: int) -> Any:
     for role, about in kind.roles.items():
         if about.unit == "rad":
             found |= {f"cos_{role}": cos(found[role]), f"sin_{role}": sin(found[role])}
+    found |= {result: float(rng.uniform(-1.0, 1.0)) for result in kind.filtered}
     return kind.signals_type()(**found)
 
 

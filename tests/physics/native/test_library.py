@@ -48,6 +48,60 @@ def test_every_vessel_has_a_c_form(name: str) -> None:
     assert "kalman_filter" in program_source(Program(load_vessel(name)).module)
 
 
+MEASURED_WAVE = """
+about = "a box in a measured wave"
+source = "none"
+freedoms = ["sway", "heave", "roll"]
+length = 0.6
+beam = 0.4
+draught = 0.2
+body = { mass = 48.0, roll_inertia = 1.0, yaw_inertia = 1.4 }
+
+[measured]
+wave_m = {}
+
+[[effect]]
+use = "wave_excitation"
+on = { elevation = "wave_m" }
+roll_elevation = -30.0
+roll_rate = -10.0
+sway_rate = -200.0
+
+[[effect]]
+use = "wave_drift"
+on = { elevation = "wave_m" }
+sway = -1400.0
+"""
+HULL = """<mujoco model="box"><worldbody><body name="hull">
+<geom type="box" size="0.3 0.2 0.13"/></body></worldbody></mujoco>"""
+
+
+def test_filters_of_a_measured_wave_give_the_numbers_of_numba_to_the_last_bit(
+    tmp_path: Path,
+) -> None:
+    (tmp_path / "hull.xml").write_text(HULL)
+    (tmp_path / "vessel.toml").write_text(MEASURED_WAVE)
+    program = Program(load_vessel(str(tmp_path)))
+    assert isinstance(program.functions, NativeProgram)
+    vessel = program.vessel
+    wave = vessel.inputs.index("wave_m")
+    found: list[Any] = []
+    for code in (program.functions, program.module):
+        values, on = program.values(), program.effect_switches()
+        memory, act = np.zeros(program.memory_size), np.zeros(program.held_size)
+        command = np.zeros(len(vessel.inputs))
+        code.settle_actuators(command, memory, values, on, act)
+        rows = []
+        for i, dt in enumerate([0.05] * 40 + [0.013, 0.4, 900.0, 0.05]):
+            command[wave] = 0.02 * np.sin(0.3 * i)
+            code.advance_actuators(command, memory, dt, values, on, act)
+            rows.append(np.concatenate([act, memory]))
+        found.append(np.array(rows))
+    assert np.array_equal(*found)
+    first = list(program.composition.law_signals).index("filtered_elevation by wave_excitation")
+    assert np.ptp(found[0][:, first]) > 0.01
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ["trial_boat", "otter"])
 def test_filter_and_free_runs_give_the_numbers_of_numba_to_the_last_bit(

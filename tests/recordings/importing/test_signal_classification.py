@@ -37,6 +37,8 @@ vehicle_local_position.x 0 30 m x_m -
 vehicle_local_position.vx 0 3 m/s nothing -
 vehicle_local_position_setpoint.x 0 3 m nothing -
 surge_velocity 0 2 - u_mps -
+sway_m -0.1 0.1 - y_m -
+heave_mm -20 20 - z_m mm
 roll_deg -3 3 deg phi_rad deg
 RCOU.C1 1100 1900 us command us
 RCIN.C1 1100 1900 us stick us
