@@ -44,6 +44,9 @@ LABELS = {  # quantity -> words of its axis, unit
     "psi": ("heading ψ", "rad"),
     "t": ("time t", "s"),
     "thrust": ("thrust T", "N"),
+    "moment": ("measured moment K", "N m"),
+    "elevation_rate": ("rate of the elevation at the hull", "m/s"),
+    "mean_square": ("mean square of the elevation", "m²"),
     "angle": ("steering angle δ", "rad"),
     "bucket": ("bucket angle β", "rad"),
     "shaft": ("shaft rate n", ""),
@@ -184,7 +187,7 @@ def _evaluate(
     kind: Any = type(effect)
     moves, signals = dict(spec.get("at", {})), dict(spec.get("signals", {}))
     carrier = _carrier(effect, vessel)
-    if over in carrier.roles:
+    if carrier.roles and over in type(carrier).signals_type()._fields:
         signals[over] = value
     else:
         moves[over] = value
