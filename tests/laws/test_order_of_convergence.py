@@ -22,7 +22,8 @@ ROWS = 50  # 20 s of commands drawn by lot
 SIDED = "the wake and the flow at the rudder differ by the side the water comes from"
 BENDS = {"kvlcc2_mmg": SIDED, "kvlcc2_mmg_full_scale": SIDED}
 START = {"jet_ski": 15.0}  # [m/s] planing; others as their [manoeuvring] table says, or from rest
-RANGE = {"throttle": (4.2, 7.0)}
+# The pendulum is driven within its weight's moment: beyond it, it spins ever faster
+RANGE = {"throttle": (4.2, 7.0), "torque_Nm": (-1.0, 1.0)}
 
 
 @cache

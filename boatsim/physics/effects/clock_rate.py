@@ -39,10 +39,7 @@ class ClockRate(Measurement):
     (`clock_wanders`).
     """
 
-    formula: ClassVar[str] = (
-        r"\nu_\mathrm{recorded} = \frac{1}{1 + \epsilon} \, \frac{d\eta}{dt}"
-        r"\bigg|_\mathrm{body}"
-    )
+    formula: ClassVar[str] = r"\nu_\mathrm{recorded} = \frac{1}{1 + \epsilon} \, \nu"
     symbols: ClassVar = {"fraction": r"\epsilon"}
     of_columns: ClassVar = ("u_mps", "v_mps", "r_radps")
     needs_columns: ClassVar = ("u_mps", "r_radps")
