@@ -308,7 +308,7 @@ class WaveExcitation(FilteredSignal, Force):
 
     @property
     def lookahead(self) -> float:
-        """Delay of the filter at low frequencies [s], by which a recorded wave is led."""
+        """Delay of the filter at low frequencies [s]; a recorded wave is read so much ahead."""
         if not self.has_value("bandwidth"):
             return 0.0
         return 2.0 / self.bandwidth
