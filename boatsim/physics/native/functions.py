@@ -21,7 +21,6 @@ MATH: Mapping[Any, str] = {
     np.hypot: "hypot",
     np.copysign: "copysign",
     np.sign: "sign_of",
-    np.abs: "fabs",
     np.minimum: "lesser",
     np.maximum: "greater",
 }

@@ -1,10 +1,10 @@
 """The C library of a vessel's program: translated, compiled, kept on disk and called from Python.
 
-A C compiler needs a second or two for the program of a diagnosis, for which numba needs half a
-minute. Both compute the same numbers to the last bit. The library has the functions of `entries`,
-which take long to compile; the others, which compiled code calls or which are called thousands of
-times a second, remain numba's. So does the whole program where there is no C compiler, where a law
-has no C form, and with `BOATSIM_NATIVE=0`.
+A C compiler makes the program of a diagnosis in about a tenth of the time that numba needs
+(`python -m benchmarks.native`). Both compute the same numbers to the last bit. The library has the
+functions of `entries`, which take long to compile; the others, which compiled code calls or which
+are called thousands of times a second, remain numba's. So does the whole program where there is no
+C compiler, where a law has no C form, and with `BOATSIM_NATIVE=0`.
 """
 
 import ctypes
@@ -42,7 +42,7 @@ FLAGS = ("-std=gnu11", "-O2", "-fPIC", "-shared", "-w")
 # No fused multiplication and addition, so that the numbers are those of numba. The other two drop
 # side effects of operations that nobody reads.
 EXACT = ("-ffp-contract=off", "-fno-math-errno", "-fno-trapping-math")
-LONGEST = 120.0  # [s] after which the compiler is given up; the largest program takes 5 s
+LONGEST = 120.0  # [s] after which the compiler is given up: many times what a program takes
 MOST_RESULTS = 16  # numbers that a function returns
 C_TYPES = {REAL: ctypes.c_double, TRUTH: ctypes.c_bool, WHOLE: ctypes.c_int64}
 ITEMS = {REAL: np.dtype(np.float64), WHOLE: np.dtype(np.int64)}
