@@ -1,9 +1,12 @@
-"""Print what numba and C need for a diagnosis: `python -m benchmarks.native [VESSEL]`.
+"""Print what numba and C need for a vessel: `python -m benchmarks.native [VESSEL]`.
 
-The program has all candidate effects of the vessel. Nothing is cached at the begin: each compiler
-works in an own process with an empty cache. The times are CPU times of that process and of the
-compilers that it starts, for the first run of the Kalman filter over a recording of 40 s at 6 Hz,
-for each further run, and for a call that computes next to nothing.
+Nothing is cached at the begin: each compiler works in processes of its own with an empty cache. The
+times are CPU times of these processes and of the compilers that they start.
+
+First table: the program of a diagnosis with all candidate effects of the vessel, the first run of
+the Kalman filter over a recording of 40 s at 6 Hz and each further run; then 10 s on MuJoCo at 50
+steps a second, the first time and per step later; and a step in open water, three short calls from
+Python. Second table: whole commands, the first time and again.
 """
 
 import os
@@ -15,10 +18,14 @@ from time import process_time
 
 import numpy as np
 
+from boatsim.physics.vessel import Vessel
+from boatsim.simulate.stepper import Stepper
+
 ROWS = 240  # of the recording
 RATE = 6.0  # [Hz]
 REPEATED = 50
-CALLS = 2000
+STEPS = 500  # of a simulation
+COMMANDS = (("run", "joystick_boat/sway_1", "--out", "run"), ("demo", "--out", "demo"))
 NAMES = {"1": "C", "0": "numba"}  # by the environment variable BOATSIM_NATIVE
 
 
@@ -27,15 +34,13 @@ def cpu_s() -> float:
     return process_time() + resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
 
 
-def measure(name: str) -> tuple[float, float, float]:
-    """Return CPU times of the first run of the filter [s], of a further one and of a short call."""
+def measure_filter(vessel: Vessel) -> tuple[float, float]:
+    """Return CPU times of the first run of the filter over a recording, and of a further one."""
     from boatsim.diagnosis.candidates import diagnosis_program
     from boatsim.diagnosis.filter import map_recording, prior_noise_levels
     from boatsim.diagnosis.problem import Problem
-    from boatsim.physics.vessel import load_vessel
     from boatsim.recordings.table import Recording
 
-    vessel = load_vessel(name)
     t = np.arange(ROWS) / RATE
     signals = {"x_m": 0.1 * t, "y_m": np.sin(0.1 * t), "psi_rad": 0.1 * t}
     for command, channel in vessel.commands.items():
@@ -53,30 +58,73 @@ def measure(name: str) -> tuple[float, float, float]:
     for i in range(REPEATED):
         values[0] *= 1.0 + 1e-9 * i
         mapped.log_likelihood(values, on, problem.ambient)
-    each, begin = (process_time() - begin) / REPEATED, process_time()
-    k = np.zeros(program.module.K)
-    for _ in range(CALLS):
-        program.functions.compute_mass_constants(program.body, values, on, k)
-    return first, each, (process_time() - begin) / CALLS
+    return first, (process_time() - begin) / REPEATED
+
+
+def measure_steps(kind: type[Stepper], vessel: Vessel) -> tuple[float, float]:
+    """Return CPU times of a first simulation and of each further step."""
+    begin = cpu_s()
+    engine = kind(vessel)
+    engine.command({name: 0.1 * channel.high for name, channel in vessel.commands.items()})
+    engine.advance(STEPS)
+    first, begin = cpu_s() - begin, process_time()
+    engine.advance(10 * STEPS)
+    return first, (process_time() - begin) / (10 * STEPS)
+
+
+def measure(name: str) -> None:
+    """Print the CPU times of one compiler [s]."""
+    from boatsim.physics.vessel import load_vessel
+    from boatsim.simulate.engine import Engine
+    from boatsim.simulate.open_water import OpenWater
+
+    vessel = load_vessel(name)
+    print(*measure_steps(Engine, vessel), measure_steps(OpenWater, vessel)[1])
+    print(*measure_filter(vessel))
+
+
+def in_own_process(command: list[str], switch: str, cache: str) -> tuple[str, float]:
+    """Return what a command prints and its CPU time [s]."""
+    own = {"BOATSIM_CACHE": cache, "BOATSIM_NATIVE": switch, "BOATSIM_MEASURED": "1"}
+    own["PYTHONPATH"] = os.getcwd()
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    done = subprocess.run(
+        [sys.executable, *command],
+        env=os.environ | own,
+        cwd=cache,
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    cpu = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+    return done.stdout, cpu
 
 
 def main() -> None:
-    """Measure each compiler in a process of its own."""
+    """Measure each compiler in processes of its own."""
     name = (sys.argv[1:] or ["trial_boat"])[0]
     if "BOATSIM_MEASURED" in os.environ:
-        print(*measure(name))
+        measure(name)
         return
-    print(f"{name}, program of a diagnosis")
-    print(f"{'':8}{'first run [s]':>15}{'further run [ms]':>18}{'short call [us]':>17}")
+    print(f"{name}: filter of a diagnosis and simulations, CPU time")
+    print(f"{'':8}{'filter: first [s]':>18}{'further [ms]':>14}", end="")
+    print(f"{'MuJoCo: first [s]':>20}{'step [us]':>11}{'open water: step [us]':>23}")
     for switch, compiler in NAMES.items():
         with tempfile.TemporaryDirectory() as cache:
-            own = {"BOATSIM_CACHE": cache, "BOATSIM_NATIVE": switch, "BOATSIM_MEASURED": "1"}
-            command = [sys.executable, "-m", "benchmarks.native", name]
-            done = subprocess.run(
-                command, env=os.environ | own, capture_output=True, text=True, check=True
-            )
-        first, each, call = map(float, done.stdout.split())
-        print(f"{compiler:8}{first:15.1f}{1e3 * each:18.2f}{1e6 * call:17.1f}")
+            printed, _ = in_own_process(["-m", "benchmarks.native", name], switch, cache)
+        engine, step, open_step, first, further = map(float, printed.split())
+        print(f"{compiler:8}{first:18.1f}{1e3 * further:14.2f}{engine:20.1f}", end="")
+        print(f"{1e6 * step:11.1f}{1e6 * open_step:23.1f}")
+    print("\nwhole commands, CPU time [s]")
+    print(f"{'':8}{'command':36}{'first':>8}{'again':>8}")
+    for switch, compiler in NAMES.items():
+        for command in COMMANDS:
+            with tempfile.TemporaryDirectory() as cache:
+                whole = ["-m", "boatsim", *command]
+                times = [in_own_process(whole, switch, cache)[1] for _ in range(2)]
+            print(f"{compiler:8}{'boatsim ' + ' '.join(command[:2]):36}", end="")
+            print(f"{times[0]:8.1f}{times[1]:8.1f}")
 
 
 if __name__ == "__main__":

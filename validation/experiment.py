@@ -138,7 +138,7 @@ def record_boat(
     name: str, boat: Boat, start: Array, commands: Array, rng: np.random.Generator
 ) -> Recording:
     """Return the recording of a boat under the commands, with ambient force and camera noise."""
-    code, y, out = program().module, start.copy(), np.zeros((2, 6))
+    code, y, out = program().simulation, start.copy(), np.zeros((2, 6))
     memory, act = np.zeros(program().memory_size), np.zeros(program().held_size)
     code.settle_actuators(commands[0], memory, boat.values, boat.on, act)
     about = program().vessel.diagnosis
@@ -255,7 +255,7 @@ def main() -> None:
         chosen = [(n, 0) for n in names[::3]]
     else:
         chosen = [(n, seed) for n in names for seed in (0, 1)]
-    program().module  # noqa: B018  # compile before the processes start
+    program().simulation  # noqa: B018  # compile before the processes start
     begin = time.time()
     with ProcessPoolExecutor(args.jobs) as pool:
         found = list(

@@ -290,7 +290,8 @@ def demo(
 ) -> int:
     """Simulate a boat with a hidden fault, find the fault from its recordings, write the report.
 
-    It takes some ten seconds, and a minute the first time. scenarios/demo.toml lists the scenarios.
+    It takes some ten seconds, without a C compiler a minute the first time. scenarios/demo.toml
+    lists the scenarios.
     """
     print_lines(
         ["A boat with a hidden fault is simulated, and the fault is found from recordings."]

@@ -58,7 +58,7 @@ def run_demo(out: Path, browser: bool) -> int:
     _print_now(
         [
             f"The boat: {demo.about}.",
-            f"1. Simulating {len(names)} recordings. Compiling takes a minute the first time:",
+            f"1. Simulating {len(names)} recordings. The first time, the boat is compiled before:",
         ]
     )
     loaded = [scenarios.load(name) for name in names]

@@ -205,8 +205,25 @@ def keep_on_disk(compiled: Any, function: Callable[..., Any]) -> Any:
 # ------------------------------------------------------------------------------------------------
 
 
-class FunctionPointer:
-    """Wrapper by which a compiled function is passed as an argument to another compiled function.
+class NativePointer:
+    """Wrapper by which a C function is passed as an argument to a compiled function."""
+
+    def __init__(self, address: int, call: Any) -> None:
+        """Keep the address of a C function of the signature `call`."""
+        self._address = address
+        self._numba_type_ = types.FunctionType(call)
+
+    @property
+    def kind(self) -> Any:
+        """The numba type of the function pointer."""
+        return self._numba_type_
+
+    def __wrapper_address__(self) -> int:
+        return self._address
+
+
+class FunctionPointer(NativePointer):
+    """Wrapper by which a function of numba is passed as an argument to a compiled function.
 
     The passed function has one fixed signature.
     """
@@ -215,19 +232,9 @@ class FunctionPointer:
         """Compile `function` for the signature `call`, unless that was done before."""
         function.compile(call.args)
         compiled = function.get_compile_result(call)
-        self._address = compiled.library.get_pointer_to_function(
-            compiled.fndesc.llvm_cfunc_wrapper_name
-        )
-        self._numba_type_ = types.FunctionType(call)
+        name = compiled.fndesc.llvm_cfunc_wrapper_name
+        super().__init__(int(compiled.library.get_pointer_to_function(name)), call)
         self._function = function  # its code must exist as long as the address is used
-
-    @property
-    def kind(self) -> Any:
-        """The numba type of the function pointer."""
-        return self._numba_type_
-
-    def __wrapper_address__(self) -> int:
-        return int(self._address)
 
 
 @intrinsic
@@ -341,8 +348,8 @@ def _offset_of_nuserdata() -> int:
 
 
 @cache
-def load_mujoco_symbols() -> None:
-    """Load MuJoCo's shared library, so that compiled code can call its functions by name.
+def mujoco_library() -> ctypes.CDLL:
+    """Load MuJoCo's shared library, so that compiled code can call its functions.
 
     Raises:
         BadPhysics: The package of MuJoCo holds no library.
@@ -355,3 +362,4 @@ def load_mujoco_symbols() -> None:
     if not libraries:
         raise BadPhysics(f"no library of MuJoCo in {folder}")
     binding.load_library_permanently(str(libraries[0]))
+    return ctypes.CDLL(str(libraries[0]))

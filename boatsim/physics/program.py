@@ -23,8 +23,9 @@ from boatsim.physics.kernel.records import VesselNumbers, VesselState
 from boatsim.physics.kernel.source import motion_module_text
 from boatsim.physics.kinds.effect import Effect
 from boatsim.physics.kinds.release import CoefficientRelease
+from boatsim.physics.native.build import NoCompiler, compiler
 from boatsim.physics.native.declarations import NotTranslatable
-from boatsim.physics.native.library import NativeProgram, NoCompiler
+from boatsim.physics.native.library import native_program
 from boatsim.physics.signals import AXES, Array, MeasuredMotion
 from boatsim.physics.vessel import Vessel
 
@@ -224,15 +225,26 @@ class Program:
 
     @cached_property
     def functions(self) -> CompiledProgram:
-        """The functions of the program, from its C library where that is possible.
+        """The functions of the program for the analysis of recordings, from C if possible.
 
-        Their numbers are the same as those of `module`, which takes longer to compile and less to
-        call.
+        Their numbers are the same as those of `module`, which takes longer to compile.
         """
+        return self._from_library("estimation")
+
+    @cached_property
+    def simulation(self) -> CompiledProgram:
+        """The functions of the program for simulations, from C if possible.
+
+        Their numbers are the same as those of `module`, which takes longer to compile.
+        """
+        return self._from_library("simulation")
+
+    def _from_library(self, library: str) -> CompiledProgram:
         if DEBUG:
             return self.module
         try:
-            return cast(CompiledProgram, NativeProgram(self.module))
+            found: Any = native_program(cast(Any, self.module), library, compiler())
+            return cast(CompiledProgram, found)
         except (NoCompiler, NotTranslatable):
             return self.module
 

@@ -28,6 +28,7 @@ from boatsim.errors import BadInput, unknown_name_message
 from boatsim.physics.commands import clip_to_channel_ranges, clipped_commands
 from boatsim.physics.kernel.records import FleetArrays, VesselNumbers
 from boatsim.physics.kinds.effect import Effect
+from boatsim.physics.native.calls import pack_record
 from boatsim.physics.param import Param
 from boatsim.physics.program import Program
 from boatsim.physics.signals import Array
@@ -141,7 +142,7 @@ class Batch:
             self.threads = checked_whole("threads", threads, 1, MOST_THREADS)
         self.programs = [Program(v) for v in self.vessels]
         self.program = self.programs[0]
-        self.code = self.program.module
+        self.code = self.program.simulation
         self._check_same_program()
         self._values = [p.values() for p in self.programs]
         self._on, self._none = self.program.effect_switches(), np.zeros(self.code.NQ)
@@ -159,6 +160,7 @@ class Batch:
         self._act = np.zeros((self.n, self.program.held_size))
         self._p = np.zeros((self.n, len(self.program.values())))
         self._body, self._k = np.zeros((self.n, 6)), np.zeros((self.n, self.code.K))
+        self._given = pack_record(self.code, self.fleet)
         self.assign(np.arange(self.n) % len(self.vessels))
         self.reset()
 
@@ -243,7 +245,7 @@ class Batch:
         self._commands[chosen] = self._clip({} if commands is None else commands, chosen)
         self.t[chosen] = 0.0
         self.run_on_threads(
-            lambda some: self.code.settle_actuators_of_boats(some, self.fleet), chosen
+            lambda some: self.code.settle_actuators_of_boats(some, self._given), chosen
         )
 
     def advance(
@@ -420,7 +422,7 @@ class Batch:
                     self._p[b, first : first + len(values)] = values
 
     def _step_boats(self, boats: Boats, steps: int) -> None:
-        self.code.advance_boats(boats, self.fleet, self.step, steps)
+        self.code.advance_boats(boats, self._given, self.step, steps)
 
     def _update_masses(self, boats: Boats) -> None:
         self.code.compute_mass_constants_of_boats(boats, self._body, self._p, self._on, self._k)
@@ -448,7 +450,7 @@ class Batch:
             felt: Rows (n, 11) in the order of `control.compiled.SENSE_FIELDS`; they are changed.
         """
         self.run_on_threads(
-            lambda some: self.code.read_instruments_of_boats(some, self.fleet, felt)
+            lambda some: self.code.read_instruments_of_boats(some, self._given, felt)
         )
 
     def _boat_numbers(self, boats: ArrayLike | None) -> Boats:
@@ -543,7 +545,7 @@ class Batch:
         """Raises BadInput if the vessels need different programs."""
         first = self.vessels[0]
         for i, (vessel, program) in enumerate(zip(self.vessels, self.programs, strict=True)):
-            if program.module is not self.code or vessel.inputs != first.inputs:
+            if program.module is not self.program.module or vessel.inputs != first.inputs:
                 raise BadInput(
                     f"vessel {i} of a batch ({vessel.name}) has other effects, degrees of freedom "
                     f"or channels than the first ({first.name}); allowed are other numbers"

@@ -7,15 +7,25 @@ pointers, so that it is compiled once for each kind of controller, whatever vess
 from functools import cache
 from typing import Any, NamedTuple
 
+import numpy as np
 from numba import types
 
 from boatsim.physics.commands import SLACK
-from boatsim.physics.compiler_internals import FunctionPointer
+from boatsim.physics.compiler_internals import FunctionPointer, NativePointer
 from boatsim.physics.debugging import DEBUG
 from boatsim.physics.kernel.compiling import merged, unlocked
 from boatsim.physics.kernel.records import FleetArrays
+from boatsim.physics.native.calls import NativeFunction
 from boatsim.physics.signals import Array
 from boatsim.simulate.sensing import add_sensor_errors
+
+
+class Call(NamedTuple):
+    """A function of a vessel's program with its arguments, for compiled code."""
+
+    function: Any  # a pointer
+    given: Any  # its arguments
+    kept: Any = 0  # memory that must live as long as the call is used
 
 
 class Periods(NamedTuple):
@@ -78,6 +88,7 @@ Rows = types.Array(types.float64, 2, "C")
 FLEET = types.NamedTuple([Row, Rows, Rows, Rows, Rows, Rows, Row, Rows, Row], FleetArrays)
 FEEL = types.void(Boats, FLEET, Rows)  # `read_instruments_of_boats` of a program
 ADVANCE = types.void(Boats, FLEET, types.float64, types.int64)  # `advance_boats` of a program
+WORDS = types.float64(types.int64, types.int64)  # of functions in C, `native.exports`
 PERIODS = types.NamedTuple([types.boolean, types.int64, types.int64, types.float64], Periods)
 
 
@@ -109,7 +120,7 @@ def accumulate_commands(boats: Any, commands: Array, orders: Orders, steps: int,
 
 
 def run_periods(
-    law: Any, feel: Any, advance: Any, boats: Any, periods: Periods, fleet: FleetArrays, loop: Loop
+    law: Any, feel: Call, advance: Call, boats: Any, periods: Periods, commands: Array, loop: Loop
 ) -> None:
     """Simulate vessels with their controllers over control periods, in place.
 
@@ -118,21 +129,21 @@ def run_periods(
 
     Args:
         law: Law of the controllers.
-        feel: `read_instruments_of_boats` of the program.
-        advance: `advance_boats` of the program.
+        feel: Reads the instruments of the vessels.
+        advance: Integrates the physics of the vessels over the steps of one period.
         boats: Rows of the vessels to work on.
         periods: Number and length of the periods.
-        fleet: States and parameters of all vessels.
+        commands: Commands (B, inputs) of all vessels.
         loop: Records and arrays of the controllers.
     """
     control, sensing, goals, orders = loop
-    steps, dt, commands = periods.steps, periods.dt, fleet.commands
+    steps, dt = periods.steps, periods.dt
     places, low, high = orders.places, orders.low, orders.high
     for i in range(periods.number):
         if not periods.law_first:
             accumulate_commands(boats, commands, orders, steps, dt)
-            advance(boats, fleet, dt, steps)
-        feel(boats, fleet, sensing.felt)
+            advance.function(*advance.given)
+        feel.function(*feel.given)
         add_sensor_errors_to_boats(boats, sensing.felt, sensing.sensors, sensing.noise, i)
         for b in boats:
             for j in range(goals.values.shape[1]):
@@ -144,29 +155,52 @@ def run_periods(
                 commands[b, places[j]] = min(max(order, low[places[j]]), high[places[j]])
         if periods.law_first:
             accumulate_commands(boats, commands, orders, steps, dt)
-            advance(boats, fleet, dt, steps)
+            advance.function(*advance.given)
 
 
-def function_pointers(
-    law: Any, feel: Any, advance: Any, records: tuple[Any, ...]
-) -> tuple[Any, ...]:
-    """Return control law, sensing and physics as the function arguments of `run_periods`.
+class ProgramFunction:
+    """A function of a vessel's program as the compiled loop calls it.
 
-    They are pointers to the compiled functions, in debugging mode the functions.
+    It is a pointer to the function in C or to that of numba, in debugging mode the function.
+    """
+
+    def __init__(self, function: Any, call: Any) -> None:
+        """Make the pointer.
+
+        Args:
+            function: The function.
+            call: Its signature for numba.
+        """
+        self._function, self._pointer = function, function
+        if isinstance(function, NativeFunction):
+            self._pointer = NativePointer(function.address, WORDS)
+        elif not DEBUG:
+            self._pointer = FunctionPointer(function, call)
+
+    def call(self, *given: Any) -> Call:
+        """Return a call of the function.
+
+        Args:
+            *given: Its arguments, whose arrays must live as long as the call is used.
+        """
+        if isinstance(self._function, NativeFunction):
+            words = np.frombuffer(self._function.packed(*given), dtype=np.int64)
+            return Call(self._pointer, (words.ctypes.data, 0), words)
+        return Call(self._pointer, given)
+
+
+def law_pointer(law: Any, records: tuple[Any, ...]) -> Any:
+    """Return a control law as an argument of `run_periods`.
+
+    It is a pointer to the compiled function, in debugging mode the function.
 
     Args:
         law: Law of the controllers.
-        feel: `read_instruments_of_boats` of the program.
-        advance: `advance_boats` of the program.
         records: Types of the five records in `Control`.
     """
     if DEBUG:
-        return law, feel, advance
-    return (
-        FunctionPointer(law, types.void(Boats, *records)),
-        FunctionPointer(feel, FEEL),
-        FunctionPointer(advance, ADVANCE),
-    )
+        return law
+    return FunctionPointer(law, types.void(Boats, *records))
 
 
 @cache
@@ -177,10 +211,10 @@ def compile_loop(kinds: tuple[Any, ...], loop: Any) -> Any:
     others too.
 
     Args:
-        kinds: Types of the pointers to control law, sensing and physics.
+        kinds: Types of the control law and of the calls for sensing and physics.
         loop: Type of the record `Loop`.
     """
     own: Any = unlocked(run_periods)
-    own.compile((*kinds, Boats, PERIODS, FLEET, loop))
+    own.compile((*kinds, Boats, PERIODS, Rows, loop))
     own.disable_compile()
     return own

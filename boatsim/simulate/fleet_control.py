@@ -187,7 +187,9 @@ class CompiledControl:
         aboard, batch, count = self.aboard, self.aboard.batch, len(goals)
         periods = compiled_loop.Periods(begins, count, aboard.steps, batch.step)
         loop = self._make_loop(goals, aboard.next_noise(boats, count))
-        self._run(*self._pointers, boats, periods, batch.fleet, loop)
+        feel = self._feel.call(boats, batch.fleet, self._felt)
+        advance = self._step.call(boats, batch.fleet, batch.step, aboard.steps)
+        self._run(self._law, feel, advance, boats, periods, batch.fleet.commands, loop)
 
     def _make_loop(self, goals: Array, noise: Array) -> compiled_loop.Loop:
         """Records and arrays of the controllers for the compiled loop."""
@@ -207,15 +209,19 @@ class CompiledControl:
 
     def _compile(self) -> None:
         """Compile the loop; it takes pointers to functions, so that one serves all vessels."""
-        code = self.aboard.batch.code
+        batch = self.aboard.batch
         loop = self._make_loop(np.zeros((1, len(self.kind.goals))), np.zeros((1, 1, NOISES)))
         records = tuple(map(numba.typeof, loop.control))
-        law = self.kind.law
-        self._pointers = compiled_loop.function_pointers(
-            law, code.read_instruments_of_boats, code.advance_boats, records
+        self._law = compiled_loop.law_pointer(self.kind.law, records)
+        self._feel = compiled_loop.ProgramFunction(
+            batch.code.read_instruments_of_boats, compiled_loop.FEEL
         )
+        self._step = compiled_loop.ProgramFunction(batch.code.advance_boats, compiled_loop.ADVANCE)
         if DEBUG:
             self._run = compiled_loop.run_periods
         else:
-            kinds = tuple(pointer.kind for pointer in self._pointers)
+            boats = np.arange(1)
+            feel = self._feel.call(boats, batch.fleet, self._felt)
+            advance = self._step.call(boats, batch.fleet, batch.step, 1)
+            kinds = self._law.kind, numba.typeof(feel), numba.typeof(advance)
             self._run = compiled_loop.compile_loop(kinds, numba.typeof(loop))

@@ -11,7 +11,7 @@ from typing import Any
 
 from boatsim.errors import BadPhysics
 from boatsim.physics.compiled_program import CompiledProgram
-from boatsim.physics.compiler_internals import load_mujoco_symbols, mujoco_layout
+from boatsim.physics.compiler_internals import mujoco_layout, mujoco_library
 
 
 class SlowCallbackWarning(UserWarning):
@@ -33,7 +33,7 @@ def compile_native(code: CompiledProgram, size: int) -> Any:
             reason.
     """
     try:
-        load_mujoco_symbols()
+        mujoco_library()
         return code.compile_passive_callback(mujoco_layout(), size).ctypes
     except OSError as error:
         raise BadPhysics(f"the library of MuJoCo cannot be loaded: {error}") from None

@@ -1,10 +1,12 @@
 """Steps one vessel in open water on the compiled engine, as a control loop needs it."""
 
+from collections.abc import Callable
 from functools import cached_property
 
 import numpy as np
 
 from boatsim.control.compiled import ONE, SENSE_FIELDS
+from boatsim.physics.native.calls import prepare_call
 from boatsim.physics.signals import Array
 from boatsim.physics.vessel import Vessel
 from boatsim.simulate import world
@@ -60,14 +62,24 @@ class OpenWater(Stepper):
     def _joint_state(self) -> Array:
         return np.asarray(self._y)
 
+    @cached_property
+    def _step_in_place(self) -> Callable[[float, float], None]:
+        """`step_in_place` of this vessel, a function of time and length of the step."""
+        rest = self._act, self._values, self._on, self._k, self._extra
+        return prepare_call(self.code, "step_in_place", ..., self._y, ..., *rest)
+
+    @cached_property
+    def _read_instruments(self) -> Callable[[], None]:
+        """`read_instruments_of_boats` of this vessel."""
+        given = ONE, self.batch.fleet, self._sensed
+        return prepare_call(self.code, "read_instruments_of_boats", *given)
+
     def _step(self, dt: float) -> None:
-        self.code.step_in_place(
-            self.t, self._y, dt, self._act, self._values, self._on, self._k, self._extra
-        )
+        self._step_in_place(self.t, dt)
         self.batch.t[0] += dt
 
     def acceleration(self) -> tuple[float, float]:
         """Return the acceleration over ground of the vessel's origin along body x, y [m/s^2]."""
-        self.code.read_instruments_of_boats(ONE, self.batch.fleet, self._sensed)
+        self._read_instruments()
         ahead, starboard = self._sensed[0, 3:5].tolist()
         return ahead, starboard

@@ -4,7 +4,8 @@
 """
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from functools import cached_property
 from math import isfinite
 from typing import NamedTuple
 
@@ -12,6 +13,8 @@ import numpy as np
 
 from boatsim.errors import BadInput, BadPhysics
 from boatsim.physics.commands import clip_to_channel_ranges, input_vector, saturated_channels
+from boatsim.physics.debugging import python_function
+from boatsim.physics.native.calls import prepare_call
 from boatsim.physics.program import Program
 from boatsim.physics.signals import Array, Wrench
 from boatsim.physics.vessel import Vessel
@@ -58,7 +61,7 @@ class Stepper(ABC):
         """
         self.vessel, self.step = vessel, step
         self.program = Program(vessel)
-        self.code = self.program.module
+        self.code = self.program.simulation
         self._values = self.program.values()
         self._on = self.program.effect_switches()
         self._commands = np.zeros(len(vessel.inputs))
@@ -182,6 +185,25 @@ class Stepper(ABC):
                 f"{self.vessel.name}: the motion is no longer finite at t = {self.t:g} s"
             )
 
+    @cached_property
+    def _substep_length(self) -> Callable[[float, float], float]:
+        """`substep_length` of this vessel, a function of the remainder and the lower limit."""
+        arrays = self._commands, self._memory
+        return prepare_call(self.code, "substep_length", *arrays, ..., ..., self._values, self._on)
+
+    @cached_property
+    def _minimum_substep(self) -> Callable[..., float]:
+        """`minimum_substep`, which needs no compilation for single numbers."""
+        return python_function(self.code.minimum_substep)
+
+    @cached_property
+    def _advance_actuators(self) -> Callable[[float], None]:
+        """`advance_actuators` of this vessel, a function of the length of the step."""
+        arrays = self._commands, self._memory
+        return prepare_call(
+            self.code, "advance_actuators", *arrays, ..., self._values, self._on, self._act
+        )
+
     def _advance(self, left: float) -> None:
         """One step of `left` s, cut where the signal of an actuator has a jump or a kink."""
         least, before, whole = self.code.SHORTEST, 0.0, left
@@ -189,13 +211,9 @@ class Stepper(ABC):
         while left > 1e-9:
             dt = left
             if self.code.HAS_TIME_TO_DISCONTINUITY:
-                dt = self.code.substep_length(
-                    self._commands, self._memory, left, least, self._values, self._on
-                )
-                least, before = self.code.minimum_substep(dt, before, least), dt
-            self.code.advance_actuators(
-                self._commands, self._memory, dt, self._values, self._on, self._act
-            )
+                dt = self._substep_length(left, least)
+                least, before = self._minimum_substep(dt, before, least), dt
+            self._advance_actuators(dt)
             self._step(dt)
             self._mean += self._mean_actuators() * (dt / whole)
             left -= dt

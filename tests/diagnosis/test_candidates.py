@@ -108,11 +108,13 @@ def test_what_rides_on_thrusters_rides_on_propellers_by_their_rate() -> None:
     act, still = np.zeros(program.held_size), np.zeros(2 * program.module.NQ)
     sent = program.command_array({"n_port_radps": 50.0, "n_starboard_radps": -50.0})
     off, on = program.effect_switches(), program.effect_switches(["prop_walk"])
-    program.module.settle_actuators(sent, np.zeros(program.memory_size), program.values(), off, act)
+    program.functions.settle_actuators(
+        sent, np.zeros(program.memory_size), program.values(), off, act
+    )
     values = np.concatenate([program.values(), program.body])
     first = np.int64(0)
     forces = [
-        np.array(program.module.total_body_force(0.0, still, act, first, values, switches))
+        np.array(program.functions.total_body_force(0.0, still, act, first, values, switches))
         for switches in (off, on)
     ]
     Y = 0.2 * 2500.0 * (0.5 * port.ahead - starboard.astern)

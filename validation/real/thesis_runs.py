@@ -186,7 +186,7 @@ class ThesisTest:
     def _replay(self, p: Array, body: Array, commands: Array) -> tuple[Array, Array]:
         """Return times (N,) and states (N, 6) in earth axes of a run with given commands."""
         program, step = self.program, self.scenario.file.step
-        code, on = program.module, program.effect_switches()
+        code, on = program.simulation, program.effect_switches()
         memory, out = np.zeros(program.memory_size), np.zeros((len(commands) + 1, 6))
         start = program.command_array(self.scenario.controller.initial_commands())
         code.settle_actuators(start, memory, p, on, np.zeros(program.held_size))
@@ -202,7 +202,11 @@ class ThesisTest:
         The commands of every step are appended to `log`.
         """
         program, file = self.program, self.scenario.file
-        controller, sensors, code = self.scenario.controller, self.scenario.sensors, program.module
+        controller, sensors, code = (
+            self.scenario.controller,
+            self.scenario.sensors,
+            program.simulation,
+        )
         controller.reset()
         period = round(controller.period / file.step)
         memory, act = np.zeros(program.memory_size), np.zeros(program.held_size)

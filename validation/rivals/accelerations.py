@@ -192,7 +192,7 @@ def true_positions(track: MappedRecording, recorded: Array, values: Array, on: A
     nq, out = track.program.module.NQ, np.zeros((len(recorded), track.program.module.NZ))
     out[:, :nq] = recorded
     for row, t in zip(out, track.times - track.times[0], strict=True):
-        track.program.module.remove_position_errors(row, t, values, on)
+        track.program.functions.remove_position_errors(row, t, values, on)
     return out[:, :nq].copy()
 
 
@@ -207,7 +207,7 @@ def predicted_accelerations(
     track: MappedRecording, states: Array, held: Array, values: Array, on: Array
 ) -> Array:
     """Return joint accelerations (N, NQ) at states (N, 2 NQ) and actuators (N, HELD)."""
-    code = track.program.module
+    code = track.program.simulation
     k, nothing, nq = np.zeros(code.K), np.zeros(code.NQ), code.NQ
     code.compute_mass_constants(rigid_body_values(values), values, on, k)
     after, acts = states.copy(), np.hstack([held, held, held])

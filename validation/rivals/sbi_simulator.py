@@ -139,7 +139,7 @@ def simulate(run: Windows, begins: Array, ends: Array, states: Array) -> Array:
     track, program = run.track, run.track.program
     out = np.full((len(begins), len(track.times), states.shape[1]), np.nan)
     values = track.values.copy()
-    program.module.simulate_intervals(
+    program.functions.simulate_intervals(
         Inputs(track.times, track.command_times, track.command_values),
         track.step,
         VesselNumbers(rigid_body_values(values), values, program.effect_switches(())),

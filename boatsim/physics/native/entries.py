@@ -1,4 +1,4 @@
-"""The functions of a program that its C library offers to Python, with kinds of arguments."""
+"""The functions of a program that its C libraries offer to Python, with kinds of arguments."""
 
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, NamedTuple
@@ -9,15 +9,13 @@ from boatsim.physics.signals import OscillatingForce
 
 
 class Entry(NamedTuple):
-    """A function of the library: its arguments, and what makes its result of its numbers."""
+    """A function of a library: its arguments, and what makes its result of its numbers.
+
+    The result is `float` for one number, and None if the function returns nothing.
+    """
 
     arguments: Sequence[Any]  # kinds, and types of named tuples
     result: Callable[..., Any] | None = None
-
-
-def number(x: float) -> float:
-    """Return the only number of a result."""
-    return x
 
 
 def numbers(*x: float) -> tuple[float, ...]:
@@ -28,6 +26,8 @@ def numbers(*x: float) -> tuple[float, ...]:
 # Kinds of the entries of named tuples of `kernel.records`
 RECORDS: Mapping[Any, Sequence[Kind]] = {
     records.VesselNumbers: (VECTOR, VECTOR, VECTOR),
+    records.VesselState: (VECTOR, VECTOR, VECTOR, VECTOR),
+    records.FleetArrays: (VECTOR, *[MATRIX] * 5, VECTOR, MATRIX, VECTOR),
     records.Inputs: (VECTOR, VECTOR, MATRIX),
     records.Measurements: (MATRIX, ROWS, VECTOR),
     records.LatentForce: (VECTOR, REAL, VECTOR),
@@ -36,13 +36,32 @@ RECORDS: Mapping[Any, Sequence[Kind]] = {
     records.PassArrays: (CUBE, VECTOR, CUBE, MATRIX, MATRIX),
     records.FilterHistory: (MATRIX, CUBE, CUBE, MATRIX),
 }
-ENTRIES: Mapping[str, Entry] = {
+# What simulations and the filter call alike
+COMMON: Mapping[str, Entry] = {
     "compute_mass_constants": Entry((VECTOR, VECTOR, VECTOR, VECTOR)),
     "advance_actuators": Entry((VECTOR, VECTOR, REAL, VECTOR, VECTOR, VECTOR)),
     "settle_actuators": Entry((VECTOR, VECTOR, VECTOR, VECTOR, VECTOR)),
-    "water_velocity": Entry((VECTOR, VECTOR), numbers),
-    "oscillating_force": Entry((VECTOR, VECTOR), OscillatingForce),
     "total_body_force": Entry((REAL, VECTOR, VECTOR, WHOLE, VECTOR, VECTOR), numbers),
+    "water_velocity": Entry((VECTOR, VECTOR), numbers),
+}
+FLEET = records.FleetArrays
+SIMULATION: Mapping[str, Entry] = {
+    **COMMON,
+    "substep_length": Entry((VECTOR, VECTOR, REAL, REAL, VECTOR, VECTOR), float),
+    "step_in_place": Entry((REAL, VECTOR, REAL, VECTOR, VECTOR, VECTOR, VECTOR, VECTOR)),
+    "steps": Entry((REAL, VECTOR, REAL, WHOLE, VECTOR, VECTOR, VECTOR, VECTOR)),
+    "rollout": Entry(
+        (records.VesselNumbers, records.VesselState, MATRIX, REAL, REAL, WHOLE, MATRIX)
+    ),
+    "compute_mass_constants_of_boats": Entry((ROWS, MATRIX, MATRIX, VECTOR, MATRIX)),
+    "settle_actuators_of_boats": Entry((ROWS, FLEET)),
+    "advance_boats": Entry((ROWS, FLEET, REAL, WHOLE)),
+    "read_instruments_of_boats": Entry((ROWS, FLEET, MATRIX)),
+    "add_passive_forces_in_place": Entry((REAL, VECTOR, VECTOR, VECTOR, VECTOR, VECTOR)),
+}
+ESTIMATION: Mapping[str, Entry] = {
+    **COMMON,
+    "oscillating_force": Entry((VECTOR, VECTOR), OscillatingForce),
     "acceleration_jacobian": Entry(
         (REAL, VECTOR, VECTOR, VECTOR, VECTOR, VECTOR, VECTOR, MATRIX),
     ),
@@ -57,12 +76,18 @@ ENTRIES: Mapping[str, Entry] = {
             records.PassArrays,
             records.FilterHistory,
         ),
-        number,
+        float,
     ),
+    "remove_position_errors": Entry((VECTOR, REAL, VECTOR, VECTOR)),
     "smooth_states": Entry(
         (records.FilterHistory, CUBE, VECTOR, records.LatentForce, VECTOR, VECTOR)
     ),
     "simulate_intervals": Entry(
         (records.Inputs, REAL, records.VesselNumbers, ROWS, ROWS, MATRIX, CUBE)
     ),
+}
+# Functions by library. Each library is compiled when one of its functions is first needed.
+LIBRARIES: Mapping[str, Mapping[str, Entry]] = {
+    "simulation": SIMULATION,
+    "estimation": ESTIMATION,
 }

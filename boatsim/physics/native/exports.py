@@ -1,40 +1,42 @@
-"""Functions of a C library that Python can call."""
+"""Functions of a C library that Python and numba can call.
 
-from collections.abc import Sequence
+All of them have one C signature: `double NAME(const word_t *a, double *results)`. The arguments
+are words of 8 bytes one after another: numbers, and for each array its address and its sizes; a
+tuple is passed entry by entry. A function that returns one number returns it; one that returns
+several writes them to `results` and returns how many they are.
+"""
+
+from collections.abc import Iterator, Sequence
+from itertools import count
 from typing import Any
 
-from boatsim.physics.native.kinds import NOTHING, ArrayKind, Kind, Struct
+from boatsim.physics.native.kinds import NOTHING, REAL, TRUTH, ArrayKind, Kind, Scalar, Struct
 from boatsim.physics.native.translate import Translation
 
 
-def flat_parameters(kind: Kind, name: str) -> tuple[list[str], str]:
-    """Return the C parameters of an argument of a library function, and how it is built from them.
-
-    Arrays are passed as an address and sizes, tuples entry by entry.
+def argument_text(kind: Kind, word: Iterator[int]) -> str:
+    """Return the C expression of an argument that is built from words.
 
     Args:
         kind: Kind of the argument.
-        name: Prefix of the names of the parameters.
+        word: Numbers of the next words.
     """
     if isinstance(kind, Struct):
-        parameters, built = list[str](), []
-        for i, part in enumerate(kind.kinds):
-            more, text = flat_parameters(part, f"{name}_{i}")
-            parameters += more
-            built.append(text)
-        return parameters, f"(({kind.c}){{{', '.join(built)}}})"
+        parts = [argument_text(part, word) for part in kind.kinds]
+        return f"(({kind.c}){{{', '.join(parts)}}})"
     if isinstance(kind, ArrayKind):
-        sizes = [f"{name}_n{i}" for i in range(kind.dimensions)]
-        pointer = f"{kind.item.c} *{name}"
-        return (
-            [pointer, *(f"int64_t {s}" for s in sizes)],
-            f"(({kind.c}){{{', '.join([name, *sizes])}}})",
-        )
-    return [f"{kind.c} {name}"], name
+        address = f"({kind.item.c} *)a[{next(word)}].at"
+        sizes = [f"a[{next(word)}].whole" for _ in range(kind.dimensions)]
+        return f"(({kind.c}){{{', '.join([address, *sizes])}}})"
+    if kind == REAL:
+        return f"a[{next(word)}].real"
+    if kind == TRUTH:
+        return f"(a[{next(word)}].whole != 0)"
+    return f"a[{next(word)}].whole"
 
 
 def export_function(program: Translation, name: str, function: Any, kinds: Sequence[Kind]) -> None:
-    """Add a function that Python can call: it writes its results and returns how many they are.
+    """Add a function that Python can call.
 
     Args:
         program: The program.
@@ -43,19 +45,19 @@ def export_function(program: Translation, name: str, function: Any, kinds: Seque
         kinds: Kinds of its arguments.
     """
     inner, returned = program.function(function, kinds)
-    parameters, built = list[str](), []
-    for i, kind in enumerate(kinds):
-        more, text = flat_parameters(kind, f"a{i}")
-        parameters += more
-        built.append(text)
-    call = f"{inner}({', '.join(built)})"
-    lines = [f"    {call};", "    return 0;"]
-    if returned != NOTHING:
+    word = count()
+    given = ", ".join([argument_text(kind, word) for kind in kinds])
+    call = f"{inner}({given})"
+    if returned == NOTHING:
+        lines = [f"    {call};", "    return 0.0;"]
+    elif isinstance(returned, Scalar):
+        lines = [f"    return (double){call};"]
+    else:
         lines = [f"    {returned.c} found = {call};"]
         paths = _paths(returned, "found")
-        lines += [f"    result[{i}] = (double){path};" for i, path in enumerate(paths)]
-        lines.append(f"    return {len(paths)};")
-    head = f"int {name}({', '.join([*parameters, 'double *result'])})"
+        lines += [f"    results[{i}] = (double){path};" for i, path in enumerate(paths)]
+        lines.append(f"    return {len(paths)}.0;")
+    head = f"double {name}(const word_t *a, double *results)"
     program.functions.append("\n".join([head, "{", *lines, "}", ""]))
 
 

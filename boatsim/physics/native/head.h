@@ -6,6 +6,9 @@
 
 #define INLINE static inline __attribute__((always_inline))
 
+/* An argument of a function that Python calls: a number, or an address */
+typedef union { double real; int64_t whole; void *at; } word_t;
+
 /* Contiguous arrays, row by row */
 typedef struct { double *d; int64_t n0; } array1_t;
 typedef struct { double *d; int64_t n0, n1; } array2_t;

@@ -69,7 +69,7 @@ def recorded(
     """The boat with one entry acting, driven through a script of (seconds, commands), seen by a
     noisy camera."""
     rng = np.random.default_rng(4)
-    code, values, on = program().module, program().values(), program().effect_switches([name])
+    code, values, on = program().simulation, program().values(), program().effect_switches([name])
     for key, value in settings.items():
         values[program().parameter_index(name, key)] = value
     rows = np.concatenate([np.tile(step[1:], (round(step[0] * RATE), 1)) for step in script])

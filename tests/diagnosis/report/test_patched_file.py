@@ -68,7 +68,7 @@ def free_run(problem: Problem, values: Array, acting: tuple[str, ...]) -> Array:
     out, start = np.full((1, ROWS, 2 * nq), np.nan), np.zeros((1, 2 * nq))
     start[0, nq - 1 :] = 0.02
     start[0, nq] = getattr(problem.program.vessel.effect("speed_hold"), "speed", 0.5)
-    problem.program.module.simulate_intervals(
+    problem.program.functions.simulate_intervals(
         Inputs(track.times, track.command_times, track.command_values),
         DEFAULT.filter.free_run_step,
         VesselNumbers(rigid_body_values(values), values, problem.program.effect_switches(acting)),

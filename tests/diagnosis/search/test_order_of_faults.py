@@ -52,7 +52,7 @@ def sent(rows: int, seed: int) -> dict[str, NDArray[np.float64]]:
 def sailed(boat: Vessel, fault: ThrustDeadband, seed: int) -> Recording:
     """A noisy recording of 40 s of the boat with a fault."""
     program, rows = Program(boat, candidates=(fault,)), 400
-    code, given, rng = program.module, sent(rows, seed), np.random.default_rng(100 + seed)
+    code, given, rng = program.simulation, sent(rows, seed), np.random.default_rng(100 + seed)
     commands = np.column_stack([given[c] for c in boat.commands])
     values, on, memory = (
         program.values(),
@@ -91,13 +91,13 @@ def test_each_order_is_the_composition_that_it_says(tmp_path: Path) -> None:
             np.zeros(program.held_size),
             program.effect_switches([name]),
         )
-        program.module.settle_actuators(
+        program.simulation.settle_actuators(
             np.zeros(len(boat.commands)), memory, program.values(), on, act
         )
         command = np.array([0.3 if c in DRIVES else 0.0 for c in boat.commands])
         shown = []
         for _ in range(6):
-            program.module.advance_actuators(command, memory, STEP, program.values(), on, act)
+            program.simulation.advance_actuators(command, memory, STEP, program.values(), on, act)
             shown.append(act.reshape(3, -1)[2, program.composition.law_signals.index(DRIVES[0])])
         ends[name] = np.array(shown)
     built_up = 1.0 - np.exp(-STEP * np.arange(1, 7) / LAG)

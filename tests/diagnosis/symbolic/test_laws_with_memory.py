@@ -87,10 +87,10 @@ def test_what_is_recalled_is_a_first_order_lag_to_the_last_digits(factor: str) -
     )
     memory, act = np.zeros(program.memory_size), np.zeros(program.held_size)
     commands, steps = commanded(9), [0.02, 0.5, 3.0, 0.02, 0.17, 1.0, 0.3, 0.04, 0.6]
-    program.module.settle_actuators(commands[0], memory, p, on, act)
+    program.functions.settle_actuators(commands[0], memory, p, on, act)
     y = of(commands[0])
     for command, dt in zip(commands, steps, strict=True):
-        program.module.advance_actuators(command, memory, dt, p, on, act)
+        program.functions.advance_actuators(command, memory, dt, p, on, act)
         begin, middle, end = act.reshape(3, -1)[:, own]
         x = of(command)
         path = solve_ivp(
@@ -127,7 +127,7 @@ def test_engine_twin_and_filter_agree_on_laws_that_look_back() -> None:
         replace(boat, found=tuple(law.get("name", law["use"]) for law in LAWS))
     )
     times, out = row * np.arange(61), np.full((1, 61, 6), np.nan)
-    program.module.simulate_intervals(
+    program.functions.simulate_intervals(
         Inputs(times, times, commands),
         DEFAULT.filter.free_run_step,
         VesselNumbers(program.body, program.values(), program.effect_switches(on)),

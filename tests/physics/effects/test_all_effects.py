@@ -763,7 +763,7 @@ def actuated(boat: vessel.Vessel, commands: dict[str, float]) -> dict[str, float
     act, memory = np.zeros(program.held_size), np.zeros(program.memory_size)
     values, on = program.values(), program.effect_switches()
     for _ in range(3):
-        program.module.advance_actuators(
+        program.simulation.advance_actuators(
             program.command_array(commands), memory, 1e4, values, on, act
         )
     return dict(zip(boat.actuators, act.tolist(), strict=False))

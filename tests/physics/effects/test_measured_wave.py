@@ -98,7 +98,7 @@ def filtered(boat: Vessel, frequency: float) -> tuple[Array, Array]:
     They are the means over each step that Runge and Kutta use, at its middle.
     """
     program = Program(boat)
-    code, values, on = program.module, program.values(), program.effect_switches()
+    code, values, on = program.simulation, program.values(), program.effect_switches()
     memory, act = np.zeros(program.memory_size), np.zeros(program.held_size)
     code.settle_actuators(np.zeros(1), memory, values, on, act)
     first = list(program.composition.law_signals).index("filtered_elevation by wave_excitation")
@@ -249,7 +249,7 @@ def test_a_box_on_a_rig_follows_a_measured_wave_as_another_integrator_computes(
     mapped = map_recording(recorded(t, poses), program)
     states = np.zeros((1, 6))
     out = np.full((1, len(t), 6), np.nan)
-    code = program.module
+    code = program.simulation
     code.simulate_intervals(
         mapped.inputs, 0.02, program.vessel_numbers(), np.array([0]), np.array([len(t) - 1]),
         states, out,
@@ -269,7 +269,7 @@ def test_the_drift_force_grows_with_the_square_of_the_wave(tmp_path: Path) -> No
     boat = section(tmp_path)
     t = np.arange(0.0, 40.0, 1.0 / RATE)
     program = Program(boat)
-    code, values, on = program.module, program.values(), program.effect_switches()
+    code, values, on = program.simulation, program.values(), program.effect_switches()
     first = list(program.composition.law_signals).index("mean_square by wave_drift")
     means = []
     for amplitude in (0.01, 0.02):

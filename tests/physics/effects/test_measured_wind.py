@@ -139,10 +139,10 @@ def test_a_reading_is_in_force_at_once_where_commands_are_late(boat: Vessel) -> 
     program = Program(boat)
     act, memory = np.zeros(program.held_size), np.zeros(program.memory_size)
     values, on = program.values(), program.effect_switches()
-    program.module.settle_actuators(program.command_array({}), memory, values, on, act)
+    program.simulation.settle_actuators(program.command_array({}), memory, values, on, act)
     sent = program.command_array({"thrust_port_N": 50.0})
     sent[-2:] = 7.0, 2.0
-    program.module.advance_actuators(sent, memory, 0.02, values, on, act)
+    program.simulation.advance_actuators(sent, memory, 0.02, values, on, act)
     held = dict(zip(boat.law_signals, act.reshape(3, -1).T.tolist(), strict=True))
     assert held["thrust_port_N"] == [0.0, 0.0, 0.0]
     assert held["wind_mps"] == [7.0] * 3 and held["wind_from_rad"] == [2.0] * 3

@@ -1,6 +1,7 @@
 """The C library of a program: the numbers of numba, kept on disk, numba where it cannot be had."""
 
 import stat
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -13,11 +14,15 @@ from boatsim.diagnosis.noise_levels import fit_noise
 from boatsim.diagnosis.problem import Problem
 from boatsim.physics.content import shipped_content_names
 from boatsim.physics.debugging import DEBUG
-from boatsim.physics.native import library
+from boatsim.physics.native import build
+from boatsim.physics.native.calls import prepare_call
 from boatsim.physics.native.library import NativeProgram, program_source
 from boatsim.physics.program import Program
 from boatsim.physics.vessel import Vessel, load_vessel
 from boatsim.recordings.table import Recording
+from boatsim.simulate.batch import Batch
+from boatsim.simulate.engine import Engine
+from boatsim.simulate.open_water import OpenWater
 
 pytestmark = pytest.mark.skipif(DEBUG, reason="nothing is compiled")
 
@@ -25,8 +30,8 @@ pytestmark = pytest.mark.skipif(DEBUG, reason="nothing is compiled")
 @pytest.fixture(autouse=True)
 def _with_a_compiler() -> None:
     try:
-        library.compiler()
-    except library.NoCompiler as reason:
+        build.compiler()
+    except build.NoCompiler as reason:
         pytest.skip(str(reason))
 
 
@@ -45,7 +50,77 @@ def cruise(vessel: Vessel) -> Recording:
 
 @pytest.mark.parametrize("name", shipped_content_names("vessel"))
 def test_every_vessel_has_a_c_form(name: str) -> None:
-    assert "kalman_filter" in program_source(Program(load_vessel(name)).module)
+    module = Program(load_vessel(name)).module
+    assert "kalman_filter" in program_source(module, "estimation")
+    assert "passive_callback" in program_source(module, "simulation")
+
+
+def batch_states(vessel: Vessel) -> np.ndarray:
+    """States and instrument readings of three vessels under changing commands."""
+    batch = Batch(vessel, 3)
+    high = np.array([channel.high for channel in vessel.commands.values()])
+    rest = np.zeros(len(vessel.inputs) - len(high))
+    felt, rows = np.zeros((3, 11)), []
+    for i in range(40):
+        share = np.array([[0.1], [0.5], [0.9]]) * np.cos(0.3 * i)
+        batch.advance(np.hstack([share * high, np.tile(rest, (3, 1))]), steps=3)
+        batch.sense(felt)
+        rows.append(np.hstack([batch.states, felt]))
+    return np.array(rows)
+
+
+def engine_states(vessel: Vessel) -> np.ndarray:
+    """States of a vessel on MuJoCo and in open water, and the forces on it."""
+    rows = []
+    for engine in (Engine(vessel), OpenWater(vessel)):
+        for i in range(40):
+            engine.command({n: 0.5 * c.high * np.cos(0.3 * i) for n, c in vessel.commands.items()})
+            engine.advance(3)
+            rows.append([*engine.state, *engine.wrench(), *engine.acceleration()])
+    return np.array(rows)
+
+
+@pytest.mark.parametrize("states", [batch_states, engine_states])
+@pytest.mark.parametrize("name", ["joystick_boat", "otter", "jet_ski"])
+def test_simulations_give_the_numbers_of_numba_to_the_last_bit(
+    name: str, states: Callable[[Vessel], np.ndarray], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    vessel = load_vessel(name)
+    found = []
+    for switch in ("1", "0"):
+        monkeypatch.setenv("BOATSIM_NATIVE", switch)
+        assert isinstance(Program(vessel).simulation, NativeProgram) == (switch == "1")
+        found.append(states(vessel))
+    assert np.array_equal(*found) and np.ptp(found[0]) > 0.1
+
+
+def test_a_prepared_call_has_the_numbers_that_it_is_given() -> None:
+    program = Program(load_vessel("joystick_boat"))
+    k, values, on = np.zeros(program.module.K), program.values(), program.effect_switches()
+    commands, memory = program.command_array({"pwm_port": 100.0}), np.zeros(program.memory_size)
+    act = np.zeros(program.held_size)
+    program.simulation.compute_mass_constants(program.body, values, on, k)
+    found = []
+    for code in (program.simulation, program.module):
+        memory[:] = act[:] = 0.0
+        advance = prepare_call(code, "advance_actuators", commands, memory, ..., values, on, act)
+        y = np.zeros(2 * program.module.NQ)
+        step = prepare_call(
+            code, "step_in_place", ..., y, ..., act, values, on, k, np.zeros(program.module.NQ)
+        )
+        for dt in (0.02, 0.05):
+            advance(dt)
+            step(0.0, dt)
+        found.append(np.concatenate([y, act, memory]))
+    assert np.array_equal(*found) and np.abs(found[0]).max() > 0.0
+    with pytest.raises(ValueError, match="argument"):
+        step(0.0)
+
+
+def test_an_array_of_another_type_is_refused() -> None:
+    code = Program(load_vessel("joystick_boat")).simulation
+    with pytest.raises(TypeError, match="float32 with 1 dimensions; allowed is a contiguous"):
+        code.water_velocity(np.zeros(3, dtype=np.float32), np.zeros(3))
 
 
 MEASURED_WAVE = """
@@ -126,27 +201,23 @@ def test_filter_and_free_runs_give_the_numbers_of_numba_to_the_last_bit(
         assert np.array_equal(native, compiled, equal_nan=True)
 
 
-def test_a_library_is_built_once_and_again_if_it_is_damaged(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setenv("BOATSIM_CACHE", str(tmp_path))
+def test_a_library_is_built_once_and_again_if_it_is_damaged(tmp_path: Path) -> None:
+    def made() -> str:
+        return program_source(module, "simulation")
+
     module = Program(load_vessel("kvlcc2_roll")).module
-    monkeypatch.setattr(module, "__file__", str(tmp_path / "__init__.py"))
-    library.load_library(module)
-    (built,) = tmp_path.glob("native_*.so")
+    build.load_library(tmp_path, "simulation", made)
+    (built,) = tmp_path.glob("simulation_*.so")
     first = built.read_bytes()
-    monkeypatch.setattr(library, "program_source", _fails)
-    library.load_library(module)  # from the disk
+    build.load_library(tmp_path, "simulation", _fails)  # from the disk
     built.write_bytes(b"damaged")
     with pytest.raises(AssertionError, match="built again"):
-        library.load_library(module)
-    monkeypatch.undo()
-    monkeypatch.setattr(module, "__file__", str(tmp_path / "__init__.py"))
-    library.load_library(module)
+        build.load_library(tmp_path, "simulation", _fails)
+    build.load_library(tmp_path, "simulation", made)
     assert built.read_bytes()[:4] == first[:4] == b"\x7fELF"
 
 
-def _fails(module: Any) -> str:
+def _fails() -> str:
     raise AssertionError("built again")
 
 
@@ -162,4 +233,4 @@ def test_without_a_compiler_the_program_is_that_of_numba(
     else:
         monkeypatch.setenv("CC", str(refusing if case == "fails" else tmp_path / "none"))
     program = Program(load_vessel("kvlcc2_roll"))
-    assert program.functions is program.module
+    assert program.functions is program.simulation is program.module

@@ -12,11 +12,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from boatsim.physics.debugging import DEBUG
+from boatsim.physics.native.build import NoCompiler, compile_library, compiler
+from boatsim.physics.native.calls import NativeFunction
 from boatsim.physics.native.declarations import NotTranslatable
-from boatsim.physics.native.entries import Entry, number, numbers
+from boatsim.physics.native.entries import Entry, numbers
 from boatsim.physics.native.exports import export_function
 from boatsim.physics.native.kinds import MATRIX, REAL, TRUTH, VECTOR, WHOLE
-from boatsim.physics.native.library import NoCompiler, bind_function, compile_library, compiler
 from boatsim.physics.native.translate import Translation
 
 pytestmark = pytest.mark.skipif(DEBUG, reason="nothing is compiled")
@@ -49,7 +50,7 @@ def native(tmp_path_factory: pytest.TempPathFactory) -> Callable[..., Any]:
         export_function(program, "called", function, entry.arguments)
         path = folder / f"{function.__name__}.so"
         compile_library(program.text, path, command())
-        return bind_function(ctypes.CDLL(str(path)).called, entry)
+        return NativeFunction(ctypes.CDLL(str(path)).called, entry)
 
     return compiled
 
@@ -123,7 +124,7 @@ def branches(n: int, fine: bool) -> float:
 def test_loops_and_branches_are_those_of_python(
     n: int, fine: bool, native: Callable[..., Any]
 ) -> None:
-    assert _once(native, branches, Entry((WHOLE, TRUTH), number))(n, fine) == branches(n, fine)
+    assert _once(native, branches, Entry((WHOLE, TRUTH), float))(n, fine) == branches(n, fine)
 
 
 def swap(p: Pair, factor: float) -> Pair:
@@ -164,7 +165,7 @@ def arrays(v: Any, A: Any, n: int) -> float:
 
 
 def test_arrays_are_changed_in_place_as_in_python(native: Callable[..., Any]) -> None:
-    call = _once(native, arrays, Entry((VECTOR, MATRIX, WHOLE), number))
+    call = _once(native, arrays, Entry((VECTOR, MATRIX, WHOLE), float))
     v, A = np.arange(4.0), np.arange(12.0).reshape(3, 4)
     A[2, 0] = np.nan
     v2, A2 = v.copy(), A.copy()
@@ -173,7 +174,7 @@ def test_arrays_are_changed_in_place_as_in_python(native: Callable[..., Any]) ->
 
 
 def test_arrays_of_another_type_or_shape_are_refused(native: Callable[..., Any]) -> None:
-    call = _once(native, arrays, Entry((VECTOR, MATRIX, WHOLE), number))
+    call = _once(native, arrays, Entry((VECTOR, MATRIX, WHOLE), float))
     A = np.zeros((3, 4))
     for v in (np.zeros(4, dtype=int), np.zeros((4, 1)), np.zeros(8)[::2]):
         with pytest.raises(TypeError, match="contiguous"):

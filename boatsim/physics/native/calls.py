@@ -1,0 +1,215 @@
+"""Calls of C functions from Python: arrays, numbers and tuples of these as words of 8 bytes."""
+
+import ctypes
+import struct
+from collections.abc import Callable, Sequence
+from itertools import chain
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from boatsim.physics.native.entries import RECORDS, Entry
+from boatsim.physics.native.kinds import (
+    REAL,
+    WHOLE,
+    ArrayKind,
+    Kind,
+    Scalar,
+    Struct,
+    leaves,
+)
+from boatsim.physics.native.translate import Translation
+
+MOST_RESULTS = 16  # numbers that a function returns
+ITEMS = {REAL: np.dtype(np.float64), WHOLE: np.dtype(np.int64)}
+
+
+def argument_kinds(program: Translation, entry: Entry) -> list[Kind]:
+    """Return the kinds of the arguments of a function, with structs for its named tuples.
+
+    Args:
+        program: The program to which the structs belong.
+        entry: The function.
+    """
+    kinds: list[Kind] = []
+    for kind in entry.arguments:
+        if kind in RECORDS:
+            kinds.append(program.struct(kind, RECORDS[kind]))
+        else:
+            kinds.append(kind)
+    return kinds
+
+
+class PackedRecord(NamedTuple):
+    """A named tuple of arrays whose addresses and sizes have been looked up."""
+
+    words: Sequence[Any]
+    record: Any  # its arrays must live as long as the addresses are used
+
+
+class NativeFunction:
+    """A function of a C library as a Python function."""
+
+    def __init__(self, function: Any, entry: Entry) -> None:
+        """Declare the function.
+
+        Args:
+            function: The function, as ctypes loads it.
+            entry: Its arguments and result.
+        """
+        function.argtypes, function.restype = [ctypes.c_char_p, ctypes.c_void_p], ctypes.c_double
+        self.function, self._result = function, entry.result
+        self._kinds = argument_kinds(Translation(), entry)
+        every = chain.from_iterable(map(leaves, self._kinds))
+        self._pack = struct.Struct("=" + "".join(map(_format, every))).pack
+
+    @property
+    def address(self) -> int:
+        """Address of the C function."""
+        return int(ctypes.cast(self.function, ctypes.c_void_p).value or 0)
+
+    def __call__(self, *given: Any) -> Any:
+        """Call the function.
+
+        Args:
+            *given: Its arguments, as those of the compiled function of the program.
+
+        Raises:
+            TypeError: An array is not contiguous, or has another type or number of dimensions.
+        """
+        return self._run(self.packed(*given))
+
+    def packed(self, *given: Any) -> bytes:
+        """Return arguments as words. The arrays among them must live as long as these are used."""
+        flat: list[Any] = []
+        for kind, value in zip(self._kinds, given, strict=True):
+            _flatten(kind, value, flat)
+        return self._pack(*flat)
+
+    def prepared(self, *given: Any) -> Callable[..., Any]:
+        """Return a function of the floats in whose place `...` is given; the others are fixed.
+
+        A call costs a fraction of an ordinary one. The function must not be called by two threads
+        at the same time.
+
+        Args:
+            *given: Arguments; their arrays are changed and read by each call.
+        """
+        flat, free = list[Any](), list[int]()
+        for kind, value in zip(self._kinds, given, strict=True):
+            if value is ...:
+                free.append(len(flat))
+                flat.append(0.0)
+            else:
+                _flatten(kind, value, flat)
+        words = np.frombuffer(self._pack(*flat), dtype=np.float64).copy()
+        floats: Any = words.data  # quicker to write to than the array
+        address = ctypes.cast(words.ctypes.data, ctypes.c_char_p)
+        function, result = self.function, self._result
+        if result not in (None, float):
+            raise TypeError(f"a function with the result {result}; allowed is at most one number")
+
+        def call(*numbers: float) -> Any:
+            for place, number in zip(free, numbers, strict=True):
+                floats[place] = number
+            return function(address, None)
+
+        call.__dict__["arrays"] = given  # they must live as long as the addresses are used
+        return call
+
+    def _run(self, words: bytes) -> Any:
+        if self._result is None:
+            self.function(words, None)
+            return None
+        if self._result is float:
+            return self.function(words, None)
+        results = np.empty(MOST_RESULTS)
+        found = int(self.function(words, results.ctypes.data))
+        return self._result(*results[:found].tolist())
+
+
+def _format(leaf: Scalar | ArrayKind) -> str:
+    """Letters of `struct` for a number, or for an array's address and sizes."""
+    if isinstance(leaf, ArrayKind):
+        return "Q" + "q" * leaf.dimensions
+    if leaf == REAL:
+        return "d"
+    return "q"
+
+
+def _flatten(kind: Kind, value: Any, out: list[Any]) -> None:
+    """Append a number, an array's address and sizes, or all of these of a tuple."""
+    if isinstance(value, PackedRecord):
+        out += value.words
+    elif isinstance(kind, Struct):
+        for part, one in zip(kind.kinds, value, strict=True):
+            _flatten(part, one, out)
+    elif isinstance(kind, ArrayKind):
+        if (
+            value.dtype != ITEMS[kind.item]
+            or value.ndim != kind.dimensions
+            or not value.flags.c_contiguous
+        ):
+            raise TypeError(
+                f"an array of {value.dtype} with {value.ndim} dimensions; allowed is a contiguous "
+                f"one of {ITEMS[kind.item]} with {kind.dimensions}"
+            )
+        out.append(_address(value))
+        out += value.shape
+    elif kind == REAL:
+        out.append(value)
+    else:
+        out.append(int(value))
+
+
+def _address(array: Any) -> int:
+    """Address of an array's first entry; the quick way fails if it is read-only or empty."""
+    try:
+        return ctypes.addressof(ctypes.c_char.from_buffer(array))
+    except (TypeError, ValueError):
+        return int(array.ctypes.data)
+
+
+def pack_record(code: Any, record: Any) -> Any:
+    """Return a named tuple of arrays in a form that makes calls of a program's functions faster.
+
+    Args:
+        code: The program's functions, from C or from numba.
+        record: The named tuple; its arrays are not replaced later.
+    """
+    if not isinstance(code.advance_actuators, NativeFunction):
+        return record
+    words: list[Any] = []
+    _flatten(Translation().struct(type(record), RECORDS[type(record)]), record, words)
+    return PackedRecord(words, record)
+
+
+def prepare_call(code: Any, name: str, *given: Any) -> Callable[..., Any]:
+    """Return a function of a program as a function of those numbers for which `...` is given.
+
+    Args:
+        code: The program's functions, from C or from numba.
+        name: Name of the function.
+        *given: Its arguments.
+    """
+    function = getattr(code, name)
+    if isinstance(function, NativeFunction):
+        return function.prepared(*given)
+    free = _places_of_numbers(given)
+
+    def call(*numbers: float) -> Any:
+        full = list(given)
+        for place, number in zip(free, numbers, strict=True):
+            full[place] = number
+        return function(*full)
+
+    return call
+
+
+def _places_of_numbers(given: Sequence[Any]) -> list[int]:
+    """Places of the arguments that are left open."""
+    places = []
+    for i, value in enumerate(given):
+        if value is ...:
+            places.append(i)
+    return places
