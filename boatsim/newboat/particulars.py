@@ -216,6 +216,35 @@ def parse_particulars(
     """
     if not NAME.fullmatch(name):
         raise BadInput(f"the boat's name = {name!r}; allowed are letters, digits and _ . + -")
+    _check_sizes(length, beam, mass, options)
+    _check_hull_beam(options, beam)
+    law = DriveLaw(options.rpm, _parse_curve(options))
+    blade = None
+    if options.rudder is not None:
+        blade = _parse_rudder(options.rudder, length)
+    hull = hull_particulars(length, beam, mass, options.hulls, options.draught, options.hull_beam)
+    if options.depth is not None and options.depth <= hull.draught:
+        raise BadInput(
+            f"--depth {options.depth:g}; allowed is more than the draught, {hull.draught:.3g} m"
+        )
+    return Particulars(
+        name,
+        hull,
+        options.draught is not None,
+        options.speed,
+        tuple(_parse_mounts(options, length, law)),
+        blade,
+        tuple(_parse_tunnel(text, length) for text in options.tunnels),
+        law,
+        _parse_helm(options.helm),
+        options.balance,
+        options.depth,
+        options.hull_beam is not None,
+    )
+
+
+def _check_sizes(length: float, beam: float, mass: float, options: Options) -> None:
+    """Check that all sizes are those of a boat. Raises BadInput."""
     sizes: dict[str, tuple[float | None, float]] = {
         "length": (length, 500.0),
         "beam": (beam, 100.0),
@@ -235,8 +264,10 @@ def parse_particulars(
             raise BadInput(f"--{key} {value:g}; allowed is more than 0 to {most:g}")
     if beam >= length:
         raise BadInput(f"--beam {beam:g}; allowed is less than the length, {length:g}")
-    _check_hull_beam(options, beam)
-    law = DriveLaw(options.rpm, _parse_curve(options))
+
+
+def _parse_mounts(options: Options, length: float, law: DriveLaw) -> list[Mount]:
+    """Parse places, directions and thrusts of all thrusters. Raises BadInput."""
     mounts = []
     for text in options.thrusters:
         mounts.append(_parse_thruster("--thruster", text, options.thrust, length, False))
@@ -245,29 +276,8 @@ def parse_particulars(
     if not mounts:
         raise BadInput("no --thruster X,Y and no --steered X,Y; a boat needs at least one thruster")
     if law.curve:
-        mounts = [_with_curve(mount, law) for mount in mounts]
-    blade = None
-    if options.rudder is not None:
-        blade = _parse_rudder(options.rudder, length)
-    hull = hull_particulars(length, beam, mass, options.hulls, options.draught, options.hull_beam)
-    if options.depth is not None and options.depth <= hull.draught:
-        raise BadInput(
-            f"--depth {options.depth:g}; allowed is more than the draught, {hull.draught:.3g} m"
-        )
-    return Particulars(
-        name,
-        hull,
-        options.draught is not None,
-        options.speed,
-        tuple(mounts),
-        blade,
-        tuple(_parse_tunnel(text, length) for text in options.tunnels),
-        law,
-        _parse_helm(options.helm),
-        options.balance,
-        options.depth,
-        options.hull_beam is not None,
-    )
+        return [_with_curve(mount, law) for mount in mounts]
+    return mounts
 
 
 def _check_hull_beam(options: Options, beam: float) -> None:

@@ -123,15 +123,9 @@ def module_head(w: EquationWriter) -> list[str]:
     ]
 
 
-def motion_module_text(dof: tuple[str, ...], centred: bool) -> str:
-    """Return the source of `motion.py`, the equations of motion of a vessel.
-
-    Args:
-        dof: Degrees of freedom of the vessel.
-        centred: Whether the mass centre is the origin of motion.
-    """
-    w = EquationWriter(dof, centred)
-    functions = [
+def dynamics_functions(w: EquationWriter) -> list[str]:
+    """Return the source of the functions that compute forces and integrate the motion."""
+    return [
         function_text(
             "accelerations(t, s, act, at, p, on, k, extra)",
             "Joint accelerations with the actuators act[at:]; extra: a further body force (NQ,).",
@@ -174,6 +168,12 @@ def motion_module_text(dof: tuple[str, ...], centred: bool) -> str:
             w.acceleration_per_force_code(),
             "inlined" if w.square_jacobian else "lean",
         ),
+    ]
+
+
+def observation_functions(w: EquationWriter) -> list[str]:
+    """Return the source of the functions that compute measured signals and MuJoCo's arrays."""
+    return [
         function_text(
             "pose_and_velocities(s)",
             "True values of all recorded signals in a state.",
@@ -205,4 +205,15 @@ def motion_module_text(dof: tuple[str, ...], centred: bool) -> str:
             "inlined",
         ),
     ]
-    return "\n".join([*module_head(w), *functions])
+
+
+def motion_module_text(dof: tuple[str, ...], centred: bool) -> str:
+    """Return the source of `motion.py`, the equations of motion of a vessel.
+
+    Args:
+        dof: Degrees of freedom of the vessel.
+        centred: Whether the mass centre is the origin of motion.
+    """
+    w = EquationWriter(dof, centred)
+    text = [*module_head(w), *dynamics_functions(w), *observation_functions(w)]
+    return "\n".join(text)

@@ -155,13 +155,7 @@ def propose_map(
     Raises:
         BadInput: The log has no poses.
     """
-    known: dict[str, str] = {}
-    used_signals: set[str] = set()
-    for column, expression in (stated or {}).items():
-        signal = parse(expression, log.signals.keys()).signal
-        if signal in log.signals:
-            known[column] = expression
-            used_signals.add(signal)
+    known, used_signals = _stated_columns(log, stated or {})
     best: dict[str, list[Classification]] = {}
     classified = classify_signals(log, Body([d.name for d in drives], dof, turns_over))
     for g in with_evidence_of_motion(classified, log):
@@ -170,55 +164,68 @@ def propose_map(
     if reason := unusable_poses(log, best, "yaw" in dof):
         raise file_error(log.path, reason)
     track = track_of(best)
-    best = _with_rate_unit(best)
-    best, doubtful = _without_contradictions(best, track)
-    lines = [
-        "# Proposed from the names, units and ranges of the signals in the log: check every line."
-    ]
-    if vessel:
-        lines.append(f'vessel = "{vessel}"')
-    else:
-        lines.append('# vessel = "NAME"')
+    best, doubtful = _without_contradictions(_with_rate_unit(best), track)
     body, used = _motion_lines(log, best, dof, known)
     body += doubtful
     for column, expression in known.items():
         body.append(f"{toml_key(column)} = {toml_value(expression)}  # by the vessel's file")
     open_drives = [d for d in drives if d.name not in known]
-    turning = Turning(best, log.frame == "ENU")
     driven: list[Classification] = []
     if drives and not open_drives:
         commands = ["# all are above"]
     else:
-        unit = _RevolutionUnit(track, approach_speed)
+        turning, unit = Turning(best, log.frame == "ENU"), _RevolutionUnit(track, approach_speed)
         commands, driven = _command_lines(best, open_drives, turning, unit)
-    fastest = 0.0
-    for g in (*used, *driven):
-        fastest = max(fastest, median_sampling_rate(g.signal.t))
     # a measured force acts between the rows, too: its samples are all kept
     measured = any(has_load(tokenize_name(drive.name)) for drive in drives)
-    if fastest > 1.01 * MAX_ROW_RATE and not measured:
-        lines.append(
-            f"rate = {MAX_ROW_RATE:g}  # [Hz] of rows; the fastest signal has {fastest:.3g}"
-        )
-    lines += [
+    lines = [
+        "# Proposed from the names, units and ranges of the signals in the log: check every line.",
+        f'vessel = "{vessel}"' if vessel else '# vessel = "NAME"',
+        *([] if measured else _rate_lines((*used, *driven))),
         "# use = [0.0, 60.0]  # [s] since the log begins, the part to convert",
         *_begin_lines(log),
         "",
         *body,
+        "",
+        "# commands: what was sent to the drives",
+        *(commands or ["# none was found"]),
+        *_unused_lines(best),
     ]
-    lines += ["", "# commands: what was sent to the drives", *(commands or ["# none was found"])]
+    return "\n".join(lines) + "\n"
+
+
+def _stated_columns(log: Log, stated: Mapping[str, str]) -> tuple[dict[str, str], set[str]]:
+    """Columns that the vessel's file states and the log has, and the signals that they use."""
+    known: dict[str, str] = {}
+    used_signals: set[str] = set()
+    for column, expression in stated.items():
+        signal = parse(expression, log.signals.keys()).signal
+        if signal in log.signals:
+            known[column] = expression
+            used_signals.add(signal)
+    return known, used_signals
+
+
+def _rate_lines(used: Sequence[Classification]) -> list[str]:
+    """A line that limits the rate of the rows, if a signal is faster."""
+    fastest = max((median_sampling_rate(g.signal.t) for g in used), default=0.0)
+    if fastest <= 1.01 * MAX_ROW_RATE:
+        return []
+    return [f"rate = {MAX_ROW_RATE:g}  # [Hz] of rows; the fastest signal has {fastest:.3g}"]
+
+
+def _unused_lines(best: Mapping[str, list[Classification]]) -> list[str]:
+    """Lines for measured states of the drives and the pilot's sticks, which no effect needs."""
+    lines: list[str] = []
     for kind, about in (
         ("actual", "measured state of the drives"),
         ("stick", "the pilot's sticks, recorded with the commands"),
     ):
         moving = list(filterfalse(_is_constant, best.get(kind, [])))
         if moving:
-            lines += [
-                "",
-                f"# {about}",
-                *_further_columns(kind, sorted(moving, key=lambda g: g.name)),
-            ]
-    return "\n".join(lines) + "\n"
+            further = _further_columns(kind, sorted(moving, key=lambda g: g.name))
+            lines += ["", f"# {about}", *further]
+    return lines
 
 
 def _with_rate_unit(
