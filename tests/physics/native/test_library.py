@@ -81,7 +81,14 @@ def engine_states(vessel: Vessel) -> np.ndarray:
 
 
 @pytest.mark.parametrize("states", [batch_states, engine_states])
-@pytest.mark.parametrize("name", ["joystick_boat", "otter", "jet_ski"])
+@pytest.mark.parametrize(
+    "name",
+    [
+        "joystick_boat",
+        pytest.param("otter", marks=pytest.mark.slow),
+        pytest.param("jet_ski", marks=pytest.mark.slow),
+    ],
+)
 def test_simulations_give_the_numbers_of_numba_to_the_last_bit(
     name: str, states: Callable[[Vessel], np.ndarray], monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -210,6 +217,7 @@ def test_a_library_is_built_once_and_again_if_it_is_damaged(tmp_path: Path) -> N
     (built,) = tmp_path.glob("simulation_*.so")
     first = built.read_bytes()
     build.load_library(tmp_path, "simulation", _fails)  # from the disk
+    built.unlink()  # this process has loaded the first one
     built.write_bytes(b"damaged")
     with pytest.raises(AssertionError, match="built again"):
         build.load_library(tmp_path, "simulation", _fails)
