@@ -62,7 +62,6 @@ def problem_with_correlation_time(
         problem.uncertainty,
         horizon,
         problem.config,
-        filtered=problem.filtered,
     )
 
 

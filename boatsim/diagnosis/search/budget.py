@@ -9,7 +9,7 @@ everywhere.
 from collections.abc import Iterable
 
 from boatsim.diagnosis.candidates import base_name
-from boatsim.diagnosis.problem import WorkCount
+from boatsim.diagnosis.work import WorkCount
 
 
 class BudgetSpentError(Exception):
