@@ -12,6 +12,7 @@ from boatsim.physics.base import Array
 COVARIANCE = 0.25
 DERIVATIVES = 0.5
 SMOOTHER = 1.0
+SCORING = 0.25  # work per row, degree of freedom and term of a description that is scored
 MOST_PARTS = 1e4  # of the time between two rows, so that the count stays finite
 
 
@@ -35,3 +36,13 @@ class WorkCount:
             parts = np.ceil(np.diff(times) / steps[1:] - 1e-9)
         integrated = float(np.clip(np.nan_to_num(parts), 1.0, MOST_PARTS).sum()) + changes
         self.work += round(dof * integrated + matrices * dof * dof * len(times))
+
+    def add_scores(self, terms: int, rows: int, dof: int) -> None:
+        """Count the approximate evidence of terms of a description, over one recording.
+
+        Args:
+            terms: Number of terms.
+            rows: Number of rows.
+            dof: Degrees of freedom.
+        """
+        self.work += round(SCORING * terms * rows * dof)

@@ -48,15 +48,18 @@ def _find_further_effects(sets: CandidateSets, best: Fit) -> Fit | None:
     if sets.budget.spent:
         sets.budget.state(NOT_SOUGHT)
         return None
-    singles = list(_additions(sets, best))
+    order = list[str]()
+    singles = list(_additions(sets, best, order))
     found = _sufficient(singles, best.evidence + sets.required_gain)
     if found is not None or room < 2:
         return found
+    if sets.saves_work:  # second effects are those that promised most alone
+        order = order[: sets.config.select.saving_seconds]
     pairs: list[Fit] = []
     for single in singles:
         if sets.budget.spent:
             break
-        pairs += _additions(sets, single)
+        pairs += _additions(sets, single, order.copy())
     return _sufficient(pairs, best.evidence + 2.0 * sets.required_gain)
 
 
@@ -66,20 +69,26 @@ def _sufficient(fits: list[Fit], least: float) -> Fit | None:
     return best if best is not None and best.evidence > least else None
 
 
-def _additions(sets: CandidateSets, best: Fit) -> Iterator[Fit]:
-    """Yield converged fits with one more effect, for the candidates that promise most."""
+def _additions(sets: CandidateSets, best: Fit, order: list[str]) -> Iterator[Fit]:
+    """Yield converged fits with one more effect, for the candidates that promise most.
+
+    `order` names the candidates, none for all; it is replaced by their order.
+    """
     problem = sets.problem
     calm = sets.steps_at_assumed_disturbance(best)
     if not np.isfinite(calm.evidence):
         return
     ideas = set(map(base_name, best.effects))
     names = []
-    for name in sets.candidates:
+    for name in order or sets.candidates:
         if base_name(name) not in ideas and name not in sets.random | sets.banned:
             names.append(name)
     screened = screen(problem, calm, names)
-    leading = sorted(names, key=lambda name: -screened[name].evidence)
-    for name in leading[: sets.config.select.further_fits]:
+    order[:] = sorted(names, key=lambda name: -screened[name].evidence)
+    for name in order[: sets.config.select.further_fits]:
+        if sets.budget.spent:
+            sets.budget.state(NOT_SOUGHT)
+            return
         start = sets.steps_at_assumed_disturbance(screened[name])
         if np.isfinite(start.evidence):
             yield sets.keep_better(converge(problem, start))

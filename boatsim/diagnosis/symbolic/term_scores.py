@@ -87,6 +87,7 @@ def _score_batch(
         rows += (sizes != 0.0).sum(axis=1)
         recording, levels = fitted.recording, fitted.fit.levels
         nq = fitted.problem.program.module.NQ
+        recording.filtered.add_scores(len(terms), len(recording.times), int(nq))
         latent = LatentForce(
             recording.times,
             np.hstack([fitted.states, fitted.residual]),
