@@ -1271,6 +1271,13 @@ class SelectConfig:
     saving_full_fits: int = setting(
         3, "count", "The setting `most_full_fits` of a search that saves work.", low=1
     )
+    further_share: float = setting(
+        0.15,
+        "1",
+        "Share of `budget` after which effects that hide each other are no longer sought.",
+        0.0,
+        1.0,
+    )
     saving_seconds: int = setting(
         15,
         "count",

@@ -13,6 +13,7 @@ COVARIANCE = 0.25
 DERIVATIVES = 0.5
 SMOOTHER = 1.0
 SCORING = 0.25  # work per row, degree of freedom and term of a description that is scored
+CALL = 500  # work of one pass that does not depend on the rows
 MOST_PARTS = 1e4  # of the time between two rows, so that the count stays finite
 
 
@@ -35,7 +36,7 @@ class WorkCount:
         with np.errstate(divide="ignore", invalid="ignore"):  # of a vessel that diverges
             parts = np.ceil(np.diff(times) / steps[1:] - 1e-9)
         integrated = float(np.clip(np.nan_to_num(parts), 1.0, MOST_PARTS).sum()) + changes
-        self.work += round(dof * integrated + matrices * dof * dof * len(times))
+        self.work += CALL + round(dof * integrated + matrices * dof * dof * len(times))
 
     def add_scores(self, terms: int, rows: int, dof: int) -> None:
         """Count the approximate evidence of terms of a description, over one recording.

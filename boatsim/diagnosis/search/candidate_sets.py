@@ -76,6 +76,7 @@ class CandidateSets:
         self.banned: set[str] = set()
         # results of `add_further_effects` by the names of a set and of the candidates then banned
         self.further: dict[tuple[Set, Set], Fit | None] = {}
+        self.further_work = 0  # that `add_further_effects` has done
         # effects without which held-out recordings are predicted worse, as free runs show
         self.supported: set[str] = set()
         # log likelihoods of recordings that are held out, by the identities of these and of the fit

@@ -14,7 +14,7 @@ from boatsim.diagnosis.question import Question, set_up_estimation_problem
 from boatsim.diagnosis.report.answer import INCOMPLETE
 from boatsim.diagnosis.report.sentences import console_lines
 from boatsim.diagnosis.search.budget import BudgetSpentError, SearchBudget, addition_phrase
-from boatsim.diagnosis.work import WorkCount
+from boatsim.diagnosis.work import CALL, WorkCount
 from boatsim.physics.base import Array
 from boatsim.recordings.table import write_csv
 
@@ -57,11 +57,12 @@ def test_a_pass_counts_its_integration_steps_and_a_repeated_one_nothing(loaded: 
     problem.log_likelihood(found.free, found.theta, on, found.levels)  # known from the pass
     assert problem.filtered.work == before
     problem.whitened_errors(found.free, found.theta, on, found.levels, passes)
-    steps = 0
+    work = 0
     for mapped in problem.recordings:
         intervals = np.diff(mapped.times)
-        steps += sum(max(1, math.ceil(h / mapped.step - 1e-9)) for h in intervals)
-    assert problem.filtered.work == before + steps * len(problem.program.vessel.dof)
+        steps = sum(max(1, math.ceil(h / mapped.step - 1e-9)) for h in intervals)
+        work += CALL + steps * len(problem.program.vessel.dof)
+    assert problem.filtered.work == before + work
 
 
 def test_all_recordings_of_a_diagnosis_share_one_count(loaded: Loaded) -> None:
