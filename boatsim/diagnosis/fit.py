@@ -288,13 +288,13 @@ def gauss_newton(problem: Problem, start: Fit, iterations: int, enough: float) -
 
 
 def _hypothesis(problem: Problem, start: Fit) -> _Hypothesis:
-    """What stays the same while the parameters of a hypothesis are fitted."""
+    """Return the constant part of a fit of a hypothesis: problem, switches, levels and bounds."""
     on = problem.program.effect_switches(start.effects)
     return _Hypothesis(problem, start.free, on, start.levels, ParameterSpace(start.free))
 
 
 def _ascend(hypothesis: _Hypothesis, theta: Array, iterations: int, enough: float) -> _End:
-    """Gauss-Newton steps that maximise the posterior density, without covariance and evidence."""
+    """Maximise the posterior density by Gauss-Newton steps, without covariance and evidence."""
     problem, space = hypothesis.problem, hypothesis.space
     config = problem.config.fit
     here = hypothesis.evaluate_at(space.clip(theta))
