@@ -1237,13 +1237,60 @@ class SelectConfig:
         low=1,
     )
     budget: int = setting(
-        500_000_000,
-        "rows x dof",
-        "Work of the search: rows filtered, counted in every pass of the filter, times degrees of "
-        "freedom. Recordings of a minute and a half need 2 to 80 million. 500 million take about "
-        "4 minutes on a planar vessel and 8 in six degrees of freedom; then the search ends and "
-        "reports what it has not tried.",
+        900_000_000,
+        "steps x dof",
+        "Work of the search: integration steps in every pass of the filter, times degrees of "
+        "freedom, and the covariances of the filter. Recordings of a minute and a half need 2 to "
+        "12 million. 900 million take 3 to 6 minutes; then the search ends and reports what it "
+        "has not tried.",
         low=1,
+    )
+    again_share: float = setting(
+        0.5,
+        "1",
+        "Share of the work of the first search that must remain for a second one with another "
+        "correlation time of the latent force; that correlation time is sought only then.",
+        low=0.0,
+    )
+    thorough_work: int = setting(
+        60_000_000,
+        "steps x dof",
+        "Work of the search, about 20 seconds, after which it saves work. Recordings of a minute "
+        "and a half need less.",
+        low=0,
+    )
+    lazy_share: float = setting(
+        0.5,
+        "1",
+        "A search that saves work does not screen a candidate whose gain on top of fewer effects "
+        "was less than this share of the best gain: with more effects it hardly gains more "
+        "(Minoux 1978). All are screened before the search ends.",
+        0.0,
+        1.0,
+    )
+    saving_full_fits: int = setting(
+        3, "count", "The setting `most_full_fits` of a search that saves work.", low=1
+    )
+    further_share: float = setting(
+        0.15,
+        "1",
+        "Share of `budget` after which effects that hide each other are no longer sought.",
+        0.0,
+        1.0,
+    )
+    saving_seconds: int = setting(
+        15,
+        "count",
+        "Candidates that a search that saves work screens as the second one of two that hide each "
+        "other; they gained most as the first one.",
+        low=1,
+    )
+    same_maximum: float = setting(
+        1.0,
+        "posterior sd",
+        "A refit of a search that saves work ends where its parameters are this close to those of "
+        "the fit that it starts from, without a gain: it leads back to it.",
+        low=0.0,
     )
     further_fits: int = setting(
         3,
@@ -1729,6 +1776,13 @@ class DescribeConfig:
 
     most_terms: int = setting(
         5, "count", "Largest number of terms: a longer formula would explain noise.", low=0
+    )
+    budget: int = setting(
+        250_000_000,
+        "steps x dof",
+        "Work of the description, counted as in `select.budget`; then no further term is sought. "
+        "Recordings of a minute and a half need 2 to 10 million.",
+        low=1,
     )
     fitted_terms: int = setting(
         4,

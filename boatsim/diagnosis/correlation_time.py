@@ -18,12 +18,15 @@ from boatsim.diagnosis.filter import MappedRecording
 from boatsim.diagnosis.fit import fit
 from boatsim.diagnosis.free_runs import free_runs, rms_errors
 from boatsim.diagnosis.problem import Fit, Problem
+from boatsim.diagnosis.search.budget import SearchBudget
 from boatsim.physics.base import Array
 
 EXACT = 1e-12  # [m, rad] lower bound of an error, so that its logarithm is finite
 
 
-def select_correlation_time(problem: Problem, found: Fit) -> Problem:
+def select_correlation_time(
+    problem: Problem, found: Fit, budget: SearchBudget | None = None
+) -> Problem:
     """Return an estimation problem with the latent force's correlation time that predicts best.
 
     The latent force is the unmodelled force that the Kalman filter estimates. Cross-validation
@@ -32,11 +35,12 @@ def select_correlation_time(problem: Problem, found: Fit) -> Problem:
     Args:
         problem: The estimation problem: recordings, vessel model, candidate effects and priors.
         found: Converged fit of the vessel model with some candidate effects.
+        budget: Work that may be done; when it is spent, no further correlation time is tried.
 
     Returns:
         The same object if the correlation time does not change.
     """
-    seconds = cross_validated_correlation_time(problem, found)
+    seconds = cross_validated_correlation_time(problem, found, budget)
     if seconds == problem.ambient.time_constant:
         return problem
     return problem_with_correlation_time(problem, problem.recordings, seconds, problem.horizon)
@@ -62,11 +66,12 @@ def problem_with_correlation_time(
         problem.uncertainty,
         horizon,
         problem.config,
-        filtered=problem.filtered,
     )
 
 
-def cross_validated_correlation_time(problem: Problem, found: Fit) -> float:
+def cross_validated_correlation_time(
+    problem: Problem, found: Fit, budget: SearchBudget | None = None
+) -> float:
     """Return the correlation time [s] of the latent (unmodelled) force that predicts best.
 
     Half and double the usual time are tried by cross-validation, and further multiples if they
@@ -76,6 +81,7 @@ def cross_validated_correlation_time(problem: Problem, found: Fit) -> float:
         problem: The estimation problem: recordings, vessel model, candidate effects and priors.
         found: A converged fit; without effects it attributes nothing to the latent force that
             coefficients could explain, and the usual value stays.
+        budget: Work that may be done; when it is spent, no further correlation time is tried.
     """
     usual = problem.ambient.time_constant
     if not found.effects:
@@ -84,6 +90,8 @@ def cross_validated_correlation_time(problem: Problem, found: Fit) -> float:
     for factor in (0.5, 2.0):
         seconds, before = usual, at_usual
         for _ in range(problem.config.fit.correlation_time_steps):
+            if budget is not None and budget.spent:
+                break
             after = cross_validation_errors(problem, found, factor * seconds)
             if not errors_clearly_fell(after, before, problem.config):
                 break

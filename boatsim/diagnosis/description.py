@@ -44,6 +44,7 @@ class Description:
     terms: tuple[FittedTerm, ...]
     fit: Fit
     left_over: float  # [nats] that a force beyond the assumed level gains in addition to all terms
+    complete: bool = True  # whether terms were sought until the end, not until the budget was spent
 
     def effects(self) -> Mapping[str, SymbolicTerm]:
         """Return the symbolic terms that hold for held-out recordings, by name of the effect."""

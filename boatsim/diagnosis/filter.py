@@ -21,6 +21,7 @@ from boatsim.diagnosis.input_noise import (
     measured_inputs,
 )
 from boatsim.diagnosis.recent_results import RecentResults
+from boatsim.diagnosis.work import COVARIANCE, DERIVATIVES, SMOOTHER, WorkCount
 from boatsim.errors import BadInput
 from boatsim.physics.base import DriftingMeasurement, RandomForce
 from boatsim.physics.commands import clipped_recorded_commands
@@ -179,6 +180,8 @@ class MappedRecording:
     input_noise: Array = field(default_factory=lambda: np.zeros(0))
     groups: tuple[str, ...] = ()  # of recordings, to which it belongs
     config: FilterConfig = DEFAULT.filter
+    # work that was done; all recordings of a diagnosis share one count
+    filtered: WorkCount = field(default_factory=WorkCount)
 
     def __post_init__(self) -> None:
         if not len(self.command_times):
@@ -489,7 +492,20 @@ class MappedRecording:
             arrays,
             keep or _no_history(),
         )
+        matrices = 0.0
+        if full:
+            matrices = COVARIANCE + DERIVATIVES if fresh else COVARIANCE
+        if keep is not None:
+            matrices += SMOOTHER
+        self.filtered.add_pass(self.times, arrays.steps, self._changes_between_rows, nq, matrices)
         return float(found)
+
+    @cached_property
+    def _changes_between_rows(self) -> int:
+        """Number of changes of commands after the first row that are not at the time of a row."""
+        changes = self.command_times
+        inside = changes[(changes > self.times[0]) & (changes < self.times[-1])]
+        return len(np.setdiff1d(inside, self.times))
 
     def _latent_force(self, rms: Array, levels: NoiseLevels) -> LatentForce:
         white = np.zeros(self.program.module.NQ)

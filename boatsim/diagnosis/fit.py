@@ -45,7 +45,10 @@ def fit(problem: Problem, found: Fit, converged: bool = False) -> Fit:
     for parameter, v in zip(found.free, variance, strict=True):
         new = new or bool(parameter.searched and v == parameter.sd**2)  # never fitted
     if not new and not converged:
-        found = gauss_newton(problem, found, config.first_steps, config.refit_gain)
+        end = _ascend(
+            _hypothesis(problem, found), found.theta, config.first_steps, config.refit_gain
+        )
+        found = replace(found, theta=end.point.theta)
     found = fit_latent_force_level(problem, found, config.fine_gain if new else config.rough_gain)
     return gauss_newton(problem, found, config.last_steps, config.step_gain)
 
@@ -246,6 +249,15 @@ class _Hypothesis:
         return _Point(theta, passes, passes.log_likelihood + log_prior(self.free, theta))
 
 
+@dataclass(frozen=True)
+class _End:
+    """End of a sequence of Gauss-Newton steps."""
+
+    point: _Point
+    J: Array  # (rows, F) derivatives of the whitened errors by theta / sd
+    exact: bool  # whether they were computed at this point or the one before, not updated
+
+
 def gauss_newton(problem: Problem, start: Fit, iterations: int, enough: float) -> Fit:
     """Maximise the posterior density of a hypothesis over its parameters by Gauss-Newton steps.
 
@@ -261,13 +273,33 @@ def gauss_newton(problem: Problem, start: Fit, iterations: int, enough: float) -
     Returns:
         The fit with its covariance and its Laplace evidence.
     """
-    config = problem.config.fit
+    hypothesis = _hypothesis(problem, start)
+    end = _ascend(hypothesis, start.theta, iterations, enough)
+    here, J = end.point, end.J
+    if not end.exact:  # the covariance needs exact derivatives
+        J, _ = _derivatives(hypothesis, here)
+    information = np.eye(len(start.free)) + J.T @ J
+    information[np.diag_indices(len(start.free))] += _curvature(hypothesis, here)
+    covariance = hypothesis.space.covariance(information)
+    evidence = here.score - 0.5 * float(np.linalg.slogdet(information)[1])
+    evidence += log_level_prior(problem, start.levels)
+    evidence += log_truncation_probability(start.free, here.theta, covariance)
+    return replace(start, theta=here.theta, covariance=covariance, evidence=evidence)
+
+
+def _hypothesis(problem: Problem, start: Fit) -> _Hypothesis:
+    """Return the constant part of a fit of a hypothesis: problem, switches, levels and bounds."""
     on = problem.program.effect_switches(start.effects)
-    space = ParameterSpace(start.free)
-    hypothesis = _Hypothesis(problem, start.free, on, start.levels, space)
-    here = hypothesis.evaluate_at(space.clip(start.theta))
+    return _Hypothesis(problem, start.free, on, start.levels, ParameterSpace(start.free))
+
+
+def _ascend(hypothesis: _Hypothesis, theta: Array, iterations: int, enough: float) -> _End:
+    """Maximise the posterior density by Gauss-Newton steps, without covariance and evidence."""
+    problem, space = hypothesis.problem, hypothesis.space
+    config = problem.config.fit
+    here = hypothesis.evaluate_at(space.clip(theta))
     damping, known = FIRST_DAMPING, False
-    J, rest = np.zeros((1, len(start.free))), np.zeros(len(start.free))
+    J, rest = np.zeros((1, len(theta))), np.zeros(len(theta))
     for _ in range(iterations):
         if not known:
             J, rest = _derivatives(hypothesis, here)
@@ -298,15 +330,7 @@ def gauss_newton(problem: Problem, start: Fit, iterations: int, enough: float) -
         if known:
             change = here.passes.whitened - before.passes.whitened
             J = broyden_update(J, change, step)
-    if known:  # the covariance needs exact derivatives
-        J, _ = _derivatives(hypothesis, here)
-    information = np.eye(len(start.free)) + J.T @ J
-    information[np.diag_indices(len(start.free))] += _curvature(hypothesis, here)
-    covariance = space.covariance(information)
-    evidence = here.score - 0.5 * float(np.linalg.slogdet(information)[1])
-    evidence += log_level_prior(problem, start.levels)
-    evidence += log_truncation_probability(start.free, here.theta, covariance)
-    return replace(start, theta=here.theta, covariance=covariance, evidence=evidence)
+    return _End(here, J, not known)
 
 
 def broyden_update(J: Array, change: Array, step: Array) -> Array:

@@ -59,6 +59,7 @@ TIME_NOT_CHOSEN = "the correlation time of the latent force was not chosen by th
 NOT_SELECTED_AGAIN = (
     "the effects were not selected again with the correlation time that predicts best"
 )
+TERMS_NOT_SOUGHT = "further terms of the description were not sought"
 
 
 @dataclass(frozen=True)
@@ -338,14 +339,17 @@ def select(
     ranking = rank(problem, candidates, held_out, report=report, base=base, budget=budget)
     if "time_constant_s" in loaded.fitted[0].notes.ambient:
         return Selection(problem, ranking)
-    if budget.spent:
+    least = problem.config.select.again_share * budget.used_work
+    if budget.spent or budget.remaining_work < least:
         return Selection(problem, _with_skipped(ranking, TIME_NOT_CHOSEN))
     report("choosing the correlation time of the latent force", 1.0)
-    again = select_correlation_time(problem, ranking.best)
+    again = select_correlation_time(problem, ranking.best, budget)
+    if budget.spent:
+        return Selection(problem, _with_skipped(ranking, TIME_NOT_CHOSEN))
     if again is problem:
         return Selection(problem, ranking)
     report("selecting again with that correlation time", 1.0)
-    rest = SearchBudget(problem.filtered, budget.remaining_work, complete=True)
+    rest = budget.continued()
     try:
         return Selection(again, rank(again, candidates, held_out, ranking.best, budget=rest))
     except BudgetSpentError:  # the finished search is the better one
@@ -396,6 +400,8 @@ def describe(question: Question, decision: Decision, report: Report = ignore_pro
             term = replace(term, sd=best.value(term.term.name, "coefficient")[1])
         terms.append(term)
     effects = found.fit.effects
+    if not found.complete:
+        ranking = _with_skipped(ranking, TERMS_NOT_SOUGHT)
     return replace(
         ranking,
         best=best,

@@ -14,6 +14,7 @@ from boatsim.diagnosis import priors
 from boatsim.diagnosis.command_range import largest_command
 from boatsim.diagnosis.config import DEFAULT, DiagnosisConfig
 from boatsim.diagnosis.filter import BODY, FilterPass, MappedRecording, NoiseLevels
+from boatsim.diagnosis.work import WorkCount
 from boatsim.errors import BadInput
 from boatsim.physics.base import (
     Array,
@@ -238,13 +239,6 @@ def check_uncertainty(vessel: Vessel, specified: Mapping[str, float], where: str
         )
 
 
-@dataclass
-class WorkCount:
-    """Count of the computing work that fits have done: rows filtered times degrees of freedom."""
-
-    work: int = 0
-
-
 class _Target(NamedTuple):
     """Places in the parameter values of a run that a parameter changes, and their weights."""
 
@@ -275,7 +269,6 @@ class Problem:
     config: DiagnosisConfig = DEFAULT
     # prior sd of the coefficients of described terms, by the name of the effect
     spreads: dict[str, float] = field(default_factory=dict)
-    filtered: WorkCount = field(default_factory=WorkCount)  # work done for this problem
     program: Program = field(init=False)
     horizon: float = field(init=False)  # [s] length of free runs
     # coefficients of the vessel's own effects that are refitted with every hypothesis
@@ -315,6 +308,11 @@ class Problem:
             if len(runs) < len(self.recordings):
                 found.setdefault(tuple(runs), group)
         return tuple(sorted(found.values()))
+
+    @property
+    def filtered(self) -> WorkCount:
+        """Count of the work that was done for the recordings of the diagnosis."""
+        return self.recordings[0].filtered
 
     @cached_property
     def candidates(self) -> Mapping[str, Effect]:
@@ -453,7 +451,6 @@ class Problem:
             levels: Levels of sensor noise and of the latent (unmodelled) force.
             about: Passes whose linearisation is used again; None: linearise.
         """
-        self._count_work()
         before = about.passes if about else [None] * len(self.recordings)
         found = []
         for mapped, one in zip(self.recordings, before, strict=True):
@@ -473,7 +470,6 @@ class Problem:
 
         It costs less than complete passes by `filter`, which takes the same arguments.
         """
-        self._count_work()
         before = about.passes if about else [None] * len(self.recordings)
         found = 0.0
         for mapped, one in zip(self.recordings, before, strict=True):
@@ -500,11 +496,6 @@ class Problem:
                 acting[i] = 0.0
         return acting
 
-    def _count_work(self) -> None:
-        """Count one pass over all recordings."""
-        rows = sum(len(mapped.times) for mapped in self.recordings)
-        self.filtered.work += rows * int(self.program.module.NQ)
-
     def whitened_errors(
         self,
         free: Sequence[FreeParameter],
@@ -524,11 +515,45 @@ class Problem:
             levels: Levels of sensor noise and of the latent (unmodelled) force.
             about: Passes whose gains are used.
         """
-        self._count_work()
         found = []
         for mapped, one in zip(self.recordings, about.passes, strict=True):
             values, acting = self.values(mapped, free, theta), self._switches(mapped, free, on)
             found.append(mapped.whitened_errors(values, acting, levels, one))
+        return np.concatenate(found)
+
+    def whitened_errors_within(
+        self,
+        free: Sequence[FreeParameter],
+        theta: Array,
+        on: Array,
+        levels: NoiseLevels,
+        about: FilterPasses,
+        most: float,
+    ) -> Array | None:
+        """Return whitened errors as `whitened_errors`, if the sum of their squares is small enough.
+
+        The recordings are filtered one after another until the sum exceeds the limit, so that a
+        hypothesis that is far from the recordings costs little.
+
+        Args:
+            free: Free parameters of the hypothesis.
+            theta: (F,) their values.
+            on: (effects,) 1 for the effects that act, else 0.
+            levels: Levels of sensor noise and of the latent (unmodelled) force.
+            about: Passes whose gains are used.
+            most: Largest sum of squares.
+
+        Returns:
+            (rows,) errors; None if the sum of their squares is larger or not finite.
+        """
+        found, total = [], 0.0
+        for mapped, one in zip(self.recordings, about.passes, strict=True):
+            values, acting = self.values(mapped, free, theta), self._switches(mapped, free, on)
+            errors = mapped.whitened_errors(values, acting, levels, one)
+            total += float(errors @ errors)
+            if not total <= most:
+                return None
+            found.append(errors)
         return np.concatenate(found)
 
     def scale(self, effect: Effect, name: str) -> float:

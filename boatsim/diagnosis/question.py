@@ -1,7 +1,7 @@
 """Maps loaded recordings to one compiled program with all candidate effects."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -28,6 +28,7 @@ from boatsim.diagnosis.loading import Loaded
 from boatsim.diagnosis.locate import nominal_forces
 from boatsim.diagnosis.near_track import track_facts
 from boatsim.diagnosis.problem import Problem, check_uncertainty
+from boatsim.diagnosis.work import WorkCount
 from boatsim.physics.program import Program
 from boatsim.physics.vessel import Vessel
 from boatsim.recordings.table import Recording
@@ -41,6 +42,7 @@ class RecordingMapper:
     noise: Mapping[str, float]  # sensor noise that all recordings share, by family
     levels: NoiseLevels
     config: DiagnosisConfig
+    filtered: WorkCount = field(default_factory=WorkCount)  # work done for all of them
 
     def __call__(
         self, recording: Recording, noise_ratio: Mapping[str, float] | None = None
@@ -53,6 +55,7 @@ class RecordingMapper:
         """
         program = self.programs[recording.path]
         mapped = map_recording(recording, program, self.noise, noise_ratio, self.config)
+        mapped = replace(mapped, filtered=self.filtered)
         return infer_initial_actuator_state(mapped, self.levels, self.config.checks)
 
 

@@ -1,15 +1,15 @@
 """The budget of a search: a limit of its work, and what was not tried after it was spent.
 
-The work is counted in rows filtered times degrees of freedom: one pass of the filter over 1,000
-rows of a vessel in surge, sway and yaw counts 3,000. The count depends on the recordings and on the
-settings alone, never on the speed of the machine, so that a diagnosis gives the same answer
-everywhere.
+The work is counted in integration steps times degrees of freedom: a pass of the filter with 1,000
+steps of a vessel in surge, sway and yaw counts 3,000, and more where it computes covariances. The
+count depends on the recordings and on the settings alone, never on the speed of the machine, so
+that a diagnosis gives the same answer everywhere.
 """
 
 from collections.abc import Iterable
 
 from boatsim.diagnosis.candidates import base_name
-from boatsim.diagnosis.problem import WorkCount
+from boatsim.diagnosis.work import WorkCount
 
 
 class BudgetSpentError(Exception):
@@ -22,8 +22,8 @@ class BudgetSpentError(Exception):
 class SearchBudget:
     """Limit of the computing work of a search for candidate effects, and what it skipped.
 
-    Work is counted in rows filtered times degrees of freedom, so that the result does not depend on
-    the speed of the machine.
+    Work is counted in integration steps times degrees of freedom, so that the result does not
+    depend on the speed of the machine.
     """
 
     def __init__(self, count: WorkCount, work: int, *, complete: bool = False) -> None:
@@ -31,10 +31,11 @@ class SearchBudget:
 
         Args:
             count: Count of the work that has been done.
-            work: Work that may be done from now on [rows x dof].
+            work: Work that may be done from now on [steps x dof].
             complete: Whether the search has to end at once when the budget is spent.
         """
         self._count = count
+        self._first = count.work
         self._last = count.work + work
         self._complete = complete
         self._omitted: dict[str, int] = {}
@@ -42,8 +43,22 @@ class SearchBudget:
 
     @property
     def remaining_work(self) -> int:
-        """Computing work that the search may still do, at least 0 [rows x dof]."""
+        """Computing work that the search may still do, at least 0 [steps x dof]."""
         return max(self._last - self._count.work, 0)
+
+    def continued(self) -> "SearchBudget":
+        """Return the budget of a further search that has to be complete, with the rest of the work.
+
+        What this search has skipped is not taken over.
+        """
+        other = SearchBudget(self._count, self.remaining_work, complete=True)
+        other._first = self._first
+        return other
+
+    @property
+    def used_work(self) -> int:
+        """Computing work that the search has done, with those that it continues [steps x dof]."""
+        return self._count.work - self._first
 
     @property
     def spent(self) -> bool:

@@ -76,6 +76,7 @@ class CandidateSets:
         self.banned: set[str] = set()
         # results of `add_further_effects` by the names of a set and of the candidates then banned
         self.further: dict[tuple[Set, Set], Fit | None] = {}
+        self.further_work = 0  # that `add_further_effects` has done
         # effects without which held-out recordings are predicted worse, as free runs show
         self.supported: set[str] = set()
         # log likelihoods of recordings that are held out, by the identities of these and of the fit
@@ -138,6 +139,10 @@ class CandidateSets:
         if unexplained_evidence(problem, found) < config.select.unknown_gain:
             return found
         other = self.steps_at_assumed_disturbance(found)
+        if self.saves_work and np.isfinite(other.evidence):
+            other = fit(problem, other)
+            if self._returns(other, found):
+                return found
         if np.isfinite(other.evidence):
             other = converge(problem, other)
         if not other.evidence > found.evidence + config.fit.refit_gain:
@@ -146,6 +151,12 @@ class CandidateSets:
         self.forget_screenings(key)
         self.fits[key] = other
         return other
+
+    def _returns(self, other: Fit, found: Fit) -> bool:
+        """Whether a refit of the same set leads back to a fit: it is near, and has not gained."""
+        gained = other.evidence > found.evidence + self.config.fit.refit_gain
+        off = (other.theta - found.theta) / np.sqrt(np.diag(found.covariance))
+        return not gained and bool(np.all(np.abs(off) < self.config.select.same_maximum))
 
     def steps_at_assumed_disturbance(self, found: Fit) -> Fit:
         """Return a few Gauss-Newton steps of a fit with the latent force at its assumed level.
@@ -198,12 +209,14 @@ class CandidateSets:
             return known
         return self.converged_fit(remove_effect(self.problem, best, name))
 
-    def screen_unrefuted(self, best: Fit, among: Sequence[str] = ()) -> dict[str, Fit]:
+    def screen_unrefuted(
+        self, best: Fit, among: Sequence[str] = (), floor: float = 0.0
+    ) -> dict[str, Fit]:
         """Estimate the evidence of adding each candidate effect to a fit, except refuted ones.
 
-        The result is that of `screen_candidates`.
+        Arguments and result are those of `screen_candidates`.
         """
-        return self._unrefuted_fits(self.screen_candidates(best, among))
+        return self._unrefuted_fits(self.screen_candidates(best, among, floor))
 
     def fits_without_each(self, best: Fit) -> dict[str, Fit]:
         """Return, for each effect of a fit, the converged fit with this effect removed.
@@ -217,15 +230,19 @@ class CandidateSets:
         """Fits of those candidates that were not refuted."""
         return {name: found for name, found in fits.items() if name not in self.banned}
 
-    def screen_candidates(self, best: Fit, among: Sequence[str] = ()) -> dict[str, Fit]:
+    def screen_candidates(
+        self, best: Fit, among: Sequence[str] = (), floor: float = 0.0
+    ) -> dict[str, Fit]:
         """Estimate the evidence of adding each other candidate effect to a fit (screening).
 
-        Each candidate gets a rough fit, and the most promising ones are fitted in full. When the
-        budget is spent, only additions to the vessel alone are still screened.
+        Each candidate gets a rough fit, and the most promising ones are fitted in full. A search
+        that saves work omits candidates that are not expected to gain most. When the budget is
+        spent, only additions to the vessel alone are still screened.
 
         Args:
             best: Fit of the vessel model with some candidate effects.
             among: Names of candidates; none: all of them.
+            floor: Gain of evidence of an effect that the candidates compete with [nats].
 
         Returns:
             The cached fits by name, which may contain further candidates.
@@ -239,7 +256,9 @@ class CandidateSets:
                 len(rest), f"tested {addition_phrase(best.effects)}"
             )
             return known
-        if rest:
+        if rest and key and self.saves_work:
+            self._screen_lazily(best, rest, floor)
+        elif rest:
             report = self._report_screening if len(self.screenings) == 1 else None
             known |= screen(self.problem, best, rest, report, self._linearised(best))
         allowed = self._unrefuted_fits(known)
@@ -249,7 +268,10 @@ class CandidateSets:
             known |= allowed
         fits = 0
         # a screening may promise too much: the front is determined again after each full fit
-        while fits < self.config.select.most_full_fits:
+        most = self.config.select.most_full_fits
+        if self.saves_work:
+            most = min(most, self.config.select.saving_full_fits)
+        while fits < most:
             promising = fits_with_evidence_above(allowed, best.evidence)
             ahead = leading_candidates(promising, best, self.config.select)
             ahead = [n for n in ahead if (key, n) not in self.fitted_in_full]
@@ -271,6 +293,42 @@ class CandidateSets:
                 found = self.fit_with_added_effect(best, name, found)
             allowed[name] = known[name] = found
         return known
+
+    @property
+    def saves_work(self) -> bool:
+        """Whether the search has done so much work that it omits what hardly changes its result."""
+        return self.budget.used_work > self.config.select.thorough_work
+
+    def _screen_lazily(self, best: Fit, names: Sequence[str], floor: float) -> None:
+        """Screen candidates in the order of their gains on top of fewer effects.
+
+        It ends at those that hardly gain most: an effect usually gains less evidence the more
+        effects there are. This is the accelerated greedy algorithm (M. Minoux, Accelerated greedy
+        algorithms for maximizing submodular set functions, Optimization Techniques, 1978). If no
+        candidate gains enough, all are screened.
+        """
+        known = self.screenings[frozenset(best.effects)]
+        expected = self._earlier_gains(best, names)
+        laws = self._unrefuted_fits(known).items()
+        gains = [f.evidence - best.evidence for n, f in laws if n not in self.random]
+        lead = max(floor, max(gains, default=0.0))
+        for name in sorted(names, key=lambda n: -expected[n]):
+            share = self.config.select.lazy_share * lead
+            if lead > self.required_gain and expected[name] < share:
+                break
+            known |= screen(self.problem, best, [name], None, self._linearised(best))
+            if name not in self.random | self.banned:
+                lead = max(lead, known[name].evidence - best.evidence)
+
+    def _earlier_gains(self, best: Fit, names: Sequence[str]) -> dict[str, float]:
+        """Gain of each candidate on top of most of a fit's effects; infinite where unknown."""
+        key = frozenset(best.effects)
+        found = dict.fromkeys(names, np.inf)
+        for other in sorted((s for s in self.screenings if s < key), key=len):
+            for name in self.screenings[other].keys() & found.keys():
+                fit = self.screenings[other][name]
+                found[name] = float(fit.evidence - self.fits[other].evidence)
+        return found
 
     def _linearised(self, best: Fit) -> Linearisation:
         """A fit linearised, once for consecutive screenings on top of it."""

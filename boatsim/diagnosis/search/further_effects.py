@@ -11,7 +11,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from boatsim.diagnosis.candidates import base_name
-from boatsim.diagnosis.fit import converge
+from boatsim.diagnosis.fit import converge, fit
 from boatsim.diagnosis.problem import Fit
 from boatsim.diagnosis.search.candidate_sets import CandidateSets
 from boatsim.diagnosis.search.evidence import unexplained_evidence, unknown_cause_threshold
@@ -36,7 +36,9 @@ def add_further_effects(sets: CandidateSets, best: Fit) -> Fit | None:
     """
     key = frozenset(best.effects), frozenset(sets.banned)
     if key not in sets.further:
+        before = sets.budget.used_work
         sets.further[key] = _find_further_effects(sets, best)
+        sets.further_work += sets.budget.used_work - before
     return sets.further[key]
 
 
@@ -45,18 +47,23 @@ def _find_further_effects(sets: CandidateSets, best: Fit) -> Fit | None:
     room = sets.config.select.most_effects - len(best.effects)
     if room < 1 or unexplained_evidence(sets.problem, best) < threshold:
         return None
-    if sets.budget.spent:
+    if _ends(sets):
         sets.budget.state(NOT_SOUGHT)
         return None
-    singles = list(_additions(sets, best))
+    order = list[str]()
+    least = best.evidence
+    singles = list(_additions(sets, best, order, least))
     found = _sufficient(singles, best.evidence + sets.required_gain)
     if found is not None or room < 2:
         return found
+    if sets.saves_work:  # second effects are those that promised most alone
+        order = order[: sets.config.select.saving_seconds]
     pairs: list[Fit] = []
     for single in singles:
-        if sets.budget.spent:
+        if _ends(sets):
+            sets.budget.state(NOT_SOUGHT)
             break
-        pairs += _additions(sets, single)
+        pairs += _additions(sets, single, order.copy(), least)
     return _sufficient(pairs, best.evidence + 2.0 * sets.required_gain)
 
 
@@ -66,20 +73,35 @@ def _sufficient(fits: list[Fit], least: float) -> Fit | None:
     return best if best is not None and best.evidence > least else None
 
 
-def _additions(sets: CandidateSets, best: Fit) -> Iterator[Fit]:
-    """Yield converged fits with one more effect, for the candidates that promise most."""
+def _ends(sets: CandidateSets) -> bool:
+    """Whether the budget of the search is spent, or the share of it that is used here."""
+    most = sets.config.select.further_share * sets.config.select.budget
+    return sets.budget.spent or sets.further_work > most
+
+
+def _additions(sets: CandidateSets, best: Fit, order: list[str], least: float) -> Iterator[Fit]:
+    """Yield converged fits with one more effect, for the candidates that promise most.
+
+    `order` names the candidates, none for all; it is replaced by their order. A search that saves
+    work does not refine fits whose evidence is not above `least`.
+    """
     problem = sets.problem
     calm = sets.steps_at_assumed_disturbance(best)
     if not np.isfinite(calm.evidence):
         return
     ideas = set(map(base_name, best.effects))
     names = []
-    for name in sets.candidates:
+    for name in order or sets.candidates:
         if base_name(name) not in ideas and name not in sets.random | sets.banned:
             names.append(name)
     screened = screen(problem, calm, names)
-    leading = sorted(names, key=lambda name: -screened[name].evidence)
-    for name in leading[: sets.config.select.further_fits]:
+    order[:] = sorted(names, key=lambda name: -screened[name].evidence)
+    for name in order[: sets.config.select.further_fits]:
         start = sets.steps_at_assumed_disturbance(screened[name])
+        if np.isfinite(start.evidence) and sets.saves_work:
+            start = fit(problem, start)
+            if not start.evidence > least:
+                yield start
+                continue
         if np.isfinite(start.evidence):
             yield sets.keep_better(converge(problem, start))

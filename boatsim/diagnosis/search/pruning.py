@@ -219,7 +219,7 @@ def _compare_with_rivals(sets: CandidateSets, best: Fit, name: str) -> Identifie
     config = sets.config.select
     without = sets.fit_without(best, name)
     gain = best.evidence - without.evidence
-    tested = _tested_instead(sets, best, name, without)
+    tested = _tested_instead(sets, best, name, without, gain)
     others = {n: f for n, f in tested.items() if n not in best.effects}
     key, rivals = frozenset(without.effects), {}
     leading = leading_candidates(others, without, config)[: config.most_rivals]
@@ -237,11 +237,16 @@ def _compare_with_rivals(sets: CandidateSets, best: Fit, name: str) -> Identifie
     return compare_rivals(name, best, without, rivals, config)
 
 
-def _tested_instead(sets: CandidateSets, best: Fit, name: str, without: Fit) -> Mapping[str, Fit]:
-    """Screenings of promising candidates in the place of an effect; none without a budget."""
+def _tested_instead(
+    sets: CandidateSets, best: Fit, name: str, without: Fit, gain: float
+) -> Mapping[str, Fit]:
+    """Screenings of promising candidates in the place of an effect that gains some evidence.
+
+    There are none without a budget.
+    """
     promising = [n for n in sets.promising_candidates(without) if n != name]
     if not sets.budget.spent:
-        return sets.screen_unrefuted(without, promising)
+        return sets.screen_unrefuted(without, promising, gain)
     others = set(promising) - sets.banned - set(best.effects)
     sets.budget.record_skipped_candidates(len(others), f"refitted in place of {base_name(name)}")
     return {}

@@ -24,6 +24,9 @@ from boatsim.diagnosis.noise_levels import log_force_prior
 from boatsim.diagnosis.problem import FilterPasses, Fit, Problem, free_parameter_values
 from boatsim.physics.base import Array, Effect, RandomForce
 
+LARGE = 1e300  # magnitude of a score from which every finite one is better
+MARGIN = 1e-6  # of a sum of squares, so that rounding decides nothing
+
 
 @dataclass(frozen=True)
 class Linearisation:
@@ -290,21 +293,37 @@ def _gauss_newton_steps(
             score = log_prior(free, x) - 0.5 * float(white @ white)
             return white, score + float(slope @ ((x - middle) / space.sd))
 
+    def evaluate_above(x: Array, least: float) -> tuple[Array, float] | None:
+        """The errors and the score, if it is higher than `least`."""
+        most = 2.0 * (log_prior(free, x) + float(slope @ ((x - middle) / space.sd)) - least)
+        with np.errstate(over="ignore", invalid="ignore"):
+            white = problem.whitened_errors_within(free, x, on, levels, about.passes, most + MARGIN)
+        if white is None:
+            return None
+        score = log_prior(free, x) - 0.5 * float(white @ white)
+        score += float(slope @ ((x - middle) / space.sd))
+        return (white, score) if score > least else None
+
     white, score = evaluate(theta)
     if not score > about.score - config.screening_loss:
         # the other parameters may make up for the start: more mass for more thrust and damping
         J = np.hstack([known, np.zeros((len(known), len(free) - known.shape[1]))])
         g = slope - J.T @ white - (theta - space.mean) / space.sd
         moved = space.damped_step(theta, J.T @ J, g, 0.0)
-        after, value = evaluate(moved)
-        if np.isfinite(value) and not value <= score:
-            theta, white, score = moved, after, value
+        better = evaluate_above(moved, score if np.isfinite(score) else -LARGE)
+        if better is not None:
+            theta, (white, score) = moved, better
     own = np.arange(len(free)) >= len(about.slope)
-    for _ in range(config.screening_halvings):  # a start may be far too strong for this hull
-        if np.isfinite(score) and score > about.score - config.screening_loss:
+    least = about.score - config.screening_loss
+    for i in range(config.screening_halvings):  # a start may be far too strong for this hull
+        if np.isfinite(score) and score > least:
             break
         theta = np.where(own, 0.5 * (theta + space.mean), theta)
-        white, score = evaluate(theta)
+        better = evaluate_above(theta, least)
+        if better is not None:
+            white, score = better
+        elif i == config.screening_halvings - 1:
+            white, score = evaluate(theta)
     if not np.isfinite(score):
         return start, -np.inf
     damping, A = FIRST_DAMPING, np.zeros((len(free), len(free)))
@@ -321,11 +340,11 @@ def _gauss_newton_steps(
                 # too little to follow: the prediction is accepted
                 theta, score, ends = trial, score + predicted, True
                 break
-            after, value = evaluate(trial)
-            if np.isfinite(value) and value > score:
-                ends = agrees_with_prediction(problem, value - score, predicted)
-                gain = value - score
-                theta, white, score = trial, after, value
+            better = evaluate_above(trial, score)
+            if better is not None:
+                gain = better[1] - score
+                ends = agrees_with_prediction(problem, gain, predicted)
+                theta, (white, score) = trial, better
                 break
             damping = max(damping, LEAST_DAMPING) * DAMPING_GROWTH
         if gain < problem.config.fit.step_gain or ends:

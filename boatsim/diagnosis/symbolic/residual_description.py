@@ -51,7 +51,9 @@ def describe(
         drawn = curve(recordings, term, *found.fit.value(slot, "coefficient"))
         described = term.with_values({"name": slot, "coefficient": value})
         written.append(FittedTerm(described, sd, gains[slot], carries, drawn))
-    return Description(tuple(written), general.fit, unexplained_evidence(problem, found.fit))
+    return Description(
+        tuple(written), general.fit, unexplained_evidence(problem, found.fit), found.complete
+    )
 
 
 def _general(

@@ -60,25 +60,34 @@ def score_terms(
     Returns:
         The terms that act at all, those with most evidence first.
     """
-    scored: list[ScoredTerm] = []
-    for first in range(0, len(terms), BATCH):
-        scored += _score_batch(recordings, terms[first : first + BATCH])
-    return sorted(scored, key=lambda s: -s.gain)
+    by_run: dict[str, list[int]] = {}  # an event of one recording is zero in all others
+    for i, term in enumerate(terms):
+        by_run.setdefault(term.run, []).append(i)
+    found: dict[int, ScoredTerm] = {}
+    for run, places in by_run.items():
+        own = [fitted for fitted in recordings if run in ("", fitted.recording.name)]
+        for first in range(0, len(places), BATCH):
+            some = places[first : first + BATCH]
+            scored = _score_batch(own, [terms[i] for i in some])
+            found |= {i: one for i, one in zip(some, scored, strict=True) if one is not None}
+    return sorted([found[i] for i in sorted(found)], key=lambda s: -s.gain)
 
 
 def _score_batch(
     recordings: Sequence[FittedRecording], terms: Sequence[SymbolicTerm]
-) -> list[ScoredTerm]:
+) -> list[ScoredTerm | None]:
+    """Score terms over the recordings in which they act; None for a term that is always zero."""
     information, score = np.zeros(len(terms)), np.zeros(len(terms))
     squares, rows = np.zeros(len(terms)), np.zeros(len(terms))
     for fitted in recordings:
         with np.errstate(over="ignore"):
             forces = np.stack([fitted.force(term) for term in terms], axis=2)
-            sizes = np.stack([_size(fitted, term) for term in terms])
+            sizes = np.stack([fitted.size(term) for term in terms])
         squares += (sizes**2).sum(axis=1)
         rows += (sizes != 0.0).sum(axis=1)
         recording, levels = fitted.recording, fitted.fit.levels
         nq = fitted.problem.program.module.NQ
+        recording.filtered.add_scores(len(terms), len(recording.times), int(nq))
         latent = LatentForce(
             recording.times,
             np.hstack([fitted.states, fitted.residual]),
@@ -90,10 +99,11 @@ def _score_batch(
         more_information, more_score = separate_information(forces, latent)
         information = information + more_information
         score = score + more_score
-    scored = []
+    scored: list[ScoredTerm | None] = []
     numbers = np.column_stack([information, score, squares, rows]).tolist()
     for term, (i, s, square, n) in zip(terms, numbers, strict=True):
         if not (np.isfinite(i) and i > 0.0 and square > 0.0):
+            scored.append(None)
             continue
         spread = prior_force_sd(recordings[0].problem.program.vessel, term) / float(
             np.sqrt(square / n)
@@ -102,13 +112,6 @@ def _score_batch(
         gain = 0.5 * s**2 / whole - 0.5 * float(np.log(whole * spread**2))
         scored.append(ScoredTerm(term, gain, s / whole, spread))
     return scored
-
-
-def _size(fitted: FittedRecording, term: SymbolicTerm) -> Array:
-    """Return the size (N,) of a term; zero for an event of another recording."""
-    if term.run in ("", fitted.recording.name):
-        return fitted.size(term)
-    return 0.0 * fitted.recording.times
 
 
 def prior_force_sd(vessel: Vessel, term: SymbolicTerm) -> float:

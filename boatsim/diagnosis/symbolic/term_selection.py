@@ -12,6 +12,7 @@ import numpy as np
 from boatsim.diagnosis.filter import MappedRecording
 from boatsim.diagnosis.fit import converge, fit, gauss_newton, remove_effect
 from boatsim.diagnosis.problem import Fit, Problem
+from boatsim.diagnosis.search.budget import SearchBudget
 from boatsim.diagnosis.search.evidence import required_gain
 from boatsim.diagnosis.symbolic.grammar import neighbours, terms
 from boatsim.diagnosis.symbolic.slots import set_placeholder_term, unused_placeholder
@@ -32,10 +33,12 @@ class Formula:
     Attributes:
         fit: Fit of the vessel model.
         terms: Terms by the name of their placeholder effect, in the order in which they were added.
+        complete: Whether further terms were sought until none gained enough, or there were enough.
     """
 
     fit: Fit
     terms: dict[str, SymbolicTerm]
+    complete: bool = True
 
 
 @dataclass(frozen=True)
@@ -52,7 +55,7 @@ def select_terms(
 ) -> Formula:
     """Build a formula for an unexplained force: add symbolic terms one by one, by evidence.
 
-    The selection ends when no term gains enough evidence.
+    The selection ends when no term gains enough evidence, or when its budget of work is spent.
 
     Args:
         problem: The estimation problem.
@@ -66,8 +69,11 @@ def select_terms(
     report(DESCRIBING)
     config = problem.config
     formula = Formula(best, {})
+    budget = SearchBudget(problem.filtered, config.describe.budget)
     everywhere, refused = [*problem.recordings, *held_out], set[Family]()
     while len(formula.terms) < config.describe.most_terms:
+        if formula.terms and budget.spent:
+            return replace(formula, complete=False)
         ordered = _score_all(problem, fitted_recordings(problem, formula.fit))
         trials = _trials(problem, formula, ordered, refused, everywhere)
         if not trials:

@@ -1,5 +1,6 @@
 """The budget of a search: its count, the end of the search, and the report of what was skipped."""
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -9,11 +10,11 @@ from pushed_boat import BOAT, push, sail
 from boatsim.diagnosis import loading, pipeline
 from boatsim.diagnosis.config import DEFAULT, DiagnosisConfig
 from boatsim.diagnosis.loading import Loaded, Request
-from boatsim.diagnosis.problem import WorkCount
 from boatsim.diagnosis.question import Question, set_up_estimation_problem
 from boatsim.diagnosis.report.answer import INCOMPLETE
 from boatsim.diagnosis.report.sentences import console_lines
 from boatsim.diagnosis.search.budget import BudgetSpentError, SearchBudget, addition_phrase
+from boatsim.diagnosis.work import CALL, WorkCount
 from boatsim.physics.base import Array
 from boatsim.recordings.table import write_csv
 
@@ -47,18 +48,27 @@ def selection_with(loaded: Loaded, config: DiagnosisConfig) -> pipeline.Selectio
     return pipeline.select(question, pipeline.fit(question), loaded)
 
 
-def test_a_pass_counts_the_rows_of_all_recordings_times_the_degrees_of_freedom(
-    loaded: Loaded,
-) -> None:
+def test_a_pass_counts_its_integration_steps_and_a_repeated_one_nothing(loaded: Loaded) -> None:
     problem = question_with(loaded, FAST).problem
     found = problem.nominal_hypothesis()
     on = problem.program.effect_switches()
-    rows = sum(len(mapped.times) for mapped in problem.recordings)
-    before = problem.filtered.work
     passes = problem.filter(found.free, found.theta, on, found.levels)
-    problem.log_likelihood(found.free, found.theta, on, found.levels)
+    before = problem.filtered.work
+    problem.log_likelihood(found.free, found.theta, on, found.levels)  # known from the pass
+    assert problem.filtered.work == before
     problem.whitened_errors(found.free, found.theta, on, found.levels, passes)
-    assert problem.filtered.work == before + 3 * rows * len(problem.program.vessel.dof)
+    work = 0
+    for mapped in problem.recordings:
+        intervals = np.diff(mapped.times)
+        steps = sum(max(1, math.ceil(h / mapped.step - 1e-9)) for h in intervals)
+        work += CALL + steps * len(problem.program.vessel.dof)
+    assert problem.filtered.work == before + work
+
+
+def test_all_recordings_of_a_diagnosis_share_one_count(loaded: Loaded) -> None:
+    question = question_with(loaded, FAST)
+    counts = [mapped.filtered for mapped in (*question.problem.recordings, *question.held_out)]
+    assert all(count is question.problem.filtered for count in counts)
 
 
 def test_the_default_budget_skips_nothing(loaded: Loaded) -> None:

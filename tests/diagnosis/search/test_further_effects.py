@@ -69,7 +69,9 @@ def test_a_spent_budget_ends_the_search(windy: Laid) -> None:
     problem, base = windy
     config = replace(problem.config, select=replace(problem.config.select, budget=1))
     sets = CandidateSets(replace(problem, config=config), ("wind",), base)
-    sets.problem.filter(base.free, base.theta, problem.program.effect_switches(), base.levels)
+    sets.problem.filter(
+        base.free, 1.01 * base.theta, problem.program.effect_switches(), base.levels
+    )
     assert sets.budget.spent and add_further_effects(sets, base) is None
 
 
