@@ -154,8 +154,8 @@ def real_bars(page: str) -> list[charts.Bar]:
 
 def draw_real(page: str, in_file: bool) -> str:
     """Return the chart of the error ratios on real recordings."""
-    about = "Error of the patched vessel over that of the recalibrated one, on real recordings"
-    label = "error of the patched vessel / error of the recalibrated vessel"
+    about = "Error of the corrected vessel over that of the retuned one, on real recordings"
+    label = "error of the corrected vessel / error of the retuned vessel"
     return charts.bar_chart(real_bars(page), (0.0, 1.25), label, about, in_file)
 
 
