@@ -79,7 +79,7 @@ def checked_name(argument: str, value: object) -> str:
 
 
 def optional_name(argument: str, value: object) -> str | None:
-    """Return an argument that is a name, a path or None as text or None; see `checked_name`."""
+    """Return a name or a path as text, and None as None; see `checked_name`."""
     if value is None:
         return None
     return checked_name(argument, value)

@@ -24,7 +24,7 @@ def ignore_progress(stage: str, share: float = 0.0, detail: str = "") -> None:
 
 
 def report_part_of(report: Report, begin: float, end: float) -> Report:
-    """Return a progress callback for a part of the work, which reports to that of the whole work.
+    """Return a callback that scales the progress of a part of the work to that of the whole work.
 
     Args:
         report: Progress callback of the whole work.

@@ -61,7 +61,7 @@ class Case:
         return [*lines, *baselines.compare_with_baselines(self.baseline, self.metrics)]
 
     @property
-    def code(self) -> Exit:
+    def exit_code(self) -> Exit:
         """Exit code of the regression test of this scenario."""
         if self.error:
             return Exit.BAD_INPUT
@@ -110,7 +110,7 @@ def run_regression(folder: Path, pin: bool, seeds: int, junit: Path | None, as_j
             if case.name not in message:
                 message = f"{case.name}: {message}"
             print_error(message)
-    return max(case.code for case in cases)
+    return max(case.exit_code for case in cases)
 
 
 def _run_all(folder: Path, known: Mapping[str, Mapping[str, Baseline]], seeds: int) -> list[Case]:
@@ -188,7 +188,7 @@ def _print_cases(folder: Path, cases: Sequence[Case]) -> None:
     }
     for case in cases:
         counts = str(len(case.metrics)), str(len(case.failures))
-        table.add_row(Text(escape_for_terminal(case.name)), *counts, states[case.code])
+        table.add_row(Text(escape_for_terminal(case.name)), *counts, states[case.exit_code])
     console = Console()
     console.print(table)
     for case in cases:
@@ -207,19 +207,19 @@ def _cases_to_json(folder: Path, cases: Sequence[Case]) -> dict[str, object]:
         scenarios.append(
             {
                 "scenario": case.name,
-                "exit": case.code,
+                "exit": case.exit_code,
                 "error": case.error or None,
                 "faults": case.failures,
                 "norms": metrics,
             }
         )
-    worst = max(case.code for case in cases)
+    worst = max(case.exit_code for case in cases)
     return {"folder": str(folder), "exit": worst, "scenarios": scenarios}
 
 
 def _write_junit(folder: Path, cases: Sequence[Case], path: Path) -> None:
     """Write the results as JUnit XML, one test case for each scenario."""
-    codes = [case.code for case in cases]
+    codes = [case.exit_code for case in cases]
     total = {
         "tests": str(len(cases)),
         "failures": str(codes.count(Exit.MISSED)),

@@ -60,7 +60,7 @@ class Approach(CheckedParameters):
     _lasting: float = field(default=0.0, init=False)  # [m/s] of the sway stick
 
     def step(self, pose: tuple[float, float, float], v: float, dt: float) -> Stick:
-        """Return the joystick demands that move a boat towards its berth in the next period.
+        """Return the joystick demands of the next control period that move a boat to its berth.
 
         Args:
             pose: x, y [m] and psi [rad] relative to the berth.

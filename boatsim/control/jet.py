@@ -12,12 +12,12 @@ JET_Q2 = 154.9  # [m^2/s^3] printed 164.5, with which the power jumps at throttl
 def power_at_throttle(throttle: float, q2: float) -> float:
     """Return the shaft power of a water jet per mass of the craft [m^2/s^3] at a throttle.
 
-    The thrust per mass is power / speed. Svendsen et al., IFAC MCMC 2012, equation 10 and Table 2,
-    with the printed s_i as coefficients of throttle^i.
+    The thrust per mass is this power over the speed of the craft. Svendsen et al., IFAC MCMC 2012,
+    equation 10 and Table 2, where the s_i of the table are the coefficients of throttle^i.
 
     Args:
         throttle: Throttle, 1 (idle) to 7 (full).
-        q2: Constant of the upper branch [m^2/s^3].
+        q2: Constant of the law for throttle above 4 [m^2/s^3].
     """
     if throttle < 2.0:
         return 12.10 * throttle - 11.30
@@ -32,7 +32,7 @@ def throttle_for_power(power: float, q2: float) -> float:
 
     Args:
         power: Shaft power per mass [m^2/s^3].
-        q2: Constant of the upper branch [m^2/s^3].
+        q2: Constant of the law for throttle above 4 [m^2/s^3].
     """
     if power < 12.90:  # at 2
         return max((power + 11.30) / 12.10, 1.0)

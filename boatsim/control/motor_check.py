@@ -84,7 +84,7 @@ class Train:
         self.rates.append(rate)
         self.felt.append(felt)
 
-    def evaluate(self, period: float, lag: float, drift: Drift, aside: int) -> Found:
+    def fit_pulse_response(self, period: float, lag: float, drift: Drift, aside: int) -> Found:
         """Return the boat's response to a train of thrust pulses, by least squares.
 
         Args:
@@ -206,7 +206,7 @@ class MotorCheck:
                     yield Pulse(sense, side)
                 train.add_reading(*self._reading)
                 self._found.append(
-                    train.evaluate(
+                    train.fit_pulse_response(
                         self.period, self.lag, self.drift, 1 if side == STARBOARD else -1
                     )
                 )

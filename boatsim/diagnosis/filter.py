@@ -92,7 +92,8 @@ class NoiseLevels:
 class InitialState:
     """Prior mean and covariance of the Kalman filter's state at the first row of a recording.
 
-    The state holds the positions, the rates in earth axes and the latent forces.
+    The state holds the positions, their rates in earth axes and the latent forces, which are the
+    unknown forces that the filter estimates.
     """
 
     mean: Array  # (3 NQ,)

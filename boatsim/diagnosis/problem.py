@@ -45,7 +45,7 @@ SYMBOLS = {
 
 @dataclass(frozen=True)
 class FreeParameter:
-    """A parameter that a diagnosis fits, its normal prior and bounds, and the numbers it changes.
+    """A parameter that a diagnosis fits, its normal prior and bounds, and the model values it sets.
 
     It belongs to a candidate effect, or is a coefficient of the nominal vessel model. A coefficient
     scales the specified value: `relative` is true and the prior mean is 1. An effect that releases
@@ -311,7 +311,7 @@ class Problem:
 
     @property
     def filtered(self) -> WorkCount:
-        """Count of the work that was done for the recordings of the diagnosis."""
+        """Count of the integration steps and matrix operations of the diagnosis so far."""
         return self.recordings[0].filtered
 
     @cached_property

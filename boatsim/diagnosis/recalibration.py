@@ -71,9 +71,9 @@ def decide_recalibration(
 def fix_undetermined_coefficients(problem: Problem, found: Fit) -> Fit:
     """Return a fit in which coefficients that the recordings do not determine are held fixed.
 
-    They have the value of the vessel file, and the other parameters are refitted. Levels and
-    evidence stay those of the hypothesis in which all coefficients are free. The covariance is that
-    of the posterior about the new values.
+    They have the value of the vessel file, and the other parameters are refitted. Noise
+    levels and evidence stay those of the hypothesis in which all coefficients are free. The
+    covariance is that of the posterior at the new values.
 
     Args:
         problem: The estimation problem: recordings, vessel model, candidate effects and priors.

@@ -78,10 +78,10 @@ class Session:
         self.server.send_initial_data(self._painter.initial_data(ready=False))
 
     def prepare_run(self, engine: Engine | OpenWater, stop: Callable[[], bool]) -> None:
-        """Tell the page that the vessel is ready and wait until a driver has taken the sticks.
+        """Tell the web page that the vessel is ready and wait until somebody drives it from there.
 
         Args:
-            engine: Engine of the run.
+            engine: Engine that simulates the vessel.
             stop: Returns whether the run is interrupted.
 
         Raises:

@@ -240,7 +240,7 @@ def _effect_lines(boat: Particulars) -> Iterator[str]:
     middle = "mid-length ahead of the mass centre"
     if boat.mass_centre is not None:
         yield toml_line("sway_at", boat.middle, "m", middle)
-    linear, quadratic = resistance.surge_damping(hull, given_thrust(boat), boat.speed)
+    linear, quadratic = resistance.surge_damping(hull, stated_full_thrust(boat), boat.speed)
     yield from ("", "[[effect]]", 'use = "linear_damping"')
     yield _estimate_line("surge", linear, "N s/m")
     yield _estimate_line("sway", sway, "N s/m")
@@ -306,7 +306,7 @@ def rudder_design_speed(boat: Particulars) -> float:
     return min(easy, boat.speed)
 
 
-def given_thrust(boat: Particulars) -> float | None:
+def stated_full_thrust(boat: Particulars) -> float | None:
     """Return the total full thrust of a new boat [N]; None if its owner did not give all thrusts.
 
     Args:

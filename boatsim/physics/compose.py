@@ -151,13 +151,13 @@ class Composition:
         return self._own.get(number, 0)
 
     def filtered_source(self, number: int) -> int:
-        """Return the index in `law_signals` of the signal that an effect passes through a filter.
+        """Return the place among the signals of the force laws of the one that an effect filters.
 
         Args:
-            number: Index of the effect in the program.
+            number: Place of the effect among the effects of the program.
 
         Raises:
-            BadInput: The first role of the effect is bound to no channel.
+            BadInput: The vessel file does not state a signal for the effect's first input.
         """
         effect = self.effects[number]
         role = next(iter(type(effect).roles))

@@ -86,7 +86,7 @@ def _effect_files() -> dict[str, str]:
 
 
 def user_content_names(kind: str) -> list[str]:
-    """Return the names of vessels, effects or other content that the user's own folders add."""
+    """Return the names of vessels, effects, controllers or scenarios in the user's own folders."""
     found: set[str] = set()
     for folder in trust.user_content_folders() if kind in USER_FOLDERS else ():
         inside = folder / USER_FOLDERS[kind]

@@ -111,7 +111,7 @@ class Program:
         )
 
     def vessel_numbers(self, active: Sequence[str] = ()) -> VesselNumbers:
-        """Return rigid body, effect parameters and active effects, as compiled functions take them.
+        """Return rigid-body data, effect parameters and switches in the form of compiled functions.
 
         Args:
             active: Names of the candidate effects that act.

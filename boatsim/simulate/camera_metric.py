@@ -102,7 +102,7 @@ class CameraMetricSet(MetricSet):
     def kind(self, metric: str) -> str:
         """Return how a metric on camera frames summarises its signal, such as "rms" or "largest".
 
-        Sums are over frames, whatever the frame rate.
+        A sum adds the values of the frames and is not multiplied by their interval.
 
         Args:
             metric: Name of one of the metrics.
@@ -132,8 +132,9 @@ def select_camera_frames(
         camera: Recording of the camera.
         truth: Log of the run.
         start: Pose of the start.
-        every: Use one frame of so many.
-        begin: Time of the first frame [s]; later than 0, the pose then is the origin.
+        every: Use every n-th frame.
+        begin: Time of the first frame [s]; if above 0, poses are relative to the pose at that time
+            instead of `start`.
 
     Returns:
         The frames.

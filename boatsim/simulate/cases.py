@@ -74,7 +74,7 @@ def read_scenario(given: str) -> tuple[dict[str, Value], ScenarioLocation]:
         given: Name or path, as for `find_scenario`.
 
     Returns:
-        The merged content, and where it comes from.
+        The merged content, and the paths of its files.
 
     Raises:
         BadInput: If the scenario or its base does not exist or a file is not valid.

@@ -120,7 +120,7 @@ def _check_heading(manoeuvre: str, heading: float | None) -> None:
 def complete_manoeuvring_table(vessel: Vessel) -> ManoeuvringTable:
     """Return a vessel's [manoeuvring] table, with missing entries derived from its channels.
 
-    The table holds the commands for going ahead and astern and the commands per rad of helm.
+    The table holds the commands for going ahead and astern, and those per rad of steering angle.
 
     Args:
         vessel: The vessel.

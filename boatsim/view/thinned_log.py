@@ -16,7 +16,7 @@ BUCKETS = 2000  # at least so many for a long run, twice as many at most: more t
 
 
 class Samples(NamedTuple):
-    """Samples of a log: B buckets of consecutive rows.
+    """A log reduced for plotting to B buckets of consecutive rows.
 
     Attributes:
         t: Time of the first row of each bucket (B,) [s].

@@ -30,10 +30,10 @@ class Push:
     """A short external force that was not recorded.
 
     Attributes:
-        begin: Time of its first row [s].
-        end: Time of its last row [s].
-        axis: Degree of freedom along which it is largest.
-        force: Its largest size [N, N m].
+        begin: Time of the first row of the recording in which it acts [s].
+        end: Time of the last one [s].
+        axis: Degree of freedom along which it is largest, relative to its uncertainty.
+        force: Its largest size along this axis [N], about an axis [N m].
     """
 
     begin: float

@@ -117,8 +117,9 @@ def effect_consistency(
 ) -> dict[str, Consistency]:
     """Return statistics of each identified effect that tell a true cause from a stand-in.
 
-    They compare the effect's size between recordings, times and conditions, and its gain on
-    held-out recordings.
+    A stand-in is an effect that only imitates the true cause. The statistics compare the effect's
+    size between recordings, times and ranges of speed and command, and state by how much it
+    raises the log likelihood of held-out recordings.
 
     Args:
         problem: The estimation problem: recordings, vessel model, candidate effects and priors.

@@ -49,7 +49,7 @@ from boatsim.view.page_blocks import (
 
 
 def identified_effects(f: Findings, kind: str) -> Iterator[Block]:
-    """Yield the identified effects of a kind; the first of all explains the deviations.
+    """Yield the sections on the identified effects of a kind; the most important comes first.
 
     Args:
         f: Findings of a diagnosis.

@@ -425,14 +425,15 @@ def _improvement_factor(gain: float) -> str:
 
 
 def mean_force_paragraph(answer: Answer, patched: bool) -> list[str]:
-    """Return a paragraph on the constant force that the corrected vessel model does not explain.
+    """Return what a report says of the constant force that the corrected model does not explain.
 
     Args:
         answer: Content of diagnosis.json.
-        patched: Whether the corrected vessel differs from the retuned one.
+        patched: Whether the corrected vessel has effects that the retuned one lacks.
 
     Returns:
-        One paragraph with size, direction and share of full thrust; an empty list without a force.
+        A list of one paragraph with size, direction and share of full thrust; an empty list
+        without a force.
     """
     found = answer.get("mean_left") or {}
     if not found:

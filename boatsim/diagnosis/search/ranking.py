@@ -80,7 +80,7 @@ class Ranking:
 
     @property
     def adds_effects(self) -> bool:
-        """Whether the selection adds an effect or a formula to the vessel model."""
+        """Whether the selected model has an effect or a formula that the vessel file lacks."""
         return bool(self.named) or bool(self.doubtful) or bool(self.described_terms)
 
     @property

@@ -205,10 +205,11 @@ def replace_stochastic_force(
 def remove_refuted_rivals(
     sets: CandidateSets, best: Fit, named: Sequence[IdentifiedEffect], held_out: Recordings
 ) -> tuple[IdentifiedEffect, ...]:
-    """Remove, from identified effects, the rivals that held-out recordings refute.
+    """Drop alternative explanations of the identified effects that held-out recordings contradict.
 
-    A rival is another candidate effect in the effect's place. It is refuted by its evidence on all
-    recordings, or by simulations (free runs) that get clearly worse.
+    A rival is another candidate effect in the effect's place. It is dropped if the evidence of all
+    recordings, the held-out ones included, is against it, or if simulations of the held-out
+    recordings (free runs) with it are clearly worse than with the effect.
 
     Args:
         sets: Cache of the fits of candidate sets, with the estimation problem.

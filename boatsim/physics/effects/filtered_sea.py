@@ -35,9 +35,9 @@ def law(m: Any, q: Any) -> Wrench:
 
 @dataclass(frozen=True)
 class FilteredSea(Force):
-    """Coloured noise for wave forces, as in the design of rudder controllers.
+    """Coloured noise for wave forces: the linear second-order wave model of autopilot design.
 
-    F = sigma n(t),  n(t) a process of unit rms shaped by 2 z w0 s / (s^2 + 2 z w0 s + w0^2)
+    F = sigma n(t),  n(t) white noise filtered by 2 z w0 s / (s^2 + 2 z w0 s + w0^2), of unit rms
 
     sigma is the rms force of the axis, w0 the `frequency` [rad/s], z the `damping` of the shaping
     filter. n(t) is realised as a sum of cosines. The sway force also heels the hull with the lever

@@ -116,7 +116,7 @@ class PassArrays(NamedTuple):
 
 
 class FilterHistory(NamedTuple):
-    """Filtered means, covariances and transitions of a recording, the input of the smoother.
+    """Filtered means, covariances and transition matrices of a recording, for the smoother.
 
     The smoother overwrites the means and covariances.
     """

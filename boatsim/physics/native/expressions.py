@@ -139,7 +139,7 @@ class ExpressionTranslator:
             raise self.refusal(node, f"'{ast.unparse(node)}'") from None
 
     def resolve(self, node: ast.expr) -> Any:
-        """Return the Python object of a name or of a module's attribute; None for a variable."""
+        """Return the object to which `name` or `module.name` refers; None for a local variable."""
         if isinstance(node, ast.Attribute):
             return getattr(self.resolve(node.value), node.attr, None)
         if not isinstance(node, ast.Name) or node.id in self.variables:

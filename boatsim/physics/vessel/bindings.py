@@ -278,9 +278,10 @@ class ChannelBindings:
         return self._actuators_of_roles(roles)
 
     def command_for_actuator(self, effect: Effect, actuator: str) -> str | None:
-        """Return the raw command that feeds an actuator through a channel effect, None without one.
+        """Return the name of the raw command that an effect turns into an actuator's signal.
 
-        An example is the PWM command from which a drive curve computes the thrust.
+        None if there is no such effect. An example is the PWM command from which a drive curve
+        computes the thrust.
         """
         if not isinstance(effect, ChannelEffect) or actuator not in effect.on:
             return None
