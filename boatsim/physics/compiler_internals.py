@@ -59,8 +59,8 @@ def register_with_numba(constructor: Callable[..., object], record: type) -> Non
     """Make a Python function that builds a named tuple with defaults callable from numba code.
 
     numba does not support defaults of named tuples, and a small compiled function in place of the
-    constructor would have its types inferred again at every call. The constructor is therefore registered
-    by its signature alone.
+    constructor would have its types inferred again at every call. The constructor is therefore
+    registered by its signature alone.
 
     Args:
         constructor: Python function whose arguments are the fields of `record`, floats with a
