@@ -123,8 +123,12 @@ def _findings(compared: FaultComparison, suspect: _Delay, step: float) -> list[F
     """The finding of a delay that explains the recordings better than all other effects."""
     config = compared.problem.config.checks
     vessel = compared.problem.program.vessel
-    best = _refined_delay(compared, suspect, step)
-    if best.value - refitted(compared.with_changes(())).evidence < config.compare_min_lead:
+    unchanged = refitted(compared.with_changes(())).evidence
+    first = _refitted_delay(compared, suspect.name, suspect.seconds)
+    if not first.value > unchanged:  # the other coefficients explain it as well
+        return []
+    best = _refined_delay(compared, first, step)
+    if best.value - unchanged < config.compare_min_lead:
         return []
     program = compared.with_rivals(RIVALS)
     enough = best.value + compared.required_gain
@@ -149,18 +153,18 @@ def _findings(compared: FaultComparison, suspect: _Delay, step: float) -> list[F
     ]
 
 
-def _refined_delay(compared: FaultComparison, suspect: _Delay, step: float) -> _Delay:
+def _refitted_delay(compared: FaultComparison, name: str, seconds: float) -> _Delay:
+    """A delay with its evidence where the coefficients are refitted."""
+    found = refitted(compared.with_changes(_Delay(name, seconds, 0.0).changes))
+    return _Delay(name, seconds, float(found.evidence))
+
+
+def _refined_delay(compared: FaultComparison, first: _Delay, step: float) -> _Delay:
     """The delay of the largest evidence with refitted coefficients, to a step of the rows."""
-
-    def fitted(seconds: float) -> _Delay:
-        changes = _Delay(suspect.name, seconds, 0.0).changes
-        found = refitted(compared.with_changes(changes))
-        return _Delay(suspect.name, seconds, float(found.evidence))
-
-    best = fitted(suspect.seconds)
+    best = first
     for way in (-step, step):
         while 0.5 * step < best.seconds + way < compared.lost:
-            beside = fitted(best.seconds + way)
+            beside = _refitted_delay(compared, first.name, best.seconds + way)
             if beside.value <= best.value:
                 break
             best = beside
