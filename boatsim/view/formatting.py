@@ -199,7 +199,9 @@ def format_unit(unit: str) -> str:
     return unit
 
 
-def format_quantity(value: float, unit: str, sd: float = 0.0, digits: int = 3) -> str:
+def format_quantity(
+    value: float, unit: str, sd: float = 0.0, digits: int = 3, largest: float = 0.0
+) -> str:
     """Format a quantity with its standard deviation in a convenient unit.
 
     Args:
@@ -207,11 +209,12 @@ def format_quantity(value: float, unit: str, sd: float = 0.0, digits: int = 3) -
         unit: Its SI unit; angles are printed in degrees.
         sd: Standard deviation [unit]; 0 where there is none.
         digits: Significant digits without a standard deviation.
+        largest: Size of the largest number that is printed next to it in the same unit [unit].
 
     Returns:
         Text such as 4.34 ± 0.78 cm.
     """
-    name, factor = convenient_unit(unit, _largest((value, sd)))
+    name, factor = convenient_unit(unit, _largest((value, sd, largest)))
     if sd > 0.0:
         text = format_with_sd(value * factor, sd * factor)
     else:

@@ -39,6 +39,7 @@ from boatsim.errors import BadInput
 from boatsim.physics.base import Array
 from boatsim.physics.vessel import Vessel
 from boatsim.recordings.table import Recording
+from boatsim.view.formatting import format_odds
 
 PLANAR_AXES = ("surge", "sway", "yaw")
 MAX_LEAD = 50.0  # [nats] limit of an exponent
@@ -243,8 +244,8 @@ def _best_finding(recordings: list[Recording], comparison: Comparison) -> Findin
     if chosen.name == "heading_turned":
         chosen = _refined_rotation(chosen, recordings, comparison)
     vessel = comparison.problem.program.vessel.name
-    evidence = [f"{chosen.words}. With this correction, the log is more likely by {gain:.0f} nats"]
-    evidence.append(f" on {vessel} with refitted coefficients")
+    evidence = [f"{chosen.words}. With this correction, {vessel} with refitted coefficients"]
+    evidence.append(f" fits the log better ({format_odds(gain)})")
     if score.unexplained < recorded.unexplained:
         evidence.append(
             f". The unexplained force is {100.0 * score.unexplained:.2g} % of the force of the "

@@ -110,7 +110,8 @@ def _headline(f: Findings) -> str:
     if names := [words_of_name(e["name"]) for e in f.answer["effects"]]:
         rest = ""
         if f.answer["unknown"]["flag"]:
-            rest = ", and a force that they do not explain"
+            subject = "they do" if len(names) > 1 else "it does"
+            rest = f", and a force that {subject} not explain"
         return f"{capitalize(join_words(names))}{rest}."
     forces: list[str] = []
     for law in f.answer["described"]:

@@ -290,7 +290,7 @@ def described() -> Findings:
         },
         {
             "axis": "thrust",
-            "statement": "a change of thrust that no candidate effect explains: 15 % less (from 3 to 9 s)",
+            "statement": "a change of thrust that no candidate effect explains: 15 % less, from 3 to 9 s",
             "terms": [
                 {
                     "of": "thrust, from 3 to 9 s of run_1",
