@@ -20,6 +20,7 @@ STEPS = {
 FACTOR = "(kg|rad|N|m|s)([2-9]?)"
 # the spelling of a unit at the end of a key, such as Ns2pm2
 UNIT = re.compile(f"({FACTOR})+(p({FACTOR})+)?|per({FACTOR})+")
+NO_ODDS = "–"  # in a table, where the better fit may be chance
 OF_CHANCE = " that the better fit is chance"
 # least evidence [nats] and its strength: R. E. Kass, A. E. Raftery, Bayes Factors, J. Am. Stat.
 # Assoc. 90, 1995, section 3.2 (Bayes factors of 3, 20 and 150)
@@ -137,7 +138,7 @@ def short_odds(log_bayes_factor: float) -> str:
         log_bayes_factor: Evidence [nats].
     """
     if log_bayes_factor < math.log(2.0):
-        return "–"
+        return NO_ODDS
     return format_odds(log_bayes_factor).removesuffix(OF_CHANCE)
 
 
