@@ -85,6 +85,7 @@ def save_picture(folder: Path, path: Path) -> None:
         ):
             page.run(f"push({push})")
             page.until(f"frame.t > {until}")
+        page.run("for (let i = 0; i < 3; i++) $('in').click()")  # nearer
         page.picture(path, 1120, 770)
 
 

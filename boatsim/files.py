@@ -163,6 +163,8 @@ def _first_mistake(model: type[BaseModel], error: ValidationError) -> str:
     message = first["msg"].removeprefix("Value error, ").lower()
     if not place:
         return message
+    if message == "input should be an object":
+        message = f"allowed is a table, [{place}]"
     return f"{place} = {shown(first['input'])}; {message}"
 
 

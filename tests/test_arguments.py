@@ -69,6 +69,8 @@ def test_a_wrong_type_is_named(call: Callable[[], Any], argument: str) -> None:
         (lambda: boatsim.run(SCENARIO, seed=HUGE), "seed = "),
         (lambda: boatsim.replay("a.csv", horizon=float("nan")), "horizon = nan"),
         (lambda: boatsim.diagnose("a.csv", settings={"select.odds": HUGE}), "select.odds = "),
+        (lambda: boatsim.diagnose([]), "runs: no recording is given"),
+        (lambda: boatsim.diagnose([], hold_out="a.csv"), "runs: no recording is given"),
         (lambda: boatsim.sweep(SCENARIO, runs=0), "runs = 0; allowed 1 to"),
         (lambda: boatsim.sweep(SCENARIO, design="latim"), "did you mean 'latin'?"),  # type: ignore[arg-type]
         (lambda: boatsim.sweep(SCENARIO, vary={"body.mass": [HUGE, 1]}), "more than 64 bits"),

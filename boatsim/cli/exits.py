@@ -8,7 +8,8 @@ from io import TextIOWrapper
 from boatsim.errors import BoatsimError, escape_for_terminal
 from boatsim.quiet import CODE
 
-LONGEST = 300  # characters of a printed error or note; the middle of a longer one is cut
+LONGEST = 300  # characters of a printed error; the middle of a longer one is cut
+LONGEST_NOTE = 600  # the same for a note, such as a finding about a log with its reason
 
 
 class Exit(IntEnum):
@@ -52,7 +53,7 @@ def print_note(message: str) -> None:
     Args:
         message: The note.
     """
-    print(escape_for_terminal(f"note: {message}", LONGEST), file=sys.stderr)
+    print(escape_for_terminal(f"note: {message}", LONGEST_NOTE), file=sys.stderr)
 
 
 def print_notes(messages: Iterable[str]) -> None:

@@ -25,6 +25,8 @@ def print_metrics(run: "RunEntry", folder: Path) -> None:
     from rich.table import Table
     from rich.text import Text
 
+    from boatsim.view.run_sentence import explain_name_endings
+
     words = f"{run['scenario']}, {run['controller']}, seed {run['seed']}"
     if not run["complete"]:
         words += ", interrupted"
@@ -86,25 +88,6 @@ def format_value(metric: "MetricEntry") -> str:
     if value is None:
         return (metric["lacking"] or "not reached").partition(":")[0]
     return f"{value:.4g} {metric['unit']}".rstrip()
-
-
-def explain_name_endings(metrics: Mapping[str, "MetricEntry"]) -> list[str]:
-    """Return a line that explains endings of metric names, such as "_inf", that need explanation.
-
-    Args:
-        metrics: Entries of norms.json by name.
-
-    Returns:
-        One line, or none.
-    """
-    kinds: dict[str, str] = {}
-    for name, metric in metrics.items():
-        ending = name.rpartition("_")[2]
-        if metric["kind"] not in ("", ending):
-            kinds.setdefault(metric["kind"], ending)
-    if not kinds:
-        return []
-    return ["; ".join(f"{ending}: {kind}" for kind, ending in kinds.items())]
 
 
 def explain_missing_values(metrics: Mapping[str, "MetricEntry"]) -> list[str]:

@@ -292,6 +292,19 @@ class ChecksConfig:
         "The verdict of a diagnosis begins with faults of the log from here on.",
         high=1.0,
     )
+    hole_duration: float = setting(
+        10.0,
+        "s",
+        "Time without rows in a hull of 1.2 m from which a log has a hole. The command that is "
+        "held over it says nothing about the motion behind it.",
+        low=0.1,
+    )
+    hole_min_rows: int = setting(
+        60,
+        "count",
+        "Rows before a hole that suffice to compare reinterpretations.",
+        low=2,
+    )
     speed_window: float = setting(
         2.0,
         "s",

@@ -76,6 +76,8 @@ def load(
     Raises:
         BadInput: A file cannot be used.
     """
+    if not request.runs:
+        raise BadInput("runs: no recording is given; a diagnosis needs one or more")
     paths = list(map(recording_file, (*request.runs, *request.hold_out)))
     _check_distinct(paths)
     opened, own_vessels, names = list[Recording](), list[Vessel](), list[str]()

@@ -605,6 +605,7 @@ class Problem:
         """Coefficients of the vessel that are uncertain; those of several instances are one."""
         vessel = self.program.vessel
         shared = defaultdict[tuple[str, str, float], list[tuple[str, int]]](list)
+        params: dict[tuple[str, str], Param] = {}
         for effect in vessel.effects:
             for name, param in type(effect).params().items():
                 sd = self.uncertainty.get(param.calibrates, 0.0)
@@ -613,10 +614,11 @@ class Problem:
                 used = self.recordings[0].values[at] != 0.0 and applies
                 if param.calibrates and sd > 0 and used:
                     shared[type(effect).type_name(), name, sd].append((effect.name, at))
-        low, high = self.config.fit.coefficient_range
+                    params[type(effect).type_name(), name] = param
         found = []
         for (idea, name, sd), places in shared.items():
             owner = idea if len(places) > 1 else places[0][0]
+            low, high = self._allowed_factors(params[idea, name], [at for _, at in places])
             found.append(
                 FreeParameter(
                     owner,
@@ -632,6 +634,16 @@ class Problem:
                 )
             )
         return tuple(found)
+
+    def _allowed_factors(self, param: Param, places: Sequence[int]) -> tuple[float, float]:
+        """Return the range of the factor on a coefficient, within its range in a vessel file."""
+        low, high = self.config.fit.coefficient_range
+        for mapped in self.recordings:
+            used = mapped.values[list(places)]
+            for value in used[used != 0.0]:
+                ends = sorted((param.low / value, param.high / value))
+                low, high = max(low, ends[0]), min(high, ends[1])
+        return min(low, 1.0), max(high, 1.0)
 
     def _inherited_places(self) -> tuple[tuple[int, int], ...]:
         """Places of unset parameters, and of the vessel's numbers that they inherit."""

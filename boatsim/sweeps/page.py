@@ -12,7 +12,7 @@ from boatsim.sweeps.results import Results
 from boatsim.sweeps.sentence import Picture, first_picture, what_came_out, what_varied
 from boatsim.sweeps.text_tables import blank_repeats, format_values, result_tables
 from boatsim.view.html_page import render_template
-from boatsim.view.page_blocks import Figures, Heading, Items, Section, Table
+from boatsim.view.page_blocks import Block, Figures, Heading, Items, Section, Table
 
 NAME = "report.html"
 TEMPLATE = Path(__file__).parent / "templates" / "sweep.html.j2"
@@ -31,7 +31,7 @@ def write_report(results: Results, folder: Path) -> None:
     """
     picture = first_picture(results)
     plots = _plot_sections(results, picture)
-    sections = [*_table_sections(results), _failure_section(results), *plots]
+    sections = [_failure_section(results), *plots, *_table_sections(results)]
     sections = [section for section in sections if section.blocks]
     facts = _page_facts(results)
     page = render_template(
@@ -87,9 +87,15 @@ def _shorten(values: Sequence[Value], labels: Mapping[str, str]) -> list[str]:
 def _table_sections(results: Results) -> list[Section]:
     sections = []
     for table in result_tables(results):
-        block = Table("", table.head, blank_repeats(table), tuple(range(table.left)))
+        rows = [_with_minus_signs(row, table.left) for row in blank_repeats(table)]
+        block = Table("", table.head, rows, tuple(range(1, table.left)))
         sections.append(Section(table.key, table.title, [block]))
     return sections
+
+
+def _with_minus_signs(row: Sequence[str], first: int) -> list[str]:
+    """Return a row of a table whose numbers, from a column on, have minus signs, not hyphens."""
+    return [*row[:first], *(cell.replace("-", "\N{MINUS SIGN}") for cell in row[first:])]
 
 
 def _failure_section(results: Results) -> Section:
@@ -112,9 +118,22 @@ def _plot_sections(results: Results, picture: Picture | None) -> list[Section]:
         section = Section(f"norms-{number}", title)
         rows = names == scenario
         legend = controller_legend(group_by_controller(results, rows))
+        plots = {}
         for metric in results.displayed_metrics:
-            plots = [plot for plot in plot_metric(results, metric, rows) if plot != first]
-            if plots:
-                section.blocks.extend([Heading(metric), Figures(legend, plots)])
+            drawn = [plot for plot in plot_metric(results, metric, rows) if plot != first]
+            if drawn:
+                plots[metric] = drawn
+        section.blocks.extend(_plot_blocks(legend, plots))
         sections.append(section)
     return sections
+
+
+def _plot_blocks(legend: str, plots: Mapping[str, list[str]]) -> list[Block]:
+    """Return the plots by metric under headings, or side by side if each metric has only one."""
+    if all(len(drawn) == 1 for drawn in plots.values()):
+        single = [plot for drawn in plots.values() for plot in drawn]
+        return [Figures(legend, single)] if single else []
+    blocks: list[Block] = []
+    for metric, drawn in plots.items():
+        blocks += [Heading(metric), Figures(legend, drawn)]
+    return blocks

@@ -19,6 +19,7 @@ QUANTILES = (0.05, 0.25, 0.5, 0.75, 0.95)
 ENDS = {0: "p5", 4: "p95"}  # indices of QUANTILES that are lines where several bands would overlap
 MOST_SAMPLED = 6  # sampled quantities plotted against a metric: those with the highest correlation
 LONGEST_LABEL = 14  # characters of a label below an axis
+ONE_VALUE = 1e-4  # relative range below which the values of a metric are plotted as a constant
 BOX_WIDTH = 0.7  # share of the distance between two values of a list
 
 
@@ -96,7 +97,10 @@ def plot_metric(results: Results, name: str, rows: Array) -> list[str]:
     title = name
     if unit:
         title = f"{name} [{unit}]"
-    y = axis_limits([values[finite]], zero=False)
+    shown = values[finite]
+    if np.ptp(shown) < ONE_VALUE * np.abs(shown).max():
+        shown = shown[:1]
+    y = axis_limits([shown], zero=False)
     metric = _Metric(values, group_by_controller(results, finite), y, title)
     plots = []
     for axis in results.plan.axes:

@@ -20,6 +20,7 @@ STEPS = {
 FACTOR = "(kg|rad|N|m|s)([2-9]?)"
 # the spelling of a unit at the end of a key, such as Ns2pm2
 UNIT = re.compile(f"({FACTOR})+(p({FACTOR})+)?|per({FACTOR})+")
+NO_ODDS = "–"  # in a table, where the better fit may be chance
 OF_CHANCE = " that the better fit is chance"
 # least evidence [nats] and its strength: R. E. Kass, A. E. Raftery, Bayes Factors, J. Am. Stat.
 # Assoc. 90, 1995, section 3.2 (Bayes factors of 3, 20 and 150)
@@ -137,7 +138,7 @@ def short_odds(log_bayes_factor: float) -> str:
         log_bayes_factor: Evidence [nats].
     """
     if log_bayes_factor < math.log(2.0):
-        return "–"
+        return NO_ODDS
     return format_odds(log_bayes_factor).removesuffix(OF_CHANCE)
 
 
@@ -199,7 +200,9 @@ def format_unit(unit: str) -> str:
     return unit
 
 
-def format_quantity(value: float, unit: str, sd: float = 0.0, digits: int = 3) -> str:
+def format_quantity(
+    value: float, unit: str, sd: float = 0.0, digits: int = 3, largest: float = 0.0
+) -> str:
     """Format a quantity with its standard deviation in a convenient unit.
 
     Args:
@@ -207,11 +210,12 @@ def format_quantity(value: float, unit: str, sd: float = 0.0, digits: int = 3) -
         unit: Its SI unit; angles are printed in degrees.
         sd: Standard deviation [unit]; 0 where there is none.
         digits: Significant digits without a standard deviation.
+        largest: Size of the largest number that is printed next to it in the same unit [unit].
 
     Returns:
         Text such as 4.34 ± 0.78 cm.
     """
-    name, factor = convenient_unit(unit, _largest((value, sd)))
+    name, factor = convenient_unit(unit, _largest((value, sd, largest)))
     if sd > 0.0:
         text = format_with_sd(value * factor, sd * factor)
     else:

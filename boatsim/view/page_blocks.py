@@ -42,6 +42,15 @@ class Items:
 
 
 @dataclass(frozen=True)
+class FileLines:
+    """Lines that the reader shall copy into a file, under a title that names the file."""
+
+    kind: ClassVar[str] = "lines"
+    title: str
+    lines: tuple[str, ...]
+
+
+@dataclass(frozen=True)
 class Table:
     """A table of a report: its caption, header and cells, and how the HTML page shows it.
 
@@ -97,7 +106,7 @@ class Figures:
     pictures: list[str]
 
 
-Block = Text | Note | Heading | Items | Table | Figures
+Block = Text | Note | Heading | Items | FileLines | Table | Figures
 
 
 @dataclass(frozen=True)
@@ -136,6 +145,9 @@ def markdown_lines(block: Block) -> list[str]:
             return lines
         case Items():
             return ["", *map(_item, block.lines)]
+        case FileLines():
+            code = [f"    {line}" for line in block.lines]
+            return ["", f"{escape_markup(block.title)}:", "", *code]
         case Table():
             rule = ["---:"] * len(block.header)
             for i in (0, *block.prose):

@@ -14,7 +14,7 @@ from boatsim.view.page_blocks import Figures, Items, Section, Table, Text
 from boatsim.view.run_facts import run_facts
 from boatsim.view.run_figures import run_figures
 from boatsim.view.run_replay import run_replay
-from boatsim.view.run_sentence import run_sentence, run_verdict
+from boatsim.view.run_sentence import explain_name_endings, run_sentence, run_verdict
 from boatsim.view.scene import Scene
 from boatsim.view.thinned_log import Samples, ThinnedLog
 
@@ -162,6 +162,8 @@ def _metric_blocks(result: RunEntry) -> list[Table | Text]:
     blocks: list[Table | Text] = []
     if metrics:
         blocks.append(_metric_table(metrics))
+        for line in explain_name_endings(metrics):
+            blocks.append(Text(f"Endings of the names: {line}."))
     else:
         blocks.append(Text("This scenario has no metrics."))
     reasons: dict[str, list[str]] = {}

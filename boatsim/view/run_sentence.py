@@ -88,3 +88,22 @@ def _differing(metrics: Mapping[str, MetricEntry]) -> str:
         return ""
     verb = "differs" if number == 1 else "differ"
     return f"{number} {verb} from the published value by more than its tolerance"
+
+
+def explain_name_endings(metrics: Mapping[str, MetricEntry]) -> list[str]:
+    """Return a line that explains endings of metric names, such as "_inf", that need explanation.
+
+    Args:
+        metrics: Entries of norms.json by name.
+
+    Returns:
+        One line, or none.
+    """
+    kinds: dict[str, str] = {}
+    for name, metric in metrics.items():
+        ending = name.rpartition("_")[2]
+        if metric["kind"] not in ("", ending):
+            kinds.setdefault(metric["kind"], ending)
+    if not kinds:
+        return []
+    return ["; ".join(f"{ending}: {kind}" for kind, ending in kinds.items())]

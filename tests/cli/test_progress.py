@@ -20,7 +20,7 @@ STAGES = (
     "reading",
     "checking the log",
     "fitting",
-    "screening 39 entries",
+    "screening 39 candidate effects",
     "selecting",
     "free runs",
     "writing",
@@ -248,6 +248,9 @@ def test_a_terminal_gets_a_bar_with_the_stage_and_the_time_and_it_is_gone_in_the
     text = re.sub(r"\x1b\[[0-9;?]*[A-Za-z]", "", shown.decode(errors="replace"))
     assert running.returncode == 0 and b"The model leaves out" in out
     assert (
-        "━" in text and "screening 39 entries" in text and "left" in text and "best so far" in text
+        "━" in text
+        and "screening 39 candidate effects" in text
+        and "left" in text
+        and "best so far" in text
     )
     assert "progress: " not in text and shown.rstrip().endswith(b"\x1b[2K")

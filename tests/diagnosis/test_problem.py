@@ -18,12 +18,12 @@ from boatsim.physics.vessel import Vessel
 REFERENCE_LENGTH = 1.2  # [m] of the hull for which effects state their priors
 
 
-def problem_of(boat: Vessel, *candidates: object) -> Problem:
+def problem_of(boat: Vessel, *candidates: object, uncertain: str = "damping") -> Problem:
     """An estimation problem with one recording in which nothing was measured."""
     program = Program(boat, candidates)
     mapped = unmeasured(program)
     levels = NoiseLevels(np.ones(3), 1.0, {"heading_sd_rad": 0.01})
-    return Problem([mapped], levels, {"damping": 0.1})
+    return Problem([mapped], levels, {uncertain: 0.1})
 
 
 @pytest.mark.parametrize("name", ["joystick_boat", "catamaran", "mariner"])
@@ -47,3 +47,18 @@ def test_all_damping_coefficients_of_a_vessel_are_refitted() -> None:
     assert {("quadratic_damping", "sway"), ("quadratic_damping", "yaw")} <= found
     assert ("quadratic_damping", "surge") not in found  # zero in the file
     assert ("linear_damping", "yaw") in found
+
+
+def test_a_refitted_coefficient_stays_within_what_a_vessel_file_allows() -> None:
+    """A log that fits no thrust, as a mirrored one, else ends in a vessel that is refused."""
+    boat = vessel.load_vessel("catamaran")
+    effects = {effect.name: effect for effect in boat.effects}
+    found = problem_of(boat, uncertain="thrust").nominal_coefficients
+    gains = [free for free in found if free.name == "gain"]
+    assert gains
+    for free in gains:
+        drive = effects.get(free.effect) or next(
+            one for one in boat.effects if type(one).type_name() == free.effect
+        )
+        param = type(drive).params()["gain"]
+        assert free.low * drive.gain >= param.low and free.high * drive.gain <= param.high

@@ -90,7 +90,7 @@ def entry_text(entry: LogEntry) -> list[str]:
     percent = 100.0 * min(entry["sure"], 0.999)
     lines = [f"{name} (probability {percent:.3g} %): {entry['evidence']}"]
     if entry["spans_s"]:
-        spans = ", ".join(f"{begin:g} to {end:g} s" for begin, end in entry["spans_s"])
+        spans = ", ".join(_interval(begin, end) for begin, end in entry["spans_s"])
         lines.append(f"  at {spans}")
     if entry["lines"]:
         lines.append(f"  write into recording.toml: {on_one_line(entry['lines'])}")
@@ -100,6 +100,13 @@ def entry_text(entry: LogEntry) -> list[str]:
     if "remedy" in entry:
         lines.append(f"  {entry['remedy']}")
     return lines
+
+
+def _interval(begin: float, end: float) -> str:
+    """Return an interval, or its only time where both ends are printed alike."""
+    if f"{begin:g}" == f"{end:g}":
+        return f"{begin:g} s"
+    return f"{begin:g} to {end:g} s"
 
 
 def on_one_line(lines: Sequence[str]) -> str:

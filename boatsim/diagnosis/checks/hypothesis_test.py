@@ -21,6 +21,7 @@ from boatsim.diagnosis.checks.finding import (
     changed_columns,
     scaling_corrections,
 )
+from boatsim.diagnosis.checks.holes import before_first_hole
 from boatsim.diagnosis.checks.reinterpretations import (
     Reinterpretation,
     heading_disagrees_with_course,
@@ -39,6 +40,7 @@ from boatsim.errors import BadInput
 from boatsim.physics.base import Array
 from boatsim.physics.vessel import Vessel
 from boatsim.recordings.table import Recording
+from boatsim.view.formatting import format_number, format_odds
 
 PLANAR_AXES = ("surge", "sway", "yaw")
 MAX_LEAD = 50.0  # [nats] limit of an exponent
@@ -162,6 +164,10 @@ def unexplained_force_share(problem: Problem, fit: Fit) -> float:
     return largest
 
 
+def _per_cent(share: float) -> str:
+    return f"{format_number(100.0 * share, 2)} %"
+
+
 def _drive_force(recording: MappedRecording) -> Array:
     """(axes,) rms force of the drives on the vessel at rest, over about 100 rows."""
     step = max(1, len(recording.times) // 100)
@@ -186,6 +192,7 @@ def _shortened(
         excess = len(run) / float(run.t[-1] - run.t[0]) / usual
         if excess > config.checks.compare_max_rate:
             run = run.thinned(usual / excess)
+        run = before_first_hole(run, vessel, config.checks)
         short.append(run.between(float(run.t[0]), float(run.t[min(len(run), rows) - 1])))
     return short
 
@@ -243,12 +250,12 @@ def _best_finding(recordings: list[Recording], comparison: Comparison) -> Findin
     if chosen.name == "heading_turned":
         chosen = _refined_rotation(chosen, recordings, comparison)
     vessel = comparison.problem.program.vessel.name
-    evidence = [f"{chosen.words}. With this correction, the log is more likely by {gain:.0f} nats"]
-    evidence.append(f" on {vessel} with refitted coefficients")
+    evidence = [f"{chosen.words}. With this correction, {vessel} with refitted coefficients"]
+    evidence.append(f" fits the log better ({format_odds(gain)})")
     if score.unexplained < recorded.unexplained:
         evidence.append(
-            f". The unexplained force is {100.0 * score.unexplained:.2g} % of the force of the "
-            f"drives instead of {100.0 * recorded.unexplained:.2g} %"
+            f". The unexplained force is {_per_cent(score.unexplained)} of the force of the "
+            f"drives instead of {_per_cent(recorded.unexplained)}"
         )
     others = [(candidate.words, candidate.changes) for candidate, _ in ties[1:]]
     if others:

@@ -23,6 +23,7 @@ from boatsim.diagnosis.priors import froude_time_scale
 from boatsim.diagnosis.problem import Problem
 from boatsim.errors import BadInput
 from boatsim.recordings.table import Recording
+from boatsim.view.formatting import format_odds
 
 # Effects that make a log on time look late
 RIVALS = (
@@ -144,8 +145,8 @@ def _findings(compared: FaultComparison, suspect: _Delay, step: float) -> list[F
         Finding(
             best.name,
             f"{names} {verb} {best.seconds:.3g} s older than {others} in the same row. Without "
-            f"this delay, the log is more likely by {gain:.0f} nats on {vessel.name} with "
-            "refitted coefficients",
+            f"this delay, {vessel.name} with refitted coefficients fits the log better "
+            f"({format_odds(gain)})",
             probability=config.probability_strong,
             changes=best.changes,
             words=f"{names} {verb} late",

@@ -23,6 +23,7 @@ from boatsim.physics.base import Array
 from boatsim.physics.vessel import Vessel
 from boatsim.recordings.notes import unit_of
 from boatsim.recordings.table import Recording
+from boatsim.view.formatting import format_odds
 
 # Effects that make commands in newtons look like per cent, and others of the thrust
 RIVALS = ("weak_reverse", "thrust_deadband", "thrust_imbalance", "thrust_lag")
@@ -77,7 +78,7 @@ def check_per_cent_commands(recordings: Sequence[Recording], problem: Problem) -
         Finding(
             "command_unit",
             f"{names} {verb} within -100 to 100 and may be in per cent of full thrust. Read so, "
-            f"the log is more likely by {gain:.0f} nats on {vessel.name}; in newtons the boat "
+            f"{vessel.name} fits the log better ({format_odds(gain)}); in newtons the boat "
             "would have another thrust ahead and a weak reverse",
             probability=config.probability_possible,
             changes=tuple(changes),

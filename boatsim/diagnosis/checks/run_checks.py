@@ -11,6 +11,7 @@ from boatsim.diagnosis.checks.data_cleaning import cleaning_findings
 from boatsim.diagnosis.checks.drive_response import check_drive_response
 from boatsim.diagnosis.checks.excitation import check_excitation
 from boatsim.diagnosis.checks.finding import Finding, apply_changes
+from boatsim.diagnosis.checks.holes import check_holes
 from boatsim.diagnosis.checks.interpolated_positions import check_interpolated_positions
 from boatsim.diagnosis.checks.position_jumps import check_position_jumps
 from boatsim.diagnosis.checks.position_unit import check_position_unit
@@ -31,7 +32,7 @@ TABLE_CHECKS = (
     check_command_unit,
 )
 RECORDING_CHECKS = (check_interpolated_positions, check_position_jumps, check_recorded_rates)
-IDENTIFIABILITY_CHECKS = (check_saturation, check_excitation, check_drive_response)
+IDENTIFIABILITY_CHECKS = (check_holes, check_saturation, check_excitation, check_drive_response)
 
 
 def check_table(path: Path, vessel: Vessel, config: ChecksConfig) -> list[Finding]:

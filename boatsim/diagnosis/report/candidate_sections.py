@@ -9,6 +9,7 @@ from boatsim.diagnosis.report.sentences import (
     effect_description,
 )
 from boatsim.view.formatting import (
+    NO_ODDS,
     format_nats,
     format_probability,
     format_upper_limit,
@@ -38,11 +39,12 @@ def ranking(f: Findings) -> Iterator[Block]:
     rows, gains = [], []
     for i, c in enumerate(candidates, 1):
         name, gain = c["name"], c["gain_nats"]
-        gains.append(gain)
+        odds = short_odds(gain)
+        gains.append(0.0 if odds == NO_ODDS else gain)
         if name in status:
             visible = max(visible, i)
         verdict, meaning = status.get(name, ""), f.words.get(name, "")
-        rows.append([words_of_name(name), short_odds(gain), verdict, meaning])
+        rows.append([words_of_name(name), odds, verdict, meaning])
     bars = tuple((np.maximum(gains, 0.0) / max(*gains, 1e-9)).tolist())
     caption = (
         "Each candidate effect tested alone, the best ones first. The odds are those that the "

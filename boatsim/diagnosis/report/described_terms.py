@@ -143,8 +143,7 @@ def _entry(written: Sequence[FittedTerm], vessel: Vessel) -> DescribedEntry:
     sum_of_terms = join_words((_statement(w, vessel) for w in written), "plus")
     statement = f"{axis_force_words(axis)} that no candidate effect explains: {sum_of_terms}"
     if not first.carries:
-        recording = first.term.run or "the fitted recordings"
-        statement += f" (an event of {recording}, not confirmed by held-out recordings)"
+        statement += "; held-out recordings do not confirm it"
     return {
         "axis": axis,
         "statement": statement,
@@ -176,7 +175,7 @@ def _statement(w: FittedTerm, vessel: Vessel) -> str:
     if term.of:
         text += f" times {factors_in_words(term)}"
     if when := _activity_condition(term):
-        text += f" ({when})"
+        text += f", {when}"
     return text
 
 

@@ -32,6 +32,7 @@ LOG_PROBLEM = "Probably the log"  # a certain problem of the whole recording
 NONE_TESTED = "Something missing, no candidates tested"
 REFINED = "No physics missing, numbers refined"  # only numbers of a rough model were improved
 MEASUREMENT_ERROR = "Measurement error"  # all identified effects are errors of measurement
+CORRECT_FIRST = "Correct the log as stated below, then diagnose it again."
 LONGEST_HEADLINE = 200  # characters; a longer sentence is not used as the headline
 
 
@@ -68,7 +69,7 @@ def report_html(findings: Findings, sections: Sequence[Section]) -> str:
         verdict=_verdict(findings),
         answer=findings.answer,
         headline=_headline(findings),
-        sentence=_sentence(findings),
+        lead=_lead(findings),
         sections=sections,
         proof=improvement_on_held_out(findings),
         facts=_facts(findings),
@@ -84,10 +85,9 @@ def report_markdown(findings: Findings, sections: Sequence[Section]) -> str:
         findings: Findings of a diagnosis.
         sections: Sections of the report that have content.
     """
-    headline, whole = _headline(findings), _sentence(findings)
-    lines = [f"# {escape_markup(headline)}", ""]
-    if whole != headline:
-        lines += [escape_markup(whole), ""]
+    lines = [f"# {escape_markup(_headline(findings))}", ""]
+    if lead := _lead(findings):
+        lines += [escape_markup(lead), ""]
     lines += [f"**{_verdict(findings)}.** {escape_markup(improvement_on_held_out(findings))}", ""]
     for paragraph in mean_force_paragraph(findings.answer, findings.has_added_effects):
         lines += [escape_markup(paragraph), ""]
@@ -110,7 +110,8 @@ def _headline(f: Findings) -> str:
     if names := [words_of_name(e["name"]) for e in f.answer["effects"]]:
         rest = ""
         if f.answer["unknown"]["flag"]:
-            rest = ", and a force that they do not explain"
+            subject = "they do" if len(names) > 1 else "it does"
+            rest = f", and a force that {subject} not explain"
         return f"{capitalize(join_words(names))}{rest}."
     forces: list[str] = []
     for law in f.answer["described"]:
@@ -120,6 +121,16 @@ def _headline(f: Findings) -> str:
     if not forces:
         return whole
     return f"{capitalize(join_words(forces))} that no candidate effect explains."
+
+
+def _lead(f: Findings) -> str:
+    """Return the paragraph below the headline; "" if the headline has all of the answer."""
+    headline, whole = _headline(f), _sentence(f)
+    if whole == headline:
+        return ""
+    if not _log_problem(f):
+        return whole
+    return f"{CORRECT_FIRST} {whole.removeprefix(headline).strip()}"
 
 
 def _sentence(f: Findings) -> str:

@@ -39,6 +39,7 @@ from boatsim.view.formatting import (
 )
 from boatsim.view.page_blocks import (
     Block,
+    FileLines,
     Heading,
     Items,
     Section,
@@ -81,20 +82,17 @@ def _log_problems(f: Findings) -> Iterator[Block]:
         facts = f"{f.name_of(e['run'])} · {cause} · probability {format_probability(e['sure'])}"
         yield Heading(capitalize(words_of_name(e["name"])), facts)
         yield Text(f"{capitalize(e['evidence'])}.")
-        if corrections := _corrections(e):
-            yield Items(corrections)
+        yield from _corrections(e)
         if "remedy" in e:
             yield Text(f"{capitalize(e['remedy'])}.")
     yield from identified_effects(f, "measurement")
 
 
-def _corrections(e: LogEntry) -> tuple[tuple[str, str], ...]:
-    lines = []
+def _corrections(e: LogEntry) -> Iterator[Block]:
     if e["lines"]:
-        lines.append(("Write into recording.toml", " / ".join(e["lines"])))
+        yield FileLines("Write into recording.toml", tuple(e["lines"]))
     for other in e["alternatives"]:
-        lines.append((f"Or, if {other['words']}", " / ".join(alternative_lines(other["lines"]))))
-    return tuple(lines)
+        yield FileLines(f"Or, if {other['words']}", tuple(alternative_lines(other["lines"])))
 
 
 def _missing_physics(f: Findings) -> Iterator[Block]:

@@ -279,10 +279,11 @@ def refined_rows(answer: Answer) -> list[list[str]]:
     """
     rows = []
     for entry in answer.get("refined", []):
-        before = format_quantity(entry["before"], entry["unit"])
+        largest = max(abs(entry["before"]), abs(entry["after"]))
+        before = format_quantity(entry["before"], entry["unit"], largest=largest)
         if entry["before"] == 0.0:
             before = "0"
-        after = format_quantity(entry["after"], entry["unit"], entry["sd"])
+        after = format_quantity(entry["after"], entry["unit"], entry["sd"], largest=largest)
         off = NOT_IN_FILE
         if entry["off"] is not None:
             off = f"{100.0 * entry['off']:+.0f} %".replace("-", "−")
@@ -581,7 +582,10 @@ def _possible_lines(answer: Answer) -> list[str]:
         return []
     lines = ["Also possible:"]
     for entry in possible:
-        lines.append(f"  {words_of_name(entry['name'])}: {entry['why']}")
+        likely = format_cause_probability(entry["probability"])
+        lines.append(f"  {entry['name']}: {likely}; {entry['why']}")
+        for key, p in entry.get("parameters", {}).items():
+            lines.append(f"    {key} = {p['value']:.4g} ± {p['sd']:.2g}")
     return lines
 
 

@@ -79,7 +79,7 @@ def reason_for_doubt(signs: Consistency, log: LogSigns, config: DecideConfig) ->
             f"{100.0 * signs.between_times.excess:.0f} %"
         )
     if log.unexplained > config.clear_rest:
-        return "with it much of the missing force remains unexplained"
+        return "much of the missing force remains even with this effect in the model"
     if exceeds_range(signs, config):
         return "its fitted size is at the end of the range of plausible values"
     return "several weak signs together make it more likely that it stands in for another cause"

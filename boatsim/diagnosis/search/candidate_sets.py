@@ -337,7 +337,7 @@ class CandidateSets:
         return self.linearised[1]
 
     def _report_screening(self, share: float) -> None:
-        stage = f"screening {len(self.candidates)} entries"
+        stage = f"screening {len(self.candidates)} candidate effects"
         progress.report_part_of(self.report, *SCREENING)(stage, share)
 
     def _recheck_failed(self, best: Fit, allowed: Mapping[str, Fit]) -> dict[str, Fit]:

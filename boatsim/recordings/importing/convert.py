@@ -292,10 +292,9 @@ def _add_position(work: _Work, position: Position) -> None:
         )
     nowhere = there & (lat == 0.0) & (lon == 0.0)
     if nowhere.any():
-        work.remark(
-            f"{int(nowhere.sum())} fixes at latitude and longitude 0, before satellites were "
-            "found, are left out"
-        )
+        count = int(nowhere.sum())
+        fixes = "1 fix" if count == 1 else f"{count} fixes"
+        work.remark(f"omitted {fixes} at latitude and longitude 0, before satellites were found")
     there &= ~nowhere
     inside = there & _rows_in_use(work, t)
     if not inside.any():

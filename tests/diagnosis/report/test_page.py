@@ -3,9 +3,11 @@ broken into."""
 
 import os
 import re
+import tomllib
 from base64 import b64encode
 from dataclasses import replace
 from hashlib import sha256
+from html import unescape
 from html.parser import HTMLParser
 
 import numpy as np
@@ -290,7 +292,7 @@ def described() -> Findings:
         },
         {
             "axis": "thrust",
-            "statement": "a change of thrust that no candidate effect explains: 15 % less (from 3 to 9 s)",
+            "statement": "a change of thrust that no candidate effect explains: 15 % less, from 3 to 9 s",
             "terms": [
                 {
                     "of": "thrust, from 3 to 9 s of run_1",
@@ -1073,3 +1075,28 @@ def test_an_experiment_that_tests_none_of_the_effects_says_so():
     text = report.report_markdown(f, sections)
     assert "It is no test of weak reverse" in text
     assert "It is no test of" not in report.report_markdown(f, report_sections(f))
+
+
+def test_a_fault_of_the_log_is_answered_with_lines_to_copy_into_recording_toml() -> None:
+    findings = planar()
+    fault = {
+        "run": "run_1",
+        "name": "heading_counterclockwise",
+        "kind": "fault",
+        "sure": 0.999,
+        "words": "probably your log, not your boat",
+        "evidence": "the heading is counted to port",
+        "spans_s": [],
+        "lines": ["[columns]", 'psi_rad = "-psi_rad"'],
+        "alternatives": [],
+    }
+    first = "Probably your log, not your boat: the heading is counted to port."
+    whole = f"{first} If the log is used unchanged: the model leaves out one effect."
+    findings = replace(findings, answer=findings.answer | {"log": [fault], "sentence": whole})
+    sections = [section for section in report_sections(findings) if section.blocks]
+    html = report.report_html(findings, sections)
+    assert html.count(first) == 1
+    assert "Correct the log as stated below" in html.split(first)[1].split("</header>")[0]
+    copied = unescape(re.search(r"<pre>(.*?)</pre>", html, re.DOTALL)[1])
+    assert tomllib.loads(copied) == {"columns": {"psi_rad": "-psi_rad"}}
+    assert '    [columns]\n    psi_rad = "-psi_rad"' in report.report_markdown(findings, sections)
