@@ -72,8 +72,14 @@ COMPLETED: dict[str, dict[str, dict[str, object]]] = {
         "columns": AXES | COMMANDS,
     },
 }
-# floats on an air table, recorded by motion capture
-FACTS = {"no_water": True, "indoors": True, "moored": False, "position_fix": "tracking"}
+# floats on an air table, recorded by motion capture; each craft was weighed
+FACTS = {
+    "no_water": True,
+    "indoors": True,
+    "moored": False,
+    "weighed": True,
+    "position_fix": "tracking",
+}
 POINTS = 8  # of the thrust curve, which is a cubic polynomial
 DIAMETER = 0.12  # [m] of the craft
 ROLL_INERTIA = 0.0003  # [kg m^2] not used by a craft that does not roll

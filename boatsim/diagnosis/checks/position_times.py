@@ -30,9 +30,10 @@ def correct_position_times(recording: Recording) -> Recording:
     if not set(PLACE) <= recording.signals.keys():
         return recording
     places = np.column_stack([recording.signals[name] for name in PLACE])
-    measured = np.isfinite(places).all(axis=1)
-    known = np.flatnonzero(measured)
-    measured[known[1:]] = np.any(np.diff(places[known], axis=0) != 0.0, axis=1)  # not repeated
+    known = np.flatnonzero(np.isfinite(places).all(axis=1))
+    fresh = np.append(True, np.any(np.diff(places[known], axis=0) != 0.0, axis=1))[: len(known)]
+    measured = np.zeros(len(places), dtype=np.bool_)
+    measured[known[fresh]] = True
     t, track = recording.t[measured], places[measured] @ np.array([1.0, 1.0j])
     found = regular_times(t, track)
     if found is None:

@@ -132,7 +132,7 @@ def _count_turns(t: Array, distance: Array, speed: Array, rhythm: Rhythm) -> Arr
     for i in range(len(t) - 1, -1, -1):
         found[i] = nearest[i] + offsets[at]
         at = int(came_from[i, at])
-    return found - found[0]
+    return np.asarray(found - found[0])
 
 
 def _usual_step(distance: Array, speed: Array) -> float:
