@@ -38,6 +38,7 @@ LEVER = 0.25  # [lengths] of the ambient moment
 CALIBRATION = 0.03  # relative sd of damping and thrust about the vessel file
 SUBSTEPS = 4  # Runge-Kutta steps in one row
 RUNS = 3
+POSE = ("x_m", "y_m", "psi_rad")
 
 # places ahead and to starboard [m] and directions [rad] of fans that push one way only
 FANS = {
@@ -169,7 +170,7 @@ def hovercraft() -> Body:
 
         pose = integrate(rates, np.zeros(6), times)[:, :3]
         pose += rng.standard_normal(pose.shape) * [3e-4, 3e-4, 2e-3]
-        signals = dict(zip(("x_m", "y_m", "psi_rad"), pose.T, strict=True))
+        signals = dict(zip(POSE, pose.T, strict=True))
         return signals | {f"{fan}_N": commands[:, i] for i, fan in enumerate(FANS)}
 
     return Body(vessel, times, noise, run, 1)
@@ -214,7 +215,7 @@ def boat() -> Body:
 
         states = integrate(rates, np.zeros(6), times)
         states += rng.standard_normal(states.shape) * [0.02, 0.02, 0.01, 0.01, 0.01, 0.005]
-        names = ("x_m", "y_m", "psi_rad", "u_mps", "v_mps", "r_radps")
+        names = (*POSE, "u_mps", "v_mps", "r_radps")
         signals = dict(zip(names, states.T, strict=True))
         return signals | {f"{name}_N": commands[:, i] for i, name in enumerate(CORNERS)}
 
