@@ -605,6 +605,7 @@ class Problem:
         """Coefficients of the vessel that are uncertain; those of several instances are one."""
         vessel = self.program.vessel
         shared = defaultdict[tuple[str, str, float], list[tuple[str, int]]](list)
+        bounds = dict[tuple[str, str], Param]()
         for effect in vessel.effects:
             for name, param in type(effect).params().items():
                 sd = self.uncertainty.get(param.calibrates, 0.0)
@@ -612,11 +613,12 @@ class Problem:
                 applies = not param.axis or param.axis in vessel.dof
                 used = self.recordings[0].values[at] != 0.0 and applies
                 if param.calibrates and sd > 0 and used:
+                    bounds[type(effect).type_name(), name] = param
                     shared[type(effect).type_name(), name, sd].append((effect.name, at))
-        low, high = self.config.fit.coefficient_range
         found = []
         for (idea, name, sd), places in shared.items():
             owner = idea if len(places) > 1 else places[0][0]
+            low, high = self._factor_range([at for _, at in places], bounds[idea, name])
             found.append(
                 FreeParameter(
                     owner,
@@ -632,6 +634,15 @@ class Problem:
                 )
             )
         return tuple(found)
+
+    def _factor_range(self, places: Sequence[int], param: Param) -> tuple[float, float]:
+        """Range of a factor that keeps all its numbers within the bounds of the file format."""
+        low, high = self.config.fit.coefficient_range
+        for at in places:
+            value = float(self.recordings[0].values[at])
+            ends = sorted((param.low / value, param.high / value))
+            low, high = max(low, ends[0]), min(high, ends[1])
+        return low, high
 
     def _inherited_places(self) -> tuple[tuple[int, int], ...]:
         """Places of unset parameters, and of the vessel's numbers that they inherit."""
