@@ -254,6 +254,38 @@ class ChecksConfig:
         "A guided body whose coordinates move less than this speed, over a correlation time of the "
         "disturbance, is at rest; the share of sqrt(g L), and of sqrt(g / L) for angles.",
     )
+    ignored_window: float = setting(
+        12.0,
+        "correlation times",
+        "Time over which the forces that a motion needs are compared with the commanded ones, and "
+        "least time in which commands are ignored: longer than the surge of a hull takes.",
+        low=1.0,
+    )
+    ignored_share: float = setting(
+        0.25,
+        "1",
+        "Share of the usual answer to commands below which they are ignored. A drive with half of "
+        "its thrust, or a bow into the wind, leaves more.",
+        0.0,
+        1.0,
+    )
+    ignored_usual_share: float = setting(
+        0.5,
+        "1",
+        "Share of the commanded forces that the motion must usually show; below it the drives of "
+        "the vessel file are wrong throughout.",
+        0.0,
+        1.0,
+    )
+    ignored_least_force: float = setting(
+        0.7, "usual force", "Commanded force from which an answer can be expected.", 0.0
+    )
+    ignored_least_speed: float = setting(
+        0.1,
+        "usual speed",
+        "Speed from which a boat counts as moving; one that is aground or at a line does not.",
+        0.0,
+    )
     push_threshold: float = setting(
         6.0,
         "sd",

@@ -18,6 +18,7 @@ from threadpoolctl import threadpool_limits
 from boatsim.diagnosis import loading
 from boatsim.diagnosis.checks.finding import Finding
 from boatsim.diagnosis.checks.hypothesis_test import compare_reinterpretations
+from boatsim.diagnosis.checks.ignored_commands import check_ignored_commands
 from boatsim.diagnosis.checks.initial_actuator_state import infer_initial_actuator_state
 from boatsim.diagnosis.checks.rest import without_rest
 from boatsim.diagnosis.checks.unrecorded_push import has_measured_input, without_pushes
@@ -195,6 +196,7 @@ def _fit_and_select(
     base = fit(question)
     if has_diverged(question.problem, base.recalibrated):
         return None
+    findings = (*findings, *ignored_commands(loaded, question, base))
     selection = select(question, base, loaded, report_part_of(report, *SELECTING))
     given = loaded.findings
     loaded, kept = leave_out_pushes(loaded, question, selection.ranking.best)
@@ -305,6 +307,19 @@ def leave_out_pushes(loaded: Loaded, question: Question, found: Fit) -> tuple[Lo
     if kept is None:
         return loaded, question
     return kept, set_up_estimation_problem(kept, question.problem.config)
+
+
+def ignored_commands(loaded: Loaded, question: Question, base: Baseline) -> list[Finding]:
+    """Return findings about times in which the motion shows nothing of the commands.
+
+    Args:
+        loaded: The recordings.
+        question: The same recordings, mapped.
+        base: Fits of the vessel without candidate effects.
+    """
+    names = [str(one.path or one.name) for one in (*loaded.fitted, *loaded.held_out)]
+    recordings = (*question.problem.recordings, *question.held_out)
+    return check_ignored_commands(question.problem, base.nominal, recordings, names)
 
 
 def fit(question: Question) -> Baseline:

@@ -21,6 +21,7 @@ WORDS = {
     "no_water": "whether the craft moves without water",
     "moored": "whether a line holds the boat",
     "guided": "whether bearings or rails guide the boat",
+    "weighed": "whether the mass was weighed as recorded",
     "steering_measured": "whether the steering angle is measured or the command",
     "position_fix": "the kind of position measurement",
     "position_wander_sd_m": "the rms of the slowly varying position error",
@@ -33,6 +34,7 @@ FLAGS = (  # true or false
     "no_water",
     "moored",
     "guided",
+    "weighed",
     "steering_measured",
 )
 # rms [m] and correlation time [s] of the slowly varying error of positions

@@ -32,6 +32,7 @@ MAX_ROLL = 1.0
 # length); it is 0.4 or more on nearly all recordings of boats that turn, at most 0.35 on others
 MIN_COURSE_AGREEMENT = 0.4
 NOISE_ORDERS = (2, 3, 4, 5)  # of the differences in which the noise of a heading is estimated
+FEWEST_VALUES = 2  # of a column, without which no change of an angle is seen
 MIN_ROWS = 4  # with increasing time
 MIN_CORRELATION = 0.8  # between two series of the same motion
 # [rad] excess over a full circle of a wrapped heading, for numbers are rounded
@@ -73,6 +74,8 @@ def _in_degrees(columns: Mapping[str, Array], turns_over: bool) -> dict[str, int
         if name not in columns:
             continue
         rows, t, values, others = _rows_with_values(columns, name)
+        if len(rows) < FEWEST_VALUES:
+            continue
         if name == "psi_rad":
             index = find_heading_in_degrees(t, values, others)
         elif name == "phi_rad":

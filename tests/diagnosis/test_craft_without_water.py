@@ -115,6 +115,23 @@ def test_each_drive_is_a_candidate_only_where_there_are_more_than_two():
     assert "fewer than 3" in two.inapplicable["drive_gain_error"]
 
 
+def test_no_mass_on_board_is_tested_where_the_craft_was_weighed():
+    assert {"extra_mass", "payload"} <= set(library_for(craft({})).tested)
+    weighed = library_for(craft({"weighed": True}))
+    assert not {"extra_mass", "payload"} & set(weighed.tested)
+    assert weighed.excluded["extra_mass"] == "weighed = true"
+
+
+def test_fitted_coefficients_stay_within_the_bounds_of_the_file_format():
+    program = Program(CRAFT, ())
+    recordings = [floated(1)]
+    mapped = [map_recording(recording, program) for recording in recordings]
+    problem = Problem(mapped, prior_noise_levels(CRAFT, recordings), {"thrust": 0.5})
+    (gain,) = problem.nominal_coefficients
+    bounds = type(CRAFT.effects[0]).params()["gain"]
+    assert (gain.low, gain.high) == (bounds.low, bounds.high)  # all gains are 1
+
+
 CASES: dict[str, tuple[dict[str, object], str, dict[str, float]]] = {
     "inertia": ({"inertia": 0.7}, "yaw_inertia_error", {"factor": 0.7}),
     "one fan": (

@@ -226,6 +226,12 @@ def test_turning_and_course_together_show_degrees():
     assert units.find_heading_in_degrees(t, np.degrees(psi), drift) is not None
 
 
+def test_a_roll_angle_that_was_never_recorded_decides_nothing_about_units():
+    t = np.arange(0.0, 20.0, 0.1)
+    columns = {"t_s": t, "y_m": np.sin(t), "phi_rad": np.full(len(t), np.nan)}
+    assert units.find_columns_in_degrees(columns) == {}
+
+
 def test_a_part_keeps_its_times_and_an_empty_part_says_what_there_is():
     run = circle().between(2.0, 4.0)
     assert (run.t[0], run.t[-1], len(run)) == (pytest.approx(2.0), pytest.approx(4.0), 41)

@@ -1,5 +1,6 @@
 """Helpers of the benchmarks on real recordings: folders, reports and printed tables."""
 
+from argparse import ArgumentParser
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, TypeVar
@@ -31,6 +32,13 @@ def runs_of(name: str) -> dict[str, Path]:
         print(f"{name}: skipped, there are no recordings in ../shared/recordings/{name}/runs")
         raise SystemExit
     return {file.stem: file for file in files}
+
+
+def out_option(parser: ArgumentParser, name: str) -> None:
+    """Add the option --out, folder of the reports, whose default is out/real/<name>."""
+    parser.add_argument(
+        "--out", type=Path, default=OUT / name, help="folder of the reports (default: %(default)s)"
+    )
 
 
 def runs_except(runs: Mapping[str, T], names: Iterable[str]) -> list[T]:

@@ -4,6 +4,7 @@ Each set of the protocol (docs/protocol.md) prints one `Figures` for each form o
 same table.
 """
 
+import sys
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -15,6 +16,8 @@ from boatsim.diagnosis.evaluation import MODELS, compared_fits
 from boatsim.diagnosis.filter import MappedRecording
 from boatsim.diagnosis.free_runs import free_runs, rms_errors
 from boatsim.diagnosis.pipeline import Diagnosis
+from boatsim.diagnosis.report.output_files import write_diagnosis
+from boatsim.progress import Report
 from validation.real.common import effects_of, format_fixed, parameter_text, print_table
 
 HEADER = ("figure", "before", "retuned", "corrected", "corrected / retuned")
@@ -86,8 +89,11 @@ def diagnose_set(
     held_out: Sequence[Path],
     vessel: str,
     windows: Sequence[float],
+    out: Path,
 ) -> Figures:
     """Diagnose the fitted runs of a set and judge its models on the held-out runs.
+
+    The statements are printed, and the files of the report written, before the free runs begin.
 
     Args:
         title: Name of the set and form of its files.
@@ -95,17 +101,54 @@ def diagnose_set(
         held_out: Recordings that are held out.
         vessel: Name or path of the nominal vessel.
         windows: Lengths of the free runs [s]; the first one is that of the diagnosis.
+        out: Folder of the report.
     """
     start = time.process_time()
-    diagnosis = pipeline.diagnose(fitted, held_out, vessel=vessel, horizon=windows[0])
+    diagnosis = pipeline.diagnose(
+        fitted, held_out, vessel=vessel, horizon=windows[0], report=progress_printer()
+    )
     cpu_s = time.process_time() - start
+    print_statements(title, diagnosis, cpu_s)
+    write_diagnosis(diagnosis, out)
+    print(f"  report: {out / 'report.html'}", flush=True)
     mapped = map_runs(diagnosis, held_out, vessel)
     errors = {window: held_out_errors(diagnosis, mapped, window) for window in windows}
     return Figures(title, diagnosis, errors, cpu_s)
 
 
+def progress_printer() -> Report:
+    """Return a progress callback that prints each new stage to stderr, with the CPU time so far."""
+    printed = [""]
+
+    def print_stage(stage: str, share: float = 0.0, detail: str = "") -> None:
+        line = f"{stage} {detail}".rstrip()
+        if line != printed[-1]:
+            printed.append(line)
+            print(f"{time.process_time():8.1f} s CPU: {line}", file=sys.stderr, flush=True)
+
+    return print_stage
+
+
+def print_statements(title: str, diagnosis: Diagnosis, cpu_s: float) -> None:
+    """Print the summary, log findings and named effects of a diagnosis, and its CPU time.
+
+    Args:
+        title: Name of the set and form of its files.
+        diagnosis: The diagnosis.
+        cpu_s: CPU time of the diagnosis [s].
+    """
+    answer = diagnosis.findings.answer
+    print(f"\n{title}: statements")
+    print(f"  {answer['sentence']}")
+    for entry in answer.get("log", []):
+        print(f"  log, {entry['run']}: {entry['name']} ({entry['kind']}): {entry['evidence']}")
+    for effect in effects_of(diagnosis):
+        print(f"  {effect['kind']}: {effect['name']}: {parameter_text(effect)}")
+    print(f"  CPU: {cpu_s:.0f} s", flush=True)
+
+
 def print_figures(figures: Figures, units: Mapping[str, tuple[str, float]]) -> None:
-    """Print errors, log findings, named effects and CPU time of a diagnosis.
+    """Print the errors of free runs on the held-out runs.
 
     Args:
         figures: The figures.
@@ -113,15 +156,24 @@ def print_figures(figures: Figures, units: Mapping[str, tuple[str, float]]) -> N
     """
     rows = []
     for window, families in figures.errors.items():
-        for family, (text, factor) in units.items():
-            rms = [families[family][model] * factor for model in MODELS]
-            name = f"{text}, {window:g} s"
-            rows.append([name, *format_fixed(2, *rms), f"{rms[2] / rms[1]:.2f}"])
+        rows += error_rows(window, families, units)
     print_table(figures.title, HEADER, rows)
-    answer = figures.diagnosis.findings.answer
-    print(f"  {answer['sentence']}")
-    for entry in answer.get("log", []):
-        print(f"  log, {entry['run']}: {entry['name']} ({entry['kind']}): {entry['evidence']}")
-    for effect in effects_of(figures.diagnosis):
-        print(f"  {effect['kind']}: {effect['name']}: {parameter_text(effect)}")
-    print(f"  CPU: {figures.cpu_s:.0f} s")
+
+
+def error_rows(
+    window: float,
+    families: Mapping[str, Mapping[str, float]],
+    units: Mapping[str, tuple[str, float]],
+) -> list[list[str]]:
+    """Return one row of a table of errors for each family of signals.
+
+    Args:
+        window: Length of the free runs [s].
+        families: Rms errors by family and model.
+        units: Family of signals -> text of the figure with its unit, and factor from SI.
+    """
+    rows = []
+    for family, (text, factor) in units.items():
+        rms = [families[family][model] * factor for model in MODELS]
+        rows.append([f"{text}, {window:g} s", *format_fixed(2, *rms), f"{rms[2] / rms[1]:.2f}"])
+    return rows

@@ -6,12 +6,12 @@ of docs/protocol.md; the vessel is that of `gunnerus_vessel`. `published` or `cl
 prints one row.
 """
 
-import sys
+import argparse
 from collections.abc import Sequence
 from pathlib import Path
 
 from boatsim.cli.importing import import_log
-from validation.real.common import OUT, RECORDINGS, runs_named, runs_of
+from validation.real.common import OUT, RECORDINGS, out_option, runs_named, runs_of
 from validation.real.corrections import accept_corrections
 from validation.real.figures import Figures, diagnose_set, print_figures, split_groups
 from validation.real.gunnerus_vessel import NAME, write_vessel
@@ -62,8 +62,8 @@ def clean_files(names: Sequence[str]) -> list[Path]:
     return files
 
 
-def figures_of_published(vessel: str) -> Figures:
-    """Return the figures from the files as published."""
+def figures_of_published(vessel: str, out: Path) -> Figures:
+    """Return the figures from the files as published; the report is written to a folder."""
     runs = runs_of(NAME)
     fitted, held_out = split_groups({"all": list(runs)})
     files = import_published(list(runs.values()), vessel, OUT / NAME / "published")
@@ -74,24 +74,29 @@ def figures_of_published(vessel: str) -> Figures:
         runs_named(by_run, held_out),
         vessel,
         (WINDOW,),
+        out,
     )
 
 
-def figures_of_clean(vessel: str) -> Figures:
-    """Return the figures from the files that were put right by hand."""
+def figures_of_clean(vessel: str, out: Path) -> Figures:
+    """Return the figures from the files that were put right by hand, and write the report."""
     fitted, held_out = split_groups({"all": list(runs_of(NAME))})
     return diagnose_set(
-        f"{NAME}, runs_clean", clean_files(fitted), clean_files(held_out), vessel, (WINDOW,)
+        f"{NAME}, runs_clean", clean_files(fitted), clean_files(held_out), vessel, (WINDOW,), out
     )
 
 
-def main(rows: Sequence[str]) -> None:
+def main() -> None:
     """Print the figures of the rows that are named, or of both."""
+    parser = argparse.ArgumentParser(description="Figures of the sea trials of R/V Gunnerus")
+    parser.add_argument("rows", nargs="*", help="of published, clean; both without any")
+    out_option(parser, NAME)
+    given = parser.parse_args()
     vessel = str(write_vessel())
     for name, figures in (("published", figures_of_published), ("clean", figures_of_clean)):
-        if not rows or name in rows:
-            print_figures(figures(vessel), UNITS)
+        if not given.rows or name in given.rows:
+            print_figures(figures(vessel, given.out / f"{name}_report"), UNITS)
 
 
 if __name__ == "__main__":
-    main(sys.argv[1:])
+    main()

@@ -6,9 +6,9 @@ makers' numbers; mass and moment of inertia of each craft are set by run. A craf
 recordings. The protocol (docs/protocol.md) says which runs are fitted.
 """
 
+import argparse
 import csv
 import json
-import sys
 from collections.abc import Mapping, Sequence
 from contextlib import redirect_stderr, redirect_stdout
 from io import StringIO
@@ -19,21 +19,13 @@ import numpy as np
 import tomlkit
 
 from boatsim.cli.importing import import_log
-from boatsim.diagnosis.evaluation import MODELS
 from boatsim.physics.vessel import Vessel
-from validation.real.common import (
-    DEG,
-    OUT,
-    RECORDINGS,
-    format_fixed,
-    print_table,
-    runs_of,
-    write_report,
-)
+from validation.real.common import DEG, OUT, RECORDINGS, out_option, print_table, runs_of
 from validation.real.figures import (
     HEADER,
     Figures,
     diagnose_set,
+    error_rows,
     held_out_errors,
     map_runs,
     print_figures,
@@ -51,6 +43,7 @@ CRAFT = {
     "pink": "pink",
     "yellow_5": "yellow",
 }
+FORMS = ("runs_clean", "runs")
 FITTED = ("old_oct", "blue", "blue_unshifted", "yellow_5")
 BUILDS = {"old": ("control_M0",), "5 March": ("pink",)}  # build -> held-out runs
 WINDOWS = (1.0, 0.2)  # [s]
@@ -79,8 +72,14 @@ COMPLETED: dict[str, dict[str, dict[str, object]]] = {
         "columns": AXES | COMMANDS,
     },
 }
-# floats on an air table, recorded by motion capture
-FACTS = {"no_water": True, "indoors": True, "moored": False, "position_fix": "tracking"}
+# floats on an air table, recorded by motion capture; each craft was weighed
+FACTS = {
+    "no_water": True,
+    "indoors": True,
+    "moored": False,
+    "weighed": True,
+    "position_fix": "tracking",
+}
 POINTS = 8  # of the thrust curve, which is a cubic polynomial
 DIAMETER = 0.12  # [m] of the craft
 ROLL_INERTIA = 0.0003  # [kg m^2] not used by a craft that does not roll
@@ -254,31 +253,28 @@ def print_build(figures: Figures, build: str, files: Sequence[Path], vessel: str
     rows = []
     for window in WINDOWS:
         families = held_out_errors(figures.diagnosis, mapped, window)
-        for family, (text, factor) in UNITS.items():
-            rms = [families[family][model] * factor for model in MODELS]
-            cells = format_fixed(2, *rms)
-            rows.append([f"{text}, {window:g} s", *cells, f"{rms[2] / rms[1]:.2f}"])
+        rows += error_rows(window, families, UNITS)
     print_table(f"{figures.title}, build {build}", HEADER, rows)
 
 
-def main(kinds: Sequence[str]) -> None:
-    """Print the figures of the set, by form of its files and by build.
-
-    Args:
-        kinds: Forms of the files, of "runs_clean" and "runs"; none: both.
-    """
+def main() -> None:
+    """Print the figures of the set, by form of its files and by build."""
+    parser = argparse.ArgumentParser(description="Figures of a hovercraft with six fans")
+    parser.add_argument("forms", nargs="*", help=f"of {', '.join(FORMS)}; all without any")
+    out_option(parser, NAME)
+    given = parser.parse_args()
     runs_of(NAME)
     vessel = nominal_vessel().save(OUT / NAME / "vessel" / NAME).file
-    for kind in kinds or ("runs_clean", "runs"):
-        files = write_runs(kind, vessel)
+    for form in given.forms or FORMS:
+        files = write_runs(form, vessel)
         held_out = [files[run] for runs in BUILDS.values() for run in runs]
         fitted = [files[run] for run in FITTED]
-        figures = diagnose_set(f"{NAME}, {kind}", fitted, held_out, str(vessel), WINDOWS)
+        title, report = f"{NAME}, {form}", given.out / f"{form}_report"
+        figures = diagnose_set(title, fitted, held_out, str(vessel), WINDOWS, report)
         print_figures(figures, UNITS)
         for build, runs in BUILDS.items():
             print_build(figures, build, [files[run] for run in runs], str(vessel))
-        write_report(figures.diagnosis, f"{NAME}_{kind}")
 
 
 if __name__ == "__main__":
-    main(sys.argv[1:])
+    main()

@@ -12,15 +12,14 @@ below 1 N at these speeds, and without the coupling of sway and yaw. The map fro
 thrust is the makers', up to the revolutions at which it ends.
 """
 
-import sys
-from collections.abc import Sequence
+import argparse
 from pathlib import Path
 
 import numpy as np
 
 from boatsim.physics.base import Array
 from boatsim.recordings.table import Recording, read, write_csv
-from validation.real.common import DEG, OUT, RECORDINGS
+from validation.real.common import DEG, OUT, RECORDINGS, out_option
 from validation.real.figures import diagnose_set, print_figures
 
 NAME = "milliampere_ferry"
@@ -92,16 +91,20 @@ def write_parts(form: str) -> tuple[list[Path], list[Path]]:
     return parts
 
 
-def main(forms: Sequence[str]) -> None:
+def main() -> None:
     """Print the figures of the set for each form of its inputs."""
+    parser = argparse.ArgumentParser(description="Figures of the milliAmpere ferry")
+    parser.add_argument("forms", nargs="*", help=f"of {', '.join(FORMS)}; all without any")
+    out_option(parser, NAME)
+    given = parser.parse_args()
     if not (RECORDINGS / NAME / "runs_clean").is_dir():
         print(f"{NAME}: skipped, there are no recordings in ../shared/recordings/{NAME}")
         return
-    for form in forms:
+    for form in given.forms or FORMS:
         fitted, held_out = write_parts(form)
-        title = f"{NAME}, {form}"
-        print_figures(diagnose_set(title, fitted, held_out, str(VESSEL), WINDOWS), UNITS)
+        title, out = f"{NAME}, {form}", given.out / f"{form}_report"
+        print_figures(diagnose_set(title, fitted, held_out, str(VESSEL), WINDOWS, out), UNITS)
 
 
 if __name__ == "__main__":
-    main(sys.argv[1:] or FORMS)
+    main()

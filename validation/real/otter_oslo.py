@@ -19,7 +19,7 @@ from pathlib import Path
 
 from boatsim.cli.importing import import_log
 from boatsim.errors import BadInput
-from validation.real.common import DEG, OUT, RECORDINGS, print_table, runs_of, write_report
+from validation.real.common import DEG, OUT, RECORDINGS, out_option, print_table, runs_of
 from validation.real.figures import diagnose_set, print_figures, split_groups
 
 NAME = "otter_oslo"
@@ -51,6 +51,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description="Figures of the Otter in Oslo harbour")
     parser.add_argument("days", nargs="*", help=f"of {', '.join(DAYS)}; all without any")
     parser.add_argument("--form", choices=FORMS, help="form of the files; both without it")
+    out_option(parser, NAME)
     given = parser.parse_args()
     runs = runs_of(NAME)
     print_unusable()
@@ -59,7 +60,7 @@ def main() -> None:
         fitted, held_out = split_groups({day: names})
         for form in FORMS:
             if given.form in (None, form):
-                print_day(day, form, fitted, held_out)
+                print_day(day, form, fitted, held_out, given.out)
 
 
 def print_unusable() -> None:
@@ -73,14 +74,15 @@ def print_unusable() -> None:
             print(f"  {error}")
 
 
-def print_day(day: str, form: str, fitted: Sequence[str], held_out: Sequence[str]) -> None:
+def print_day(
+    day: str, form: str, fitted: Sequence[str], held_out: Sequence[str], out: Path
+) -> None:
     """Diagnose the runs of one day in one form, print the figures and write the report."""
     source = files_of_form(form, [*fitted, *held_out], day)
     title = f"{NAME}, {day}, {form}: {len(fitted)} runs fitted, held out {', '.join(held_out)}"
     parts = ([source[name] for name in fitted], [source[name] for name in held_out])
-    figures = diagnose_set(title, *parts, VESSEL, (WINDOW,))
+    figures = diagnose_set(title, *parts, VESSEL, (WINDOW,), out / f"{day}_{form}")
     print_figures(figures, UNITS)
-    write_report(figures.diagnosis, f"{NAME}/{day}_{form}")
 
 
 def files_of_form(form: str, names: Sequence[str], day: str) -> dict[str, Path]:

@@ -7,6 +7,7 @@ rig can not be expressed by published numbers. The figures are those of docs/pro
 from 20 s, at rest, to the end, relative to the rms of the signal.
 """
 
+import argparse
 import time
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -18,8 +19,9 @@ from boatsim.diagnosis.evaluation import MODELS, compared_fits
 from boatsim.diagnosis.filter import MappedRecording
 from boatsim.diagnosis.free_runs import FreeRun, free_runs
 from boatsim.diagnosis.pipeline import Diagnosis
-from validation.real.common import RECORDINGS, effects_of, parameter_text, print_table, write_report
-from validation.real.figures import HEADER, split_groups
+from boatsim.diagnosis.report.output_files import write_diagnosis
+from validation.real.common import RECORDINGS, out_option, print_table
+from validation.real.figures import HEADER, print_statements, progress_printer, split_groups
 
 NAME = "section_beam_waves"
 VESSEL = Path(__file__).parent / "section"
@@ -125,14 +127,20 @@ def table_rows(errors: Mapping[str, Mapping[str, float]]) -> list[list[str]]:
     return rows
 
 
-def print_form(form: str) -> None:
-    """Diagnose one form of the files and print its figures and statements."""
+def print_form(form: str, out: Path) -> None:
+    """Diagnose one form of the files, write its report and print its statements and figures.
+
+    Args:
+        form: "runs_clean".
+        out: Folder of the report.
+    """
     files = copied_runs(form)
     fitted, held_out = split_runs(files)
     print(f"held out: {', '.join(file.stem for file in held_out)}")
     start = time.process_time()
-    diagnosis = pipeline.diagnose(fitted, held_out, horizon=HORIZON)
-    cpu = time.process_time() - start
+    diagnosis = pipeline.diagnose(fitted, held_out, horizon=HORIZON, report=progress_printer())
+    print_statements(f"{NAME}, {form}", diagnosis, time.process_time() - start)
+    write_diagnosis(diagnosis, out)
     runs = free_runs_of(diagnosis, held_out)
     print_table(f"{NAME}, {form}", HEADER, table_rows(relative_errors(runs)))
     by_run = []
@@ -140,17 +148,13 @@ def print_form(form: str) -> None:
         errors = relative_errors([run])
         by_run.append([run.run, *(f"{errors[name]['patched']:.2f}" for name in SIGNALS)])
     print_table("corrected, by held-out run", ("run", *SIGNALS), by_run)
-    write_report(diagnosis, f"{NAME}/{form}_report")
-    for entry in diagnosis.findings.answer.get("log", []):
-        print(f"  log, {entry['run']}: {entry['name']} ({entry['kind']}): {entry['evidence']}")
-    for effect in effects_of(diagnosis):
-        print(f"  {effect['kind']}: {effect['name']}: {parameter_text(effect)}")
-    print(f"  CPU: {cpu:.0f} s")
 
 
 def main() -> None:
     """Print the figures of the set."""
-    print_form("runs_clean")
+    parser = argparse.ArgumentParser(description="Figures of a ship section in beam waves")
+    out_option(parser, NAME)
+    print_form("runs_clean", parser.parse_args().out / "report")
 
 
 if __name__ == "__main__":

@@ -10,6 +10,7 @@ the pendulum does not move are left out. Some end in a balance on top, which no 
 the rms over all windows would show those alone.
 """
 
+import argparse
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -21,12 +22,19 @@ from boatsim.diagnosis.evaluation import MODELS, compared_fits
 from boatsim.diagnosis.filter import MappedRecording
 from boatsim.diagnosis.free_runs import FreeRun, free_runs
 from boatsim.diagnosis.pipeline import Diagnosis
-from boatsim.diagnosis.report.output_files import write_diagnosis
 from boatsim.recordings.importing.convert import convert_log
 from boatsim.recordings.importing.mapping import read_map
 from boatsim.recordings.importing.several_logs import open_logs
 from boatsim.recordings.table import write_csv
-from validation.real.common import DEG, OUT, RECORDINGS, effects_of, parameter_text, runs_of
+from validation.real.common import (
+    DEG,
+    OUT,
+    RECORDINGS,
+    effects_of,
+    out_option,
+    parameter_text,
+    runs_of,
+)
 from validation.real.figures import (
     Figures,
     diagnose_set,
@@ -111,22 +119,23 @@ def with_medians(figures: Figures, held_out: Sequence[Path]) -> Figures:
     return replace(figures, errors=errors)
 
 
-def print_set(title: str, runs: dict[str, Path]) -> Diagnosis:
+def print_set(title: str, runs: dict[str, Path], out: Path) -> None:
     """Diagnose the runs with the lighter weight, and print errors and findings.
 
     Args:
         title: Form of the files.
         runs: Recordings by the name of the run.
+        out: Folder of the report.
     """
     fitted, held_out = split_groups(GROUPS)
     tested = [runs[name] for name in held_out]
-    found = diagnose_set(title, [runs[name] for name in fitted], tested, VESSEL, WINDOWS)
+    fit = [runs[name] for name in fitted]
+    found = diagnose_set(title, fit, tested, VESSEL, WINDOWS, out)
     units = {
         "roll_median_rad": ("roll, median over windows [deg]", DEG),
         "roll_rms_rad": ("roll, rms over windows [deg]", DEG),
     }
     print_figures(with_medians(found, tested), units)
-    return found.diagnosis
 
 
 def print_heavy(run: Path, corrected: Path) -> None:
@@ -148,12 +157,14 @@ def print_heavy(run: Path, corrected: Path) -> None:
 
 def main() -> None:
     """Print the figures from the files as published and from the clean ones."""
+    parser = argparse.ArgumentParser(description="Figures of a weight on a motor")
+    out_option(parser, NAME)
+    out = parser.parse_args().out
     published = runs_of(NAME)
     clean = {file.stem: file for file in (RECORDINGS / NAME / "runs_clean").glob("*.csv")}
-    print_set(f"{NAME}, as published", converted(list(published.values())))
-    diagnosis = print_set(f"{NAME}, clean", clean)
-    write_diagnosis(diagnosis, OUT / NAME)
-    print_heavy(clean[HEAVY], OUT / NAME / "patched.toml")
+    print_set(f"{NAME}, as published", converted(list(published.values())), out / "raw_report")
+    print_set(f"{NAME}, clean", clean, out / "clean_report")
+    print_heavy(clean[HEAVY], out / "clean_report" / "patched.toml")
 
 
 if __name__ == "__main__":

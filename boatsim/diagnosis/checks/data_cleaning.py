@@ -1,7 +1,7 @@
 """Corrections that a diagnosis applies to a log automatically, and the findings about them.
 
-Repeated values and outliers are ignored, positions that contradict the velocities are dropped, and
-rudder signs are aligned with the vessel.
+Repeated values and outliers are ignored, positions that contradict the velocities are dropped,
+positions that were logged late are moved, and rudder signs are aligned with the vessel.
 """
 
 from collections.abc import Sequence
@@ -18,6 +18,7 @@ from boatsim.diagnosis.checks.interpolated_samples import (
 )
 from boatsim.diagnosis.checks.position_frame import drop_rotated_positions
 from boatsim.diagnosis.checks.position_outliers import drop_position_outliers
+from boatsim.diagnosis.checks.position_times import LATE_BY_ROWS, correct_position_times
 from boatsim.diagnosis.checks.reinterpretations import MIRRORED, MIRRORED_WORDS
 from boatsim.diagnosis.checks.repeated_values import (
     FIX_REPEATED,
@@ -38,6 +39,7 @@ FINDING_OF_REMARK = {
     VALUE_REPEATED: "channel_held",
     ACROSS_WRAP: "heading_across_wrap",
     INTERPOLATED: "interpolated",
+    LATE_BY_ROWS: "position_times",
     "jump away and return": "outliers",
     "off the course of the following fixes": "begins_astray",
     "were rotated with the heading": "positions_turned",
@@ -79,7 +81,8 @@ def clean_recording(
 ) -> Recording:
     """Downsample a prepared recording to the useful rate, and drop values that are no measurements.
 
-    These are values that a logger interpolated or repeated, and outliers.
+    These are values that a logger interpolated or repeated, and outliers. Positions that were
+    logged late are moved to the times of their rows first.
 
     Args:
         recording: A prepared recording.
@@ -90,7 +93,7 @@ def clean_recording(
     Returns:
         The cleaned recording; ignored values are nan, and its remarks list each correction.
     """
-    measured = drop_interpolated_samples(recording, config.checks)
+    measured = drop_interpolated_samples(correct_position_times(recording), config.checks)
     reduced = measured.thinned(priors.used_sample_rate(vessel, duration, config.load))
     return drop_faulty_values(reduced, vessel, config)
 

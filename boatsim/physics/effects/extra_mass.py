@@ -82,6 +82,7 @@ class ExtraMass(Inertia, Force):
     )
     symbols: ClassVar = {"mass": "m", "x": "x"}
     needs: ClassVar = ("surge",)
+    ruled_out_by: ClassVar = {"weighed": (True,)}
     words: ClassVar[str] = "the boat carries a mass that the model does not contain"
     refines: ClassVar[str] = "inertia"
     shown_by: ClassVar[str] = "sharp starts and stops in every axis"
@@ -132,6 +133,7 @@ class Payload(CoefficientRelease):
 
     # a hull that only rolls identifies the ratio of moment to inertia and nothing else
     needs: ClassVar = ("surge", "sway")
+    ruled_out_by: ClassVar = {"weighed": (True,)}
     words: ClassVar[str] = (
         "the boat is heavier than specified, or all its forces are smaller by the same factor"
     )

@@ -373,9 +373,8 @@ def _regularize_positions(work: _Work) -> None:
     t, period = found
     shift = float(np.sqrt(np.mean((t - x.given.t) ** 2)))
     work.remark(
-        f"x_m, y_m: the sensor measured every {period:.4g} s, but the program read it up to one "
-        "turn of its loop later; the samples are moved to the times of that rhythm, by "
-        f"{shift:.2g} s rms"
+        f"x_m, y_m: the sensor measured every {period:.4g} s, but the program read it late; the "
+        f"samples are moved to the times of that rhythm, by {shift:.2g} s rms"
     )
     for name, column in (("x_m", x), ("y_m", y)):
         work.columns[name] = replace(column, given=Samples(t, column.given.values))

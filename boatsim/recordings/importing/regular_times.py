@@ -1,30 +1,44 @@
-"""Times of the samples of a sensor with a regular rate that a program read at other times."""
+"""Times of the samples of a sensor with a regular rate that a program read at other times.
+
+A program that polls a sensor, or reads its messages from a queue, stamps samples late, by another
+delay each time. A vessel under way then seems to move in jerks. The distance from one sample to the
+next shows how many periods of the sensor lie between them, because the speed changes slowly.
+"""
+
+from typing import NamedTuple
 
 import numpy as np
 
 from boatsim.physics.base import Array
 
 MIN_SAMPLES = 50  # fewer do not determine the period
-SEARCH = (0.9, 1.1)  # periods that are tried, relative to the mean step without gaps
-MAX_SAMPLES = 2000  # from which the period is found; the cost grows with their square
-PHASE_WINDOW = 40.0  # [s] within which the clocks of sensor and program do not drift apart
-# Mean resultant length of the phases. Delays that are evenly spread over a whole period have 0,
-# over half of it 0.64. 200 samples without any rhythm exceed 0.15 in 1 % of logs; the roughness of
-# the track is the second sign
-MIN_CONCENTRATION = 0.15
+# Time [s] over which speed and mean delay are averaged: longer than delays of messages, shorter
+# than the drift of a clock, or a change of speed
+SPEED_WINDOW = 4.0
+DELAY_WINDOW = 40.0
+# Largest delay of a sample relative to the mean one [periods]. Queues of wireless links were seen
+# to hold two messages; 12 are one second at the usual rates of satellite receivers
+MAX_DELAY = 12
+# Time [s] without samples, over which the distance does not tell the number of periods: 10 % of
+# it are more than half a period of the usual receivers
+GAP = 1.5
+SPEED_CHANGE = 0.1  # share by which the speed may differ from its average
+COUNT_LIMIT = 4.0  # [sd] of a distance, beyond which it is an outlier of the position
+# Sd of the delays [periods] in each count of the periods. It is wide at first, because an error of
+# the period makes the delays grow over the log. The last ones decide where the vessel hardly moves
+DELAY_SDS = (10.0, 3.0, 1.0, 0.7, 0.7)
+REGULAR_SHARE = 0.95  # of equal steps, from which a sensor counts as read in time
+TINY = 1e-12  # [m^2] variance of a vessel that does not move
 MIN_JITTER = 0.05  # rms of the shifts, relative to the period, that is worth removing
-# The velocities by the positions must become smoother by this factor, the second sign of a rhythm.
-# Where some samples move to a wrong turn of the sensor, the largest changes do not shrink by half
+# The velocities by the positions must become smoother by this factor. Samples at irregular times
+# do not lie at whole periods, and become rougher
 MAX_ROUGHNESS = 0.5
 
 
 def regular_times(t: Array, track: Array) -> tuple[Array, float] | None:
     """Return the times at which a sensor of regular rate measured, and the period.
 
-    A program that polls a sensor stamps its samples up to one turn of its loop too late, by another
-    delay each time. A vessel under way then seems to move in jerks. The phases of the stamps show
-    the rhythm of the sensor if the loop is shorter than its period (Rayleigh test of directional
-    statistics: Mardia, Jupp 2000); the mean delay stays.
+    The mean delay stays.
 
     Args:
         t: Times (N,) [s] at which new samples were read, increasing.
@@ -33,49 +47,115 @@ def regular_times(t: Array, track: Array) -> tuple[Array, float] | None:
     Returns:
         Times (N,) [s] and period [s]; None if the samples have no rhythm, or are regular already.
     """
-    if len(t) < MIN_SAMPLES:
+    if len(t) < MIN_SAMPLES or _is_regular(t):
         return None
-    steps = np.diff(t)
-    usual = float(np.mean(steps[steps < 2.5 * np.median(steps)]))
-    period = _period(t, usual)
-    turns = (t - t[0]) / period
-    phase = _local_phase(t, turns)
-    if phase is None:
-        return None
-    regular = t[0] + period * (np.round(turns - phase) + phase)
-    kept = np.append(True, np.diff(regular) > 0.5 * period)
-    kept &= np.append(kept[1:], True)
-    regular = np.where(kept, regular, t)
+    time = t - t[0]
+    distance = np.abs(np.diff(track))
+    regular, period, steps = time, 0.0, np.ones(len(t) - 1)
+    for delay_sd in DELAY_SDS:
+        speed = _speed(regular, distance)
+        if period == 0.0:
+            period = _usual_step(distance, speed)
+            if not period > 0.0:
+                return None
+            steps = np.maximum(1.0, np.round(distance / (speed * period + TINY)))
+            period = _period(time, np.append(0.0, np.cumsum(steps)))
+        spread = _spread(distance - speed * period * steps)
+        turns = _count_turns(time, distance, speed, Rhythm(period, delay_sd, spread))
+        steps, period = np.diff(turns), _period(time, turns)
+        regular = period * turns + _mean_delay(time, time - period * turns)
     if not np.all(np.diff(regular) > 0.0):
         return None
-    shift = float(np.sqrt(np.mean((regular - t) ** 2)))
-    smoother = np.all(_roughness(regular, track) < MAX_ROUGHNESS * _roughness(t, track))
+    shift = float(np.sqrt(np.mean((regular - time) ** 2)))
+    smoother = np.all(_roughness(regular, track) < MAX_ROUGHNESS * _roughness(time, track))
     if shift < MIN_JITTER * period or not smoother:
         return None
-    return regular, period
+    return t[0] + regular, period
 
 
-def _period(t: Array, usual: float) -> float:
-    """The period [s] near the usual step at which the phases are most concentrated."""
-    last = t[min(len(t), MAX_SAMPLES) - 1]
-    duration = min(float(last - t[0]), 4.0 * PHASE_WINDOW)
-    rows = t - t[0] <= duration
-    step = 0.25 / duration
-    frequencies = np.arange(1.0 / (SEARCH[1] * usual), 1.0 / (SEARCH[0] * usual), step)
-    waves = np.exp(-2j * np.pi * np.outer(frequencies, t[rows] - t[0]))
-    return float(1.0 / frequencies[int(np.argmax(np.abs(waves.sum(axis=1))))])
+def _is_regular(t: Array) -> bool:
+    """Whether nearly all steps are equal, so that nothing has to be counted."""
+    steps = np.diff(t) / np.median(np.diff(t))
+    return float(np.mean(np.abs(steps - 1.0) < MIN_JITTER)) > REGULAR_SHARE
 
 
-def _local_phase(t: Array, turns: Array) -> Array | None:
-    """Mean phase (N,) [turns] around each sample, which drifts slowly; None without a rhythm."""
-    unit = np.exp(2j * np.pi * turns)
-    total = np.append(0.0, np.cumsum(unit))
-    begin = np.searchsorted(t, t - 0.5 * PHASE_WINDOW)
-    end = np.searchsorted(t, t + 0.5 * PHASE_WINDOW, side="right")
-    mean = (total[end] - total[begin]) / (end - begin)
-    if float(np.median(np.abs(mean))) < MIN_CONCENTRATION:
-        return None
-    return np.asarray(np.unwrap(np.angle(mean)) / (2.0 * np.pi))
+def _speed(t: Array, distance: Array) -> Array:
+    """Mean speed (N - 1,) [m/s] around each step between samples."""
+    middle = 0.5 * (t[1:] + t[:-1])
+    begin = np.searchsorted(t, middle - 0.5 * SPEED_WINDOW, side="right") - 1
+    end = np.searchsorted(t, middle + 0.5 * SPEED_WINDOW)
+    begin, end = np.maximum(begin, 0), np.minimum(end, len(t) - 1)
+    way = np.append(0.0, np.cumsum(distance))
+    return np.asarray((way[end] - way[begin]) / (t[end] - t[begin]))
+
+
+def _spread(off: Array) -> float:
+    """Standard deviation of deviations (N,), robust to outliers."""
+    return float(1.4826 * np.median(np.abs(off)))
+
+
+class Rhythm(NamedTuple):
+    """Rhythm of a sensor: period [s], sd of its delays [periods], and noise of its steps [m]."""
+
+    period: float
+    delay_sd: float
+    noise: float
+
+
+def _count_turns(t: Array, distance: Array, speed: Array, rhythm: Rhythm) -> Array:
+    """Periods (N,) of the sensor from the first sample to each, by the best path (Viterbi 1967).
+
+    A sample is at least one period later than the one before. The distances decide, and the delays
+    where the vessel hardly moves.
+    """
+    period = rhythm.period
+    nearest = np.round(t / period).astype(np.int64)
+    offsets = np.arange(-MAX_DELAY, MAX_DELAY + 1)
+    delays = t[:, None] / period - (nearest[:, None] + offsets)
+    own = (delays / rhythm.delay_sd) ** 2
+    expected = speed * period
+    total = own[0]
+    came_from = np.zeros((len(t), len(offsets)), dtype=np.int64)
+    for i in range(1, len(t)):
+        turns = (nearest[i] + offsets)[None, :] - (nearest[i - 1] + offsets)[:, None]
+        way = expected[i - 1] * turns
+        variance = rhythm.noise**2 + (SPEED_CHANGE * way) ** 2 + TINY
+        cost = np.minimum((distance[i - 1] - way) ** 2 / variance, COUNT_LIMIT**2)
+        if t[i] - t[i - 1] > GAP:
+            cost[:] = 0.0
+        cost[turns < 1] = np.inf
+        paths = total[:, None] + cost
+        came_from[i] = np.argmin(paths, axis=0)
+        total = paths[came_from[i], np.arange(len(offsets))] + own[i]
+    found = np.empty(len(t))
+    at = int(np.argmin(total))
+    for i in range(len(t) - 1, -1, -1):
+        found[i] = nearest[i] + offsets[at]
+        at = int(came_from[i, at])
+    return np.asarray(found - found[0])
+
+
+def _usual_step(distance: Array, speed: Array) -> float:
+    """Median time [s] in which the vessel went from one sample to the next, where it moves."""
+    moves = speed > 0.5 * np.median(speed)
+    return float(np.median(distance[moves] / speed[moves])) if moves.any() else 0.0
+
+
+def _period(t: Array, turns: Array) -> float:
+    """Period [s] by which the turns agree with the stamps between gaps (least squares)."""
+    part = np.append(0, np.cumsum(np.diff(t) > GAP))
+    count = np.maximum(np.bincount(part), 1)
+    off_t = t - (np.bincount(part, t) / count)[part]
+    off_turns = turns - (np.bincount(part, turns) / count)[part]
+    return float(np.sum(off_t * off_turns) / np.sum(off_turns**2))
+
+
+def _mean_delay(t: Array, delay: Array) -> Array:
+    """Mean delay (N,) around each sample; it drifts slowly where two clocks differ."""
+    total = np.append(0.0, np.cumsum(delay))
+    begin = np.searchsorted(t, t - 0.5 * DELAY_WINDOW)
+    end = np.searchsorted(t, t + 0.5 * DELAY_WINDOW, side="right")
+    return np.asarray((total[end] - total[begin]) / (end - begin))
 
 
 def _roughness(t: Array, track: Array) -> Array:

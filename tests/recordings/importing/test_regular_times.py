@@ -69,3 +69,36 @@ def test_an_import_moves_the_positions_and_reports_it():
     seen = np.isfinite(run["x_m"])
     speed = np.abs(np.diff(run["x_m"][seen] + 1j * run["y_m"][seen]) / np.diff(run.t[seen]))
     assert np.percentile(np.abs(speed - 1.5), 90) < 0.3
+
+
+def queued(seed: int = 0) -> tuple[np.ndarray, np.ndarray]:
+    """Times of measurement, and times at which messages of a queue arrived, up to 0.5 s later.
+
+    A link lets messages through in bursts, in order and at least 20 ms apart.
+    """
+    rng = np.random.default_rng(seed)
+    true = 1.7e9 + PERIOD * np.arange(600)
+    true = true[rng.random(600) >= 0.03]
+    arrived = true + 0.05 + 0.45 * rng.random(len(true)) ** 2
+    for i in range(1, len(arrived)):
+        arrived[i] = max(arrived[i], arrived[i - 1] + 0.02)
+    return true, arrived
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_delays_of_more_than_a_period_are_removed_up_to_the_mean_delay(seed):
+    true, arrived = queued(seed)
+    noise = 0.005 * np.random.default_rng(seed).normal(size=(2, len(true)))
+    track = track_at(true - true[0]) + noise[0] + 1j * noise[1]
+    found, period = regular_times(arrived, track)
+    assert period == pytest.approx(PERIOD, rel=1e-3)
+    off = found - true
+    assert np.std(off) < 0.25 * np.std(arrived - true)
+    assert 0.0 < np.mean(off) < 0.5
+
+
+def test_samples_at_irregular_times_are_left_as_they_are_where_their_track_is_smooth():
+    rng = np.random.default_rng(7)
+    true = 1.7e9 + np.cumsum(0.05 + 0.3 * rng.random(600))
+    read = true + 0.1 * rng.random(600)
+    assert regular_times(np.sort(read), track_at(true - true[0])) is None

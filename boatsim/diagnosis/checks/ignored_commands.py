@@ -1,0 +1,177 @@
+"""Check for times in which a vessel moves, but not by its recorded commands.
+
+Another person may steer by a second remote control, or the drives may be off while the boat is
+towed or drifts. The motion then shows none of the commanded forces, although it shows them at other
+times of the same recordings. A fit of the whole would take the drives for weak.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from boatsim.diagnosis.checks.finding import Finding
+from boatsim.diagnosis.config import ChecksConfig
+from boatsim.diagnosis.filter import MappedRecording
+from boatsim.diagnosis.locate.nominal_forces import actuator_states, body_forces
+from boatsim.diagnosis.problem import Fit, Problem
+from boatsim.physics.base import Array
+
+Rows = NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
+class _Response:
+    """How much of the commanded forces the motion shows around each row.
+
+    Attributes:
+        share: Shares (N, 2), in surge alone, and in surge and yaw together: 1 where the motion
+            needs just the commanded forces. Both are asked, because a moment that the hull resists
+            much more than the vessel file says outweighs the surge force.
+        size: Rms (N,) of the commanded surge force, in its usual size.
+        speed: Rms (N,) of the speed [m/s].
+    """
+
+    share: Array
+    size: Array
+    speed: Array
+
+
+def check_ignored_commands(
+    problem: Problem, fit: Fit, recordings: Sequence[MappedRecording], names: Sequence[str]
+) -> list[Finding]:
+    """Find the times in which vessels move, but not by their commands.
+
+    Args:
+        problem: Problem whose recordings show how the vessel usually answers.
+        fit: The vessel as specified, with fitted noise levels.
+        recordings: Recordings that are tested.
+        names: Their files, for the findings.
+
+    Returns:
+        At most one finding "commands_ignored" for each recording.
+    """
+    config = problem.config.checks
+    if not {"surge", "yaw"} <= set(problem.program.vessel.dof):
+        return []
+    scale = _usual_forces(problem.recordings)
+    if not np.all(scale > 0.0):
+        return []
+    usual = [_response(problem, fit, one, scale) for one in problem.recordings]
+    driven = np.vstack([r.share[r.size > config.ignored_least_force] for r in usual])
+    speeds = np.concatenate([r.speed for r in usual])
+    if not len(driven):
+        return []
+    share = np.median(driven, axis=0)
+    if np.any(share < config.ignored_usual_share):
+        return []  # the drives of the file are wrong throughout
+    found = []
+    for mapped, name in zip(recordings, names, strict=True):
+        answer = _response(problem, fit, mapped, scale)
+        ignored = np.all(np.abs(answer.share) < config.ignored_share * share, axis=1)
+        ignored &= answer.size > config.ignored_least_force
+        ignored &= answer.speed > config.ignored_least_speed * float(np.median(speeds))
+        spans = _spans(mapped.times, ignored, _window(problem))
+        if spans:
+            found.append(_finding(mapped, spans, name, config))
+    return found
+
+
+def _window(problem: Problem) -> float:
+    """Time [s] over which forces are compared."""
+    return problem.config.checks.ignored_window * problem.ambient.time_constant
+
+
+def _commanded(mapped: MappedRecording) -> Array:
+    """Forces (N, axes) of the drives at rest, beyond those that act without commands."""
+    program = mapped.program
+    rest = np.zeros((len(mapped.times), 2 * program.module.NQ))
+    act, memory = np.zeros(program.held_size), np.zeros(program.memory_size)
+    neutral = {name: c.neutral for name, c in program.vessel.commands.items()}
+    on = program.effect_switches()
+    commands = program.command_array(neutral)
+    program.functions.settle_actuators(commands, memory, mapped.values, on, act)
+    idle = body_forces(mapped, rest[:1], [act], mapped.values)
+    return body_forces(mapped, rest, actuator_states(mapped), mapped.values) - idle
+
+
+def _usual_forces(recordings: Sequence[MappedRecording]) -> Array:
+    """Rms of the commanded forces along surge and yaw over all recordings."""
+    forces = np.vstack([_commanded(mapped) for mapped in recordings])
+    axes = _axes(recordings[0])
+    return np.asarray(np.sqrt(np.mean(forces[:, axes] ** 2, axis=0)))
+
+
+def _axes(mapped: MappedRecording) -> list[int]:
+    """Places of surge and yaw among the forces."""
+    dof = list(mapped.program.vessel.dof)
+    return [dof.index("surge"), dof.index("yaw")]
+
+
+def _response(problem: Problem, fit: Fit, mapped: MappedRecording, scale: Array) -> _Response:
+    """How much of the commanded forces the motion of a recording shows.
+
+    The motion needs the commanded force and the latent one that the filter adds.
+    """
+    nq, axes = problem.program.module.NQ, _axes(mapped)
+    values = problem.values(mapped, fit.free, fit.theta)
+    on = problem.program.effect_switches(fit.effects)
+    means = mapped.smooth(values, on, fit.levels).means
+    commanded = _commanded(mapped)[:, axes] / scale
+    needed = commanded + means[:, 2 * nq : 3 * nq][:, axes] / scale
+    speed = np.sum(means[:, nq : nq + 2] ** 2, axis=1)
+    products, squares = np.cumsum(needed * commanded, axis=1), np.cumsum(commanded**2, axis=1)
+    columns = np.column_stack([products, squares, speed])
+    mean = _running_mean(mapped.times, columns, _window(problem))
+    shares = mean[:, :2] / np.maximum(mean[:, 2:4], np.finfo(float).tiny)
+    return _Response(shares, np.sqrt(mean[:, 2]), np.sqrt(mean[:, 4]))
+
+
+def _running_mean(t: Array, values: Array, window: float) -> Array:
+    """Means (N, C) of columns over a window [s] around each row."""
+    total = np.vstack([np.zeros(values.shape[1]), np.cumsum(values, axis=0)])
+    begin = np.searchsorted(t, t - 0.5 * window)
+    end = np.searchsorted(t, t + 0.5 * window, side="right")
+    return np.asarray((total[end] - total[begin]) / (end - begin)[:, None])
+
+
+def _spans(t: Array, rows: Rows, least: float) -> list[tuple[float, float]]:
+    """Intervals [s] of true rows of at least some length, widened to an end of the log nearby."""
+    edges = np.diff(np.concatenate(([0], rows.astype(np.int64), [0])))
+    found = []
+    for begin, end in zip(np.flatnonzero(edges == 1), np.flatnonzero(edges == -1), strict=True):
+        first, last = float(t[begin]), float(t[end - 1])
+        if last - first < least:
+            continue
+        if first - t[0] < 0.5 * least:
+            first = float(t[0])
+        if t[-1] - last < 0.5 * least:
+            last = float(t[-1])
+        found.append((first, last))
+    return found
+
+
+def _finding(
+    mapped: MappedRecording, spans: list[tuple[float, float]], name: str, config: ChecksConfig
+) -> Finding:
+    """The finding about one recording."""
+    texts = ", ".join(f"{begin:.4g} to {end:.4g} s" for begin, end in spans)
+    begin, end = float(mapped.times[0]), float(mapped.times[-1])
+    use = None
+    if len(spans) == 1 and spans[0][1] == end and spans[0][0] > begin:
+        use = (begin, spans[0][0])
+    elif len(spans) == 1 and spans[0][0] == begin and spans[0][1] < end:
+        use = (spans[0][1], end)
+    return Finding(
+        "commands_ignored",
+        f"from {texts} the boat moves, but its motion shows none of the commanded forces, which it "
+        "shows at other times",
+        kind="drive",
+        probability=config.probability_likely,
+        spans=tuple(spans),
+        use=use,
+        remedy="if another person steered or the drives were off, leave this time out",
+        words="commands that the drives did not follow",
+        run=name,
+    )
