@@ -20,7 +20,7 @@ def check_holes(recording: Recording, vessel: Vessel, config: ChecksConfig) -> l
         config: Thresholds of the quality checks.
 
     Returns:
-        One finding of kind "limit", or none.
+        One finding, or none.
     """
     t = recording.t
     holes = rows_before_holes(t, vessel, config)
@@ -33,7 +33,6 @@ def check_holes(recording: Recording, vessel: Vessel, config: ChecksConfig) -> l
         Finding(
             "hole",
             f"the log has no rows for {lengths}, so that commands and motion there are unknown",
-            "limit",
             spans=spans,
             remedy=f"write into recording.toml: use = [{parts}]",
         )

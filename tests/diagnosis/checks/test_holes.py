@@ -27,7 +27,7 @@ def with_hole(begin: float, end: float) -> Recording:
 
 def test_a_hole_is_answered_with_the_parts_beside_it(boat: Vessel) -> None:
     (finding,) = check_holes(with_hole(40.0, 60.0), boat, CHECKS)
-    assert finding.kind == "limit" and finding.spans == ((40.0, 60.0),)
+    assert finding.kind == "fault" and finding.spans == ((40.0, 60.0),)
     use = tomllib.loads(finding.remedy.partition(": ")[2])["use"]
     assert use == [[0.0, 40.0], [60.0, 99.9]]
 
