@@ -3,6 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from boatsim.diagnosis.checks.clock import check_clock
 from boatsim.diagnosis.checks.finding import Finding
 from boatsim.diagnosis.config import ChecksConfig
 from boatsim.diagnosis.priors import froude_time_scale
@@ -25,6 +26,8 @@ def check_holes(recording: Recording, vessel: Vessel, config: ChecksConfig) -> l
     t = recording.t
     holes = rows_before_holes(t, vessel, config)
     if not len(holes):
+        return []
+    if check_clock(recording, vessel, config):  # the time is wrong, and no rows are missing
         return []
     spans = tuple(zip(t[holes].tolist(), t[holes + 1].tolist(), strict=True))
     lengths = ", ".join(f"{end - begin:.3g} s" for begin, end in spans)
