@@ -25,6 +25,8 @@ from numpy.typing import NDArray
 from scipy.signal import lfilter
 
 from boatsim.diagnosis import pipeline
+from boatsim.diagnosis.report.schema import Answer
+from boatsim.errors import BadInput
 from boatsim.physics.vessel import Vessel
 from boatsim.recordings.table import Recording, write_csv
 from validation.calibration.table import share
@@ -49,6 +51,7 @@ FANS = {
     "c1": (-0.035, 0.03, -5 * np.pi / 6),
     "c2": (-0.009, 0.045, np.pi / 6),
 }
+OPPOSITE = [1, 0, 3, 2, 5, 4]  # fan that pushes against each one
 # of four thrusters that push both ways
 CORNERS = {
     "port_bow": (0.5, -0.2, 0.5),
@@ -159,6 +162,9 @@ def hovercraft() -> Body:
 
     def run(rng: Rng, factors: Array) -> dict[str, Array]:
         commands = steps(rng, times, 0.25, 0.0, 0.25, len(FANS))
+        braking = np.roll(commands[:, OPPOSITE], 10, axis=0)  # the step before, reversed
+        second = (times / 0.25).astype(int) % 2 == 1
+        commands = np.where(second[:, None], braking, commands)
         forces = factors[0] * planar_forces(FANS, commands)
         forces += ambient(rng, times, mass, length, (1.0, 1.0, LEVER * length))
 
@@ -317,37 +323,45 @@ def record(out: Path, seed: int, number: int) -> None:
     start = time.process_time()
     with tempfile.TemporaryDirectory() as name:
         files = write_trial(BODIES[kind](), rng, Path(name))
-        diagnosis = pipeline.diagnose(files[:2], files[2:])
-    answer = diagnosis.findings.answer
-    found = {
-        "kind": kind,
-        "candidates": len(answer["tried"]),
-        "effects": [[e["name"], e["probability"]] for e in answer["effects"]],
-        "possible": [[e["name"], e["probability"]] for e in answer["also_possible"]],
-        "unknown": answer["unknown"]["flag"],
-        "log": [[entry["run"], entry["name"]] for entry in answer["log"]],
-        "cpu_s": time.process_time() - start,
-    }
+        try:
+            diagnosis = pipeline.diagnose(files[:2], files[2:])
+            found = answer_record(diagnosis.findings.answer)
+        except BadInput as error:
+            found = {"refused": str(error)}
+    found |= {"kind": kind, "cpu_s": time.process_time() - start}
     part = file.with_suffix(".part")
     part.write_text(json.dumps(found), encoding="utf-8")
     part.replace(file)
 
 
+def answer_record(answer: Answer) -> dict[str, object]:
+    """Return what is kept of an answer."""
+    return {
+        "candidates": len(answer["tried"]),
+        "effects": [[e["name"], e["probability"]] for e in answer["effects"]],
+        "possible": [[e["name"], e["probability"]] for e in answer["also_possible"]],
+        "unknown": answer["unknown"]["flag"],
+        "log": [[entry["run"], entry["name"]] for entry in answer["log"]],
+    }
+
+
 def print_rates(out: Path) -> None:
-    """Print the share of logs with a name, with an unknown cause, and with a finding of the log."""
+    """Print the shares of logs that were refused, or got a name, an unknown cause, or a finding."""
     by_kind: dict[str, list[dict[str, object]]] = {}
     for file in sorted(out.glob("S*_T*.json")):
         found = json.loads(file.read_text(encoding="utf-8"))
         by_kind.setdefault(found["kind"], []).append(found)
     everything = [found for some in by_kind.values() for found in some]
     for kind, some in (*by_kind.items(), ("all", everything)):
-        print(f"{kind}: {len(some)} trials")
+        read = [found for found in some if "refused" not in found]
+        print(f"{kind}: {len(some)} trials, {len(some) - len(read)} of them refused")
+        some = read
         print(f"  with a name       {share([bool(found['effects']) for found in some])}")
         print(f"  called unknown    {share([bool(found['unknown']) for found in some])}")
         print(f"  a finding of the log {share([bool(found['log']) for found in some])}")
     names = Counter[str]()
     for found in everything:
-        effects = found["effects"]
+        effects = found.get("effects", [])
         assert isinstance(effects, list)
         names.update(name for name, _ in effects)
     for name, count in names.most_common():
