@@ -1756,6 +1756,13 @@ class ValidateConfig:
         "held-out recordings is none.",
         low=1.0,
     )
+    group_harm: float = setting(
+        1.5,
+        "1",
+        "Ratio of rms errors of free runs above which a model harms a group of recordings. An "
+        "effect that helps on the whole may be wrong in a group that has few of the runs.",
+        low=1.0,
+    )
     alone_share: float = setting(
         0.95,
         "1",

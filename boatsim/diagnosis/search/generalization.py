@@ -5,7 +5,9 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from boatsim.diagnosis.config import DEFAULT, ValidateConfig
-from boatsim.diagnosis.free_runs import FAMILIES, FreeRun, mean_square
+from boatsim.diagnosis.filter import MappedRecording
+from boatsim.diagnosis.free_runs import FAMILIES, FreeRun, free_runs, mean_square
+from boatsim.diagnosis.problem import Fit, Problem
 
 Squares = Mapping[str, Sequence[float]]  # mean square error of each free run by family of signals
 
@@ -68,3 +70,49 @@ def error_ratio(found: Squares, reference: Squares) -> float:
     for family, errors in found.items():
         ratios.append(np.log(np.mean(errors) / np.mean(reference[family])))
     return float(np.exp(np.mean(ratios)))
+
+
+def recordings_by_group(recordings: Sequence[MappedRecording]) -> dict[str, list[MappedRecording]]:
+    """Return the recordings of each group to which some of them belong, but not all.
+
+    Args:
+        recordings: Mapped recordings with the names of their groups.
+    """
+    found: dict[str, list[MappedRecording]] = {}
+    for group in sorted({group for mapped in recordings for group in mapped.groups}):
+        own = [mapped for mapped in recordings if group in mapped.groups]
+        if len(own) < len(recordings):
+            found[group] = own
+    return found
+
+
+def harmed_groups(
+    problem: Problem,
+    before: Fit,
+    after: Fit,
+    held_out: Sequence[MappedRecording],
+    horizon: float,
+) -> tuple[str, ...]:
+    """Return the groups of held-out recordings that one model simulates much worse than another.
+
+    The rms error of one family of signals over all free runs of the group has grown by more than
+    `validate.group_harm`. A few long errors suffice, as they do for a user of the model.
+
+    Args:
+        problem: The estimation problem with the settings.
+        before: The model that serves as reference.
+        after: The other model.
+        held_out: Held-out recordings.
+        horizon: Length of each free run [s].
+    """
+    config = problem.config.validate
+    found = []
+    for group, recordings in recordings_by_group(held_out).items():
+        runs = free_runs(problem, {"before": before, "after": after}, recordings, horizon)
+        new = mean_square_errors(runs, "after")
+        for family, old in mean_square_errors(runs, "before").items():
+            enough = len(old) >= config.fewest_runs and np.isfinite(old).all()
+            if enough and not np.mean(new[family]) <= config.group_harm**2 * np.mean(old):
+                found.append(group)
+                break
+    return tuple(found)

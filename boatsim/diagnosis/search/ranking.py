@@ -22,6 +22,7 @@ from boatsim.diagnosis.search.evidence import (
     unknown_cause_threshold,
 )
 from boatsim.diagnosis.search.forward_selection import refit_from_base_levels, select_forward
+from boatsim.diagnosis.search.group_harm import remove_harm_to_groups
 from boatsim.diagnosis.search.pruning import IdentifiedEffect, prune
 from boatsim.diagnosis.search.validation import (
     generalizes_worse,
@@ -237,7 +238,7 @@ def _remove_refuted_effects(
     while True:
         law = replace_stochastic_force(sets, best, named, held_out)
         if law is None:
-            return best, named
+            return remove_harm_to_groups(sets, best, named, held_out)
         best, named = prune(sets, select_forward(sets, law))
 
 
