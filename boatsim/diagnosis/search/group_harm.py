@@ -1,12 +1,14 @@
 """Restricts an effect to some groups of recordings if it makes simulations of another one worse."""
 
-from collections.abc import Iterator
-
 from boatsim.diagnosis.free_runs import free_run_horizon
 from boatsim.diagnosis.problem import Fit
 from boatsim.diagnosis.search.candidate_sets import CandidateSets, Recordings
 from boatsim.diagnosis.search.forward_selection import select_forward
-from boatsim.diagnosis.search.generalization import harmed_groups, recordings_by_group
+from boatsim.diagnosis.search.generalization import (
+    error_growth_by_group,
+    harmed_groups,
+    recordings_by_group,
+)
 from boatsim.diagnosis.search.pruning import IdentifiedEffect, prune
 from boatsim.diagnosis.search.screening import screen
 from boatsim.diagnosis.search.validation import generalizes_worse
@@ -37,7 +39,7 @@ def remove_harm_to_groups(
         return best, named
     examined = set[str]()
     while True:
-        found = next(_harmful_effects(sets, best, held_out, examined), None)
+        found = _most_harmful_effect(sets, best, held_out, examined)
         if found is None:
             return best, named
         name, group = found
@@ -51,19 +53,22 @@ def remove_harm_to_groups(
         best, named = further
 
 
-def _harmful_effects(
+def _most_harmful_effect(
     sets: CandidateSets, best: Fit, held_out: Recordings, examined: set[str]
-) -> Iterator[tuple[str, str]]:
-    """Effects that harm a group of held-out recordings, with the name of that group."""
+) -> tuple[str, str] | None:
+    """The effect that harms a group of held-out recordings most, and that group; None: no harm."""
     problem, horizon = sets.problem, free_run_horizon(sets.problem, held_out)
     groups = harmed_groups(problem, sets.base, best, held_out, horizon)
+    most, found = problem.config.validate.group_harm, None
     for name in best.effects:
         if not groups or name in examined:
             continue
         without = sets.fit_without(best, name)
-        for group in harmed_groups(problem, without, best, held_out, horizon):
-            if group in groups:
-                yield name, group
+        growth = error_growth_by_group(problem, without, best, held_out, horizon)
+        for group in groups:
+            if growth.get(group, 0.0) > most:
+                most, found = growth[group], (name, group)
+    return found
 
 
 def _fit_in_other_groups(
