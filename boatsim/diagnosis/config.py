@@ -1282,11 +1282,11 @@ class SelectConfig:
         low=1,
     )
     budget: int = setting(
-        900_000_000,
+        700_000_000,
         "steps x dof",
         "Work of the search: integration steps in every pass of the filter, times degrees of "
         "freedom, and the covariances of the filter. Recordings of a minute and a half need 2 to "
-        "12 million. 900 million take 3 to 6 minutes; then the search ends and reports what it "
+        "12 million. 700 million take 2 to 5 minutes; then the search ends and reports what it "
         "has not tried.",
         low=1,
     )

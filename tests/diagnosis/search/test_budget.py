@@ -10,6 +10,7 @@ from pushed_boat import BOAT, push, sail
 from boatsim.diagnosis import loading, pipeline
 from boatsim.diagnosis.config import DEFAULT, DiagnosisConfig
 from boatsim.diagnosis.loading import Loaded, Request
+from boatsim.diagnosis.problem import Fit
 from boatsim.diagnosis.question import Question, set_up_estimation_problem
 from boatsim.diagnosis.report.incomplete import (
     COMPARED,
@@ -19,7 +20,10 @@ from boatsim.diagnosis.report.incomplete import (
     incomplete_sentence,
 )
 from boatsim.diagnosis.report.sentences import console_lines
+from boatsim.diagnosis.search import ranking as ranking_stage
 from boatsim.diagnosis.search.budget import BudgetSpentError, SearchBudget, addition_phrase
+from boatsim.diagnosis.search.candidate_sets import CandidateSets, Recordings
+from boatsim.diagnosis.search.ranking import rank
 from boatsim.diagnosis.work import CALL, WorkCount
 from boatsim.physics.base import Array
 from boatsim.recordings.table import write_csv
@@ -103,6 +107,25 @@ def test_a_budget_that_ends_the_search_halfway_keeps_the_best_set_found(loaded: 
         evidence.append(ranking.best.evidence)
     assert evidence == sorted(evidence)
     assert evidence[-1] == complete.best.evidence
+
+
+def test_a_search_without_budget_removes_no_effect_in_whose_place_nothing_can_come(
+    loaded: Loaded, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    question = question_with(loaded, FAST)
+    base = pipeline.fit(question)
+    found = pipeline.select(question, base, loaded).ranking
+    asked = list[Fit]()
+
+    def remember(sets: CandidateSets, best: Fit, held_out: Recordings) -> Fit:
+        asked.append(best)
+        return best
+
+    monkeypatch.setattr(ranking_stage, "remove_dwarfed_effect", remember)
+    problem, none = question.problem, SearchBudget(question.problem.filtered, 0)
+    again = rank(problem, CANDIDATES, question.held_out, found.best, base=base, budget=none)
+    assert again.best.effects == found.best.effects == ("weak_reverse",)
+    assert not asked and ranking_stage.NOT_EXAMINED in again.skipped
 
 
 def test_the_same_budget_gives_the_same_answer_again(loaded: Loaded) -> None:
