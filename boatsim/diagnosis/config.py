@@ -1282,11 +1282,11 @@ class SelectConfig:
         low=1,
     )
     budget: int = setting(
-        900_000_000,
+        700_000_000,
         "steps x dof",
         "Work of the search: integration steps in every pass of the filter, times degrees of "
         "freedom, and the covariances of the filter. Recordings of a minute and a half need 2 to "
-        "12 million. 900 million take 3 to 6 minutes; then the search ends and reports what it "
+        "12 million. 700 million take 2 to 5 minutes; then the search ends and reports what it "
         "has not tried.",
         low=1,
     )
@@ -1754,6 +1754,13 @@ class ValidateConfig:
         "Ratio of rms errors of free runs, geometric mean over the signals, above which refitted "
         "coefficients are not adopted. A change of the vessel file needs a reason, and no gain on "
         "held-out recordings is none.",
+        low=1.0,
+    )
+    group_harm: float = setting(
+        1.5,
+        "1",
+        "Ratio of rms errors of free runs above which a model harms a group of recordings. An "
+        "effect that helps on the whole may be wrong in a group that has few of the runs.",
         low=1.0,
     )
     alone_share: float = setting(

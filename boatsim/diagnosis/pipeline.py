@@ -37,6 +37,11 @@ from boatsim.diagnosis.question import Question, compile_program, set_up_estimat
 from boatsim.diagnosis.recalibration import decide_recalibration
 from boatsim.diagnosis.report.answer import compose_answer
 from boatsim.diagnosis.report.findings import Findings
+from boatsim.diagnosis.report.incomplete import (
+    NOT_SELECTED_AGAIN,
+    TERMS_NOT_SOUGHT,
+    TIME_NOT_CHOSEN,
+)
 from boatsim.diagnosis.report.results import collect_findings
 from boatsim.diagnosis.report.schema import Answer
 from boatsim.diagnosis.search.budget import BudgetSpentError, SearchBudget
@@ -55,12 +60,6 @@ LOADED = 0.05
 SELECTING = (0.1, 0.7)
 DESCRIBING = (0.7, 0.85)
 EVALUATING = 0.9
-# what a search whose budget is spent has not tried
-TIME_NOT_CHOSEN = "the correlation time of the latent force was not chosen by the recordings"
-NOT_SELECTED_AGAIN = (
-    "the effects were not selected again with the correlation time that predicts best"
-)
-TERMS_NOT_SOUGHT = "further terms of the description were not sought"
 
 
 @dataclass(frozen=True)

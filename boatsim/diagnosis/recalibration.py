@@ -47,7 +47,7 @@ def decide_recalibration(
     """Decide which refitted coefficients of a vessel replace the values of its file.
 
     They must be determined by the recordings, and must not make simulations of held-out recordings
-    worse.
+    worse, nor those of one group of them much worse.
 
     Args:
         problem: The estimation problem: recordings, vessel model, candidate effects and priors.
@@ -60,7 +60,8 @@ def decide_recalibration(
     found = fix_undetermined_coefficients(problem, refitted)
     horizon = free_run_horizon(problem, held_out)
     runs = free_runs(problem, {WRITTEN: written, REFITTED: found}, held_out, horizon)
-    adopted = not is_harmful(problem, runs)
+    harmed = generalization.harmed_groups(problem, written, found, held_out, horizon)
+    adopted = not is_harmful(problem, runs) and not harmed
     errors = {family: rms[REFITTED] for family, rms in rms_errors(runs).items()}
     if not adopted:
         moved = _move(found, written.theta)

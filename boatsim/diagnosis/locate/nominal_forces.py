@@ -8,6 +8,7 @@ from boatsim.diagnosis.experiment_design.manoeuvres import manoeuvre_commands
 from boatsim.diagnosis.filter import MappedRecording
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.physics.base import Array
+from boatsim.physics.native.calls import prepare_call
 
 
 def actuator_states(
@@ -32,13 +33,18 @@ def actuator_states(
     act = np.zeros(program.held_size)
     memory = np.zeros(program.memory_size)
     program.functions.settle_actuators(mapped.command_values[0], memory, values, on, act)
-    states = np.empty((len(mapped.times), len(act) // 3))
     steps = np.append(np.diff(mapped.times), mapped.times[-1] - mapped.times[-2])
+    command = np.zeros(mapped.commands.shape[1])
+    advance = prepare_call(
+        program.functions, "advance_actuators", command, memory, ..., values, on, act
+    )
+    parts = np.empty((len(mapped.times), 3, len(act) // 3))
     for row, step in enumerate(steps.tolist()):
-        program.functions.advance_actuators(mapped.commands[row], memory, step, values, on, act)
-        begin, middle, end = act.reshape(3, -1)
-        states[row] = (begin + 4.0 * middle + end) / 6.0
-    return states
+        command[:] = mapped.commands[row]
+        advance(step)
+        parts[row] = act.reshape(3, -1)
+    begin, middle, end = np.moveaxis(parts, 1, 0)
+    return np.asarray((begin + 4.0 * middle + end) / 6.0)
 
 
 def body_forces(
@@ -60,12 +66,16 @@ def body_forces(
     Returns:
         Forces and moments (N, axes) [N, N m].
     """
-    forces = mapped.program.functions.total_body_force
-    on = mapped.program.effect_switches(effects)
-    first = np.int64(0)
+    program = mapped.program
+    on = program.effect_switches(effects)
+    y, act = np.zeros(2 * program.module.NQ), np.zeros(program.held_size)
+    force = prepare_call(
+        program.functions, "total_body_force", 0.0, y, act, np.int64(0), values, on
+    )
     rows = []
-    for y, act in zip(states, held, strict=True):
-        rows.append(forces(0.0, y, act, first, values, on))
+    for state, actuators in zip(states, held, strict=True):
+        y[:], act[: len(actuators)] = state, actuators
+        rows.append(force())
     return np.array(rows)
 
 

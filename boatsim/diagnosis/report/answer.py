@@ -23,6 +23,7 @@ from boatsim.diagnosis.report.assumptions import assumptions_entry, excluded_can
 from boatsim.diagnosis.report.confirmation import effect_error_entry, reason_unconfirmed
 from boatsim.diagnosis.report.described_terms import described_entries
 from boatsim.diagnosis.report.families import FAMILIES
+from boatsim.diagnosis.report.incomplete import incomplete_sentence
 from boatsim.diagnosis.report.layers import classify_effects
 from boatsim.diagnosis.report.parameters import parameter_key, reported_sd
 from boatsim.diagnosis.report.schema import (
@@ -51,11 +52,6 @@ from boatsim.version import version
 from boatsim.view.formatting import capitalize, join_words, sentence_in_per_cent
 
 NEXT_SCENARIO = "next.toml"  # scenario of the next experiment, in the folder of the answer
-
-INCOMPLETE = (
-    "The search ended before it had compared all candidates, because its budget was spent; "
-    "shorter recordings, or a larger select.budget, complete it."
-)
 
 
 def compose_answer(
@@ -124,8 +120,7 @@ def compose_answer(
     if ranking.recalibration is not None:
         answer["recalibration"] = _recalibration(ranking.recalibration)
     verdict = verdict_sentences(answer, effect_meanings(problem.candidates.values(), vessel))
-    if ranking.skipped:
-        verdict = f"{verdict} {INCOMPLETE}"
+    verdict = f"{verdict} {incomplete_sentence(ranking.skipped)}".rstrip()
     answer["sentence"] = _with_log_first(verdict, findings, problem, ranking)
     return answer
 

@@ -48,18 +48,18 @@ def combined_gain(gains: Sequence[float]) -> float:
     return float(np.logaddexp.reduce(np.array(gains, dtype=float)))
 
 
-def quadratic_evidence_gain(best: Fit, name: str) -> float:
-    """Return a quadratic approximation of the evidence that an effect gains in a fit [nats].
+def quadratic_evidence_gain(best: Fit, *names: str) -> float:
+    """Return a quadratic approximation of the evidence that effects gain together in a fit [nats].
 
-    This is half the squared distance of its parameters from zero effect in standard deviations. It
-    is far too large where the latent (unmodelled) force may replace the effect, which a curvature
-    does not show.
+    This is half the squared distance of their parameters from zero effect in standard deviations.
+    It is far too large where the latent (unmodelled) force may replace the effects, which a
+    curvature does not show.
 
     Args:
         best: Fit of the vessel model with some candidate effects.
-        name: Name of one of its effects.
+        *names: Names of some of its effects.
     """
-    own = [i for i, f in enumerate(best.free) if f.effect == name and not f.relative]
+    own = [i for i, f in enumerate(best.free) if f.effect in names and not f.relative]
     if not own:
         return 0.0
     off = best.theta[own] - prior_arrays(best.free).mean[own]

@@ -5,7 +5,9 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from boatsim.diagnosis.config import DEFAULT, ValidateConfig
-from boatsim.diagnosis.free_runs import FAMILIES, FreeRun, mean_square
+from boatsim.diagnosis.filter import MappedRecording
+from boatsim.diagnosis.free_runs import FAMILIES, FreeRun, free_runs, mean_square
+from boatsim.diagnosis.problem import Fit, Problem
 
 Squares = Mapping[str, Sequence[float]]  # mean square error of each free run by family of signals
 
@@ -68,3 +70,70 @@ def error_ratio(found: Squares, reference: Squares) -> float:
     for family, errors in found.items():
         ratios.append(np.log(np.mean(errors) / np.mean(reference[family])))
     return float(np.exp(np.mean(ratios)))
+
+
+def recordings_by_group(recordings: Sequence[MappedRecording]) -> dict[str, list[MappedRecording]]:
+    """Return the recordings of each group to which some of them belong, but not all.
+
+    Args:
+        recordings: Mapped recordings with the names of their groups.
+    """
+    found: dict[str, list[MappedRecording]] = {}
+    for group in sorted({group for mapped in recordings for group in mapped.groups}):
+        own = [mapped for mapped in recordings if group in mapped.groups]
+        if len(own) < len(recordings):
+            found[group] = own
+    return found
+
+
+def error_growth_by_group(
+    problem: Problem,
+    before: Fit,
+    after: Fit,
+    held_out: Sequence[MappedRecording],
+    horizon: float,
+) -> dict[str, float]:
+    """Return how far the simulation errors in each group of held-out recordings differ.
+
+    The result is the ratio of the rms errors over all free runs of a group, of that family of
+    signals where it is largest. A few long errors suffice, as they do for a user of the model.
+
+    Args:
+        problem: The estimation problem with the settings.
+        before: The model that serves as reference.
+        after: The other model.
+        held_out: Held-out recordings.
+        horizon: Length of each free run [s].
+
+    Returns:
+        Ratio by group; infinite where a simulation by `after` diverges. Groups with few free runs,
+        or in which the reference diverges, are omitted.
+    """
+    found: dict[str, float] = {}
+    for group, recordings in recordings_by_group(held_out).items():
+        runs = free_runs(problem, {"before": before, "after": after}, recordings, horizon)
+        new = mean_square_errors(runs, "after")
+        for family, old in mean_square_errors(runs, "before").items():
+            if len(old) < problem.config.validate.fewest_runs or not np.isfinite(old).all():
+                continue
+            ratio = float(np.sqrt(np.mean(new[family]) / np.mean(old)))
+            if not np.isfinite(ratio):
+                ratio = np.inf
+            found[group] = max(found.get(group, 0.0), ratio)
+    return found
+
+
+def harmed_groups(
+    problem: Problem,
+    before: Fit,
+    after: Fit,
+    held_out: Sequence[MappedRecording],
+    horizon: float,
+) -> tuple[str, ...]:
+    """Return the groups of held-out recordings that one model simulates much worse than another.
+
+    The arguments are those of `error_growth_by_group`.
+    """
+    growth = error_growth_by_group(problem, before, after, held_out, horizon)
+    limit = problem.config.validate.group_harm
+    return tuple(group for group, ratio in growth.items() if ratio > limit)

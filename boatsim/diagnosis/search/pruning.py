@@ -14,6 +14,7 @@ from boatsim.diagnosis.search.evidence import (
     combined_gain,
     leading_candidates,
     log_evidence_gains,
+    quadratic_evidence_gain,
     unexplained_evidence,
     unknown_cause_threshold,
 )
@@ -145,12 +146,32 @@ def _corrects_shape(sets: CandidateSets, best: Fit, named: IdentifiedEffect) -> 
         return False
     alone = sets.fit_without(best, named.name)
     for other in alone.effects:
+        if sets.saves_work and not may_correct_shape(best, named, other, config):
+            continue
         neither, instead = sets.fit_without(alone, other), sets.fit_without(best, other)
         both = best.evidence - neither.evidence
         least = min(alone.evidence, instead.evidence) - neither.evidence
         if least > config.alike_share * both and named.gain < unknown_cause_threshold(config, both):
             return True
     return False
+
+
+def may_correct_shape(best: Fit, named: IdentifiedEffect, other: str, config: SelectConfig) -> bool:
+    """Whether an effect may only correct the shape of another one, by the covariance of both.
+
+    Effects with independent parameters explain together the sum of what each explains. Then the
+    fits without both, and without the other one, need not be computed.
+
+    Args:
+        best: Fit of the vessel model with some candidate effects.
+        named: One of its effects.
+        other: Name of another one.
+        config: Settings of the selection.
+    """
+    both = quadratic_evidence_gain(best, named.name, other)
+    larger = max(quadratic_evidence_gain(best, named.name), quadratic_evidence_gain(best, other))
+    alike = larger < (1.0 - config.alike_share) * both
+    return alike and named.gain < unknown_cause_threshold(config, both)
 
 
 def _improves_prediction(sets: CandidateSets, best: Fit, named: IdentifiedEffect) -> bool:

@@ -22,6 +22,7 @@ from boatsim.diagnosis.search.evidence import (
     unknown_cause_threshold,
 )
 from boatsim.diagnosis.search.forward_selection import refit_from_base_levels, select_forward
+from boatsim.diagnosis.search.group_harm import remove_harm_to_groups
 from boatsim.diagnosis.search.pruning import IdentifiedEffect, prune
 from boatsim.diagnosis.search.validation import (
     generalizes_worse,
@@ -34,6 +35,7 @@ from boatsim.diagnosis.search.validation import (
 from boatsim.physics.described_laws import SymbolicTerm
 from boatsim.progress import Report, ignore_progress
 
+NOT_EXAMINED = "effects beside a much larger unexplained force were not examined again"
 JUDGING = 0.8  # share of the work, by experience, that is done when held-out recordings decide
 
 
@@ -170,9 +172,16 @@ def rank(
 def _select(
     sets: CandidateSets, start: Fit, held_out: Sequence[MappedRecording]
 ) -> tuple[Fit, tuple[IdentifiedEffect, ...]]:
-    """Forward selection and pruning, repeated after each dwarfed effect that is removed."""
+    """Forward selection and pruning, repeated after each dwarfed effect that is removed.
+
+    Without a budget nothing can take the place of a removed effect, and none is removed.
+    """
     best, named = prune(sets, select_forward(sets, start))
     while True:
+        if sets.budget.spent:
+            if best.effects:
+                sets.budget.state(NOT_EXAMINED)
+            return best, named
         fewer = remove_dwarfed_effect(sets, best, held_out)
         if fewer is best:
             return best, named
@@ -237,7 +246,7 @@ def _remove_refuted_effects(
     while True:
         law = replace_stochastic_force(sets, best, named, held_out)
         if law is None:
-            return best, named
+            return remove_harm_to_groups(sets, best, named, held_out)
         best, named = prune(sets, select_forward(sets, law))
 
 

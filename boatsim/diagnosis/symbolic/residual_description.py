@@ -66,6 +66,8 @@ def _general(
 ) -> Formula:
     """Return the formula with the terms that reduce the errors on held-out recordings.
 
+    Terms that make simulations of one group of these much worse are removed, too.
+
     Terms are removed in the order of increasing evidence; events of single recordings remain. The
     last choice is the fit without any term, if terms have replaced effects of it.
     """
@@ -79,17 +81,18 @@ def _general(
     fits = {"recalibrated": recalibrated}
     for k, formula in enumerate(chain):
         fits[str(k)] = formula.fit
-    runs = []
+    runs, horizon = [], problem.horizon
     if held_out:
         horizon = min(problem.horizon, longest_duration(held_out))
         runs = free_runs(problem, fits, held_out, horizon)
     before = generalization.mean_square_errors(runs, "recalibrated")
     if not before:  # without held-out data no term is confirmed
         return events_only
-    misfits = []
-    for k in range(len(chain)):
+    misfits, last = [], chain[-1].fit
+    for k, formula in enumerate(chain):
         misfit = generalization.error_ratio(generalization.mean_square_errors(runs, str(k)), before)
-        if not np.isfinite(misfit):  # the simulation diverges
+        harmed = generalization.harmed_groups(problem, last, formula.fit, held_out, horizon)
+        if harmed or not np.isfinite(misfit):  # or the simulation diverges
             misfit = np.inf
         misfits.append(misfit)
     improvement = problem.config.describe.general_improvement

@@ -4,7 +4,7 @@ All terms are scored by their approximate evidence, the best of them are fitted 
 the parameters of the chosen term, such as its times, are refined.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -90,11 +90,13 @@ def select_terms(
         if found.evidence - formula.fit.evidence < required:
             break
         extended = Formula(found, formula.terms | {trial.slot: term})
-        if _replaces_effect(problem, formula, extended):
+        fewer: dict[str, Formula] = {}
+        if _replaces_effect(problem, formula, extended, fewer):
             refused.add(family(trial.scored.term))
             continue
-        formula = _pruned(problem, extended)
-        if len(formula.terms) > 1:
+        formula = _pruned(problem, extended, fewer)
+        ends = budget.spent and len(formula.terms) < config.describe.most_terms
+        if len(formula.terms) > 1 and not ends:
             formula = _refine_all(problem, formula, everywhere)
         count, gain = len(formula.terms), found.evidence - best.evidence
         done = count / config.describe.most_terms
@@ -270,17 +272,21 @@ def _moved(
     return term
 
 
-def _replaces_effect(problem: Problem, before: Formula, extended: Formula) -> bool:
+def _replaces_effect(
+    problem: Problem, before: Formula, extended: Formula, fewer: dict[str, Formula]
+) -> bool:
     """Return whether the newest term only replaces an identified effect.
 
     It does if the effect alone explains most of what the term explains. The effect is the better
     answer even if it is a little less exact: wind, not a side force that varies with the heading.
+    Refits of the extended formula without an effect are added to `fewer`, by its name.
     """
     config = problem.config.select
     for name in before.fit.effects:
         if name in before.terms:
             continue
-        without = refit_without_term(problem, extended, name).fit
+        fewer[name] = refit_without_term(problem, extended, name)
+        without = fewer[name].fit
         if without.evidence > extended.fit.evidence - config.least_gain:
             neither = refit_without_term(problem, before, name).fit.evidence
             share = config.alike_share * (without.evidence - neither)
@@ -289,12 +295,16 @@ def _replaces_effect(problem: Problem, before: Formula, extended: Formula) -> bo
     return False
 
 
-def _pruned(problem: Problem, formula: Formula) -> Formula:
-    """Return the formula without earlier terms or effects that the newest term replaces."""
+def _pruned(problem: Problem, formula: Formula, fewer: Mapping[str, Formula]) -> Formula:
+    """Return the formula without earlier terms or effects that the newest term replaces.
+
+    `fewer` has known refits of the formula without a term or effect, by its name.
+    """
+    known = dict(fewer)
     for name in formula.fit.effects[:-1]:
-        without = refit_without_term(problem, formula, name)
+        without = known.get(name) or refit_without_term(problem, formula, name)
         if without.fit.evidence > formula.fit.evidence - problem.config.select.least_gain:
-            formula = without
+            formula, known = without, {}
     return formula
 
 

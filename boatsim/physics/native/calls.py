@@ -106,13 +106,17 @@ class NativeFunction:
         floats: Any = words.data  # quicker to write to than the array
         address = ctypes.cast(words.ctypes.data, ctypes.c_char_p)
         function, result = self.function, self._result
-        if result not in (None, float):
-            raise TypeError(f"a function with the result {result}; allowed is at most one number")
+        several = result not in (None, float)
+        results = np.empty(MOST_RESULTS)
+        out = results.ctypes.data
 
         def call(*numbers: float) -> Any:
             for place, number in zip(free, numbers, strict=True):
                 floats[place] = number
-            return function(address, None)
+            if result is None or not several:
+                return function(address, None)
+            found = int(function(address, out))
+            return result(*results[:found].tolist())
 
         call.__dict__["arrays"] = given  # they must live as long as the addresses are used
         return call

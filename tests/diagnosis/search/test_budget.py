@@ -10,10 +10,20 @@ from pushed_boat import BOAT, push, sail
 from boatsim.diagnosis import loading, pipeline
 from boatsim.diagnosis.config import DEFAULT, DiagnosisConfig
 from boatsim.diagnosis.loading import Loaded, Request
+from boatsim.diagnosis.problem import Fit
 from boatsim.diagnosis.question import Question, set_up_estimation_problem
-from boatsim.diagnosis.report.answer import INCOMPLETE
+from boatsim.diagnosis.report.incomplete import (
+    COMPARED,
+    INCOMPLETE,
+    TERMS_NOT_SOUGHT,
+    TIME_NOT_CHOSEN,
+    incomplete_sentence,
+)
 from boatsim.diagnosis.report.sentences import console_lines
+from boatsim.diagnosis.search import ranking as ranking_stage
 from boatsim.diagnosis.search.budget import BudgetSpentError, SearchBudget, addition_phrase
+from boatsim.diagnosis.search.candidate_sets import CandidateSets, Recordings
+from boatsim.diagnosis.search.ranking import rank
 from boatsim.diagnosis.work import CALL, WorkCount
 from boatsim.physics.base import Array
 from boatsim.recordings.table import write_csv
@@ -82,7 +92,7 @@ def test_a_search_without_budget_adds_nothing_and_states_what_it_skipped(loaded:
     assert not ranking.named and not ranking.best.effects
     assert len(ranking.first) == len(CANDIDATES)  # each candidate alone is always screened
     assert any(what.startswith("weak_reverse was not added") for what in ranking.skipped)
-    assert pipeline.TIME_NOT_CHOSEN in ranking.skipped
+    assert TIME_NOT_CHOSEN in ranking.skipped
 
 
 def test_a_budget_that_ends_the_search_halfway_keeps_the_best_set_found(loaded: Loaded) -> None:
@@ -97,6 +107,25 @@ def test_a_budget_that_ends_the_search_halfway_keeps_the_best_set_found(loaded: 
         evidence.append(ranking.best.evidence)
     assert evidence == sorted(evidence)
     assert evidence[-1] == complete.best.evidence
+
+
+def test_a_search_without_budget_removes_no_effect_in_whose_place_nothing_can_come(
+    loaded: Loaded, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    question = question_with(loaded, FAST)
+    base = pipeline.fit(question)
+    found = pipeline.select(question, base, loaded).ranking
+    asked = list[Fit]()
+
+    def remember(sets: CandidateSets, best: Fit, held_out: Recordings) -> Fit:
+        asked.append(best)
+        return best
+
+    monkeypatch.setattr(ranking_stage, "remove_dwarfed_effect", remember)
+    problem, none = question.problem, SearchBudget(question.problem.filtered, 0)
+    again = rank(problem, CANDIDATES, question.held_out, found.best, base=base, budget=none)
+    assert again.best.effects == found.best.effects == ("weak_reverse",)
+    assert not asked and ranking_stage.NOT_EXAMINED in again.skipped
 
 
 def test_the_same_budget_gives_the_same_answer_again(loaded: Loaded) -> None:
@@ -114,6 +143,25 @@ def test_the_answer_says_in_words_what_was_skipped(loaded: Loaded) -> None:
     printed = "\n".join(console_lines(found.findings))
     for what in answer["skipped"]:
         assert f"the search's budget was spent: {what}" in printed
+
+
+def test_the_answer_says_that_candidates_were_not_compared_only_where_that_is_so() -> None:
+    assert incomplete_sentence(()) == ""
+    candidates = "2 candidates were not refitted in place of wind"
+    assert incomplete_sentence((candidates, TIME_NOT_CHOSEN)) == INCOMPLETE
+    assert incomplete_sentence((TIME_NOT_CHOSEN,)) == f"{COMPARED} {TIME_NOT_CHOSEN}."
+    both = incomplete_sentence((TIME_NOT_CHOSEN, TERMS_NOT_SOUGHT))
+    assert both == f"{COMPARED} {TIME_NOT_CHOSEN}, and {TERMS_NOT_SOUGHT}."
+
+
+def test_a_diagnosis_without_work_for_a_second_search_has_compared_all_candidates(
+    loaded: Loaded,
+) -> None:
+    select = replace(FAST.select, again_share=1e9)
+    found = pipeline.diagnose_loaded(loaded, config=replace(FAST, select=select))
+    answer = found.findings.answer
+    assert answer["skipped"] == [TIME_NOT_CHOSEN]
+    assert answer["sentence"].endswith(f"{COMPARED} {TIME_NOT_CHOSEN}.")
 
 
 def test_statements_count_the_candidates_once_for_each_trial() -> None:

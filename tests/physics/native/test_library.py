@@ -124,6 +124,17 @@ def test_a_prepared_call_has_the_numbers_that_it_is_given() -> None:
         step(0.0)
 
 
+def test_a_prepared_call_returns_several_numbers_of_its_present_arguments() -> None:
+    program = Program(load_vessel("joystick_boat"))
+    y, act = np.zeros(2 * program.module.NQ), np.zeros(program.held_size)
+    given = 0.0, y, act, np.int64(0), program.values(), program.effect_switches()
+    force = prepare_call(program.simulation, "total_body_force", *given)
+    for speed in (0.5, 1.0):
+        y[program.module.NQ] = speed
+        assert force() == program.simulation.total_body_force(*given)
+    assert force()[0] < 0.0  # resistance
+
+
 def test_an_array_of_another_type_is_refused() -> None:
     code = Program(load_vessel("joystick_boat")).simulation
     with pytest.raises(TypeError, match="float32 with 1 dimensions; allowed is a contiguous"):
