@@ -57,6 +57,7 @@ class CompiledProgram(Protocol):
     SHOWS: tuple[int, ...]  # places of a state's entries among the fields of `MeasuredMotion`
     CLOSED: bool  # whether the last 12 masses are inverted
     HELD: int
+    CANDIDATES: int  # number of effects that a switch turns on
     HAS_TIME_TO_DISCONTINUITY: (
         bool  # whether the signal of a channel may jump or bend while its command is held
     )

@@ -260,6 +260,7 @@ class Composition:
         functions: list[str] = []
         used: set[str] = set()
         constants = [f"HELD, MEMORY = {max(len(self.law_signals), 1)}, {max(self.memory_size, 1)}"]
+        constants.append(f"CANDIDATES = {len(self.effects) - len(self.vessel.effects)}")
         everything = effect_kinds()
         for part in chain.from_iterable(kind.parts for kind in everything):
             body, has_effects = self._function_lines(part, everything)

@@ -18,6 +18,7 @@ from boatsim.physics.signals import (
 
 HELD = 0
 MEMORY = 1  # floats of the state of all channels
+CANDIDATES = 0  # number of effects that a switch turns on
 HAS_TIME_TO_DISCONTINUITY = (
     False  # whether the signal of any channel may jump or bend while its command is held
 )

@@ -57,6 +57,9 @@ SIMULATION: Mapping[str, Entry] = {
     "settle_actuators_of_boats": Entry((ROWS, FLEET)),
     "advance_boats": Entry((ROWS, FLEET, REAL, WHOLE)),
     "read_instruments_of_boats": Entry((ROWS, FLEET, MATRIX)),
+}
+# Only of programs without candidate effects: MuJoCo's callback knows no switches
+ON_MUJOCO: Mapping[str, Entry] = {
     "add_passive_forces_in_place": Entry((REAL, VECTOR, VECTOR, VECTOR, VECTOR, VECTOR)),
 }
 ESTIMATION: Mapping[str, Entry] = {
@@ -86,8 +89,20 @@ ESTIMATION: Mapping[str, Entry] = {
         (records.Inputs, REAL, records.VesselNumbers, ROWS, ROWS, MATRIX, CUBE)
     ),
 }
-# Functions by library. Each library is compiled when one of its functions is first needed.
-LIBRARIES: Mapping[str, Mapping[str, Entry]] = {
-    "simulation": SIMULATION,
-    "estimation": ESTIMATION,
-}
+LIBRARIES = ("simulation", "estimation")
+
+
+def entries_of(module: Any, library: str) -> Mapping[str, Entry]:
+    """Return the functions of a program that one of its libraries has.
+
+    Each library is compiled when one of its functions is first needed.
+
+    Args:
+        module: The program's package.
+        library: One of `LIBRARIES`.
+    """
+    if library == "estimation":
+        return ESTIMATION
+    if module.CANDIDATES:
+        return SIMULATION
+    return {**SIMULATION, **ON_MUJOCO}

@@ -225,6 +225,8 @@ class ExpressionTranslator:
         """Return an entry of a tuple, all of the same kind unless the index is constant."""
         assert isinstance(owner.kind, Struct)
         place = self.whole(node.slice)
+        if not owner.kind.kinds:
+            raise self.refusal(node, f"'{ast.unparse(node)}', an entry of an empty tuple,")
         if isinstance(place.fixed, int):
             return self.entry(owner, place.fixed % len(owner.kind.kinds))
         kind = owner.kind.common

@@ -14,7 +14,7 @@ from typing import Any
 from boatsim.physics.native.build import NoCompiler, load_library
 from boatsim.physics.native.calls import NativeFunction, argument_kinds
 from boatsim.physics.native.declarations import NotTranslatable
-from boatsim.physics.native.entries import LIBRARIES
+from boatsim.physics.native.entries import LIBRARIES, entries_of
 from boatsim.physics.native.exports import export_function
 from boatsim.physics.native.mujoco_callback import add_callback, native_callback
 from boatsim.physics.native.translate import Translation
@@ -28,18 +28,28 @@ def program_source(module: Any, library: str) -> str:
 
     Args:
         module: The program's package.
-        library: Which functions: a key of `LIBRARIES`.
+        library: Which functions: one of `LIBRARIES`.
 
     Raises:
         NotTranslatable: A law has no C form.
     """
     program = Translation()
-    for name, entry in LIBRARIES[library].items():
+    for name, entry in entries_of(module, library).items():
         kinds = argument_kinds(program, entry)
         export_function(program, PREFIX + name, getattr(module, name), kinds)
-    if library == "simulation":
+    if has_callback(module, library):
         add_callback(program, module)
     return program.text
+
+
+def has_callback(module: Any, library: str) -> bool:
+    """Return whether a library of a program has the callback of MuJoCo.
+
+    Args:
+        module: The program's package.
+        library: One of `LIBRARIES`.
+    """
+    return library == "simulation" and not module.CANDIDATES
 
 
 class NativeProgram:
@@ -61,7 +71,7 @@ class NativeProgram:
             NotTranslatable: A law has no C form.
         """
         self.module = module
-        later = {name for entries in LIBRARIES.values() for name in entries}
+        later = {name for every in LIBRARIES for name in entries_of(module, every)}
         for name, value in vars(module).items():
             if name not in later and name != CALLBACK:
                 self.__dict__[name] = value
@@ -70,16 +80,17 @@ class NativeProgram:
     def _load(self, library: str) -> None:
         folder = Path(self.module.__file__).parent
         loaded = load_library(folder, library, lambda: program_source(self.module, library))
-        for name, entry in LIBRARIES[library].items():
+        for name, entry in entries_of(self.module, library).items():
             if name not in self.__dict__:
                 self.__dict__[name] = NativeFunction(getattr(loaded, PREFIX + name), entry)
-        if library == "simulation":
+        if has_callback(self.module, library):
             self.__dict__[CALLBACK] = native_callback(loaded)
 
     def __getattr__(self, name: str) -> Any:
         """Return what the loaded libraries do not have: from another one, else from the package."""
-        for library, entries in LIBRARIES.items():
-            if name in entries or (library, name) == ("simulation", CALLBACK):
+        for library in LIBRARIES:
+            called_back = name == CALLBACK and has_callback(self.module, library)
+            if called_back or name in entries_of(self.module, library):
                 try:
                     self._load(library)
                 except (NoCompiler, NotTranslatable):

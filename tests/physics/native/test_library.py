@@ -14,6 +14,7 @@ from boatsim.diagnosis.noise_levels import fit_noise
 from boatsim.diagnosis.problem import Problem
 from boatsim.physics.content import shipped_content_names
 from boatsim.physics.debugging import DEBUG
+from boatsim.physics.effects.command_delay import CommandDelay
 from boatsim.physics.native import build
 from boatsim.physics.native.calls import prepare_call
 from boatsim.physics.native.library import NativeProgram, program_source
@@ -53,6 +54,13 @@ def test_every_vessel_has_a_c_form(name: str) -> None:
     module = Program(load_vessel(name)).module
     assert "kalman_filter" in program_source(module, "estimation")
     assert "passive_callback" in program_source(module, "simulation")
+
+
+def test_a_program_with_candidates_has_a_c_form_without_the_callback_of_mujoco() -> None:
+    program = Program(load_vessel("joystick_boat"), candidates=(CommandDelay(),))
+    source = program_source(program.module, "simulation")
+    assert "rollout" in source and "passive" not in source
+    assert isinstance(program.simulation, NativeProgram)
 
 
 def batch_states(vessel: Vessel) -> np.ndarray:
