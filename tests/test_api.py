@@ -102,6 +102,7 @@ def test_replay_is_the_file_of_the_command_with_each_time_once(
     )
 
 
+@pytest.mark.slow
 def test_a_strict_type_checker_knows_what_comes_back(tmp_path: Path) -> None:
     (tmp_path / "user.py").write_text(USER)
     command = [

@@ -84,6 +84,7 @@ def test_2_the_cache_of_numba_has_the_methods_that_are_replaced() -> None:
     assert function._cache._cache_file._source_stamp  # numba compares it with the one on disk
 
 
+@pytest.mark.slow
 def test_2_compiled_code_is_found_on_disk_and_a_damaged_file_is_compiled_again(
     tmp_path: Path,
 ) -> None:

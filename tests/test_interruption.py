@@ -128,6 +128,7 @@ def endless(tmp_path: Path) -> Path:
 @pytest.mark.parametrize(
     "name", ["SIGINT", "SIGTERM", pytest.param("SIGHUP", marks=pytest.mark.slow)]
 )
+@pytest.mark.slow
 def test_a_signal_ends_a_run_and_what_was_logged_is_kept_with_its_norms_so_far(
     name: str, endless: Path, tmp_path: Path
 ) -> None:
@@ -301,6 +302,7 @@ def _small(most: int) -> None:
     resource.setrlimit(resource.RLIMIT_FSIZE, (most, most))
 
 
+@pytest.mark.slow
 def test_a_run_on_a_full_disk_ends_with_one_line_and_keeps_what_was_whole(
     endless: Path, tmp_path: Path
 ) -> None:
@@ -316,6 +318,7 @@ def test_a_run_on_a_full_disk_ends_with_one_line_and_keeps_what_was_whole(
     np.testing.assert_allclose(table["u_mps"][:together], log["u_mps"][:together], atol=1e-9)
 
 
+@pytest.mark.slow
 def test_a_comparison_on_a_full_disk_ends_with_one_line_and_leaves_what_was_there(
     tmp_path: Path,
 ) -> None:

@@ -136,6 +136,7 @@ def test_1_a_strangers_recording_runs_nothing(tmp_path: Path) -> None:
     assert not ran.exists()
 
 
+@pytest.mark.slow
 def test_2_content_runs_and_its_names_resolve(tmp_path: Path) -> None:
     home = tmp_path / "mine"
     for folder in ("effects", "models", "scenarios/calm"):
@@ -374,6 +375,7 @@ def test_12_without_a_home_the_cache_is_a_new_folder_of_the_process(tmp_path: Pa
 
 
 @pytest.mark.parametrize("damage", ["laws.py", "__init__.py", "*.nbi", "*.nbc", "cut"])
+@pytest.mark.slow
 def test_13_a_damaged_cache_is_built_again(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, damage: str
 ) -> None:
@@ -416,6 +418,7 @@ def test_14_what_steers_a_terminal_is_shown_as_an_escape(
     assert escape_for_terminal("Königsberg, 5 °") == "Königsberg, 5 °"
 
 
+@pytest.mark.slow
 def test_14_an_ascii_terminal_gets_escapes(tmp_path: Path) -> None:
     file = tmp_path / "größe.toml"
     file.write_text(f'vessel = "kvlcc2_roll"\n{STILL}')

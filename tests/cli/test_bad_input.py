@@ -424,6 +424,7 @@ def test_a_diagnosis_uses_a_recording_or_says_why_not(
 
 @quick
 @given(content=recordings(decay()), command=st.sampled_from(["replay", "compare"]))
+@pytest.mark.slow
 def test_a_replay_uses_a_recording_or_says_why_not(
     content: bytes, command: str, place: Callable[..., Path]
 ) -> None:
@@ -501,6 +502,7 @@ def test_notes_beside_a_recording_are_used_or_the_line_says_why_not(
 
 @few
 @given(content=tomls(NOTES))
+@pytest.mark.slow
 def test_a_diagnosis_uses_notes_or_says_why_not(content: bytes, place: Callable[..., Path]) -> None:
     folder = place(run__csv=csv_text(decay()), recording__toml=content)
     assert_used_or_refused(

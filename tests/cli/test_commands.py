@@ -88,6 +88,7 @@ def sway(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Path, Any]]
     yield out, boatsim("run", "joystick_boat/sway_1", "--out", out)
 
 
+@pytest.mark.slow
 def test_a_run_leaves_its_files_and_nothing_else(sway: tuple[Path, Any]) -> None:
     out, result = sway
     assert result.exit_code == 0 and not result.stderr
@@ -178,6 +179,7 @@ damping = 0.3
 """
 
 
+@pytest.mark.slow
 def test_another_seed_is_another_course_of_the_waves(tmp_path: Path) -> None:
     file = write(tmp_path / "waves.toml", WAVES)
     for out, seed in (("a", 1), ("b", 1), ("c", 2)):
@@ -277,6 +279,7 @@ def test_wrong_usage_is_exit_code_2(arguments: list[str]) -> None:
 
 
 @pytest.mark.parametrize("kind", ["vessel", "controller", "effect", "scenario"])
+@pytest.mark.slow
 def test_list_has_a_line_about_everything(kind: str) -> None:
     result = boatsim("list", f"{kind}s")
     lines = [line.split(maxsplit=1) for line in result.stdout.splitlines()[1:]]

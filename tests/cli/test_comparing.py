@@ -60,6 +60,7 @@ def test_a_run_knows_its_scenario_and_is_compared_with_all_that_acted_in_it(
     assert "adds weak_reverse, fan_wind" in said
 
 
+@pytest.mark.slow
 def test_a_scenario_that_is_gone_or_of_another_boat_is_said_and_the_vessel_acts_alone(
     run: Path, tmp_path: Path
 ) -> None:

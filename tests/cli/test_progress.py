@@ -39,6 +39,7 @@ def lines(stderr: str) -> list[str]:
     ]
 
 
+@pytest.mark.slow
 def test_a_diagnosis_says_its_stages_in_their_order_each_once_and_none_on_stdout(
     tmp_path: Path,
 ) -> None:
@@ -60,6 +61,7 @@ def test_a_stage_that_comes_back_is_told_once_and_the_first_with_the_second(
     assert lines(capsys.readouterr().err) == ["reading", "selecting", "judging", "writing"]
 
 
+@pytest.mark.slow
 def test_the_share_of_the_work_only_grows_and_the_library_prints_nothing(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
@@ -216,6 +218,7 @@ def test_a_part_of_the_work_is_told_as_its_share_of_the_whole() -> None:
 
 
 @pytest.mark.skipif(not hasattr(os, "openpty"), reason="there is no terminal to pretend")
+@pytest.mark.slow
 def test_a_terminal_gets_a_bar_with_the_stage_and_the_time_and_it_is_gone_in_the_end(
     tmp_path: Path,
 ) -> None:

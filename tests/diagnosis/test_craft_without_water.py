@@ -144,6 +144,7 @@ CASES: dict[str, tuple[dict[str, object], str, dict[str, float]]] = {
 
 
 @pytest.mark.parametrize("case", CASES)
+@pytest.mark.slow
 def test_what_differs_from_the_data_sheet_is_found_with_its_size(case: str):
     changed, name, truth = CASES[case]
     sail: Callable[..., Recording] = floated

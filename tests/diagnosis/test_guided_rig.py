@@ -53,6 +53,7 @@ def recording(seed: int, seconds: float, push: bool) -> Recording:
     return Recording(f"run {seed}", t, {"phi_rad": phi, "torque_Nm": recorded}, path=FILE)
 
 
+@pytest.mark.slow
 def test_the_diagnosis_names_the_friction_and_the_gain_and_reports_the_push() -> None:
     runs = [recording(1, 20.0, True).thinned(31.0), recording(2, 20.0, False).thinned(31.0)]
     held_out = recording(3, 15.0, False).thinned(31.0)

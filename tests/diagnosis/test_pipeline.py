@@ -284,6 +284,7 @@ def test_ideal_boat_has_nothing_missing(folder):
     assert answer["where"]["region"] == []
 
 
+@pytest.mark.slow
 def test_two_effects_are_named_with_their_values_and_the_patched_boat_follows_unseen_data(folder):
     wind = (0.12, 0.8)
     runs = written(
@@ -432,6 +433,7 @@ def test_reverse_thrust_taken_for_ideal_is_found_in_the_thesis_own_tests(thesis)
 # ---- a real roll decay
 
 
+@pytest.mark.slow
 def test_real_roll_decay_shows_nonlinear_damping_and_stiffening_on_unseen_data():
     found = pipeline.diagnose([DECAY]).findings
     answer = found.answer

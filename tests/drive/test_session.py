@@ -373,6 +373,7 @@ def driven(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return out
 
 
+@pytest.mark.slow
 def test_what_was_driven_is_recorded_as_any_run(driven: Path) -> None:
     assert {
         "recording.csv",
@@ -426,6 +427,7 @@ def test_goals_too_many_for_a_file_are_left_out_of_it_and_what_they_are_of_stays
     )
 
 
+@pytest.mark.slow
 def test_a_flood_of_connections_without_file_descriptors_costs_neither_driver_nor_log(
     tmp_path: Path,
 ) -> None:
@@ -484,6 +486,7 @@ def opened():
         yield browser
 
 
+@pytest.mark.slow
 def test_a_gamepads_stick_arrives_as_a_goal_and_a_closed_page_stops_the_thrusters(
     opened, tmp_path: Path
 ) -> None:
@@ -508,6 +511,7 @@ def test_a_gamepads_stick_arrives_as_a_goal_and_a_closed_page_stops_the_thruster
     assert abs(log["actual_thrust_port_N"][-1]) < 1e-3
 
 
+@pytest.mark.slow
 def test_a_hidden_page_lets_go_and_takes_over_again_with_the_sticks_in_the_middle(
     opened, tmp_path: Path
 ) -> None:
@@ -536,6 +540,7 @@ def test_a_hidden_page_lets_go_and_takes_over_again_with_the_sticks_in_the_middl
     assert [line.partition(": ")[2] for line in facts["sticks_let_go"]] == ["page hidden"]
 
 
+@pytest.mark.slow
 def test_a_run_that_goes_wrong_is_told_to_the_page(opened, tmp_path: Path) -> None:
     wild = tmp_path / "wild.py"
     wild.write_text(WILD)
@@ -564,6 +569,7 @@ class Wild(Controller):
 """
 
 
+@pytest.mark.slow
 def test_keys_drive_too(opened, tmp_path: Path) -> None:
     with driving(tmp_path / "out", *JOYSTICK, "--seconds", 60) as (running, address):
         page = opened(address, "")
@@ -635,6 +641,7 @@ def test_on_a_phone_water_sticks_and_the_button_are_on_the_first_screen(
     page.close()
 
 
+@pytest.mark.slow
 def test_a_page_closed_before_the_sticks_were_moved_ends_the_run_and_leaves_nothing(
     opened, tmp_path: Path
 ) -> None:
@@ -648,6 +655,7 @@ def test_a_page_closed_before_the_sticks_were_moved_ends_the_run_and_leaves_noth
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.slow
 def test_a_page_that_is_closed_after_driving_ends_the_run_which_is_saved(
     opened, tmp_path: Path
 ) -> None:
@@ -663,6 +671,7 @@ def test_a_page_that_is_closed_after_driving_ends_the_run_which_is_saved(
     assert log.notes.facts["complete"] is True and log.t[-1] < ABANDONED + 30
 
 
+@pytest.mark.slow
 def test_a_page_that_is_loaded_again_goes_on_driving(opened, page_server: Server) -> None:
     assert not page_server.is_abandoned  # nobody has come yet
     page = opened(page_server.address)

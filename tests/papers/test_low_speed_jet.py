@@ -335,6 +335,7 @@ def test_reversing_stops_the_craft_when_the_surge_model_says() -> None:
     assert value("reverse_at_once", "time") == pytest.approx(5.58 * log((u0 - u1) / -u1), abs=0.02)
 
 
+@pytest.mark.slow
 def test_fifty_times_real_time() -> None:
     full = scenario.load("jet_ski/low_turns_l1")
     run(full)

@@ -546,6 +546,7 @@ OTHERS = ("PID", "VSS", "MV", "Pole", "MV RRS", "Pole RRS")
 
 
 @pytest.mark.parametrize(("vessel", "test"), few([*QUARTERING[:3], ("kynoc", "seas_30")], 1))
+@pytest.mark.slow
 def test_the_relay_with_roll_reduction_is_best_or_second_best_at_it(vessel: str, test: str) -> None:
     rolls = sorted(mean("roll_rms", vessel, test, kind) for kind in OTHERS)
     assert mean("roll_rms", vessel, test, "VSS RRS") <= rolls[1]

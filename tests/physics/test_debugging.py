@@ -53,6 +53,7 @@ def run(place: Path, debug: str) -> list[str]:
     return done.stdout.splitlines()
 
 
+@pytest.mark.slow
 def test_a_run_in_plain_python_has_the_same_numbers_and_the_files_of_the_repository(
     tmp_path: Path,
 ) -> None:

@@ -98,6 +98,7 @@ def forces(program: Program, state: Sequence[float], on: Array | None = None) ->
     )
 
 
+@pytest.mark.slow
 def test_an_edited_law_gives_its_new_number(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -333,6 +334,7 @@ def test_a_controllers_compiled_law_is_known_by_all_that_it_reaches() -> None:
     ).law._cache._cache_file._source_stamp == dependency_hash.dependency_digest(law)
 
 
+@pytest.mark.slow
 def test_an_edited_constant_gives_its_new_force(tmp_path: Path, copied: Path) -> None:
     """GRAVITY goes into the law at compile time: what was compiled before must not answer."""
     source, found = copied / "boatsim" / "physics" / "particulars.py", {}

@@ -93,6 +93,7 @@ def test_paths_start_at_the_file_they_stand_in(tmp_path: Path) -> None:
 # ----------------------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 def test_every_name_of_a_shipped_scenario_is_a_case_or_a_file_of_its_folder() -> None:
     for name in shipped_content_names("scenario"):
         folder, own = name.split("/")

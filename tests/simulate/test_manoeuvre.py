@@ -369,6 +369,7 @@ def test_a_symmetric_boat_does_the_same_to_both_sides(manoeuvre: str) -> None:
     assert None not in one.values()
 
 
+@pytest.mark.slow
 def test_helm_is_reversed_at_the_heading_and_not_at_the_end_of_a_step() -> None:
     """Within 0.2 % of what steps a twentieth as long give; the row of a reversal is the instant of
     it."""

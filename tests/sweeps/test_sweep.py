@@ -516,6 +516,7 @@ def test_killed_and_continued_it_ends_with_the_same_bytes(
     assert (cut / "sweep.parquet").read_bytes() == (whole / "sweep.parquet").read_bytes()
 
 
+@pytest.mark.slow
 def test_an_interruption_keeps_what_there_is_and_the_same_command_goes_on(
     short: str, tmp_path: Path
 ) -> None:

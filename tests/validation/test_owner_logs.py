@@ -187,6 +187,7 @@ def test_a_third_of_the_logs_is_good_and_what_is_wrong_fits_the_boat(seed: int) 
         assert not c.cause or CAUSES[c.cause].fits(c.boat)
 
 
+@pytest.mark.slow
 def test_every_name_that_counts_for_a_cause_is_an_entry_of_the_library() -> None:
     said = run_boatsim("list")
     known = {line.split()[0] for line in said.out.splitlines() if line.startswith("  ")}

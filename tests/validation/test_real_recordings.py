@@ -17,6 +17,7 @@ def windows() -> Diagnosis:
     return roll.diagnose_windows(*roll.open_release(roll.AT_REST))
 
 
+@pytest.mark.slow
 def test_every_second_window_of_the_roll_decay_is_predicted_far_better_than_by_a_linear_boat(
     windows: Diagnosis,
 ) -> None:

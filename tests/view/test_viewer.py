@@ -149,6 +149,7 @@ def test_the_page_is_there_while_the_run_is_and_gone_with_it(tmp_path: Path) -> 
     }
 
 
+@pytest.mark.slow
 def test_ctrl_c_ends_a_watched_run_at_once_keeps_it_and_takes_the_page_away(tmp_path: Path) -> None:
     running, page = served(tmp_path, "--speed", "0.01")
     until = time.monotonic() + 30

@@ -25,6 +25,7 @@ def log() -> Recording:
     return Recording("turn", found.t, shown)
 
 
+@pytest.mark.slow
 def test_a_log_from_rest_is_replayed_as_it_was(log: Recording) -> None:
     problem, fitted = fit_noise_only(log, scenario.load("otter/turn").vessel)
     off = rms_errors(free_runs(problem, {"simulated": fitted}, problem.recordings, 6.0))

@@ -106,6 +106,7 @@ for each in GOALS:
 
 
 @pytest.mark.parametrize(("name", "lacking"), GOOD)
+@pytest.mark.slow
 def test_a_good_log_is_not_called_late_or_in_per_cent(
     name: str, lacking: str, tmp_path: Path, mine: Path
 ) -> None:
@@ -123,6 +124,7 @@ def test_a_good_log_is_not_called_late_or_in_per_cent(
 @pytest.mark.parametrize(
     ("name", "late"), [("late_positions", ("x_m", "y_m")), ("velocity_late", ("psi_rad",))]
 )
+@pytest.mark.slow
 def test_late_sensors_are_found_with_the_line_that_mends_them(
     name: str, late: tuple[str, ...], tmp_path: Path, mine: Path
 ) -> None:

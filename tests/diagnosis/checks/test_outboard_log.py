@@ -85,6 +85,7 @@ def test_a_boat_that_is_driven_with_little_thrust_is_left_in_peace(
     assert not found_in(sailed(rib, share), rib, tmp_path)
 
 
+@pytest.mark.slow
 def test_a_compass_turned_by_an_odd_angle_is_found_to_the_degree(
     rib: Vessel, tmp_path: Path
 ) -> None:
@@ -114,6 +115,7 @@ def test_on_one_course_nobody_can_tell_a_current_from_a_compass(rib: Vessel) -> 
 
 
 @pytest.mark.parametrize("imported", [False, True])
+@pytest.mark.slow
 def test_what_is_advised_may_be_written_at_the_end_of_the_file(
     rib: Vessel, imported: bool, tmp_path: Path
 ) -> None:

@@ -59,11 +59,13 @@ def test_what_a_boat_can_do_is_no_leap(noise: float) -> None:
     assert not outlier_rows(t, moved, FINEST, LONGEST).any()
 
 
+@pytest.mark.slow
 def test_a_diagnosis_is_not_misled_by_bursts(tmp_path: Path) -> None:
     runs = [astray(recorded(Real(), s), 0.5) for s in (1, 2, 3)]
     nothing_missing(diagnosed(runs, tmp_path, "trial_boat"))
 
 
+@pytest.mark.slow
 def test_a_recording_that_begins_with_a_fix_astray_begins_a_row_later(tmp_path: Path) -> None:
     """The filter starts from the first fix: one that is off gave the hull other damping (Eastward
     Ho, 36 noise sds)."""

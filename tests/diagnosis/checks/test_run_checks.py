@@ -104,6 +104,7 @@ def test_the_line_written_into_the_recording_toml_puts_it_right(title: str, tmp_
 @pytest.mark.parametrize(
     "title", ["heading in degrees", pytest.param("y to port, heading too", marks=pytest.mark.slow)]
 )
+@pytest.mark.slow
 def test_the_diagnosis_of_the_corrected_log_is_that_of_the_good_one(
     title: str, tmp_path: Path
 ) -> None:
@@ -145,6 +146,7 @@ def test_a_trial_is_a_good_log(trial: str) -> None:
     ],
     ids=["as written", "late", "current", "weak thruster", "bent", "munk"],
 )
+@pytest.mark.slow
 def test_what_a_boat_does_is_no_fault_of_its_log(real: Real, tmp_path: Path) -> None:
     runs = [replace(recorded(real, s), name=f"run_{s}") for s in (1, 2)]
     for run in runs:

@@ -417,6 +417,7 @@ def test_a_force_below_the_tolerated_one_is_seen_by_what_it_goes_with(
     )  # whose rms alone would pass
 
 
+@pytest.mark.slow
 def test_held_out_runs_of_a_boat_that_lacks_nothing_have_no_structure() -> None:
     """Their parameters differ from the fit by its uncertainty, which is no structure."""
     for seed in range(60, 72, 2):

@@ -135,6 +135,7 @@ def test_the_same_budget_gives_the_same_answer_again(loaded: Loaded) -> None:
     assert first.best.evidence == second.best.evidence
 
 
+@pytest.mark.slow
 def test_the_answer_says_in_words_what_was_skipped(loaded: Loaded) -> None:
     found = pipeline.diagnose_loaded(loaded, config=with_budget(1))
     answer = found.findings.answer

@@ -187,6 +187,7 @@ def blown_scenario(folder: Path, **keys: Any) -> scenario.Scenario:
     return scenario.load(str(folder / "adrift.toml"), keys)
 
 
+@pytest.mark.slow
 def test_a_scenario_says_what_is_measured_and_the_log_has_it(tmp_path: Path) -> None:
     wind = {"wind_mps": 6.0, "wind_from_rad": -pi / 2}
     log = run(blown_scenario(tmp_path, measured=wind)).recording

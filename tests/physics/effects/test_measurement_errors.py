@@ -139,6 +139,7 @@ def test_an_antenna_off_the_mass_centre_and_a_turned_compass_are_told_apart(tmp_
     assert found["position_frame_error"]["forward_m"]["value"] == pytest.approx(0.25, abs=0.03)
 
 
+@pytest.mark.slow
 def test_fixes_older_than_their_headings_are_named_with_their_age(tmp_path: Path) -> None:
     """Positions of a receiver that takes 0.1 s, beside a compass that takes none."""
     (tmp_path / "recording.toml").write_text('[facts]\nposition_fix = "gnss"\n')

@@ -97,6 +97,7 @@ def engine_states(vessel: Vessel) -> np.ndarray:
         pytest.param("jet_ski", marks=pytest.mark.slow),
     ],
 )
+@pytest.mark.slow
 def test_simulations_give_the_numbers_of_numba_to_the_last_bit(
     name: str, states: Callable[[Vessel], np.ndarray], monkeypatch: pytest.MonkeyPatch
 ) -> None:
