@@ -675,6 +675,7 @@ def test_22_what_is_no_message_of_the_page_ends_the_socket_and_moves_nothing(
     assert server.hands.sticks() is None and not server.ended
 
 
+@pytest.mark.slow
 def test_23_connections_that_send_nothing_are_few_and_short_and_do_not_stop_the_driver(
     server: Server,
 ) -> None:

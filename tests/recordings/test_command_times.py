@@ -5,6 +5,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+import pytest
 from answers import diagnosed
 from real_boat import FURTHER, Real, recorded
 
@@ -73,6 +74,7 @@ def test_channels_of_any_name_are_commands() -> None:
     )
 
 
+@pytest.mark.slow
 def test_an_exact_log_is_named_exactly(tmp_path: Path) -> None:
     """The tool's own log without any noise: what is left over is rounding, which is nobody's
     fault."""

@@ -139,6 +139,7 @@ def listens(port: int) -> bool:
         return tried.connect_ex(("127.0.0.1", port)) == 0
 
 
+@pytest.mark.slow
 def test_the_page_is_there_while_the_run_is_and_gone_with_it(tmp_path: Path) -> None:
     running, page = served(tmp_path, "--speed", "4")
     with urlopen(page, timeout=10) as answer:
