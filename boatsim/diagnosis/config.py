@@ -254,6 +254,13 @@ class ChecksConfig:
         "A guided body whose coordinates move less than this speed, over a correlation time of the "
         "disturbance, is at rest; the share of sqrt(g L), and of sqrt(g / L) for angles.",
     )
+    rest_wave: float = setting(
+        0.05,
+        "1",
+        "A body does not rest while a recorded wave moves; the share of the largest range of its "
+        "elevation that the wave has where it has not arrived or is reflected away.",
+        low=0.0,
+    )
     ignored_window: float = setting(
         12.0,
         "correlation times",

@@ -21,6 +21,8 @@ from boatsim.physics.signals import motion_signals
 from boatsim.physics.vessel import Vessel
 from boatsim.recordings.table import Recording
 
+ELEVATION = "_m"  # ends the name of a recorded elevation of the water
+
 
 def without_rest(loaded: Loaded, config: DiagnosisConfig) -> Loaded:
     """Return the recordings of a guided vessel without the rows at rest, with a finding for each.
@@ -57,7 +59,9 @@ def is_guided(vessel: Vessel, recording: Recording) -> bool:
 def intervals_at_rest(
     recording: Recording, vessel: Vessel, config: DiagnosisConfig
 ) -> list[Interval]:
-    """Return the intervals in which no recorded coordinate of a vessel moves.
+    """Return the intervals in which no recorded coordinate of a vessel and no wave moves.
+
+    A body that follows a small wave is not at rest, however small its motion.
 
     Args:
         recording: The recording.
@@ -72,6 +76,12 @@ def intervals_at_rest(
             if not signal.column.endswith("_rad"):
                 limit *= vessel.length
             still &= _is_still(recording.t, recording[signal.column], seconds, limit)
+    for name in vessel.measured:
+        if name.endswith(ELEVATION) and name in recording.signals:
+            wave = recording[name]
+            limit = config.checks.rest_wave * float(np.nanmax(wave) - np.nanmin(wave))
+            if limit > 0.0:
+                still &= _is_still(recording.t, wave, seconds, limit)
     changes = np.flatnonzero(np.diff(np.concatenate(([False], still, [False])).astype(int)))
     found = []
     for a, b in changes.reshape(-1, 2).tolist():
